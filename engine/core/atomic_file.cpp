@@ -1,0 +1,154 @@
+#include "engine/core/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <new>
+#include <string>
+#include <system_error>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Below this, a write that failed for a reason the library did not tell failed because the disk is full.
+constexpr std::uintmax_t kNoSpaceLeft = 4096;
+
+/// The folder part, "." where there is none.
+fs::path folderOf(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+/// ".NAME.PID.tmp.EXT" beside `target`. Long names are cut, so that the temporary's fits where the target's
+/// does.
+fs::path temporaryPath(const fs::path& target) {
+  constexpr std::size_t kLongestStem = 100;
+  const std::string stem = target.stem().string().substr(0, kLongestStem);
+  return folderOf(target) / fmt::format(".{}.{}.tmp{}", stem, getpid(), target.extension().string());
+}
+
+/// What a rename has to replace: the file behind a symbolic link, not the link.
+fs::path followLink(const fs::path& destination) {
+  std::error_code error;
+  if (!fs::is_symlink(destination, error)) return destination;
+  fs::path target = fs::canonical(destination, error);
+  return error ? destination : target;
+}
+
+/// A library's message as part of a sentence: one line, no full stop.
+std::string asClause(std::string message) {
+  std::replace_if(
+      message.begin(), message.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  while (!message.empty() && (message.back() == ' ' || message.back() == '.')) message.pop_back();
+  return message.empty() ? "the reason is unknown" : message;
+}
+
+const char* mendFor(int error) {
+  switch (error) {
+    case ENOSPC:
+    case EDQUOT:
+      return "free some space there or choose another folder";
+    case EACCES:
+    case EPERM:
+    case EROFS:
+      return "change its permissions or choose another folder";
+    case ENAMETOOLONG:
+      return "choose a shorter name";
+    default:
+      return "choose another folder";
+  }
+}
+
+[[noreturn]] void failBecause(const fs::path& destination, int error) {
+  fail(ExitCode::Output, "cannot write '{}': {}; {}", destination.string(),
+       asClause(std::generic_category().message(error)), mendFor(error));
+}
+
+/// For exceptions that carry no error number: the state of the disk tells whether it is full.
+[[noreturn]] void failBecause(const fs::path& destination, const std::string& message) {
+  std::error_code error;
+  const fs::space_info space = fs::space(folderOf(destination), error);
+  if (!error && space.available < kNoSpaceLeft) failBecause(destination, ENOSPC);
+  fail(ExitCode::Output, "cannot write '{}': {}; {}", destination.string(), asClause(message), mendFor(0));
+}
+
+struct RemoveOnExit {
+  const fs::path& file;
+  ~RemoveOnExit() { unlink(file.c_str()); }
+};
+
+/// Opens, flushes to the disk and closes. Returns 0 or the error number.
+int flushToDisk(const fs::path& path) {
+  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return errno;
+  int error = fsync(descriptor) == 0 ? 0 : errno;
+  // Some file systems cannot flush a folder; there is nothing to do about that.
+  if (error == EINVAL || error == ENOTSUP) error = 0;
+  if (close(descriptor) != 0 && error == 0) error = errno;
+  return error;
+}
+
+void callWriter(const fs::path& destination, const fs::path& temporary,
+                const std::function<void(const fs::path&)>& write) {
+  try {
+    write(temporary);
+  } catch (const Error&) {
+    throw;
+  } catch (const InternalError&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::system_error& e) {
+    failBecause(destination, e.code().value());
+  } catch (const std::exception& e) {
+    failBecause(destination, e.what());
+  }
+}
+
+}  // namespace
+
+void writeAtomically(const std::filesystem::path& destination,
+                     const std::function<void(const std::filesystem::path&)>& write) {
+  const fs::path target = followLink(destination);
+  const fs::path temporary = temporaryPath(target);
+  const RemoveOnExit remove{temporary};  // finds nothing to remove after the rename
+  callWriter(destination, temporary, write);
+  if (const int error = flushToDisk(temporary)) failBecause(destination, error);
+  if (std::rename(temporary.c_str(), target.c_str()) != 0) failBecause(destination, errno);
+  flushToDisk(folderOf(target));
+}
+
+void checkWritable(const std::filesystem::path& destination) {
+  if (!destination.has_filename())
+    fail(ExitCode::Output, "cannot write '{}': it names no file; add a file name", destination.string());
+  const fs::path target = followLink(destination);
+  const fs::path folder = folderOf(target);
+  std::error_code error;
+  if (!fs::is_directory(folder, error))
+    fail(ExitCode::Output, "cannot write '{}': there is no folder '{}'; create it or choose another folder",
+         destination.string(), folder.string());
+  const fs::file_status status = fs::status(target, error);
+  if (fs::is_directory(status))
+    fail(ExitCode::Output, "cannot write '{}': it is a folder; add a file name", destination.string());
+  if (fs::exists(status) && !fs::is_regular_file(status))
+    fail(ExitCode::Output, "cannot write '{}': it is not a regular file; choose another name",
+         destination.string());
+  if (fs::exists(status) && access(target.c_str(), W_OK) != 0) failBecause(destination, errno);
+  if (status.type() == fs::file_type::none) failBecause(destination, error.value());
+
+  // Permissions do not tell everything (read-only and virtual file systems): only creating a file does.
+  const fs::path temporary = temporaryPath(target);
+  const int descriptor = open(temporary.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) failBecause(destination, errno);
+  close(descriptor);
+  unlink(temporary.c_str());
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,51 @@
+#pragma once
+// Two kinds of error. `Error` is the user's: one sentence that names the file and the mend, and an exit code.
+// A failed FV_CHECK is ours: it prints both operands and ends the program with ExitCode::Internal.
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace freevoxels {
+
+/// Exit codes of every program here, documented in README.md.
+enum class ExitCode : int { Success = 0, Internal = 1, Usage = 2, Input = 3, Output = 4, Device = 5, OutOfMemory = 6 };
+
+class Error : public std::runtime_error {
+ public:
+  Error(ExitCode code, const std::string& sentence) : std::runtime_error(sentence), code_(code) {}
+  ExitCode code() const { return code_; }
+
+ private:
+  ExitCode code_;
+};
+
+template <typename... Args>
+[[noreturn]] void fail(ExitCode code, fmt::format_string<Args...> format, Args&&... args) {
+  throw Error(code, fmt::format(format, std::forward<Args>(args)...));
+}
+
+class InternalError : public std::logic_error {
+ public:
+  using std::logic_error::logic_error;
+};
+
+[[noreturn]] inline void checkFailed(const char* expression, const std::string& values, const char* file, int line) {
+  throw InternalError(fmt::format("{}:{}: check failed: {} ({})", file, line, expression, values));
+}
+
+}  // namespace freevoxels
+
+#define FV_CHECK_OP(a, op, b)                                                                              \
+  do {                                                                                                     \
+    const auto& fvA = (a);                                                                                 \
+    const auto& fvB = (b);                                                                                 \
+    if (!(fvA op fvB))                                                                                     \
+      ::freevoxels::checkFailed(#a " " #op " " #b, fmt::format("{} vs {}", fvA, fvB), __FILE__, __LINE__); \
+  } while (false)
+
+#define FV_CHECK_EQ(a, b) FV_CHECK_OP(a, ==, b)
+#define FV_CHECK_LE(a, b) FV_CHECK_OP(a, <=, b)
+#define FV_CHECK_LT(a, b) FV_CHECK_OP(a, <, b)
