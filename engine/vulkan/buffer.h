@@ -1,0 +1,47 @@
+#pragma once
+// Buffers, one allocation each, placed by what they are for.
+
+#include <cstddef>
+#include <span>
+
+#include "engine/vulkan/device.h"
+#include "engine/vulkan/owned.h"
+
+namespace freevoxels {
+
+enum class MemoryUse {
+  Device,    ///< read and written by the device; mapped too where the device's memory is the host's (lavapipe)
+  Upload,    ///< written by the host, read once by the device
+  Readback,  ///< written by the device, read by the host
+};
+
+class Buffer {
+ public:
+  Buffer() = default;
+  /// Storage, transfer and device-address usage; `extra` adds others. `name` is shown by debuggers.
+  Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const char* name, VkBufferUsageFlags extra = 0);
+
+  VkBuffer handle() const { return buffer_.get(); }
+  VkDeviceSize bytes() const { return bytes_; }
+  VkDeviceAddress address() const { return address_; }
+  /// Null where the host cannot see the memory.
+  std::byte* mapped() const { return mapped_; }
+
+ private:
+  OwnedMemory memory_;
+  OwnedBuffer buffer_;
+  VkDeviceSize bytes_ = 0;
+  VkDeviceAddress address_ = 0;
+  std::byte* mapped_ = nullptr;
+};
+
+/// Index of a memory type for `use` among `allowedTypes`. Prefers, in order, the properties that suit the use.
+std::uint32_t findMemoryType(const Device& device, std::uint32_t allowedTypes, MemoryUse use);
+
+/// Copies host data into `buffer`: directly where it is mapped, else in pieces through one staging buffer. Waits.
+void upload(const Device& device, const Buffer& buffer, std::span<const std::byte> data);
+
+/// Copies the first data.size() bytes of `buffer` to the host. Waits.
+void download(const Device& device, const Buffer& buffer, std::span<std::byte> data);
+
+}  // namespace freevoxels

@@ -1,0 +1,80 @@
+#pragma once
+// Recording, submitting and timing work: one command buffer, submitted once.
+
+#include <glm/glm.hpp>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "engine/core/stages.h"
+#include "engine/vulkan/buffer.h"
+#include "engine/vulkan/image.h"
+#include "engine/vulkan/pipeline.h"
+
+namespace freevoxels {
+
+/// What a binding of set 0 points to: a whole buffer, or a storage image in layout GENERAL.
+using Binding = std::variant<const Buffer*, const RenderTarget*>;
+
+class Commands {
+ public:
+  explicit Commands(const Device& device);
+  Commands(const Commands&) = delete;
+  Commands& operator=(const Commands&) = delete;
+
+  VkCommandBuffer handle() const { return buffer_; }
+
+  /// Everything recorded until the next beginPass is timed under this name. Passes of one name are added up.
+  void beginPass(const std::string& name);
+
+  /// `threads` invocations in each dimension, rounded up to workgroups.
+  template <typename Push>
+  void dispatch(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push, glm::ivec3 threads) {
+    bind(pipeline, bindings, &push, sizeof(Push));
+    dispatchThreads(pipeline, threads);
+  }
+  /// `count` invocations in a row; the shader computes its index from gl_WorkGroupID.x + y * gl_NumWorkGroups.x.
+  template <typename Push>
+  void dispatchLinear(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
+                      std::uint64_t count) {
+    bind(pipeline, bindings, &push, sizeof(Push));
+    dispatchInvocations(pipeline, count);
+  }
+  template <typename Push>
+  void dispatchIndirect(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
+                        const Buffer& arguments, VkDeviceSize offset) {
+    bind(pipeline, bindings, &push, sizeof(Push));
+    vkCmdDispatchIndirect(buffer_, arguments.handle(), offset);
+  }
+  void bind(const Pipeline& pipeline, std::span<const Binding> bindings, const void* push, std::size_t pushBytes);
+
+  void copy(const Buffer& from, const Buffer& to, VkBufferCopy region);
+  void copy(const RenderTarget& from, const Buffer& to);
+
+  /// All writes of the `from` stages become visible to the `to` stages.
+  void barrier(VkPipelineStageFlags2 from, VkPipelineStageFlags2 to);
+  void transition(const RenderTarget& target, VkImageLayout from, VkImageLayout to, VkPipelineStageFlags2 fromStage,
+                  VkPipelineStageFlags2 toStage);
+
+  /// Ends the recording, runs it and waits; reports the passes as the device finishes them. Throws where the
+  /// device does.
+  void submitAndWait(const Progress& progress = {});
+  /// Device time of each pass; after submitAndWait.
+  std::vector<StageTime> times() const;
+
+ private:
+  void dispatchThreads(const Pipeline& pipeline, glm::ivec3 threads);
+  void dispatchInvocations(const Pipeline& pipeline, std::uint64_t count);
+  void writeTimestamp();
+  void reportProgress(const Progress& progress) const;
+
+  const Device& device_;
+  OwnedCommandPool pool_;
+  OwnedQueryPool queries_;
+  OwnedSemaphore timeline_;
+  VkCommandBuffer buffer_ = VK_NULL_HANDLE;
+  std::vector<std::string> passes_;  ///< pass i runs from timestamp i to timestamp i + 1
+};
+
+}  // namespace freevoxels

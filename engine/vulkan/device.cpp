@@ -1,0 +1,228 @@
+#include "engine/vulkan/device.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstring>
+#include <optional>
+
+#include "engine/core/error.h"
+#include "engine/vulkan/owned.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr std::array kExtensions{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+
+/// The features that the engine uses, linked into one chain: queried to judge a device, enabled to open it.
+struct Features {
+  VkPhysicalDeviceVulkan13Features vulkan13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
+  VkPhysicalDeviceVulkan12Features vulkan12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+  VkPhysicalDeviceFeatures2 base{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
+  Features() {
+    base.pNext = &vulkan12;
+    vulkan12.pNext = &vulkan13;
+  }
+  Features(const Features&) = delete;
+};
+
+/// Every feature that is required, by its name in the Vulkan specification.
+struct RequiredFeature {
+  const char* name;
+  VkBool32& (*of)(Features&);
+};
+#define FV_FEATURE(part, name) \
+  RequiredFeature { #name, [](Features& f) -> VkBool32& { return f.part.name; } }
+const std::array kRequiredFeatures{
+    FV_FEATURE(base.features, largePoints),      FV_FEATURE(base.features, independentBlend),
+    FV_FEATURE(vulkan12, scalarBlockLayout),     FV_FEATURE(vulkan12, bufferDeviceAddress),
+    FV_FEATURE(vulkan12, timelineSemaphore),     FV_FEATURE(vulkan12, hostQueryReset),
+    FV_FEATURE(vulkan13, synchronization2),      FV_FEATURE(vulkan13, dynamicRendering),
+    FV_FEATURE(vulkan13, maintenance4),
+};
+#undef FV_FEATURE
+
+std::string typeName(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU: return "CPU";
+    default: return "other";
+  }
+}
+
+int preference(const std::string& type) {
+  constexpr std::array kOrder{"discrete GPU", "integrated GPU", "virtual GPU", "other", "CPU"};
+  return int(std::ranges::find(kOrder, type) - kOrder.begin());
+}
+
+std::string uuidText(const std::uint8_t (&uuid)[VK_UUID_SIZE]) {
+  std::string text;
+  for (int i = 0; i < int(VK_UUID_SIZE); ++i) {
+    if (i == 4 || i == 6 || i == 8 || i == 10) text += '-';
+    text += fmt::format("{:02x}", uuid[i]);
+  }
+  return text;
+}
+
+std::vector<VkPhysicalDevice> physicalDevices(const Instance& instance) {
+  std::uint32_t count = 0;
+  VK_CHECK(vkEnumeratePhysicalDevices(instance.handle(), &count, nullptr));
+  std::vector<VkPhysicalDevice> devices(count);
+  VK_CHECK(vkEnumeratePhysicalDevices(instance.handle(), &count, devices.data()));
+  return devices;
+}
+
+/// A queue family that can do everything, compute and graphics, with timestamps.
+std::optional<std::uint32_t> findQueueFamily(VkPhysicalDevice physical) {
+  std::uint32_t count = 0;
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
+  std::vector<VkQueueFamilyProperties> families(count);
+  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
+  constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+  for (std::uint32_t i = 0; i < count; ++i)
+    if ((families[i].queueFlags & kNeeded) == kNeeded && families[i].timestampValidBits > 0) return i;
+  return std::nullopt;
+}
+
+bool canBlend(VkPhysicalDevice physical, VkFormat format) {
+  VkFormatProperties properties;
+  vkGetPhysicalDeviceFormatProperties(physical, format, &properties);
+  constexpr VkFormatFeatureFlags kNeeded =
+      VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
+  return (properties.optimalTilingFeatures & kNeeded) == kNeeded;
+}
+
+/// Everything that the engine needs of a device, in the order it is told to the user.
+std::vector<std::string> findRejections(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& properties) {
+  std::vector<std::string> reasons;
+  if (properties.apiVersion < VK_API_VERSION_1_3) {
+    reasons.push_back(fmt::format("it has Vulkan {}.{}, and 1.3 is needed", VK_API_VERSION_MAJOR(properties.apiVersion),
+                                  VK_API_VERSION_MINOR(properties.apiVersion)));
+    return reasons;
+  }
+  std::uint32_t count = 0;
+  VK_CHECK(vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr));
+  std::vector<VkExtensionProperties> extensions(count);
+  VK_CHECK(vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, extensions.data()));
+  for (const char* needed : kExtensions)
+    if (std::ranges::none_of(extensions, [&](auto& e) { return std::strcmp(e.extensionName, needed) == 0; }))
+      reasons.push_back(fmt::format("it lacks the extension {}", needed));
+
+  Features features;
+  vkGetPhysicalDeviceFeatures2(physical, &features.base);
+  for (const RequiredFeature& feature : kRequiredFeatures)
+    if (!feature.of(features)) reasons.push_back(fmt::format("it lacks the feature {}", feature.name));
+  if (!findQueueFamily(physical))
+    reasons.push_back("it has no queue for both graphics and compute with timestamps");
+  if (!canBlend(physical, VK_FORMAT_R32G32B32A32_SFLOAT) || !canBlend(physical, VK_FORMAT_R32_SFLOAT))
+    reasons.push_back("it cannot blend into 32-bit float images");
+  return reasons;
+}
+
+DeviceDescription describe(int index, VkPhysicalDevice physical) {
+  VkPhysicalDeviceVulkan12Properties vulkan12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES};
+  VkPhysicalDeviceVulkan11Properties vulkan11{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES,
+                                              .pNext = &vulkan12};
+  VkPhysicalDeviceProperties2 base{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &vulkan11};
+  vkGetPhysicalDeviceProperties2(physical, &base);
+  VkPhysicalDeviceMemoryProperties memory;
+  vkGetPhysicalDeviceMemoryProperties(physical, &memory);
+
+  DeviceDescription description{.index = index,
+                                .name = base.properties.deviceName,
+                                .type = typeName(base.properties.deviceType),
+                                .uuid = uuidText(vulkan11.deviceUUID),
+                                .driver = fmt::format("{} {}", vulkan12.driverName, vulkan12.driverInfo),
+                                .rejections = findRejections(physical, base.properties)};
+  for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
+    if (memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
+      description.memoryBytes = std::max<std::uint64_t>(description.memoryBytes, memory.memoryHeaps[i].size);
+  return description;
+}
+
+bool matches(const DeviceDescription& device, std::string_view selector) {
+  int index = -1;
+  const auto [end, error] = std::from_chars(selector.data(), selector.data() + selector.size(), index);
+  if (error == std::errc() && end == selector.data() + selector.size()) return device.index == index;
+  return device.uuid == selector || device.name.find(selector) != std::string::npos;
+}
+
+const DeviceDescription& choose(const std::vector<DeviceDescription>& devices, std::string_view selector) {
+  if (devices.empty())
+    fail(ExitCode::Device, "no Vulkan device was found: install mesa-vulkan-drivers to render without a GPU");
+  const DeviceDescription* best = nullptr;
+  std::vector<std::string> rejected;
+  for (const DeviceDescription& device : devices) {
+    if (!selector.empty() && !matches(device, selector)) continue;
+    if (!device.rejections.empty())
+      rejected.push_back(
+          fmt::format("device {} ({}): {}", device.index, device.name, fmt::join(device.rejections, ", ")));
+    else if (best == nullptr || preference(device.type) < preference(best->type))
+      best = &device;
+  }
+  if (best != nullptr) return *best;
+  if (rejected.empty())
+    fail(ExitCode::Device, "no device matches --device {}: 'freevoxels devices' lists them", selector);
+  fail(ExitCode::Device, "no usable Vulkan device; {}; install mesa-vulkan-drivers to render without a GPU",
+       fmt::join(rejected, "; "));
+}
+
+}  // namespace
+
+std::vector<DeviceDescription> listDevices(const Instance& instance) {
+  std::vector<DeviceDescription> descriptions;
+  for (VkPhysicalDevice physical : physicalDevices(instance))
+    descriptions.push_back(describe(int(descriptions.size()), physical));
+  return descriptions;
+}
+
+Device::Device(const Instance& instance, std::string_view selector) {
+  description_ = choose(listDevices(instance), selector);
+  physical_ = physicalDevices(instance)[std::size_t(description_.index)];
+
+  VkPhysicalDeviceVulkan11Properties vulkan11{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
+  VkPhysicalDeviceProperties2 base{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &vulkan11};
+  vkGetPhysicalDeviceProperties2(physical_, &base);
+  properties_ = base.properties;
+  maximumAllocation_ = vulkan11.maxMemoryAllocationSize;
+  vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
+  queueFamily_ = *findQueueFamily(physical_);
+
+  Features features;
+  for (const RequiredFeature& feature : kRequiredFeatures) feature.of(features) = VK_TRUE;
+  const float priority = 1.0f;
+  const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                      .queueFamilyIndex = queueFamily_,
+                                      .queueCount = 1,
+                                      .pQueuePriorities = &priority};
+  const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                .pNext = &features.base,
+                                .queueCreateInfoCount = 1,
+                                .pQueueCreateInfos = &queue,
+                                .enabledExtensionCount = std::uint32_t(kExtensions.size()),
+                                .ppEnabledExtensionNames = kExtensions.data()};
+  VK_CHECK(vkCreateDevice(physical_, &info, nullptr, &device_));
+  volkLoadDevice(device_);
+  vkGetDeviceQueue(device_, queueFamily_, 0, &queue_);
+}
+
+Device::~Device() {
+  vkDeviceWaitIdle(device_);
+  vkDestroyDevice(device_, nullptr);
+}
+
+void Device::setName(VkObjectType type, std::uint64_t handle, const char* name) const {
+  if (vkSetDebugUtilsObjectNameEXT == nullptr) return;
+  const VkDebugUtilsObjectNameInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
+                                           .objectType = type,
+                                           .objectHandle = handle,
+                                           .pObjectName = name};
+  VK_CHECK(vkSetDebugUtilsObjectNameEXT(device_, &info));
+}
+
+}  // namespace freevoxels

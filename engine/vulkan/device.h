@@ -1,0 +1,61 @@
+#pragma once
+// Choosing a physical device, and the logical device with its one queue.
+
+#include <volk.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/vulkan/instance.h"
+
+namespace freevoxels {
+
+struct DeviceDescription {
+  int index = 0;
+  std::string name;
+  std::string type;  ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
+  std::string uuid;  ///< 8-4-4-4-12 hexadecimal digits
+  std::string driver;
+  std::uint64_t memoryBytes = 0;        ///< of the largest device-local heap
+  std::vector<std::string> rejections;  ///< why it cannot be used; empty if it can
+};
+
+/// In the order of `--device INDEX`.
+std::vector<DeviceDescription> listDevices(const Instance& instance);
+
+class Device {
+ public:
+  /// `selector`: an index, UUID or (part of a) name; empty prefers a discrete GPU, then any GPU, then a CPU device.
+  /// Fails with ExitCode::Device and the reason why each device was rejected.
+  Device(const Instance& instance, std::string_view selector);
+  ~Device();
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  VkDevice handle() const { return device_; }
+  VkPhysicalDevice physical() const { return physical_; }
+  VkQueue queue() const { return queue_; }
+  std::uint32_t queueFamily() const { return queueFamily_; }
+  const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
+  const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
+  VkDeviceSize maximumAllocation() const { return maximumAllocation_; }
+  const DeviceDescription& description() const { return description_; }
+  bool isCpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+
+  /// Shows `name` in validation messages and debuggers.
+  void setName(VkObjectType type, std::uint64_t handle, const char* name) const;
+
+ private:
+  DeviceDescription description_;
+  VkPhysicalDevice physical_ = VK_NULL_HANDLE;
+  VkPhysicalDeviceProperties properties_{};
+  VkPhysicalDeviceMemoryProperties memory_{};
+  VkDeviceSize maximumAllocation_ = 0;
+  std::uint32_t queueFamily_ = 0;
+  VkDevice device_ = VK_NULL_HANDLE;
+  VkQueue queue_ = VK_NULL_HANDLE;
+};
+
+}  // namespace freevoxels

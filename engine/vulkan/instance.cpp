@@ -1,0 +1,100 @@
+#include "engine/vulkan/instance.h"
+
+#include <spdlog/spdlog.h>
+
+#include <array>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "engine/core/error.h"
+#include "engine/vulkan/owned.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+
+VKAPI_ATTR VkBool32 VKAPI_CALL onValidationMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
+                                                   VkDebugUtilsMessageTypeFlagsEXT,
+                                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* counter) {
+  ++*static_cast<std::atomic<std::uint64_t>*>(counter);
+  spdlog::error("Vulkan validation: {}", data->pMessage);
+  return VK_FALSE;
+}
+
+bool layerAvailable(const char* name) {
+  std::uint32_t count = 0;
+  VK_CHECK(vkEnumerateInstanceLayerProperties(&count, nullptr));
+  std::vector<VkLayerProperties> layers(count);
+  VK_CHECK(vkEnumerateInstanceLayerProperties(&count, layers.data()));
+  for (const VkLayerProperties& layer : layers)
+    if (std::strcmp(layer.layerName, name) == 0) return true;
+  return false;
+}
+
+}  // namespace
+
+void checkVulkan(VkResult result, const char* call, const char* file, int line) {
+  if (result == VK_SUCCESS) return;
+  const std::string name = fmt::format("VkResult {}", int(result));
+  if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
+    fail(ExitCode::OutOfMemory, "the device is out of memory ({} in {}): use a smaller volume or image", name, call);
+  if (result == VK_ERROR_DEVICE_LOST)
+    fail(ExitCode::Device, "the device was lost ({} in {}): try again, or choose another with --device", name, call);
+  throw InternalError(fmt::format("{}:{}: {} returned {}", file, line, call, name));
+}
+
+bool validationRequested() {
+  const char* value = std::getenv("FREEVOXELS_VALIDATION");
+  return value != nullptr && std::strcmp(value, "1") == 0;
+}
+
+Instance::Instance(bool validation) {
+  if (volkInitialize() != VK_SUCCESS)
+    fail(ExitCode::Device,
+         "no Vulkan loader was found: install libvulkan1, and mesa-vulkan-drivers to render without a GPU");
+  if (vkEnumerateInstanceVersion == nullptr || volkGetInstanceVersion() < VK_API_VERSION_1_3)
+    fail(ExitCode::Device, "the Vulkan loader is older than Vulkan 1.3: update libvulkan1");
+  if (validation && !layerAvailable(kValidationLayer))
+    fail(ExitCode::Device,
+         "FREEVOXELS_VALIDATION is set but there is no validation layer: install vulkan-validationlayers");
+
+  const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
+                                      .pApplicationName = "FreeVoxels",
+                                      .pEngineName = "FreeVoxels",
+                                      .apiVersion = VK_API_VERSION_1_3};
+  const VkDebugUtilsMessengerCreateInfoEXT messenger{
+      .sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT,
+      .messageSeverity =
+          VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT,
+      .messageType =
+          VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
+      .pfnUserCallback = onValidationMessage,
+      .pUserData = &validationMessages_};
+  const std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+  const VkInstanceCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
+      .pNext = validation ? &messenger : nullptr,
+      .pApplicationInfo = &application,
+      .enabledLayerCount = validation ? 1u : 0u,
+      .ppEnabledLayerNames = &kValidationLayer,
+      .enabledExtensionCount = validation ? std::uint32_t(extensions.size()) : 0u,
+      .ppEnabledExtensionNames = extensions.data(),
+  };
+  const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
+  if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
+    fail(ExitCode::Device, "no Vulkan driver was found: install mesa-vulkan-drivers to render without a GPU");
+  VK_CHECK(result);
+  volkLoadInstance(instance_);
+  if (validation) VK_CHECK(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_));
+}
+
+Instance::~Instance() {
+  if (messenger_ != VK_NULL_HANDLE) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
+  vkDestroyInstance(instance_, nullptr);
+}
+
+}  // namespace freevoxels

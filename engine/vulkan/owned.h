@@ -1,0 +1,51 @@
+#pragma once
+// Result checking and the one owner of Vulkan handles.
+
+#include <volk.h>
+
+#include <utility>
+
+namespace freevoxels {
+
+/// Throws for anything but VK_SUCCESS: OutOfMemory and device loss as the user's errors, the rest as ours.
+void checkVulkan(VkResult result, const char* call, const char* file, int line);
+
+/// A device child that is destroyed with its owner. `Destroy` is the address of volk's function pointer.
+template <typename Handle, auto* Destroy>
+class Owned {
+ public:
+  Owned() = default;
+  Owned(VkDevice device, Handle handle) : device_(device), handle_(handle) {}
+  Owned(Owned&& other) noexcept
+      : device_(other.device_), handle_(std::exchange(other.handle_, Handle(VK_NULL_HANDLE))) {}
+  Owned& operator=(Owned&& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+  ~Owned() {
+    if (handle_ != VK_NULL_HANDLE) (*Destroy)(device_, handle_, nullptr);
+  }
+
+  Handle get() const { return handle_; }
+
+ private:
+  VkDevice device_ = VK_NULL_HANDLE;
+  Handle handle_ = VK_NULL_HANDLE;
+};
+
+using OwnedMemory = Owned<VkDeviceMemory, &vkFreeMemory>;
+using OwnedBuffer = Owned<VkBuffer, &vkDestroyBuffer>;
+using OwnedImage = Owned<VkImage, &vkDestroyImage>;
+using OwnedImageView = Owned<VkImageView, &vkDestroyImageView>;
+using OwnedShaderModule = Owned<VkShaderModule, &vkDestroyShaderModule>;
+using OwnedSetLayout = Owned<VkDescriptorSetLayout, &vkDestroyDescriptorSetLayout>;
+using OwnedPipelineLayout = Owned<VkPipelineLayout, &vkDestroyPipelineLayout>;
+using OwnedPipeline = Owned<VkPipeline, &vkDestroyPipeline>;
+using OwnedCommandPool = Owned<VkCommandPool, &vkDestroyCommandPool>;
+using OwnedQueryPool = Owned<VkQueryPool, &vkDestroyQueryPool>;
+using OwnedSemaphore = Owned<VkSemaphore, &vkDestroySemaphore>;
+
+}  // namespace freevoxels
+
+#define VK_CHECK(call) ::freevoxels::checkVulkan((call), #call, __FILE__, __LINE__)

@@ -1,0 +1,165 @@
+#include "engine/vulkan/pipeline.h"
+
+#include <array>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+OwnedShaderModule makeModule(const Device& device, const ShaderCode& code) {
+  const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
+                                      .codeSize = code.words.size_bytes(),
+                                      .pCode = code.words.data()};
+  VkShaderModule module = VK_NULL_HANDLE;
+  VK_CHECK(vkCreateShaderModule(device.handle(), &info, nullptr, &module));
+  device.setName(VK_OBJECT_TYPE_SHADER_MODULE, std::uint64_t(module), code.name);
+  return {device.handle(), module};
+}
+
+/// Keeps the map entries alive as long as the VkSpecializationInfo that points to them.
+class SpecialisationInfo {
+ public:
+  explicit SpecialisationInfo(const Specialisation& constants) {
+    for (std::uint32_t i = 0; i < constants.size(); ++i)
+      entries_.push_back({.constantID = i, .offset = i * 4, .size = 4});
+    info_ = {.mapEntryCount = std::uint32_t(entries_.size()),
+             .pMapEntries = entries_.data(),
+             .dataSize = constants.size() * 4,
+             .pData = constants.data()};
+  }
+  SpecialisationInfo(const SpecialisationInfo&) = delete;
+  const VkSpecializationInfo* get() const { return &info_; }
+
+ private:
+  std::vector<VkSpecializationMapEntry> entries_;
+  VkSpecializationInfo info_{};
+};
+
+}  // namespace
+
+Pipeline::Pipeline(const Device& device, PipelineInterface interface, VkPipelineBindPoint bindPoint)
+    : interface_(std::move(interface)), bindPoint_(bindPoint) {
+  FV_CHECK_LE(interface_.pushConstantBytes, device.limits().maxPushConstantsSize);
+  const VkShaderStageFlags stages = bindPoint == VK_PIPELINE_BIND_POINT_COMPUTE
+                                        ? VkShaderStageFlags(VK_SHADER_STAGE_COMPUTE_BIT)
+                                        : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+  std::vector<VkDescriptorSetLayoutBinding> bindings;
+  for (std::uint32_t i = 0; i < interface_.bindings.size(); ++i)
+    bindings.push_back(
+        {.binding = i, .descriptorType = interface_.bindings[i], .descriptorCount = 1, .stageFlags = stages});
+  const VkDescriptorSetLayoutCreateInfo setInfo{
+      .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
+      .flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR,
+      .bindingCount = std::uint32_t(bindings.size()),
+      .pBindings = bindings.data()};
+  VkDescriptorSetLayout set = VK_NULL_HANDLE;
+  VK_CHECK(vkCreateDescriptorSetLayout(device.handle(), &setInfo, nullptr, &set));
+  setLayout_ = OwnedSetLayout(device.handle(), set);
+
+  const VkPushConstantRange range{.stageFlags = stages, .offset = 0, .size = interface_.pushConstantBytes};
+  const VkPipelineLayoutCreateInfo layoutInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+                                              .setLayoutCount = 1,
+                                              .pSetLayouts = &set,
+                                              .pushConstantRangeCount = interface_.pushConstantBytes > 0 ? 1u : 0u,
+                                              .pPushConstantRanges = &range};
+  VkPipelineLayout layout = VK_NULL_HANDLE;
+  VK_CHECK(vkCreatePipelineLayout(device.handle(), &layoutInfo, nullptr, &layout));
+  layout_ = OwnedPipelineLayout(device.handle(), layout);
+}
+
+Pipeline makeComputePipeline(const Device& device, const ShaderCode& code, PipelineInterface interface,
+                             glm::ivec3 workgroup, const Specialisation& constants) {
+  Pipeline result(device, std::move(interface), VK_PIPELINE_BIND_POINT_COMPUTE);
+  result.workgroup_ = workgroup;
+  const OwnedShaderModule module = makeModule(device, code);
+  const SpecialisationInfo specialisation(constants);
+  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                                                   .module = module.get(),
+                                                   .pName = "main",
+                                                   .pSpecializationInfo = specialisation.get()},
+                                         .layout = result.layout()};
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  VK_CHECK(vkCreateComputePipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
+  result.pipeline_ = OwnedPipeline(device.handle(), pipeline);
+  device.setName(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline), code.name);
+  return result;
+}
+
+Pipeline makeAdditivePipeline(const Device& device, const ShaderCode& vertex, const ShaderCode& fragment,
+                              PipelineInterface interface, VkPrimitiveTopology topology,
+                              std::span<const VkFormat> attachments, const Specialisation& constants) {
+  Pipeline result(device, std::move(interface), VK_PIPELINE_BIND_POINT_GRAPHICS);
+  const OwnedShaderModule vertexModule = makeModule(device, vertex);
+  const OwnedShaderModule fragmentModule = makeModule(device, fragment);
+  const SpecialisationInfo specialisation(constants);
+  const std::array stages{
+      VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                      .stage = VK_SHADER_STAGE_VERTEX_BIT,
+                                      .module = vertexModule.get(),
+                                      .pName = "main",
+                                      .pSpecializationInfo = specialisation.get()},
+      VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                      .stage = VK_SHADER_STAGE_FRAGMENT_BIT,
+                                      .module = fragmentModule.get(),
+                                      .pName = "main",
+                                      .pSpecializationInfo = specialisation.get()}};
+  const VkPipelineVertexInputStateCreateInfo vertexInput{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+  const VkPipelineInputAssemblyStateCreateInfo assembly{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO, .topology = topology};
+  const VkPipelineViewportStateCreateInfo viewport{.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
+                                                   .viewportCount = 1,
+                                                   .scissorCount = 1};
+  const VkPipelineRasterizationStateCreateInfo raster{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+      .polygonMode = VK_POLYGON_MODE_FILL,
+      .cullMode = VK_CULL_MODE_NONE,
+      .lineWidth = 1.0f};
+  const VkPipelineMultisampleStateCreateInfo multisample{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+      .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+  const VkPipelineColorBlendAttachmentState additive{
+      .blendEnable = VK_TRUE,
+      .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
+      .dstColorBlendFactor = VK_BLEND_FACTOR_ONE,
+      .colorBlendOp = VK_BLEND_OP_ADD,
+      .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
+      .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
+      .alphaBlendOp = VK_BLEND_OP_ADD,
+      .colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
+                        VK_COLOR_COMPONENT_A_BIT};
+  const std::vector<VkPipelineColorBlendAttachmentState> blends(attachments.size(), additive);
+  const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
+                                                  .attachmentCount = std::uint32_t(blends.size()),
+                                                  .pAttachments = blends.data()};
+  const std::array dynamicStates{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+  const VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+                                                 .dynamicStateCount = std::uint32_t(dynamicStates.size()),
+                                                 .pDynamicStates = dynamicStates.data()};
+  const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
+                                                .colorAttachmentCount = std::uint32_t(attachments.size()),
+                                                .pColorAttachmentFormats = attachments.data()};
+  const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
+                                          .pNext = &rendering,
+                                          .stageCount = std::uint32_t(stages.size()),
+                                          .pStages = stages.data(),
+                                          .pVertexInputState = &vertexInput,
+                                          .pInputAssemblyState = &assembly,
+                                          .pViewportState = &viewport,
+                                          .pRasterizationState = &raster,
+                                          .pMultisampleState = &multisample,
+                                          .pColorBlendState = &blend,
+                                          .pDynamicState = &dynamic,
+                                          .layout = result.layout()};
+  VkPipeline pipeline = VK_NULL_HANDLE;
+  VK_CHECK(vkCreateGraphicsPipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
+  result.pipeline_ = OwnedPipeline(device.handle(), pipeline);
+  device.setName(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline), vertex.name);
+  return result;
+}
+
+}  // namespace freevoxels
