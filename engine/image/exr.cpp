@@ -1,0 +1,158 @@
+// OpenEXR in and out. The bytes written depend on the image and the options only: no time, no host.
+
+#include <ImathBox.h>
+#include <ImathMatrix.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputFile.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfOutputFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStringAttribute.h>
+#include <half.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <new>
+
+#include "engine/core/atomic_file.h"
+#include "engine/core/checked_file.h"
+#include "engine/core/error.h"
+#include "engine/image/image.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr std::array<const char*, 4> kColorChannels = {"R", "G", "B", "A"};
+constexpr float kLargestHalf = 65504.0f;
+constexpr std::int64_t kMaximumPixels = std::int64_t(1) << 30;
+
+/// OpenEXR swallows exceptions in its destructors; CheckedFile remembers them until close.
+class ExrStream : public Imf::OStream {
+ public:
+  ExrStream(CheckedFile& file, const std::filesystem::path& name) : Imf::OStream(name.c_str()), file_(file) {}
+  void write(const char bytes[], int count) override { file_.write(bytes, std::size_t(count)); }
+  std::uint64_t tellp() override { return file_.tell(); }
+  void seekp(std::uint64_t position) override { file_.seek(position); }
+
+ private:
+  CheckedFile& file_;
+};
+
+Imf::Header makeHeader(const Image& image, const ExrOptions& options) {
+  Imf::Header header(image.size.x, image.size.y);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec.709 with D65 white
+  for (const char* name : kColorChannels)
+    header.channels().insert(name, Imf::Channel(options.fullFloat ? Imf::FLOAT : Imf::HALF));
+  if (!image.depth.empty()) header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+  for (const auto& [name, text] : options.metadata) header.insert(name, Imf::StringAttribute(text));
+  for (const auto& [name, matrix] : options.matrices) {
+    // glm's m[column][row] is, element by element, the transposed matrix that OpenEXR calls x[row][column].
+    Imath::M44f rowVector;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < 4; ++j) rowVector.x[i][j] = matrix[i][j];
+    header.insert(name, Imf::M44fAttribute(rowVector));
+  }
+  return header;
+}
+
+/// Values beyond the range of half become the largest half, not infinity.
+std::vector<half> toHalf(const std::vector<glm::vec4>& pixels) {
+  std::vector<half> halves(pixels.size() * 4);
+  for (std::size_t i = 0; i < pixels.size(); ++i)
+    for (int c = 0; c < 4; ++c)
+      halves[4 * i + std::size_t(c)] = half(std::clamp(pixels[i][c], -kLargestHalf, kLargestHalf));
+  return halves;
+}
+
+/// A slice of `channels` interleaved values of type T a pixel.
+template <typename T>
+Imf::Slice makeSlice(Imf::PixelType type, const T* base, std::size_t channels, std::size_t width,
+                     double fill = 0.0) {
+  return Imf::Slice(type, reinterpret_cast<char*>(const_cast<T*>(base)), sizeof(T) * channels,
+                    sizeof(T) * channels * width, 1, 1, fill);
+}
+
+void encode(const std::filesystem::path& file, const Image& image, const ExrOptions& options) {
+  const std::size_t width = std::size_t(image.size.x);
+  const std::vector<half> halves = options.fullFloat ? std::vector<half>{} : toHalf(image.pixels);
+  Imf::FrameBuffer frame;
+  for (std::size_t c = 0; c < kColorChannels.size(); ++c)
+    frame.insert(kColorChannels[c], options.fullFloat
+                                        ? makeSlice(Imf::FLOAT, &image.pixels[0].x + c, 4, width)
+                                        : makeSlice(Imf::HALF, halves.data() + c, 4, width));
+  if (!image.depth.empty()) frame.insert("Z", makeSlice(Imf::FLOAT, image.depth.data(), 1, width));
+
+  CheckedFile output(file);
+  ExrStream stream(output, file);
+  {
+    Imf::OutputFile exr(stream, makeHeader(image, options));
+    exr.setFrameBuffer(frame);
+    exr.writePixels(image.size.y);
+  }  // the destructor writes the table of scan lines
+  output.close();
+}
+
+Image decode(const std::filesystem::path& file) {
+  Imf::InputFile exr(file.c_str());
+  const Imf::ChannelList& channels = exr.header().channels();
+  if (!channels.findChannel("R") || !channels.findChannel("G") || !channels.findChannel("B"))
+    fail(ExitCode::Input, "cannot read '{}': it has no channels R, G and B; choose a colour image",
+         file.string());
+  const Imath::Box2i window = exr.header().dataWindow();
+  const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
+  const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;
+  if (width * height > kMaximumPixels)
+    fail(ExitCode::Input, "cannot read '{}': {}x{} pixels are too many; choose a smaller image",
+         file.string(), width, height);
+
+  Image image;
+  image.size = {int(width), int(height)};
+  image.pixels.resize(std::size_t(width * height));
+  // Slices are addressed in the coordinates of the data window, which need not start at 0.
+  const auto first = -(std::ptrdiff_t(window.min.y) * width + window.min.x);
+  Imf::FrameBuffer frame;
+  for (std::size_t c = 0; c < kColorChannels.size(); ++c)
+    frame.insert(kColorChannels[c], makeSlice(Imf::FLOAT, &image.pixels[0].x + c + 4 * first, 4,
+                                              std::size_t(width), c == 3 ? 1.0 : 0.0));
+  if (channels.findChannel("Z")) {
+    image.depth.resize(image.pixels.size());
+    frame.insert("Z", makeSlice(Imf::FLOAT, image.depth.data() + first, 1, std::size_t(width)));
+  }
+  exr.setFrameBuffer(frame);
+  exr.readPixels(window.min.y, window.max.y);
+  return image;
+}
+
+}  // namespace
+
+void writeExr(const std::filesystem::path& file, const Image& image, const ExrOptions& options) {
+  FV_CHECK_LT(0, image.size.x);
+  FV_CHECK_LT(0, image.size.y);
+  FV_CHECK_EQ(image.pixels.size(), std::size_t(image.size.x) * std::size_t(image.size.y));
+  if (!image.depth.empty()) FV_CHECK_EQ(image.depth.size(), image.pixels.size());
+  writeAtomically(file, [&](const std::filesystem::path& temporary) { encode(temporary, image, options); });
+}
+
+Image readExr(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    fail(ExitCode::Input, "cannot read '{}': there is no such file; check its name", file.string());
+  try {
+    return decode(file);
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    fail(ExitCode::Input, "cannot read '{}': it is not a complete OpenEXR image ({}); write it again",
+         file.string(), e.what());
+  }
+}
+
+}  // namespace freevoxels

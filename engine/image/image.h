@@ -1,0 +1,37 @@
+#pragma once
+// Pictures in memory, and their files.
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace freevoxels {
+
+struct Image {
+  glm::ivec2 size{0};
+  std::vector<glm::vec4> pixels;  ///< linear Rec.709, premultiplied alpha; row 0 is the top
+  /// Empty, or one a pixel: mean distance from the eye along the viewing axis, in world units, of what is seen
+  /// there (README.md, "Depth"); +infinity where there is nothing.
+  std::vector<float> depth;
+};
+
+struct ExrOptions {
+  bool fullFloat = false;  ///< 32-bit RGBA; otherwise half. Z is always 32-bit.
+  std::map<std::string, std::string> metadata;
+  /// "worldToCamera", "worldToNDC" as glm has them (matrix * column); the file holds OpenEXR's row * matrix.
+  std::map<std::string, glm::mat4> matrices;
+};
+
+/// RGBA (and Z where there is depth). Atomic. Fails with ExitCode::Output.
+void writeExr(const std::filesystem::path& file, const Image& image, const ExrOptions& options);
+
+/// RGBA and, where present, Z of a scanline EXR. Fails with ExitCode::Input.
+Image readExr(const std::filesystem::path& file);
+
+/// 8-bit sRGB. Straight alpha without a background; composited over `background` (linear Rec.709) and opaque
+/// with one. Atomic. Fails with ExitCode::Output.
+void writePng(const std::filesystem::path& file, const Image& image, const glm::vec3* background);
+
+}  // namespace freevoxels
