@@ -1,0 +1,164 @@
+// Conventions: world space is right-handed; the camera looks along -z of its own space, x to the right, y up.
+// Pixels count from the top left corner of the image, x to the right and y down, so that the centre of pixel
+// (i, j) is at (i + 1/2, j + 1/2).
+
+#include "engine/splatting/camera.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// Room between the volume's bounding sphere and the edge of the image, as a part of the sphere's radius.
+constexpr double kFramingMargin = 0.03;
+/// Sine of the smallest angle between the view and `up`.
+constexpr double kSmallestUpAngle = 1e-6;
+
+double radians(double degrees) {
+  return degrees * std::numbers::pi / 180.0;
+}
+
+bool isFinite(glm::dvec3 v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+struct Axes {
+  glm::dvec3 right, up, forward;
+};
+
+Axes cameraAxes(const Camera& camera) {
+  const glm::dvec3 forward = glm::normalize(camera.lookAt - camera.position);
+  const glm::dvec3 right = glm::normalize(glm::cross(forward, camera.up));
+  return {right, glm::cross(right, forward), forward};
+}
+
+/// Half the height of what the camera sees: at distance 1 for a perspective camera, anywhere for an
+/// orthographic one.
+double halfHeight(const Camera& camera) {
+  return camera.orthographic ? camera.orthographicHeight / 2.0 : std::tan(radians(camera.verticalFov) / 2.0);
+}
+
+}  // namespace
+
+void checkCamera(const Camera& camera) {
+  if (!isFinite(camera.position))
+    fail(ExitCode::Usage, "the camera position is not a finite number; change --camera-position");
+  if (!isFinite(camera.lookAt))
+    fail(ExitCode::Usage, "the look-at point is not a finite number; change --look-at");
+  if (!isFinite(camera.up)) fail(ExitCode::Usage, "the up vector is not a finite number; change --up");
+  const glm::dvec3 view = camera.lookAt - camera.position;
+  const double distance = glm::length(view);
+  const double scale = std::max(glm::length(camera.position), glm::length(camera.lookAt));
+  if (!std::isfinite(distance))
+    fail(ExitCode::Usage,
+         "the camera is too far away to compute with; change --camera-position or --look-at");
+  if (!(distance > 1e-12 * scale))
+    fail(ExitCode::Usage, "the camera stands at its look-at point; change --camera-position or --look-at");
+  const double upLength = glm::length(camera.up);
+  if (!(upLength > 0.0) || !std::isfinite(upLength))
+    fail(ExitCode::Usage, "the up vector has no usable length; change --up");
+  if (glm::length(glm::cross(view / distance, camera.up / upLength)) < kSmallestUpAngle)
+    fail(ExitCode::Usage, "the up vector points along the view; change --up");
+  if (camera.orthographic) {
+    if (!(camera.orthographicHeight > 0.0) || !std::isfinite(camera.orthographicHeight))
+      fail(ExitCode::Usage, "the height {} of the orthographic image is not above 0; change --orthographic",
+           camera.orthographicHeight);
+  } else if (!(camera.verticalFov > 0.0 && camera.verticalFov < 180.0)) {
+    fail(ExitCode::Usage, "the field of view {} is not between 0 and 180 degrees; change --fov",
+         camera.verticalFov);
+  }
+}
+
+glm::dmat4 worldToCamera(const Camera& camera) {
+  const Axes axes = cameraAxes(camera);
+  const std::array<glm::dvec3, 3> rows = {axes.right, axes.up, -axes.forward};
+  glm::dmat4 matrix(1.0);
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) matrix[column][row] = rows[std::size_t(row)][column];
+    matrix[3][row] = -glm::dot(rows[std::size_t(row)], camera.position);
+  }
+  return matrix;
+}
+
+glm::dmat4 worldToNdc(const Camera& camera, double aspect) {
+  const double half = halfHeight(camera);
+  glm::dmat4 projection(0.0);
+  projection[0][0] = 1.0 / (half * aspect);
+  projection[1][1] = 1.0 / half;
+  if (camera.orthographic) {
+    projection[2][2] = -1.0;  // z is the distance t from the eye plane
+    projection[3][3] = 1.0;
+  } else {
+    projection[3][2] = 1.0;  // z is 1/t: the matrix stays invertible without a near or far plane
+    projection[2][3] = -1.0;
+  }
+  return projection * worldToCamera(camera);
+}
+
+Camera framingCamera(const Volume& volume, double azimuth, double elevation, double aspect,
+                     const Camera& base) {
+  const glm::dvec3 extent(volume.dimensions);
+  const auto toWorld = [&](glm::dvec3 index) {
+    return glm::dvec3(volume.indexToWorld * glm::dvec4(index, 1.0));
+  };
+  const glm::dvec3 centre = toWorld((extent - 1.0) / 2.0);
+  double radius = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+    radius = std::max(radius, glm::length(toWorld(side * extent - 0.5) - centre));
+  }
+  radius *= 1.0 + kFramingMargin;
+
+  const double az = radians(azimuth), el = radians(elevation);
+  const glm::dvec3 toEye(std::sin(az) * std::cos(el), std::sin(el), std::cos(az) * std::cos(el));
+  Camera camera = base;
+  camera.lookAt = centre;
+  // Straight from above or below `up` says nothing about the roll: the limit of lower elevations does.
+  if (glm::length(glm::cross(glm::normalize(base.up), toEye)) < kSmallestUpAngle)
+    camera.up = {-std::sin(az) * std::sin(el), std::cos(el), -std::cos(az) * std::sin(el)};
+  const double narrower = std::min(1.0, aspect);
+  if (camera.orthographic) {
+    camera.orthographicHeight = 2.0 * radius / narrower;
+    camera.position = centre + 2.0 * radius * toEye;
+  } else {
+    const double halfAngle = std::atan(halfHeight(base) * narrower);
+    camera.position = centre + radius / std::sin(halfAngle) * toEye;
+  }
+  return camera;
+}
+
+PixelRays pixelRays(const Camera& camera, glm::ivec2 imageSize, const glm::dmat4& indexToWorld) {
+  const glm::dmat4 worldToIndex = glm::inverse(indexToWorld);
+  const glm::dmat3 linear(worldToIndex);
+  const Axes axes = cameraAxes(camera);
+  const glm::dvec2 size(imageSize);
+  // Both cameras have square pixels: the width follows from the height.
+  const double half = halfHeight(camera);
+  const double pixel = 2.0 * half / size.y;
+  const glm::dvec3 stepX = linear * (axes.right * pixel);
+  const glm::dvec3 stepY = linear * (axes.up * -pixel);
+  const glm::dvec3 topLeft = linear * (axes.up * half - axes.right * (half * size.x / size.y));
+
+  PixelRays rays{};
+  rays.orthographic = camera.orthographic;
+  rays.origin = glm::dvec3(worldToIndex * glm::dvec4(camera.position, 1.0));
+  rays.direction = linear * axes.forward;
+  if (camera.orthographic) {
+    rays.origin += topLeft;
+    rays.originX = stepX;
+    rays.originY = stepY;
+  } else {
+    rays.direction += topLeft;
+    rays.directionX = stepX;
+    rays.directionY = stepY;
+  }
+  return rays;
+}
+
+}  // namespace freevoxels

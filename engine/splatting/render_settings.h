@@ -1,0 +1,32 @@
+#pragma once
+// What a render does with a volume and a camera, apart from the classification.
+
+#include <glm/glm.hpp>
+
+#include "engine/attenuation/directions.h"
+
+namespace freevoxels {
+
+enum class Composite : int {
+  Normalised = 0,  ///< alpha from the exact optical depth, colour from the order-independent mix
+  Additive = 1,    ///< the plain sum: Subr et al. 2007, Eq. 10 and 11
+};
+
+enum class AttenuationLookup : int {
+  Bilinear = 0,  ///< of the four lattice directions around the viewing direction
+  Nearest = 1,   ///< the paper's
+};
+
+struct TableSettings {
+  AttenuationCode code = AttenuationCode::Depth8;
+  bool pathLengthCorrection = true;
+};
+
+struct FrameSettings {
+  glm::ivec2 size{1024, 1024};
+  Composite composite = Composite::Normalised;
+  AttenuationLookup attenuation = AttenuationLookup::Bilinear;
+  bool depth = false;  ///< also make Image::depth
+};
+
+}  // namespace freevoxels
