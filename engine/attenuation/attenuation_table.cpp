@@ -1,0 +1,111 @@
+#include "engine/attenuation/attenuation_table.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "embedded/attenuation_sweep.h"
+#include "embedded/attenuation_sweep_x.h"
+#include "engine/core/error.h"
+#include "shaders/interface.h"
+
+namespace freevoxels {
+
+namespace {
+
+static_assert(shader::kTableDirections == kDirectionCount);
+static_assert(shader::kMaximumDepth == float(kMaximumCodedDepth));
+static_assert(shader::kCodeDepth8 == int(AttenuationCode::Depth8));
+static_assert(shader::kCodeLinear8 == int(AttenuationCode::Linear8));
+
+/// The sweep for `direction` marches the other way: from where its lines leave the volume, against the direction.
+shader::SweepPush sweepPush(const DeviceVolume& volume, glm::ivec3 direction, bool pathLengthCorrection) {
+  const glm::ivec3 extent = volume.layout.dimensions;
+  const int row = volume.layout.rowPitch, plane = row * extent.y;
+  shader::SweepPush push{
+      .rowPitch = row,
+      .stepLength = float(freevoxels::stepLength(volume.indexToWorld, direction, pathLengthCorrection))};
+  const auto march = [&](int count, int stride, int towardsEye) {
+    push.marchCount = count;
+    push.marchStart = towardsEye > 0 ? (count - 1) * stride : 0;
+    push.marchStride = towardsEye > 0 ? -stride : stride;
+  };
+  if (direction.z != 0) {
+    march(extent.z, plane, direction.z);
+    push.lineCount = extent.y;
+    push.sideStep = -direction.y;
+    push.sideStride = row;
+  } else if (direction.y != 0) {
+    march(extent.y, row, direction.y);
+    push.lineCount = extent.z;
+    push.sideStride = plane;
+  } else {
+    push.lineCount = extent.y * extent.z;
+  }
+  return push;
+}
+
+Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Specialisation& constants) {
+  return makeComputePipeline(device, code,
+                             {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                              .pushConstantBytes = sizeof(shader::SweepPush)},
+                             {shader::kSweepThreads, 1, 1}, constants);
+}
+
+}  // namespace
+
+AttenuationTable makeTable(const Device& device, const GridLayout& layout, const TableSettings& settings) {
+  AttenuationTable table{.settings = settings};
+  std::array<VkDeviceAddress, kDirectionCount> addresses{};
+  for (int i = 0; i < kDirectionCount; ++i) {
+    const glm::ivec3 d = directionAt(i);
+    const std::string name = fmt::format("attenuation {},{},{}", d.x, d.y, d.z);
+    table.planes[std::size_t(i)] = Buffer(device, layout.paddedVoxels(), MemoryUse::Device, name.c_str());
+    addresses[std::size_t(i)] = table.planes[std::size_t(i)].address();
+  }
+  table.planeAddresses = Buffer(device, sizeof(addresses), MemoryUse::Device, "attenuation addresses");
+  upload(device, table.planeAddresses, std::as_bytes(std::span(addresses)));
+  return table;
+}
+
+AttenuationSweep::AttenuationSweep(const Device& device, AttenuationCode code)
+    : voxelsPerThread_(device.isCpu() ? 16 : 4) {
+  const auto codeConstant = std::uint32_t(code);
+  for (int step = -1; step <= 1; ++step)
+    bundles_[std::size_t(step + 1)] =
+        makeSweepPipeline(device, {attenuation_sweep_spv, "attenuation sweep"},
+                          {codeConstant, std::uint32_t(voxelsPerThread_), std::uint32_t(step)});
+  for (int step : {-1, 1})
+    rows_[step > 0 ? 1 : 0] = makeSweepPipeline(device, {attenuation_sweep_x_spv, "attenuation sweep x"},
+                                                {codeConstant, std::uint32_t(step)});
+}
+
+void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const {
+  for (int i = 0; i < kDirectionCount; ++i) {
+    const glm::ivec3 direction = directionAt(i);
+    const shader::SweepPush push = sweepPush(volume, direction, table.settings.pathLengthCorrection);
+    const std::array<Binding, 2> bindings{&volume.extinction, &table.planes[std::size_t(i)]};
+    commands.beginPass("attenuation sweeps");
+    if (direction.y == 0 && direction.z == 0)
+      commands.dispatchLinear(rows_[direction.x > 0 ? 0 : 1], bindings, push, std::uint64_t(push.lineCount));
+    else
+      commands.dispatchLinear(bundles_[std::size_t(1 - direction.x)], bindings, push,
+                              std::uint64_t(push.lineCount) * std::uint64_t(push.rowPitch / voxelsPerThread_));
+  }
+  commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+}
+
+std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const GridLayout& layout,
+                                                     const AttenuationTable& table) {
+  const std::size_t width = std::size_t(layout.dimensions.x), pitch = std::size_t(layout.rowPitch);
+  const std::size_t rows = layout.paddedVoxels() / pitch;
+  std::vector<std::uint8_t> padded(layout.paddedVoxels());
+  std::vector<std::vector<std::uint8_t>> result(kDirectionCount, std::vector<std::uint8_t>(rows * width));
+  for (std::size_t d = 0; d < kDirectionCount; ++d) {
+    download(device, table.planes[d], std::as_writable_bytes(std::span(padded)));
+    for (std::size_t row = 0; row < rows; ++row)
+      std::copy_n(padded.data() + row * pitch, width, result[d].data() + row * width);
+  }
+  return result;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,39 @@
+#pragma once
+// The attenuation table on the device and the sweeps that fill it: Subr et al. 2007, Section 3.1.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "engine/attenuation/directions.h"
+#include "engine/splatting/render_settings.h"
+#include "engine/volume/device_volume.h"
+
+namespace freevoxels {
+
+struct AttenuationTable {
+  /// One byte a voxel and direction, in the layout of the volume; directions in the order of directions.h.
+  std::array<Buffer, kDirectionCount> planes;
+  Buffer planeAddresses;  ///< kDirectionCount device addresses
+  TableSettings settings;
+};
+
+AttenuationTable makeTable(const Device& device, const GridLayout& layout, const TableSettings& settings);
+
+/// COMPUTE attenuation_sweep.comp and attenuation_sweep_x.comp: one dispatch a direction, none waits for another.
+class AttenuationSweep {
+ public:
+  AttenuationSweep(const Device& device, AttenuationCode code);
+  void record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const;
+
+ private:
+  int voxelsPerThread_;
+  std::array<Pipeline, 3> bundles_;  ///< by the march's step in x, -1, 0, 1
+  std::array<Pipeline, 2> rows_;     ///< directions +x and -x
+};
+
+/// Bytes [direction][voxel] without padding.
+std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const GridLayout& layout,
+                                                     const AttenuationTable& table);
+
+}  // namespace freevoxels

@@ -1,0 +1,52 @@
+#pragma once
+// Volume in, picture out: the passes of README.md, section "How it works", in their order.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/core/stages.h"
+#include "engine/image/image.h"
+#include "engine/splatting/camera.h"
+#include "engine/splatting/render_settings.h"
+#include "engine/volume/classification.h"
+#include "engine/volume/volume.h"
+#include "engine/vulkan/device.h"
+
+namespace freevoxels {
+
+/// Device memory for a volume of these dimensions, in bytes.
+struct VolumeMemory {
+  std::uint64_t scalars = 0, extinction = 0, table = 0, visibleVoxels = 0;
+  std::uint64_t total() const { return scalars + extinction + table + visibleVoxels; }
+};
+VolumeMemory volumeMemory(glm::ivec3 dimensions);
+
+/// How many voxels a volume may have to be rendered on this device at all (rows are padded: see volumeMemory).
+std::uint64_t maximumVoxels(const Device& device);
+
+class Renderer {
+ public:
+  /// Uploads the volume and makes everything that does not depend on the camera: extinction, attenuation table, list of
+  /// visible voxels. Fails with ExitCode::OutOfMemory, before allocating, where the device's limits are too small.
+  Renderer(const Device& device, const Volume& volume, const Classification& classification,
+           const TableSettings& table, const Progress& progress = {});
+  ~Renderer();
+
+  Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
+
+  /// Of the constructor and of the last render, in order.
+  std::vector<StageTime> timings() const;
+  /// How many voxels the last render drew.
+  std::uint64_t visibleVoxelCount() const;
+  /// Bytes [direction][voxel], voxels x fastest without padding: for tests and validation.
+  std::vector<std::vector<std::uint8_t>> downloadTable() const;
+  /// Indices of the visible voxels, into Volume::values, in the order they are drawn.
+  std::vector<std::uint32_t> downloadVisibleVoxels() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,106 @@
+// The frame's constants: the camera's rays in index space, relative to the volume's middle, and how splats are drawn.
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/splatting/footprint.h"
+#include "engine/splatting/splat_pass.h"
+
+namespace freevoxels {
+
+namespace {
+
+static_assert(shader::kSplatRadius == float(kFootprintRadius));
+static_assert(shader::kLookupNearest == int(AttenuationLookup::Nearest));
+static_assert(shader::kCompositeAdditive == int(Composite::Additive));
+
+/// Image positions of the box's corners and the smallest distance from the eye plane.
+struct ProjectedBox {
+  glm::dvec2 low{std::numeric_limits<double>::max()}, high{std::numeric_limits<double>::lowest()};
+  double nearest = std::numeric_limits<double>::max();
+};
+
+ProjectedBox projectBox(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions) {
+  ProjectedBox box;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 voxel = glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2) * glm::dvec3(dimensions - 1);
+    const glm::dvec3 pixel = toPixel * (voxel - rays.origin);
+    const glm::dvec2 position = rays.orthographic ? glm::dvec2(pixel) : glm::dvec2(pixel) / pixel.z;
+    box.low = glm::min(box.low, position);
+    box.high = glm::max(box.high, position);
+    box.nearest = std::min(box.nearest, pixel.z);
+  }
+  return box;
+}
+
+/// No splat of the volume reaches further than this from its centre, in pixels. For a perspective camera a kernel at
+/// distance t reaches at most R |K0 - x K2| / (t - R |K2|) along x (splat_setup.comp has the bound itself).
+double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions) {
+  const double widened = kFootprintRadius;  // a widened footprint grows by no more than this
+  const glm::dmat3 rows = glm::transpose(toPixel);
+  if (rays.orthographic) return kFootprintRadius * std::max(glm::length(rows[0]), glm::length(rows[1])) + widened;
+  const ProjectedBox box = projectBox(toPixel, rays, dimensions);
+  const double clearance = box.nearest - kFootprintRadius * glm::length(rows[2]);
+  if (clearance <= 0.0) return std::numeric_limits<double>::infinity();
+  double steepest = 0.0;
+  for (int axis = 0; axis < 2; ++axis)
+    for (double end : {box.low[axis], box.high[axis]})
+      steepest = std::max(steepest, glm::length(rows[axis] - end * rows[2]));
+  return kFootprintRadius * steepest / clearance + widened;
+}
+
+}  // namespace
+
+FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volume, const TableSettings& table,
+                                  const Camera& camera, const FrameSettings& settings) {
+  const PixelRays rays = pixelRays(camera, settings.size, volume.indexToWorld);
+  const glm::dvec3 pixelX = rays.orthographic ? rays.originX : rays.directionX;
+  const glm::dvec3 pixelY = rays.orthographic ? rays.originY : rays.directionY;
+  const glm::dmat3 toPixel = glm::inverse(glm::dmat3(pixelX, pixelY, rays.direction));
+  const glm::dmat3 linear(volume.indexToWorld);
+  const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
+  const glm::dvec3 eyeToMiddle = middle - rays.origin;
+
+  FrameConstants frame{};
+  frame.setup = {.indexToWorld = linear,
+                 .indexToPixel = toPixel,
+                 .middle = middle,
+                 .eyeToMiddle = eyeToMiddle,
+                 .middleInPixels = toPixel * eyeToMiddle,
+                 .pixelX = pixelX,
+                 .pixelY = pixelY,
+                 .ray = rays.direction,
+                 .orthographic = rays.orthographic ? 1 : 0,
+                 .rowPitch = volume.layout.rowPitch,
+                 .rows = volume.layout.dimensions.y,
+                 .lookup = int(settings.attenuation),
+                 .code = int(table.code),
+                 .opacityPoints = volume.opacityPointCount,
+                 .colorPoints = volume.colorPointCount,
+                 .albedo = volume.albedo};
+  frame.resolve = {.ray = rays.direction,
+                   .rayX = rays.directionX,
+                   .rayY = rays.directionY,
+                   .worldRay = linear * rays.direction,
+                   .worldRayX = linear * rays.directionX,
+                   .worldRayY = linear * rays.directionY,
+                   .size = settings.size,
+                   .composite = int(settings.composite)};
+
+  const double largestPoint = double(device.limits().pointSizeRange[1]);
+  const double reach = largestHalfExtent(toPixel, rays, volume.layout.dimensions);
+  const double margin = std::ceil(largestPoint / 2.0);
+  const double widest = double(std::max(settings.size.x, settings.size.y)) + 2.0 * margin;
+  frame.quads = 2.0 * reach > largestPoint || widest > double(device.limits().maxViewportDimensions[0]) ||
+                widest > double(device.limits().maxViewportDimensions[1]);
+  frame.viewportMargin = frame.quads ? 0.0f : float(margin);
+  frame.splat = {.ray = rays.direction,
+                 .rayX = rays.directionX,
+                 .rayY = rays.directionY,
+                 .viewportOrigin = glm::vec2(-frame.viewportMargin),
+                 .viewportSize = glm::vec2(settings.size) + 2.0f * frame.viewportMargin};
+  return frame;
+}
+
+}  // namespace freevoxels

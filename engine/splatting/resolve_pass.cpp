@@ -1,0 +1,25 @@
+#include "engine/splatting/resolve_pass.h"
+
+#include <array>
+#include <cstdint>
+
+#include "embedded/resolve.h"
+
+namespace freevoxels {
+
+ResolvePass::ResolvePass(const Device& device, bool withDistance)
+    : withDistance_(withDistance),
+      pipeline_(makeComputePipeline(device, {resolve_spv, "resolve"},
+                                    {.bindings = std::vector(3, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE),
+                                     .pushConstantBytes = sizeof(shader::ResolvePush)},
+                                    {shader::kResolveTile, shader::kResolveTile, 1}, {withDistance ? 1u : 0u})) {}
+
+void ResolvePass::record(Commands& commands, const FrameConstants& frame, const SplatTargets& targets) const {
+  const std::array<Binding, 3> images{&targets.colorEnergy, &targets.opticalDepth,
+                                      withDistance_ ? &targets.distance : &targets.opticalDepth};
+  commands.beginPass("resolve");
+  commands.dispatch(pipeline_, images, frame.resolve, {targets.colorEnergy.size(), 1});
+  commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+}
+
+}  // namespace freevoxels

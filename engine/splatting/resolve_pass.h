@@ -1,0 +1,19 @@
+#pragma once
+// Sums to picture. Additive: Subr et al. 2007, Eq. 10 and 11; normalised: resolve.comp.
+
+#include "engine/splatting/splat_pass.h"
+
+namespace freevoxels {
+
+/// COMPUTE resolve.comp, in place: colorEnergy becomes premultiplied RGBA, distance the mean distance.
+class ResolvePass {
+ public:
+  ResolvePass(const Device& device, bool withDistance);
+  void record(Commands& commands, const FrameConstants& frame, const SplatTargets& targets) const;
+
+ private:
+  bool withDistance_;
+  Pipeline pipeline_;
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,124 @@
+#include "engine/splatting/splat_pass.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "embedded/splat_fragment.h"
+#include "embedded/splat_fragment_distance.h"
+#include "embedded/splat_setup.h"
+#include "embedded/splat_vertex.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr VkFormat kColorFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr VkFormat kScalarFormat = VK_FORMAT_R32_SFLOAT;
+constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+constexpr VkPipelineStageFlags2 kDraw = VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
+constexpr VkPipelineStageFlags2 kOutput = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
+
+Pipeline makeSplatPipeline(const Device& device, bool quads, bool withDistance) {
+  const ShaderCode fragment = withDistance ? ShaderCode{splat_fragment_distance_spv, "splat with distance"}
+                                           : ShaderCode{splat_fragment_spv, "splat"};
+  const std::array formats{kColorFormat, kScalarFormat, kScalarFormat};
+  return makeAdditivePipeline(
+      device, {splat_vertex_spv, "splat"}, fragment,
+      {.bindings = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, .pushConstantBytes = sizeof(shader::SplatPush)},
+      quads ? VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP : VK_PRIMITIVE_TOPOLOGY_POINT_LIST,
+      std::span(formats).first(withDistance ? 3 : 2), {quads ? 1u : 0u});
+}
+
+}  // namespace
+
+std::vector<const RenderTarget*> SplatTargets::all() const {
+  std::vector targets{&colorEnergy, &opticalDepth};
+  if (distance.exists()) targets.push_back(&distance);
+  return targets;
+}
+
+SplatTargets makeTargets(const Device& device, const FrameSettings& settings) {
+  SplatTargets targets{.colorEnergy = RenderTarget(device, settings.size, kColorFormat, "C and E"),
+                       .opticalDepth = RenderTarget(device, settings.size, kScalarFormat, "T"),
+                       .distance = {}};
+  if (settings.depth) targets.distance = RenderTarget(device, settings.size, kScalarFormat, "distance");
+  return targets;
+}
+
+SplatPass::SplatPass(const Device& device, bool withDistance)
+    : device_(device),
+      withDistance_(withDistance),
+      setup_(makeComputePipeline(device, {splat_setup_spv, "splat set-up"},
+                                 {.bindings = std::vector(8, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                                  .pushConstantBytes = sizeof(shader::SetupPush)},
+                                 {shader::kSplatThreads, 1, 1})),
+      points_(makeSplatPipeline(device, false, withDistance)),
+      quads_(makeSplatPipeline(device, true, withDistance)),
+      frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "frame") {}
+
+void SplatPass::beginRendering(Commands& commands, const SplatTargets& targets, const FrameConstants& frame,
+                               VkAttachmentLoadOp load) const {
+  std::vector<VkRenderingAttachmentInfo> attachments;
+  for (const RenderTarget* target : targets.all())
+    attachments.push_back({.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
+                           .imageView = target->view(),
+                           .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
+                           .loadOp = load,
+                           .storeOp = VK_ATTACHMENT_STORE_OP_STORE});
+  const VkExtent2D extent{std::uint32_t(targets.colorEnergy.size().x), std::uint32_t(targets.colorEnergy.size().y)};
+  const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
+                                  .renderArea = {{0, 0}, extent},
+                                  .layerCount = 1,
+                                  .colorAttachmentCount = std::uint32_t(attachments.size()),
+                                  .pColorAttachments = attachments.data()};
+  vkCmdBeginRendering(commands.handle(), &rendering);
+  const float margin = frame.viewportMargin;
+  const VkViewport viewport{-margin, -margin, float(extent.width) + 2 * margin, float(extent.height) + 2 * margin,
+                            0.0f, 1.0f};
+  const VkRect2D scissor{{0, 0}, extent};
+  vkCmdSetViewport(commands.handle(), 0, 1, &viewport);
+  vkCmdSetScissor(commands.handle(), 0, 1, &scissor);
+}
+
+void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,
+                       const SplatTargets& targets) {
+  if (splats_.bytes() == 0) {
+    const std::uint64_t count = std::min<std::uint64_t>(inputs.volume.activeVoxels, shader::kSplatsPerChunk);
+    splats_ = Buffer(device_, std::max<std::uint64_t>(count, 1) * sizeof(shader::Splat), MemoryUse::Device, "splats");
+  }
+  upload(device_, frame_, std::as_bytes(std::span(&frame.setup, 1)));
+
+  const std::array<Binding, 8> setup{&frame_,
+                                     &inputs.volume.transferPoints,
+                                     &inputs.table.planeAddresses,
+                                     &inputs.visible.indices,
+                                     &inputs.volume.scalars,
+                                     &inputs.volume.extinction,
+                                     &inputs.visible.chunks,
+                                     &splats_};
+  const std::array<Binding, 1> draw{&splats_};
+  const Pipeline& pipeline = frame.quads ? quads_ : points_;
+  for (const RenderTarget* target : targets.all())
+    commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kOutput, kOutput);
+
+  for (std::uint32_t chunk = 0; chunk < inputs.visible.chunkCount; ++chunk) {
+    const VkDeviceSize arguments = chunk * sizeof(shader::ChunkArguments);
+    commands.beginPass("splat set-up");
+    commands.barrier(kDraw, kCompute);
+    commands.dispatchIndirect(setup_, setup, shader::SetupPush{chunk}, inputs.visible.chunks, arguments);
+    commands.beginPass("splat draw");
+    commands.barrier(kCompute, kDraw);
+    beginRendering(commands, targets, frame, chunk == 0 ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD);
+    commands.bind(pipeline, draw, &frame.splat, sizeof(frame.splat));
+    const std::size_t offset = frame.quads ? offsetof(shader::ChunkArguments, quadVertexCount)
+                                           : offsetof(shader::ChunkArguments, vertexCount);
+    vkCmdDrawIndirect(commands.handle(), inputs.visible.chunks.handle(), arguments + offset, 1, 0);
+    vkCmdEndRendering(commands.handle());
+    commands.barrier(kOutput, kOutput);
+  }
+  for (const RenderTarget* target : targets.all())
+    commands.transition(*target, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL, kOutput,
+                        kCompute | VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,73 @@
+#include "engine/splatting/visible_voxels.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "embedded/visible_count.h"
+#include "embedded/visible_scan.h"
+#include "embedded/visible_write.h"
+#include "shaders/interface.h"
+
+namespace freevoxels {
+
+namespace {
+
+std::uint32_t groupsFor(const GridLayout& layout) {
+  return std::uint32_t((layout.paddedVoxels() + shader::kCountVoxelsPerGroup - 1) / shader::kCountVoxelsPerGroup);
+}
+
+Pipeline makePass(const Device& device, ShaderCode code, std::size_t bindings, int threads) {
+  return makeComputePipeline(device, code,
+                             {.bindings = std::vector(bindings, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                              .pushConstantBytes = sizeof(shader::VisiblePush)},
+                             {threads, 1, 1});
+}
+
+}  // namespace
+
+VisibleVoxels makeVisibleVoxels(const Device& device, const DeviceVolume& volume) {
+  VisibleVoxels result;
+  const std::uint64_t most = std::max<std::uint64_t>(volume.activeVoxels, 1);
+  result.chunkCount = std::uint32_t((most + shader::kSplatsPerChunk - 1) / shader::kSplatsPerChunk);
+  result.groupOffsets =
+      Buffer(device, groupsFor(volume.layout) * sizeof(std::uint32_t), MemoryUse::Device, "visible group offsets");
+  result.indices = Buffer(device, most * sizeof(std::uint32_t), MemoryUse::Device, "visible voxels");
+  result.chunks = Buffer(device, result.chunkCount * sizeof(shader::ChunkArguments), MemoryUse::Device,
+                         "chunk arguments", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  return result;
+}
+
+CompactionPass::CompactionPass(const Device& device)
+    : count_(makePass(device, {visible_count_spv, "visible count"}, 2, shader::kCountThreads)),
+      scan_(makePass(device, {visible_scan_spv, "visible scan"}, 2, shader::kScanThreads)),
+      write_(makePass(device, {visible_write_spv, "visible write"}, 3, shader::kCountThreads)) {}
+
+void CompactionPass::record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible) const {
+  const std::uint32_t groups = groupsFor(volume.layout);
+  const shader::VisiblePush push{.voxelCount = std::uint32_t(volume.layout.paddedVoxels()),
+                                 .groupCount = groups,
+                                 .chunkCount = visible.chunkCount};
+  const std::array<Binding, 2> count{&volume.extinction, &visible.groupOffsets};
+  const std::array<Binding, 2> scan{&visible.groupOffsets, &visible.chunks};
+  const std::array<Binding, 3> write{&volume.extinction, &visible.groupOffsets, &visible.indices};
+  constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  const std::uint64_t threads = std::uint64_t(groups) * shader::kCountThreads;
+  commands.beginPass("visible voxels");
+  commands.dispatchLinear(count_, count, push, threads);
+  commands.barrier(kCompute, kCompute);
+  commands.dispatchLinear(scan_, scan, push, shader::kScanThreads);
+  commands.barrier(kCompute, kCompute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
+  commands.dispatchLinear(write_, write, push, threads);
+  commands.barrier(kCompute, kCompute);
+}
+
+std::uint64_t downloadVisibleCount(const Device& device, const VisibleVoxels& visible) {
+  std::vector<shader::ChunkArguments> chunks(visible.chunkCount);
+  download(device, visible.chunks, std::as_writable_bytes(std::span(chunks)));
+  std::uint64_t total = 0;
+  for (const shader::ChunkArguments& chunk : chunks) total += chunk.splatCount;
+  return total;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,30 @@
+#pragma once
+// The list of voxels that have something to draw, in ascending order, made on the device and never read back for drawing.
+
+#include "engine/volume/device_volume.h"
+
+namespace freevoxels {
+
+struct VisibleVoxels {
+  Buffer groupOffsets;  ///< uint: counts, then offsets, of each workgroup's stretch of voxels
+  Buffer indices;       ///< uint: padded voxel indices, ascending
+  Buffer chunks;        ///< shader::ChunkArguments of each draw chunk
+  std::uint32_t chunkCount = 0;
+};
+
+VisibleVoxels makeVisibleVoxels(const Device& device, const DeviceVolume& volume);
+
+/// COMPUTE visible_count.comp, visible_scan.comp, visible_write.comp
+class CompactionPass {
+ public:
+  explicit CompactionPass(const Device& device);
+  void record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible) const;
+
+ private:
+  Pipeline count_, scan_, write_;
+};
+
+/// Sum of the chunks' splat counts. Reads back.
+std::uint64_t downloadVisibleCount(const Device& device, const VisibleVoxels& visible);
+
+}  // namespace freevoxels

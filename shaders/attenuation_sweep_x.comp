@@ -1,0 +1,31 @@
+#version 460
+// The attenuation table for the directions +x and -x: Subr et al. 2007, Section 3.1, Eq. 5. A thread a row.
+#extension GL_GOOGLE_include_directive : require
+#include "interface.h"
+#include "attenuation_code.glsl"
+
+layout(constant_id = 0) const int kCode = kCodeDepth8;
+layout(constant_id = 1) const int kStepX = 1;  // of the march: 1 or -1
+
+layout(local_size_x = kSweepThreads) in;
+layout(scalar, push_constant) uniform Push { SweepPush push; };
+layout(scalar, binding = 0) readonly buffer Extinction { vec4 extinction[]; };
+layout(scalar, binding = 1) writeonly buffer Plane { uint words[]; };
+
+void main() {
+  const int row = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kSweepThreads);
+  if (row >= push.lineCount) return;
+  const int quads = push.rowPitch / 4;
+  float depth = 0.0;
+  for (int i = 0; i < quads; ++i) {
+    const int quad = row * quads + (kStepX > 0 ? i : quads - 1 - i);
+    const vec4 sigma = extinction[quad];
+    uint word = 0;
+    [[unroll]] for (int i4 = 0; i4 < 4; ++i4) {
+      const int c = kStepX > 0 ? i4 : 3 - i4;
+      word |= encodeDepth(kCode, depth) << (8 * c);
+      depth += sigma[c] * push.stepLength;
+    }
+    words[quad] = word;
+  }
+}

@@ -1,0 +1,146 @@
+// What the C++ side and the shaders share: push constants, records and constants. Included by both; the layouts are
+// equal because the shaders use scalar block layout.
+#ifndef FREEVOXELS_INTERFACE_H
+#define FREEVOXELS_INTERFACE_H
+
+#ifdef __cplusplus
+#include <cstdint>
+#include <glm/glm.hpp>
+namespace freevoxels::shader {
+using glm::ivec2, glm::ivec3, glm::ivec4, glm::mat3, glm::uvec2, glm::vec2, glm::vec3, glm::vec4;
+using uint = std::uint32_t;
+#define FV_CONSTANT inline constexpr
+#else
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
+#define FV_CONSTANT const
+#endif
+
+// Rows of voxels are padded to a multiple of this with voxels that hold nothing, so that a thread of the sweeps owns
+// whole words: 16 voxels a thread are fastest on lavapipe, 4 (one 32-bit word of codes) on GPUs.
+FV_CONSTANT int kRowAlignment = 16;
+
+// Voxels that one invocation and one workgroup of the visible-voxel passes look at.
+FV_CONSTANT int kCountVoxelsPerThread = 16;
+FV_CONSTANT int kCountThreads = 64;
+FV_CONSTANT int kCountVoxelsPerGroup = kCountVoxelsPerThread * kCountThreads;
+FV_CONSTANT int kScanThreads = 256;
+
+FV_CONSTANT int kClassifyThreads = 64;
+FV_CONSTANT int kSweepThreads = 32;
+FV_CONSTANT int kSplatThreads = 64;
+FV_CONSTANT int kResolveTile = 8;
+
+// Splats are set up and drawn in chunks of this many: the records of one chunk are 52 MiB, whatever the volume.
+FV_CONSTANT int kSplatsPerChunk = 1 << 20;
+
+// The footprint, f(r) = peak (1 - r²/R²)⁴: engine/splatting/footprint.h says why.
+FV_CONSTANT float kSplatRadius = 1.3960250075605876f;
+FV_CONSTANT float kSplatPeak = 5.0f / (3.14159265358979f * kSplatRadius * kSplatRadius);
+
+FV_CONSTANT int kTableDirections = 26;
+FV_CONSTANT float kMaximumDepth = 16.0f;  // optical depth that the code depth8 ends at
+
+// Must be engine/volume/volume.h's kInactiveVoxel.
+FV_CONSTANT float kInactiveScalar = -3.402823466e38f;
+// Must be engine/volume/classification.h's kMaximumOpacity.
+FV_CONSTANT float kMaximumOpacity = 1.0f - 1.0f / 4096.0f;
+
+FV_CONSTANT int kCodeDepth8 = 0;
+FV_CONSTANT int kCodeLinear8 = 1;
+FV_CONSTANT int kLookupBilinear = 0;
+FV_CONSTANT int kLookupNearest = 1;
+FV_CONSTANT int kCompositeNormalised = 0;
+FV_CONSTANT int kCompositeAdditive = 1;
+
+// classify.comp
+struct ClassifyPush {
+  uint quadCount;        // voxels / 4
+  uint opacityPoints;    // of the transfer function; 0 = physical
+  float densityScale;    // physical: extinction per world unit at density 1
+  float unitDistance;    // transfer function: world length that opacities refer to
+};
+
+// attenuation_sweep.comp and attenuation_sweep_x.comp. Offsets and strides are in voxels of the padded grid.
+struct SweepPush {
+  int rowPitch;
+  int lineCount;     // extent of the side axis: the axis that is neither x nor the march axis
+  int sideStep;      // step along the side axis, wraps around
+  int sideStride;
+  int marchCount;    // extent of the march axis
+  int marchStart;    // offset of the first plane, the one at which the lines enter the volume
+  int marchStride;   // to the next plane; negative when marching down
+  float stepLength;  // world length of a lattice step
+};
+
+// visible_count.comp, visible_scan.comp, visible_write.comp
+struct VisiblePush {
+  uint voxelCount;   // of the padded grid
+  uint groupCount;   // workgroups of the count and write passes
+  uint chunkCount;   // draw chunks whose arguments visible_scan.comp writes
+};
+
+// Arguments of one chunk, in the order that vkCmdDispatchIndirect and vkCmdDrawIndirect want them.
+struct ChunkArguments {
+  uint groupsX, groupsY, groupsZ;
+  uint splatCount;
+  uint vertexCount, instanceCount, firstVertex, firstInstance;              // points: one vertex a splat
+  uint quadVertexCount, quadInstanceCount, quadFirstVertex, quadFirstInstance;  // quads: one instance a splat
+};
+
+// One splat, ready to draw. Written by splat_setup.comp, pulled by splat.vert.
+struct Splat {
+  vec4 colorEnergy;   // e_v c_v and e_v, times the footprint's peak
+  vec2 center;        // pixels, (0, 0) = the top left corner of the image
+  vec2 halfExtent;    // pixels; 0 = not drawn
+  vec3 conic;         // xx, xy, yy: (r/R)² |D|² = xx dx² + 2 xy dx dy + yy dy² at (dx, dy) from the centre
+  float opticalDepth; // t_v, times the footprint's peak, per world length of ray
+  float distance;     // from the eye plane along the viewing axis, world units
+};
+
+// The frame, as splat_setup.comp needs it. Index space is relative to the middle of the volume, so that 32-bit floats
+// keep their precision far from the origin.
+struct SetupFrame {
+  mat3 indexToWorld;       // linear part
+  mat3 indexToPixel;       // index offset -> (x t, y t, t), orthographic (x, y, t): see PixelRays for x, y and t
+  vec3 middle;             // of the volume, index space
+  vec3 eyeToMiddle;        // from the ray origin, index space
+  vec3 middleInPixels;     // indexToPixel * eyeToMiddle
+  vec3 pixelX, pixelY;     // how the ray moves with x and y: its direction, or orthographic its origin; index space
+  vec3 ray;                // orthographic: the direction of all rays, index space
+  int orthographic;
+  int rowPitch;
+  int rows;                // extent along y
+  int lookup;              // kLookup...
+  int code;                // kCode...
+  uint opacityPoints;      // 0 = physical
+  uint colorPoints;
+  vec3 albedo;
+};
+
+struct SetupPush {
+  uint chunk;
+};
+
+// splat.vert and splat.frag
+struct SplatPush {
+  vec3 ray, rayX, rayY;  // the pixel ray D(x, y) = ray + x rayX + y rayY, index space
+  vec2 viewportOrigin;   // of the enlarged viewport, pixels
+  vec2 viewportSize;
+};
+
+// resolve.comp
+struct ResolvePush {
+  vec3 ray, rayX, rayY;                  // index space
+  vec3 worldRay, worldRayX, worldRayY;   // the same, world space
+  ivec2 size;
+  int composite;                         // kComposite...
+};
+
+#ifdef __cplusplus
+static_assert(sizeof(ChunkArguments) == 48);
+static_assert(sizeof(Splat) == 52);
+static_assert(sizeof(ResolvePush) == 84);
+}  // namespace freevoxels::shader
+#endif
+#endif

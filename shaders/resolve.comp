@@ -1,0 +1,37 @@
+#version 460
+// The sums of a pixel become its colour, in place. Additive: Subr et al. 2007, Eq. 10 and 11. Normalised: alpha is exact
+// and the sums only decide how the colours along the ray mix.
+#extension GL_GOOGLE_include_directive : require
+#include "interface.h"
+
+layout(constant_id = 0) const bool kWithDistance = false;
+
+layout(local_size_x = kResolveTile, local_size_y = kResolveTile) in;
+layout(scalar, push_constant) uniform Push { ResolvePush push; };
+layout(binding = 0, rgba32f) uniform image2D colorEnergy;      // C, E -> premultiplied colour, alpha
+layout(binding = 1, r32f) readonly uniform image2D opticalDepth;  // T
+layout(binding = 2, r32f) uniform image2D meanDistance;        // sum of e times distance -> mean distance
+
+// 1 - exp(-x), also right for small x.
+float opacityOf(float x) { return x < 0.02 ? x * (1.0 - x * (1.0 / 2.0 - x * (1.0 / 6.0))) : 1.0 - exp(-x); }
+
+void main() {
+  const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(pixel, push.size))) return;
+  const vec2 position = vec2(pixel) + 0.5;
+  const vec3 ray = push.ray + position.x * push.rayX + position.y * push.rayY;
+  const vec3 worldRay = push.worldRay + position.x * push.worldRayX + position.y * push.worldRayY;
+  const float worldPerIndex = length(worldRay) / length(ray);
+
+  const vec4 sums = imageLoad(colorEnergy, pixel);
+  if (kWithDistance) {
+    const float weighted = imageLoad(meanDistance, pixel).r;
+    imageStore(meanDistance, pixel, vec4(sums.a > 0.0 ? weighted / sums.a : uintBitsToFloat(0x7f800000u)));
+  }
+  vec4 result = sums * worldPerIndex;
+  if (push.composite == kCompositeNormalised) {
+    const float alpha = opacityOf(imageLoad(opticalDepth, pixel).r * worldPerIndex);
+    result = vec4(result.rgb * (result.a > 0.0 ? alpha / result.a : 1.0), alpha);
+  }
+  imageStore(colorEnergy, pixel, result);
+}
