@@ -1,0 +1,70 @@
+// Optical model: Max 1995, "Optical models for direct volume rendering". An opacity alpha over the length
+// Δ is the extinction -ln(1 - alpha) / Δ.
+#include "engine/volume/classification.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// Piecewise linear, constant beyond the ends. `valueOf(point)` is what is interpolated.
+template <typename Points, typename ValueOf>
+auto evaluate(const Points& points, double scalar, const ValueOf& valueOf) {
+  FV_CHECK_LT(std::size_t(0), points.size());
+  const auto above = std::upper_bound(points.begin(), points.end(), scalar,
+                                      [](double s, const auto& point) { return s < double(point.scalar); });
+  if (above == points.begin()) return valueOf(points.front());
+  if (above == points.end()) return valueOf(points.back());
+  const auto below = above - 1;
+  const double weight = (scalar - below->scalar) / (double(above->scalar) - below->scalar);
+  return valueOf(*below) * (1.0 - weight) + valueOf(*above) * weight;
+}
+
+ClassifiedVoxel classifyByTransfer(const TransferFunction& transfer, float scalar) {
+  using Opacity = TransferFunction::OpacityPoint;
+  using Color = TransferFunction::ColorPoint;
+  const double opacity =
+      evaluate(transfer.opacity, scalar, [](const Opacity& p) { return double(p.opacity); });
+  const glm::dvec3 color =
+      evaluate(transfer.color, scalar, [](const Color& p) { return glm::dvec3(p.color); });
+  return {-std::log1p(-std::min(opacity, kMaximumOpacity)) / transfer.unitDistance, color};
+}
+
+/// Of max(0, density) over the active voxels, summed in a fixed order: the same number in every run.
+double totalDensity(const Volume& volume) {
+  using Range = tbb::blocked_range<std::size_t>;
+  constexpr std::size_t kGrain = 1 << 14;
+  return tbb::parallel_deterministic_reduce(
+      Range(0, volume.values.size(), kGrain), 0.0,
+      [&](const Range& range, double sum) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) sum += std::max(volume.values[i], 0.0f);
+        return sum;
+      },
+      std::plus<>());
+}
+
+}  // namespace
+
+ClassifiedVoxel classify(const Classification& classification, float scalar) {
+  if (scalar == kInactiveVoxel) return {};
+  if (classification.transferFunction) return classifyByTransfer(*classification.transferFunction, scalar);
+  return {std::max(double(scalar), 0.0) * classification.densityScale, glm::dvec3(classification.albedo)};
+}
+
+double automaticDensityScale(const Volume& volume) {
+  const double total = totalDensity(volume);  // kInactiveVoxel is negative and adds nothing
+  if (!(total > 0.0)) return 1.0;
+  const double mean = total / double(volume.activeVoxels);
+  const double edge = std::cbrt(double(volume.activeVoxels)) * volume.voxelSize();
+  return kAutomaticOpticalDepth / (mean * edge);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,55 @@
+#pragma once
+// Scalar -> (colour, extinction). Two ways: physical (density x scale, one albedo) and transfer function.
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+/// Opacities are clamped to this, so that extinction stays finite.
+inline constexpr double kMaximumOpacity = 1.0 - 1.0 / 4096.0;
+
+/// Piecewise linear in the scalar, constant beyond the first and last point. Schema: README.md.
+struct TransferFunction {
+  struct OpacityPoint {
+    float scalar;   ///< already mapped to the volume's scalars
+    float opacity;  ///< 0..1 per `unitDistance`
+  };
+  struct ColorPoint {
+    float scalar;
+    glm::vec3 color;  ///< linear Rec.709
+  };
+  std::vector<OpacityPoint> opacity;  ///< at least one, scalars ascending
+  std::vector<ColorPoint> color;      ///< at least one, scalars ascending
+  double unitDistance = 1.0;          ///< world length that `opacity` refers to
+};
+
+struct Classification {
+  std::optional<TransferFunction> transferFunction;  ///< when set, the two below are not used
+  double densityScale = 1.0;                         ///< extinction per world unit at density 1
+  glm::vec3 albedo{0.9f};                            ///< linear Rec.709
+};
+
+struct ClassifiedVoxel {
+  double extinction = 0.0;  ///< sigma, per world unit
+  glm::dvec3 color{0.0};
+};
+
+/// The reference for what the shaders do, in double precision. kInactiveVoxel gives extinction 0. A negative
+/// scalar counts as 0 in the physical way, as data with a transfer function.
+ClassifiedVoxel classify(const Classification& classification, float scalar);
+
+/// Reads the JSON of README.md, section "Transfer functions". `range` defaults to the volume's minimum and maximum,
+/// `unit_distance` to its voxel size. Unknown keys, wrong types, points that do not ascend: ExitCode::Input, by name.
+TransferFunction readTransferFunction(const std::filesystem::path& file, const Volume& volume);
+
+/// The density scale used when none is given: the one at which a cube that holds the volume of the active voxels
+/// at their mean density has optical depth kAutomaticOpticalDepth.
+inline constexpr double kAutomaticOpticalDepth = 2.0;
+double automaticDensityScale(const Volume& volume);
+
+}  // namespace freevoxels

@@ -1,0 +1,130 @@
+#include "engine/volume/procedural.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "engine/core/error.h"
+#include "engine/volume/procedural_fields.h"
+
+namespace freevoxels {
+
+namespace {
+
+using glm::vec3;
+
+constexpr int kLargestResolution = 2048;
+constexpr float kPi = std::numbers::pi_v<float>;
+
+float cubeDensity(vec3, float) {
+  return 1.0f;
+}
+
+/// Marschner and Lobb 1994, "An evaluation of reconstruction filters for volume rendering", eq. 3, over [-1,
+/// 1]³.
+float marschnerLobb(vec3 position, float) {
+  constexpr float kFrequency = 6.0f, kAmplitude = 0.25f;
+  const vec3 p = 2.0f * position;
+  const float radius = std::sqrt(p.x * p.x + p.y * p.y);
+  const float ripple = std::cos(2.0f * kPi * kFrequency * std::cos(kPi * radius / 2.0f));
+  const float value =
+      (1.0f - std::sin(kPi * p.z / 2.0f) + kAmplitude * (1.0f + ripple)) / (2.0f * (1.0f + kAmplitude));
+  return std::max(value, std::numeric_limits<float>::min());  // all active
+}
+
+/// Each shell is a cos² bump over the radius; the inner ones are denser.
+float shellsDensity(vec3 position, float) {
+  struct Shell {
+    float radius, peak;
+  };
+  constexpr std::array<Shell, 4> kShells{{{0.10f, 1.0f}, {0.21f, 0.6f}, {0.32f, 0.35f}, {0.43f, 0.2f}}};
+  constexpr float kHalfWidth = 0.04f;
+  const float radius = glm::length(position);
+  float density = 0.0f;
+  for (const Shell& shell : kShells) {
+    const float offset = std::abs(radius - shell.radius) / kHalfWidth;
+    if (offset >= 1.0f) continue;
+    const float bump = std::cos(offset * kPi / 2.0f);
+    density += shell.peak * bump * bump;
+  }
+  return density;
+}
+
+/// A lattice of rods along the three axes. Their thickness is fixed in the world: 1.8 voxels at resolution
+/// 128.
+float rodsDensity(vec3 position, float voxelSize) {
+  constexpr float kSpacing = 1.0f / 7.0f, kRadius = 0.9f / 128.0f, kHalfExtent = 0.46f;
+  const auto fromRod = [](float x) { return x - kSpacing * std::round(x / kSpacing); };
+  const vec3 d(fromRod(position.x), fromRod(position.y), fromRod(position.z));
+  const vec3 outside = glm::abs(position) - kHalfExtent;
+  const float end = std::max({outside.x, outside.y, outside.z});
+  const float nearest =
+      std::sqrt(std::min({d.x * d.x + d.y * d.y, d.y * d.y + d.z * d.z, d.x * d.x + d.z * d.z}));
+  const auto coverage = [&](float distance) { return std::clamp(0.5f - distance / voxelSize, 0.0f, 1.0f); };
+  return coverage(nearest - kRadius) * coverage(end);
+}
+
+struct Field {
+  ProceduralKind kind;
+  float (*density)(vec3 position, float voxelSize);
+};
+
+constexpr std::array<Field, 6> kFields{{
+    {{"cube", "a uniform cube of density 1"}, cubeDensity},
+    {{"cloud", "a fractal cumulus cloud"}, [](vec3 position, float) { return cloudDensity(position); }},
+    {{"marschner-lobb", "the reconstruction test signal of Marschner and Lobb"}, marschnerLobb},
+    {{"shells", "nested translucent spherical shells"}, shellsDensity},
+    {{"rods", "a lattice of thin rods"}, rodsDensity},
+    {{"head", "a head of ellipsoids with an opaque skull"}, headDensity},
+}};
+
+const Field& fieldNamed(std::string_view name) {
+  std::string names;
+  for (const Field& field : kFields) {
+    if (field.kind.name == name) return field;
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", field.kind.name);
+  }
+  fail(ExitCode::Usage, "there is no procedural volume '{}'; choose one of: {}", name, names);
+}
+
+}  // namespace
+
+const std::vector<ProceduralKind>& proceduralKinds() {
+  static const std::vector<ProceduralKind> kinds = [] {
+    std::vector<ProceduralKind> list;
+    for (const Field& field : kFields) list.push_back(field.kind);
+    return list;
+  }();
+  return kinds;
+}
+
+Volume makeProcedural(std::string_view name, int resolution) {
+  const Field& field = fieldNamed(name);
+  if (resolution < 1 || resolution > kLargestResolution)
+    fail(ExitCode::Usage, "the resolution of '{}' is {}; choose one from 1 to {}", name, resolution,
+         kLargestResolution);
+
+  Volume volume;
+  volume.source = fmt::format("procedural:{}", name);
+  volume.dimensions = glm::ivec3(resolution);
+  const double voxelSize = 1.0 / resolution;
+  const double firstCenter = 0.5 * voxelSize - 0.5;
+  volume.indexToWorld = glm::dmat4(voxelSize);
+  volume.indexToWorld[3] = glm::dvec4(glm::dvec3(firstCenter), 1.0);
+  volume.values.resize(volume.voxelCount());
+  const auto center = [&](int index) { return float(firstCenter + voxelSize * index); };
+  tbb::parallel_for(0, resolution, [&](int z) {
+    for (int y = 0; y < resolution; ++y)
+      for (int x = 0; x < resolution; ++x) {
+        const float density = field.density({center(x), center(y), center(z)}, float(voxelSize));
+        volume.values[volume.at(x, y, z)] = density == 0.0f ? kInactiveVoxel : density;
+      }
+  });
+  summariseValues(volume);
+  return volume;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,172 @@
+// Puffs joined smoothly, their surface displaced by cellular noise (rounded billows, three octaves) and
+// frayed by gradient noise. Integer hashes only: the same cloud on every machine.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "engine/volume/procedural_fields.h"
+
+namespace freevoxels {
+
+namespace {
+
+using glm::ivec3;
+using glm::vec3;
+
+/// Three rounds of multiply and shift over the cell's coordinates (the constants are those of MurmurHash3's
+/// finaliser).
+std::uint32_t hash(ivec3 cell, std::uint32_t seed) {
+  std::uint32_t h = seed;
+  for (int axis = 0; axis < 3; ++axis) {
+    h ^= std::uint32_t(cell[axis]) * 0x9e3779b1u;
+    h = (h ^ (h >> 16)) * 0x85ebca6bu;
+    h = (h ^ (h >> 13)) * 0xc2b2ae35u;
+  }
+  return h ^ (h >> 16);
+}
+
+/// Three numbers in 0..1 from one hash.
+vec3 hashToCube(std::uint32_t h) {
+  constexpr float kScale = 1.0f / 1023.0f;
+  return vec3(float(h & 1023u), float((h >> 10) & 1023u), float((h >> 20) & 1023u)) * kScale;
+}
+
+float fade(float t) {
+  return t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f);
+}
+
+/// Perlin's gradient noise, about -0.7..0.7.
+float gradientNoise(vec3 p, std::uint32_t seed) {
+  const vec3 base = glm::floor(p);
+  const vec3 t = p - base;
+  const auto corner = [&](int x, int y, int z) {
+    const vec3 gradient = hashToCube(hash(ivec3(base) + ivec3(x, y, z), seed)) * 2.0f - 1.0f;
+    return glm::dot(gradient, t - vec3(float(x), float(y), float(z)));
+  };
+  const auto edge = [&](int y, int z) { return glm::mix(corner(0, y, z), corner(1, y, z), fade(t.x)); };
+  const auto face = [&](int z) { return glm::mix(edge(0, z), edge(1, z), fade(t.y)); };
+  return glm::mix(face(0), face(1), fade(t.z));
+}
+
+/// Octaves of gradient noise, each of half the amplitude, about -1..1.
+float fractalNoise(vec3 p, int octaves, std::uint32_t seed) {
+  float sum = 0.0f, amplitude = 1.0f;
+  for (int octave = 0; octave < octaves; ++octave) {
+    sum += amplitude * gradientNoise(p, seed + std::uint32_t(octave));
+    p = p * 2.03f + vec3(17.3f, 5.1f, 11.7f);
+    amplitude *= 0.5f;
+  }
+  return sum;
+}
+
+/// Worley's cellular noise as domes, 0..1: 1 at the cells' points, with creases where the domes of two points
+/// meet.
+float billowNoise(vec3 p, std::uint32_t seed) {
+  const vec3 base = glm::floor(p);
+  float nearest = 1.0f;
+  for (int z = -1; z <= 1; ++z)
+    for (int y = -1; y <= 1; ++y)
+      for (int x = -1; x <= 1; ++x) {
+        const vec3 cell = base + vec3(float(x), float(y), float(z));
+        const vec3 offset = cell + hashToCube(hash(ivec3(cell), seed)) - p;
+        nearest = std::min(nearest, glm::dot(offset, offset));
+      }
+  return 1.0f - nearest;
+}
+
+struct Puff {
+  vec3 center;
+  float radius;
+};
+
+// A broad base, a main tower left of the middle, a second one behind it, and outliers all around.
+constexpr std::array<Puff, 15> kPuffs{{{{-0.02f, -0.10f, 0.00f}, 0.175f},
+                                       {{-0.20f, -0.13f, 0.05f}, 0.120f},
+                                       {{0.19f, -0.12f, 0.03f}, 0.130f},
+                                       {{0.03f, -0.14f, 0.20f}, 0.110f},
+                                       {{0.04f, -0.12f, -0.20f}, 0.125f},
+                                       {{-0.08f, 0.06f, 0.01f}, 0.135f},
+                                       {{-0.13f, 0.18f, -0.02f}, 0.095f},
+                                       {{-0.04f, 0.25f, 0.00f}, 0.070f},
+                                       {{0.12f, 0.05f, -0.07f}, 0.100f},
+                                       {{0.18f, 0.13f, -0.10f}, 0.055f},
+                                       {{0.08f, 0.00f, 0.13f}, 0.075f},
+                                       {{-0.22f, 0.00f, -0.06f}, 0.070f},
+                                       {{-0.33f, -0.16f, -0.02f}, 0.070f},
+                                       {{0.34f, -0.16f, -0.03f}, 0.070f},
+                                       {{0.22f, -0.17f, 0.20f}, 0.060f}}};
+constexpr float kBase = -0.235f;  // height of the flat underside
+constexpr float kJoin = 0.045f;   // length over which neighbouring puffs melt
+
+struct Billow {
+  float frequency, amplitude;
+};
+constexpr std::array<Billow, 4> kBillows{{{7.0f, 0.085f}, {15.0f, 0.050f}, {32.0f, 0.024f}, {67.0f, 0.011f}}};
+constexpr float kFray = 0.022f;     // amplitude of the fraying
+constexpr float kSoftest = 0.075f;  // widest edge; where the cloud is deeper than this it is solid
+constexpr float kWarp = 0.025f;     // amplitude of the warp of space
+
+float smoothMinimum(float a, float b, float width) {
+  const float h = std::max(width - std::abs(a - b), 0.0f) / width;
+  return std::min(a, b) - h * h * width * 0.25f;
+}
+
+/// Signed distance to the joined puffs, cut at the base; negative inside.
+float puffDistance(vec3 p) {
+  float distance = 1.0f;
+  for (const Puff& puff : kPuffs)
+    distance = smoothMinimum(distance, glm::length(p - puff.center) - puff.radius, kJoin);
+  return -smoothMinimum(-distance, p.y - kBase, kJoin);
+}
+
+/// How far billows from `first` on and the fray can still move the surface, either way.
+float reach(std::size_t first) {
+  float sum = 1.5f * kFray;
+  for (std::size_t i = first; i < kBillows.size(); ++i) sum += 0.5f * kBillows[i].amplitude;
+  return sum;
+}
+
+vec3 gradientNoise3(vec3 p, std::uint32_t seed) {
+  return {gradientNoise(p, seed), gradientNoise(p, seed + 1), gradientNoise(p, seed + 2)};
+}
+
+/// The puffs' surface with its billows. Exact only near the surface: where the finer billows can no longer
+/// matter, they are left out.
+float billowedDistance(vec3 p, float calm) {
+  const vec3 warped = p + kWarp * gradientNoise3(p * 6.0f, 101u);
+  float distance = puffDistance(warped);
+  for (std::size_t i = 0; i < kBillows.size(); ++i) {
+    if (distance > reach(i) || distance < -kSoftest - reach(i)) break;
+    const float dome = billowNoise(warped * kBillows[i].frequency, 11u + std::uint32_t(i));
+    distance -= kBillows[i].amplitude * calm * (dome - 0.5f);
+  }
+  return distance;
+}
+
+}  // namespace
+
+float cloudDensity(vec3 position) {
+  constexpr float kScale = 0.97f;  // the puffs above leave room around them
+  const vec3 p = position * kScale + vec3(0.0f, 0.03f, 0.0f);
+  const float coarse = puffDistance(p);
+  if (coarse > reach(0) + kWarp) return 0.0f;
+
+  const float aboveBase = glm::smoothstep(kBase, kBase + 0.12f, p.y);
+  float distance = billowedDistance(p, glm::mix(0.4f, 1.0f, aboveBase));
+  if (distance > reach(kBillows.size())) return 0.0f;
+
+  // Crisp on the crowns, soft at the base and wherever low noise says that the cloud dissolves.
+  const float noise = glm::smoothstep(-0.1f, 0.4f, gradientNoise(p * 5.0f, 31u));
+  const float dissolving = std::max(noise, 0.7f * (1.0f - aboveBase));
+  if (distance > -kSoftest - reach(kBillows.size()))
+    distance += kFray * glm::mix(0.35f, 1.0f, dissolving) * fractalNoise(p * 26.0f, 4, 21u);
+  const float body = glm::smoothstep(0.0f, glm::mix(0.018f, kSoftest, dissolving), -distance);
+  const float core = glm::smoothstep(0.0f, 0.16f, -coarse);
+  const float grain = 1.0f + 0.4f * fractalNoise(p * 12.0f, 3, 41u);
+  const float density = std::clamp(body * glm::mix(0.4f, 0.9f, core) * grain, 0.0f, 1.0f);
+  constexpr float kThinnest = 1.0f / 512.0f;  // less cannot be seen, but would cost a splat
+  return density < kThinnest ? 0.0f : density;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,17 @@
+#pragma once
+// Internal to the procedural*.cpp files: the fields that need more than a few lines. Positions are in the
+// world cube
+// [-1/2, 1/2]³ with y up; results are densities in 0..1, exactly 0 outside.
+
+#include <glm/glm.hpp>
+
+namespace freevoxels {
+
+/// A cumulus: billows over a flattish base, soft at the edge, thinner where it frays into wisps.
+float cloudDensity(glm::vec3 position);
+
+/// A head in front view along -z, with nested tissues of different density: skin 0.1 to 0.2, brain 0.3 to
+/// 0.4, bone 1. Surfaces are smoothed over `voxelSize`.
+float headDensity(glm::vec3 position, float voxelSize);
+
+}  // namespace freevoxels

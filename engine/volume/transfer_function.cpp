@@ -1,0 +1,156 @@
+// Reads transfer functions from JSON.
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "engine/core/error.h"
+#include "engine/volume/classification.h"
+
+namespace freevoxels {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr std::array<std::string_view, 4> kKeys{"range", "opacity", "color", "unit_distance"};
+
+/// One key of the file, for messages and checked access.
+class Field {
+ public:
+  Field(const fs::path& file, std::string_view key, const Json& value)
+      : file_(file), key_(key), value_(value) {}
+
+  template <typename... Args>
+  [[noreturn]] void failHere(fmt::format_string<Args...> format, Args&&... args) const {
+    fail(ExitCode::Input, "transfer function '{}': \"{}\" {}", file_.string(), key_,
+         fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  double number(const Json& value) const {
+    if (!value.is_number()) failHere("holds {} where a number should be", value.type_name());
+    const double number = value.get<double>();
+    if (!std::isfinite(float(number))) failHere("holds the number {}, which is too large", number);
+    return number;
+  }
+  double number() const { return number(value_); }
+
+  /// A list of exactly N numbers.
+  template <std::size_t N>
+  std::array<double, N> tuple(const Json& value) const {
+    if (!value.is_array() || value.size() != N) failHere("must have {} numbers in each of its lists", N);
+    std::array<double, N> numbers;
+    for (std::size_t i = 0; i < N; ++i) numbers[i] = number(value[i]);
+    return numbers;
+  }
+
+  /// A list of points [x, value, ...]: x in 0..1 and ascending, values in 0..1.
+  template <std::size_t N>
+  std::vector<std::array<double, N>> points() const {
+    if (!value_.is_array() || value_.empty()) failHere("must be a list of at least one point");
+    std::vector<std::array<double, N>> points;
+    for (const Json& value : value_) {
+      const std::array<double, N> point = tuple<N>(value);
+      for (const double x : point)
+        if (x < 0.0 || x > 1.0) failHere("holds {}, which is not in 0..1", x);
+      if (!points.empty() && !(point[0] > points.back()[0]))
+        failHere("must have ascending points, but {} follows {}", point[0], points.back()[0]);
+      points.push_back(point);
+    }
+    return points;
+  }
+
+  const Json& value() const { return value_; }
+
+ private:
+  const fs::path& file_;
+  std::string_view key_;
+  const Json& value_;
+};
+
+/// The parser's message without its error code and on one line.
+std::string parseReason(const Json::parse_error& error) {
+  std::string reason = error.what();
+  if (const std::size_t end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
+  std::replace_if(
+      reason.begin(), reason.end(), [](unsigned char c) { return c < 32; }, ' ');
+  return reason;
+}
+
+Json parseFile(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error))
+    fail(ExitCode::Input, "there is no transfer function '{}'; check the name", file.string());
+  if (!fs::is_regular_file(file, error))
+    fail(ExitCode::Input, "transfer function '{}' is not a file; name a .json file", file.string());
+  std::ifstream stream(file);
+  if (!stream)
+    fail(ExitCode::Input, "cannot open transfer function '{}'; check its permissions", file.string());
+  try {
+    return Json::parse(stream);
+  } catch (const Json::parse_error& e) {
+    fail(ExitCode::Input, "transfer function '{}' is not valid JSON: {}", file.string(), parseReason(e));
+  } catch (const Json::exception&) {
+    fail(ExitCode::Input, "transfer function '{}' holds a number that is too large", file.string());
+  }
+}
+
+void checkKeys(const fs::path& file, const Json& root) {
+  if (!root.is_object())
+    fail(ExitCode::Input, "transfer function '{}' is a JSON {}; it must be an object {{\"opacity\": ...}}",
+         file.string(), root.type_name());
+  for (const auto& [key, value] : root.items())
+    if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
+      fail(ExitCode::Input, "transfer function '{}' has an unknown key {}; the known ones are: {}",
+           file.string(), Json(key).dump(-1, ' ', true, Json::error_handler_t::replace),
+           fmt::join(kKeys, ", "));
+  if (!root.contains("opacity"))
+    fail(ExitCode::Input, "transfer function '{}' has no \"opacity\"; add a list of [x, alpha] points",
+         file.string());
+}
+
+/// lo and hi: the scalars that x = 0 and x = 1 stand for.
+std::array<double, 2> readRange(const fs::path& file, const Json& root, const Volume& volume) {
+  if (!root.contains("range")) return {volume.minimum, volume.maximum};
+  const Field field(file, "range", root["range"]);
+  const std::array<double, 2> range = field.tuple<2>(field.value());
+  if (!(float(range[0]) < float(range[1])))
+    field.failHere("must be [lo, hi] with lo below hi, but is [{}, {}]", range[0], range[1]);
+  return range;
+}
+
+double readUnitDistance(const fs::path& file, const Json& root, const Volume& volume) {
+  if (!root.contains("unit_distance")) return volume.voxelSize();
+  const Field field(file, "unit_distance", root["unit_distance"]);
+  const double distance = field.number();
+  if (!(float(distance) > 0.0f)) field.failHere("must be a length above 0, but is {}", distance);
+  return distance;
+}
+
+}  // namespace
+
+TransferFunction readTransferFunction(const std::filesystem::path& file, const Volume& volume) {
+  const Json root = parseFile(file);
+  checkKeys(file, root);
+  const std::array<double, 2> range = readRange(file, root, volume);
+  const auto toScalar = [&](double x) { return float(range[0] + x * (range[1] - range[0])); };
+
+  TransferFunction transfer;
+  transfer.unitDistance = readUnitDistance(file, root, volume);
+  for (const auto& [x, alpha] : Field(file, "opacity", root["opacity"]).points<2>())
+    transfer.opacity.push_back({toScalar(x), float(alpha)});
+  if (!root.contains("color")) {
+    transfer.color.push_back({toScalar(0.0), glm::vec3(1.0f)});
+    return transfer;
+  }
+  for (const auto& [x, r, g, b] : Field(file, "color", root["color"]).points<4>())
+    transfer.color.push_back({toScalar(x), glm::vec3(float(r), float(g), float(b))});
+  return transfer;
+}
+
+}  // namespace freevoxels

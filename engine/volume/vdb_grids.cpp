@@ -1,0 +1,261 @@
+#include "engine/volume/vdb_grids.h"
+
+#include <openvdb/io/Stream.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <new>
+#include <sstream>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+namespace fs = std::filesystem;
+using openvdb::GridBase;
+using openvdb::io::GridDescriptor;
+
+/// OpenVDB warns through std::cerr, or std::cout where it was built with a logger. This program's own
+/// messages go through stdio and pass.
+class SilenceOpenVdb {
+ public:
+  SilenceOpenVdb() : cerr_(std::cerr.rdbuf(sink_.rdbuf())), cout_(std::cout.rdbuf(sink_.rdbuf())) {}
+  ~SilenceOpenVdb() {
+    std::cerr.rdbuf(cerr_);
+    std::cout.rdbuf(cout_);
+  }
+  SilenceOpenVdb(const SilenceOpenVdb&) = delete;
+  SilenceOpenVdb& operator=(const SilenceOpenVdb&) = delete;
+
+ private:
+  std::ostringstream sink_;
+  std::streambuf* cerr_;
+  std::streambuf* cout_;
+};
+
+/// Delayed loading only adds work where every value is needed, and newer versions of OpenVDB have no such
+/// thing.
+template <typename File>
+void openWithoutDelay(File& file) {
+  if constexpr (requires { file.open(false); })
+    file.open(false);
+  else
+    file.open();
+}
+
+template <typename Stream>
+std::vector<GridBase::Ptr> readWholeStream(std::istream& input) {
+  if constexpr (std::is_constructible_v<Stream, std::istream&, bool>)
+    return *Stream(input, false).getGrids();
+  else
+    return *Stream(input).getGrids();
+}
+
+/// Text from a file as part of a sentence: one printable line.
+std::string printable(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
+  return text;
+}
+
+std::string valueTypeOf(const std::string& treeType, bool savedAsHalf) {
+  const std::size_t begin = treeType.find('_');
+  const std::size_t end = treeType.find('_', begin + 1);
+  if (!treeType.starts_with("Tree_") || end == std::string::npos) return printable(treeType);
+  const std::string value = treeType.substr(begin + 1, end - begin - 1);
+  if (value.starts_with("ptdata")) return "point data";
+  if (value.starts_with("ptidx")) return "point index";
+  if (value == "float" && savedAsHalf) return "half";
+  return printable(value);
+}
+
+bool isReal(const VdbFile::Entry& entry) {
+  return whyTypeUnusable(entry.treeType, entry.valueType).empty();
+}
+
+std::string listOf(const std::vector<VdbFile::Entry>& entries) {
+  std::string list;
+  for (const VdbFile::Entry& entry : entries)
+    list += fmt::format("{}'{}' ({})", list.empty() ? "" : ", ", entry.name, entry.valueType);
+  return list.empty() ? "none" : list;
+}
+
+/// Where a name is shared, OpenVDB's numbers tell the grids apart, or else their order in the file does.
+void nameEntries(std::vector<VdbFile::Entry>& entries) {
+  std::map<std::string, int> uses, shown;
+  for (VdbFile::Entry& entry : entries) {
+    entry.name = printable(entry.key);
+    ++uses[entry.name];
+  }
+  for (VdbFile::Entry& entry : entries)
+    if (const std::string name = entry.name; uses[name] > 1) entry.name += fmt::format("[{}]", shown[name]++);
+}
+
+}  // namespace
+
+void initialiseOpenVdb() {
+  const SilenceOpenVdb silence;
+  openvdb::initialize();
+}
+
+VdbFile::VdbFile(const fs::path& path) : path_(path), file_(path.string()) {
+  const VdbHeader header = readVdbHeader(path);
+  initialiseOpenVdb();
+  if (header.hasOffsets) {
+    guarded("the header", [&] {
+      openWithoutDelay(file_);
+      return GridBase::Ptr();
+    });
+    listGrids(header);
+  } else {
+    readStreamedGrids();
+  }
+}
+
+void VdbFile::listGrids(const VdbHeader& header) {
+  for (const VdbHeader::Grid& grid : header.grids)
+    entries_.push_back({.baseName = printable(GridDescriptor::stripSuffix(grid.uniqueName)),
+                        .valueType = valueTypeOf(grid.type, grid.savedAsHalf),
+                        .treeType = grid.type,
+                        .key = GridDescriptor::nameAsString(grid.uniqueName)});
+  nameEntries(entries_);
+  std::map<std::string, int> uses;
+  for (const Entry& entry : entries_)
+    if (++uses[entry.key] > 1)
+      fail(ExitCode::Input, "'{}' has two grids under the one key '{}'; save it again with OpenVDB",
+           path_.string(), printable(entry.key));
+}
+
+void VdbFile::readStreamedGrids() {
+  guarded("its grids", [&] {
+    std::ifstream input;
+    input.exceptions(std::ios::failbit | std::ios::badbit);  // else OpenVDB reads on past the end
+    input.open(path_, std::ios::binary);
+    streamed_ = readWholeStream<openvdb::io::Stream>(input);
+    return GridBase::Ptr();
+  });
+  for (const GridBase::Ptr& grid : streamed_)
+    entries_.push_back({.baseName = printable(grid->getName()),
+                        .valueType = valueTypeOf(grid->type(), grid->saveFloatAsHalf()),
+                        .treeType = grid->type(),
+                        .key = grid->getName()});
+  nameEntries(entries_);
+}
+
+GridBase::Ptr VdbFile::guarded(const std::string& what, const std::function<GridBase::Ptr()>& read) const {
+  try {
+    const SilenceOpenVdb silence;
+    return read();
+  } catch (const std::bad_alloc&) {
+    fail(ExitCode::OutOfMemory,
+         "not enough memory to read {} of '{}'; free some, or crop or resample the volume", what,
+         path_.string());
+  } catch (const std::ios_base::failure&) {
+    fail(ExitCode::Input, "cannot read {} of '{}': the file ends too early; copy or download it again", what,
+         path_.string());
+  } catch (const std::exception& e) {
+    fail(ExitCode::Input, "cannot read {} of '{}': {}; the file may be damaged", what, path_.string(),
+         printable(e.what()));
+  }
+}
+
+const VdbFile::Entry& VdbFile::choose(const std::string& name) const {
+  if (entries_.empty()) fail(ExitCode::Input, "'{}' holds no grids; choose another file", path_.string());
+  if (name.empty()) return chooseByDefault();
+  std::vector<const Entry*> sameName;
+  for (const Entry& entry : entries_) {
+    if (entry.name == name) return entry;
+    if (entry.baseName == name) sameName.push_back(&entry);
+  }
+  if (sameName.empty())
+    fail(ExitCode::Input, "'{}' has no grid '{}'; choose one of: {}", path_.string(), printable(name),
+         listOf(entries_));
+  return firstOf(sameName);
+}
+
+const VdbFile::Entry& VdbFile::chooseByDefault() const {
+  std::vector<const Entry*> densities, reals;
+  for (const Entry& entry : entries_) {
+    if (!isReal(entry)) continue;
+    reals.push_back(&entry);
+    if (entry.baseName == "density") densities.push_back(&entry);
+  }
+  if (!densities.empty()) return firstOf(densities);
+  if (reals.size() == 1) return *reals.front();
+  if (reals.empty() && entries_.size() == 1) return entries_.front();  // its refusal says why
+  if (reals.empty())
+    fail(ExitCode::Input, "'{}' has no float grid, only: {}; choose another file", path_.string(),
+         listOf(entries_));
+  fail(ExitCode::Input,
+       "'{}' has several float grids and none is named 'density'; choose one with --grid: {}", path_.string(),
+       listOf(entries_));
+}
+
+const VdbFile::Entry& VdbFile::firstOf(const std::vector<const Entry*>& sameName) const {
+  if (sameName.size() > 1) {
+    std::string others;
+    for (const Entry* entry : sameName)
+      if (entry != sameName.front()) others += fmt::format("{}'{}'", others.empty() ? "" : ", ", entry->name);
+    spdlog::warn("'{}' has {} grids named '{}': using '{}'; --grid chooses {}", path_.string(),
+                 sameName.size(), sameName.front()->baseName, sameName.front()->name, others);
+  }
+  return *sameName.front();
+}
+
+GridBase::Ptr VdbFile::readMetadata(const Entry& entry) {
+  if (!streamed_.empty()) return streamed_[std::size_t(&entry - entries_.data())];
+  return guarded(fmt::format("grid '{}'", entry.name), [&] { return file_.readGridMetadata(entry.key); });
+}
+
+GridBase::Ptr VdbFile::read(const Entry& entry) {
+  if (!streamed_.empty()) return streamed_[std::size_t(&entry - entries_.data())];
+  return guarded(fmt::format("grid '{}'", entry.name), [&] { return file_.readGrid(entry.key); });
+}
+
+std::string whyTypeUnusable(const std::string& treeType, const std::string& valueType) {
+  if (valueType == "point data" || valueType == "point index")
+    return "it holds points, not a density field; rasterise the points to a density grid first";
+  if (!GridBase::isRegistered(treeType))
+    return fmt::format("this OpenVDB does not know grids of type '{}'; convert it to a float grid",
+                       printable(treeType));
+  if (valueType == "float" || valueType == "half" || valueType == "double") return {};
+  if (valueType.starts_with("vec"))
+    return fmt::format("it holds vectors ({}), not densities; choose a float grid", valueType);
+  return fmt::format("it holds values of type {}, not densities; choose a float grid", valueType);
+}
+
+std::string whyTransformUnusable(const openvdb::math::Transform& transform) {
+  if (!transform.isLinear())
+    return "its transform is a frustum; resample it to a box with an affine transform";
+  const openvdb::Mat4d matrix = transform.baseMap()->getAffineMap()->getMat4();
+  double lengths = 1.0;
+  for (int row = 0; row < 3; ++row)
+    lengths *= openvdb::Vec3d(matrix(row, 0), matrix(row, 1), matrix(row, 2)).length();
+  constexpr double kFlattest = 1e-9;  // volume of a voxel relative to the box of its edge lengths
+  const double volume = std::abs(matrix.getMat3().det());
+  const bool finite = std::isfinite(lengths) && std::isfinite(volume) && matrix.getTranslation().isFinite();
+  if (!finite || !(volume > kFlattest * lengths))
+    return "its transform is singular or not finite; give the grid a transform with voxels of some volume";
+  return {};
+}
+
+openvdb::FloatGrid::ConstPtr asFloatGrid(const GridBase::ConstPtr& grid) {
+  using openvdb::FloatGrid;
+  if (const auto floats = openvdb::gridConstPtrCast<FloatGrid>(grid)) return floats;
+  if (const auto doubles = openvdb::gridConstPtrCast<openvdb::DoubleGrid>(grid))
+    return std::make_shared<const FloatGrid>(*doubles);
+#if OPENVDB_LIBRARY_MAJOR_VERSION_NUMBER >= 13  // the first with half grids in memory
+  if (const auto halves = openvdb::gridConstPtrCast<openvdb::HalfGrid>(grid))
+    return std::make_shared<const FloatGrid>(*halves);
+#endif
+  return nullptr;
+}
+
+}  // namespace freevoxels

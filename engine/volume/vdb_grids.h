@@ -1,0 +1,67 @@
+#pragma once
+// Internal to the vdb_*.cpp files, as it includes OpenVDB: an open file, its grids by name, and which are
+// usable.
+
+#include <openvdb/io/File.h>
+#include <openvdb/openvdb.h>
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "engine/volume/vdb_header.h"
+
+namespace freevoxels {
+
+/// Registers OpenVDB's types. Must come before anything else of OpenVDB; costs nothing the second time.
+void initialiseOpenVdb();
+
+class VdbFile {
+ public:
+  struct Entry {
+    std::string name;       ///< for people, unique, one printable line: "density", "density[1]"
+    std::string baseName;   ///< without the [k]
+    std::string valueType;  ///< GridInfo::valueType
+    std::string treeType;   ///< OpenVDB's name of the type
+    std::string key;        ///< OpenVDB's name of the grid
+  };
+
+  /// Errors: readVdbHeader, and ExitCode::Input for whatever OpenVDB does not accept.
+  explicit VdbFile(const std::filesystem::path& path);
+
+  const std::filesystem::path& path() const { return path_; }
+  const std::vector<Entry>& entries() const { return entries_; }
+
+  /// `name` as in readVdb.
+  const Entry& choose(const std::string& name) const;
+  /// Everything of the grid but its tree.
+  openvdb::GridBase::Ptr readMetadata(const Entry& entry);
+  openvdb::GridBase::Ptr read(const Entry& entry);
+
+ private:
+  void listGrids(const VdbHeader& header);
+  void readStreamedGrids();
+  /// Runs `read` with OpenVDB's own messages silenced and its exceptions turned into one sentence.
+  openvdb::GridBase::Ptr guarded(const std::string& what,
+                                 const std::function<openvdb::GridBase::Ptr()>& read) const;
+  const Entry& chooseByDefault() const;
+  const Entry& firstOf(const std::vector<const Entry*>& sameName) const;
+
+  std::filesystem::path path_;
+  openvdb::io::File file_;
+  std::vector<Entry> entries_;
+  std::vector<openvdb::GridBase::Ptr>
+      streamed_;  ///< parallel to entries_, for a file that has to be read as a whole
+};
+
+/// Empty, or why a grid of this type cannot be rendered, in one clause.
+std::string whyTypeUnusable(const std::string& treeType, const std::string& valueType);
+/// Empty, or why a grid with this transform cannot be rendered, in one clause.
+std::string whyTransformUnusable(const openvdb::math::Transform& transform);
+inline constexpr const char* kEmptyGridClause = "it is empty: no voxel is active";
+
+/// The grid itself, or a copy in float of a half or double grid; null for any other type.
+openvdb::FloatGrid::ConstPtr asFloatGrid(const openvdb::GridBase::ConstPtr& grid);
+
+}  // namespace freevoxels

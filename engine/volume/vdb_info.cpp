@@ -1,0 +1,109 @@
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/volume/vdb.h"
+#include "engine/volume/vdb_grids.h"
+
+namespace freevoxels {
+
+namespace {
+
+using openvdb::FloatTree;
+
+struct ValueRange {
+  float minimum = std::numeric_limits<float>::infinity();
+  float maximum = -std::numeric_limits<float>::infinity();
+
+  void include(float value) {
+    if (!std::isfinite(value)) return;
+    minimum = std::min(minimum, value);
+    maximum = std::max(maximum, value);
+  }
+};
+
+ValueRange join(const ValueRange& a, const ValueRange& b) {
+  return {std::min(a.minimum, b.minimum), std::max(a.maximum, b.maximum)};
+}
+
+/// Of the finite active values.
+ValueRange rangeOf(const FloatTree& tree) {
+  std::vector<const FloatTree::LeafNodeType*> leaves;
+  tree.getNodes(leaves);
+  using Range = tbb::blocked_range<std::size_t>;
+  ValueRange values = tbb::parallel_reduce(
+      Range(0, leaves.size()), ValueRange{},
+      [&](const Range& range, ValueRange partial) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+          for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel) partial.include(*voxel);
+        return partial;
+      },
+      join);
+  auto tile = tree.cbeginValueOn();
+  tile.setMaxDepth(FloatTree::ValueOnCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) values.include(*tile);
+  return values;
+}
+
+std::string gridClassName(openvdb::GridClass gridClass) {
+  switch (gridClass) {
+    case openvdb::GRID_LEVEL_SET:
+      return "level set";
+    case openvdb::GRID_FOG_VOLUME:
+      return "fog volume";
+    case openvdb::GRID_STAGGERED:
+      return "staggered";
+    case openvdb::GRID_UNKNOWN:
+      break;
+  }
+  return "unknown";
+}
+
+void describeVoxels(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
+  info.memoryBytes = grid->memUsage();
+  info.activeVoxels = grid->activeVoxelCount();
+  if (info.activeVoxels == 0) return;
+  const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
+  info.boundsMinimum = {box.min().x(), box.min().y(), box.min().z()};
+  info.boundsMaximum = {box.max().x(), box.max().y(), box.max().z()};
+  info.dimensions = {box.dim().x(), box.dim().y(), box.dim().z()};
+  const openvdb::FloatGrid::ConstPtr floats = asFloatGrid(grid);
+  if (!floats) return;
+  const ValueRange values = rangeOf(floats->tree());
+  info.hasRange = values.minimum <= values.maximum;
+  if (!info.hasRange) return;
+  info.minimum = values.minimum;
+  info.maximum = values.maximum;
+}
+
+GridInfo describe(VdbFile& file, const VdbFile::Entry& entry) {
+  GridInfo info;
+  info.name = entry.name;
+  info.valueType = entry.valueType;
+  info.gridClass = gridClassName(openvdb::GRID_UNKNOWN);
+  info.unusable = whyTypeUnusable(entry.treeType, entry.valueType);
+  if (!openvdb::GridBase::isRegistered(entry.treeType)) return info;
+
+  const openvdb::GridBase::ConstPtr grid = file.read(entry);
+  info.gridClass = gridClassName(grid->getGridClass());
+  const openvdb::Vec3d size = grid->voxelSize();
+  info.voxelSize = {size.x(), size.y(), size.z()};
+  if (info.unusable.empty()) info.unusable = whyTransformUnusable(grid->transform());
+  describeVoxels(grid, info);
+  if (info.unusable.empty() && info.activeVoxels == 0) info.unusable = kEmptyGridClause;
+  return info;
+}
+
+}  // namespace
+
+std::vector<GridInfo> describeVdb(const std::filesystem::path& path) {
+  VdbFile file(path);
+  std::vector<GridInfo> infos;
+  for (const VdbFile::Entry& entry : file.entries()) infos.push_back(describe(file, entry));
+  return infos;
+}
+
+}  // namespace freevoxels

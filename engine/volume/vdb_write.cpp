@@ -1,0 +1,81 @@
+#include <algorithm>
+#include <memory>
+#include <stdexcept>
+
+#include "engine/core/atomic_file.h"
+#include "engine/core/error.h"
+#include "engine/volume/vdb.h"
+#include "engine/volume/vdb_grids.h"
+
+namespace freevoxels {
+
+namespace {
+
+using openvdb::Coord;
+using openvdb::FloatGrid;
+using Leaf = openvdb::FloatTree::LeafNodeType;
+
+/// The leaf at `corner` (a multiple of its size, in the file's index space), or null where no voxel of it is
+/// active.
+std::unique_ptr<Leaf> makeLeaf(const Volume& volume, const Coord& corner) {
+  const glm::ivec3 first = glm::ivec3(corner.x(), corner.y(), corner.z()) - volume.indexOrigin;
+  const glm::ivec3 begin = glm::max(first, glm::ivec3(0));
+  const glm::ivec3 end = glm::min(first + int(Leaf::DIM), volume.dimensions);
+  std::unique_ptr<Leaf> leaf;
+  for (int z = begin.z; z < end.z; ++z)
+    for (int y = begin.y; y < end.y; ++y)
+      for (int x = begin.x; x < end.x; ++x) {
+        const float value = volume.values[volume.at(x, y, z)];
+        if (value == kInactiveVoxel) continue;
+        if (!leaf) leaf = std::make_unique<Leaf>(corner, 0.0f);
+        leaf->setValueOn(corner + Coord(x - first.x, y - first.y, z - first.z), value);
+      }
+  return leaf;
+}
+
+void fillTree(openvdb::FloatTree& tree, const Volume& volume) {
+  const int mask = ~(int(Leaf::DIM) - 1);
+  const glm::ivec3 origin = volume.indexOrigin;
+  const glm::ivec3 end = origin + volume.dimensions;
+  for (int z = origin.z & mask; z < end.z; z += int(Leaf::DIM))
+    for (int y = origin.y & mask; y < end.y; y += int(Leaf::DIM))
+      for (int x = origin.x & mask; x < end.x; x += int(Leaf::DIM))
+        if (auto leaf = makeLeaf(volume, Coord(x, y, z))) tree.addLeaf(leaf.release());
+  tree.prune();  // uniform leaves become tiles
+}
+
+openvdb::math::Transform::Ptr transformOf(const Volume& volume) {
+  glm::dmat4 fileIndexToWorld = volume.indexToWorld;
+  fileIndexToWorld[3] = volume.indexToWorld * glm::dvec4(-glm::dvec3(volume.indexOrigin), 1.0);
+  openvdb::Mat4d matrix;  // OpenVDB's rows are glm's columns
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < 4; ++j) matrix(i, j) = fileIndexToWorld[i][j];
+  return openvdb::math::Transform::createLinearTransform(matrix);
+}
+
+/// OpenVDB does not notice a full disk: what it has written must be long enough for its own header.
+void checkComplete(const std::filesystem::path& file) {
+  try {
+    readVdbHeader(file);
+  } catch (const Error&) {
+    throw std::runtime_error("not all of it could be written");
+  }
+}
+
+}  // namespace
+
+void writeVdb(const std::filesystem::path& file, const Volume& volume, const std::string& gridName) {
+  initialiseOpenVdb();
+  const FloatGrid::Ptr grid = FloatGrid::create(0.0f);
+  grid->setName(gridName);
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  grid->setCreator("FreeVoxels");
+  grid->setTransform(transformOf(volume));
+  fillTree(grid->tree(), volume);
+  writeAtomically(file, [&](const std::filesystem::path& temporary) {
+    openvdb::io::File(temporary.string()).write(openvdb::GridCPtrVec{grid});
+    checkComplete(temporary);
+  });
+}
+
+}  // namespace freevoxels
