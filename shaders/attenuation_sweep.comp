@@ -69,11 +69,11 @@ void main() {
   const int quads = push.rowPitch / 4;
   const int bundles = push.rowPitch / kVoxels;
   const int thread = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kSweepThreads);
-  int side = thread / bundles;
-  if (side >= push.lineCount) return;
+  int side = push.firstLine + thread / bundles;
+  if (side >= push.lastLine) return;
 
   [[unroll]] for (int line = 0; line < kVoxels + kExtraLines; ++line) depths[line] = 0.0;
-  int window = (thread - side * bundles) * kWords;  // first quad of voxels that this thread writes
+  int window = thread % bundles * kWords;  // first quad of voxels that this thread writes
 
   for (int plane = 0; plane < push.marchCount; plane += kPhases) {
     [[unroll]] for (int phase = 0; phase < kPhases; ++phase) {

@@ -14,7 +14,7 @@ layout(scalar, binding = 1) writeonly buffer Plane { uint words[]; };
 
 void main() {
   const int row = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kSweepThreads);
-  if (row >= push.lineCount) return;
+  if (row >= push.lastLine) return;
   const int quads = push.rowPitch / 4;
   float depth = 0.0;
   for (int i = 0; i < quads; ++i) {

@@ -65,6 +65,8 @@ struct ClassifyPush {
 struct SweepPush {
   int rowPitch;
   int lineCount;     // extent of the side axis: the axis that is neither x nor the march axis
+  int firstLine;     // this dispatch sweeps lines firstLine to lastLine - 1
+  int lastLine;
   int sideStep;      // step along the side axis, wraps around
   int sideStride;
   int marchCount;    // extent of the march axis

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 
 #include "embedded/attenuation_sweep.h"
 #include "embedded/attenuation_sweep_x.h"
@@ -16,6 +17,10 @@ static_assert(shader::kTableDirections == kDirectionCount);
 static_assert(shader::kMaximumDepth == float(kMaximumCodedDepth));
 static_assert(shader::kCodeDepth8 == int(AttenuationCode::Depth8));
 static_assert(shader::kCodeLinear8 == int(AttenuationCode::Linear8));
+
+/// A CPU device sweeps the three directions that share their y and z in blocks of lines of this much extinction, so
+/// that two of the three find it in the cache.
+constexpr std::uint64_t kCpuBlockBytes = std::uint64_t(4) << 20;
 
 /// The sweep for `direction` marches the other way: from where its lines leave the volume, against the direction.
 shader::SweepPush sweepPush(const DeviceVolume& volume, glm::ivec3 direction, bool pathLengthCorrection) {
@@ -41,6 +46,7 @@ shader::SweepPush sweepPush(const DeviceVolume& volume, glm::ivec3 direction, bo
   } else {
     push.lineCount = extent.y * extent.z;
   }
+  push.lastLine = push.lineCount;
   return push;
 }
 
@@ -68,7 +74,8 @@ AttenuationTable makeTable(const Device& device, const GridLayout& layout, const
 }
 
 AttenuationSweep::AttenuationSweep(const Device& device, AttenuationCode code)
-    : voxelsPerThread_(device.isCpu() ? 16 : 4) {
+    : voxelsPerThread_(device.isCpu() ? 16 : 4),
+      blockBytes_(device.isCpu() ? kCpuBlockBytes : std::numeric_limits<std::uint64_t>::max()) {
   const auto codeConstant = std::uint32_t(code);
   for (int step = -1; step <= 1; ++step)
     bundles_[std::size_t(step + 1)] =
@@ -80,18 +87,40 @@ AttenuationSweep::AttenuationSweep(const Device& device, AttenuationCode code)
 }
 
 void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const {
-  for (int i = 0; i < kDirectionCount; ++i) {
-    const glm::ivec3 direction = directionAt(i);
-    const shader::SweepPush push = sweepPush(volume, direction, table.settings.pathLengthCorrection);
-    const std::array<Binding, 2> bindings{&volume.extinction, &table.planes[std::size_t(i)]};
-    commands.beginPass("attenuation sweeps");
-    if (direction.y == 0 && direction.z == 0)
-      commands.dispatchLinear(rows_[direction.x > 0 ? 0 : 1], bindings, push, std::uint64_t(push.lineCount));
-    else
-      commands.dispatchLinear(bundles_[std::size_t(1 - direction.x)], bindings, push,
-                              std::uint64_t(push.lineCount) * std::uint64_t(push.rowPitch / voxelsPerThread_));
-  }
+  commands.beginPass("attenuation sweeps");
+  for (int z = -1; z <= 1; ++z)
+    for (int y = -1; y <= 1; ++y)
+      if (y == 0 && z == 0)
+        recordRows(commands, volume, table);
+      else
+        recordBundles(commands, volume, table, {y, z});
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+}
+
+void AttenuationSweep::recordRows(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const {
+  for (int x : {-1, 1}) {
+    const shader::SweepPush push = sweepPush(volume, {x, 0, 0}, table.settings.pathLengthCorrection);
+    const std::array<Binding, 2> bindings{&volume.extinction, &table.planes[std::size_t(directionIndex(x, 0, 0))]};
+    commands.dispatchLinear(rows_[x > 0 ? 0 : 1], bindings, push, std::uint64_t(push.lineCount));
+  }
+}
+
+void AttenuationSweep::recordBundles(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table,
+                                     glm::ivec2 yz) const {
+  const shader::SweepPush any = sweepPush(volume, {0, yz}, table.settings.pathLengthCorrection);
+  const int bundles = any.rowPitch / voxelsPerThread_;
+  const std::uint64_t lineBytes = std::uint64_t(any.rowPitch) * std::uint64_t(any.marchCount) * sizeof(float);
+  const int block = int(std::clamp<std::uint64_t>(blockBytes_ / lineBytes, 1, std::uint64_t(any.lineCount)));
+  for (int first = 0; first < any.lineCount; first += block)
+    for (int x = -1; x <= 1; ++x) {
+      shader::SweepPush push = sweepPush(volume, {x, yz}, table.settings.pathLengthCorrection);
+      push.firstLine = first;
+      push.lastLine = std::min(first + block, push.lineCount);
+      const std::array<Binding, 2> bindings{&volume.extinction,
+                                            &table.planes[std::size_t(directionIndex(x, yz.x, yz.y))]};
+      commands.dispatchLinear(bundles_[std::size_t(1 - x)], bindings, push,
+                              std::uint64_t(push.lastLine - first) * std::uint64_t(bundles));
+    }
 }
 
 std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const GridLayout& layout,

@@ -20,14 +20,20 @@ struct AttenuationTable {
 
 AttenuationTable makeTable(const Device& device, const GridLayout& layout, const TableSettings& settings);
 
-/// COMPUTE attenuation_sweep.comp and attenuation_sweep_x.comp: one dispatch a direction, none waits for another.
+/// COMPUTE attenuation_sweep.comp and attenuation_sweep_x.comp: a dispatch a direction (more, over blocks of lines, on a CPU
+/// device), none of which waits for another.
 class AttenuationSweep {
  public:
   AttenuationSweep(const Device& device, AttenuationCode code);
   void record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const;
 
  private:
+  void recordRows(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const;
+  void recordBundles(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table,
+                     glm::ivec2 yz) const;
+
   int voxelsPerThread_;
+  std::uint64_t blockBytes_;
   std::array<Pipeline, 3> bundles_;  ///< by the march's step in x, -1, 0, 1
   std::array<Pipeline, 2> rows_;     ///< directions +x and -x
 };
