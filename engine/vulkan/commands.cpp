@@ -114,7 +114,9 @@ void Commands::copy(const RenderTarget& from, const Buffer& to) {
   const VkBufferImageCopy region{
       .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
       .imageExtent = {std::uint32_t(from.size().x), std::uint32_t(from.size().y), 1}};
-  vkCmdCopyImageToBuffer(buffer_, from.handle(), VK_IMAGE_LAYOUT_GENERAL, to.handle(), 1, &region);
+  transition(from, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+             VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+  vkCmdCopyImageToBuffer(buffer_, from.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.handle(), 1, &region);
   barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_HOST_BIT);
 }
 

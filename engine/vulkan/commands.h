@@ -50,6 +50,7 @@ class Commands {
   void bind(const Pipeline& pipeline, std::span<const Binding> bindings, const void* push, std::size_t pushBytes);
 
   void copy(const Buffer& from, const Buffer& to, VkBufferCopy region);
+  /// From layout GENERAL; leaves the target in TRANSFER_SRC_OPTIMAL.
   void copy(const RenderTarget& from, const Buffer& to);
 
   /// All writes of the `from` stages become visible to the `to` stages.
