@@ -1,0 +1,117 @@
+#include "apps/bench/bench_stages.h"
+
+#include <chrono>
+
+#include "engine/renderer.h"
+#include "engine/splatting/splat_pass.h"
+#include "engine/volume/procedural.h"
+
+namespace freevoxels::bench {
+
+namespace {
+
+/// Voxel (0, 0, 0) at the origin, cubic voxels of world size 1.
+Volume unitVoxels(glm::ivec3 dimensions, float (*valueAt)(int, int, int)) {
+  return makeVolume(dimensions, glm::dmat4(1.0), valueAt);
+}
+
+double total(const Commands& commands) {
+  double sum = 0.0;
+  for (const StageTime& time : commands.times()) sum += time.milliseconds;
+  return sum;
+}
+
+double passTime(const std::vector<StageTime>& times, std::string_view name) {
+  double sum = 0.0;
+  for (const StageTime& time : times)
+    if (time.name == name) sum += time.milliseconds;
+  return sum;
+}
+
+DeviceVolume classified(const Device& device, const Volume& volume) {
+  const Classification classification{.densityScale = 0.01};
+  DeviceVolume result = uploadVolume(device, volume, classification);
+  const ClassifyPass classify(device);
+  Commands commands(device);
+  classify.record(commands, result, classification);
+  commands.submitAndWait();
+  return result;
+}
+
+}  // namespace
+
+Result sweeps(const Device& device, int resolution, int runs) {
+  const Volume volume =
+      unitVoxels(glm::ivec3(resolution), [](int x, int y, int z) { return float((x + 2 * y + 3 * z) % 7); });
+  const DeviceVolume onDevice = classified(device, volume);
+  const AttenuationTable table = makeTable(device, onDevice.layout, {});
+  const AttenuationSweep sweep(device, table.settings.code);
+  const double time = least(runs, [&] {
+    Commands commands(device);
+    sweep.record(commands, onDevice, table);
+    commands.submitAndWait();
+    return total(commands);
+  });
+  return {.name = fmt::format("26 sweeps, {0}x{0}x{0}", resolution),
+          .milliseconds = time,
+          .copyMilliseconds = copyTime(27 * volume.voxelCount()),
+          .perSecond = 26.0 * double(volume.voxelCount()) / time * 1e3};
+}
+
+Result compaction(const Device& device, int resolution, int runs) {
+  const Volume volume = unitVoxels(glm::ivec3(resolution), [](int x, int y, int z) {
+    return ((x / 8) * 7 + (y / 8) * 13 + (z / 8) * 29) % 32 == 0 ? 1.0f : 0.0f;
+  });
+  const DeviceVolume onDevice = classified(device, volume);
+  const VisibleVoxels visible = makeVisibleVoxels(device, onDevice);
+  const CompactionPass pass(device);
+  const double time = least(runs, [&] {
+    Commands commands(device);
+    pass.record(commands, onDevice, visible);
+    commands.submitAndWait();
+    return total(commands);
+  });
+  return {.name = fmt::format("visible voxels, {} of {}^3", downloadVisibleCount(device, visible), resolution),
+          .milliseconds = time,
+          .copyMilliseconds = copyTime(4 * volume.voxelCount()),
+          .perSecond = double(volume.voxelCount()) / time * 1e3};
+}
+
+Result splats(const Device& device, double pixels, int runs) {
+  const glm::ivec3 dimensions(316, 316, 5);
+  const Volume volume = unitVoxels(dimensions, [](int, int, int) { return 1.0f; });
+  Renderer renderer(device, volume, {.densityScale = 0.1}, {});
+  const FrameSettings settings{.size = {1024, 1024}};
+  Camera camera;
+  camera.lookAt = 0.5 * glm::dvec3(dimensions - 1);
+  camera.position = camera.lookAt + glm::dvec3(0.0, 0.0, 100.0);
+  camera.orthographic = true;
+  const double pixelsPerVoxel = pixels / (2.0 * double(shader::kSplatRadius));
+  camera.orthographicHeight = double(settings.size.y) / pixelsPerVoxel;
+  const double time = least(runs, [&] {
+    renderer.render(camera, settings);
+    return passTime(renderer.timings(), "splat draw");
+  });
+  return {.name = fmt::format("splat draw, {0} splats of {1:g}x{1:g} pixels", volume.voxelCount(), pixels),
+          .milliseconds = time,
+          .copyMilliseconds = 0.0,
+          .perSecond = double(volume.voxelCount()) / time * 1e3};
+}
+
+Result wholeRender(const Device& device, const InputOptions& input, int runs) {
+  const Volume volume = input.open(maximumVoxels(device));
+  const Classification classification{.densityScale = automaticDensityScale(volume)};
+  const FrameSettings settings{.size = {1024, 1024}};
+  const double time = least(runs, [&] {
+    const auto start = std::chrono::steady_clock::now();
+    Renderer renderer(device, volume, classification, {});
+    renderer.render(framingCamera(volume, kDefaultAzimuth, kDefaultElevation, 1.0, {}), settings);
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  });
+  return {.name = fmt::format("render {}, 1024x1024", volume.source),
+          .milliseconds = time,
+          .copyMilliseconds = copyTime(27 * volume.voxelCount()),
+          .perSecond = 0.0};
+}
+
+}  // namespace freevoxels::bench

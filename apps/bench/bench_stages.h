@@ -1,0 +1,22 @@
+#pragma once
+// The stages that freevoxels-bench measures, each by the device's own clock.
+
+#include "apps/bench/measure.h"
+#include "apps/freevoxels/input_options.h"
+#include "engine/vulkan/device.h"
+
+namespace freevoxels::bench {
+
+/// The 26 sweeps over an N³ volume, beside a copy of 27 N³ bytes.
+Result sweeps(const Device& device, int resolution, int runs);
+
+/// The list of visible voxels of an N³ volume of which a thirtieth is visible, beside a copy of 4 N³ bytes.
+Result compaction(const Device& device, int resolution, int runs);
+
+/// Half a million splats of `pixels` x `pixels` into 1024 x 1024 pixels; splats a second.
+Result splats(const Device& device, double pixels, int runs);
+
+/// Everything from a volume in memory to the picture in memory, at 1024 x 1024 pixels.
+Result wholeRender(const Device& device, const InputOptions& input, int runs);
+
+}  // namespace freevoxels::bench

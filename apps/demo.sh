@@ -1,0 +1,27 @@
+#!/usr/bin/env bash
+# From nothing to a picture: sets up, builds, and draws a volume into out/.
+#   bash apps/demo.sh                                   a procedural cloud, written to out/cloud.vdb first
+#   bash apps/demo.sh FILE.vdb [RENDER OPTIONS...]      your volume; options as in `freevoxels render --help`
+set -euo pipefail
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+freevoxels="$root/build/bin/freevoxels"
+out="$root/out"
+
+bash "$root/apps/setup.sh" freevoxels
+mkdir -p "$out"
+
+if [ $# -eq 0 ]; then
+  echo "demo: making a cloud"
+  "$freevoxels" generate cloud "$out/cloud.vdb" --resolution 192
+  input="$out/cloud.vdb"
+  set -- --transfer-function "$root/apps/transfer_functions/cloud.json" --camera-position 0.87,0.6,1.2 --look-at 0.01,-0.005,0
+else
+  input="$1"
+  shift
+fi
+
+name="$(basename "${input#procedural:}")"
+name="${name%.*}"
+echo "demo: drawing $input"
+"$freevoxels" render "$input" "$out/$name.exr" "$out/$name.png" --background 0.004,0.006,0.012 "$@"
+echo "demo: the pictures are the files above"

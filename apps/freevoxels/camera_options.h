@@ -1,0 +1,32 @@
+#pragma once
+// The camera and the size of its image.
+
+#include <optional>
+
+#include "apps/freevoxels/option_values.h"
+#include "engine/splatting/camera.h"
+
+namespace freevoxels {
+
+/// Pixels along an edge of an image.
+inline constexpr int kMaximumImageEdge = 16384;
+
+struct CameraOptions {
+  std::optional<glm::dvec3> position, lookAt, up;
+  std::optional<double> verticalFov, orthographicHeight;
+  std::optional<glm::dvec2> orbit;
+  glm::ivec2 size{1024, 1024};
+
+  void add(CLI::App& app);
+  /// Refuses what is wrong with any volume, before one is read: ExitCode::Usage.
+  void check() const;
+  /// What is not given frames the volume: the position orbits the look-at point, which is the centre of the
+  /// box.
+  Camera resolve(const Volume& volume) const;
+  void describe(OptionList& options, const Camera& resolved) const;
+
+ private:
+  Camera given() const;
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,44 @@
+#include "apps/freevoxels/classification_options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace freevoxels {
+
+void ClassificationOptions::add(CLI::App& app) {
+  CLI::Option* scale =
+      addNumber(
+          app, "--density-scale", "S", densityScale,
+          "Extinction per world unit at density 1 [so that the volume's mean optical depth suits a picture]",
+          {.minimum = 0.0})
+          ->group("Classification");
+  CLI::Option* color = addTriple(app, "--albedo", "R,G,B", albedo, "Colour, linear [0.9,0.9,0.9]", {0.0, 1.0})
+                           ->group("Classification");
+  addText(app, "--transfer-function", "FILE.json", transferFunction,
+          "Colour and opacity over the scalar instead")
+      ->excludes(scale)
+      ->excludes(color)
+      ->group("Classification");
+}
+
+Classification ClassificationOptions::resolve(const Volume& volume) const {
+  Classification classification;
+  if (transferFunction) {
+    classification.transferFunction = readTransferFunction(*transferFunction, volume);
+    return classification;
+  }
+  classification.densityScale = densityScale ? *densityScale : automaticDensityScale(volume);
+  if (albedo) classification.albedo = glm::vec3(*albedo);
+  return classification;
+}
+
+void ClassificationOptions::describe(OptionList& options, const Classification& resolved) const {
+  if (transferFunction) {
+    options.emplace_back("--transfer-function", *transferFunction);
+    return;
+  }
+  options.emplace_back("--density-scale", numberText(resolved.densityScale));
+  options.emplace_back("--albedo",
+                       fmt::format("{},{},{}", resolved.albedo.x, resolved.albedo.y, resolved.albedo.z));
+}
+
+}  // namespace freevoxels

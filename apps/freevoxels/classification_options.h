@@ -1,0 +1,23 @@
+#pragma once
+// Scalar -> colour and extinction: physical, or a transfer function.
+
+#include <optional>
+#include <string>
+
+#include "apps/freevoxels/option_values.h"
+#include "engine/volume/classification.h"
+
+namespace freevoxels {
+
+struct ClassificationOptions {
+  std::optional<double> densityScale;
+  std::optional<glm::dvec3> albedo;
+  std::optional<std::string> transferFunction;
+
+  void add(CLI::App& app);
+  /// Reads the transfer function; the density scale defaults to the automatic one.
+  Classification resolve(const Volume& volume) const;
+  void describe(OptionList& options, const Classification& resolved) const;
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,36 @@
+#include "apps/freevoxels/device_options.h"
+
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+void DeviceOptions::add(CLI::App& app) {
+  addText(app, "--device", "INDEX|NAME|UUID", selector,
+          "Of 'freevoxels devices', or part of a name [a discrete GPU, then any GPU, then a CPU]")
+      ->group("Device");
+}
+
+void withInstance(const std::function<void(const Instance&)>& work) {
+  const Instance instance(validationRequested());
+  work(instance);
+  if (const std::uint64_t count = instance.validationMessageCount(); count > 0)
+    throw InternalError(fmt::format("{} Vulkan validation messages, printed above", count));
+}
+
+void DeviceOptions::withDevice(const std::function<void(const Device&)>& work) const {
+  withInstance([&](const Instance& instance) {
+    const Device device(instance, selector.value_or(""));
+    work(device);
+  });
+}
+
+void mentionCpu(const Device& device) {
+  if (device.isCpu())
+    spdlog::info("rendering on the CPU, {}; a GPU is used where there is one", device.description().name);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,27 @@
+#pragma once
+// Which Vulkan device, and opening it.
+
+#include <functional>
+#include <string>
+
+#include "apps/freevoxels/option_values.h"
+#include "engine/vulkan/device.h"
+
+namespace freevoxels {
+
+struct DeviceOptions {
+  std::optional<std::string> selector;
+
+  void add(CLI::App& app);
+  /// Opens the device and calls `work` with it. With FREEVOXELS_VALIDATION=1 any message of the validation
+  /// layer is an internal error in the end.
+  void withDevice(const std::function<void(const Device&)>& work) const;
+};
+
+/// Calls `work` with a Vulkan instance; validation as in withDevice.
+void withInstance(const std::function<void(const Instance&)>& work);
+
+/// Says where the work is done if it is no GPU that does it.
+void mentionCpu(const Device& device);
+
+}  // namespace freevoxels

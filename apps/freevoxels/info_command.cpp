@@ -1,0 +1,111 @@
+#include "apps/freevoxels/info_command.h"
+
+#include <CLI/CLI.hpp>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "apps/freevoxels/input_options.h"
+#include "apps/freevoxels/text_table.h"
+#include "engine/renderer.h"
+#include "engine/volume/vdb.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// What describeVdb would say of the volume.
+GridInfo describeVolume(const Volume& volume) {
+  GridInfo grid;
+  grid.name = "density";
+  grid.valueType = "float";
+  grid.gridClass = "fog volume";
+  grid.activeVoxels = volume.activeVoxels;
+  grid.dimensions = volume.dimensions;
+  grid.boundsMinimum = volume.indexOrigin;
+  grid.boundsMaximum = volume.indexOrigin + volume.dimensions - 1;
+  for (int axis = 0; axis < 3; ++axis)
+    grid.voxelSize[axis] = glm::length(glm::dvec3(volume.indexToWorld[axis]));
+  grid.hasRange = volume.activeVoxels > 0;
+  grid.minimum = volume.minimum;
+  grid.maximum = volume.maximum;
+  grid.memoryBytes = volume.values.size() * sizeof(float);
+  return grid;
+}
+
+std::vector<GridInfo> describeInput(const InputOptions& input) {
+  input.check();
+  if (proceduralName(input.input))
+    return {describeVolume(input.open(std::numeric_limits<std::uint64_t>::max()))};
+  return describeVdb(input.input);
+}
+
+void printTable(const std::vector<GridInfo>& grids) {
+  using enum TextTable::Align;
+  TextTable table{.columns = {Left, Left, Left, Right, Right, Left, Left, Left, Right, Right, Right, Left},
+                  .rows = {{"GRID", "TYPE", "CLASS", "ACTIVE VOXELS", "DIMENSIONS", "BOUNDING BOX",
+                            "VOXEL SIZE", "VALUES", "MEMORY", "TABLE", "ON DEVICE", ""}}};
+  for (const GridInfo& grid : grids) {
+    const bool empty = grid.activeVoxels == 0;
+    const glm::ivec3 low = grid.boundsMinimum, high = grid.boundsMaximum, size = grid.dimensions;
+    const VolumeMemory memory = volumeMemory(size);
+    table.rows.push_back(
+        {grid.name, grid.valueType, grid.gridClass, fmt::format("{}", grid.activeVoxels),
+         empty ? "-" : fmt::format("{}x{}x{}", size.x, size.y, size.z),
+         empty ? "-" : fmt::format("{}..{} {}..{} {}..{}", low.x, high.x, low.y, high.y, low.z, high.z),
+         fmt::format("{:.4g} {:.4g} {:.4g}", grid.voxelSize.x, grid.voxelSize.y, grid.voxelSize.z),
+         grid.hasRange ? fmt::format("{:.4g}..{:.4g}", grid.minimum, grid.maximum) : "-",
+         bytesText(grid.memoryBytes), grid.unusable.empty() ? bytesText(memory.table) : "-",
+         grid.unusable.empty() ? bytesText(memory.total()) : "-",
+         grid.unusable.empty() ? "" : "not drawable: " + grid.unusable});
+  }
+  for (const std::string& line : table.lines()) fmt::print("{}\n", line);
+}
+
+nlohmann::ordered_json toJson(const GridInfo& grid) {
+  const auto triple = [](const auto& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+  nlohmann::ordered_json json{{"name", grid.name},
+                              {"type", grid.valueType},
+                              {"class", grid.gridClass},
+                              {"active_voxels", grid.activeVoxels},
+                              {"dimensions", triple(grid.dimensions)},
+                              {"bounds_minimum", triple(grid.boundsMinimum)},
+                              {"bounds_maximum", triple(grid.boundsMaximum)},
+                              {"voxel_size", triple(grid.voxelSize)},
+                              {"memory_bytes", grid.memoryBytes}};
+  if (grid.hasRange) json["range"] = {grid.minimum, grid.maximum};
+  if (!grid.unusable.empty()) {
+    json["not_drawable"] = grid.unusable;
+    return json;
+  }
+  const VolumeMemory memory = volumeMemory(grid.dimensions);
+  json["table_bytes"] = memory.table;
+  json["device_bytes"] = memory.total();
+  return json;
+}
+
+}  // namespace
+
+void InfoCommand::add(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("info", "Show the grids of a file");
+  input_.add(*command);
+  command->add_flag("--json", json_, "Print JSON for programs");
+  command->footer(
+      "TABLE is the FreeVoxel table of the grid, ON DEVICE all device memory of the volume.\n"
+      "Examples:\n"
+      "  freevoxels info cloud.vdb\n"
+      "  freevoxels info procedural:cloud --resolution 256 --json\n");
+  command->callback([this] { run(); });
+}
+
+void InfoCommand::run() const {
+  const std::vector<GridInfo> grids = describeInput(input_);
+  if (!json_) {
+    printTable(grids);
+    return;
+  }
+  nlohmann::ordered_json json{{"input", input_.input}, {"grids", nlohmann::ordered_json::array()}};
+  for (const GridInfo& grid : grids) json["grids"].push_back(toJson(grid));
+  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+}  // namespace freevoxels

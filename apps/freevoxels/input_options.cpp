@@ -1,0 +1,94 @@
+#include "apps/freevoxels/input_options.h"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <string_view>
+
+#include "engine/core/error.h"
+#include "engine/volume/procedural.h"
+#include "engine/volume/vdb.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr std::string_view kProceduralPrefix = "procedural:";
+
+std::uint64_t machineMemoryBytes() {
+  return std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE));
+}
+
+}  // namespace
+
+CLI::Option* addResolution(CLI::App& app, std::optional<int>& target) {
+  return addWholeNumber(app, "--resolution", "N", target,
+                        fmt::format("Voxels along an edge of a procedural volume [{}]", kDefaultResolution),
+                        {1.0, 2048.0});
+}
+
+std::optional<std::string> proceduralName(const std::string& input) {
+  if (!input.starts_with(kProceduralPrefix)) return std::nullopt;
+  return input.substr(kProceduralPrefix.size());
+}
+
+Volume openProcedural(const std::string& name, std::optional<int> resolution, std::uint64_t maximumVoxels) {
+  const auto edge = std::uint64_t(resolution.value_or(kDefaultResolution));
+  const std::uint64_t needed = edge * edge * edge;
+  const std::uint64_t available =
+      std::min<std::uint64_t>(maximumVoxels, machineMemoryBytes() / sizeof(float));
+  if (needed > available)
+    fail(ExitCode::OutOfMemory,
+         "procedural:{} has {} voxels at --resolution {}, and {} fit: lower --resolution", name, needed, edge,
+         available);
+  return makeProcedural(name, int(edge));
+}
+
+void InputOptions::add(CLI::App& app) {
+  app.add_option("IN", input, "OpenVDB file, or procedural:NAME ('freevoxels generate --list' has the names)")
+      ->required();
+  addResolution(app, resolution)->group("Input");
+}
+
+void InputOptions::addGrid(CLI::App& app) {
+  addText(app, "--grid", "NAME", grid,
+          "Grid of the file, NAME[k] where several share it [density, or the only float grid]")
+      ->group("Input");
+}
+
+void InputOptions::check() const {
+  if (proceduralName(input)) {
+    if (grid) fail(ExitCode::Usage, "--grid chooses among the grids of a file, and {} has one", input);
+  } else if (resolution) {
+    fail(ExitCode::Usage, "--resolution is for procedural:NAME, and '{}' has the resolution of its grid",
+         input);
+  }
+}
+
+Volume InputOptions::open(std::uint64_t maximumVoxels) const {
+  if (const std::optional<std::string> name = proceduralName(input))
+    return openProcedural(*name, resolution, maximumVoxels);
+  return readVdb(input, grid.value_or(""), maximumVoxels);
+}
+
+void InputOptions::describe(OptionList& options) const {
+  options.emplace_back("", input);
+  if (grid) options.emplace_back("--grid", *grid);
+  if (proceduralName(input))
+    options.emplace_back("--resolution", std::to_string(resolution.value_or(kDefaultResolution)));
+}
+
+void warnAboutValues(const Volume& volume, bool scalarsAreDensities) {
+  const auto warn = [&](std::uint64_t voxels, const char* what) {
+    if (voxels == 0) return;
+    const bool one = voxels == 1;
+    spdlog::warn("{} voxel{} of {} with {} count{} as 0", voxels, one ? "" : "s", volume.source, what,
+                 one ? "s" : "");
+  };
+  warn(volume.nanVoxels, "a value that is NaN or infinite");
+  if (scalarsAreDensities) warn(volume.negativeVoxels, "negative density");
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,43 @@
+#pragma once
+// Where the volume comes from: an OpenVDB file, or `procedural:NAME`.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "apps/freevoxels/option_values.h"
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+inline constexpr int kDefaultResolution = 128;
+
+/// `--resolution N` of a procedural volume.
+CLI::Option* addResolution(CLI::App& app, std::optional<int>& target);
+
+/// NAME of "procedural:NAME", or nothing for a file.
+std::optional<std::string> proceduralName(const std::string& input);
+
+/// makeProcedural, but refused with ExitCode::OutOfMemory before anything is allocated where the volume
+/// exceeds `maximumVoxels` or this machine's memory.
+Volume openProcedural(const std::string& name, std::optional<int> resolution, std::uint64_t maximumVoxels);
+
+struct InputOptions {
+  std::string input;
+  std::optional<std::string> grid;
+  std::optional<int> resolution;
+
+  /// IN and --resolution.
+  void add(CLI::App& app);
+  /// --grid, where one is wanted.
+  void addGrid(CLI::App& app);
+  /// Refuses an option that does not apply to this input: ExitCode::Usage.
+  void check() const;
+  Volume open(std::uint64_t maximumVoxels) const;
+  void describe(OptionList& options) const;
+};
+
+/// One warning each for NaN and, where the scalars are densities, for negative values.
+void warnAboutValues(const Volume& volume, bool scalarsAreDensities);
+
+}  // namespace freevoxels

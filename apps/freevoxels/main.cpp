@@ -1,0 +1,30 @@
+// The command-line program: freevoxels render | info | generate | devices.
+
+#include <CLI/CLI.hpp>
+
+#include "apps/freevoxels/devices_command.h"
+#include "apps/freevoxels/generate_command.h"
+#include "apps/freevoxels/info_command.h"
+#include "apps/freevoxels/program.h"
+#include "apps/freevoxels/render_command.h"
+
+int main(int argc, char** argv) {
+  CLI::App app("Draws volumes by order-independent FreeVoxel splatting.", "freevoxels");
+  freevoxels::RenderCommand render;
+  freevoxels::InfoCommand info;
+  freevoxels::GenerateCommand generate;
+  freevoxels::DevicesCommand devices;
+  render.add(app);
+  info.add(app);
+  generate.add(app);
+  devices.add(app);
+  app.require_subcommand(1);
+  app.footer(
+      "Examples:\n"
+      "  freevoxels generate cloud cloud.vdb --resolution 128\n"
+      "  freevoxels info cloud.vdb\n"
+      "  freevoxels render cloud.vdb cloud.png\n"
+      "'freevoxels COMMAND --help' has the options of a command.\n"
+      "Exit codes: 0 done, 1 internal error, 2 usage, 3 input, 4 output, 5 device, 6 out of memory.");
+  return freevoxels::runProgram(app, argc, argv);
+}

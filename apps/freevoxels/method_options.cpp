@@ -1,0 +1,58 @@
+#include "apps/freevoxels/method_options.h"
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+
+namespace freevoxels {
+
+namespace {
+
+// In the order of the enumerators.
+const std::vector<std::string> kComposites{"normalised", "additive"};
+const std::vector<std::string> kAttenuations{"bilinear", "nearest"};
+const std::vector<std::string> kCodes{"depth8", "linear8"};
+
+}  // namespace
+
+void MethodOptions::add(CLI::App& app) {
+  const char* const group = "Method";
+  addWord(app, "--composite", kComposites, composite, "How the splats' sum becomes the picture [normalised]")
+      ->group(group);
+  addWord(app, "--attenuation", kAttenuations, attenuation,
+          "How the table is looked up between its directions [bilinear]")
+      ->group(group);
+  addWord(app, "--code", kCodes, code, "What a byte of the table holds [depth8]")->group(group);
+  app.add_flag_function(
+         "--path-length-correction,!--no-path-length-correction",
+         [this](std::int64_t count) { pathLengthCorrection = count > 0; },
+         "Whether a diagonal step counts its length in full [yes]")
+      ->group(group);
+  app.add_flag("--paper", paper,
+               "As the paper: additive, nearest, linear8, no path-length correction; any of the four that is "
+               "given wins")
+      ->group(group);
+}
+
+TableSettings MethodOptions::table() const {
+  return {
+      .code = AttenuationCode(code.value_or(int(paper ? AttenuationCode::Linear8 : AttenuationCode::Depth8))),
+      .pathLengthCorrection = pathLengthCorrection.value_or(!paper)};
+}
+
+void MethodOptions::apply(FrameSettings& frame) const {
+  frame.composite = Composite(composite.value_or(int(paper ? Composite::Additive : Composite::Normalised)));
+  frame.attenuation = AttenuationLookup(
+      attenuation.value_or(int(paper ? AttenuationLookup::Nearest : AttenuationLookup::Bilinear)));
+}
+
+void MethodOptions::describe(OptionList& options) const {
+  FrameSettings frame;
+  apply(frame);
+  options.emplace_back("--composite", kComposites[std::size_t(frame.composite)]);
+  options.emplace_back("--attenuation", kAttenuations[std::size_t(frame.attenuation)]);
+  options.emplace_back("--code", kCodes[std::size_t(table().code)]);
+  options.emplace_back(
+      table().pathLengthCorrection ? "--path-length-correction" : "--no-path-length-correction", "");
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,168 @@
+#include "apps/freevoxels/option_values.h"
+
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// What is read: shown in the sentence that refuses a value.
+struct Expectation {
+  std::string option, form;
+  std::size_t count = 1;
+  NumberRange range;
+  bool whole = false;
+  char separator = ',';
+};
+
+std::string rangeText(const Expectation& expected) {
+  const NumberRange range = expected.range;
+  if (std::isfinite(range.minimum) && std::isfinite(range.maximum))
+    return fmt::format(" from {} to {}", range.minimum, range.maximum);
+  if (std::isfinite(range.minimum)) return fmt::format(" of at least {}", range.minimum);
+  return "";
+}
+
+[[noreturn]] void refuse(const Expectation& expected, const std::string& text) {
+  const bool one = expected.count == 1;
+  fail(ExitCode::Usage, "{} takes {}, {}{} number{}{}, not '{}'", expected.option, expected.form,
+       one ? "a " : "", expected.whole ? "whole" : "finite", one ? "" : "s", rangeText(expected), text);
+}
+
+std::optional<double> parseNumber(std::string_view word, const Expectation& expected) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value = 0.0;
+  const char* const end = word.data() + word.size();
+  const auto [stopped, error] = std::from_chars(word.data(), end, value);
+  if (error != std::errc() || stopped != end || !std::isfinite(value)) return std::nullopt;
+  if (value < expected.range.minimum || value > expected.range.maximum) return std::nullopt;
+  if (expected.whole && value != std::floor(value)) return std::nullopt;
+  return value;
+}
+
+std::vector<double> parseNumbers(const std::string& text, const Expectation& expected) {
+  std::vector<double> values;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(expected.separator, begin), text.size());
+    const std::optional<double> value =
+        parseNumber(std::string_view(text).substr(begin, end - begin), expected);
+    if (!value) refuse(expected, text);
+    values.push_back(*value);
+    begin = end + 1;
+  }
+  if (values.size() != expected.count) refuse(expected, text);
+  return values;
+}
+
+template <typename Assign>
+CLI::Option* addNumbers(CLI::App& app, const Expectation& expected, const std::string& description,
+                        Assign assign) {
+  return app
+      .add_option_function<std::string>(
+          expected.option,
+          [expected, assign](const std::string& text) { assign(parseNumbers(text, expected)); }, description)
+      ->take_last()
+      ->type_name(expected.form);
+}
+
+}  // namespace
+
+CLI::Option* addNumber(CLI::App& app, const std::string& name, const std::string& form,
+                       std::optional<double>& target, const std::string& description, NumberRange range) {
+  return addNumbers(app, {.option = name, .form = form, .range = range}, description,
+                    [&target](const std::vector<double>& values) { target = values[0]; });
+}
+
+CLI::Option* addPair(CLI::App& app, const std::string& name, const std::string& form,
+                     std::optional<glm::dvec2>& target, const std::string& description, NumberRange range) {
+  return addNumbers(
+      app, {.option = name, .form = form, .count = 2, .range = range}, description,
+      [&target](const std::vector<double>& values) { target = glm::dvec2(values[0], values[1]); });
+}
+
+CLI::Option* addTriple(CLI::App& app, const std::string& name, const std::string& form,
+                       std::optional<glm::dvec3>& target, const std::string& description, NumberRange range) {
+  return addNumbers(
+      app, {.option = name, .form = form, .count = 3, .range = range}, description,
+      [&target](const std::vector<double>& values) { target = glm::dvec3(values[0], values[1], values[2]); });
+}
+
+CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, const std::string& form,
+                            std::optional<int>& target, const std::string& description, NumberRange range) {
+  return addNumbers(app, {.option = name, .form = form, .range = range, .whole = true}, description,
+                    [&target](const std::vector<double>& values) { target = int(values[0]); });
+}
+
+CLI::Option* addSize(CLI::App& app, const std::string& name, glm::ivec2& target, int maximum,
+                     const std::string& description) {
+  return addNumbers(app,
+                    {.option = name,
+                     .form = "WxH",
+                     .count = 2,
+                     .range = {1.0, double(maximum)},
+                     .whole = true,
+                     .separator = 'x'},
+                    description, [&target](const std::vector<double>& values) {
+                      target = glm::ivec2(values[0], values[1]);
+                    });
+}
+
+CLI::Option* addText(CLI::App& app, const std::string& name, const std::string& form,
+                     std::optional<std::string>& target, const std::string& description) {
+  return app
+      .add_option_function<std::string>(
+          name, [&target](const std::string& text) { target = text; }, description)
+      ->take_last()
+      ->type_name(form);
+}
+
+CLI::Option* addWord(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
+                     std::optional<int>& target, const std::string& description) {
+  const auto read = [name, words, &target](const std::string& text) {
+    const auto found = std::ranges::find(words, text);
+    if (found == words.end())
+      fail(ExitCode::Usage, "{} takes '{}', not '{}'", name, fmt::join(words, "' or '"), text);
+    target = int(found - words.begin());
+  };
+  return app.add_option_function<std::string>(name, read, description)
+      ->take_last()
+      ->type_name(fmt::format("{}", fmt::join(words, "|")));
+}
+
+std::string numberText(double value) {
+  return fmt::format("{}", value);
+}
+
+std::string numberText(glm::dvec3 value) {
+  return fmt::format("{},{},{}", value.x, value.y, value.z);
+}
+
+std::string commandText(const OptionList& options) {
+  constexpr std::string_view kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_@%+=:,./-";
+  std::vector<std::string> words;
+  const auto addQuoted = [&](const std::string& word) {
+    if (!word.empty() && word.find_first_not_of(kPlain) == std::string::npos) {
+      words.push_back(word);
+      return;
+    }
+    std::string quoted = "'";
+    for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    words.push_back(quoted + "'");
+  };
+  for (const auto& [name, value] : options) {
+    if (!name.empty()) words.push_back(name);
+    if (!value.empty()) addQuoted(value);
+  }
+  return fmt::format("{}", fmt::join(words, " "));
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,88 @@
+#include "apps/freevoxels/output_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+
+#include "apps/freevoxels/program.h"
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+std::string extensionOf(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return extension;
+}
+
+bool isExr(const std::string& file) {
+  return extensionOf(file) == ".exr";
+}
+bool isPng(const std::string& file) {
+  return extensionOf(file) == ".png";
+}
+
+}  // namespace
+
+void OutputOptions::add(CLI::App& app) {
+  const char* const group = "Output";
+  app.add_option("OUT", files,
+                 "Pictures to write: .exr (linear, premultiplied) or .png (sRGB, straight alpha)")
+      ->required();
+  addTriple(app, "--background", "R,G,B", background,
+            "Colour behind the volume in a .png, linear [transparent]", {0.0, 1.0})
+      ->group(group);
+  app.add_flag("--float", fullFloat, "32 bits a channel in an .exr [16]")->group(group);
+  addWord(app, "--aov", {"depth"}, aov,
+          "Adds the channel Z, mean distance along the viewing axis, to an .exr")
+      ->group(group);
+}
+
+void OutputOptions::check() const {
+  for (const std::string& file : files)
+    if (!isExr(file) && !isPng(file))
+      fail(ExitCode::Usage, "'{}' has no known picture extension; name it .exr or .png", file);
+  const bool anyExr = std::ranges::any_of(files, isExr), anyPng = std::ranges::any_of(files, isPng);
+  if (wantsDepth() && !anyExr) fail(ExitCode::Usage, "--aov depth needs an .exr output");
+  if (fullFloat && !anyExr) fail(ExitCode::Usage, "--float needs an .exr output");
+  if (background && !anyPng)
+    fail(ExitCode::Usage, "--background needs a .png output: an .exr keeps its alpha");
+  for (const std::string& file : files) checkOutput(file);
+}
+
+void OutputOptions::describe(OptionList& options) const {
+  if (background) options.emplace_back("--background", numberText(*background));
+  if (fullFloat) options.emplace_back("--float", "");
+  if (wantsDepth()) options.emplace_back("--aov", "depth");
+}
+
+void OutputOptions::write(const Image& image, const ExrOptions& exr) const {
+  for (const std::string& file : files) {
+    const DeferredInterrupts wholeFiles;
+    if (isExr(file)) {
+      writeExr(file, image, exr);
+    } else {
+      const glm::vec3 color(background.value_or(glm::dvec3(0.0)));
+      writePng(file, image, background ? &color : nullptr);
+    }
+  }
+}
+
+ExrOptions exrMetadata(const OptionList& options, const std::map<std::string, std::string>& facts,
+                       const Camera& camera, double aspect) {
+  ExrOptions exr;
+  for (const auto& [name, value] : facts) exr.metadata["freevoxels:" + name] = value;
+  for (const auto& [name, value] : options) {
+    const std::string key = name.empty() ? "input" : name.substr(name.find_first_not_of('-'));
+    exr.metadata["freevoxels:" + key] = value.empty() ? "yes" : value;
+  }
+  exr.metadata["freevoxels:command"] = "freevoxels render " + commandText(options);
+  exr.metadata["freevoxels:version"] = programVersion();
+  exr.matrices["worldToCamera"] = glm::mat4(worldToCamera(camera));
+  exr.matrices["worldToNDC"] = glm::mat4(worldToNdc(camera, aspect));
+  return exr;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,36 @@
+#pragma once
+// The pictures that a command writes, their form chosen by extension.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/freevoxels/option_values.h"
+#include "engine/image/image.h"
+#include "engine/splatting/camera.h"
+
+namespace freevoxels {
+
+struct OutputOptions {
+  std::vector<std::string> files;
+  std::optional<glm::dvec3> background;
+  bool fullFloat = false;
+  std::optional<int> aov;
+
+  void add(CLI::App& app);
+  /// Before any work: extensions, options that no output can honour (ExitCode::Usage), folders
+  /// (ExitCode::Output).
+  void check() const;
+  bool wantsDepth() const { return aov.has_value(); }
+  void describe(OptionList& options) const;
+  /// Writes each file completely or not at all.
+  void write(const Image& image, const ExrOptions& exr) const;
+};
+
+/// What an EXR says of its making: "freevoxels:NAME" for every option, the command without its outputs,
+/// versions, the device; and its camera's matrices. Holds nothing that differs between two runs of a command.
+ExrOptions exrMetadata(const OptionList& options, const std::map<std::string, std::string>& facts,
+                       const Camera& camera, double aspect);
+
+}  // namespace freevoxels

@@ -1,0 +1,124 @@
+#include "apps/freevoxels/program.h"
+
+#include <spdlog/pattern_formatter.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <memory>
+#include <new>
+
+#include "engine/core/atomic_file.h"
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// "%*" in the pattern: tells a warning from a remark.
+class WarningMark : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& text) override {
+    constexpr std::string_view kMark = "warning: ";
+    if (message.level == spdlog::level::warn) text.append(kMark.data(), kMark.data() + kMark.size());
+  }
+  std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<WarningMark>(); }
+};
+
+void setUpMessages(const std::string& program) {
+  auto formatter = std::make_unique<spdlog::pattern_formatter>();
+  formatter->add_flag<WarningMark>('*').set_pattern(program + ": %*%v");
+  auto logger = std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  logger->set_formatter(std::move(formatter));
+  spdlog::set_default_logger(std::move(logger));
+}
+
+int report(ExitCode code, std::string sentence) {
+  std::ranges::replace(sentence, '\n', ' ');
+  spdlog::error("{}", sentence);
+  return int(code);
+}
+
+/// The command as far as it was understood: "freevoxels render".
+std::string commandName(const CLI::App& app) {
+  const auto subcommands = app.get_subcommands();
+  return subcommands.empty() ? app.get_name() : app.get_name() + " " + subcommands.front()->get_name();
+}
+
+int reportUsage(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+  std::string sentence = error.what();
+  if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-')
+    sentence = fmt::format("there is no command '{}'", argv[1]);
+  else if (argc == 1)
+    sentence = "a command is needed";
+  if (sentence.size() > 1 && std::islower(static_cast<unsigned char>(sentence[1])))
+    sentence[0] = char(std::tolower(static_cast<unsigned char>(sentence[0])));
+  return report(ExitCode::Usage, fmt::format("{} (see {} --help)", sentence, commandName(app)));
+}
+
+volatile std::sig_atomic_t deferredSignal = 0;
+
+extern "C" void deferSignal(int signal) {
+  deferredSignal = signal;
+}
+
+}  // namespace
+
+std::string programVersion() {
+  return FREEVOXELS_VERSION;
+}
+
+int runProgram(CLI::App& app, int argc, char** argv) {
+  setUpMessages(app.get_name());
+  app.get_formatter()->column_width(36);
+  app.get_formatter()->label("REQUIRED", "");
+  app.get_formatter()->label("TEXT", "");
+  app.set_version_flag("--version", app.get_name() + " " + programVersion());
+  try {
+    app.parse(argc, argv);
+    return int(ExitCode::Success);
+  } catch (const CLI::Success& help) {
+    return app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return reportUsage(app, error, argc, argv);
+  } catch (const Error& error) {
+    return report(error.code(), error.what());
+  } catch (const std::bad_alloc&) {
+    return report(ExitCode::OutOfMemory, "this machine's memory is full: use a smaller volume or image");
+  } catch (const std::exception& error) {
+    return report(ExitCode::Internal, fmt::format("internal error, please report it: {}", error.what()));
+  }
+}
+
+void MessageOptions::add(CLI::App& app) {
+  CLI::Option* less = app.add_flag("--quiet,-q", quiet, "Print nothing but errors")->group("Messages");
+  app.add_flag("--verbose,-v", verbose, "Print the resolved options and how long each stage took")
+      ->excludes(less)
+      ->group("Messages");
+}
+
+void MessageOptions::apply() const {
+  spdlog::set_level(quiet ? spdlog::level::err : verbose ? spdlog::level::debug : spdlog::level::info);
+}
+
+DeferredInterrupts::DeferredInterrupts() {
+  struct sigaction defer {};
+  defer.sa_handler = deferSignal;
+  for (int i = 0; i < 3; ++i) sigaction(kSignals[i], &defer, &before_[i]);
+}
+
+DeferredInterrupts::~DeferredInterrupts() {
+  for (int i = 0; i < 3; ++i) sigaction(kSignals[i], &before_[i], nullptr);
+  const int signal = deferredSignal;
+  deferredSignal = 0;
+  if (signal != 0) std::raise(signal);
+}
+
+void checkOutput(const std::filesystem::path& file) {
+  const DeferredInterrupts noTemporaryStays;
+  checkWritable(file);
+}
+
+}  // namespace freevoxels

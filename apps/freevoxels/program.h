@@ -1,0 +1,46 @@
+#pragma once
+// What every program does the same way: messages, exit codes, interrupts.
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace freevoxels {
+
+/// "0.1.0"
+std::string programVersion();
+
+/// Parses the arguments and runs the command they name; its callbacks throw. Every error becomes one line on
+/// stderr and its ExitCode. Adds --version to `app`.
+int runProgram(CLI::App& app, int argc, char** argv);
+
+/// --quiet and --verbose.
+struct MessageOptions {
+  bool quiet = false, verbose = false;
+
+  void add(CLI::App& app);
+  void apply() const;
+};
+
+/// While one lives, SIGINT, SIGTERM and SIGHUP wait: an output that is being written is finished, not left as
+/// a temporary file. A signal that came meanwhile ends the program afterwards.
+class DeferredInterrupts {
+ public:
+  DeferredInterrupts();
+  ~DeferredInterrupts();
+  DeferredInterrupts(const DeferredInterrupts&) = delete;
+  DeferredInterrupts& operator=(const DeferredInterrupts&) = delete;
+
+ private:
+  static constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
+  struct sigaction before_[3];
+};
+
+/// checkWritable, which tries with a temporary file, safe from interrupts.
+void checkOutput(const std::filesystem::path& file);
+
+}  // namespace freevoxels

@@ -1,0 +1,110 @@
+#include "apps/freevoxels/render_command.h"
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+
+#include "apps/freevoxels/progress_line.h"
+#include "engine/renderer.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr const char* kExamples =
+    "Examples:\n"
+    "  freevoxels render cloud.vdb cloud.exr cloud.png\n"
+    "  freevoxels render smoke.vdb smoke.png --orbit 120,10 --size 1920x1080 --background 0.02,0.03,0.05\n"
+    "  freevoxels render procedural:shells shells.png --resolution 200 --transfer-function shells.json\n"
+    "  freevoxels render cloud.vdb paper.png --paper --density-scale 40 --albedo 0.9,0.8,0.7\n";
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+void RenderCommand::add(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("render", "Draw a volume into pictures");
+  input_.add(*command);
+  input_.addGrid(*command);
+  output_.add(*command);
+  classification_.add(*command);
+  camera_.add(*command);
+  method_.add(*command);
+  device_.add(*command);
+  messages_.add(*command);
+  addText(*command, "--timings", "FILE.json", timings_, "Write options, device and the time of each stage")
+      ->group("Messages");
+  command->footer(kExamples);
+  command->callback([this] { run(); });
+}
+
+OptionList RenderCommand::resolved(const Classification& classification, const Camera& camera) const {
+  OptionList options;
+  input_.describe(options);
+  classification_.describe(options, classification);
+  camera_.describe(options, camera);
+  method_.describe(options);
+  output_.describe(options);
+  return options;
+}
+
+void RenderCommand::run() const {
+  const Clock::time_point start = Clock::now();
+  messages_.apply();
+  input_.check();
+  camera_.check();
+  output_.check();
+  if (timings_) checkOutput(*timings_);
+
+  device_.withDevice([&](const Device& device) {
+    RunReport report;
+    report.stages.push_back({"open device", millisecondsSince(start), false});
+    draw(device, report);
+    report.totalMilliseconds = millisecondsSince(start);
+    logStages(report);
+    if (timings_) writeTimings(*timings_, report);
+  });
+
+  if (messages_.quiet) return;
+  for (const std::string& file : output_.files) fmt::print("{}\n", file);
+  if (timings_) fmt::print("{}\n", *timings_);
+}
+
+void RenderCommand::draw(const Device& device, RunReport& report) const {
+  ProgressLine line(!messages_.quiet);
+  line.begin("reading " + input_.input);
+  const Volume volume = [&] {
+    const StageTimer timer(report.stages, "read volume");
+    return input_.open(maximumVoxels(device));
+  }();
+  const Classification classification = classification_.resolve(volume);
+  const Camera camera = camera_.resolve(volume);
+  report.device = device.description();
+  report.options = resolved(classification, camera);
+  line.erase();
+  warnAboutValues(volume, !classification.transferFunction);
+  logOptions(report.options);
+  mentionCpu(device);
+
+  FrameSettings frame{.size = camera_.size, .depth = output_.wantsDepth()};
+  method_.apply(frame);
+  Renderer renderer(device, volume, classification, method_.table(), line.progress());
+  const Image image = renderer.render(camera, frame, line.progress());
+  const std::vector<StageTime> times = renderer.timings();
+  report.stages.insert(report.stages.end(), times.begin(), times.end());
+  report.visibleVoxels = renderer.visibleVoxelCount();
+
+  line.begin("writing pictures");
+  const StageTimer timer(report.stages, "write pictures");
+  ExrOptions exr = exrMetadata(
+      report.options,
+      {{"volume", volume.source}, {"device", report.device.name}, {"driver", report.device.driver}}, camera,
+      double(frame.size.x) / double(frame.size.y));
+  exr.fullFloat = output_.fullFloat;
+  output_.write(image, exr);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,57 @@
+#include "apps/freevoxels/timings_file.h"
+
+#include <spdlog/spdlog.h>
+
+#include <nlohmann/json.hpp>
+
+#include "apps/freevoxels/program.h"
+#include "apps/freevoxels/text_table.h"
+#include "engine/core/atomic_file.h"
+#include "engine/core/checked_file.h"
+
+namespace freevoxels {
+
+void logOptions(const OptionList& options) {
+  TextTable table{.columns = {TextTable::Align::Left, TextTable::Align::Left}, .rows = {}};
+  for (const auto& [name, value] : options) table.rows.push_back({name.empty() ? "IN" : name, value});
+  for (const std::string& line : table.lines()) spdlog::debug("{}", line);
+}
+
+void logStages(const RunReport& report) {
+  using enum TextTable::Align;
+  TextTable table{.columns = {Left, Right, Right}, .rows = {{"stage", "ms", "device ms"}}};
+  for (const StageTime& stage : report.stages) {
+    const std::string time = fmt::format("{:.2f}", stage.milliseconds);
+    table.rows.push_back({stage.name, stage.onDevice ? "" : time, stage.onDevice ? time : ""});
+  }
+  table.rows.push_back({"total", fmt::format("{:.2f}", report.totalMilliseconds), ""});
+  for (const std::string& line : table.lines()) spdlog::debug("{}", line);
+  spdlog::debug("{} visible voxels", report.visibleVoxels);
+}
+
+void writeTimings(const std::filesystem::path& file, const RunReport& report) {
+  nlohmann::ordered_json json;
+  json["version"] = programVersion();
+  json["device"] = {{"name", report.device.name},
+                    {"type", report.device.type},
+                    {"uuid", report.device.uuid},
+                    {"driver", report.device.driver}};
+  for (const auto& [name, value] : report.options)
+    json["options"][name.empty() ? "input" : name.substr(name.find_first_not_of('-'))] =
+        value.empty() ? nlohmann::ordered_json(true) : nlohmann::ordered_json(value);
+  for (const StageTime& stage : report.stages)
+    json["stages"].push_back(
+        {{"name", stage.name}, {"milliseconds", stage.milliseconds}, {"on_device", stage.onDevice}});
+  json["visible_voxels"] = report.visibleVoxels;
+  json["total_milliseconds"] = report.totalMilliseconds;
+
+  const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  const DeferredInterrupts wholeFile;
+  writeAtomically(file, [&](const std::filesystem::path& temporary) {
+    CheckedFile output(temporary);
+    output.write(text.data(), text.size());
+    output.close();
+  });
+}
+
+}  // namespace freevoxels

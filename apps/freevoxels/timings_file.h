@@ -1,0 +1,30 @@
+#pragma once
+// What a run was and how long it took, for people (--verbose) and for programs (--timings FILE.json).
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+#include "apps/freevoxels/option_values.h"
+#include "engine/core/stages.h"
+#include "engine/vulkan/device.h"
+
+namespace freevoxels {
+
+struct RunReport {
+  OptionList options;
+  DeviceDescription device;
+  std::vector<StageTime> stages;
+  double totalMilliseconds = 0.0;
+  std::uint64_t visibleVoxels = 0;
+};
+
+/// As messages of --verbose.
+void logOptions(const OptionList& options);
+void logStages(const RunReport& report);
+
+/// {"version", "device": {"name", "type", "uuid", "driver"}, "options": {NAME: VALUE},
+///  "stages": [{"name", "milliseconds", "on_device"}], "visible_voxels", "total_milliseconds"}. Atomic.
+void writeTimings(const std::filesystem::path& file, const RunReport& report);
+
+}  // namespace freevoxels

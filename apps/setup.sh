@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# Installs the Debian packages that are missing and builds. Does nothing twice.
+#   bash apps/setup.sh [CMAKE TARGET...]     default target: freevoxels
+set -euo pipefail
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+
+# The one list of what FreeVoxels needs of Debian 12; third_party_notes/README.md says why.
+packages=(
+  g++ cmake ninja-build pkg-config
+  libvulkan-dev libvulkan-volk-dev mesa-vulkan-drivers vulkan-validationlayers
+  glslang-tools spirv-tools
+  libglm-dev libfmt-dev libspdlog-dev nlohmann-json3-dev libcli11-dev
+  libopenexr-dev libpng-dev
+  libopenvdb-dev libtbb-dev libboost-iostreams-dev # OpenVDB's headers and CMake module need the last
+  libgtest-dev
+)
+
+say() { echo "setup: $*"; }
+
+installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+
+install_packages() {
+  if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
+    say "this script installs Debian packages, and this system has no apt-get."
+    say "Install what these Debian 12 packages hold, then run: cmake --preset release && cmake --build --preset release"
+    say "  ${packages[*]}"
+    exit 1
+  fi
+  local missing=() package
+  for package in "${packages[@]}"; do
+    installed "$package" || missing+=("$package")
+  done
+  if [ ${#missing[@]} -eq 0 ]; then
+    say "all Debian packages are there"
+    return
+  fi
+
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    if ! command -v sudo >/dev/null; then
+      say "as root, please run: apt-get install ${missing[*]}"
+      exit 1
+    fi
+    as_root=(sudo)
+  fi
+  say "installing with apt-get: ${missing[*]}"
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -qq --no-install-recommends -o DPkg::Lock::Timeout=120 "${missing[@]}"
+}
+
+build() {
+  cd "$root"
+  [ -f build/build.ninja ] || cmake --preset release
+  cmake --build --preset release --target "$@"
+}
+
+install_packages
+say "building in $root/build"
+build "${@:-freevoxels}"
