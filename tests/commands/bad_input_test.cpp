@@ -1,0 +1,131 @@
+// Inputs that cannot be drawn are refused in one sentence, and nothing is written.
+
+#include <openvdb/openvdb.h>
+
+#include "tests/commands/program_runner.h"
+
+namespace freevoxels::test {
+
+namespace {
+
+/// Without the remark about the CPU, where there is no GPU.
+constexpr const char* kSmall = " --size 32x32 --quiet";
+
+void writeGrids(const std::filesystem::path& file, const openvdb::GridCPtrVec& grids) {
+  openvdb::io::File(file.string()).write(grids);
+}
+
+class BadInput : public CommandTest {
+ protected:
+  static void SetUpTestSuite() { openvdb::initialize(); }
+
+  void makeCube(const std::string& name) {
+    expectSuccess(
+        runFreevoxels({"generate", "cube", (folder / name).string(), "--resolution", "16", "--quiet"}));
+  }
+  void expectBadTransferFunction(const std::string& json, const std::string& mention) {
+    SCOPED_TRACE(json);
+    writeBytes(folder / "t.json", json);
+    expectCleanRefusal(
+        std::string("render procedural:cube @a.png --resolution 8 --transfer-function @t.json") + kSmall,
+        ExitCode::Input, mention);
+  }
+};
+
+}  // namespace
+
+TEST_F(BadInput, MissingFile) {
+  expectCleanRefusal(std::string("render @none.vdb @a.exr @a.png") + kSmall, ExitCode::Input, "none.vdb");
+  expectCleanRefusal("info @none.vdb", ExitCode::Input, "none.vdb");
+}
+
+TEST_F(BadInput, FolderInsteadOfFile) {
+  std::filesystem::create_directory(folder / "volumes.vdb");
+  expectCleanRefusal(std::string("render @volumes.vdb @a.png") + kSmall, ExitCode::Input, "volumes.vdb");
+}
+
+TEST_F(BadInput, TextFileNamedVdb) {
+  writeBytes(folder / "text.vdb", "Dear diary, today I wrote a long line of text into a file named .vdb.\n");
+  expectCleanRefusal(std::string("render @text.vdb @a.exr") + kSmall, ExitCode::Input, "text.vdb");
+  expectCleanRefusal("info @text.vdb", ExitCode::Input, "text.vdb");
+}
+
+TEST_F(BadInput, EmptyFile) {
+  writeBytes(folder / "empty.vdb", "");
+  expectCleanRefusal(std::string("render @empty.vdb @a.exr") + kSmall, ExitCode::Input, "empty.vdb");
+}
+
+TEST_F(BadInput, FileCutShortAnywhere) {
+  makeCube("whole.vdb");
+  const std::string whole = readBytes(folder / "whole.vdb");
+  ASSERT_GT(whole.size(), 1000u);
+  for (const std::size_t size : {std::size_t(4), std::size_t(40), whole.size() / 2, whole.size() - 1}) {
+    SCOPED_TRACE(size);
+    writeBytes(folder / "cut.vdb", whole.substr(0, size));
+    expectCleanRefusal(std::string("render @cut.vdb @a.exr") + kSmall, ExitCode::Input, "cut.vdb");
+  }
+}
+
+TEST_F(BadInput, UnknownGrid) {
+  makeCube("cube.vdb");
+  expectCleanRefusal(std::string("render @cube.vdb @a.png --grid smoke") + kSmall, ExitCode::Input, "smoke");
+  expectCleanRefusal(std::string("render @cube.vdb @a.png --grid density[7]") + kSmall, ExitCode::Input,
+                     "density[7]");
+}
+
+TEST_F(BadInput, EmptyGrid) {
+  const auto grid = openvdb::FloatGrid::create();
+  grid->setName("density");
+  writeGrids(folder / "nothing.vdb", {grid});
+  expectCleanRefusal(std::string("render @nothing.vdb @a.png") + kSmall, ExitCode::Input, "nothing.vdb");
+  expectSuccess(run("info @nothing.vdb"));
+}
+
+TEST_F(BadInput, FrustumTransform) {
+  const auto grid = openvdb::FloatGrid::create();
+  grid->setName("density");
+  grid->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(3)), 1.0f);
+  grid->setTransform(openvdb::math::Transform::createFrustumTransform(
+      openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(4)), 0.5, 1.0));
+  writeGrids(folder / "frustum.vdb", {grid});
+  expectCleanRefusal(std::string("render @frustum.vdb @a.png") + kSmall, ExitCode::Input, "frustum");
+}
+
+TEST_F(BadInput, SeveralGridsAndNoChoice) {
+  openvdb::GridCPtrVec grids;
+  for (const char* name : {"fuel", "flame"}) {
+    const auto grid = openvdb::FloatGrid::create();
+    grid->setName(name);
+    grid->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(3)), 1.0f);
+    grids.push_back(grid);
+  }
+  writeGrids(folder / "two.vdb", grids);
+  expectCleanRefusal(std::string("render @two.vdb @a.png") + kSmall, ExitCode::Input, "flame");
+  expectSuccess(run(std::string("render @two.vdb @a.png --grid flame") + kSmall));
+}
+
+TEST_F(BadInput, BadTransferFunction) {
+  expectCleanRefusal(std::string("render procedural:cube @a.png --transfer-function @none.json") + kSmall,
+                     ExitCode::Input, "none.json");
+  expectBadTransferFunction("not json", "t.json");
+  expectBadTransferFunction(R"({"opacity":[[0,0],[1,1]],"color":[[0,1,1,1]],"shine":1})", "shine");
+  expectBadTransferFunction(R"({"opacity":[[1,0],[0,1]],"color":[[0,1,1,1]]})", "opacity");
+  expectBadTransferFunction(R"({"opacity":"much","color":[[0,1,1,1]]})", "opacity");
+  expectBadTransferFunction(R"({"opacity":[[0,0],[1,1]],"color":[[0,1,1]]})", "color");
+  expectBadTransferFunction(R"({"opacity":[[0,0],[1,1]],"color":[[0,1,1,1]],"unit_distance":0})",
+                            "unit_distance");
+}
+
+TEST_F(BadInput, VolumeThatNoDeviceHolds) {
+  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 2048") + kSmall,
+                     ExitCode::OutOfMemory, "--resolution");
+}
+
+TEST_F(BadInput, UnknownDevice) {
+  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --device 99") + kSmall,
+                     ExitCode::Device, "99");
+  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --device Voodoo2") + kSmall,
+                     ExitCode::Device, "Voodoo2");
+}
+
+}  // namespace freevoxels::test

@@ -1,0 +1,73 @@
+// Outputs that cannot be written: exit code 4, and nothing half-written is left.
+
+#include <csignal>
+#include <string>
+
+#include "tests/commands/program_runner.h"
+#include "tests/limited_disk.h"
+
+namespace freevoxels::test {
+
+namespace {
+
+using BadOutput = CommandTest;
+using BadOutputDeathTest = CommandTest;
+
+constexpr const char* kRender = "render procedural:cube --resolution 16 --size 256x256 --quiet ";
+
+/// On a disk of 4 KiB; the arguments' files lie on it.
+void expectDiskFull(const TemporaryFolder& folder, const std::string& arguments) {
+  SCOPED_TRACE(arguments);
+  const auto runHere = [&](const std::filesystem::path&) {
+    const ProgramResult result = runFreevoxels(words(folder, arguments));
+    throw Error(ExitCode(result.exitCode), result.err);
+  };
+  EXPECT_EXIT(exitWithErrorOnLimitedDisk(folder.path(), 4096, runHere),
+              testing::ExitedWithCode(int(ExitCode::Output)), "^freevoxels: .*free some space");
+}
+
+}  // namespace
+
+TEST_F(BadOutput, FolderThatIsNotThere) {
+  expectCleanRefusal(std::string(kRender) + "@none/a.exr", ExitCode::Output, "none");
+  expectCleanRefusal(std::string(kRender) + "@a.png @none/a.png", ExitCode::Output, "none");
+  expectCleanRefusal(std::string(kRender) + "@a.png --timings @none/t.json", ExitCode::Output, "none");
+  expectCleanRefusal("generate cube @none/a.vdb --resolution 16", ExitCode::Output, "none");
+}
+
+TEST_F(BadOutput, FolderInsteadOfFile) {
+  std::filesystem::create_directory(folder / "a.exr");
+  expectCleanRefusal(std::string(kRender) + "@a.exr", ExitCode::Output, "a.exr");
+}
+
+TEST_F(BadOutput, UnwritableFolder) {
+  expectRefusal(run(std::string(kRender) + "/proc/a.exr"), ExitCode::Output, "/proc/a.exr");
+  expectRefusal(run("generate cube /proc/a.vdb --resolution 16"), ExitCode::Output, "/proc/a.vdb");
+}
+
+TEST_F(BadOutput, WhatWasThereSurvivesAFailure) {
+  writeBytes(folder / "a.exr", "precious");
+  expectCleanRefusal("render @none.vdb @a.exr --quiet", ExitCode::Input, "none.vdb");
+  EXPECT_EQ(readBytes(folder / "a.exr"), "precious");
+}
+
+TEST_F(BadOutputDeathTest, FullDisk) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  FV_REQUIRE_LIMITED_DISK(folder.path());
+  const std::string picture = "render procedural:cloud --resolution 24 --size 256x256 --quiet ";
+  expectDiskFull(folder, picture + "@a.exr");
+  expectDiskFull(folder, picture + "@a.png");
+  expectDiskFull(folder, "generate cloud @a.vdb --resolution 48 --quiet");
+}
+
+TEST_F(BadOutput, AnInterruptLeavesNoTemporaryFile) {
+  for (const int milliseconds : {50, 200, 400, 800}) {
+    SCOPED_TRACE(milliseconds);
+    runAndInterrupt(words("render procedural:cloud @a.exr --float --size 1024x1024 --resolution 64 --quiet"),
+                    SIGINT, milliseconds);
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+      EXPECT_EQ(entry.path().filename(), "a.exr");
+  }
+}
+
+}  // namespace freevoxels::test

@@ -1,0 +1,86 @@
+// freevoxels info, generate --list and devices.
+
+#include <nlohmann/json.hpp>
+
+#include "engine/volume/procedural.h"
+#include "tests/commands/program_runner.h"
+
+namespace freevoxels::test {
+
+namespace {
+
+using InfoCommand = CommandTest;
+using DevicesCommand = CommandTest;
+
+}  // namespace
+
+TEST_F(InfoCommand, ShowsWhatGenerateWrote) {
+  const ProgramResult generated = run("generate cube @cube.vdb --resolution 20");
+  expectSuccess(generated);
+  EXPECT_EQ(generated.out, (folder / "cube.vdb").string() + "\n");
+  EXPECT_EQ(generated.err, "");
+
+  const ProgramResult json = run("info @cube.vdb --json");
+  expectSuccess(json);
+  const auto grid = nlohmann::json::parse(json.out).at("grids").at(0);
+  EXPECT_EQ(grid.at("name"), "density");
+  EXPECT_EQ(grid.at("type"), "float");
+  EXPECT_EQ(grid.at("class"), "fog volume");
+  EXPECT_GT(grid.at("active_voxels"), 0);
+  EXPECT_NEAR(grid.at("voxel_size").at(0), 1.0 / 20.0, 1e-9);
+  EXPECT_GE(grid.at("table_bytes"), 26 * grid.at("active_voxels").get<int>());
+  EXPECT_GT(grid.at("device_bytes"), grid.at("table_bytes"));
+
+  const ProgramResult table = run("info @cube.vdb");
+  expectSuccess(table);
+  for (const char* word : {"density", "float", "fog volume", "TABLE"})
+    EXPECT_NE(table.out.find(word), std::string::npos) << table.out;
+}
+
+TEST_F(InfoCommand, SaysTheSameOfAProceduralVolumeAsOfItsFile) {
+  for (const ProceduralKind& kind : proceduralKinds()) {
+    SCOPED_TRACE(kind.name);
+    const std::string name(kind.name);
+    expectSuccess(run("generate " + name + " @" + name + ".vdb --resolution 24 --quiet"));
+    const auto file = nlohmann::json::parse(run("info --json @" + name + ".vdb").out).at("grids").at(0);
+    const auto made =
+        nlohmann::json::parse(run("info --json --resolution 24 procedural:" + name).out).at("grids").at(0);
+    for (const char* key : {"name", "type", "class", "active_voxels", "range"})
+      EXPECT_EQ(file.at(key), made.at(key));
+    for (int axis = 0; axis < 3; ++axis) {
+      EXPECT_NEAR(file.at("voxel_size").at(axis), made.at("voxel_size").at(axis), 1e-9);
+      EXPECT_LE(file.at("dimensions").at(axis), made.at("dimensions").at(axis));
+    }
+  }
+}
+
+TEST_F(InfoCommand, GenerateListsEveryKind) {
+  const ProgramResult result = run("generate --list");
+  expectSuccess(result);
+  for (const ProceduralKind& kind : proceduralKinds())
+    EXPECT_NE(result.out.find("\n" + std::string(kind.name) + " "), std::string::npos) << kind.name;
+}
+
+TEST_F(DevicesCommand, ListsDevicesThatCanBeChosen) {
+  const ProgramResult table = run("devices");
+  expectSuccess(table);
+  EXPECT_NE(table.out.find("UUID"), std::string::npos);
+
+  const auto devices = nlohmann::json::parse(run("devices --json").out);
+  ASSERT_FALSE(devices.empty());
+  int usable = 0;
+  for (const auto& device : devices) {
+    EXPECT_NE(table.out.find(device.at("name").get<std::string>()), std::string::npos);
+    EXPECT_NE(table.out.find(device.at("uuid").get<std::string>()), std::string::npos);
+    EXPECT_EQ(device.at("uuid").get<std::string>().size(), 36u);
+    if (!device.at("usable")) continue;
+    ++usable;
+    for (const std::string& selector : {device.at("index").dump(), device.at("name").get<std::string>(),
+                                        device.at("uuid").get<std::string>()})
+      expectSuccess(runFreevoxels({"render", "procedural:cube", (folder / "a.png").string(), "--resolution",
+                                   "8", "--size", "16x16", "--quiet", "--device", selector}));
+  }
+  EXPECT_GT(usable, 0);
+}
+
+}  // namespace freevoxels::test

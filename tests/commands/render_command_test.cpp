@@ -1,0 +1,238 @@
+// freevoxels render, done well.
+
+#include <openvdb/openvdb.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "engine/image/image.h"
+#include "engine/volume/procedural.h"
+#include "tests/commands/program_runner.h"
+
+namespace freevoxels::test {
+
+namespace {
+
+constexpr const char* kSmall = " --resolution 24 --size 64x48 ";
+
+class RenderCommand : public CommandTest {
+ protected:
+  std::string render(const std::string& options, const std::string& file = "a.exr") const {
+    SCOPED_TRACE(options);
+    expectSuccess(run("render procedural:cloud @" + file + kSmall + options));
+    return readBytes(folder / file);
+  }
+};
+
+/// Value of a string attribute in an EXR's header: name, "string", four bytes of length, text.
+std::string exrAttribute(const std::string& bytes, const std::string& name) {
+  const std::string start = name + '\0' + "string" + '\0';
+  const std::size_t at = bytes.find(start);
+  if (at == std::string::npos) return "";
+  const std::size_t length = at + start.size();
+  std::size_t count = 0;
+  for (int i = 3; i >= 0; --i)
+    count = count * 256 + static_cast<unsigned char>(bytes[length + std::size_t(i)]);
+  return bytes.substr(length + 4, count);
+}
+
+}  // namespace
+
+TEST_F(RenderCommand, WritesEveryOutputAndPrintsItsPath) {
+  const ProgramResult result = run(std::string("render procedural:cloud @a.exr @b.png @c.EXR") + kSmall);
+  expectSuccess(result);
+  std::string expected;
+  for (const char* name : {"a.exr", "b.png", "c.EXR"}) expected += (folder / name).string() + "\n";
+  EXPECT_EQ(result.out, expected);
+  EXPECT_EQ(folder.fileCount(), 3u);
+  EXPECT_EQ(readBytes(folder / "a.exr"), readBytes(folder / "c.EXR"));
+
+  const Image image = readExr(folder / "a.exr");
+  ASSERT_EQ(image.size, glm::ivec2(64, 48));
+  EXPECT_GT(image.pixels[64 * 24 + 32].a, 0.3f);  // the volume is in the middle
+  EXPECT_EQ(image.pixels[0], glm::vec4(0.0f));    // and leaves the corners free
+}
+
+TEST_F(RenderCommand, EveryProceduralVolumeShows) {
+  for (const ProceduralKind& kind : proceduralKinds()) {
+    SCOPED_TRACE(kind.name);
+    expectSuccess(run("render procedural:" + std::string(kind.name) + " @a.exr" + kSmall));
+    const Image image = readExr(folder / "a.exr");
+    const auto visible = std::ranges::count_if(image.pixels, [](glm::vec4 pixel) { return pixel.a > 0.1f; });
+    EXPECT_GT(visible, 64 * 48 / 20);
+  }
+}
+
+TEST_F(RenderCommand, TheSameCommandGivesTheSameBytes) {
+  const std::string first = render("--aov depth", "a.exr");
+  EXPECT_EQ(first, render("--aov depth", "b.exr"));
+  EXPECT_EQ(render("", "a.png"), render("", "b.png"));
+}
+
+TEST_F(RenderCommand, TheRecordedCommandGivesTheSameBytes) {
+  const std::string first = render("--float --paper --orbit 10,-20");
+  const std::string command = exrAttribute(first, "freevoxels:command");
+  ASSERT_TRUE(command.starts_with("freevoxels render ")) << command;
+  Arguments arguments = words(command.substr(std::string("freevoxels ").size()));
+  arguments.push_back((folder / "again.exr").string());
+  expectSuccess(runFreevoxels(arguments));
+  EXPECT_EQ(first, readBytes(folder / "again.exr"));
+}
+
+TEST_F(RenderCommand, RecordsOptionsVersionsAndCamera) {
+  const std::string bytes = render("--orthographic 1.5 --density-scale 12.5");
+  EXPECT_EQ(exrAttribute(bytes, "freevoxels:density-scale"), "12.5");
+  EXPECT_EQ(exrAttribute(bytes, "freevoxels:orthographic"), "1.5");
+  EXPECT_EQ(exrAttribute(bytes, "freevoxels:composite"), "normalised");
+  EXPECT_EQ(exrAttribute(bytes, "freevoxels:size"), "64x48");
+  for (const char* name :
+       {"freevoxels:version", "freevoxels:device", "freevoxels:driver", "freevoxels:look-at"})
+    EXPECT_NE(exrAttribute(bytes, name), "") << name;
+  for (const char* name : {"worldToCamera", "worldToNDC"})
+    EXPECT_NE(bytes.find(std::string(name) + '\0' + "m44f"), std::string::npos) << name;
+}
+
+TEST_F(RenderCommand, AFileLooksAsTheVolumeItWasGeneratedFrom) {
+  expectSuccess(run("generate cube @cube.vdb --resolution 24 --quiet"));
+  const std::string camera =
+      " --size 64x48 --density-scale 5 --camera-position 1,2,3 --look-at 0,0,0 --float";
+  expectSuccess(run("render @cube.vdb @file.exr" + camera));
+  expectSuccess(run("render procedural:cube @made.exr --resolution 24" + camera));
+  const Image file = readExr(folder / "file.exr"), made = readExr(folder / "made.exr");
+  for (std::size_t i = 0; i < file.pixels.size(); ++i)
+    for (int c = 0; c < 4; ++c) ASSERT_NEAR(file.pixels[i][c], made.pixels[i][c], 1e-4f) << "pixel " << i;
+}
+
+TEST_F(RenderCommand, DepthIsTheDistanceOfWhatIsSeen) {
+  const std::string camera = "--camera-position 0,0,4 --look-at 0,0,0 --aov depth ";
+  render(camera);
+  const Image image = readExr(folder / "a.exr");
+  ASSERT_EQ(image.depth.size(), image.pixels.size());
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    if (image.pixels[i].a < 0.01f) continue;
+    ASSERT_GT(image.depth[i], 3.4f) << "pixel " << i;  // the unit cube around 0, seen from 4 away
+    ASSERT_LT(image.depth[i], 4.6f) << "pixel " << i;
+  }
+  EXPECT_EQ(image.depth[0], std::numeric_limits<float>::infinity());
+}
+
+TEST_F(RenderCommand, DefaultsAreWhatTheHelpSays) {
+  const std::string standard = render("");
+  EXPECT_EQ(standard, render("--orbit 35,25 --fov 35 --up 0,1,0 --albedo 0.9,0.9,0.9"));
+  EXPECT_EQ(standard,
+            render("--composite normalised --attenuation bilinear --code depth8 --path-length-correction"));
+  EXPECT_EQ(standard, render("--fov 60 --fov 35"));  // the last counts
+  EXPECT_NE(standard, render("--orbit 36,25"));
+  EXPECT_NE(standard, render("--attenuation nearest"));
+  EXPECT_NE(standard, render("--code linear8"));
+  EXPECT_NE(standard, render("--no-path-length-correction"));
+}
+
+TEST_F(RenderCommand, PaperIsFourOptionsAndYieldsToEach) {
+  const std::string four =
+      "--composite additive --attenuation nearest --code linear8 --no-path-length-correction";
+  EXPECT_EQ(render("--paper"), render(four));
+  EXPECT_EQ(render("--paper --composite normalised"), render(four.substr(four.find("--attenuation"))));
+  EXPECT_EQ(exrAttribute(render("--paper --path-length-correction"), "freevoxels:path-length-correction"),
+            "yes");
+}
+
+TEST_F(RenderCommand, CameraOptionsMoveTheCamera) {
+  const std::string standard = render("");
+  for (const char* options : {"--camera-position 0,0,3", "--look-at 0.2,0,0", "--fov 60", "--orthographic 1",
+                              "--up 1,0,0", "--orbit 0,90", "--camera-position -.5,-1e1,+3 --look-at 0,0,.1"})
+    EXPECT_NE(standard, render(options)) << options;
+}
+
+TEST_F(RenderCommand, TransferFunctionColoursThePicture) {
+  writeBytes(folder / "red.json", R"({"opacity":[[0,0],[1,0.5]],"color":[[0,1,0,0],[1,1,0,0]]})");
+  render("--transfer-function " + (folder / "red.json").string());
+  float red = 0.0f, green = 0.0f;
+  for (const glm::vec4 pixel : readExr(folder / "a.exr").pixels) {
+    red = std::max(red, pixel.r);
+    green = std::max(green, pixel.g);
+  }
+  EXPECT_GT(red, 0.3f);
+  EXPECT_EQ(green, 0.0f);
+}
+
+TEST_F(RenderCommand, BackgroundIsOfPngAlone) {
+  const std::string exr = render("", "a.exr");
+  const std::string transparent = render("", "a.png");
+  expectSuccess(run(std::string("render procedural:cloud @b.exr @b.png --background 0.2,0.1,0") + kSmall));
+  const Image plain = readExr(folder / "a.exr"), withBackground = readExr(folder / "b.exr");
+  EXPECT_EQ(plain.pixels, withBackground.pixels);
+  EXPECT_NE(transparent, readBytes(folder / "b.png"));
+}
+
+TEST_F(RenderCommand, QuietPrintsNothing) {
+  const ProgramResult result = run(std::string("render procedural:cloud @a.png --quiet") + kSmall);
+  expectSuccess(result);
+  EXPECT_EQ(result.out, "");
+  EXPECT_EQ(result.err, "");
+}
+
+TEST_F(RenderCommand, VerboseShowsOptionsAndStages) {
+  const ProgramResult result = run(std::string("render procedural:cloud @a.png --verbose") + kSmall);
+  expectSuccess(result);
+  for (const char* word : {"--density-scale", "--camera-position", "--size", "64x48", "read volume",
+                           "write pictures", "device ms", "total"})
+    EXPECT_NE(result.err.find(word), std::string::npos) << word << " should be in\n" << result.err;
+}
+
+TEST_F(RenderCommand, TimingsAreJson) {
+  expectSuccess(run(std::string("render procedural:cloud @a.png --timings @t.json") + kSmall));
+  const auto json = nlohmann::json::parse(readBytes(folder / "t.json"));
+  EXPECT_EQ(json.at("options").at("size"), "64x48");
+  EXPECT_FALSE(json.at("device").at("name").get<std::string>().empty());
+  EXPECT_GT(json.at("visible_voxels"), 0);
+  EXPECT_GT(json.at("total_milliseconds"), 0.0);
+  int onDevice = 0;
+  for (const auto& stage : json.at("stages")) {
+    EXPECT_GE(stage.at("milliseconds"), 0.0);
+    onDevice += stage.at("on_device").get<bool>() ? 1 : 0;
+  }
+  EXPECT_GT(onDevice, 0);
+}
+
+TEST_F(RenderCommand, ProgressIsForTerminalsAndErased) {
+  const Arguments arguments = words(std::string("render procedural:cloud @a.png") + kSmall);
+  const ProgramResult shown = runFreevoxelsOnTerminal(arguments);
+  expectSuccess(shown);
+  EXPECT_NE(shown.err.find("reading procedural:cloud"), std::string::npos) << shown.err;
+  EXPECT_TRUE(shown.err.ends_with("\r\033[K"));
+  EXPECT_EQ(runFreevoxels(arguments).err.find("\033"), std::string::npos);
+  EXPECT_EQ(
+      runFreevoxelsOnTerminal(words(std::string("render procedural:cloud @a.png --quiet") + kSmall)).err, "");
+}
+
+TEST_F(RenderCommand, WarnsOnceOfBadValues) {
+  openvdb::initialize();
+  const auto grid = openvdb::FloatGrid::create();
+  grid->setName("density");
+  grid->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(7)), 1.0f);
+  grid->tree().setValueOn(openvdb::Coord(1, 2, 3), std::numeric_limits<float>::quiet_NaN());
+  for (int i = 0; i < 3; ++i) grid->tree().setValueOn(openvdb::Coord(i, 5, 5), -0.5f);
+  openvdb::io::File((folder / "bad.vdb").string()).write(openvdb::GridCPtrVec{grid});
+
+  const auto warnings = [](const std::string& text) {
+    std::size_t count = 0;
+    for (std::size_t at = 0; (at = text.find("freevoxels: warning: ", at)) != std::string::npos; ++at)
+      ++count;
+    return count;
+  };
+  const ProgramResult physical = run("render @bad.vdb @a.png --size 32x32");
+  expectSuccess(physical);
+  EXPECT_EQ(warnings(physical.err), 2u) << physical.err;
+  EXPECT_NE(physical.err.find("warning: 1 voxel"), std::string::npos) << physical.err;
+  EXPECT_NE(physical.err.find("warning: 3 voxels"), std::string::npos) << physical.err;
+
+  writeBytes(folder / "t.json", R"({"opacity":[[0,0],[1,0.5]],"color":[[0,1,1,1]]})");
+  const ProgramResult mapped = run("render @bad.vdb @a.png --size 32x32 --transfer-function @t.json");
+  expectSuccess(mapped);
+  EXPECT_EQ(warnings(mapped.err), 1u) << mapped.err;  // negative scalars are data there
+}
+
+}  // namespace freevoxels::test

@@ -1,0 +1,107 @@
+// What is asked for wrongly is refused before any work, in a sentence that names it: exit code 2.
+
+#include "tests/commands/program_runner.h"
+
+namespace freevoxels::test {
+
+namespace {
+
+struct WrongUse {
+  const char* name;
+  const char* arguments;
+  const char* mention;
+};
+
+void PrintTo(const WrongUse& use, std::ostream* stream) {
+  *stream << use.arguments;
+}
+
+class Usage : public CommandTest, public testing::WithParamInterface<WrongUse> {};
+
+TEST_P(Usage, IsRefused) {
+  expectCleanRefusal(GetParam().arguments, ExitCode::Usage, GetParam().mention);
+}
+
+constexpr WrongUse kWrongUses[] = {
+    {"NoCommand", "", "a command is needed"},
+    {"UnknownCommand", "draw procedural:cube @a.png", "'draw'"},
+    {"UnknownOption", "render procedural:cube @a.png --shiny", "--shiny"},
+    {"NoInput", "render", "IN"},
+    {"NoOutput", "render procedural:cube", "OUT"},
+    {"UnknownExtension", "render procedural:cube @a.jpg", "a.jpg"},
+    {"NoExtension", "render procedural:cube @a", "extension"},
+    {"ZeroSize", "render procedural:cube @a.png --size 0x64", "--size"},
+    {"NegativeSize", "render procedural:cube @a.png --size 64x-64", "--size"},
+    {"AbsurdSize", "render procedural:cube @a.png --size 1000000x1000000", "--size"},
+    {"OverflowingSize", "render procedural:cube @a.png --size 99999999999999999999x1", "--size"},
+    {"HalfASize", "render procedural:cube @a.png --size 64", "--size"},
+    {"FractionalSize", "render procedural:cube @a.png --size 64.5x64", "--size"},
+    {"NanCamera", "render procedural:cube @a.png --camera-position nan,0,0", "--camera-position"},
+    {"InfiniteCamera", "render procedural:cube @a.png --camera-position 0,0,inf", "--camera-position"},
+    {"OverflowingCamera", "render procedural:cube @a.png --camera-position 0,0,1e999", "--camera-position"},
+    {"NanLookAt", "render procedural:cube @a.png --look-at 0,nan,0", "--look-at"},
+    {"NanUp", "render procedural:cube @a.png --up 0,nan,0", "--up"},
+    {"ZeroUp", "render procedural:cube @a.png --up 0,0,0", "--up"},
+    {"TwoCoordinates", "render procedural:cube @a.png --look-at 1,2", "--look-at"},
+    {"FourCoordinates", "render procedural:cube @a.png --look-at 1,2,3,4", "--look-at"},
+    {"TrailingComma", "render procedural:cube @a.png --look-at 1,2,", "--look-at"},
+    {"CameraAtLookAt", "render procedural:cube @a.png --camera-position 1,2,3 --look-at 1,2,3", "look-at"},
+    {"CameraAtVolumeCentre", "render procedural:cube @a.png --resolution 4 --camera-position 0,0,0",
+     "look-at"},
+    {"UpAlongView", "render procedural:cube @a.png --camera-position 0,5,0 --look-at 0,0,0", "--up"},
+    {"OrbitAndPosition", "render procedural:cube @a.png --orbit 1,2 --camera-position 1,2,3", "--orbit"},
+    {"NanOrbit", "render procedural:cube @a.png --orbit nan,2", "--orbit"},
+    {"ZeroFov", "render procedural:cube @a.png --fov 0", "--fov"},
+    {"StraightFov", "render procedural:cube @a.png --fov 180", "--fov"},
+    {"NanFov", "render procedural:cube @a.png --fov nan", "--fov"},
+    {"FlatOrthographic", "render procedural:cube @a.png --orthographic 0", "--orthographic"},
+    {"FovAndOrthographic", "render procedural:cube @a.png --orthographic 1 --fov 20", "--orthographic"},
+    {"NegativeScale", "render procedural:cube @a.png --density-scale -1", "--density-scale"},
+    {"NanScale", "render procedural:cube @a.png --density-scale nan", "--density-scale"},
+    {"BrightAlbedo", "render procedural:cube @a.png --albedo 2,0,0", "--albedo"},
+    {"TwoClassifications", "render procedural:cube @a.png --albedo 1,0,0 --transfer-function @t.json",
+     "--albedo"},
+    {"UnknownComposite", "render procedural:cube @a.png --composite sorted", "'sorted'"},
+    {"UnknownAttenuation", "render procedural:cube @a.png --attenuation cubic", "'cubic'"},
+    {"UnknownCode", "render procedural:cube @a.png --code float", "'float'"},
+    {"UnknownAov", "render procedural:cube @a.exr --aov normal", "'normal'"},
+    {"DepthWithoutExr", "render procedural:cube @a.png --aov depth", "--aov"},
+    {"FloatWithoutExr", "render procedural:cube @a.png --float", "--float"},
+    {"BackgroundWithoutPng", "render procedural:cube @a.exr --background 0,0,0", "--background"},
+    {"NanBackground", "render procedural:cube @a.png --background nan,0,0", "--background"},
+    {"QuietAndVerbose", "render procedural:cube @a.png --quiet --verbose", "--verbose"},
+    {"UnknownProcedural", "render procedural:teapot @a.png", "teapot"},
+    {"NamelessProcedural", "render procedural: @a.png", "procedural"},
+    {"GridOfProcedural", "render procedural:cube @a.png --grid density", "--grid"},
+    {"ZeroResolution", "render procedural:cube @a.png --resolution 0", "--resolution"},
+    {"ResolutionOfFile", "render @a.vdb @a.png --resolution 8", "--resolution"},
+    {"GenerateNothing", "generate", "--list"},
+    {"GenerateUnknown", "generate teapot @a.vdb", "teapot"},
+    {"GeneratePicture", "generate cube @a.png", ".vdb"},
+    {"InfoOfNothing", "info", "IN"},
+    {"DevicesWithInput", "devices procedural:cube", "procedural:cube"},
+};
+
+INSTANTIATE_TEST_SUITE_P(Commands, Usage, testing::ValuesIn(kWrongUses),
+                         [](const auto& use) { return std::string(use.param.name); });
+
+}  // namespace
+
+TEST_F(CommandTest, EveryCommandHasHelpWithItsOptions) {
+  for (const char* command : {"", "render", "info", "generate", "devices"}) {
+    const ProgramResult result = run(std::string(command) + " --help");
+    expectSuccess(result);
+    EXPECT_NE(result.out.find("--help"), std::string::npos);
+    EXPECT_EQ(result.err, "");
+  }
+  EXPECT_NE(run("render --help").out.find("freevoxels render cloud.vdb"), std::string::npos);
+}
+
+TEST_F(CommandTest, VersionIsOneLine) {
+  const ProgramResult result = run("--version");
+  expectSuccess(result);
+  EXPECT_TRUE(result.out.starts_with("freevoxels "));
+  EXPECT_EQ(result.out.find('\n'), result.out.size() - 1);
+}
+
+}  // namespace freevoxels::test

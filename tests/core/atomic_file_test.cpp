@@ -1,0 +1,185 @@
+#include "engine/core/atomic_file.h"
+
+#include <gtest/gtest.h>
+
+#include <new>
+#include <stdexcept>
+#include <vector>
+
+#include "engine/core/checked_file.h"
+#include "engine/core/error.h"
+#include "tests/limited_disk.h"
+#include "tests/temporary_folder.h"
+
+namespace freevoxels {
+namespace {
+
+namespace fs = std::filesystem;
+using test::readBytes;
+using test::TemporaryFolder;
+using test::writeBytes;
+
+/// The error that `action` must throw; a test fails where it throws none.
+template <typename Action>
+Error errorOf(Action&& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error;
+  }
+  ADD_FAILURE() << "no error";
+  return {ExitCode::Success, ""};
+}
+
+bool contains(const Error& error, const std::string& text) {
+  return std::string(error.what()).find(text) != std::string::npos;
+}
+
+TEST(AtomicFile, WritesWhatTheWriterWrote) {
+  const TemporaryFolder folder;
+  writeAtomically(folder / "a.txt", [](const fs::path& file) { writeBytes(file, "new"); });
+  EXPECT_EQ(readBytes(folder / "a.txt"), "new");
+  EXPECT_EQ(folder.fileCount(), 1u);
+}
+
+TEST(AtomicFile, KeepsTheOldFileUntilTheNewOneIsComplete) {
+  const TemporaryFolder folder;
+  writeBytes(folder / "a.exr", "old");
+  fs::path temporary;
+  writeAtomically(folder / "a.exr", [&](const fs::path& file) {
+    temporary = file;
+    writeBytes(file, "new");
+    EXPECT_EQ(readBytes(folder / "a.exr"), "old");
+  });
+  EXPECT_EQ(readBytes(folder / "a.exr"), "new");
+  EXPECT_EQ(temporary.parent_path(), folder.path());
+  EXPECT_EQ(temporary.extension(), ".exr");
+  EXPECT_EQ(temporary.filename().string().front(), '.');
+}
+
+TEST(AtomicFile, LeavesNothingBehindAndTheOldFileWholeWhenTheWriterFails) {
+  const TemporaryFolder folder;
+  writeBytes(folder / "a.exr", "old");
+  const Error error = errorOf([&] {
+    writeAtomically(folder / "a.exr", [](const fs::path& file) {
+      writeBytes(file, "half of it");
+      throw std::runtime_error("The encoder gave up.\n");
+    });
+  });
+  EXPECT_EQ(error.code(), ExitCode::Output);
+  EXPECT_TRUE(contains(error, "cannot write '" + (folder / "a.exr").string() + "': The encoder gave up; "))
+      << error.what();
+  EXPECT_EQ(readBytes(folder / "a.exr"), "old");
+  EXPECT_EQ(folder.fileCount(), 1u);
+}
+
+TEST(AtomicFile, PassesErrorsOfUsersAndProgrammersAndMemoryAsTheyAre) {
+  const TemporaryFolder folder;
+  const auto write = [&](auto exception) {
+    writeAtomically(folder / "a", [&](const fs::path&) { throw exception; });
+  };
+  EXPECT_EQ(errorOf([&] { write(Error(ExitCode::Input, "no")); }).code(), ExitCode::Input);
+  EXPECT_THROW(write(InternalError("bug")), InternalError);
+  EXPECT_THROW(write(std::bad_alloc()), std::bad_alloc);
+  EXPECT_EQ(folder.fileCount(), 0u);
+}
+
+TEST(AtomicFile, SaysSoWhenTheWriterWroteNothing) {
+  const TemporaryFolder folder;
+  const Error error = errorOf([&] { writeAtomically(folder / "a", [](const fs::path&) {}); });
+  EXPECT_EQ(error.code(), ExitCode::Output);
+}
+
+TEST(AtomicFile, WritesThroughASymbolicLink) {
+  const TemporaryFolder folder;
+  writeBytes(folder / "real.txt", "old");
+  fs::create_symlink(folder / "real.txt", folder / "link.txt");
+  writeAtomically(folder / "link.txt", [](const fs::path& file) { writeBytes(file, "new"); });
+  EXPECT_TRUE(fs::is_symlink(folder / "link.txt"));
+  EXPECT_EQ(readBytes(folder / "real.txt"), "new");
+}
+
+TEST(AtomicFile, TakesTheLongestNameThatAFileCanHave) {
+  const TemporaryFolder folder;
+  const fs::path file = folder / (std::string(251, 'n') + ".exr");
+  checkWritable(file);
+  writeAtomically(file, [](const fs::path& temporary) { writeBytes(temporary, "x"); });
+  EXPECT_EQ(readBytes(file), "x");
+}
+
+TEST(AtomicFile, ChecksTheDestinationBeforeAnyWork) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "folder");
+  writeBytes(folder / "file", "old");
+  const auto refusal = [](const fs::path& file) {
+    const Error error = errorOf([&] { checkWritable(file); });
+    EXPECT_EQ(error.code(), ExitCode::Output) << file;
+    EXPECT_TRUE(contains(error, "'" + file.string() + "'")) << error.what();
+    return std::string(error.what());
+  };
+  EXPECT_NE(refusal(folder / "missing/a.exr").find("there is no folder"), std::string::npos);
+  EXPECT_NE(refusal(folder / "file/a.exr").find("there is no folder"), std::string::npos);
+  EXPECT_NE(refusal(folder / "folder").find("it is a folder"), std::string::npos);
+  EXPECT_NE(refusal(folder / "folder/").find("add a file name"), std::string::npos);
+  EXPECT_NE(refusal("").find("add a file name"), std::string::npos);
+  EXPECT_NE(refusal("/dev/null").find("not a regular file"), std::string::npos);
+  EXPECT_NE(refusal("/proc/a.exr").find("choose another folder"), std::string::npos);
+  EXPECT_NE(refusal(folder / std::string(300, 'n')).find("choose a shorter name"), std::string::npos);
+  EXPECT_NO_THROW(checkWritable(folder / "new.exr"));
+  EXPECT_NO_THROW(checkWritable(folder / "file"));
+  EXPECT_EQ(readBytes(folder / "file"), "old");
+  EXPECT_EQ(folder.fileCount(), 2u);
+}
+
+TEST(CheckedFile, ReportsBytesThatFailOnlyWhenTheBufferIsFlushed) {
+  CheckedFile file("/dev/full");
+  file.write("abc", 3);  // stays in the buffer
+  try {
+    file.close();
+    FAIL() << "no error";
+  } catch (const std::system_error& error) {
+    EXPECT_EQ(error.code().value(), ENOSPC);
+  }
+}
+
+TEST(CheckedFile, ReportsAtCloseWhatWasCaughtBefore) {
+  CheckedFile file("/dev/full");
+  const std::vector<char> bytes(1 << 20);
+  EXPECT_THROW(file.write(bytes.data(), bytes.size()), std::system_error);
+  EXPECT_THROW(file.close(), std::system_error);
+}
+
+TEST(AtomicFileDeathTest, SaysThatTheDiskIsFull) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const TemporaryFolder folder;
+  FV_REQUIRE_LIMITED_DISK(folder.path());
+  const auto write = [](const fs::path& disk) {
+    writeAtomically(disk / "a.exr", [](const fs::path& file) {
+      CheckedFile output(file);
+      const std::vector<char> bytes(1 << 20);
+      output.write(bytes.data(), bytes.size());
+      output.close();
+    });
+  };
+  EXPECT_EXIT(test::exitWithErrorOnLimitedDisk(folder.path(), 65536, write),
+              testing::ExitedWithCode(int(ExitCode::Output)),
+              "cannot write '.*a.exr': No space left on device; free some space");
+}
+
+TEST(AtomicFileDeathTest, FindsOutThatTheDiskIsFullWhereALibraryDoesNotSay) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const TemporaryFolder folder;
+  FV_REQUIRE_LIMITED_DISK(folder.path());
+  const auto write = [](const fs::path& disk) {
+    writeAtomically(disk / "a.vdb", [](const fs::path& file) {
+      writeBytes(file, std::string(1 << 20, 'x'));
+      throw std::runtime_error("something is wrong");
+    });
+  };
+  EXPECT_EXIT(test::exitWithErrorOnLimitedDisk(folder.path(), 65536, write),
+              testing::ExitedWithCode(int(ExitCode::Output)),
+              "cannot write '.*a.vdb': No space left on device; free some space");
+}
+
+}  // namespace
+}  // namespace freevoxels

@@ -1,0 +1,118 @@
+// The table on the device against the double-precision reference and against Beer-Lambert.
+
+#include <cmath>
+
+#include "engine/attenuation/directions.h"
+#include "engine/reference/reference_splats.h"
+#include "engine/reference/reference_table.h"
+#include "engine/renderer.h"
+#include "tests/device/device_fixture.h"
+#include "tests/device/test_volumes.h"
+
+namespace freevoxels {
+namespace {
+
+using Table = std::vector<std::vector<std::uint8_t>>;
+
+struct WorstByte {
+  int difference = 0;
+  int direction = -1;
+  std::size_t voxel = 0;
+};
+
+WorstByte worstByte(const Table& a, const Table& b) {
+  WorstByte worst;
+  for (int d = 0; d < kDirectionCount; ++d)
+    for (std::size_t i = 0; i < a[std::size_t(d)].size(); ++i) {
+      const int difference = std::abs(int(a[std::size_t(d)][i]) - int(b[std::size_t(d)][i]));
+      if (difference > worst.difference) worst = {difference, d, i};
+    }
+  return worst;
+}
+
+class AttenuationTableTest : public DeviceTest {
+ protected:
+  void expectWithinOneCode(const Volume& volume, const TableSettings& settings) {
+    const Classification classification{.densityScale = 1.0};
+    const Table table = Renderer(device(), volume, classification, settings).downloadTable();
+    const Table reference = referenceTable(volume, referenceExtinction(volume, classification), settings.code,
+                                           settings.pathLengthCorrection);
+    const WorstByte worst = worstByte(table, reference);
+    const glm::ivec3 d = worst.direction < 0 ? glm::ivec3(0) : directionAt(worst.direction);
+    EXPECT_LE(worst.difference, 1) << volume.dimensions.x << "x" << volume.dimensions.y << "x" << volume.dimensions.z
+                                   << ", direction " << d.x << "," << d.y << "," << d.z << ", voxel " << worst.voxel;
+  }
+
+  void expectAllSettingsWithinOneCode(const Volume& volume) {
+    for (AttenuationCode code : {AttenuationCode::Depth8, AttenuationCode::Linear8})
+      for (bool corrected : {true, false}) expectWithinOneCode(volume, {code, corrected});
+  }
+};
+
+TEST_F(AttenuationTableTest, OddSizedRandomVolumesMatchTheReference) {
+  for (glm::ivec3 size : {glm::ivec3(1, 1, 1), glm::ivec3(1, 19, 1), glm::ivec3(23, 1, 1), glm::ivec3(1, 1, 13),
+                          glm::ivec3(2, 3, 5), glm::ivec3(17, 2, 31), glm::ivec3(37, 23, 19), glm::ivec3(16, 16, 16),
+                          glm::ivec3(33, 5, 2)})
+    expectAllSettingsWithinOneCode(randomVolume(size, cubeTransform(size), 1.0, 20.0));
+}
+
+TEST_F(AttenuationTableTest, ShearedAnisotropicVoxelsMatchTheReference) {
+  for (glm::ivec3 size : {glm::ivec3(29, 31, 7), glm::ivec3(5, 41, 13)})
+    expectAllSettingsWithinOneCode(randomVolume(size, shearedTransform(size), 0.7, 15.0));
+}
+
+TEST_F(AttenuationTableTest, SparseVolumesMatchTheReference) {
+  const glm::ivec3 size(43, 29, 31);
+  expectAllSettingsWithinOneCode(randomVolume(size, cubeTransform(size), 0.02, 60.0));
+}
+
+TEST_F(AttenuationTableTest, OpaqueVolumesMatchTheReference) {
+  const glm::ivec3 size(31, 17, 23);
+  expectAllSettingsWithinOneCode(randomVolume(size, cubeTransform(size), 0.5, 1e4));
+}
+
+TEST_F(AttenuationTableTest, TransferFunctionVolumesMatchTheReference) {
+  const glm::ivec3 size(21, 22, 23);
+  const Volume volume = randomVolume(size, cubeTransform(size), 1.0, 1.0);
+  Classification classification;
+  classification.transferFunction = TransferFunction{
+      .opacity = {{0.1f, 0.0f}, {0.4f, 0.0001f}, {0.5f, 0.3f}, {0.9f, 1.0f}},
+      .color = {{0.0f, glm::vec3(1.0f)}},
+      .unitDistance = volume.voxelSize() * 0.7};
+  const Table table = Renderer(device(), volume, classification, {}).downloadTable();
+  const Table reference =
+      referenceTable(volume, referenceExtinction(volume, classification), AttenuationCode::Depth8, true);
+  EXPECT_LE(worstByte(table, reference).difference, 1);
+}
+
+TEST_F(AttenuationTableTest, HomogeneousBoxIsBeerLambertInAllDirections) {
+  const glm::ivec3 size(25, 19, 14);
+  const double sigma = 3.0;
+  const Volume volume = makeVolume(size, shearedTransform(size), [&](int, int, int) { return sigma; });
+  const Table table = Renderer(device(), volume, {.densityScale = 1.0}, {}).downloadTable();
+  for (int d = 0; d < kDirectionCount; ++d) {
+    const glm::ivec3 direction = directionAt(d);
+    const double step = glm::length(glm::dmat3(volume.indexToWorld) * glm::dvec3(direction));
+    for (glm::ivec3 voxel : {glm::ivec3(0), size - 1, size / 2, glm::ivec3(3, 17, 5)}) {
+      int steps = 0;  // lattice steps to the last voxel inside
+      for (glm::ivec3 p = voxel + direction;
+           glm::all(glm::greaterThanEqual(p, glm::ivec3(0))) && glm::all(glm::lessThan(p, size)); p += direction)
+        ++steps;
+      const int expected = int(std::lround(255.0 * std::sqrt(std::min(sigma * step * steps, 16.0) / 16.0)));
+      EXPECT_NEAR(table[std::size_t(d)][volume.at(voxel.x, voxel.y, voxel.z)], expected, 1)
+          << "direction " << d << ", " << steps << " steps";
+    }
+  }
+}
+
+TEST_F(AttenuationTableTest, VisibleVoxelsAreThoseWithExtinctionInAscendingOrder) {
+  for (glm::ivec3 size : {glm::ivec3(1, 1, 1), glm::ivec3(37, 41, 43), glm::ivec3(3, 100, 9)}) {
+    const Volume volume = randomVolume(size, cubeTransform(size), 0.3, 1.0);
+    const Classification classification{.densityScale = 1.0};
+    const Renderer renderer(device(), volume, classification, {});
+    EXPECT_EQ(renderer.downloadVisibleVoxels(), referenceVisibleVoxels(referenceExtinction(volume, classification)));
+  }
+}
+
+}  // namespace
+}  // namespace freevoxels

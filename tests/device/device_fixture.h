@@ -1,0 +1,28 @@
+#pragma once
+// One device for all tests of a program, with the validation layer on; any message fails the test that caused it.
+
+#include <gtest/gtest.h>
+
+#include "engine/vulkan/device.h"
+
+namespace freevoxels {
+
+class DeviceTest : public ::testing::Test {
+ protected:
+  static Instance& instance() {
+    static Instance shared(true);
+    return shared;
+  }
+  static Device& device() {
+    static Device shared(instance(), "");
+    return shared;
+  }
+
+  void SetUp() override { messagesBefore_ = instance().validationMessageCount(); }
+  void TearDown() override { EXPECT_EQ(instance().validationMessageCount(), messagesBefore_); }
+
+ private:
+  std::uint64_t messagesBefore_ = 0;
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,164 @@
+// Whole pictures: closed forms, order independence, determinism.
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "engine/core/error.h"
+#include "engine/renderer.h"
+#include "tests/device/device_fixture.h"
+#include "tests/device/test_volumes.h"
+
+namespace freevoxels {
+namespace {
+
+using RendererTest = DeviceTest;
+
+/// A homogeneous box, exactly.
+struct BoxPicture {
+  Image image;                ///< 1 - exp(-sigma * chord), averaged over 4x4 rays a pixel
+  std::vector<bool> interior; ///< pixels whose rays enter and leave 2 voxels or more away from the box's edges
+};
+
+BoxPicture boxPicture(const Volume& volume, double sigma, glm::vec3 color, const Camera& camera, glm::ivec2 size) {
+  const PixelRays rays = pixelRays(camera, size, volume.indexToWorld);
+  const glm::dvec3 low(-0.5), high = glm::dvec3(volume.dimensions) - 0.5;
+  const std::size_t pixels = std::size_t(size.x) * std::size_t(size.y);
+  BoxPicture box{{.size = size, .pixels = std::vector<glm::vec4>(pixels), .depth = {}}, std::vector<bool>(pixels)};
+  const auto awayFromEdges = [&](glm::dvec3 p) {
+    const glm::dvec3 depth = glm::min(p - low, high - p);
+    return int(depth.x >= 2.0) + int(depth.y >= 2.0) + int(depth.z >= 2.0) == 2;
+  };
+  constexpr int kSamples = 4;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    double alpha = 0.0;
+    bool interior = true;
+    for (int sample = 0; sample < kSamples * kSamples; ++sample) {
+      const double x = double(i % std::size_t(size.x)) + (sample % kSamples + 0.5) / kSamples;
+      const double y = double(i / std::size_t(size.x)) + (sample / kSamples + 0.5) / kSamples;
+      const glm::dvec3 origin = rays.origin + x * rays.originX + y * rays.originY;
+      const glm::dvec3 direction = rays.direction + x * rays.directionX + y * rays.directionY;
+      const glm::dvec3 a = (low - origin) / direction, b = (high - origin) / direction;
+      const glm::dvec3 near = glm::min(a, b), far = glm::max(a, b);
+      const double enter = std::max({near.x, near.y, near.z}), leave = std::min({far.x, far.y, far.z});
+      const double world = glm::length(glm::dmat3(volume.indexToWorld) * direction);
+      if (leave > enter) alpha += -std::expm1(-sigma * (leave - enter) * world);
+      interior = interior && leave > enter && awayFromEdges(origin + enter * direction) &&
+                 awayFromEdges(origin + leave * direction);
+    }
+    alpha /= kSamples * kSamples;
+    box.image.pixels[i] = glm::vec4(glm::dvec4(glm::dvec3(color) * alpha, alpha));
+    box.interior[i] = interior;
+  }
+  return box;
+}
+
+/// A smooth kernel cannot draw the box's sharp edges, whose silhouettes are all that limits the whole picture: most
+/// where a face is seen edge-on. Away from them the picture is the closed form.
+TEST_F(RendererTest, HomogeneousCubeIsBeerLambertFromAnyDirection) {
+  const double sigma = 2.5;
+  const glm::vec3 color(0.8f, 0.5f, 0.2f);
+  const glm::ivec3 dimensions(64);
+  const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [](int, int, int) { return 1.0; });
+  Renderer renderer(device(), volume, {.densityScale = sigma, .albedo = color}, {});
+  const glm::ivec2 size(256);
+  for (bool orthographic : {false, true})
+    for (glm::dvec2 view : {glm::dvec2(35, 25), glm::dvec2(0, 0), glm::dvec2(90, 0), glm::dvec2(45, 0),
+                            glm::dvec2(45, 35.26), glm::dvec2(-160, -50), glm::dvec2(10, 80), glm::dvec2(200, 5)}) {
+      Camera base;
+      base.orthographic = orthographic;
+      const Camera camera = framingCamera(volume, view.x, view.y, 1.0, base);
+      const Image picture = renderer.render(camera, {.size = size});
+      const BoxPicture box = boxPicture(volume, sigma, color, camera, size);
+      double worst = 0.0;
+      for (std::size_t i = 0; i < box.interior.size(); ++i)
+        for (int c = 0; c < 4 && box.interior[i]; ++c)
+          worst = std::max(worst, double(std::abs(picture.pixels[i][c] - box.image.pixels[i][c])));
+      const double whole = psnr(picture, box.image);
+      const std::string name =
+          fmt::format("from {},{} {}", view.x, view.y, orthographic ? "orthographic" : "perspective");
+      EXPECT_LE(worst, 2e-3) << name;
+      EXPECT_GE(whole, 34.0) << name;
+      std::printf("homogeneous cube 64^3 %s: inside its edges at most %.1e off, whole picture %.1f dB\n", name.c_str(),
+                  worst, whole);
+    }
+}
+
+TEST_F(RendererTest, OpticalDepthAddsUpToBeerLambertInsideTheCube) {
+  const double sigma = 1.7;
+  const glm::ivec3 dimensions(48, 40, 32);
+  const Volume volume = makeVolume(dimensions, shearedTransform(dimensions), [](int, int, int) { return 1.0; });
+  Renderer renderer(device(), volume, {.densityScale = sigma}, {});
+  const Camera camera = framingCamera(volume, 50.0, 30.0, 1.0, {});
+  const glm::ivec2 size(101);
+  const Image picture = renderer.render(camera, {.size = size});
+  const Image expected = boxPicture(volume, sigma, {}, camera, size).image;
+  EXPECT_NEAR(picture.pixels[50 * 101 + 50].a, expected.pixels[50 * 101 + 50].a, 1e-3);
+}
+
+TEST_F(RendererTest, EmptyVolumeIsBackground) {
+  const glm::ivec3 dimensions(9);
+  const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [](int, int, int) { return 0.0; });
+  Renderer renderer(device(), volume, {}, {});
+  for (Composite composite : {Composite::Normalised, Composite::Additive}) {
+    const Image picture = renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}),
+                                          {.size = {32, 32}, .composite = composite, .depth = true});
+    for (const glm::vec4& pixel : picture.pixels) ASSERT_EQ(pixel, glm::vec4(0.0f));
+    for (float depth : picture.depth) ASSERT_TRUE(std::isinf(depth));
+  }
+}
+
+TEST_F(RendererTest, SameRenderTwiceIsBitIdentical) {
+  const glm::ivec3 dimensions(40, 50, 45);
+  const Volume volume = randomVolume(dimensions, cubeTransform(dimensions), 0.7, 30.0);
+  const FrameSettings settings{.size = {200, 150}};
+  const Camera camera = framingCamera(volume, 35.0, 25.0, 200.0 / 150.0, {});
+  Renderer first(device(), volume, {}, {});
+  Renderer second(device(), volume, {}, {});
+  const Image a = first.render(camera, settings), b = second.render(camera, settings), c = first.render(camera, settings);
+  EXPECT_EQ(std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec4)), 0);
+  EXPECT_EQ(std::memcmp(a.pixels.data(), c.pixels.data(), a.pixels.size() * sizeof(glm::vec4)), 0);
+}
+
+TEST_F(RendererTest, MoreSplatsThanOneChunkAreAllDrawn) {
+  const glm::ivec3 dimensions(112, 104, 100);  // 1,164,800 voxels, and a chunk is 1,048,576
+  const double sigma = 3.0;
+  const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [](int, int, int) { return 1.0; });
+  Renderer renderer(device(), volume, {.densityScale = sigma}, {});
+  EXPECT_EQ(renderer.visibleVoxelCount(), volume.voxelCount());
+  const Camera camera = framingCamera(volume, 0.0, 0.0, 1.0, {});
+  const glm::ivec2 size(128);
+  EXPECT_GE(psnr(renderer.render(camera, {.size = size}), boxPicture(volume, sigma, glm::vec3(0.9f), camera, size).image), 40.0);
+}
+
+TEST_F(RendererTest, MirroredCameraMirrorsThePicture) {
+  const glm::ivec3 dimensions(20);
+  const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [](int x, int y, int z) {
+    return double(y) / 20.0 + (std::abs(x - 9.5) < 4 ? 1.0 : 0.0) + (z > 9 ? 0.3 : 0.0);  // symmetric in x
+  });
+  Renderer renderer(device(), volume, {.densityScale = 5.0}, {});
+  const glm::ivec2 size(60, 60);
+  const Image right = renderer.render(framingCamera(volume, 40.0, 15.0, 1.0, {}), {.size = size});
+  const Image left = renderer.render(framingCamera(volume, -40.0, 15.0, 1.0, {}), {.size = size});
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < size.x; ++x) {
+      const glm::vec4 a = right.pixels[std::size_t(y * size.x + x)], b = left.pixels[std::size_t(y * size.x + size.x - 1 - x)];
+      for (int c = 0; c < 4; ++c) ASSERT_NEAR(a[c], b[c], 2e-3) << x << "," << y;
+    }
+}
+
+TEST_F(RendererTest, TooLargeAVolumeIsRefusedBeforeAllocation) {
+  Volume volume;
+  volume.dimensions = {40000, 40000, 40000};
+  try {
+    const Renderer renderer(device(), volume, {}, {});
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::OutOfMemory);
+    EXPECT_NE(std::string(error.what()).find("MiB"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace freevoxels

@@ -1,0 +1,122 @@
+// Splat sums on the device against the double-precision reference: perspective and orthographic, any voxel shape, both
+// kinds of primitive.
+
+#include <cmath>
+#include <numeric>
+
+#include "engine/reference/reference_splats.h"
+#include "engine/reference/reference_table.h"
+#include "engine/renderer.h"
+#include "tests/device/device_fixture.h"
+#include "tests/device/test_volumes.h"
+
+namespace freevoxels {
+namespace {
+
+class SplatTest : public DeviceTest {
+ protected:
+  static Image reference(const Volume& volume, const Classification& classification, const TableSettings& table,
+                         const Camera& camera, const FrameSettings& settings) {
+    const auto extinction = referenceExtinction(volume, classification);
+    const auto bytes = referenceTable(volume, extinction, table.code, table.pathLengthCorrection);
+    const auto sums = referenceSplatSums(volume, classification, bytes, table.code, camera, settings,
+                                         referenceVisibleVoxels(extinction));
+    return referenceResolve(sums, settings);
+  }
+
+  /// The table may be one code off here and there (its own test), which moves a colour by up to 1e-2 where few voxels
+  /// mix; alpha does not use the table.
+  void expectSamePicture(const Volume& volume, const Camera& camera, FrameSettings settings,
+                         const TableSettings& table = {}) {
+    Classification classification;
+    classification.transferFunction =
+        TransferFunction{.opacity = {{0.0f, 0.0f}, {1.0f, 0.5f}},
+                         .color = {{0.0f, {1.0f, 0.2f, 0.1f}}, {0.5f, {0.2f, 1.0f, 0.3f}}, {1.0f, {0.1f, 0.3f, 1.0f}}},
+                         .unitDistance = volume.voxelSize()};
+    settings.depth = true;
+    Renderer renderer(device(), volume, classification, table);
+    const Image picture = renderer.render(camera, settings);
+    const Image expected = reference(volume, classification, table, camera, settings);
+    double worstColor = 0.0, worstAlpha = 0.0, worstDepth = 0.0;
+    for (std::size_t i = 0; i < expected.pixels.size(); ++i) {
+      const glm::dvec4 difference = glm::abs(glm::dvec4(picture.pixels[i]) - glm::dvec4(expected.pixels[i]));
+      worstColor = std::max({worstColor, difference.x, difference.y, difference.z});
+      worstAlpha = std::max(worstAlpha, difference.w);
+      if (expected.pixels[i].a > 1e-3f)
+        worstDepth = std::max(worstDepth, std::abs(double(picture.depth[i]) / double(expected.depth[i]) - 1.0));
+    }
+    const bool normalised = settings.composite == Composite::Normalised;
+    EXPECT_LE(worstColor, 5e-3);
+    EXPECT_LE(worstAlpha, normalised ? 1e-4 : 5e-3);
+    EXPECT_LE(worstDepth, 2e-3);
+    EXPECT_GE(psnr(picture, expected), 65.0);
+  }
+
+  static constexpr glm::ivec3 kSize{11, 14, 9};
+  static Volume volume(bool sheared) {
+    return randomVolume(kSize, sheared ? shearedTransform(kSize) : cubeTransform(kSize), 0.6, 1.0);
+  }
+};
+
+TEST_F(SplatTest, PerspectiveMatchesTheReference) {
+  const Volume v = volume(false);
+  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.25, {}), {.size = {125, 100}});
+}
+
+TEST_F(SplatTest, ShearedVoxelsMatchTheReference) {
+  const Volume v = volume(true);
+  expectSamePicture(v, framingCamera(v, -110.0, -40.0, 0.8, {}), {.size = {96, 120}});
+}
+
+TEST_F(SplatTest, OrthographicMatchesTheReference) {
+  const Volume v = volume(true);
+  Camera base;
+  base.orthographic = true;
+  expectSamePicture(v, framingCamera(v, 20.0, 60.0, 1.0, base), {.size = {100, 100}});
+  expectSamePicture(v, framingCamera(v, 0.0, 0.0, 1.0, base), {.size = {100, 100}});
+}
+
+TEST_F(SplatTest, ThePapersSettingsMatchTheReference) {
+  const Volume v = volume(false);
+  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}),
+                    {.size = {90, 90}, .composite = Composite::Additive, .attenuation = AttenuationLookup::Nearest},
+                    {AttenuationCode::Linear8, false});
+}
+
+TEST_F(SplatTest, WideAngleMatchesTheReference) {
+  const Volume v = volume(false);
+  Camera base;
+  base.verticalFov = 110.0;
+  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, base), {.size = {120, 120}});
+}
+
+TEST_F(SplatTest, VoxelsSmallerThanPixelsMatchTheReference) {
+  const Volume v = volume(true);
+  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {7, 7}});
+}
+
+TEST_F(SplatTest, SplatsLargerThanTheLargestPointMatchTheReference) {
+  const Volume v = randomVolume({3, 3, 3}, cubeTransform({3, 3, 3}), 0.8, 1.0);
+  const int size = 700;  // a voxel is over 100 pixels wide, its footprint nearly 400: more than points can be here
+  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {size, size}});
+}
+
+TEST_F(SplatTest, SplatsCentredOutsideTheImageStillReachIntoIt) {
+  const Volume v = volume(false);
+  Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
+  camera.verticalFov /= 6.0;
+  camera.lookAt += glm::dvec3(0.2, 0.1, 0.0);
+  expectSamePicture(v, camera, {.size = {80, 80}});
+}
+
+TEST_F(SplatTest, TheEyeInsideTheVolumeDrawsWhatIsInFront) {
+  const Volume v = volume(false);
+  Camera camera;
+  camera.position = {0.03, 0.02, 0.01};
+  camera.lookAt = {0.3, 0.1, -0.4};
+  camera.verticalFov = 70.0;
+  expectSamePicture(v, camera, {.size = {64, 64}});
+}
+
+}  // namespace
+}  // namespace freevoxels

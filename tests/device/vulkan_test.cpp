@@ -1,0 +1,73 @@
+// The Vulkan layer: device choice, buffers, and that validation is listening.
+
+#include <cstring>
+#include <numeric>
+#include <vector>
+
+#include "engine/core/error.h"
+#include "engine/vulkan/buffer.h"
+#include "engine/vulkan/commands.h"
+#include "tests/device/device_fixture.h"
+
+namespace freevoxels {
+namespace {
+
+using VulkanTest = DeviceTest;
+
+TEST_F(VulkanTest, ListsDevicesAndChoosesByIndexNameAndUuid) {
+  const std::vector<DeviceDescription> devices = listDevices(instance());
+  ASSERT_FALSE(devices.empty());
+  const DeviceDescription& chosen = device().description();
+  EXPECT_TRUE(chosen.rejections.empty());
+  EXPECT_EQ(chosen.uuid.size(), 36u);
+  for (const std::string& selector : {std::to_string(chosen.index), chosen.name, chosen.uuid})
+    EXPECT_EQ(Device(instance(), selector).description().uuid, chosen.uuid);
+}
+
+TEST_F(VulkanTest, UnknownDeviceIsADeviceError) {
+  try {
+    const Device none(instance(), "no such device");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::Device);
+  }
+}
+
+TEST_F(VulkanTest, UploadAndDownloadReturnTheSameBytes) {
+  std::vector<std::uint32_t> data(100'003);
+  std::iota(data.begin(), data.end(), 17u);
+  for (MemoryUse use : {MemoryUse::Device, MemoryUse::Upload, MemoryUse::Readback}) {
+    const Buffer buffer(device(), data.size() * sizeof(std::uint32_t), use, "test");
+    upload(device(), buffer, std::as_bytes(std::span(data)));
+    std::vector<std::uint32_t> back(data.size());
+    download(device(), buffer, std::as_writable_bytes(std::span(back)));
+    EXPECT_EQ(data, back);
+  }
+}
+
+TEST_F(VulkanTest, PassesAreTimed) {
+  Commands commands(device());
+  const Buffer from(device(), 1 << 20, MemoryUse::Device, "from"), to(device(), 1 << 20, MemoryUse::Device, "to");
+  commands.beginPass("first");
+  commands.copy(from, to, {.size = from.bytes()});
+  commands.beginPass("second");
+  commands.copy(to, from, {.size = from.bytes()});
+  commands.submitAndWait();
+  const std::vector<StageTime> times = commands.times();
+  ASSERT_EQ(times.size(), 2u);
+  EXPECT_EQ(times[0].name, "first");
+  EXPECT_GT(times[0].milliseconds + times[1].milliseconds, 0.0);
+}
+
+TEST(Validation, NoticesAMistake) {
+  Instance instance(true);
+  const Device device(instance, "");
+  VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = 0, .usage = 0};  // both invalid
+  VkBuffer buffer = VK_NULL_HANDLE;
+  if (vkCreateBuffer(device.handle(), &info, nullptr, &buffer) == VK_SUCCESS)
+    vkDestroyBuffer(device.handle(), buffer, nullptr);
+  EXPECT_GT(instance.validationMessageCount(), 0u);
+}
+
+}  // namespace
+}  // namespace freevoxels
