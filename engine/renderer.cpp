@@ -17,13 +17,19 @@ namespace {
 
 constexpr std::uint64_t kBytesPerPaddedVoxel = 2 * sizeof(float) + kDirectionCount + sizeof(std::uint32_t);
 
+/// Bytes of the largest buffer of voxels that the passes can bind.
+std::uint64_t largestBinding(const Device& device) {
+  const std::uint64_t texels = std::uint64_t(device.limits().maxTexelBufferElements) * sizeof(glm::vec4);
+  return std::min({std::uint64_t(device.limits().maxStorageBufferRange), texels, std::uint64_t(device.maximumAllocation())});
+}
+
 void checkFits(const Device& device, glm::ivec3 dimensions) {
   const std::uint64_t binding = GridLayout(dimensions).paddedVoxels() * sizeof(float);
-  const std::uint64_t largest = std::min<std::uint64_t>(device.limits().maxStorageBufferRange, device.maximumAllocation());
-  if (binding > largest)
+  if (binding > largestBinding(device))
     fail(ExitCode::OutOfMemory,
          "a volume of {}x{}x{} voxels needs a buffer of {} MiB and {} binds at most {} MiB: crop or resample the volume",
-         dimensions.x, dimensions.y, dimensions.z, binding >> 20, device.description().name, largest >> 20);
+         dimensions.x, dimensions.y, dimensions.z, binding >> 20, device.description().name,
+         largestBinding(device) >> 20);
   const std::uint64_t total = volumeMemory(dimensions).total();
   if (total > device.description().memoryBytes)
     fail(ExitCode::OutOfMemory,
@@ -62,9 +68,7 @@ VolumeMemory volumeMemory(glm::ivec3 dimensions) {
 }
 
 std::uint64_t maximumVoxels(const Device& device) {
-  const std::uint64_t bindable =
-      std::min<std::uint64_t>(device.limits().maxStorageBufferRange, device.maximumAllocation()) / sizeof(float);
-  return std::min(bindable, device.description().memoryBytes / kBytesPerPaddedVoxel);
+  return std::min(largestBinding(device) / sizeof(float), device.description().memoryBytes / kBytesPerPaddedVoxel);
 }
 
 struct Renderer::State {

@@ -18,7 +18,7 @@ layout(constant_id = 2) const int kStepX = 0;    // of the march, -1, 0 or 1
 
 layout(local_size_x = kSweepThreads) in;
 layout(scalar, push_constant) uniform Push { SweepPush push; };
-layout(scalar, binding = 0) readonly buffer Extinction { vec4 extinction[]; };
+layout(binding = 0) uniform textureBuffer extinction;
 layout(scalar, binding = 1) writeonly buffer Plane { uint words[]; };
 
 const int kPhases = kStepX == 0 ? 1 : 4;
@@ -36,7 +36,7 @@ int lineOffset(int phase) { return kStepX > 0 ? 3 - phase : kStepX < 0 ? phase :
 
 void loadPlane(int row, int window, int quads) {
   [[unroll]] for (int q = 0; q < kWords + 2 * kMargin; ++q) {
-    const vec4 quad = extinction[row + wrapped(window + q - kMargin, quads)];
+    const vec4 quad = texelFetch(extinction, row + wrapped(window + q - kMargin, quads));
     [[unroll]] for (int c = 0; c < 4; ++c) sigma[4 * q + c] = quad[c];
   }
 }

@@ -9,7 +9,7 @@ layout(constant_id = 1) const int kStepX = 1;  // of the march: 1 or -1
 
 layout(local_size_x = kSweepThreads) in;
 layout(scalar, push_constant) uniform Push { SweepPush push; };
-layout(scalar, binding = 0) readonly buffer Extinction { vec4 extinction[]; };
+layout(binding = 0) uniform textureBuffer extinction;
 layout(scalar, binding = 1) writeonly buffer Plane { uint words[]; };
 
 void main() {
@@ -19,7 +19,7 @@ void main() {
   float depth = 0.0;
   for (int i = 0; i < quads; ++i) {
     const int quad = row * quads + (kStepX > 0 ? i : quads - 1 - i);
-    const vec4 sigma = extinction[quad];
+    const vec4 sigma = texelFetch(extinction, quad);
     uint word = 0;
     [[unroll]] for (int i4 = 0; i4 < 4; ++i4) {
       const int c = kStepX > 0 ? i4 : 3 - i4;

@@ -5,7 +5,7 @@
 
 layout(local_size_x = kCountThreads) in;
 layout(scalar, push_constant) uniform Push { VisiblePush push; };
-layout(scalar, binding = 0) readonly buffer Extinction { vec4 extinction[]; };
+layout(binding = 0) uniform textureBuffer extinction;
 layout(scalar, binding = 1) buffer GroupCounts { uint groupCounts[]; };
 
 shared uint total;
@@ -18,7 +18,7 @@ void main() {
   if (first < push.voxelCount) {
     uint count = 0;
     [[unroll]] for (uint q = 0; q < kCountVoxelsPerThread / 4; ++q) {
-      const bvec4 visible = greaterThan(extinction[first / 4 + q], vec4(0.0));
+      const bvec4 visible = greaterThan(texelFetch(extinction, int(first / 4 + q)), vec4(0.0));
       count += uint(visible.x) + uint(visible.y) + uint(visible.z) + uint(visible.w);
     }
     atomicAdd(total, count);

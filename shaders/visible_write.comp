@@ -6,7 +6,7 @@
 
 layout(local_size_x = kCountThreads) in;
 layout(scalar, push_constant) uniform Push { VisiblePush push; };
-layout(scalar, binding = 0) readonly buffer Extinction { vec4 extinction[]; };
+layout(binding = 0) uniform textureBuffer extinction;
 layout(scalar, binding = 1) readonly buffer GroupOffsets { uint groupOffsets[]; };
 layout(scalar, binding = 2) writeonly buffer VisibleVoxels { uint visibleVoxels[]; };
 
@@ -19,7 +19,7 @@ void main() {
   uint mask = 0;  // bit i: voxel first + i is visible
   if (first < push.voxelCount) {
     [[unroll]] for (uint q = 0; q < kCountVoxelsPerThread / 4; ++q) {
-      const bvec4 visible = greaterThan(extinction[first / 4 + q], vec4(0.0));
+      const bvec4 visible = greaterThan(texelFetch(extinction, int(first / 4 + q)), vec4(0.0));
       [[unroll]] for (uint c = 0; c < 4; ++c) mask |= uint(visible[c]) << (4 * q + c);
     }
   }

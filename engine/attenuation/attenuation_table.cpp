@@ -52,7 +52,7 @@ shader::SweepPush sweepPush(const DeviceVolume& volume, glm::ivec3 direction, bo
 
 Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Specialisation& constants) {
   return makeComputePipeline(device, code,
-                             {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                             {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
                               .pushConstantBytes = sizeof(shader::SweepPush)},
                              {shader::kSweepThreads, 1, 1}, constants);
 }
@@ -100,7 +100,7 @@ void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume, co
 void AttenuationSweep::recordRows(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const {
   for (int x : {-1, 1}) {
     const shader::SweepPush push = sweepPush(volume, {x, 0, 0}, table.settings.pathLengthCorrection);
-    const std::array<Binding, 2> bindings{&volume.extinction, &table.planes[std::size_t(directionIndex(x, 0, 0))]};
+    const std::array<Binding, 2> bindings{&volume.extinctionQuads, &table.planes[std::size_t(directionIndex(x, 0, 0))]};
     commands.dispatchLinear(rows_[x > 0 ? 0 : 1], bindings, push, std::uint64_t(push.lineCount));
   }
 }
@@ -116,7 +116,7 @@ void AttenuationSweep::recordBundles(Commands& commands, const DeviceVolume& vol
       shader::SweepPush push = sweepPush(volume, {x, yz}, table.settings.pathLengthCorrection);
       push.firstLine = first;
       push.lastLine = std::min(first + block, push.lineCount);
-      const std::array<Binding, 2> bindings{&volume.extinction,
+      const std::array<Binding, 2> bindings{&volume.extinctionQuads,
                                             &table.planes[std::size_t(directionIndex(x, yz.x, yz.y))]};
       commands.dispatchLinear(bundles_[std::size_t(1 - x)], bindings, push,
                               std::uint64_t(push.lastLine - first) * std::uint64_t(bundles));

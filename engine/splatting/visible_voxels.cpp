@@ -17,11 +17,13 @@ std::uint32_t groupsFor(const GridLayout& layout) {
   return std::uint32_t((layout.paddedVoxels() + shader::kCountVoxelsPerGroup - 1) / shader::kCountVoxelsPerGroup);
 }
 
-Pipeline makePass(const Device& device, ShaderCode code, std::size_t bindings, int threads) {
-  return makeComputePipeline(device, code,
-                             {.bindings = std::vector(bindings, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                              .pushConstantBytes = sizeof(shader::VisiblePush)},
-                             {threads, 1, 1});
+constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+constexpr VkDescriptorType kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+
+Pipeline makePass(const Device& device, ShaderCode code, std::vector<VkDescriptorType> bindings, int threads) {
+  return makeComputePipeline(
+      device, code, {.bindings = std::move(bindings), .pushConstantBytes = sizeof(shader::VisiblePush)},
+      {threads, 1, 1});
 }
 
 }  // namespace
@@ -39,18 +41,18 @@ VisibleVoxels makeVisibleVoxels(const Device& device, const DeviceVolume& volume
 }
 
 CompactionPass::CompactionPass(const Device& device)
-    : count_(makePass(device, {visible_count_spv, "visible count"}, 2, shader::kCountThreads)),
-      scan_(makePass(device, {visible_scan_spv, "visible scan"}, 2, shader::kScanThreads)),
-      write_(makePass(device, {visible_write_spv, "visible write"}, 3, shader::kCountThreads)) {}
+    : count_(makePass(device, {visible_count_spv, "visible count"}, {kTexels, kStorage}, shader::kCountThreads)),
+      scan_(makePass(device, {visible_scan_spv, "visible scan"}, {kStorage, kStorage}, shader::kScanThreads)),
+      write_(makePass(device, {visible_write_spv, "visible write"}, {kTexels, kStorage, kStorage}, shader::kCountThreads)) {}
 
 void CompactionPass::record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible) const {
   const std::uint32_t groups = groupsFor(volume.layout);
   const shader::VisiblePush push{.voxelCount = std::uint32_t(volume.layout.paddedVoxels()),
                                  .groupCount = groups,
                                  .chunkCount = visible.chunkCount};
-  const std::array<Binding, 2> count{&volume.extinction, &visible.groupOffsets};
+  const std::array<Binding, 2> count{&volume.extinctionQuads, &visible.groupOffsets};
   const std::array<Binding, 2> scan{&visible.groupOffsets, &visible.chunks};
-  const std::array<Binding, 3> write{&volume.extinction, &visible.groupOffsets, &visible.indices};
+  const std::array<Binding, 3> write{&volume.extinctionQuads, &visible.groupOffsets, &visible.indices};
   constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   const std::uint64_t threads = std::uint64_t(groups) * shader::kCountThreads;
   commands.beginPass("visible voxels");

@@ -47,7 +47,9 @@ DeviceVolume uploadVolume(const Device& device, const Volume& volume, const Clas
                       .activeVoxels = volume.activeVoxels};
   const VkDeviceSize bytes = result.layout.paddedVoxels() * sizeof(float);
   result.scalars = Buffer(device, bytes, MemoryUse::Device, "scalars");
-  result.extinction = Buffer(device, bytes, MemoryUse::Device, "extinction");
+  result.extinction =
+      Buffer(device, bytes, MemoryUse::Device, "extinction", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  result.extinctionQuads = QuadView(device, result.extinction);
   uploadScalars(device, volume, result);
 
   std::vector<glm::vec4> points;

@@ -29,6 +29,7 @@ struct DeviceVolume {
   GridLayout layout;
   Buffer scalars;         ///< float
   Buffer extinction;      ///< float, per world unit; written by ClassifyPass
+  QuadView extinctionQuads;
   Buffer transferPoints;  ///< vec4: opacity points, then colour points (transfer_function.glsl)
   std::uint32_t opacityPointCount = 0, colorPointCount = 0;  ///< 0 = physical
   glm::dmat4 indexToWorld{1.0};

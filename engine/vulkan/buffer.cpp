@@ -68,6 +68,16 @@ Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const ch
   address_ = vkGetBufferDeviceAddress(device.handle(), &address);
 }
 
+QuadView::QuadView(const Device& device, const Buffer& buffer) {
+  const VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
+                                    .buffer = buffer.handle(),
+                                    .format = VK_FORMAT_R32G32B32A32_SFLOAT,
+                                    .range = VK_WHOLE_SIZE};
+  VkBufferView view = VK_NULL_HANDLE;
+  VK_CHECK(vkCreateBufferView(device.handle(), &info, nullptr, &view));
+  view_ = OwnedBufferView(device.handle(), view);
+}
+
 void upload(const Device& device, const Buffer& buffer, std::span<const std::byte> data) {
   FV_CHECK_LE(data.size(), buffer.bytes());
   if (buffer.mapped() != nullptr) {

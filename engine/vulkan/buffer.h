@@ -35,6 +35,19 @@ class Buffer {
   std::byte* mapped_ = nullptr;
 };
 
+/// A buffer of floats seen as RGBA texels, four voxels each: loads through the texture path, which lavapipe gathers for
+/// all lanes at once where storage-buffer loads go lane by lane (sweeps take two thirds of the time).
+class QuadView {
+ public:
+  QuadView() = default;
+  /// The buffer needs VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT.
+  QuadView(const Device& device, const Buffer& buffer);
+  VkBufferView handle() const { return view_.get(); }
+
+ private:
+  OwnedBufferView view_;
+};
+
 /// Index of a memory type for `use` among `allowedTypes`. Prefers, in order, the properties that suit the use.
 std::uint32_t findMemoryType(const Device& device, std::uint32_t allowedTypes, MemoryUse use);
 

@@ -64,6 +64,7 @@ void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings,
   FV_CHECK_EQ(pushBytes, std::size_t(pipeline.interface().pushConstantBytes));
   std::vector<VkDescriptorBufferInfo> buffers(bindings.size());
   std::vector<VkDescriptorImageInfo> images(bindings.size());
+  std::vector<VkBufferView> views(bindings.size());
   std::vector<VkWriteDescriptorSet> writes;
   for (std::uint32_t i = 0; i < bindings.size(); ++i) {
     VkWriteDescriptorSet write{.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET,
@@ -73,6 +74,9 @@ void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings,
     if (const auto* buffer = std::get_if<const Buffer*>(&bindings[i])) {
       buffers[i] = {.buffer = (*buffer)->handle(), .offset = 0, .range = VK_WHOLE_SIZE};
       write.pBufferInfo = &buffers[i];
+    } else if (const auto* view = std::get_if<const QuadView*>(&bindings[i])) {
+      views[i] = (*view)->handle();
+      write.pTexelBufferView = &views[i];
     } else {
       images[i] = {.imageView = std::get<const RenderTarget*>(bindings[i])->view(),
                    .imageLayout = VK_IMAGE_LAYOUT_GENERAL};

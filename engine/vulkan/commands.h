@@ -14,8 +14,8 @@
 
 namespace freevoxels {
 
-/// What a binding of set 0 points to: a whole buffer, or a storage image in layout GENERAL.
-using Binding = std::variant<const Buffer*, const RenderTarget*>;
+/// What a binding of set 0 points to: a whole buffer, its texels, or a storage image in layout GENERAL.
+using Binding = std::variant<const Buffer*, const QuadView*, const RenderTarget*>;
 
 class Commands {
  public:

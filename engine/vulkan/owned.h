@@ -36,6 +36,7 @@ class Owned {
 
 using OwnedMemory = Owned<VkDeviceMemory, &vkFreeMemory>;
 using OwnedBuffer = Owned<VkBuffer, &vkDestroyBuffer>;
+using OwnedBufferView = Owned<VkBufferView, &vkDestroyBufferView>;
 using OwnedImage = Owned<VkImage, &vkDestroyImage>;
 using OwnedImageView = Owned<VkImageView, &vkDestroyImageView>;
 using OwnedShaderModule = Owned<VkShaderModule, &vkDestroyShaderModule>;

@@ -1,5 +1,7 @@
 // freevoxels info, generate --list and devices.
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "engine/volume/procedural.h"
@@ -58,7 +60,7 @@ TEST_F(InfoCommand, GenerateListsEveryKind) {
   const ProgramResult result = run("generate --list");
   expectSuccess(result);
   for (const ProceduralKind& kind : proceduralKinds())
-    EXPECT_NE(result.out.find("\n" + std::string(kind.name) + " "), std::string::npos) << kind.name;
+    EXPECT_NE(result.out.find(fmt::format("\n{} ", kind.name)), std::string::npos) << kind.name;
 }
 
 TEST_F(DevicesCommand, ListsDevicesThatCanBeChosen) {
