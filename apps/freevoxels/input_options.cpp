@@ -43,7 +43,9 @@ Volume openProcedural(const std::string& name, std::optional<int> resolution, st
     fail(ExitCode::OutOfMemory,
          "procedural:{} has {} voxels at --resolution {}, and {} fit: lower --resolution", name, needed, edge,
          available);
-  return makeProcedural(name, int(edge));
+  Volume volume = makeProcedural(name, int(edge));
+  cropToActive(volume);
+  return volume;
 }
 
 void InputOptions::add(CLI::App& app) {

@@ -40,6 +40,28 @@ double Volume::voxelSize() const {
   return std::cbrt(std::abs(glm::determinant(glm::dmat3(indexToWorld))));
 }
 
+void cropToActive(Volume& volume) {
+  glm::ivec3 low = volume.dimensions, high(-1);
+  for (int z = 0; z < volume.dimensions.z; ++z)
+    for (int y = 0; y < volume.dimensions.y; ++y)
+      for (int x = 0; x < volume.dimensions.x; ++x)
+        if (volume.values[volume.at(x, y, z)] != kInactiveVoxel) {
+          low = glm::min(low, glm::ivec3(x, y, z));
+          high = glm::max(high, glm::ivec3(x, y, z));
+        }
+  if (high.x < 0) return;
+  Volume cropped = volume;
+  cropped.dimensions = high - low + 1;
+  cropped.indexOrigin += low;
+  cropped.indexToWorld[3] = volume.indexToWorld * glm::dvec4(glm::dvec3(low), 1.0);
+  cropped.values.resize(cropped.voxelCount());
+  for (int z = 0; z < cropped.dimensions.z; ++z)
+    for (int y = 0; y < cropped.dimensions.y; ++y)
+      std::copy_n(&volume.values[volume.at(low.x, low.y + y, low.z + z)], cropped.dimensions.x,
+                  &cropped.values[cropped.at(0, y, z)]);
+  volume = std::move(cropped);
+}
+
 void summariseValues(Volume& volume) {
   using Range = tbb::blocked_range<std::size_t>;
   constexpr std::size_t kGrain = 1 << 16;

@@ -39,4 +39,8 @@ struct Volume {
 /// Fills activeVoxels, nanVoxels, negativeVoxels, minimum and maximum, and replaces NaN and infinities by 0.
 void summariseValues(Volume& volume);
 
+/// Drops the planes at the box's six sides that hold no active voxel; every voxel keeps its place in the world. A volume
+/// without active voxels stays as it is.
+void cropToActive(Volume& volume);
+
 }  // namespace freevoxels

@@ -25,6 +25,21 @@ double mass(const Volume& volume) {
   return sum * std::pow(volume.voxelSize(), 3);
 }
 
+TEST(Volume, CroppingKeepsEveryActiveVoxelInItsPlace) {
+  Volume volume = makeVolume({9, 8, 7}, glm::dmat4(0.5), [](int x, int y, int z) {
+    return x >= 2 && x <= 5 && y >= 1 && y <= 3 && z == 4 && (x + y) % 2 ? double(100 * x + 10 * y + z)
+                                                                         : double(kInactiveVoxel);
+  });
+  volume.indexToWorld[3] = {3.0, 4.0, 5.0, 1.0};
+  const Volume before = volume;
+  cropToActive(volume);
+  EXPECT_EQ(volume.dimensions, glm::ivec3(4, 3, 1));
+  EXPECT_EQ(volume.indexOrigin, glm::ivec3(2, 1, 4));
+  EXPECT_EQ(volume.activeVoxels, before.activeVoxels);
+  EXPECT_EQ(volume.values[volume.at(1, 1, 0)], before.values[before.at(3, 2, 4)]);
+  EXPECT_EQ(volume.indexToWorld * glm::dvec4(1, 1, 0, 1), before.indexToWorld * glm::dvec4(3, 2, 4, 1));
+}
+
 TEST(Volume, SummaryCountsActiveVoxelsOnly) {
   Volume volume;
   volume.dimensions = {6, 1, 1};
