@@ -126,7 +126,8 @@ struct SetupPush {
 
 // splat.vert and splat.frag
 struct SplatPush {
-  vec3 ray, rayX, rayY;  // the pixel ray D(x, y) = ray + x rayX + y rayY, index space
+  vec3 rayLength2;         // |D|² of the pixel ray D(x, y) in index space: rayLength2 . (1, x, y)
+  vec3 rayLength2Squares;  //   + rayLength2Squares . (x², xy, y²)
   vec2 viewportOrigin;   // of the enlarged viewport, pixels
   vec2 viewportSize;
 };

@@ -19,10 +19,12 @@ layout(location = 2) out float distanceSum;
 
 void main() {
   const vec2 pixel = gl_FragCoord.xy;
-  const vec3 ray = push.ray + pixel.x * push.rayX + pixel.y * push.rayY;
+  const float rayLength2 =
+      push.rayLength2.x + pixel.x * (push.rayLength2.y + push.rayLength2Squares.x * pixel.x) +
+      pixel.y * (push.rayLength2.z + push.rayLength2Squares.y * pixel.x + push.rayLength2Squares.z * pixel.y);
   const vec2 d = pixel - centerDistance.xy;
   const vec3 conic = conicDepth.xyz;
-  const float r2 = (d.x * (conic.x * d.x + 2.0 * conic.y * d.y) + conic.z * d.y * d.y) / dot(ray, ray);
+  const float r2 = (d.x * (conic.x * d.x + 2.0 * conic.y * d.y) + conic.z * d.y * d.y) / rayLength2;
   const float w = max(1.0 - r2, 0.0);
   const float weight = (w * w) * (w * w);
   colorEnergySum = weight * colorEnergy;

@@ -95,9 +95,10 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   frame.quads = 2.0 * reach > largestPoint || widest > double(device.limits().maxViewportDimensions[0]) ||
                 widest > double(device.limits().maxViewportDimensions[1]);
   frame.viewportMargin = frame.quads ? 0.0f : float(margin);
-  frame.splat = {.ray = rays.direction,
-                 .rayX = rays.directionX,
-                 .rayY = rays.directionY,
+  const glm::dvec3 ray = rays.direction, rayX = rays.directionX, rayY = rays.directionY;
+  frame.splat = {.rayLength2 = glm::dvec3(glm::dot(ray, ray), 2.0 * glm::dot(ray, rayX), 2.0 * glm::dot(ray, rayY)),
+                 .rayLength2Squares =
+                     glm::dvec3(glm::dot(rayX, rayX), 2.0 * glm::dot(rayX, rayY), glm::dot(rayY, rayY)),
                  .viewportOrigin = glm::vec2(-frame.viewportMargin),
                  .viewportSize = glm::vec2(settings.size) + 2.0f * frame.viewportMargin};
   return frame;

@@ -86,8 +86,6 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
     const std::uint64_t count = std::min<std::uint64_t>(inputs.volume.activeVoxels, shader::kSplatsPerChunk);
     splats_ = Buffer(device_, std::max<std::uint64_t>(count, 1) * sizeof(shader::Splat), MemoryUse::Device, "splats");
   }
-  upload(device_, frame_, std::as_bytes(std::span(&frame.setup, 1)));
-
   const std::array<Binding, 8> setup{&frame_,
                                      &inputs.volume.transferPoints,
                                      &inputs.table.planeAddresses,
@@ -101,6 +99,8 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
   for (const RenderTarget* target : targets.all())
     commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kOutput, kOutput);
 
+  commands.beginPass("splat set-up");
+  commands.update(frame_, frame.setup);
   for (std::uint32_t chunk = 0; chunk < inputs.visible.chunkCount; ++chunk) {
     const VkDeviceSize arguments = chunk * sizeof(shader::ChunkArguments);
     commands.beginPass("splat set-up");

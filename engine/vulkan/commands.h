@@ -49,6 +49,13 @@ class Commands {
   }
   void bind(const Pipeline& pipeline, std::span<const Binding> bindings, const void* push, std::size_t pushBytes);
 
+  /// Writes a few kilobytes, recorded with the commands, before what is recorded next.
+  template <typename Value>
+  void update(const Buffer& buffer, const Value& value) {
+    static_assert(sizeof(Value) <= 65536 && sizeof(Value) % 4 == 0);
+    vkCmdUpdateBuffer(buffer_, buffer.handle(), 0, sizeof(Value), &value);
+    barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+  }
   void copy(const Buffer& from, const Buffer& to, VkBufferCopy region);
   /// From layout GENERAL; leaves the target in TRANSFER_SRC_OPTIMAL.
   void copy(const RenderTarget& from, const Buffer& to);
