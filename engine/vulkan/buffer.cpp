@@ -12,17 +12,22 @@ namespace freevoxels {
 namespace {
 
 constexpr VkDeviceSize kStagingBytes = VkDeviceSize(32) << 20;
+constexpr VkMemoryPropertyFlags kVisible =
+    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
 
-}  // namespace
-
+/// Index of a memory type among `allowedTypes`: the first that has what the use wishes for, best wish first.
 std::uint32_t findMemoryType(const Device& device, std::uint32_t allowedTypes, MemoryUse use) {
-  constexpr VkMemoryPropertyFlags kVisible =
-      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
   std::array<VkMemoryPropertyFlags, 2> wishes{};
   switch (use) {
-    case MemoryUse::Device: wishes = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0}; break;
-    case MemoryUse::Upload: wishes = {kVisible, kVisible}; break;
-    case MemoryUse::Readback: wishes = {kVisible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, kVisible}; break;
+    case MemoryUse::Device:
+      wishes = {VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0};
+      break;
+    case MemoryUse::Upload:
+      wishes = {kVisible, kVisible};
+      break;
+    case MemoryUse::Readback:
+      wishes = {kVisible | VK_MEMORY_PROPERTY_HOST_CACHED_BIT, kVisible};
+      break;
   }
   const VkPhysicalDeviceMemoryProperties& memory = device.memory();
   for (VkMemoryPropertyFlags wish : wishes)
@@ -31,12 +36,30 @@ std::uint32_t findMemoryType(const Device& device, std::uint32_t allowedTypes, M
   fail(ExitCode::Device, "the device has no suitable memory type: choose another with --device");
 }
 
-Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const char* name, VkBufferUsageFlags extra)
+}  // namespace
+
+Allocation allocate(const Device& device, const VkMemoryRequirements& needs, MemoryUse use,
+                    bool deviceAddress) {
+  const std::uint32_t type = findMemoryType(device, needs.memoryTypeBits, use);
+  const VkMemoryAllocateFlagsInfo flags{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
+                                        .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
+  const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
+                                  .pNext = deviceAddress ? &flags : nullptr,
+                                  .allocationSize = needs.size,
+                                  .memoryTypeIndex = type};
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  VK_CHECK(vkAllocateMemory(device.handle(), &info, nullptr, &memory));
+  return {OwnedMemory(device.handle(), memory),
+          (device.memory().memoryTypes[type].propertyFlags & kVisible) == kVisible};
+}
+
+Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const char* name,
+               VkBufferUsageFlags extra)
     : bytes_(bytes) {
   const VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO,
                                 .size = bytes,
-                                .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
-                                         VK_BUFFER_USAGE_TRANSFER_DST_BIT |
+                                .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT |
+                                         VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT |
                                          VK_BUFFER_USAGE_SHADER_DEVICE_ADDRESS_BIT | extra};
   VkBuffer buffer = VK_NULL_HANDLE;
   VK_CHECK(vkCreateBuffer(device.handle(), &info, nullptr, &buffer));
@@ -45,26 +68,16 @@ Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const ch
 
   VkMemoryRequirements needs;
   vkGetBufferMemoryRequirements(device.handle(), buffer, &needs);
-  const std::uint32_t type = findMemoryType(device, needs.memoryTypeBits, use);
-  const VkMemoryAllocateFlagsInfo flags{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
-                                        .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
-  const VkMemoryAllocateInfo allocation{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-                                        .pNext = &flags,
-                                        .allocationSize = needs.size,
-                                        .memoryTypeIndex = type};
-  VkDeviceMemory memory = VK_NULL_HANDLE;
-  VK_CHECK(vkAllocateMemory(device.handle(), &allocation, nullptr, &memory));
-  memory_ = OwnedMemory(device.handle(), memory);
-  VK_CHECK(vkBindBufferMemory(device.handle(), buffer, memory, 0));
-
-  constexpr VkMemoryPropertyFlags kCoherent =
-      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  if ((device.memory().memoryTypes[type].propertyFlags & kCoherent) == kCoherent) {
+  Allocation allocation = allocate(device, needs, use, true);
+  memory_ = std::move(allocation.memory);
+  VK_CHECK(vkBindBufferMemory(device.handle(), buffer, memory_.get(), 0));
+  if (allocation.hostCoherent) {
     void* mapped = nullptr;
-    VK_CHECK(vkMapMemory(device.handle(), memory, 0, VK_WHOLE_SIZE, 0, &mapped));
+    VK_CHECK(vkMapMemory(device.handle(), memory_.get(), 0, VK_WHOLE_SIZE, 0, &mapped));
     mapped_ = static_cast<std::byte*>(mapped);
   }
-  const VkBufferDeviceAddressInfo address{.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO, .buffer = buffer};
+  const VkBufferDeviceAddressInfo address{.sType = VK_STRUCTURE_TYPE_BUFFER_DEVICE_ADDRESS_INFO,
+                                          .buffer = buffer};
   address_ = vkGetBufferDeviceAddress(device.handle(), &address);
 }
 
@@ -84,7 +97,8 @@ void upload(const Device& device, const Buffer& buffer, std::span<const std::byt
     std::memcpy(buffer.mapped(), data.data(), data.size());
     return;
   }
-  const Buffer staging(device, std::min<VkDeviceSize>(kStagingBytes, data.size()), MemoryUse::Upload, "staging");
+  const Buffer staging(device, std::min<VkDeviceSize>(kStagingBytes, data.size()), MemoryUse::Upload,
+                       "staging");
   for (VkDeviceSize done = 0; done < data.size(); done += staging.bytes()) {
     const VkDeviceSize size = std::min<VkDeviceSize>(staging.bytes(), data.size() - done);
     std::memcpy(staging.mapped(), data.data() + done, size);
@@ -100,7 +114,8 @@ void download(const Device& device, const Buffer& buffer, std::span<std::byte> d
     std::memcpy(data.data(), buffer.mapped(), data.size());
     return;
   }
-  const Buffer staging(device, std::min<VkDeviceSize>(kStagingBytes, data.size()), MemoryUse::Readback, "readback");
+  const Buffer staging(device, std::min<VkDeviceSize>(kStagingBytes, data.size()), MemoryUse::Readback,
+                       "readback");
   for (VkDeviceSize done = 0; done < data.size(); done += staging.bytes()) {
     const VkDeviceSize size = std::min<VkDeviceSize>(staging.bytes(), data.size() - done);
     Commands commands(device);

@@ -10,8 +10,8 @@
 namespace freevoxels {
 
 enum class MemoryUse {
-  Device,    ///< read and written by the device; mapped too where the device's memory is the host's (lavapipe)
-  Upload,    ///< written by the host, read once by the device
+  Device,  ///< read and written by the device; mapped too where the device's memory is the host's (lavapipe)
+  Upload,  ///< written by the host, read once by the device
   Readback,  ///< written by the device, read by the host
 };
 
@@ -19,7 +19,8 @@ class Buffer {
  public:
   Buffer() = default;
   /// Storage, transfer and device-address usage; `extra` adds others. `name` is shown by debuggers.
-  Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const char* name, VkBufferUsageFlags extra = 0);
+  Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const char* name,
+         VkBufferUsageFlags extra = 0);
 
   VkBuffer handle() const { return buffer_.get(); }
   VkDeviceSize bytes() const { return bytes_; }
@@ -35,8 +36,9 @@ class Buffer {
   std::byte* mapped_ = nullptr;
 };
 
-/// A buffer of floats seen as RGBA texels, four voxels each: loads through the texture path, which lavapipe gathers for
-/// all lanes at once where storage-buffer loads go lane by lane (sweeps take two thirds of the time).
+/// A buffer of floats seen as RGBA texels, four voxels each: loads through the texture path, which lavapipe
+/// gathers for all lanes at once where storage-buffer loads go lane by lane (sweeps take two thirds of the
+/// time).
 class QuadView {
  public:
   QuadView() = default;
@@ -48,10 +50,18 @@ class QuadView {
   OwnedBufferView view_;
 };
 
-/// Index of a memory type for `use` among `allowedTypes`. Prefers, in order, the properties that suit the use.
-std::uint32_t findMemoryType(const Device& device, std::uint32_t allowedTypes, MemoryUse use);
+struct Allocation {
+  OwnedMemory memory;
+  bool hostCoherent = false;  ///< can be mapped, and needs no flushing
+};
 
-/// Copies host data into `buffer`: directly where it is mapped, else in pieces through one staging buffer. Waits.
+/// One allocation that meets `needs`, of the memory type that suits `use` best; with a device address if
+/// asked for.
+Allocation allocate(const Device& device, const VkMemoryRequirements& needs, MemoryUse use,
+                    bool deviceAddress);
+
+/// Copies host data into `buffer`: directly where it is mapped, else in pieces through one staging buffer.
+/// Waits.
 void upload(const Device& device, const Buffer& buffer, std::span<const std::byte> data);
 
 /// Copies the first data.size() bytes of `buffer` to the host. Waits.

@@ -33,7 +33,8 @@ Commands::Commands(const Device& device) : device_(device) {
 
   const VkSemaphoreTypeCreateInfo typeInfo{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
                                            .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
-  const VkSemaphoreCreateInfo semaphoreInfo{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &typeInfo};
+  const VkSemaphoreCreateInfo semaphoreInfo{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
+                                            .pNext = &typeInfo};
   VkSemaphore semaphore = VK_NULL_HANDLE;
   VK_CHECK(vkCreateSemaphore(device.handle(), &semaphoreInfo, nullptr, &semaphore));
   timeline_ = OwnedSemaphore(device.handle(), semaphore);
@@ -49,7 +50,8 @@ Commands::Commands(const Device& device) : device_(device) {
 }
 
 void Commands::writeTimestamp() {
-  vkCmdWriteTimestamp2(buffer_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_.get(), std::uint32_t(passes_.size()));
+  vkCmdWriteTimestamp2(buffer_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_.get(),
+                       std::uint32_t(passes_.size()));
 }
 
 void Commands::beginPass(const std::string& name) {
@@ -111,17 +113,17 @@ void Commands::dispatchInvocations(const Pipeline& pipeline, std::uint64_t count
 
 void Commands::copy(const Buffer& from, const Buffer& to, VkBufferCopy region) {
   vkCmdCopyBuffer(buffer_, from.handle(), to.handle(), 1, &region);
-  barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT);
+  barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
 }
 
 void Commands::copy(const RenderTarget& from, const Buffer& to) {
   const VkBufferImageCopy region{
       .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
       .imageExtent = {std::uint32_t(from.size().x), std::uint32_t(from.size().y), 1}};
-  transition(from, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-             VK_PIPELINE_STAGE_2_TRANSFER_BIT);
-  vkCmdCopyImageToBuffer(buffer_, from.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.handle(), 1, &region);
-  barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_HOST_BIT);
+  transition(from, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+             VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+  vkCmdCopyImageToBuffer(buffer_, from.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.handle(), 1,
+                         &region);
 }
 
 void Commands::barrier(VkPipelineStageFlags2 from, VkPipelineStageFlags2 to) {
@@ -130,9 +132,8 @@ void Commands::barrier(VkPipelineStageFlags2 from, VkPipelineStageFlags2 to) {
                                 .srcAccessMask = kAnyAccess,
                                 .dstStageMask = to,
                                 .dstAccessMask = kAnyAccess};
-  const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
-                                    .memoryBarrierCount = 1,
-                                    .pMemoryBarriers = &memory};
+  const VkDependencyInfo dependency{
+      .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &memory};
   vkCmdPipelineBarrier2(buffer_, &dependency);
 }
 
@@ -155,6 +156,10 @@ void Commands::transition(const RenderTarget& target, VkImageLayout from, VkImag
 
 void Commands::submitAndWait(const Progress& progress) {
   writeTimestamp();
+  // What the device wrote is there for the host, which may have it mapped, and for whatever is submitted
+  // next.
+  barrier(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT);
   VK_CHECK(vkEndCommandBuffer(buffer_));
   const VkCommandBufferSubmitInfo command{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
                                           .commandBuffer = buffer_};
@@ -171,10 +176,13 @@ void Commands::submitAndWait(const Progress& progress) {
 
   const VkSemaphore semaphore = timeline_.get();
   const std::uint64_t done = 1;
-  const VkSemaphoreWaitInfo wait{
-      .sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO, .semaphoreCount = 1, .pSemaphores = &semaphore, .pValues = &done};
+  const VkSemaphoreWaitInfo wait{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
+                                 .semaphoreCount = 1,
+                                 .pSemaphores = &semaphore,
+                                 .pValues = &done};
   for (;;) {
-    const VkResult result = vkWaitSemaphores(device_.handle(), &wait, progress ? kProgressInterval : UINT64_MAX);
+    const VkResult result =
+        vkWaitSemaphores(device_.handle(), &wait, progress ? kProgressInterval : UINT64_MAX);
     if (result == VK_SUCCESS) return;
     if (result != VK_TIMEOUT) VK_CHECK(result);
     reportProgress(progress);
@@ -190,7 +198,8 @@ void Commands::reportProgress(const Progress& progress) const {
       device_.handle(), queries_.get(), 0, std::uint32_t(stamps.size()), stamps.size() * sizeof(Timestamp),
       stamps.data(), sizeof(Timestamp), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WITH_AVAILABILITY_BIT);
   if (result != VK_NOT_READY) VK_CHECK(result);
-  const auto started = std::ranges::count_if(stamps, [](const Timestamp& stamp) { return stamp.available != 0; });
+  const auto started =
+      std::ranges::count_if(stamps, [](const Timestamp& stamp) { return stamp.available != 0; });
   if (started == 0) return;
   const std::size_t current = std::min(std::size_t(started) - 1, passes_.size() - 1);
   progress(passes_[current], double(current) / double(passes_.size()));
@@ -203,7 +212,8 @@ std::vector<StageTime> Commands::times() const {
                                  VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
   std::vector<StageTime> times;
   for (std::size_t i = 0; i < passes_.size(); ++i) {
-    const double milliseconds = double(stamps[i + 1] - stamps[i]) * double(device_.limits().timestampPeriod) * 1e-6;
+    const double milliseconds =
+        double(stamps[i + 1] - stamps[i]) * double(device_.limits().timestampPeriod) * 1e-6;
     const auto same = std::ranges::find(times, passes_[i], &StageTime::name);
     if (same != times.end())
       same->milliseconds += milliseconds;

@@ -30,11 +30,13 @@ class Commands {
 
   /// `threads` invocations in each dimension, rounded up to workgroups.
   template <typename Push>
-  void dispatch(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push, glm::ivec3 threads) {
+  void dispatch(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
+                glm::ivec3 threads) {
     bind(pipeline, bindings, &push, sizeof(Push));
     dispatchThreads(pipeline, threads);
   }
-  /// `count` invocations in a row; the shader computes its index from gl_WorkGroupID.x + y * gl_NumWorkGroups.x.
+  /// `count` invocations in a row; the shader computes its index from gl_WorkGroupID.x + y *
+  /// gl_NumWorkGroups.x.
   template <typename Push>
   void dispatchLinear(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
                       std::uint64_t count) {
@@ -47,7 +49,8 @@ class Commands {
     bind(pipeline, bindings, &push, sizeof(Push));
     vkCmdDispatchIndirect(buffer_, arguments.handle(), offset);
   }
-  void bind(const Pipeline& pipeline, std::span<const Binding> bindings, const void* push, std::size_t pushBytes);
+  void bind(const Pipeline& pipeline, std::span<const Binding> bindings, const void* push,
+            std::size_t pushBytes);
 
   /// Writes a few kilobytes, recorded with the commands, before what is recorded next.
   template <typename Value>
@@ -62,8 +65,8 @@ class Commands {
 
   /// All writes of the `from` stages become visible to the `to` stages.
   void barrier(VkPipelineStageFlags2 from, VkPipelineStageFlags2 to);
-  void transition(const RenderTarget& target, VkImageLayout from, VkImageLayout to, VkPipelineStageFlags2 fromStage,
-                  VkPipelineStageFlags2 toStage);
+  void transition(const RenderTarget& target, VkImageLayout from, VkImageLayout to,
+                  VkPipelineStageFlags2 fromStage, VkPipelineStageFlags2 toStage);
 
   /// Ends the recording, runs it and waits; reports the passes as the device finishes them. Throws where the
   /// device does.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 #include <cstring>
 #include <optional>
@@ -16,6 +17,8 @@ namespace freevoxels {
 namespace {
 
 constexpr std::array kExtensions{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
+
+constexpr std::uint32_t kStorageBuffersPerStage = 8;  // splat_setup.comp
 
 /// The features that the engine uses, linked into one chain: queried to judge a device, enabled to open it.
 struct Features {
@@ -34,24 +37,31 @@ struct RequiredFeature {
   const char* name;
   VkBool32& (*of)(Features&);
 };
-#define FV_FEATURE(part, name) \
-  RequiredFeature { #name, [](Features& f) -> VkBool32& { return f.part.name; } }
+#define FV_FEATURE(part, name)                                   \
+  RequiredFeature {                                              \
+#name, [](Features & f) -> VkBool32& { return f.part.name; } \
+  }
 const std::array kRequiredFeatures{
-    FV_FEATURE(base.features, largePoints),      FV_FEATURE(base.features, independentBlend),
-    FV_FEATURE(vulkan12, scalarBlockLayout),     FV_FEATURE(vulkan12, bufferDeviceAddress),
-    FV_FEATURE(vulkan12, timelineSemaphore),     FV_FEATURE(vulkan12, hostQueryReset),
-    FV_FEATURE(vulkan13, synchronization2),      FV_FEATURE(vulkan13, dynamicRendering),
+    FV_FEATURE(base.features, largePoints),  FV_FEATURE(base.features, independentBlend),
+    FV_FEATURE(vulkan12, scalarBlockLayout), FV_FEATURE(vulkan12, bufferDeviceAddress),
+    FV_FEATURE(vulkan12, timelineSemaphore), FV_FEATURE(vulkan12, hostQueryReset),
+    FV_FEATURE(vulkan13, synchronization2),  FV_FEATURE(vulkan13, dynamicRendering),
     FV_FEATURE(vulkan13, maintenance4),
 };
 #undef FV_FEATURE
 
 std::string typeName(VkPhysicalDeviceType type) {
   switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return "discrete GPU";
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return "integrated GPU";
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return "virtual GPU";
-    case VK_PHYSICAL_DEVICE_TYPE_CPU: return "CPU";
-    default: return "other";
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return "discrete GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return "integrated GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return "virtual GPU";
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return "CPU";
+    default:
+      return "other";
   }
 }
 
@@ -98,10 +108,12 @@ bool canBlend(VkPhysicalDevice physical, VkFormat format) {
 }
 
 /// Everything that the engine needs of a device, in the order it is told to the user.
-std::vector<std::string> findRejections(VkPhysicalDevice physical, const VkPhysicalDeviceProperties& properties) {
+std::vector<std::string> findRejections(VkPhysicalDevice physical,
+                                        const VkPhysicalDeviceProperties& properties) {
   std::vector<std::string> reasons;
   if (properties.apiVersion < VK_API_VERSION_1_3) {
-    reasons.push_back(fmt::format("it has Vulkan {}.{}, and 1.3 is needed", VK_API_VERSION_MAJOR(properties.apiVersion),
+    reasons.push_back(fmt::format("it has Vulkan {}.{}, and 1.3 is needed",
+                                  VK_API_VERSION_MAJOR(properties.apiVersion),
                                   VK_API_VERSION_MINOR(properties.apiVersion)));
     return reasons;
   }
@@ -117,6 +129,10 @@ std::vector<std::string> findRejections(VkPhysicalDevice physical, const VkPhysi
   vkGetPhysicalDeviceFeatures2(physical, &features.base);
   for (const RequiredFeature& feature : kRequiredFeatures)
     if (!feature.of(features)) reasons.push_back(fmt::format("it lacks the feature {}", feature.name));
+  if (properties.limits.maxPerStageDescriptorStorageBuffers < kStorageBuffersPerStage)
+    reasons.push_back(fmt::format("it binds {} storage buffers in a stage, and {} are needed",
+                                  properties.limits.maxPerStageDescriptorStorageBuffers,
+                                  kStorageBuffersPerStage));
   if (!findQueueFamily(physical))
     reasons.push_back("it has no queue for both graphics and compute with timestamps");
   if (!canBlend(physical, VK_FORMAT_R32G32B32A32_SFLOAT) || !canBlend(physical, VK_FORMAT_R32_SFLOAT))
@@ -125,10 +141,12 @@ std::vector<std::string> findRejections(VkPhysicalDevice physical, const VkPhysi
 }
 
 DeviceDescription describe(int index, VkPhysicalDevice physical) {
-  VkPhysicalDeviceVulkan12Properties vulkan12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES};
-  VkPhysicalDeviceVulkan11Properties vulkan11{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES,
-                                              .pNext = &vulkan12};
-  VkPhysicalDeviceProperties2 base{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &vulkan11};
+  VkPhysicalDeviceVulkan12Properties vulkan12{.sType =
+                                                  VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES};
+  VkPhysicalDeviceVulkan11Properties vulkan11{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES, .pNext = &vulkan12};
+  VkPhysicalDeviceProperties2 base{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                   .pNext = &vulkan11};
   vkGetPhysicalDeviceProperties2(physical, &base);
   VkPhysicalDeviceMemoryProperties memory;
   vkGetPhysicalDeviceMemoryProperties(physical, &memory);
@@ -145,11 +163,18 @@ DeviceDescription describe(int index, VkPhysicalDevice physical) {
   return description;
 }
 
+std::string lowerCase(std::string_view text) {
+  std::string lower(text);
+  std::ranges::transform(lower, lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return lower;
+}
+
 bool matches(const DeviceDescription& device, std::string_view selector) {
   int index = -1;
   const auto [end, error] = std::from_chars(selector.data(), selector.data() + selector.size(), index);
   if (error == std::errc() && end == selector.data() + selector.size()) return device.index == index;
-  return device.uuid == selector || device.name.find(selector) != std::string::npos;
+  const std::string wanted = lowerCase(selector);
+  return device.uuid == wanted || lowerCase(device.name).find(wanted) != std::string::npos;
 }
 
 const DeviceDescription& choose(const std::vector<DeviceDescription>& devices, std::string_view selector) {
@@ -185,8 +210,10 @@ Device::Device(const Instance& instance, std::string_view selector) {
   description_ = choose(listDevices(instance), selector);
   physical_ = physicalDevices(instance)[std::size_t(description_.index)];
 
-  VkPhysicalDeviceVulkan11Properties vulkan11{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
-  VkPhysicalDeviceProperties2 base{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2, .pNext = &vulkan11};
+  VkPhysicalDeviceVulkan11Properties vulkan11{.sType =
+                                                  VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
+  VkPhysicalDeviceProperties2 base{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                   .pNext = &vulkan11};
   vkGetPhysicalDeviceProperties2(physical_, &base);
   properties_ = base.properties;
   maximumAllocation_ = vulkan11.maxMemoryAllocationSize;

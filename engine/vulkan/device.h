@@ -27,8 +27,8 @@ std::vector<DeviceDescription> listDevices(const Instance& instance);
 
 class Device {
  public:
-  /// `selector`: an index, UUID or (part of a) name; empty prefers a discrete GPU, then any GPU, then a CPU device.
-  /// Fails with ExitCode::Device and the reason why each device was rejected.
+  /// `selector`: an index, UUID or (part of a) name; empty prefers a discrete GPU, then any GPU, then a CPU
+  /// device. Fails with ExitCode::Device and the reason why each device was rejected.
   Device(const Instance& instance, std::string_view selector);
   ~Device();
   Device(const Device&) = delete;

@@ -1,26 +1,61 @@
 #include "engine/vulkan/image.h"
 
+#include <algorithm>
+
 #include "engine/core/error.h"
 #include "engine/vulkan/buffer.h"
 
 namespace freevoxels {
 
+namespace {
+
+constexpr VkImageUsageFlags kUsage =
+    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+
+}  // namespace
+
+void checkTargetFits(const Device& device, glm::ivec2 size, VkFormat format) {
+  VkImageFormatProperties properties;
+  VK_CHECK(vkGetPhysicalDeviceImageFormatProperties(device.physical(), format, VK_IMAGE_TYPE_2D,
+                                                    VK_IMAGE_TILING_OPTIMAL, kUsage, 0, &properties));
+  const VkExtent3D most = properties.maxExtent;
+  if (std::uint32_t(size.x) > most.width || std::uint32_t(size.y) > most.height)
+    fail(ExitCode::OutOfMemory,
+         "an image of {}x{} pixels is larger than the {}x{} of {}: use a smaller --size", size.x, size.y,
+         most.width, most.height, device.description().name);
+  const std::uint64_t bytes = std::uint64_t(size.x) * std::uint64_t(size.y) * bytesPerPixel(format);
+  const std::uint64_t largest =
+      std::min<std::uint64_t>(properties.maxResourceSize, device.maximumAllocation());
+  if (bytes > largest)
+    fail(ExitCode::OutOfMemory,
+         "an image of {}x{} pixels needs {} MiB in one piece and {} allocates at most {} MiB: use a smaller "
+         "--size",
+         size.x, size.y, bytes >> 20, device.description().name, largest >> 20);
+}
+
+std::uint64_t bytesPerPixel(VkFormat format) {
+  switch (format) {
+    case VK_FORMAT_R32_SFLOAT:
+      return 4;
+    case VK_FORMAT_R32G32B32A32_SFLOAT:
+      return 16;
+    default:
+      throw InternalError(fmt::format("no render target has format {}", int(format)));
+  }
+}
+
 RenderTarget::RenderTarget(const Device& device, glm::ivec2 size, VkFormat format, const char* name)
     : format_(format), size_(size) {
-  const auto limit = int(device.limits().maxImageDimension2D);
-  if (size.x > limit || size.y > limit)
-    fail(ExitCode::OutOfMemory, "an image of {}x{} pixels is larger than the {}x{} of this device: use a smaller --size",
-         size.x, size.y, limit, limit);
-  const VkImageCreateInfo info{
-      .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-      .imageType = VK_IMAGE_TYPE_2D,
-      .format = format,
-      .extent = {std::uint32_t(size.x), std::uint32_t(size.y), 1},
-      .mipLevels = 1,
-      .arrayLayers = 1,
-      .samples = VK_SAMPLE_COUNT_1_BIT,
-      .tiling = VK_IMAGE_TILING_OPTIMAL,
-      .usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT};
+  checkTargetFits(device, size, format);
+  const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
+                               .imageType = VK_IMAGE_TYPE_2D,
+                               .format = format,
+                               .extent = {std::uint32_t(size.x), std::uint32_t(size.y), 1},
+                               .mipLevels = 1,
+                               .arrayLayers = 1,
+                               .samples = VK_SAMPLE_COUNT_1_BIT,
+                               .tiling = VK_IMAGE_TILING_OPTIMAL,
+                               .usage = kUsage};
   VkImage image = VK_NULL_HANDLE;
   VK_CHECK(vkCreateImage(device.handle(), &info, nullptr, &image));
   image_ = OwnedImage(device.handle(), image);
@@ -28,17 +63,8 @@ RenderTarget::RenderTarget(const Device& device, glm::ivec2 size, VkFormat forma
 
   VkMemoryRequirements needs;
   vkGetImageMemoryRequirements(device.handle(), image, &needs);
-  if (needs.size > device.maximumAllocation())
-    fail(ExitCode::OutOfMemory, "an image of {}x{} pixels needs {} MiB and this device allocates at most {}: use a smaller --size",
-         size.x, size.y, needs.size >> 20, device.maximumAllocation() >> 20);
-  const VkMemoryAllocateInfo allocation{
-      .sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO,
-      .allocationSize = needs.size,
-      .memoryTypeIndex = findMemoryType(device, needs.memoryTypeBits, MemoryUse::Device)};
-  VkDeviceMemory memory = VK_NULL_HANDLE;
-  VK_CHECK(vkAllocateMemory(device.handle(), &allocation, nullptr, &memory));
-  memory_ = OwnedMemory(device.handle(), memory);
-  VK_CHECK(vkBindImageMemory(device.handle(), image, memory, 0));
+  memory_ = allocate(device, needs, MemoryUse::Device, false).memory;
+  VK_CHECK(vkBindImageMemory(device.handle(), image, memory_.get(), 0));
 
   const VkImageViewCreateInfo viewInfo{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
                                        .image = image,

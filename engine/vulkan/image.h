@@ -8,6 +8,12 @@
 
 namespace freevoxels {
 
+/// Of the formats that targets have.
+std::uint64_t bytesPerPixel(VkFormat format);
+
+/// Fails with ExitCode::OutOfMemory where the device cannot make a target of this size at all.
+void checkTargetFits(const Device& device, glm::ivec2 size, VkFormat format);
+
 class RenderTarget {
  public:
   RenderTarget() = default;

@@ -19,7 +19,8 @@ constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
 VKAPI_ATTR VkBool32 VKAPI_CALL onValidationMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
                                                    VkDebugUtilsMessageTypeFlagsEXT,
-                                                   const VkDebugUtilsMessengerCallbackDataEXT* data, void* counter) {
+                                                   const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                                   void* counter) {
   ++*static_cast<std::atomic<std::uint64_t>*>(counter);
   spdlog::error("Vulkan validation: {}", data->pMessage);
   return VK_FALSE;
@@ -41,9 +42,11 @@ void checkVulkan(VkResult result, const char* call, const char* file, int line) 
   if (result == VK_SUCCESS) return;
   const std::string name = fmt::format("VkResult {}", int(result));
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-    fail(ExitCode::OutOfMemory, "the device is out of memory ({} in {}): use a smaller volume or image", name, call);
+    fail(ExitCode::OutOfMemory, "the device is out of memory ({} in {}): use a smaller volume or image", name,
+         call);
   if (result == VK_ERROR_DEVICE_LOST)
-    fail(ExitCode::Device, "the device was lost ({} in {}): try again, or choose another with --device", name, call);
+    fail(ExitCode::Device, "the device was lost ({} in {}): try again, or choose another with --device", name,
+         call);
   throw InternalError(fmt::format("{}:{}: {} returned {}", file, line, call, name));
 }
 
@@ -74,10 +77,16 @@ Instance::Instance(bool validation) {
           VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
       .pfnUserCallback = onValidationMessage,
       .pUserData = &validationMessages_};
-  const std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME};
+  // Synchronisation validation is off by default, and missing barriers are what the CPU device forgives.
+  const std::array enabled{VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
+  const VkValidationFeaturesEXT features{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
+                                         .pNext = &messenger,
+                                         .enabledValidationFeatureCount = std::uint32_t(enabled.size()),
+                                         .pEnabledValidationFeatures = enabled.data()};
+  const std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
   const VkInstanceCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
-      .pNext = validation ? &messenger : nullptr,
+      .pNext = validation ? &features : nullptr,
       .pApplicationInfo = &application,
       .enabledLayerCount = validation ? 1u : 0u,
       .ppEnabledLayerNames = &kValidationLayer,

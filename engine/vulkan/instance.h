@@ -11,8 +11,8 @@ namespace freevoxels {
 /// True when the environment has FREEVOXELS_VALIDATION=1, as the tests do.
 bool validationRequested();
 
-/// Fails with ExitCode::Device, and says what to install, where there is no Vulkan loader or no driver; also where
-/// validation is asked for and the layer is missing.
+/// Fails with ExitCode::Device, and says what to install, where there is no Vulkan loader or no driver; also
+/// where validation is asked for and the layer is missing.
 class Instance {
  public:
   explicit Instance(bool validation);

@@ -37,6 +37,49 @@ class SpecialisationInfo {
   VkSpecializationInfo info_{};
 };
 
+/// Everything of an additive pipeline that is the same for all of them.
+struct FixedState {
+  FixedState(VkPrimitiveTopology topology, std::size_t attachments) : blends(attachments, kAdditive) {
+    assembly.topology = topology;
+    blend.attachmentCount = std::uint32_t(blends.size());
+    blend.pAttachments = blends.data();
+  }
+  FixedState(const FixedState&) = delete;
+
+  static constexpr VkPipelineColorBlendAttachmentState kAdditive{
+      .blendEnable = VK_TRUE,
+      .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
+      .dstColorBlendFactor = VK_BLEND_FACTOR_ONE,
+      .colorBlendOp = VK_BLEND_OP_ADD,
+      .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
+      .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
+      .alphaBlendOp = VK_BLEND_OP_ADD,
+      .colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
+                        VK_COLOR_COMPONENT_A_BIT};
+  static constexpr std::array kDynamic{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
+
+  std::vector<VkPipelineColorBlendAttachmentState> blends;
+  VkPipelineVertexInputStateCreateInfo vertexInput{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
+  VkPipelineInputAssemblyStateCreateInfo assembly{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO};
+  VkPipelineViewportStateCreateInfo viewport{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO, .viewportCount = 1, .scissorCount = 1};
+  VkPipelineRasterizationStateCreateInfo raster{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
+      .polygonMode = VK_POLYGON_MODE_FILL,
+      .cullMode = VK_CULL_MODE_NONE,
+      .lineWidth = 1.0f};
+  VkPipelineMultisampleStateCreateInfo multisample{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
+      .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
+  VkPipelineColorBlendStateCreateInfo blend{.sType =
+                                                VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO};
+  VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
+                                           .dynamicStateCount = std::uint32_t(kDynamic.size()),
+                                           .pDynamicStates = kDynamic.data()};
+};
+
 }  // namespace
 
 Pipeline::Pipeline(const Device& device, PipelineInterface interface, VkPipelineBindPoint bindPoint)
@@ -59,11 +102,12 @@ Pipeline::Pipeline(const Device& device, PipelineInterface interface, VkPipeline
   setLayout_ = OwnedSetLayout(device.handle(), set);
 
   const VkPushConstantRange range{.stageFlags = stages, .offset = 0, .size = interface_.pushConstantBytes};
-  const VkPipelineLayoutCreateInfo layoutInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
-                                              .setLayoutCount = 1,
-                                              .pSetLayouts = &set,
-                                              .pushConstantRangeCount = interface_.pushConstantBytes > 0 ? 1u : 0u,
-                                              .pPushConstantRanges = &range};
+  const VkPipelineLayoutCreateInfo layoutInfo{
+      .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
+      .setLayoutCount = 1,
+      .pSetLayouts = &set,
+      .pushConstantRangeCount = interface_.pushConstantBytes > 0 ? 1u : 0u,
+      .pPushConstantRanges = &range};
   VkPipelineLayout layout = VK_NULL_HANDLE;
   VK_CHECK(vkCreatePipelineLayout(device.handle(), &layoutInfo, nullptr, &layout));
   layout_ = OwnedPipelineLayout(device.handle(), layout);
@@ -75,13 +119,14 @@ Pipeline makeComputePipeline(const Device& device, const ShaderCode& code, Pipel
   result.workgroup_ = workgroup;
   const OwnedShaderModule module = makeModule(device, code);
   const SpecialisationInfo specialisation(constants);
-  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-                                         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                                                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                                                   .module = module.get(),
-                                                   .pName = "main",
-                                                   .pSpecializationInfo = specialisation.get()},
-                                         .layout = result.layout()};
+  const VkComputePipelineCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+      .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                .module = module.get(),
+                .pName = "main",
+                .pSpecializationInfo = specialisation.get()},
+      .layout = result.layout()};
   VkPipeline pipeline = VK_NULL_HANDLE;
   VK_CHECK(vkCreateComputePipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
   result.pipeline_ = OwnedPipeline(device.handle(), pipeline);
@@ -107,39 +152,7 @@ Pipeline makeAdditivePipeline(const Device& device, const ShaderCode& vertex, co
                                       .module = fragmentModule.get(),
                                       .pName = "main",
                                       .pSpecializationInfo = specialisation.get()}};
-  const VkPipelineVertexInputStateCreateInfo vertexInput{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO};
-  const VkPipelineInputAssemblyStateCreateInfo assembly{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO, .topology = topology};
-  const VkPipelineViewportStateCreateInfo viewport{.sType = VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO,
-                                                   .viewportCount = 1,
-                                                   .scissorCount = 1};
-  const VkPipelineRasterizationStateCreateInfo raster{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO,
-      .polygonMode = VK_POLYGON_MODE_FILL,
-      .cullMode = VK_CULL_MODE_NONE,
-      .lineWidth = 1.0f};
-  const VkPipelineMultisampleStateCreateInfo multisample{
-      .sType = VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO,
-      .rasterizationSamples = VK_SAMPLE_COUNT_1_BIT};
-  const VkPipelineColorBlendAttachmentState additive{
-      .blendEnable = VK_TRUE,
-      .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
-      .dstColorBlendFactor = VK_BLEND_FACTOR_ONE,
-      .colorBlendOp = VK_BLEND_OP_ADD,
-      .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
-      .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
-      .alphaBlendOp = VK_BLEND_OP_ADD,
-      .colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
-                        VK_COLOR_COMPONENT_A_BIT};
-  const std::vector<VkPipelineColorBlendAttachmentState> blends(attachments.size(), additive);
-  const VkPipelineColorBlendStateCreateInfo blend{.sType = VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO,
-                                                  .attachmentCount = std::uint32_t(blends.size()),
-                                                  .pAttachments = blends.data()};
-  const std::array dynamicStates{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  const VkPipelineDynamicStateCreateInfo dynamic{.sType = VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO,
-                                                 .dynamicStateCount = std::uint32_t(dynamicStates.size()),
-                                                 .pDynamicStates = dynamicStates.data()};
+  const FixedState state(topology, attachments.size());
   const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
                                                 .colorAttachmentCount = std::uint32_t(attachments.size()),
                                                 .pColorAttachmentFormats = attachments.data()};
@@ -147,13 +160,13 @@ Pipeline makeAdditivePipeline(const Device& device, const ShaderCode& vertex, co
                                           .pNext = &rendering,
                                           .stageCount = std::uint32_t(stages.size()),
                                           .pStages = stages.data(),
-                                          .pVertexInputState = &vertexInput,
-                                          .pInputAssemblyState = &assembly,
-                                          .pViewportState = &viewport,
-                                          .pRasterizationState = &raster,
-                                          .pMultisampleState = &multisample,
-                                          .pColorBlendState = &blend,
-                                          .pDynamicState = &dynamic,
+                                          .pVertexInputState = &state.vertexInput,
+                                          .pInputAssemblyState = &state.assembly,
+                                          .pViewportState = &state.viewport,
+                                          .pRasterizationState = &state.raster,
+                                          .pMultisampleState = &state.multisample,
+                                          .pColorBlendState = &state.blend,
+                                          .pDynamicState = &state.dynamic,
                                           .layout = result.layout()};
   VkPipeline pipeline = VK_NULL_HANDLE;
   VK_CHECK(vkCreateGraphicsPipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));

@@ -56,8 +56,8 @@ class Pipeline {
 Pipeline makeComputePipeline(const Device& device, const ShaderCode& code, PipelineInterface interface,
                              glm::ivec3 workgroup, const Specialisation& constants = {});
 
-/// No vertex input (vertices are pulled), no depth, no culling; every attachment is blended with source + destination.
-/// Viewport and scissor are dynamic.
+/// No vertex input (vertices are pulled), no depth, no culling; every attachment is blended with source +
+/// destination. Viewport and scissor are dynamic.
 Pipeline makeAdditivePipeline(const Device& device, const ShaderCode& vertex, const ShaderCode& fragment,
                               PipelineInterface interface, VkPrimitiveTopology topology,
                               std::span<const VkFormat> attachments, const Specialisation& constants = {});

@@ -47,7 +47,8 @@ TEST_F(VulkanTest, UploadAndDownloadReturnTheSameBytes) {
 
 TEST_F(VulkanTest, PassesAreTimed) {
   Commands commands(device());
-  const Buffer from(device(), 1 << 20, MemoryUse::Device, "from"), to(device(), 1 << 20, MemoryUse::Device, "to");
+  const Buffer from(device(), 1 << 20, MemoryUse::Device, "from"),
+      to(device(), 1 << 20, MemoryUse::Device, "to");
   commands.beginPass("first");
   commands.copy(from, to, {.size = from.bytes()});
   commands.beginPass("second");
@@ -62,10 +63,24 @@ TEST_F(VulkanTest, PassesAreTimed) {
 TEST(Validation, NoticesAMistake) {
   Instance instance(true);
   const Device device(instance, "");
-  VkBufferCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = 0, .usage = 0};  // both invalid
+  VkBufferCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO, .size = 0, .usage = 0};  // both invalid
   VkBuffer buffer = VK_NULL_HANDLE;
   if (vkCreateBuffer(device.handle(), &info, nullptr, &buffer) == VK_SUCCESS)
     vkDestroyBuffer(device.handle(), buffer, nullptr);
+  EXPECT_GT(instance.validationMessageCount(), 0u);
+}
+
+TEST(Validation, NoticesAMissingBarrier) {
+  Instance instance(true);
+  const Device device(instance, "");
+  const Buffer a(device, 1024, MemoryUse::Device, "a"), b(device, 1024, MemoryUse::Device, "b");
+  Commands commands(device);
+  const VkBufferCopy region{.size = 1024};
+  vkCmdCopyBuffer(commands.handle(), a.handle(), b.handle(), 1, &region);
+  vkCmdCopyBuffer(commands.handle(), b.handle(), a.handle(), 1,
+                  &region);  // reads what the first may still write
+  commands.submitAndWait();
   EXPECT_GT(instance.validationMessageCount(), 0u);
 }
 
