@@ -20,20 +20,23 @@ constexpr std::uint64_t kBytesPerPaddedVoxel = 2 * sizeof(float) + kDirectionCou
 /// Bytes of the largest buffer of voxels that the passes can bind.
 std::uint64_t largestBinding(const Device& device) {
   const std::uint64_t texels = std::uint64_t(device.limits().maxTexelBufferElements) * sizeof(glm::vec4);
-  return std::min({std::uint64_t(device.limits().maxStorageBufferRange), texels, std::uint64_t(device.maximumAllocation())});
+  return std::min({std::uint64_t(device.limits().maxStorageBufferRange), texels,
+                   std::uint64_t(device.maximumAllocation())});
 }
 
 void checkFits(const Device& device, glm::ivec3 dimensions) {
   const std::uint64_t binding = GridLayout(dimensions).paddedVoxels() * sizeof(float);
   if (binding > largestBinding(device))
     fail(ExitCode::OutOfMemory,
-         "a volume of {}x{}x{} voxels needs a buffer of {} MiB and {} binds at most {} MiB: crop or resample the volume",
+         "a volume of {}x{}x{} voxels needs a buffer of {} MiB and {} binds at most {} MiB: crop or resample "
+         "the volume",
          dimensions.x, dimensions.y, dimensions.z, binding >> 20, device.description().name,
          largestBinding(device) >> 20);
   const std::uint64_t total = volumeMemory(dimensions).total();
   if (total > device.description().memoryBytes)
     fail(ExitCode::OutOfMemory,
-         "a volume of {}x{}x{} voxels needs {} MiB of device memory and {} has {} MiB: crop or resample the volume",
+         "a volume of {}x{}x{} voxels needs {} MiB of device memory and {} has {} MiB: crop or resample the "
+         "volume",
          dimensions.x, dimensions.y, dimensions.z, total >> 20, device.description().name,
          device.description().memoryBytes >> 20);
 }
@@ -41,7 +44,8 @@ void checkFits(const Device& device, glm::ivec3 dimensions) {
 /// Copies a target to the host through a read-back buffer; recorded with the frame, read after it.
 class TargetReadback {
  public:
-  TargetReadback(const Device& device, Commands& commands, const RenderTarget& target, std::size_t bytesPerPixel)
+  TargetReadback(const Device& device, Commands& commands, const RenderTarget& target,
+                 std::size_t bytesPerPixel)
       : buffer_(device, std::uint64_t(target.size().x) * std::uint64_t(target.size().y) * bytesPerPixel,
                 MemoryUse::Readback, "picture") {
     commands.copy(target, buffer_);
@@ -68,7 +72,8 @@ VolumeMemory volumeMemory(glm::ivec3 dimensions) {
 }
 
 std::uint64_t maximumVoxels(const Device& device) {
-  return std::min(largestBinding(device) / sizeof(float), device.description().memoryBytes / kBytesPerPaddedVoxel);
+  return std::min(largestBinding(device) / sizeof(float),
+                  device.description().memoryBytes / kBytesPerPaddedVoxel);
 }
 
 struct Renderer::State {
@@ -107,6 +112,7 @@ Renderer::~Renderer() = default;
 
 Image Renderer::render(const Camera& camera, const FrameSettings& settings, const Progress& progress) {
   checkCamera(camera);
+  checkFrameFits(state_->device, settings);
   State& state = *state_;
   state.frameTimes.clear();
   if (!state.splats || state.splats->withDistance() != settings.depth) {
@@ -140,7 +146,9 @@ std::vector<StageTime> Renderer::timings() const {
   return times;
 }
 
-std::uint64_t Renderer::visibleVoxelCount() const { return downloadVisibleCount(state_->device, state_->visible); }
+std::uint64_t Renderer::visibleVoxelCount() const {
+  return downloadVisibleCount(state_->device, state_->visible);
+}
 
 std::vector<std::vector<std::uint8_t>> Renderer::downloadTable() const {
   return freevoxels::downloadTable(state_->device, state_->volume.layout, state_->table);

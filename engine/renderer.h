@@ -22,13 +22,18 @@ struct VolumeMemory {
 };
 VolumeMemory volumeMemory(glm::ivec3 dimensions);
 
-/// How many voxels a volume may have to be rendered on this device at all (rows are padded: see volumeMemory).
+/// How many voxels a volume may have to be rendered on this device at all (rows are padded: see
+/// volumeMemory).
 std::uint64_t maximumVoxels(const Device& device);
+
+/// Fails with ExitCode::OutOfMemory where this device cannot hold such a frame: before any other work.
+void checkFrameFits(const Device& device, const FrameSettings& settings);
 
 class Renderer {
  public:
-  /// Uploads the volume and makes everything that does not depend on the camera: extinction, attenuation table, list of
-  /// visible voxels. Fails with ExitCode::OutOfMemory, before allocating, where the device's limits are too small.
+  /// Uploads the volume and makes everything that does not depend on the camera: extinction, attenuation
+  /// table, list of visible voxels. Fails with ExitCode::OutOfMemory, before allocating, where the device's
+  /// limits are too small.
   Renderer(const Device& device, const Volume& volume, const Classification& classification,
            const TableSettings& table, const Progress& progress = {});
   ~Renderer();

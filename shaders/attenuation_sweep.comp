@@ -1,13 +1,15 @@
 #version 460
 // The attenuation table for one lattice direction that is not along x: Subr et al. 2007, Section 3.1, Eq. 5.
 //
-// A thread marches a bundle of kVoxels lattice lines that are neighbours in x from the side at which they enter the
-// volume, plane by plane, and writes each voxel's optical depth to the outside, exclusive of the voxel, before it adds
-// the voxel's own. Lines that leave the box sideways enter again on the other side with an optical depth of 0: as many
-// lines as the entry plane has voxels cover every voxel exactly once, and no face needs a case of its own.
+// A thread marches a bundle of kVoxels lattice lines that are neighbours in x from the side at which they
+// enter the volume, plane by plane, and writes each voxel's optical depth to the outside, exclusive of the
+// voxel, before it adds the voxel's own. Lines that leave the box sideways enter again on the other side with
+// an optical depth of 0: as many lines as the entry plane has voxels cover every voxel exactly once, and no
+// face needs a case of its own.
 //
-// With a step in x the bundle moves by one voxel a plane while the words it writes do not. So a thread writes the aligned
-// words of a window that moves by four voxels every four planes, and carries three lines more than it writes.
+// With a step in x the bundle moves by one voxel a plane while the words it writes do not. So a thread writes
+// the aligned words of a window that moves by four voxels every four planes, and carries three lines more
+// than it writes.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "attenuation_code.glsl"

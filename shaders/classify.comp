@@ -1,6 +1,7 @@
 #version 460
-// Scalar -> extinction, four voxels an invocation. Physical: density x scale; or a transfer function whose opacity is per
-// unit distance. The CPU's classify() (engine/volume/classification.h) says the same in double precision.
+// Scalar -> extinction, four voxels an invocation. Physical: density x scale; or a transfer function whose
+// opacity is per unit distance. The CPU's classify() (engine/volume/classification.h) says the same in double
+// precision.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #define TRANSFER_BINDING 1
@@ -19,8 +20,11 @@ float opticalDepthOf(float opacity) {
 
 float extinctionOf(float scalar) {
   if (scalar == kInactiveScalar) return 0.0;
-  if (push.opacityPoints == 0) return max(scalar, 0.0) * push.densityScale;
-  return opticalDepthOf(min(evaluatePoints(0, push.opacityPoints, scalar).x, kMaximumOpacity)) / push.unitDistance;
+  const float extinction =
+      push.opacityPoints == 0
+          ? max(scalar, 0.0) * push.densityScale
+          : opticalDepthOf(min(evaluatePoints(0, push.opacityPoints, scalar).x, kMaximumOpacity)) / push.unitDistance;
+  return min(extinction, kMaximumExtinction);
 }
 
 void main() {

@@ -1,6 +1,6 @@
-// Transmittance from a voxel towards a general direction, from the table's 26 lattice directions: Subr et al. 2007,
-// Section 3.3, there with the nearest one. Include after interface.h and attenuation_code.glsl, and define
-// PLANE_ADDRESS(direction) as the device address of that direction's codes.
+// Transmittance from a voxel towards a general direction, from the table's 26 lattice directions: Subr et al.
+// 2007, Section 3.3, there with the nearest one. Include after interface.h and attenuation_code.glsl, and
+// define PLANE_ADDRESS(direction) as the device address of that direction's codes.
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
@@ -17,7 +17,8 @@ float storedTransmittance(int code, ivec3 direction, uint voxel) {
   return decodeTransmittance(code, bitfieldExtract(word, int(voxel & 3) * 8, 8));
 }
 
-// `direction` is divided by its largest component: a point on the cube's face, between four lattice directions.
+// `direction` is divided by its largest component: a point on the cube's face, between four lattice
+// directions.
 float transmittanceTowards(int code, int lookup, vec3 direction, uint voxel) {
   if (lookup == kLookupNearest) return storedTransmittance(code, ivec3(round(direction)), voxel);
   const vec3 low = floor(min(direction, 0.999999));

@@ -1,5 +1,5 @@
-// What the C++ side and the shaders share: push constants, records and constants. Included by both; the layouts are
-// equal because the shaders use scalar block layout.
+// What the C++ side and the shaders share: push constants, records and constants. Included by both; the
+// layouts are equal because the shaders use scalar block layout.
 #ifndef FREEVOXELS_INTERFACE_H
 #define FREEVOXELS_INTERFACE_H
 
@@ -16,8 +16,8 @@ using uint = std::uint32_t;
 #define FV_CONSTANT const
 #endif
 
-// Rows of voxels are padded to a multiple of this with voxels that hold nothing, so that a thread of the sweeps owns
-// whole words: 16 voxels a thread are fastest on lavapipe, 4 (one 32-bit word of codes) on GPUs.
+// Rows of voxels are padded to a multiple of this with voxels that hold nothing, so that a thread of the
+// sweeps owns whole words: 16 voxels a thread are fastest on lavapipe, 4 (one 32-bit word of codes) on GPUs.
 FV_CONSTANT int kRowAlignment = 16;
 
 // Voxels that one invocation and one workgroup of the visible-voxel passes look at.
@@ -31,7 +31,8 @@ FV_CONSTANT int kSweepThreads = 32;
 FV_CONSTANT int kSplatThreads = 64;
 FV_CONSTANT int kResolveTile = 8;
 
-// Splats are set up and drawn in chunks of this many: the records of one chunk are 52 MiB, whatever the volume.
+// Splats are set up and drawn in chunks of this many: the records of one chunk are 52 MiB, whatever the
+// volume.
 FV_CONSTANT int kSplatsPerChunk = 1 << 20;
 
 // The footprint, f(r) = peak (1 - r²/R²)⁴: engine/splatting/footprint.h says why.
@@ -45,6 +46,8 @@ FV_CONSTANT float kMaximumDepth = 16.0f;  // optical depth that the code depth8 
 FV_CONSTANT float kInactiveScalar = -3.402823466e38f;
 // Must be engine/volume/classification.h's kMaximumOpacity.
 FV_CONSTANT float kMaximumOpacity = 1.0f - 1.0f / 4096.0f;
+// Must be engine/volume/classification.h's kMaximumExtinction.
+FV_CONSTANT float kMaximumExtinction = 1e30f;
 
 FV_CONSTANT int kCodeDepth8 = 0;
 FV_CONSTANT int kCodeLinear8 = 1;
@@ -100,8 +103,8 @@ struct Splat {
   float distance;     // from the eye plane along the viewing axis, world units
 };
 
-// The frame, as splat_setup.comp needs it. Index space is relative to the middle of the volume, so that 32-bit floats
-// keep their precision far from the origin.
+// The frame, as splat_setup.comp needs it. Index space is relative to the middle of the volume, so that
+// 32-bit floats keep their precision far from the origin.
 struct SetupFrame {
   mat3 indexToWorld;       // linear part
   mat3 indexToPixel;       // index offset -> (x t, y t, t), orthographic (x, y, t): see PixelRays for x, y and t
@@ -126,7 +129,8 @@ struct SetupPush {
 
 // splat.vert and splat.frag
 struct SplatPush {
-  vec3 rayLength2;         // |D|² of the pixel ray D(x, y) in index space: rayLength2 . (1, x, y)
+  vec2 imageMiddle;        // pixels
+  vec3 rayLength2;         // |D|² of the pixel ray in index space at (x, y) from the middle: rayLength2 . (1, x, y)
   vec3 rayLength2Squares;  //   + rayLength2Squares . (x², xy, y²)
   vec2 viewportOrigin;   // of the enlarged viewport, pixels
   vec2 viewportSize;

@@ -1,7 +1,7 @@
 #version 460
-// What a voxel adds to a pixel's sums: Subr et al. 2007, Eq. 10, with the footprint evaluated on the pixel's own ray, which
-// is exact for perspective and for any voxel shape. The ray's world length per index length is common to all voxels of
-// the pixel: resolve.comp multiplies by it.
+// What a voxel adds to a pixel's sums: Subr et al. 2007, Eq. 10, with the footprint evaluated on the pixel's
+// own ray, which is exact for perspective and for any voxel shape. The ray's world length per index length is
+// common to all voxels of the pixel: resolve.comp multiplies by it.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 
@@ -19,9 +19,10 @@ layout(location = 2) out float distanceSum;
 
 void main() {
   const vec2 pixel = gl_FragCoord.xy;
+  const vec2 p = pixel - push.imageMiddle;
   const float rayLength2 =
-      push.rayLength2.x + pixel.x * (push.rayLength2.y + push.rayLength2Squares.x * pixel.x) +
-      pixel.y * (push.rayLength2.z + push.rayLength2Squares.y * pixel.x + push.rayLength2Squares.z * pixel.y);
+      push.rayLength2.x + p.x * (push.rayLength2.y + push.rayLength2Squares.x * p.x) +
+      p.y * (push.rayLength2.z + push.rayLength2Squares.y * p.x + push.rayLength2Squares.z * p.y);
   const vec2 d = pixel - centerDistance.xy;
   const vec3 conic = conicDepth.xyz;
   const float r2 = (d.x * (conic.x * d.x + 2.0 * conic.y * d.y) + conic.z * d.y * d.y) / rayLength2;

@@ -1,5 +1,6 @@
 #version 460
-// A splat as a point sprite, or as a quad where points of its size are beyond the device: vertices pulled from the records.
+// A splat as a point sprite, or as a quad where points of its size are beyond the device: vertices pulled
+// from the records.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 

@@ -1,6 +1,6 @@
 #version 460
-// A visible voxel becomes a splat: its transmittance to the eye, colour, and footprint on the image (Subr et al. 2007,
-// Section 3.3 and 4.1, Eq. 10). Independent of every other voxel.
+// A visible voxel becomes a splat: its transmittance to the eye, colour, and footprint on the image (Subr et
+// al. 2007, Section 3.3 and 4.1, Eq. 10). Independent of every other voxel.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "attenuation_code.glsl"
@@ -42,8 +42,8 @@ struct Footprint {
   float distance;
 };
 
-// A footprint narrower than the pixel lattice can sample is widened to it, with its integral kept: `shape` holds the squared
-// semi-axes (xx, xy, yy) in pixels, `scale` is |D|² at the centre.
+// A footprint narrower than the pixel lattice can sample is widened to it, with its integral kept: `shape`
+// holds the squared semi-axes (xx, xy, yy) in pixels, `scale` is |D|² at the centre.
 void widenToPixel(inout Footprint footprint, vec3 shape, float scale) {
   const float before = shape.x * shape.z - shape.y * shape.y;
   const float largest = 0.5 * (shape.x + shape.z) + length(vec2(0.5 * (shape.x - shape.z), shape.y));
@@ -56,8 +56,9 @@ void widenToPixel(inout Footprint footprint, vec3 shape, float scale) {
   footprint.halfExtent *= sqrt(widened.xz / shape.xz);
 }
 
-// The kernel's sphere of radius R around the index position `offset` (from the volume's middle) seen from the eye: all rays D
-// with |q x D|² <= R² |D|². Returns false behind the eye, and in perspective also where it reaches the eye plane.
+// The kernel's sphere of radius R around the index position `offset` (from the volume's middle) seen from the
+// eye: all rays D with |q x D|² <= R² |D|². Returns false behind the eye, and in perspective also where it
+// reaches the eye plane.
 bool project(vec3 offset, out Footprint footprint) {
   const vec3 q = offset + frame.eyeToMiddle;
   const vec3 pixel = frame.indexToPixel * offset + frame.middleInPixels;

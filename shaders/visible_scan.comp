@@ -1,6 +1,6 @@
 #version 460
-// Second pass of the visible-voxel list, one workgroup: counts become offsets (exclusive sum), and the total becomes the
-// arguments of each chunk's dispatch and draw.
+// Second pass of the visible-voxel list, one workgroup: counts become offsets (exclusive sum), and the total
+// becomes the arguments of each chunk's dispatch and draw.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 

@@ -1,6 +1,6 @@
 #version 460
-// Third pass of the visible-voxel list: every voxel with extinction writes its index at its place, in ascending order, so
-// that the splats, and the rounding of their sums, come in the same order every time.
+// Third pass of the visible-voxel list: every voxel with extinction writes its index at its place, in
+// ascending order, so that the splats, and the rounding of their sums, come in the same order every time.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 

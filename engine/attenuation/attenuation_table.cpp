@@ -18,11 +18,12 @@ static_assert(shader::kMaximumDepth == float(kMaximumCodedDepth));
 static_assert(shader::kCodeDepth8 == int(AttenuationCode::Depth8));
 static_assert(shader::kCodeLinear8 == int(AttenuationCode::Linear8));
 
-/// A CPU device sweeps the three directions that share their y and z in blocks of lines of this much extinction, so
-/// that two of the three find it in the cache.
+/// A CPU device sweeps the three directions that share their y and z in blocks of lines of this much
+/// extinction, so that two of the three find it in the cache.
 constexpr std::uint64_t kCpuBlockBytes = std::uint64_t(4) << 20;
 
-/// The sweep for `direction` marches the other way: from where its lines leave the volume, against the direction.
+/// The sweep for `direction` marches the other way: from where its lines leave the volume, against the
+/// direction.
 shader::SweepPush sweepPush(const DeviceVolume& volume, glm::ivec3 direction, bool pathLengthCorrection) {
   const glm::ivec3 extent = volume.layout.dimensions;
   const int row = volume.layout.rowPitch, plane = row * extent.y;
@@ -51,10 +52,11 @@ shader::SweepPush sweepPush(const DeviceVolume& volume, glm::ivec3 direction, bo
 }
 
 Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Specialisation& constants) {
-  return makeComputePipeline(device, code,
-                             {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                              .pushConstantBytes = sizeof(shader::SweepPush)},
-                             {shader::kSweepThreads, 1, 1}, constants);
+  return makeComputePipeline(
+      device, code,
+      {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+       .pushConstantBytes = sizeof(shader::SweepPush)},
+      {shader::kSweepThreads, 1, 1}, constants);
 }
 
 }  // namespace
@@ -86,7 +88,8 @@ AttenuationSweep::AttenuationSweep(const Device& device, AttenuationCode code)
                                                 {codeConstant, std::uint32_t(step)});
 }
 
-void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const {
+void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume,
+                              const AttenuationTable& table) const {
   commands.beginPass("attenuation sweeps");
   for (int z = -1; z <= 1; ++z)
     for (int y = -1; y <= 1; ++y)
@@ -97,16 +100,18 @@ void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume, co
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
-void AttenuationSweep::recordRows(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const {
+void AttenuationSweep::recordRows(Commands& commands, const DeviceVolume& volume,
+                                  const AttenuationTable& table) const {
   for (int x : {-1, 1}) {
     const shader::SweepPush push = sweepPush(volume, {x, 0, 0}, table.settings.pathLengthCorrection);
-    const std::array<Binding, 2> bindings{&volume.extinctionQuads, &table.planes[std::size_t(directionIndex(x, 0, 0))]};
+    const std::array<Binding, 2> bindings{&volume.extinctionQuads,
+                                          &table.planes[std::size_t(directionIndex(x, 0, 0))]};
     commands.dispatchLinear(rows_[x > 0 ? 0 : 1], bindings, push, std::uint64_t(push.lineCount));
   }
 }
 
-void AttenuationSweep::recordBundles(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table,
-                                     glm::ivec2 yz) const {
+void AttenuationSweep::recordBundles(Commands& commands, const DeviceVolume& volume,
+                                     const AttenuationTable& table, glm::ivec2 yz) const {
   const shader::SweepPush any = sweepPush(volume, {0, yz}, table.settings.pathLengthCorrection);
   const int bundles = any.rowPitch / voxelsPerThread_;
   const std::uint64_t lineBytes = std::uint64_t(any.rowPitch) * std::uint64_t(any.marchCount) * sizeof(float);

@@ -20,8 +20,8 @@ struct AttenuationTable {
 
 AttenuationTable makeTable(const Device& device, const GridLayout& layout, const TableSettings& settings);
 
-/// COMPUTE attenuation_sweep.comp and attenuation_sweep_x.comp: a dispatch a direction (more, over blocks of lines, on a CPU
-/// device), none of which waits for another.
+/// COMPUTE attenuation_sweep.comp and attenuation_sweep_x.comp: a dispatch a direction (more, over blocks of
+/// lines, on a CPU device), none of which waits for another.
 class AttenuationSweep {
  public:
   AttenuationSweep(const Device& device, AttenuationCode code);

@@ -1,5 +1,6 @@
 #pragma once
-// The 26 lattice directions (design: {-1,0,1}³ without 0), from the voxel towards the eye or light, index space.
+// The 26 lattice directions (design: {-1,0,1}³ without 0), from the voxel towards the eye or light, index
+// space.
 
 #include <array>
 #include <glm/glm.hpp>
@@ -35,17 +36,17 @@ double stepLength(const glm::dmat4& indexToWorld, glm::ivec3 direction, bool pat
 int encodeOpticalDepth(AttenuationCode code, double opticalDepth);
 double decodeTransmittance(AttenuationCode code, int byte);
 
-/// The bilinear look-up of a general direction (Section 5 of the design, after Subr et al. 2007, Section 3.3): four
-/// lattice directions of one cube face and their weights, which add up to 1.
+/// The bilinear look-up of a general direction (Section 5 of the design, after Subr et al. 2007,
+/// Section 3.3): four lattice directions of one cube face and their weights, which add up to 1.
 struct DirectionBlend {
   std::array<int, 4> directions;
   std::array<double, 4> weights;
 };
 DirectionBlend bilinearDirections(glm::dvec3 direction);
 
-/// The paper's look-up: the lattice direction nearest on the face of the cube, that is direction / max |component| with
-/// every component rounded to {-1,0,1}, halves towards 0. (Nearest by angle would move the borders by 4 degrees at most.)
-/// Both look-ups need a direction other than 0.
+/// The paper's look-up: the lattice direction nearest on the face of the cube, that is direction / max
+/// |component| with every component rounded to {-1,0,1}, halves towards 0. (Nearest by angle would move the
+/// borders by 4 degrees at most.) Both look-ups need a direction other than 0.
 int nearestDirection(glm::dvec3 direction);
 
 }  // namespace freevoxels

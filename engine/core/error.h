@@ -11,7 +11,15 @@
 namespace freevoxels {
 
 /// Exit codes of every program here, documented in README.md.
-enum class ExitCode : int { Success = 0, Internal = 1, Usage = 2, Input = 3, Output = 4, Device = 5, OutOfMemory = 6 };
+enum class ExitCode : int {
+  Success = 0,
+  Internal = 1,
+  Usage = 2,
+  Input = 3,
+  Output = 4,
+  Device = 5,
+  OutOfMemory = 6
+};
 
 class Error : public std::runtime_error {
  public:
@@ -32,7 +40,8 @@ class InternalError : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
-[[noreturn]] inline void checkFailed(const char* expression, const std::string& values, const char* file, int line) {
+[[noreturn]] inline void checkFailed(const char* expression, const std::string& values, const char* file,
+                                     int line) {
   throw InternalError(fmt::format("{}:{}: check failed: {} ({})", file, line, expression, values));
 }
 

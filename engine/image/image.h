@@ -12,8 +12,8 @@ namespace freevoxels {
 struct Image {
   glm::ivec2 size{0};
   std::vector<glm::vec4> pixels;  ///< linear Rec.709, premultiplied alpha; row 0 is the top
-  /// Empty, or one a pixel: mean distance from the eye along the viewing axis, in world units, of what is seen
-  /// there (README.md, "Depth"); +infinity where there is nothing.
+  /// Empty, or one a pixel: mean distance from the eye along the viewing axis, in world units, of what is
+  /// seen there (README.md, "Depth"); +infinity where there is nothing.
   std::vector<float> depth;
 };
 

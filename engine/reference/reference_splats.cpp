@@ -55,8 +55,8 @@ double smallerEigenvalue(const glm::dmat2& symmetric) {
   return glm::determinant(symmetric) / larger;
 }
 
-/// Empty where the voxel is not drawn: its centre is behind the eye plane (k_z <= 0), or a perspective camera's eye
-/// plane cuts its kernel (k_z² <= R² (K Kᵀ)_zz).
+/// Empty where the voxel is not drawn: its centre is behind the eye plane (k_z <= 0), or a perspective
+/// camera's eye plane cuts its kernel (k_z² <= R² (K Kᵀ)_zz).
 std::optional<Splat> project(const PixelRays& rays, glm::dvec3 voxel) {
   const glm::dmat3 basis = rays.orthographic ? glm::dmat3(rays.originX, rays.originY, rays.direction)
                                              : glm::dmat3(rays.directionX, rays.directionY, rays.direction);

@@ -1,6 +1,7 @@
 #pragma once
-// The picture as the plain sum over voxels, on the CPU in double precision: Subr et al. 2007, Section 4.1, Eq. 10 and the
-// normalised resolve. Projects and adds every voxel by itself; shares no code with the shaders.
+// The picture as the plain sum over voxels, on the CPU in double precision: Subr et al. 2007, Section 4.1,
+// Eq. 10 and the normalised resolve. Projects and adds every voxel by itself; shares no code with the
+// shaders.
 
 #include <cstdint>
 #include <span>
@@ -16,16 +17,18 @@ namespace freevoxels {
 
 /// The sums of one pixel, before the resolve. Additive over any partition of the voxels.
 struct SplatSums {
-  glm::dvec3 color{0.0};    ///< C
-  double energy = 0.0;      ///< E
-  double depth = 0.0;       ///< T, optical depth along the pixel's ray
-  double distance = 0.0;    ///< sum of e_v times the voxel's distance along the viewing axis
+  glm::dvec3 color{0.0};  ///< C
+  double energy = 0.0;    ///< E
+  double depth = 0.0;     ///< T, optical depth along the pixel's ray
+  double distance = 0.0;  ///< sum of e_v times the voxel's distance along the viewing axis
 };
 
-/// Sums over the voxels listed (indices into Volume::values), in that order. `table` holds bytes [direction][voxel].
+/// Sums over the voxels listed (indices into Volume::values), in that order. `table` holds bytes
+/// [direction][voxel].
 std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classification& classification,
-                                          const std::vector<std::vector<std::uint8_t>>& table, AttenuationCode code,
-                                          const Camera& camera, const FrameSettings& settings,
+                                          const std::vector<std::vector<std::uint8_t>>& table,
+                                          AttenuationCode code, const Camera& camera,
+                                          const FrameSettings& settings,
                                           std::span<const std::uint32_t> voxels);
 
 /// Indices of the voxels with extinction above 0, ascending.

@@ -15,7 +15,7 @@ namespace freevoxels {
 
 namespace {
 
-/// Room between the volume's bounding sphere and the edge of the image, as a part of the sphere's radius.
+/// Room between the volume's box and the edge of the image, as a part of half the image.
 constexpr double kFramingMargin = 0.03;
 /// Sine of the smallest angle between the view and `up`.
 constexpr double kSmallestUpAngle = 1e-6;
@@ -108,28 +108,29 @@ Camera framingCamera(const Volume& volume, double azimuth, double elevation, dou
     return glm::dvec3(volume.indexToWorld * glm::dvec4(index, 1.0));
   };
   const glm::dvec3 centre = toWorld((extent - 1.0) / 2.0);
-  double radius = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
-    radius = std::max(radius, glm::length(toWorld(side * extent - 0.5) - centre));
-  }
-  radius *= 1.0 + kFramingMargin;
-
   const double az = radians(azimuth), el = radians(elevation);
   const glm::dvec3 toEye(std::sin(az) * std::cos(el), std::sin(el), std::cos(az) * std::cos(el));
   Camera camera = base;
   camera.lookAt = centre;
+  camera.position = centre + toEye;
   // Straight from above or below `up` says nothing about the roll: the limit of lower elevations does.
   if (glm::length(glm::cross(glm::normalize(base.up), toEye)) < kSmallestUpAngle)
     camera.up = {-std::sin(az) * std::sin(el), std::cos(el), -std::cos(az) * std::sin(el)};
-  const double narrower = std::min(1.0, aspect);
-  if (camera.orthographic) {
-    camera.orthographicHeight = 2.0 * radius / narrower;
-    camera.position = centre + 2.0 * radius * toEye;
-  } else {
-    const double halfAngle = std::atan(halfHeight(base) * narrower);
-    camera.position = centre + radius / std::sin(halfAngle) * toEye;
+
+  const Axes axes = cameraAxes(camera);
+  double radius = 0.0, halfImage = 0.0,
+         distance = 0.0;  // of the box; half the image's height; from the centre to the eye
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+    const glm::dvec3 offset = toWorld(side * extent - 0.5) - centre;
+    const double needed = (1.0 + kFramingMargin) * std::max(std::abs(glm::dot(offset, axes.up)),
+                                                            std::abs(glm::dot(offset, axes.right)) / aspect);
+    radius = std::max(radius, glm::length(offset));
+    halfImage = std::max(halfImage, needed);
+    distance = std::max(distance, glm::dot(offset, toEye) + needed / halfHeight(base));
   }
+  camera.orthographicHeight = camera.orthographic ? 2.0 * halfImage : base.orthographicHeight;
+  camera.position = centre + (camera.orthographic ? 2.0 * radius : distance) * toEye;
   return camera;
 }
 

@@ -12,30 +12,34 @@ struct Camera {
   glm::dvec3 lookAt{0.0};
   glm::dvec3 up{0.0, 1.0, 0.0};
   bool orthographic = false;
-  double verticalFov = 35.0;         ///< degrees, perspective
-  double orthographicHeight = 1.0;   ///< world units the image is high, orthographic
+  double verticalFov = 35.0;        ///< degrees, perspective
+  double orthographicHeight = 1.0;  ///< world units the image is high, orthographic
 };
 
-/// Throws ExitCode::Usage for a camera that sees nothing: NaN, position at the look-at point, up along the view,
-/// a field of view outside (0, 180), a height that is not positive. The sentence names the option to change.
+/// Throws ExitCode::Usage for a camera that sees nothing: NaN, position at the look-at point, up along the
+/// view, a field of view outside (0, 180), a height that is not positive. The sentence names the option to
+/// change.
 void checkCamera(const Camera& camera);
 
-/// Right, up and backward (-view) unit vectors and the position: world -> camera, right-handed, looking along -z.
+/// Right, up and backward (-view) unit vectors and the position: world -> camera, right-handed, looking along
+/// -z.
 glm::dmat4 worldToCamera(const Camera& camera);
 
-/// worldToCamera followed by the projection to [-1,1] in x and y (y up) for this aspect ratio (width / height).
+/// worldToCamera followed by the projection to [-1,1] in x and y (y up) for this aspect ratio (width /
+/// height).
 glm::dmat4 worldToNdc(const Camera& camera, double aspect);
 
 /// A camera that looks at the centre of the volume's box from `azimuth` (degrees about +y, 0 = from +z) and
-/// `elevation` (degrees above the xz plane), so far away that the box's bounding sphere fits the image.
-Camera framingCamera(const Volume& volume, double azimuth, double elevation, double aspect, const Camera& base);
+/// `elevation` (degrees above the xz plane), as near as the box's corners still fit the image.
+Camera framingCamera(const Volume& volume, double azimuth, double elevation, double aspect,
+                     const Camera& base);
 
 inline constexpr double kDefaultAzimuth = 35.0, kDefaultElevation = 25.0;
 
 /// The ray of image position (x, y) in pixels, (0, 0) = the top left corner of the image, in index space:
 ///   origin + x * originX + y * originY  +  t * (direction + x * directionX + y * directionY)
-/// t is the distance from the eye plane along the viewing axis, in world units. For a perspective camera originX and
-/// originY are 0, for an orthographic one directionX and directionY are.
+/// t is the distance from the eye plane along the viewing axis, in world units. For a perspective camera
+/// originX and originY are 0, for an orthographic one directionX and directionY are.
 struct PixelRays {
   glm::dvec3 origin, originX, originY;
   glm::dvec3 direction, directionX, directionY;

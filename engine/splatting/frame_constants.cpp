@@ -1,4 +1,5 @@
-// The frame's constants: the camera's rays in index space, relative to the volume's middle, and how splats are drawn.
+// The frame's constants: the camera's rays in index space, relative to the volume's middle, and how splats
+// are drawn.
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +25,8 @@ struct ProjectedBox {
 ProjectedBox projectBox(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions) {
   ProjectedBox box;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 voxel = glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2) * glm::dvec3(dimensions - 1);
+    const glm::dvec3 voxel =
+        glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2) * glm::dvec3(dimensions - 1);
     const glm::dvec3 pixel = toPixel * (voxel - rays.origin);
     const glm::dvec2 position = rays.orthographic ? glm::dvec2(pixel) : glm::dvec2(pixel) / pixel.z;
     box.low = glm::min(box.low, position);
@@ -34,12 +36,14 @@ ProjectedBox projectBox(const glm::dmat3& toPixel, const PixelRays& rays, glm::i
   return box;
 }
 
-/// No splat of the volume reaches further than this from its centre, in pixels. For a perspective camera a kernel at
-/// distance t reaches at most R |K0 - x K2| / (t - R |K2|) along x (splat_setup.comp has the bound itself).
+/// No splat of the volume reaches further than this from its centre, in pixels. For a perspective camera a
+/// kernel at distance t reaches at most R |K0 - x K2| / (t - R |K2|) along x (splat_setup.comp has the bound
+/// itself).
 double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions) {
   const double widened = kFootprintRadius;  // a widened footprint grows by no more than this
   const glm::dmat3 rows = glm::transpose(toPixel);
-  if (rays.orthographic) return kFootprintRadius * std::max(glm::length(rows[0]), glm::length(rows[1])) + widened;
+  if (rays.orthographic)
+    return kFootprintRadius * std::max(glm::length(rows[0]), glm::length(rows[1])) + widened;
   const ProjectedBox box = projectBox(toPixel, rays, dimensions);
   const double clearance = box.nearest - kFootprintRadius * glm::length(rows[2]);
   if (clearance <= 0.0) return std::numeric_limits<double>::infinity();
@@ -52,8 +56,9 @@ double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::
 
 }  // namespace
 
-FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volume, const TableSettings& table,
-                                  const Camera& camera, const FrameSettings& settings) {
+FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volume,
+                                  const TableSettings& table, const Camera& camera,
+                                  const FrameSettings& settings) {
   const PixelRays rays = pixelRays(camera, settings.size, volume.indexToWorld);
   const glm::dvec3 pixelX = rays.orthographic ? rays.originX : rays.directionX;
   const glm::dvec3 pixelY = rays.orthographic ? rays.originY : rays.directionY;
@@ -95,12 +100,16 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   frame.quads = 2.0 * reach > largestPoint || widest > double(device.limits().maxViewportDimensions[0]) ||
                 widest > double(device.limits().maxViewportDimensions[1]);
   frame.viewportMargin = frame.quads ? 0.0f : float(margin);
-  const glm::dvec3 ray = rays.direction, rayX = rays.directionX, rayY = rays.directionY;
-  frame.splat = {.rayLength2 = glm::dvec3(glm::dot(ray, ray), 2.0 * glm::dot(ray, rayX), 2.0 * glm::dot(ray, rayY)),
-                 .rayLength2Squares =
-                     glm::dvec3(glm::dot(rayX, rayX), 2.0 * glm::dot(rayX, rayY), glm::dot(rayY, rayY)),
-                 .viewportOrigin = glm::vec2(-frame.viewportMargin),
-                 .viewportSize = glm::vec2(settings.size) + 2.0f * frame.viewportMargin};
+  // Around the middle of the image, where nothing large cancels in 32-bit floats.
+  const glm::dvec2 imageMiddle = 0.5 * glm::dvec2(settings.size);
+  const glm::dvec3 rayX = rays.directionX, rayY = rays.directionY;
+  const glm::dvec3 ray = rays.direction + imageMiddle.x * rayX + imageMiddle.y * rayY;
+  frame.splat = {
+      .imageMiddle = imageMiddle,
+      .rayLength2 = glm::dvec3(glm::dot(ray, ray), 2.0 * glm::dot(ray, rayX), 2.0 * glm::dot(ray, rayY)),
+      .rayLength2Squares = glm::dvec3(glm::dot(rayX, rayX), 2.0 * glm::dot(rayX, rayY), glm::dot(rayY, rayY)),
+      .viewportOrigin = glm::vec2(-frame.viewportMargin),
+      .viewportSize = glm::vec2(settings.size) + 2.0f * frame.viewportMargin};
   return frame;
 }
 

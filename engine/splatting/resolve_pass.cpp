@@ -12,7 +12,8 @@ ResolvePass::ResolvePass(const Device& device, bool withDistance)
       pipeline_(makeComputePipeline(device, {resolve_spv, "resolve"},
                                     {.bindings = std::vector(3, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE),
                                      .pushConstantBytes = sizeof(shader::ResolvePush)},
-                                    {shader::kResolveTile, shader::kResolveTile, 1}, {withDistance ? 1u : 0u})) {}
+                                    {shader::kResolveTile, shader::kResolveTile, 1},
+                                    {withDistance ? 1u : 0u})) {}
 
 void ResolvePass::record(Commands& commands, const FrameConstants& frame, const SplatTargets& targets) const {
   const std::array<Binding, 3> images{&targets.colorEnergy, &targets.opticalDepth,

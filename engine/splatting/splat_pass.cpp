@@ -7,6 +7,7 @@
 #include "embedded/splat_fragment_distance.h"
 #include "embedded/splat_setup.h"
 #include "embedded/splat_vertex.h"
+#include "engine/core/error.h"
 
 namespace freevoxels {
 
@@ -37,6 +38,18 @@ std::vector<const RenderTarget*> SplatTargets::all() const {
   return targets;
 }
 
+void checkFrameFits(const Device& device, const FrameSettings& settings) {
+  checkTargetFits(device, settings.size, kColorFormat);
+  const std::uint64_t perPixel =
+      bytesPerPixel(kColorFormat) + bytesPerPixel(kScalarFormat) * (settings.depth ? 2 : 1);
+  const std::uint64_t bytes = std::uint64_t(settings.size.x) * std::uint64_t(settings.size.y) * perPixel;
+  if (bytes > device.description().memoryBytes)
+    fail(ExitCode::OutOfMemory,
+         "an image of {}x{} pixels needs {} MiB of device memory and {} has {} MiB: use a smaller --size",
+         settings.size.x, settings.size.y, bytes >> 20, device.description().name,
+         device.description().memoryBytes >> 20);
+}
+
 SplatTargets makeTargets(const Device& device, const FrameSettings& settings) {
   SplatTargets targets{.colorEnergy = RenderTarget(device, settings.size, kColorFormat, "C and E"),
                        .opticalDepth = RenderTarget(device, settings.size, kScalarFormat, "T"),
@@ -65,7 +78,8 @@ void SplatPass::beginRendering(Commands& commands, const SplatTargets& targets, 
                            .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                            .loadOp = load,
                            .storeOp = VK_ATTACHMENT_STORE_OP_STORE});
-  const VkExtent2D extent{std::uint32_t(targets.colorEnergy.size().x), std::uint32_t(targets.colorEnergy.size().y)};
+  const VkExtent2D extent{std::uint32_t(targets.colorEnergy.size().x),
+                          std::uint32_t(targets.colorEnergy.size().y)};
   const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
                                   .renderArea = {{0, 0}, extent},
                                   .layerCount = 1,
@@ -73,8 +87,8 @@ void SplatPass::beginRendering(Commands& commands, const SplatTargets& targets, 
                                   .pColorAttachments = attachments.data()};
   vkCmdBeginRendering(commands.handle(), &rendering);
   const float margin = frame.viewportMargin;
-  const VkViewport viewport{-margin, -margin, float(extent.width) + 2 * margin, float(extent.height) + 2 * margin,
-                            0.0f, 1.0f};
+  const VkViewport viewport{
+      -margin, -margin, float(extent.width) + 2 * margin, float(extent.height) + 2 * margin, 0.0f, 1.0f};
   const VkRect2D scissor{{0, 0}, extent};
   vkCmdSetViewport(commands.handle(), 0, 1, &viewport);
   vkCmdSetScissor(commands.handle(), 0, 1, &scissor);
@@ -82,10 +96,10 @@ void SplatPass::beginRendering(Commands& commands, const SplatTargets& targets, 
 
 void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,
                        const SplatTargets& targets) {
-  if (splats_.bytes() == 0) {
-    const std::uint64_t count = std::min<std::uint64_t>(inputs.volume.activeVoxels, shader::kSplatsPerChunk);
-    splats_ = Buffer(device_, std::max<std::uint64_t>(count, 1) * sizeof(shader::Splat), MemoryUse::Device, "splats");
-  }
+  const std::uint64_t count =
+      std::clamp<std::uint64_t>(inputs.volume.activeVoxels, 1, shader::kSplatsPerChunk);
+  if (splats_.bytes() < count * sizeof(shader::Splat))
+    splats_ = Buffer(device_, count * sizeof(shader::Splat), MemoryUse::Device, "splats");
   const std::array<Binding, 8> setup{&frame_,
                                      &inputs.volume.transferPoints,
                                      &inputs.table.planeAddresses,
@@ -97,7 +111,8 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
   const std::array<Binding, 1> draw{&splats_};
   const Pipeline& pipeline = frame.quads ? quads_ : points_;
   for (const RenderTarget* target : targets.all())
-    commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kOutput, kOutput);
+    commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kOutput,
+                        kOutput);
 
   commands.beginPass("splat set-up");
   commands.update(frame_, frame.setup);
@@ -108,7 +123,8 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
     commands.dispatchIndirect(setup_, setup, shader::SetupPush{chunk}, inputs.visible.chunks, arguments);
     commands.beginPass("splat draw");
     commands.barrier(kCompute, kDraw);
-    beginRendering(commands, targets, frame, chunk == 0 ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD);
+    beginRendering(commands, targets, frame,
+                   chunk == 0 ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD);
     commands.bind(pipeline, draw, &frame.splat, sizeof(frame.splat));
     const std::size_t offset = frame.quads ? offsetof(shader::ChunkArguments, quadVertexCount)
                                            : offsetof(shader::ChunkArguments, vertexCount);

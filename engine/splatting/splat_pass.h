@@ -28,15 +28,17 @@ struct FrameConstants {
   shader::SetupFrame setup;
   shader::SplatPush splat;
   shader::ResolvePush resolve;
-  bool quads = false;           ///< some splat may be larger than the device's largest point
-  float viewportMargin = 0.0f;  ///< pixels around the image, so that points centred outside it are not clipped
+  bool quads = false;  ///< some splat may be larger than the device's largest point
+  float viewportMargin =
+      0.0f;  ///< pixels around the image, so that points centred outside it are not clipped
 };
 
-FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volume, const TableSettings& table,
-                                  const Camera& camera, const FrameSettings& settings);
+FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volume,
+                                  const TableSettings& table, const Camera& camera,
+                                  const FrameSettings& settings);
 
-/// COMPUTE splat_setup.comp and GRAPHICS splat.vert + splat.frag, chunk by chunk. Leaves the targets in layout GENERAL,
-/// visible to compute.
+/// COMPUTE splat_setup.comp and GRAPHICS splat.vert + splat.frag, chunk by chunk. Leaves the targets in
+/// layout GENERAL, visible to compute.
 class SplatPass {
  public:
   SplatPass(const Device& device, bool withDistance);
@@ -46,7 +48,8 @@ class SplatPass {
     const AttenuationTable& table;
     const VisibleVoxels& visible;
   };
-  void record(Commands& commands, const Inputs& inputs, const FrameConstants& frame, const SplatTargets& targets);
+  void record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,
+              const SplatTargets& targets);
   bool withDistance() const { return withDistance_; }
 
  private:

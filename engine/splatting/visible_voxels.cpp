@@ -14,13 +14,15 @@ namespace freevoxels {
 namespace {
 
 std::uint32_t groupsFor(const GridLayout& layout) {
-  return std::uint32_t((layout.paddedVoxels() + shader::kCountVoxelsPerGroup - 1) / shader::kCountVoxelsPerGroup);
+  return std::uint32_t((layout.paddedVoxels() + shader::kCountVoxelsPerGroup - 1) /
+                       shader::kCountVoxelsPerGroup);
 }
 
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 constexpr VkDescriptorType kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 
-Pipeline makePass(const Device& device, ShaderCode code, std::vector<VkDescriptorType> bindings, int threads) {
+Pipeline makePass(const Device& device, ShaderCode code, std::vector<VkDescriptorType> bindings,
+                  int threads) {
   return makeComputePipeline(
       device, code, {.bindings = std::move(bindings), .pushConstantBytes = sizeof(shader::VisiblePush)},
       {threads, 1, 1});
@@ -32,8 +34,8 @@ VisibleVoxels makeVisibleVoxels(const Device& device, const DeviceVolume& volume
   VisibleVoxels result;
   const std::uint64_t most = std::max<std::uint64_t>(volume.activeVoxels, 1);
   result.chunkCount = std::uint32_t((most + shader::kSplatsPerChunk - 1) / shader::kSplatsPerChunk);
-  result.groupOffsets =
-      Buffer(device, groupsFor(volume.layout) * sizeof(std::uint32_t), MemoryUse::Device, "visible group offsets");
+  result.groupOffsets = Buffer(device, groupsFor(volume.layout) * sizeof(std::uint32_t), MemoryUse::Device,
+                               "visible group offsets");
   result.indices = Buffer(device, most * sizeof(std::uint32_t), MemoryUse::Device, "visible voxels");
   result.chunks = Buffer(device, result.chunkCount * sizeof(shader::ChunkArguments), MemoryUse::Device,
                          "chunk arguments", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
@@ -41,11 +43,14 @@ VisibleVoxels makeVisibleVoxels(const Device& device, const DeviceVolume& volume
 }
 
 CompactionPass::CompactionPass(const Device& device)
-    : count_(makePass(device, {visible_count_spv, "visible count"}, {kTexels, kStorage}, shader::kCountThreads)),
+    : count_(
+          makePass(device, {visible_count_spv, "visible count"}, {kTexels, kStorage}, shader::kCountThreads)),
       scan_(makePass(device, {visible_scan_spv, "visible scan"}, {kStorage, kStorage}, shader::kScanThreads)),
-      write_(makePass(device, {visible_write_spv, "visible write"}, {kTexels, kStorage, kStorage}, shader::kCountThreads)) {}
+      write_(makePass(device, {visible_write_spv, "visible write"}, {kTexels, kStorage, kStorage},
+                      shader::kCountThreads)) {}
 
-void CompactionPass::record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible) const {
+void CompactionPass::record(Commands& commands, const DeviceVolume& volume,
+                            const VisibleVoxels& visible) const {
   const std::uint32_t groups = groupsFor(volume.layout);
   const shader::VisiblePush push{.voxelCount = std::uint32_t(volume.layout.paddedVoxels()),
                                  .groupCount = groups,

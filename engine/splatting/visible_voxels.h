@@ -1,5 +1,6 @@
 #pragma once
-// The list of voxels that have something to draw, in ascending order, made on the device and never read back for drawing.
+// The list of voxels that have something to draw, in ascending order, made on the device and never read back
+// for drawing.
 
 #include "engine/volume/device_volume.h"
 

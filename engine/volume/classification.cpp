@@ -55,8 +55,12 @@ double totalDensity(const Volume& volume) {
 
 ClassifiedVoxel classify(const Classification& classification, float scalar) {
   if (scalar == kInactiveVoxel) return {};
-  if (classification.transferFunction) return classifyByTransfer(*classification.transferFunction, scalar);
-  return {std::max(double(scalar), 0.0) * classification.densityScale, glm::dvec3(classification.albedo)};
+  ClassifiedVoxel voxel = classification.transferFunction
+                              ? classifyByTransfer(*classification.transferFunction, scalar)
+                              : ClassifiedVoxel{std::max(double(scalar), 0.0) * classification.densityScale,
+                                                glm::dvec3(classification.albedo)};
+  voxel.extinction = std::min(voxel.extinction, kMaximumExtinction);
+  return voxel;
 }
 
 double automaticDensityScale(const Volume& volume) {

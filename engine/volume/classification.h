@@ -13,6 +13,9 @@ namespace freevoxels {
 /// Opacities are clamped to this, so that extinction stays finite.
 inline constexpr double kMaximumOpacity = 1.0 - 1.0 / 4096.0;
 
+/// Extinctions are clamped to this, so that their products and sums stay finite in 32-bit floats.
+inline constexpr double kMaximumExtinction = 1e30;
+
 /// Piecewise linear in the scalar, constant beyond the first and last point. Schema: README.md.
 struct TransferFunction {
   struct OpacityPoint {
@@ -43,12 +46,13 @@ struct ClassifiedVoxel {
 /// scalar counts as 0 in the physical way, as data with a transfer function.
 ClassifiedVoxel classify(const Classification& classification, float scalar);
 
-/// Reads the JSON of README.md, section "Transfer functions". `range` defaults to the volume's minimum and maximum,
-/// `unit_distance` to its voxel size. Unknown keys, wrong types, points that do not ascend: ExitCode::Input, by name.
+/// Reads the JSON of README.md, section "Transfer functions". `range` defaults to the volume's minimum and
+/// maximum, `unit_distance` to its voxel size. Unknown keys, wrong types, points that do not ascend:
+/// ExitCode::Input, by name.
 TransferFunction readTransferFunction(const std::filesystem::path& file, const Volume& volume);
 
-/// The density scale used when none is given: the one at which a cube that holds the volume of the active voxels
-/// at their mean density has optical depth kAutomaticOpticalDepth.
+/// The density scale used when none is given: the one at which a cube that holds the volume of the active
+/// voxels at their mean density has optical depth kAutomaticOpticalDepth.
 inline constexpr double kAutomaticOpticalDepth = 2.0;
 double automaticDensityScale(const Volume& volume);
 

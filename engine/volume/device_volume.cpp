@@ -12,6 +12,8 @@ namespace freevoxels {
 namespace {
 
 static_assert(shader::kInactiveScalar == kInactiveVoxel);
+static_assert(shader::kMaximumOpacity == float(kMaximumOpacity));
+static_assert(shader::kMaximumExtinction == float(kMaximumExtinction));
 
 void copyPadded(const Volume& volume, const GridLayout& layout, std::span<float> target) {
   const std::size_t width = std::size_t(volume.dimensions.x), pitch = std::size_t(layout.rowPitch);
@@ -77,12 +79,12 @@ ClassifyPass::ClassifyPass(const Device& device)
 void ClassifyPass::record(Commands& commands, const DeviceVolume& volume,
                           const Classification& classification) const {
   const std::uint64_t quads = volume.layout.paddedVoxels() / 4;
-  const shader::ClassifyPush push{.quadCount = std::uint32_t(quads),
-                                  .opacityPoints = volume.opacityPointCount,
-                                  .densityScale = float(classification.densityScale),
-                                  .unitDistance = classification.transferFunction
-                                                      ? float(classification.transferFunction->unitDistance)
-                                                      : 1.0f};
+  const shader::ClassifyPush push{
+      .quadCount = std::uint32_t(quads),
+      .opacityPoints = volume.opacityPointCount,
+      .densityScale = float(std::min(classification.densityScale, kMaximumExtinction)),
+      .unitDistance =
+          classification.transferFunction ? float(classification.transferFunction->unitDistance) : 1.0f};
   const std::array<Binding, 3> bindings{&volume.scalars, &volume.transferPoints, &volume.extinction};
   commands.beginPass("classify");
   commands.dispatchLinear(pipeline_, bindings, push, quads);

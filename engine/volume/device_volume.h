@@ -12,7 +12,8 @@
 
 namespace freevoxels {
 
-/// How voxels lie in device buffers: x fastest, rows padded with inactive voxels to a multiple of kRowAlignment.
+/// How voxels lie in device buffers: x fastest, rows padded with inactive voxels to a multiple of
+/// kRowAlignment.
 struct GridLayout {
   glm::ivec3 dimensions{0};
   int rowPitch = 0;
@@ -27,8 +28,8 @@ struct GridLayout {
 
 struct DeviceVolume {
   GridLayout layout;
-  Buffer scalars;         ///< float
-  Buffer extinction;      ///< float, per world unit; written by ClassifyPass
+  Buffer scalars;     ///< float
+  Buffer extinction;  ///< float, per world unit; written by ClassifyPass
   QuadView extinctionQuads;
   Buffer transferPoints;  ///< vec4: opacity points, then colour points (transfer_function.glsl)
   std::uint32_t opacityPointCount = 0, colorPointCount = 0;  ///< 0 = physical

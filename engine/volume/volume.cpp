@@ -50,6 +50,7 @@ void cropToActive(Volume& volume) {
           high = glm::max(high, glm::ivec3(x, y, z));
         }
   if (high.x < 0) return;
+  const std::vector<float> values = std::move(volume.values);
   Volume cropped = volume;
   cropped.dimensions = high - low + 1;
   cropped.indexOrigin += low;
@@ -57,7 +58,7 @@ void cropToActive(Volume& volume) {
   cropped.values.resize(cropped.voxelCount());
   for (int z = 0; z < cropped.dimensions.z; ++z)
     for (int y = 0; y < cropped.dimensions.y; ++y)
-      std::copy_n(&volume.values[volume.at(low.x, low.y + y, low.z + z)], cropped.dimensions.x,
+      std::copy_n(&values[volume.at(low.x, low.y + y, low.z + z)], cropped.dimensions.x,
                   &cropped.values[cropped.at(0, y, z)]);
   volume = std::move(cropped);
 }

@@ -39,8 +39,9 @@ class AttenuationTableTest : public DeviceTest {
                                            settings.pathLengthCorrection);
     const WorstByte worst = worstByte(table, reference);
     const glm::ivec3 d = worst.direction < 0 ? glm::ivec3(0) : directionAt(worst.direction);
-    EXPECT_LE(worst.difference, 1) << volume.dimensions.x << "x" << volume.dimensions.y << "x" << volume.dimensions.z
-                                   << ", direction " << d.x << "," << d.y << "," << d.z << ", voxel " << worst.voxel;
+    EXPECT_LE(worst.difference, 1) << volume.dimensions.x << "x" << volume.dimensions.y << "x"
+                                   << volume.dimensions.z << ", direction " << d.x << "," << d.y << "," << d.z
+                                   << ", voxel " << worst.voxel;
   }
 
   void expectAllSettingsWithinOneCode(const Volume& volume) {
@@ -50,9 +51,9 @@ class AttenuationTableTest : public DeviceTest {
 };
 
 TEST_F(AttenuationTableTest, OddSizedRandomVolumesMatchTheReference) {
-  for (glm::ivec3 size : {glm::ivec3(1, 1, 1), glm::ivec3(1, 19, 1), glm::ivec3(23, 1, 1), glm::ivec3(1, 1, 13),
-                          glm::ivec3(2, 3, 5), glm::ivec3(17, 2, 31), glm::ivec3(37, 23, 19), glm::ivec3(16, 16, 16),
-                          glm::ivec3(33, 5, 2)})
+  for (glm::ivec3 size : {glm::ivec3(1, 1, 1), glm::ivec3(1, 19, 1), glm::ivec3(23, 1, 1),
+                          glm::ivec3(1, 1, 13), glm::ivec3(2, 3, 5), glm::ivec3(17, 2, 31),
+                          glm::ivec3(37, 23, 19), glm::ivec3(16, 16, 16), glm::ivec3(33, 5, 2)})
     expectAllSettingsWithinOneCode(randomVolume(size, cubeTransform(size), 1.0, 20.0));
 }
 
@@ -75,10 +76,10 @@ TEST_F(AttenuationTableTest, TransferFunctionVolumesMatchTheReference) {
   const glm::ivec3 size(21, 22, 23);
   const Volume volume = randomVolume(size, cubeTransform(size), 1.0, 1.0);
   Classification classification;
-  classification.transferFunction = TransferFunction{
-      .opacity = {{0.1f, 0.0f}, {0.4f, 0.0001f}, {0.5f, 0.3f}, {0.9f, 1.0f}},
-      .color = {{0.0f, glm::vec3(1.0f)}},
-      .unitDistance = volume.voxelSize() * 0.7};
+  classification.transferFunction =
+      TransferFunction{.opacity = {{0.1f, 0.0f}, {0.4f, 0.0001f}, {0.5f, 0.3f}, {0.9f, 1.0f}},
+                       .color = {{0.0f, glm::vec3(1.0f)}},
+                       .unitDistance = volume.voxelSize() * 0.7};
   const Table table = Renderer(device(), volume, classification, {}).downloadTable();
   const Table reference =
       referenceTable(volume, referenceExtinction(volume, classification), AttenuationCode::Depth8, true);
@@ -96,7 +97,8 @@ TEST_F(AttenuationTableTest, HomogeneousBoxIsBeerLambertInAllDirections) {
     for (glm::ivec3 voxel : {glm::ivec3(0), size - 1, size / 2, glm::ivec3(3, 17, 5)}) {
       int steps = 0;  // lattice steps to the last voxel inside
       for (glm::ivec3 p = voxel + direction;
-           glm::all(glm::greaterThanEqual(p, glm::ivec3(0))) && glm::all(glm::lessThan(p, size)); p += direction)
+           glm::all(glm::greaterThanEqual(p, glm::ivec3(0))) && glm::all(glm::lessThan(p, size));
+           p += direction)
         ++steps;
       const int expected = int(std::lround(255.0 * std::sqrt(std::min(sigma * step * steps, 16.0) / 16.0)));
       EXPECT_NEAR(table[std::size_t(d)][volume.at(voxel.x, voxel.y, voxel.z)], expected, 1)
@@ -110,7 +112,8 @@ TEST_F(AttenuationTableTest, VisibleVoxelsAreThoseWithExtinctionInAscendingOrder
     const Volume volume = randomVolume(size, cubeTransform(size), 0.3, 1.0);
     const Classification classification{.densityScale = 1.0};
     const Renderer renderer(device(), volume, classification, {});
-    EXPECT_EQ(renderer.downloadVisibleVoxels(), referenceVisibleVoxels(referenceExtinction(volume, classification)));
+    EXPECT_EQ(renderer.downloadVisibleVoxels(),
+              referenceVisibleVoxels(referenceExtinction(volume, classification)));
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// One device for all tests of a program, with the validation layer on; any message fails the test that caused it.
+// One device for all tests of a program, with the validation layer on; any message fails the test that caused
+// it.
 
 #include <gtest/gtest.h>
 

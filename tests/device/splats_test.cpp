@@ -1,5 +1,5 @@
-// Splat sums on the device against the double-precision reference: perspective and orthographic, any voxel shape, both
-// kinds of primitive.
+// Splat sums on the device against the double-precision reference: perspective and orthographic, any voxel
+// shape, both kinds of primitive.
 
 #include <cmath>
 #include <numeric>
@@ -15,8 +15,8 @@ namespace {
 
 class SplatTest : public DeviceTest {
  protected:
-  static Image reference(const Volume& volume, const Classification& classification, const TableSettings& table,
-                         const Camera& camera, const FrameSettings& settings) {
+  static Image reference(const Volume& volume, const Classification& classification,
+                         const TableSettings& table, const Camera& camera, const FrameSettings& settings) {
     const auto extinction = referenceExtinction(volume, classification);
     const auto bytes = referenceTable(volume, extinction, table.code, table.pathLengthCorrection);
     const auto sums = referenceSplatSums(volume, classification, bytes, table.code, camera, settings,
@@ -24,15 +24,15 @@ class SplatTest : public DeviceTest {
     return referenceResolve(sums, settings);
   }
 
-  /// The table may be one code off here and there (its own test), which moves a colour by up to 1e-2 where few voxels
-  /// mix; alpha does not use the table.
+  /// The table may be one code off here and there (its own test), which moves a colour by up to 1e-2 where
+  /// few voxels mix; alpha does not use the table.
   void expectSamePicture(const Volume& volume, const Camera& camera, FrameSettings settings,
                          const TableSettings& table = {}) {
     Classification classification;
-    classification.transferFunction =
-        TransferFunction{.opacity = {{0.0f, 0.0f}, {1.0f, 0.5f}},
-                         .color = {{0.0f, {1.0f, 0.2f, 0.1f}}, {0.5f, {0.2f, 1.0f, 0.3f}}, {1.0f, {0.1f, 0.3f, 1.0f}}},
-                         .unitDistance = volume.voxelSize()};
+    classification.transferFunction = TransferFunction{
+        .opacity = {{0.0f, 0.0f}, {1.0f, 0.5f}},
+        .color = {{0.0f, {1.0f, 0.2f, 0.1f}}, {0.5f, {0.2f, 1.0f, 0.3f}}, {1.0f, {0.1f, 0.3f, 1.0f}}},
+        .unitDistance = volume.voxelSize()};
     settings.depth = true;
     Renderer renderer(device(), volume, classification, table);
     const Image picture = renderer.render(camera, settings);
@@ -43,7 +43,8 @@ class SplatTest : public DeviceTest {
       worstColor = std::max({worstColor, difference.x, difference.y, difference.z});
       worstAlpha = std::max(worstAlpha, difference.w);
       if (expected.pixels[i].a > 1e-3f)
-        worstDepth = std::max(worstDepth, std::abs(double(picture.depth[i]) / double(expected.depth[i]) - 1.0));
+        worstDepth =
+            std::max(worstDepth, std::abs(double(picture.depth[i]) / double(expected.depth[i]) - 1.0));
     }
     const bool normalised = settings.composite == Composite::Normalised;
     EXPECT_LE(worstColor, 5e-3);
@@ -78,9 +79,10 @@ TEST_F(SplatTest, OrthographicMatchesTheReference) {
 
 TEST_F(SplatTest, ThePapersSettingsMatchTheReference) {
   const Volume v = volume(false);
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}),
-                    {.size = {90, 90}, .composite = Composite::Additive, .attenuation = AttenuationLookup::Nearest},
-                    {AttenuationCode::Linear8, false});
+  expectSamePicture(
+      v, framingCamera(v, 35.0, 25.0, 1.0, {}),
+      {.size = {90, 90}, .composite = Composite::Additive, .attenuation = AttenuationLookup::Nearest},
+      {AttenuationCode::Linear8, false});
 }
 
 TEST_F(SplatTest, WideAngleMatchesTheReference) {
@@ -90,6 +92,20 @@ TEST_F(SplatTest, WideAngleMatchesTheReference) {
   expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, base), {.size = {120, 120}});
 }
 
+TEST_F(SplatTest, TelephotoMatchesTheReference) {
+  const Volume v = volume(true);
+  Camera base;
+  base.verticalFov = 2.0;
+  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, base), {.size = {120, 120}});
+}
+
+TEST_F(SplatTest, ExtremelyWideImagesMatchTheReference) {
+  const Volume v = volume(false);
+  const Camera close{.position = {0.0, 0.0, 0.8}, .lookAt = {0.0, 0.0, -0.2}, .verticalFov = 60.0};
+  expectSamePicture(v, close, {.size = {8000, 4}});
+  expectSamePicture(v, close, {.size = {4, 3000}});
+}
+
 TEST_F(SplatTest, VoxelsSmallerThanPixelsMatchTheReference) {
   const Volume v = volume(true);
   expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {7, 7}});
@@ -97,7 +113,8 @@ TEST_F(SplatTest, VoxelsSmallerThanPixelsMatchTheReference) {
 
 TEST_F(SplatTest, SplatsLargerThanTheLargestPointMatchTheReference) {
   const Volume v = randomVolume({3, 3, 3}, cubeTransform({3, 3, 3}), 0.8, 1.0);
-  const int size = 700;  // a voxel is over 100 pixels wide, its footprint nearly 400: more than points can be here
+  const int size =
+      700;  // a voxel is over 100 pixels wide, its footprint nearly 400: more than points can be here
   expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {size, size}});
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "tests/reference/reference_scene.h"
@@ -98,9 +99,13 @@ TEST(ReferenceCube, IsBeerLambertFromAnyDirection) {
        {View{0.01, 0.01, false, 60, 56}, View{35, 25, false, 60, 56}, View{200, -50, false, 57, 55},
         View{90.01, 45, false, 60, 56}, View{0.01, 0.01, true, 39, 36}, View{35, 25, true, 60, 56},
         View{200, -50, true, 60, 56}, View{90.01, 45, true, 42, 38}}) {
-    Camera base;
-    base.orthographic = view.orthographic;
-    const Camera camera = framingCamera(scene.volume, view.azimuth, view.elevation, 1.0, base);
+    Camera camera = framingCamera(scene.volume, view.azimuth, view.elevation, 1.0, {});
+    const double radius =
+        1.03 * std::sqrt(3.0) / 2.0;  // the cube's bounding sphere, with a margin, fits the image
+    const double distance = radius / std::sin(camera.verticalFov / 2.0 * std::numbers::pi / 180.0);
+    camera.position = camera.lookAt + distance * glm::normalize(camera.position - camera.lookAt);
+    camera.orthographic = view.orthographic;
+    camera.orthographicHeight = 2.0 * radius;
     const Image image = referenceResolve(scene.sums(camera, settings), settings);
     const double psnr = beerLambertPsnr(scene, camera, image, sigma, cubeDepth);
     const double sharpPsnr = beerLambertPsnr(scene, camera, image, sigma, chord);

@@ -118,7 +118,7 @@ double largestNdc(const Volume& volume, const Camera& camera, double aspect) {
   return largest;
 }
 
-TEST(Camera, FramesTheWholeBox) {
+TEST(Camera, FramesTheWholeBoxWithASmallMargin) {
   const std::vector<Volume> volumes = {box({8, 8, 8}, glm::dmat4(1.0)), box({1, 1, 1}, obliqueTransform()),
                                        box({3, 50, 7}, obliqueTransform())};
   for (const Volume& volume : volumes)
@@ -131,26 +131,9 @@ TEST(Camera, FramesTheWholeBox) {
             base.verticalFov = 70.0;
             const Camera camera = framingCamera(volume, azimuth, elevation, aspect, base);
             ASSERT_NO_THROW(checkCamera(camera));
-            EXPECT_LT(largestNdc(volume, camera, aspect), 1.0)
+            EXPECT_NEAR(largestNdc(volume, camera, aspect), 1.0 / 1.03, 1e-6)
                 << aspect << " " << azimuth << " " << elevation;
           }
-}
-
-TEST(Camera, FramesTheBoundingSphereWithASmallMargin) {
-  const Volume volume = box({10, 10, 10}, glm::dmat4(1.0));
-  const double radius = std::sqrt(3.0) * 5.0;
-  Camera base;
-  base.verticalFov = 50.0;
-  for (const double aspect : {0.5, 1.0, 3.0}) {
-    const Camera camera = framingCamera(volume, 20.0, 30.0, aspect, base);
-    const double half = std::atan(std::tan(25.0 * std::numbers::pi / 180.0) * std::min(1.0, aspect));
-    const double fits = radius / std::sin(half);
-    EXPECT_NEAR(glm::length(camera.position - glm::dvec3(4.5)), 1.03 * fits, 1e-9 * fits);
-    base.orthographic = true;
-    EXPECT_NEAR(framingCamera(volume, 20.0, 30.0, aspect, base).orthographicHeight,
-                1.03 * 2.0 * radius / std::min(1.0, aspect), 1e-9);
-    base.orthographic = false;
-  }
 }
 
 TEST(Camera, AzimuthTurnsFromPlusZTowardsPlusXAndElevationRises) {
