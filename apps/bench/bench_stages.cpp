@@ -71,10 +71,11 @@ Result compaction(const Device& device, int resolution, int runs) {
     commands.submitAndWait();
     return total(commands);
   });
-  return {.name = fmt::format("visible voxels, {} of {}^3", downloadVisibleCount(device, visible), resolution),
-          .milliseconds = time,
-          .copyMilliseconds = copyTime(4 * volume.voxelCount()),
-          .perSecond = double(volume.voxelCount()) / time * 1e3};
+  return {
+      .name = fmt::format("visible voxels, {} of {}^3", downloadVisibleCount(device, visible), resolution),
+      .milliseconds = time,
+      .copyMilliseconds = copyTime(4 * volume.voxelCount()),
+      .perSecond = double(volume.voxelCount()) / time * 1e3};
 }
 
 Result splats(const Device& device, double pixels, int runs) {

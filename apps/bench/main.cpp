@@ -36,10 +36,11 @@ std::vector<std::string> tableLines(const std::vector<Result>& results) {
   TextTable table{.columns = {Align::Left, Align::Right, Align::Right, Align::Right},
                   .rows = {{"stage", "ms", "x copy", "million/s"}}};
   for (const Result& result : results)
-    table.rows.push_back(
-        {result.name, fmt::format("{:.1f}", result.milliseconds),
-         result.copyMilliseconds > 0.0 ? fmt::format("{:.1f}", result.milliseconds / result.copyMilliseconds) : "",
-         result.perSecond > 0.0 ? fmt::format("{:.2f}", result.perSecond * 1e-6) : ""});
+    table.rows.push_back({result.name, fmt::format("{:.1f}", result.milliseconds),
+                          result.copyMilliseconds > 0.0
+                              ? fmt::format("{:.1f}", result.milliseconds / result.copyMilliseconds)
+                              : "",
+                          result.perSecond > 0.0 ? fmt::format("{:.2f}", result.perSecond * 1e-6) : ""});
   return table.lines();
 }
 
@@ -60,9 +61,11 @@ nlohmann::ordered_json toJson(const Device& device, const std::vector<Result>& r
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Measures every stage on one device: the least of several runs, and as a ratio to copying the same bytes "
-               "with two threads of this machine in the same run.",
-               "freevoxels-bench");
+  CLI::App app(
+      "Measures every stage on one device: the least of several runs, and as a ratio to copying the same "
+      "bytes "
+      "with two threads of this machine in the same run.",
+      "freevoxels-bench");
   DeviceOptions device;
   std::vector<std::string> inputs{"procedural:cloud"};
   std::string json;

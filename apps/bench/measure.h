@@ -1,5 +1,6 @@
 #pragma once
-// Timings that survive a noisy machine: the least of several runs, beside a copy of the same bytes in the same run.
+// Timings that survive a noisy machine: the least of several runs, beside a copy of the same bytes in the
+// same run.
 
 #include <cstdint>
 #include <functional>
@@ -9,10 +10,10 @@
 namespace freevoxels::bench {
 
 struct Result {
-  std::string name;          ///< "26 sweeps 128^3"
-  double milliseconds = 0.0; ///< least of the runs
+  std::string name;               ///< "26 sweeps 128^3"
+  double milliseconds = 0.0;      ///< least of the runs
   double copyMilliseconds = 0.0;  ///< copying `bytes` with two threads; 0 = no such yardstick
-  double perSecond = 0.0;    ///< items a second, 0 = not counted
+  double perSecond = 0.0;         ///< items a second, 0 = not counted
 };
 
 /// Milliseconds of the fastest of `runs` calls of `run`, which returns its own time in milliseconds.

@@ -1,7 +1,7 @@
 #pragma once
 // Option values that are checked where they are read: a bad one is refused (ExitCode::Usage) in one sentence
-// that names the option. NaN and infinities are bad everywhere. Lists are one word: "1,2,3". Of an option that
-// is given twice the last counts.
+// that names the option. NaN and infinities are bad everywhere. Lists are one word: "1,2,3". Of an option
+// that is given twice the last counts.
 
 #include <fmt/format.h>
 

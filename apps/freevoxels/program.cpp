@@ -7,6 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
+#include <cstdio>
+#include <iostream>
 #include <memory>
 #include <new>
 
@@ -39,6 +41,13 @@ int report(ExitCode code, std::string sentence) {
   std::ranges::replace(sentence, '\n', ' ');
   spdlog::error("{}", sentence);
   return int(code);
+}
+
+/// Success, unless what was printed did not all arrive.
+int finish() {
+  std::cout.flush();
+  if (std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return int(ExitCode::Success);
+  return report(ExitCode::Output, "cannot write to standard output: is the disk full?");
 }
 
 /// The command as far as it was understood: "freevoxels render".
@@ -78,9 +87,10 @@ int runProgram(CLI::App& app, int argc, char** argv) {
   app.set_version_flag("--version", app.get_name() + " " + programVersion());
   try {
     app.parse(argc, argv);
-    return int(ExitCode::Success);
+    return finish();
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    app.exit(help);
+    return finish();
   } catch (const CLI::ParseError& error) {
     return reportUsage(app, error, argc, argv);
   } catch (const Error& error) {
@@ -88,6 +98,7 @@ int runProgram(CLI::App& app, int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return report(ExitCode::OutOfMemory, "this machine's memory is full: use a smaller volume or image");
   } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return finish();
     return report(ExitCode::Internal, fmt::format("internal error, please report it: {}", error.what()));
   }
 }
@@ -114,6 +125,18 @@ DeferredInterrupts::~DeferredInterrupts() {
   const int signal = deferredSignal;
   deferredSignal = 0;
   if (signal != 0) std::raise(signal);
+}
+
+void checkDistinct(const std::vector<std::string>& files) {
+  for (std::size_t i = 0; i < files.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      std::error_code none;  // equivalent() fails where one of them is not there yet
+      if (std::filesystem::weakly_canonical(files[i], none) ==
+              std::filesystem::weakly_canonical(files[j], none) ||
+          std::filesystem::equivalent(files[i], files[j], none))
+        fail(ExitCode::Usage, "'{}' and '{}' are the same file: give every input and output its own",
+             files[j], files[i]);
+    }
 }
 
 void checkOutput(const std::filesystem::path& file) {

@@ -4,6 +4,7 @@
 #include <csignal>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace CLI {
 class App;
@@ -42,5 +43,9 @@ class DeferredInterrupts {
 
 /// checkWritable, which tries with a temporary file, safe from interrupts.
 void checkOutput(const std::filesystem::path& file);
+
+/// ExitCode::Usage where two of the names mean the same file, so that no output replaces an input or another
+/// output.
+void checkDistinct(const std::vector<std::string>& files);
 
 }  // namespace freevoxels

@@ -58,6 +58,10 @@ void RenderCommand::run() const {
   camera_.check();
   output_.check();
   if (timings_) checkOutput(*timings_);
+  std::vector<std::string> files = output_.files;
+  if (timings_) files.push_back(*timings_);
+  if (!proceduralName(input_.input)) files.push_back(input_.input);
+  checkDistinct(files);
 
   device_.withDevice([&](const Device& device) {
     RunReport report;
@@ -74,6 +78,10 @@ void RenderCommand::run() const {
 }
 
 void RenderCommand::draw(const Device& device, RunReport& report) const {
+  FrameSettings frame{.size = camera_.size, .depth = output_.wantsDepth()};
+  method_.apply(frame);
+  checkFrameFits(device, frame);
+
   ProgressLine line(!messages_.quiet);
   line.begin("reading " + input_.input);
   const Volume volume = [&] {
@@ -89,8 +97,6 @@ void RenderCommand::draw(const Device& device, RunReport& report) const {
   logOptions(report.options);
   mentionCpu(device);
 
-  FrameSettings frame{.size = camera_.size, .depth = output_.wantsDepth()};
-  method_.apply(frame);
   Renderer renderer(device, volume, classification, method_.table(), line.progress());
   const Image image = renderer.render(camera, frame, line.progress());
   const std::vector<StageTime> times = renderer.timings();

@@ -1,6 +1,9 @@
 // Outputs that cannot be written: exit code 4, and nothing half-written is left.
 
+#include <sys/wait.h>
+
 #include <csignal>
+#include <cstdlib>
 #include <string>
 
 #include "tests/commands/program_runner.h"
@@ -43,6 +46,26 @@ TEST_F(BadOutput, FolderInsteadOfFile) {
 TEST_F(BadOutput, UnwritableFolder) {
   expectRefusal(run(std::string(kRender) + "/proc/a.exr"), ExitCode::Output, "/proc/a.exr");
   expectRefusal(run("generate cube /proc/a.vdb --resolution 16"), ExitCode::Output, "/proc/a.vdb");
+}
+
+TEST_F(BadOutput, SameFileTwice) {
+  expectSuccess(run("generate cube @in.vdb --resolution 8 --quiet"));
+  const std::string volume = readBytes(folder / "in.vdb");
+  expectRefusal(run("render @in.vdb @a.png --timings @in.vdb"), ExitCode::Usage, "in.vdb");
+  expectRefusal(run("render @in.vdb @a.png --timings @./a.png"), ExitCode::Usage, "a.png");
+  expectRefusal(run("render @in.vdb @a.png @a.png"), ExitCode::Usage, "a.png");
+  std::filesystem::create_symlink(folder / "in.vdb", folder / "link.png");
+  expectRefusal(run("render @in.vdb @link.png"), ExitCode::Usage, "link.png");
+  EXPECT_EQ(readBytes(folder / "in.vdb"), volume);
+}
+
+TEST_F(BadOutput, StandardOutputThatIsFull) {
+  for (const char* arguments : {"info procedural:cube", "generate --list", "--help"}) {
+    const std::string command =
+        std::string(FREEVOXELS_PROGRAM) + " " + arguments + " > /dev/full 2> /dev/null";
+    const int status = std::system(command.c_str());
+    EXPECT_EQ(WEXITSTATUS(status), int(ExitCode::Output)) << arguments;
+  }
 }
 
 TEST_F(BadOutput, WhatWasThereSurvivesAFailure) {
