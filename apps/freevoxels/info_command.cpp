@@ -20,7 +20,7 @@ GridInfo describeVolume(const Volume& volume) {
   grid.valueType = "float";
   grid.gridClass = "fog volume";
   grid.activeVoxels = volume.activeVoxels;
-  grid.dimensions = volume.dimensions;
+  grid.dimensions = grid.renderDimensions = volume.dimensions;
   grid.boundsMinimum = volume.indexOrigin;
   grid.boundsMaximum = volume.indexOrigin + volume.dimensions - 1;
   for (int axis = 0; axis < 3; ++axis)
@@ -47,7 +47,7 @@ void printTable(const std::vector<GridInfo>& grids) {
   for (const GridInfo& grid : grids) {
     const bool empty = grid.activeVoxels == 0;
     const glm::ivec3 low = grid.boundsMinimum, high = grid.boundsMaximum, size = grid.dimensions;
-    const VolumeMemory memory = volumeMemory(size);
+    const VolumeMemory memory = volumeMemory(grid.renderDimensions);
     table.rows.push_back(
         {grid.name, grid.valueType, grid.gridClass, fmt::format("{}", grid.activeVoxels),
          empty ? "-" : fmt::format("{}x{}x{}", size.x, size.y, size.z),
@@ -77,7 +77,7 @@ nlohmann::ordered_json toJson(const GridInfo& grid) {
     json["not_drawable"] = grid.unusable;
     return json;
   }
-  const VolumeMemory memory = volumeMemory(grid.dimensions);
+  const VolumeMemory memory = volumeMemory(grid.renderDimensions);
   json["table_bytes"] = memory.table;
   json["device_bytes"] = memory.total();
   return json;

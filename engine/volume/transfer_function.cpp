@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 
 #include "engine/core/error.h"
@@ -82,6 +83,21 @@ std::string parseReason(const Json::parse_error& error) {
   return reason;
 }
 
+/// `key` in quotes, whatever bytes are in it.
+std::string inQuotes(const Json& key) {
+  return key.dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
+/// For the parser, which by itself takes the last of equal keys.
+Json::parser_callback_t refuseRepeatedKeys(const fs::path& file) {
+  return [&file, seen = std::set<Json>()](int depth, Json::parse_event_t event, Json& parsed) mutable {
+    if (event == Json::parse_event_t::key && depth == 1 && !seen.insert(parsed).second)
+      fail(ExitCode::Input, "transfer function '{}' has the key {} more than once; keep one of them",
+           file.string(), inQuotes(parsed));
+    return true;
+  };
+}
+
 Json parseFile(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error))
@@ -92,7 +108,7 @@ Json parseFile(const fs::path& file) {
   if (!stream)
     fail(ExitCode::Input, "cannot open transfer function '{}'; check its permissions", file.string());
   try {
-    return Json::parse(stream);
+    return Json::parse(stream, refuseRepeatedKeys(file));
   } catch (const Json::parse_error& e) {
     fail(ExitCode::Input, "transfer function '{}' is not valid JSON: {}", file.string(), parseReason(e));
   } catch (const Json::exception&) {
@@ -107,8 +123,7 @@ void checkKeys(const fs::path& file, const Json& root) {
   for (const auto& [key, value] : root.items())
     if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
       fail(ExitCode::Input, "transfer function '{}' has an unknown key {}; the known ones are: {}",
-           file.string(), Json(key).dump(-1, ' ', true, Json::error_handler_t::replace),
-           fmt::join(kKeys, ", "));
+           file.string(), inQuotes(key), fmt::join(kKeys, ", "));
   if (!root.contains("opacity"))
     fail(ExitCode::Input, "transfer function '{}' has no \"opacity\"; add a list of [x, alpha] points",
          file.string());

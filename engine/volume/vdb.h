@@ -15,24 +15,26 @@ struct GridInfo {
   std::string name;       ///< unique within the file: "density", or "density[1]" where the name is shared
   std::string valueType;  ///< "float", "half", "vec3s", "point data", ...
   std::string gridClass;  ///< "fog volume", "level set", "staggered", "unknown"
-  std::uint64_t activeVoxels = 0;  ///< active tiles counted as voxels
-  glm::ivec3 dimensions{0};        ///< of the active bounding box; 0 where the grid is empty
+  std::uint64_t activeVoxels = 0;                 ///< active tiles counted as voxels
+  glm::ivec3 dimensions{0};                       ///< of the active bounding box; 0 where the grid is empty
   glm::ivec3 boundsMinimum{0}, boundsMaximum{0};  ///< inclusive, index space
   glm::dvec3 voxelSize{0.0};                      ///< world units along the three index axes
   bool hasRange = false;                          ///< the grid holds one real number a voxel
   double minimum = 0.0, maximum = 0.0;            ///< of the finite active values
   std::uint64_t memoryBytes = 0;
-  std::string unusable;  ///< empty, or why it cannot be rendered, in one clause
+  glm::ivec3 renderDimensions{0};  ///< of the box that readVdb makes of it; 0 where it cannot be rendered
+  std::string unusable;            ///< empty, or why it cannot be rendered, in one clause
 };
 
 /// Every grid of the file in file order. Fails with ExitCode::Input on a missing, truncated or foreign file.
 std::vector<GridInfo> describeVdb(const std::filesystem::path& file);
 
 /// Reads one float or half grid as a dense box around its active voxels (active tiles counted as voxels).
-/// `gridName`: "NAME" or "NAME[k]"; empty means `density`, else the only float grid, else an error that lists the choice.
-/// A level set becomes fog: density 1 inside, 0 outside, linear over the one voxel at the surface.
-/// Fails with ExitCode::Input: frustum transforms, other grid types, empty grids, unreadable files; and with
-/// ExitCode::OutOfMemory where the box exceeds `maximumVoxels`, before anything of that size is allocated.
+/// `gridName`: "NAME" or "NAME[k]"; empty means `density`, else the only float grid, else an error that lists
+/// the choice. A level set becomes fog: density 1 inside, 0 outside, linear over the one voxel at the
+/// surface. Fails with ExitCode::Input: frustum transforms, other grid types, empty grids, unreadable files;
+/// and with ExitCode::OutOfMemory where the box exceeds `maximumVoxels`, before anything of that size is
+/// allocated.
 Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels);
 
 /// Writes the active voxels as one float fog-volume grid. Atomic (core/atomic_file.h).

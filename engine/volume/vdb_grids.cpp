@@ -13,6 +13,8 @@
 #include <sstream>
 
 #include "engine/core/error.h"
+#include "engine/volume/crash_guard.h"
+#include "engine/volume/vdb_tree_check.h"
 
 namespace freevoxels {
 
@@ -58,8 +60,15 @@ std::vector<GridBase::Ptr> readWholeStream(std::istream& input) {
     return *Stream(input).getGrids();
 }
 
-/// Text from a file as part of a sentence: one printable line.
+/// Text from a file as part of a sentence: one printable line that is not too long.
 std::string printable(std::string text) {
+  constexpr std::size_t kLongest = 200;
+  if (text.size() > kLongest) {
+    std::size_t end = kLongest;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80)
+      --end;  // whole UTF-8 characters
+    text.replace(end, std::string::npos, "...");
+  }
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
   return text;
@@ -105,22 +114,21 @@ void initialiseOpenVdb() {
   openvdb::initialize();
 }
 
-VdbFile::VdbFile(const fs::path& path) : path_(path), file_(path.string()) {
-  const VdbHeader header = readVdbHeader(path);
+VdbFile::VdbFile(const fs::path& path) : path_(path), file_(path.string()), header_(readVdbHeader(path)) {
   initialiseOpenVdb();
-  if (header.hasOffsets) {
+  if (header_.hasOffsets) {
     guarded("the header", [&] {
       openWithoutDelay(file_);
       return GridBase::Ptr();
     });
-    listGrids(header);
+    listGrids();
   } else {
     readStreamedGrids();
   }
 }
 
-void VdbFile::listGrids(const VdbHeader& header) {
-  for (const VdbHeader::Grid& grid : header.grids)
+void VdbFile::listGrids() {
+  for (const VdbHeader::Grid& grid : header_.grids)
     entries_.push_back({.baseName = printable(GridDescriptor::stripSuffix(grid.uniqueName)),
                         .valueType = valueTypeOf(grid.type, grid.savedAsHalf),
                         .treeType = grid.type,
@@ -152,6 +160,8 @@ void VdbFile::readStreamedGrids() {
 GridBase::Ptr VdbFile::guarded(const std::string& what, const std::function<GridBase::Ptr()>& read) const {
   try {
     const SilenceOpenVdb silence;
+    const CrashGuard guard(fmt::format(
+        "cannot read {} of '{}': the file is damaged; copy or download it again", what, path_.string()));
     return read();
   } catch (const std::bad_alloc&) {
     fail(ExitCode::OutOfMemory,
@@ -215,8 +225,17 @@ GridBase::Ptr VdbFile::readMetadata(const Entry& entry) {
 }
 
 GridBase::Ptr VdbFile::read(const Entry& entry) {
-  if (!streamed_.empty()) return streamed_[std::size_t(&entry - entries_.data())];
+  const auto index = std::size_t(&entry - entries_.data());
+  if (!streamed_.empty()) return streamed_[index];
+  checkTree(header_.grids[index]);
   return guarded(fmt::format("grid '{}'", entry.name), [&] { return file_.readGrid(entry.key); });
+}
+
+void VdbFile::checkTree(const VdbHeader::Grid& grid) const {
+  const auto parent = std::ranges::find(header_.grids, grid.parentName, &VdbHeader::Grid::uniqueName);
+  const bool isShared = !grid.parentName.empty() && parent != header_.grids.end();
+  VdbReader reader(path_);
+  checkVdbTree(reader, isShared ? *parent : grid);
 }
 
 std::string whyTypeUnusable(const std::string& treeType, const std::string& valueType) {
@@ -232,18 +251,23 @@ std::string whyTypeUnusable(const std::string& treeType, const std::string& valu
 }
 
 std::string whyTransformUnusable(const openvdb::math::Transform& transform) {
+  constexpr const char* kSingular =
+      "its transform is singular or not finite; give the grid a transform with voxels of some volume";
   if (!transform.isLinear())
     return "its transform is a frustum; resample it to a box with an affine transform";
-  const openvdb::Mat4d matrix = transform.baseMap()->getAffineMap()->getMat4();
+  openvdb::Mat4d matrix;
+  try {
+    matrix = transform.baseMap()->getAffineMap()->getMat4();
+  } catch (const openvdb::ArithmeticError&) {  // a map of scales alone is not checked until here
+    return kSingular;
+  }
   double lengths = 1.0;
   for (int row = 0; row < 3; ++row)
     lengths *= openvdb::Vec3d(matrix(row, 0), matrix(row, 1), matrix(row, 2)).length();
   constexpr double kFlattest = 1e-9;  // volume of a voxel relative to the box of its edge lengths
   const double volume = std::abs(matrix.getMat3().det());
   const bool finite = std::isfinite(lengths) && std::isfinite(volume) && matrix.getTranslation().isFinite();
-  if (!finite || !(volume > kFlattest * lengths))
-    return "its transform is singular or not finite; give the grid a transform with voxels of some volume";
-  return {};
+  return finite && volume > kFlattest * lengths ? "" : kSingular;
 }
 
 openvdb::FloatGrid::ConstPtr asFloatGrid(const GridBase::ConstPtr& grid) {

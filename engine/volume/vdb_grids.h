@@ -40,9 +40,11 @@ class VdbFile {
   openvdb::GridBase::Ptr read(const Entry& entry);
 
  private:
-  void listGrids(const VdbHeader& header);
+  void listGrids();
   void readStreamedGrids();
-  /// Runs `read` with OpenVDB's own messages silenced and its exceptions turned into one sentence.
+  void checkTree(const VdbHeader::Grid& grid) const;
+  /// Runs `read` with OpenVDB's own messages silenced and its exceptions and crashes turned into one
+  /// sentence.
   openvdb::GridBase::Ptr guarded(const std::string& what,
                                  const std::function<openvdb::GridBase::Ptr()>& read) const;
   const Entry& chooseByDefault() const;
@@ -50,6 +52,7 @@ class VdbFile {
 
   std::filesystem::path path_;
   openvdb::io::File file_;
+  VdbHeader header_;
   std::vector<Entry> entries_;
   std::vector<openvdb::GridBase::Ptr>
       streamed_;  ///< parallel to entries_, for a file that has to be read as a whole
@@ -60,6 +63,7 @@ std::string whyTypeUnusable(const std::string& treeType, const std::string& valu
 /// Empty, or why a grid with this transform cannot be rendered, in one clause.
 std::string whyTransformUnusable(const openvdb::math::Transform& transform);
 inline constexpr const char* kEmptyGridClause = "it is empty: no voxel is active";
+inline constexpr const char* kNothingInsideClause = "no voxel is inside the level set";
 
 /// The grid itself, or a copy in float of a half or double grid; null for any other type.
 openvdb::FloatGrid::ConstPtr asFloatGrid(const openvdb::GridBase::ConstPtr& grid);

@@ -2,13 +2,15 @@
 #include "engine/volume/vdb_header.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <fstream>
+#include <limits>
+#include <span>
 #include <string_view>
 #include <system_error>
 
 #include "engine/core/error.h"
+#include "engine/volume/vdb_reader.h"
+#include "engine/volume/vdb_tree_check.h"
 
 namespace freevoxels {
 
@@ -19,63 +21,6 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kMagic = 0x56444220;  // "VDB "
 constexpr std::uint32_t kOldestFormat = 222;
 constexpr std::size_t kUuidLength = 36;
-constexpr std::uint32_t kLongestString = 1 << 16;  // longer names and types are damage, not names
-
-/// Reads little-endian values and fails at the end of the file instead of reading past it.
-class Reader {
- public:
-  explicit Reader(const fs::path& file)
-      : file_(file), size_(fs::file_size(file)), stream_(file, std::ios::binary) {
-    if (!stream_) {
-      const std::string reason = std::generic_category().message(errno);
-      fail(ExitCode::Input, "cannot open '{}': {}; check its permissions", file.string(), reason);
-    }
-  }
-
-  template <typename Value>
-  Value read() {
-    Value value{};
-    readBytes(&value, sizeof(Value));
-    return value;
-  }
-  std::string readString() {
-    const auto length = read<std::uint32_t>();
-    if (length > kLongestString) failDamaged("a name in its header is {} bytes long", length);
-    std::string text(length, '\0');
-    readBytes(text.data(), length);
-    return text;
-  }
-  void skip(std::uint64_t bytes) { seek(position() + bytes); }
-  void seek(std::uint64_t position) {
-    if (position > size_) failTruncated(position);
-    stream_.seekg(std::streamoff(position));
-  }
-  std::uint64_t position() { return std::uint64_t(stream_.tellg()); }
-  std::uint64_t size() const { return size_; }
-
-  [[noreturn]] void failTruncated(std::uint64_t needed) const {
-    fail(ExitCode::Input,
-         "'{}' is incomplete: it has {} bytes, but at least {} are needed; copy or download it again",
-         file_.string(), size_, needed);
-  }
-  template <typename... Args>
-  [[noreturn]] void failDamaged(fmt::format_string<Args...> format, Args&&... args) const {
-    fail(ExitCode::Input, "'{}' is damaged: {}; copy or download it again", file_.string(),
-         fmt::format(format, std::forward<Args>(args)...));
-  }
-
- private:
-  void readBytes(void* bytes, std::size_t count) {
-    const std::uint64_t end = position() + count;
-    if (end > size_) failTruncated(end);
-    stream_.read(static_cast<char*>(bytes), std::streamsize(count));
-    if (!stream_) fail(ExitCode::Input, "cannot read '{}': the disk reports an error", file_.string());
-  }
-
-  const fs::path& file_;
-  std::uint64_t size_;
-  std::ifstream stream_;
-};
 
 void checkRegularFile(const fs::path& file) {
   std::error_code error;
@@ -107,23 +52,85 @@ std::string_view guessKind(const fs::path& file) {
   return isText ? "it is text" : "it does not begin with OpenVDB's signature";
 }
 
-void checkSignature(const fs::path& file, Reader& reader) {
+void checkSignature(const fs::path& file, VdbReader& reader) {
   if (reader.size() < sizeof(kMagic) || reader.read<std::int64_t>() != kMagic)
     fail(ExitCode::Input, "'{}' is not an OpenVDB file: {}; give a .vdb file that OpenVDB has written",
          file.string(), guessKind(file));
 }
 
-void skipMetadata(Reader& reader) {
-  const auto count = reader.read<std::int32_t>();
-  if (count < 0) reader.failDamaged("its header counts {} metadata entries", count);
-  for (std::int32_t i = 0; i < count; ++i) {
-    reader.readString();  // name
-    reader.readString();  // type
-    reader.skip(reader.read<std::uint32_t>());
-  }
+struct TypeSize {
+  std::string_view type;
+  std::uint32_t bytes;
+};
+
+/// OpenVDB reads these metadata types in their own size, whatever size the file says.
+constexpr TypeSize kMetadataTypes[] = {{"bool", 1},   {"float", 4},  {"double", 8}, {"int32", 4},
+                                       {"int64", 8},  {"vec2i", 8},  {"vec2s", 8},  {"vec2d", 16},
+                                       {"vec3i", 12}, {"vec3s", 12}, {"vec3d", 24}, {"vec4i", 16},
+                                       {"vec4s", 16}, {"vec4d", 32}, {"mat4s", 64}, {"mat4d", 128}};
+
+/// What OpenVDB writes of a transform after the name of its type; frustums vary.
+constexpr TypeSize kTransformTypes[] = {{"AffineMap", 128},         {"UnitaryMap", 128},
+                                        {"ScaleMap", 120},          {"UniformScaleMap", 120},
+                                        {"ScaleTranslateMap", 144}, {"UniformScaleTranslateMap", 144},
+                                        {"TranslationMap", 24}};
+
+const TypeSize* find(std::span<const TypeSize> types, const std::string& type) {
+  const auto found = std::ranges::find(types, type, &TypeSize::type);
+  return found == types.end() ? nullptr : &*found;
 }
 
-VdbHeader::Grid readGridEntry(Reader& reader) {
+/// The mask and the size of every leaf, for delayed loading: OpenVDB allocates what it counts.
+void skipDelayedLoading(VdbReader& reader, std::uint32_t bytes) {
+  constexpr std::uint64_t kSmallestLeaf = 64;
+  constexpr std::uint64_t kSmallestPacked = 128;  // OpenVDB pads what is shorter before it compresses it
+  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  if (bytes == 0) return;
+  const std::uint64_t end = reader.position() + bytes;
+  const std::uint64_t leaves = reader.read<std::uint32_t>();
+  if (leaves > reader.size() / kSmallestLeaf) reader.failDamaged("its metadata counts {} leaves", leaves);
+  for (const std::size_t bytesOfOne : {sizeof(std::int8_t), sizeof(std::int64_t)}) {
+    const auto packed = reader.read<std::uint32_t>();
+    const bool isLeftOut = bytesOfOne > 1 && packed == kNone;  // only sizes can be
+    if (packed == 0)
+      reader.skip(leaves * bytesOfOne);
+    else if (!isLeftOut)
+      skipBlosc(reader, packed, std::max(leaves * bytesOfOne, kSmallestPacked));
+  }
+  if (reader.position() > end) reader.failDamaged("its metadata is longer than its size");
+  reader.seek(end);
+}
+
+/// Whether the metadata say that values are stored as half.
+bool skipMetadata(VdbReader& reader) {
+  bool savedAsHalf = false;
+  const auto count = reader.read<std::int32_t>();
+  if (count < 0) reader.failDamaged("it counts {} metadata entries", count);
+  for (std::int32_t i = 0; i < count; ++i) {
+    const std::string name = reader.readString();
+    const std::string type = reader.readString();
+    const auto bytes = reader.read<std::uint32_t>();
+    if (const TypeSize* known = find(kMetadataTypes, type); known && known->bytes != bytes)
+      reader.failDamaged("its metadata give {} bytes to a {}", bytes, type);
+    if (type == "__delayedload")
+      skipDelayedLoading(reader, bytes);
+    else if (name == "is_saved_as_half_float" && type == "bool")
+      savedAsHalf = reader.read<char>() != 0;
+    else
+      reader.skip(bytes);
+  }
+  return savedAsHalf;
+}
+
+/// False for a transform whose end cannot be told.
+bool skipTransform(VdbReader& reader) {
+  const TypeSize* known = find(kTransformTypes, reader.readString());
+  if (known) reader.skip(known->bytes);
+  return known;
+}
+
+/// The grid's descriptor, without the positions that follow.
+VdbHeader::Grid readDescriptor(VdbReader& reader) {
   constexpr std::string_view kHalfSuffix = "_HalfFloat";
   VdbHeader::Grid grid;
   grid.uniqueName = reader.readString();
@@ -132,21 +139,47 @@ VdbHeader::Grid readGridEntry(Reader& reader) {
     grid.type.resize(grid.type.size() - kHalfSuffix.size());
     grid.savedAsHalf = true;
   }
-  reader.readString();  // the grid whose tree this one shares
+  grid.parentName = reader.readString();
+  return grid;
+}
+
+/// Everything of the grid up to its tree.
+void readGridStart(VdbReader& reader, VdbHeader::Grid& grid) {
+  grid.compression = reader.read<std::uint32_t>();
+  grid.valuesAreHalf = skipMetadata(reader);
+  if (skipTransform(reader)) grid.treeStart = reader.position();
+}
+
+VdbHeader::Grid readGridEntry(VdbReader& reader) {
+  VdbHeader::Grid grid = readDescriptor(reader);
   const auto gridStart = reader.read<std::int64_t>();
   const auto blockStart = reader.read<std::int64_t>();
   const auto end = reader.read<std::int64_t>();
   if (gridStart < std::int64_t(reader.position()) || blockStart < gridStart || end < blockStart)
     reader.failDamaged("its grids are not where its header says");
+  reader.seek(std::uint64_t(end));  // first of all: a truncated file is not called damaged
+  reader.seek(std::uint64_t(gridStart));
+  readGridStart(reader, grid);
   reader.seek(std::uint64_t(end));
   return grid;
+}
+
+/// One grid follows the other, so they are checked as far as the end of each can be told.
+void checkStreamedGrids(VdbReader& reader, std::int32_t count) {
+  bool canContinue = true;
+  for (std::int32_t i = 0; i < count && canContinue; ++i) {
+    VdbHeader::Grid grid = readDescriptor(reader);
+    reader.skip(3 * sizeof(std::int64_t));  // positions, which are not known in a stream
+    readGridStart(reader, grid);
+    canContinue = grid.parentName.empty() ? checkVdbTree(reader, grid) : grid.treeStart != 0;
+  }
 }
 
 }  // namespace
 
 VdbHeader readVdbHeader(const std::filesystem::path& file) {
   checkRegularFile(file);
-  Reader reader(file);
+  VdbReader reader(file);
   checkSignature(file, reader);
   VdbHeader header;
   header.formatVersion = reader.read<std::uint32_t>();
@@ -161,7 +194,10 @@ VdbHeader readVdbHeader(const std::filesystem::path& file) {
   skipMetadata(reader);
   const auto gridCount = reader.read<std::int32_t>();
   if (gridCount < 0) reader.failDamaged("its header counts {} grids", gridCount);
-  if (!header.hasOffsets) return header;
+  if (!header.hasOffsets) {
+    checkStreamedGrids(reader, gridCount);
+    return header;
+  }
   for (std::int32_t i = 0; i < gridCount; ++i) header.grids.push_back(readGridEntry(reader));
   return header;
 }

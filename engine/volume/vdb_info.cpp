@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "engine/volume/vdb.h"
+#include "engine/volume/vdb_density.h"
 #include "engine/volume/vdb_grids.h"
 
 namespace freevoxels {
@@ -79,6 +80,19 @@ void describeVoxels(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   info.maximum = values.maximum;
 }
 
+/// The box that readVdb would make of the grid.
+void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
+  const openvdb::FloatGrid::ConstPtr floats = asFloatGrid(grid);
+  std::vector<const FloatTree::LeafNodeType*> leaves;
+  floats->tree().getNodes(leaves);
+  const openvdb::CoordBBox box =
+      withDensity(*grid, [&](const auto& toDensity) { return boundsOf(floats->tree(), leaves, toDensity); });
+  if (box.empty())
+    info.unusable = kNothingInsideClause;
+  else
+    info.renderDimensions = {box.dim().x(), box.dim().y(), box.dim().z()};
+}
+
 GridInfo describe(VdbFile& file, const VdbFile::Entry& entry) {
   GridInfo info;
   info.name = entry.name;
@@ -94,6 +108,7 @@ GridInfo describe(VdbFile& file, const VdbFile::Entry& entry) {
   if (info.unusable.empty()) info.unusable = whyTransformUnusable(grid->transform());
   describeVoxels(grid, info);
   if (info.unusable.empty() && info.activeVoxels == 0) info.unusable = kEmptyGridClause;
+  if (info.unusable.empty()) describeBox(grid, info);
   return info;
 }
 

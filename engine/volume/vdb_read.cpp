@@ -1,13 +1,12 @@
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
 #include <new>
 
 #include "engine/core/error.h"
 #include "engine/volume/vdb.h"
+#include "engine/volume/vdb_density.h"
 #include "engine/volume/vdb_grids.h"
 
 namespace freevoxels {
@@ -17,57 +16,7 @@ namespace {
 using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
-using openvdb::FloatTree;
-using Leaf = FloatTree::LeafNodeType;
-using Leaves = std::vector<const Leaf*>;
-
-/// What a voxel of a fog volume becomes in the box.
-struct FogToDensity {
-  float operator()(float value, bool active) const { return active ? value : kInactiveVoxel; }
-};
-
-/// What a voxel of a level set becomes: 1 inside, 0 outside, linear over the one voxel at the surface. Inside
-/// is inactive in OpenVDB, so the value alone decides.
-struct LevelSetToDensity {
-  float voxelSize;
-  float operator()(float distance, bool active) const {
-    if (active && std::isnan(distance)) return distance;  // counted, and then 0, like every NaN
-    const float density = std::clamp(0.5f - distance / voxelSize, 0.0f, 1.0f);
-    return density > 0.0f ? density : kInactiveVoxel;
-  }
-};
-
-/// Calls `visit(box, value, active)` for each tile of the tree, at any level above the leaves. The background
-/// is no tile: it has no end.
-template <typename Visit>
-void visitTiles(const FloatTree& tree, const Visit& visit) {
-  auto tile = tree.cbeginValueAll();
-  tile.setMaxDepth(FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
-  for (; tile; ++tile) visit(tile.getBoundingBox(), tile.getValue(), tile.isValueOn());
-}
-
-/// The smallest box around the voxels that `toDensity` keeps.
-template <typename ToDensity>
-CoordBBox boundsOf(const FloatTree& tree, const Leaves& leaves, const ToDensity& toDensity) {
-  using Range = tbb::blocked_range<std::size_t>;
-  const auto join = [](CoordBBox a, const CoordBBox& b) {
-    a.expand(b);
-    return a;
-  };
-  const auto expandByLeaves = [&](const Range& range, CoordBBox box) {
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      if (box.isInside(leaves[i]->getNodeBoundingBox())) continue;
-      for (auto voxel = leaves[i]->cbeginValueAll(); voxel; ++voxel)
-        if (toDensity(*voxel, voxel.isValueOn()) != kInactiveVoxel) box.expand(voxel.getCoord());
-    }
-    return box;
-  };
-  CoordBBox bounds = tbb::parallel_reduce(Range(0, leaves.size()), CoordBBox(), expandByLeaves, join);
-  visitTiles(tree, [&](const CoordBBox& box, float value, bool active) {
-    if (toDensity(value, active) != kInactiveVoxel) bounds.expand(box);
-  });
-  return bounds;
-}
+using Leaf = openvdb::FloatTree::LeafNodeType;
 
 void fillBox(Volume& volume, const CoordBBox& box, float value) {
   const Coord size = box.dim();
@@ -115,11 +64,10 @@ glm::dmat4 indexToWorldOf(const FloatGrid& grid, glm::ivec3 indexOrigin) {
 template <typename ToDensity>
 Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::string& source,
                 std::uint64_t maximumVoxels) {
-  Leaves leaves;
+  std::vector<const Leaf*> leaves;
   grid.tree().getNodes(leaves);
   const CoordBBox bounds = boundsOf(grid.tree(), leaves, toDensity);
-  if (bounds.empty())
-    fail(ExitCode::Input, "{} cannot be rendered: no voxel is inside the level set", source);
+  if (bounds.empty()) fail(ExitCode::Input, "{} cannot be rendered: {}", source, kNothingInsideClause);
   checkSize(bounds, maximumVoxels, source);
 
   Volume volume;
@@ -157,10 +105,8 @@ Volume readVdb(const std::filesystem::path& path, const std::string& gridName, s
   const FloatGrid::ConstPtr floats = asFloatGrid(grid);
   const std::string source = fmt::format("{} {}", path.filename().string(), entry.name);
   try {
-    if (grid->getGridClass() != openvdb::GRID_LEVEL_SET)
-      return toVolume(*floats, FogToDensity{}, source, maximumVoxels);
-    const double voxelSize = std::cbrt(std::abs(floats->transform().baseMap()->determinant()));
-    return toVolume(*floats, LevelSetToDensity{float(voxelSize)}, source, maximumVoxels);
+    return withDensity(
+        *grid, [&](const auto& toDensity) { return toVolume(*floats, toDensity, source, maximumVoxels); });
   } catch (const std::bad_alloc&) {
     fail(ExitCode::OutOfMemory, "not enough memory for {}; free some, or resample or crop the volume",
          source);

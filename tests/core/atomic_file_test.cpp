@@ -9,27 +9,17 @@
 #include "engine/core/checked_file.h"
 #include "engine/core/error.h"
 #include "tests/limited_disk.h"
+#include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
 namespace freevoxels {
 namespace {
 
 namespace fs = std::filesystem;
+using test::errorOf;
 using test::readBytes;
 using test::TemporaryFolder;
 using test::writeBytes;
-
-/// The error that `action` must throw; a test fails where it throws none.
-template <typename Action>
-Error errorOf(Action&& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error;
-  }
-  ADD_FAILURE() << "no error";
-  return {ExitCode::Success, ""};
-}
 
 bool contains(const Error& error, const std::string& text) {
   return std::string(error.what()).find(text) != std::string::npos;

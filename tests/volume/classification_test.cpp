@@ -136,6 +136,12 @@ TEST_F(TransferFunctionFile, RefusesUnknownAndMissingKeys) {
   expectRefused("[1, 2]", {"array"});
 }
 
+TEST_F(TransferFunctionFile, RefusesRepeatedKeys) {
+  expectRefused(R"({"opacity": [[0, 1]], "opacity": [[0, 0.5]]})", {"\"opacity\"", "more than once"});
+  expectRefused(R"({"range": [0, 1], "opacity": [[0, 1]], "range": [0, 2]})",
+                {"\"range\"", "more than once"});
+}
+
 TEST_F(TransferFunctionFile, RefusesBadPoints) {
   expectRefused(R"({"opacity": []})", {"\"opacity\"", "at least one"});
   expectRefused(R"({"opacity": 1})", {"\"opacity\"", "list"});

@@ -1,24 +1,17 @@
 #include "engine/volume/vdb.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <cmath>
-#include <fstream>
 #include <glm/gtc/matrix_transform.hpp>
 #include <numbers>
 
 #include "engine/core/error.h"
 #include "engine/volume/procedural.h"
 #include "tests/limited_disk.h"
-#include "tests/temporary_folder.h"
-
-/// For the leak sanitizer: OpenVDB drops the nodes it was reading when a truncated stream throws.
-extern "C" const char* __lsan_default_suppressions() {
-  return "leak:readTopology\nleak:readBuffers\n";
-}
+#include "tests/volume/vdb_fixture.h"
 
 namespace freevoxels {
 namespace {
@@ -27,77 +20,12 @@ namespace fs = std::filesystem;
 using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
-using test::readBytes;
-using test::TemporaryFolder;
-using test::writeBytes;
-
-constexpr std::uint64_t kPlenty = 1u << 28;
-
-template <typename Action>
-Error errorOf(Action&& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error;
-  }
-  ADD_FAILURE() << "no error";
-  return {ExitCode::Success, ""};
-}
-
-/// One sentence on one line that contains all of `parts`.
-template <typename Action>
-void expectRefusal(Action&& action, ExitCode code, std::initializer_list<std::string> parts) {
-  const Error error = errorOf(action);
-  const std::string sentence = error.what();
-  EXPECT_EQ(error.code(), code) << sentence;
-  EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
-  for (const std::string& part : parts)
-    EXPECT_NE(sentence.find(part), std::string::npos) << part << " in: " << sentence;
-}
-
-class Vdb : public testing::Test {
- protected:
-  void SetUp() override { openvdb::initialize(); }
-
-  void write(const openvdb::GridPtrVec& grids) const { openvdb::io::File(file.string()).write(grids); }
-  Volume read(const std::string& name = "") const { return readVdb(file, name, kPlenty); }
-  void expectReadRefused(std::initializer_list<std::string> parts, const std::string& name = "") const {
-    expectRefusal([&] { read(name); }, ExitCode::Input, parts);
-  }
-
-  const TemporaryFolder folder;
-  const fs::path file = folder / "test.vdb";
-};
-
-FloatGrid::Ptr makeGrid(const std::string& name, const CoordBBox& box, float value) {
-  const FloatGrid::Ptr grid = FloatGrid::create(0.0f);
-  grid->setName(name);
-  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-  grid->denseFill(box, value, true);
-  return grid;
-}
-
-FloatGrid::Ptr makeGrid(const std::string& name, float value = 0.5f) {
-  return makeGrid(name, CoordBBox(Coord(0), Coord(1, 2, 3)), value);
-}
-
-template <typename Grid>
-typename Grid::Ptr named(typename Grid::Ptr grid, const std::string& name) {
-  grid->setName(name);
-  return grid;
-}
-
-/// Active voxels of every value, negative and zero included, and inactive ones between them.
-Volume patchyVolume(glm::ivec3 dimensions, const glm::dmat4& indexToWorld) {
-  Volume volume = makeVolume(dimensions, indexToWorld, [](int x, int y, int z) {
-    const int number = (x * 7 + y * 13 + z * 29) % 11;
-    return number == 0 ? kInactiveVoxel : 0.25f * float(number - 3);
-  });
-  volume.values.front() = volume.values.back() =
-      1.0f;  // so that the box of the active voxels is the whole box
-  summariseValues(volume);
-  return volume;
-}
+using test::expectRefusal;
+using test::kPlenty;
+using test::makeGrid;
+using test::named;
+using test::patchyVolume;
+using test::Vdb;
 
 void expectNear(const glm::dmat4& a, const glm::dmat4& b, double tolerance) {
   for (int i = 0; i < 4; ++i)
@@ -321,65 +249,6 @@ TEST_F(Vdb, EmptyGridsAndFilesAreRefused) {
   EXPECT_TRUE(describeVdb(file).empty());
 }
 
-TEST_F(Vdb, WhatIsNoVdbFileIsRefused) {
-  expectReadRefused({file.string(), "there is no file"});
-  writeBytes(file, "ply\nformat ascii 1.0\n");
-  expectReadRefused({file.string(), "not an OpenVDB file", "text"});
-  writeBytes(file, std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16));
-  expectReadRefused({file.string(), "not an OpenVDB file", "signature"});
-  writeBytes(file, "");
-  expectReadRefused({file.string(), "not an OpenVDB file", "empty"});
-  fs::remove(file);
-  fs::create_directory(file);
-  expectReadRefused({file.string(), "folder"});
-  expectRefusal([] { readVdb("/dev/null", "", kPlenty); }, ExitCode::Input, {"/dev/null"});
-}
-
-TEST_F(Vdb, ATruncatedFileIsRefusedWhereverItEnds) {
-  const Volume volume = patchyVolume({20, 20, 20}, glm::dmat4(1.0));
-  writeVdb(file, volume, "density");
-  const std::string bytes = readBytes(file);
-  ASSERT_GT(bytes.size(), 1000u);
-  for (std::size_t length = 8; length < bytes.size(); length += length < 400 ? 1 : 97) {
-    writeBytes(file, bytes.substr(0, length));
-    SCOPED_TRACE(length);
-    expectReadRefused({file.string(), "incomplete"});
-  }
-  writeBytes(file, bytes.substr(0, bytes.size() - 1));
-  expectReadRefused({file.string(), "incomplete"});
-  expectRefusal([&] { describeVdb(file); }, ExitCode::Input, {file.string(), "incomplete"});
-}
-
-TEST_F(Vdb, AStreamedFileIsReadAndRefusedWhenTruncated) {
-  {
-    std::ofstream stream(file, std::ios::binary);
-    openvdb::io::Stream(stream).write(openvdb::GridPtrVec{makeGrid("a", 0.1f), makeGrid("density", 0.2f)});
-  }
-  EXPECT_EQ(read().maximum, 0.2f);
-  EXPECT_EQ(read("a").maximum, 0.1f);
-  const std::string bytes = readBytes(file);
-  for (std::size_t length = 60; length < bytes.size(); length += 211) {
-    writeBytes(file, bytes.substr(0, length));
-    SCOPED_TRACE(length);
-    expectReadRefused({file.string()});
-  }
-}
-
-TEST_F(Vdb, ANewerFormatIsTriedWithoutNoiseAndAnAncientOneIsRefused) {
-  write({makeGrid("density", 0.5f)});
-  std::string bytes = readBytes(file);
-  bytes[8] = char(openvdb::OPENVDB_FILE_VERSION + 1);  // the format version follows the signature
-  writeBytes(file, bytes);
-  testing::internal::CaptureStderr();
-  testing::internal::CaptureStdout();
-  EXPECT_EQ(read().maximum, 0.5f);
-  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  bytes[8] = char(200);
-  writeBytes(file, bytes);
-  expectReadRefused({file.string(), "format 200"});
-}
-
 TEST_F(Vdb, TooLargeABoxIsRefusedBeforeItIsAllocated) {
   const FloatGrid::Ptr grid = makeGrid("density", CoordBBox(Coord(0), Coord(0)), 1.0f);
   grid->tree().setValueOn(Coord(999'999, 1'999'999, 2'999'999), 1.0f);
@@ -413,6 +282,29 @@ TEST_F(Vdb, InfoGivesTheFigures) {
   EXPECT_EQ(info.unusable, "");
 }
 
+TEST_F(Vdb, InfoGivesTheBoxThatIsRendered) {
+  const auto sphere = openvdb::tools::createLevelSetSphere<FloatGrid>(1.0f, {0.0f, 0.0f, 0.0f}, 0.05f);
+  const FloatGrid::Ptr outside = named<FloatGrid>(FloatGrid::create(3.0f), "outside");
+  outside->setGridClass(openvdb::GRID_LEVEL_SET);
+  outside->tree().setValueOn(Coord(0), 2.0f);
+  write({named<FloatGrid>(sphere, "sphere"), makeGrid("fog"), outside});
+  const std::vector<GridInfo> infos = describeVdb(file);
+  EXPECT_EQ(infos.at(0).renderDimensions, read("sphere").dimensions);
+  EXPECT_LT(infos.at(0).renderDimensions.x, infos.at(0).dimensions.x)
+      << "the band reaches beyond the surface";
+  EXPECT_EQ(infos.at(1).renderDimensions, infos.at(1).dimensions);
+  EXPECT_EQ(infos.at(2).renderDimensions, glm::ivec3(0));
+  EXPECT_NE(infos.at(2).unusable.find("no voxel is inside"), std::string::npos);
+  expectReadRefused({"outside", "no voxel is inside"}, "outside");
+}
+
+TEST_F(Vdb, LongNamesAreCutInMessages) {
+  write({makeGrid(std::string(60'000, 'n'))});
+  const std::string sentence = test::errorOf([&] { read("density"); }).what();
+  EXPECT_LT(sentence.size(), 600u);
+  EXPECT_NE(sentence.find("nnn...'"), std::string::npos);
+}
+
 TEST_F(Vdb, AFullDiskIsReportedAndLeavesNothing) {
   FV_REQUIRE_LIMITED_DISK(folder.path());
   GTEST_FLAG_SET(death_test_style, "threadsafe");
@@ -422,72 +314,6 @@ TEST_F(Vdb, AFullDiskIsReportedAndLeavesNothing) {
   };
   EXPECT_EXIT(test::exitWithErrorOnLimitedDisk(folder.path(), 65536, writeLarge),
               testing::ExitedWithCode(int(ExitCode::Output)), "cloud.vdb");
-}
-
-// ----- Real files, where they are.
-
-const fs::path kData = FREEVOXELS_DATA_DIR;
-
-struct RealFile {
-  const char* name;
-  glm::ivec3 dimensions;
-  std::uint64_t activeVoxels;
-};
-
-TEST(RealVdb, FilesHaveTheirPublishedFigures) {
-  const std::vector<RealFile> files{{"wdas_cloud_sixteenth.vdb", {126, 86, 154}, 415'642},
-                                    {"smoke1.vdb", {111, 222, 112}, 1'049'275},
-                                    {"dragon_with_xform.vdb", {141, 99, 63}, 156'161},
-                                    {"usd_densityAndHeat.vdb", {23, 23, 42}, 0},
-                                    {"usd_smoke_000003.vdb", {51, 49, 96}, 90'197},
-                                    {"blender_fluid_0050.vdb", {25, 19, 29}, 0},
-                                    {"scivis_grid0.vdb", {81, 81, 81}, 0}};
-  if (!fs::exists(kData)) GTEST_SKIP() << "no real volumes in " << kData;
-  for (const RealFile& expected : files) {
-    if (!fs::exists(kData / expected.name)) continue;
-    SCOPED_TRACE(expected.name);
-    const Volume volume = readVdb(kData / expected.name, "", kPlenty);
-    EXPECT_EQ(volume.dimensions, expected.dimensions);
-    EXPECT_TRUE(expected.activeVoxels == 0 || volume.activeVoxels == expected.activeVoxels)
-        << volume.activeVoxels;
-  }
-}
-
-TEST(RealVdb, TheRotatedDragonStaysRotated) {
-  const fs::path file = kData / "dragon_with_xform.vdb";
-  if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
-  const Volume volume = readVdb(file, "", kPlenty);
-  int offDiagonal = 0;
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) offDiagonal += i != j && std::abs(volume.indexToWorld[i][j]) > 1e-3;
-  EXPECT_GT(offDiagonal, 0);
-}
-
-TEST(RealVdb, TheLevelSetSphereHasItsVolume) {
-  const fs::path file = kData / "sphere_ls.vdb";
-  if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
-  const Volume volume = readVdb(file, "", kPlenty);
-  double sum = 0.0;
-  for (const float value : volume.values)
-    if (value != kInactiveVoxel) sum += value;
-  // 125 voxels with a narrow band of 3 outside: the radius is 60 voxels up to the rounding of the box.
-  EXPECT_NEAR(std::cbrt(sum * 3.0 / (4.0 * std::numbers::pi)), 60.0, 0.5);
-}
-
-TEST(RealVdb, EveryFileIsReadOrRefusedInOneSentence) {
-  if (!fs::exists(kData)) GTEST_SKIP() << "no real volumes in " << kData;
-  for (const auto& entry : fs::recursive_directory_iterator(kData)) {
-    SCOPED_TRACE(entry.path().string());
-    try {
-      EXPECT_GT(readVdb(entry.path(), "", kPlenty).activeVoxels, 0u);
-      EXPECT_EQ(entry.path().extension(), ".vdb");
-    } catch (const Error& error) {
-      const std::string sentence = error.what();
-      EXPECT_EQ(error.code(), ExitCode::Input);
-      EXPECT_EQ(sentence.find('\n'), std::string::npos);
-      EXPECT_NE(sentence.find(entry.path().string()), std::string::npos) << sentence;
-    }
-  }
 }
 
 }  // namespace

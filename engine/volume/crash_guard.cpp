@@ -1,0 +1,43 @@
+#include "engine/volume/crash_guard.h"
+
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+// The handler may not allocate: all it needs is made beforehand.
+const char* guardedText = nullptr;
+std::size_t guardedSize = 0;
+
+extern "C" void exitWithSentence(int) {
+  if (write(STDERR_FILENO, guardedText, guardedSize) < 0) _exit(int(ExitCode::Input));
+  _exit(int(ExitCode::Input));
+}
+
+/// "freevoxels: ", as messages begin.
+std::string messagePrefix() {
+  const std::string& program = spdlog::default_logger()->name();
+  return program.empty() ? "" : program + ": ";
+}
+
+}  // namespace
+
+CrashGuard::CrashGuard(const std::string& sentence) : line_(messagePrefix() + sentence + "\n") {
+  FV_CHECK_EQ(guardedSize, 0u);
+  guardedText = line_.data();
+  guardedSize = line_.size();
+  struct sigaction handler {};
+  handler.sa_handler = exitWithSentence;
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &handler, &before_[i]);
+}
+
+CrashGuard::~CrashGuard() {
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &before_[i], nullptr);
+  guardedSize = 0;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,76 @@
+#pragma once
+// Internal to the vdb_*.cpp files, as it includes OpenVDB: what the voxels of a grid become, and the box of
+// those that are kept.
+
+#include <openvdb/openvdb.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+/// What a voxel of a fog volume becomes in the box.
+struct FogToDensity {
+  float operator()(float value, bool active) const { return active ? value : kInactiveVoxel; }
+};
+
+/// What a voxel of a level set becomes: 1 inside, 0 outside, linear over the one voxel at the surface. Inside
+/// is inactive in OpenVDB, so the value alone decides.
+struct LevelSetToDensity {
+  float voxelSize;
+  float operator()(float distance, bool active) const {
+    if (active && std::isnan(distance)) return distance;  // counted, and then 0, like every NaN
+    const float density = std::clamp(0.5f - distance / voxelSize, 0.0f, 1.0f);
+    return density > 0.0f ? density : kInactiveVoxel;
+  }
+};
+
+/// Calls `visit(box, value, active)` for each tile of the tree, at any level above the leaves. The background
+/// is no tile: it has no end.
+template <typename Visit>
+void visitTiles(const openvdb::FloatTree& tree, const Visit& visit) {
+  auto tile = tree.cbeginValueAll();
+  tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
+  for (; tile; ++tile) visit(tile.getBoundingBox(), tile.getValue(), tile.isValueOn());
+}
+
+/// The smallest box around the voxels that `toDensity` keeps.
+template <typename ToDensity>
+openvdb::CoordBBox boundsOf(const openvdb::FloatTree& tree,
+                            const std::vector<const openvdb::FloatTree::LeafNodeType*>& leaves,
+                            const ToDensity& toDensity) {
+  using Range = tbb::blocked_range<std::size_t>;
+  const auto join = [](openvdb::CoordBBox a, const openvdb::CoordBBox& b) {
+    a.expand(b);
+    return a;
+  };
+  const auto expandByLeaves = [&](const Range& range, openvdb::CoordBBox box) {
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      if (box.isInside(leaves[i]->getNodeBoundingBox())) continue;
+      for (auto voxel = leaves[i]->cbeginValueAll(); voxel; ++voxel)
+        if (toDensity(*voxel, voxel.isValueOn()) != kInactiveVoxel) box.expand(voxel.getCoord());
+    }
+    return box;
+  };
+  openvdb::CoordBBox bounds =
+      tbb::parallel_reduce(Range(0, leaves.size()), openvdb::CoordBBox(), expandByLeaves, join);
+  visitTiles(tree, [&](const openvdb::CoordBBox& box, float value, bool active) {
+    if (toDensity(value, active) != kInactiveVoxel) bounds.expand(box);
+  });
+  return bounds;
+}
+
+/// Calls `action(toDensity)` with what the grid's class asks for.
+template <typename Action>
+auto withDensity(const openvdb::GridBase& grid, const Action& action) {
+  if (grid.getGridClass() != openvdb::GRID_LEVEL_SET) return action(FogToDensity{});
+  const double voxelSize = std::cbrt(std::abs(grid.transform().baseMap()->determinant()));
+  return action(LevelSetToDensity{float(voxelSize)});
+}
+
+}  // namespace freevoxels
