@@ -17,11 +17,11 @@ namespace {
 
 constexpr std::string_view kProceduralPrefix = "procedural:";
 
+}  // namespace
+
 std::uint64_t machineMemoryBytes() {
   return std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE));
 }
-
-}  // namespace
 
 CLI::Option* addResolution(CLI::App& app, std::optional<int>& target) {
   return addWholeNumber(app, "--resolution", "N", target,

@@ -12,6 +12,8 @@ namespace freevoxels {
 
 inline constexpr int kDefaultResolution = 128;
 
+std::uint64_t machineMemoryBytes();
+
 /// `--resolution N` of a procedural volume.
 CLI::Option* addResolution(CLI::App& app, std::optional<int>& target);
 

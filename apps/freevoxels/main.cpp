@@ -1,20 +1,26 @@
-// The command-line program: freevoxels render | info | generate | devices.
+// The command-line program: freevoxels render | oracle | compare | info | generate | devices.
 
 #include <CLI/CLI.hpp>
 
+#include "apps/freevoxels/compare_command.h"
 #include "apps/freevoxels/devices_command.h"
 #include "apps/freevoxels/generate_command.h"
 #include "apps/freevoxels/info_command.h"
+#include "apps/freevoxels/oracle_command.h"
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/render_command.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Draws volumes by order-independent FreeVoxel splatting.", "freevoxels");
   freevoxels::RenderCommand render;
+  freevoxels::OracleCommand oracle;
+  freevoxels::CompareCommand compare;
   freevoxels::InfoCommand info;
   freevoxels::GenerateCommand generate;
   freevoxels::DevicesCommand devices;
   render.add(app);
+  oracle.add(app);
+  compare.add(app);
   info.add(app);
   generate.add(app);
   devices.add(app);
@@ -25,6 +31,7 @@ int main(int argc, char** argv) {
       "  freevoxels info cloud.vdb\n"
       "  freevoxels render cloud.vdb cloud.png\n"
       "'freevoxels COMMAND --help' has the options of a command.\n"
-      "Exit codes: 0 done, 1 internal error, 2 usage, 3 input, 4 output, 5 device, 6 out of memory.");
+      "Exit codes: 0 done, 1 internal error, 2 usage, 3 input, 4 output, 5 device, 6 out of memory, "
+      "7 pictures differ.");
   return freevoxels::runProgram(app, argc, argv);
 }

@@ -17,14 +17,15 @@ std::string extensionOf(const std::string& file) {
   return extension;
 }
 
+}  // namespace
+
 bool isExr(const std::string& file) {
   return extensionOf(file) == ".exr";
 }
+
 bool isPng(const std::string& file) {
   return extensionOf(file) == ".png";
 }
-
-}  // namespace
 
 void OutputOptions::add(CLI::App& app) {
   const char* const group = "Output";
@@ -70,15 +71,15 @@ void OutputOptions::write(const Image& image, const ExrOptions& exr) const {
   }
 }
 
-ExrOptions exrMetadata(const OptionList& options, const std::map<std::string, std::string>& facts,
-                       const Camera& camera, double aspect) {
+ExrOptions exrMetadata(const std::string& command, const OptionList& options,
+                       const std::map<std::string, std::string>& facts, const Camera& camera, double aspect) {
   ExrOptions exr;
   for (const auto& [name, value] : facts) exr.metadata["freevoxels:" + name] = value;
   for (const auto& [name, value] : options) {
     const std::string key = name.empty() ? "input" : name.substr(name.find_first_not_of('-'));
     exr.metadata["freevoxels:" + key] = value.empty() ? "yes" : value;
   }
-  exr.metadata["freevoxels:command"] = "freevoxels render " + commandText(options);
+  exr.metadata["freevoxels:command"] = "freevoxels " + command + " " + commandText(options);
   exr.metadata["freevoxels:version"] = programVersion();
   exr.matrices["worldToCamera"] = glm::mat4(worldToCamera(camera));
   exr.matrices["worldToNDC"] = glm::mat4(worldToNdc(camera, aspect));

@@ -12,6 +12,10 @@
 
 namespace freevoxels {
 
+/// By extension, in any case.
+bool isExr(const std::string& file);
+bool isPng(const std::string& file);
+
 struct OutputOptions {
   std::vector<std::string> files;
   std::optional<glm::dvec3> background;
@@ -30,7 +34,8 @@ struct OutputOptions {
 
 /// What an EXR says of its making: "freevoxels:NAME" for every option, the command without its outputs,
 /// versions, the device; and its camera's matrices. Holds nothing that differs between two runs of a command.
-ExrOptions exrMetadata(const OptionList& options, const std::map<std::string, std::string>& facts,
-                       const Camera& camera, double aspect);
+/// `command` is its name, "render".
+ExrOptions exrMetadata(const std::string& command, const OptionList& options,
+                       const std::map<std::string, std::string>& facts, const Camera& camera, double aspect);
 
 }  // namespace freevoxels

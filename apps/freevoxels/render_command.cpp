@@ -27,11 +27,7 @@ double millisecondsSince(Clock::time_point start) {
 
 void RenderCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("render", "Draw a volume into pictures");
-  input_.add(*command);
-  input_.addGrid(*command);
-  output_.add(*command);
-  classification_.add(*command);
-  camera_.add(*command);
+  scene_.add(*command);
   method_.add(*command);
   device_.add(*command);
   messages_.add(*command);
@@ -41,27 +37,10 @@ void RenderCommand::add(CLI::App& app) {
   command->callback([this] { run(); });
 }
 
-OptionList RenderCommand::resolved(const Classification& classification, const Camera& camera) const {
-  OptionList options;
-  input_.describe(options);
-  classification_.describe(options, classification);
-  camera_.describe(options, camera);
-  method_.describe(options);
-  output_.describe(options);
-  return options;
-}
-
 void RenderCommand::run() const {
   const Clock::time_point start = Clock::now();
   messages_.apply();
-  input_.check();
-  camera_.check();
-  output_.check();
-  if (timings_) checkOutput(*timings_);
-  std::vector<std::string> files = output_.files;
-  if (timings_) files.push_back(*timings_);
-  if (!proceduralName(input_.input)) files.push_back(input_.input);
-  checkDistinct(files);
+  scene_.check(timings_ ? std::vector{*timings_} : std::vector<std::string>{});
 
   device_.withDevice([&](const Device& device) {
     RunReport report;
@@ -73,44 +52,40 @@ void RenderCommand::run() const {
   });
 
   if (messages_.quiet) return;
-  for (const std::string& file : output_.files) fmt::print("{}\n", file);
+  for (const std::string& file : scene_.output.files) fmt::print("{}\n", file);
   if (timings_) fmt::print("{}\n", *timings_);
 }
 
 void RenderCommand::draw(const Device& device, RunReport& report) const {
-  FrameSettings frame{.size = camera_.size, .depth = output_.wantsDepth()};
+  FrameSettings frame{.size = scene_.camera.size, .depth = scene_.output.wantsDepth()};
   method_.apply(frame);
   checkFrameFits(device, frame);
 
   ProgressLine line(!messages_.quiet);
-  line.begin("reading " + input_.input);
-  const Volume volume = [&] {
+  line.begin("reading " + scene_.input.input);
+  const Scene scene = [&] {
     const StageTimer timer(report.stages, "read volume");
-    return input_.open(maximumVoxels(device));
+    return scene_.open(maximumVoxels(device));
   }();
-  const Classification classification = classification_.resolve(volume);
-  const Camera camera = camera_.resolve(volume);
+  OptionList method;
+  method_.describe(method);
   report.device = device.description();
-  report.options = resolved(classification, camera);
+  report.options = scene_.describe(scene, method);
   line.erase();
-  warnAboutValues(volume, !classification.transferFunction);
+  scene_.warn(scene);
   logOptions(report.options);
   mentionCpu(device);
 
-  Renderer renderer(device, volume, classification, method_.table(), line.progress());
-  const Image image = renderer.render(camera, frame, line.progress());
+  Renderer renderer(device, scene.volume, scene.classification, method_.table(), line.progress());
+  const Image image = renderer.render(scene.camera, frame, line.progress());
   const std::vector<StageTime> times = renderer.timings();
   report.stages.insert(report.stages.end(), times.begin(), times.end());
   report.visibleVoxels = renderer.visibleVoxelCount();
 
   line.begin("writing pictures");
   const StageTimer timer(report.stages, "write pictures");
-  ExrOptions exr = exrMetadata(
-      report.options,
-      {{"volume", volume.source}, {"device", report.device.name}, {"driver", report.device.driver}}, camera,
-      double(frame.size.x) / double(frame.size.y));
-  exr.fullFloat = output_.fullFloat;
-  output_.write(image, exr);
+  scene_.write(image, scene, "render", report.options,
+               {{"device", report.device.name}, {"driver", report.device.driver}});
 }
 
 }  // namespace freevoxels

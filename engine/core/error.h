@@ -18,7 +18,8 @@ enum class ExitCode : int {
   Input = 3,
   Output = 4,
   Device = 5,
-  OutOfMemory = 6
+  OutOfMemory = 6,
+  Comparison = 7  ///< freevoxels compare --fail-above: the pictures differ more than was allowed
 };
 
 class Error : public std::runtime_error {

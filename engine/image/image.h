@@ -30,6 +30,13 @@ void writeExr(const std::filesystem::path& file, const Image& image, const ExrOp
 /// RGBA and, where present, Z of a scanline EXR. Fails with ExitCode::Input.
 Image readExr(const std::filesystem::path& file);
 
+/// Any PNG of straight alpha (grey, palette, 8 or 16 bits, interlaced), taken for sRGB whatever its chunks
+/// say. Fails with ExitCode::Input.
+Image readPng(const std::filesystem::path& file);
+
+/// readExr or readPng, by what the file begins with, not by its name. Fails with ExitCode::Input.
+Image readPicture(const std::filesystem::path& file);
+
 /// 8-bit sRGB. Straight alpha without a background; composited over `background` (linear Rec.709) and opaque
 /// with one. Atomic. Fails with ExitCode::Output.
 void writePng(const std::filesystem::path& file, const Image& image, const glm::vec3* background);

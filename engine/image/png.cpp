@@ -1,23 +1,32 @@
-// 8-bit sRGB PNG out. The bytes written depend on the image only: no time chunk.
+// sRGB PNG in, 8-bit sRGB PNG out. The bytes written depend on the image only: no time chunk.
 
 #include <png.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cerrno>
 #include <cmath>
 #include <csetjmp>
 #include <cstdint>
+#include <cstdio>
+#include <cstring>
 #include <exception>
+#include <limits>
+#include <memory>
 #include <stdexcept>
 
 #include "engine/core/atomic_file.h"
 #include "engine/core/checked_file.h"
 #include "engine/core/error.h"
 #include "engine/image/image.h"
+#include "engine/image/srgb.h"
 
 namespace freevoxels {
 
 namespace {
+
+constexpr std::int64_t kMaximumPixels = std::int64_t(1) << 30;
 
 /// 0 for NaN.
 float clampUnit(float value) {
@@ -28,10 +37,8 @@ std::uint8_t toByte(float unit) {
   return std::uint8_t(std::lround(255.0f * unit));
 }
 
-/// The transfer curve of IEC 61966-2-1.
 std::uint8_t toSrgbByte(float linear) {
-  const float unit = clampUnit(linear);
-  return toByte(unit <= 0.0031308f ? 12.92f * unit : 1.055f * std::pow(unit, 1.0f / 2.4f) - 0.055f);
+  return toByte(srgbFromLinear(clampUnit(linear)));
 }
 
 /// Alpha above 1, which the additive composite makes, counts as 1.
@@ -74,6 +81,101 @@ void writeChunk(png_structp png, png_bytep bytes, std::size_t count) {
 
 void onWarning(png_structp, png_const_charp) {}
 
+[[noreturn]] void onReadError(png_structp png, png_const_charp message) {
+  *static_cast<std::string*>(png_get_error_ptr(png)) = message;
+  png_longjmp(png, 1);
+}
+
+/// Decodes any PNG to straight RGBA of 8 or, from 16-bit files, 16 bits a sample. Its members hold nothing
+/// that a long jump would fail to destroy.
+class PngDecoder {
+ public:
+  /// libpng's messages go to `problem`.
+  PngDecoder(std::FILE* file, std::string& problem)
+      : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &problem, onReadError, onWarning)) {
+    if (png_) info_ = png_create_info_struct(png_);
+    if (!info_) {
+      png_destroy_read_struct(&png_, &info_, nullptr);
+      throw std::bad_alloc();
+    }
+    png_init_io(png_, file);
+  }
+  ~PngDecoder() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  PngDecoder(const PngDecoder&) = delete;
+  PngDecoder& operator=(const PngDecoder&) = delete;
+
+  /// False after an error.
+  bool readHeader() {
+    if (setjmp(png_jmpbuf(png_))) return false;
+    png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
+    png_read_info(png_, info_);
+    png_set_expand(png_);
+    png_set_gray_to_rgb(png_);
+    png_set_add_alpha(png_, 0xffff, PNG_FILLER_AFTER);
+    if constexpr (std::endian::native == std::endian::little) png_set_swap(png_);
+    png_set_interlace_handling(png_);
+    png_read_update_info(png_, info_);
+    return true;
+  }
+  std::int64_t width() const { return png_get_image_width(png_, info_); }
+  std::int64_t height() const { return png_get_image_height(png_, info_); }
+  bool isWide() const { return png_get_bit_depth(png_, info_) == 16; }
+  std::size_t rowBytes() const { return png_get_rowbytes(png_, info_); }
+
+  /// False after an error.
+  bool read(png_bytepp rows) {
+    if (setjmp(png_jmpbuf(png_))) return false;
+    png_read_image(png_, rows);
+    png_read_end(png_, nullptr);
+    return true;
+  }
+
+ private:
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
+};
+
+/// Premultiplied linear light of straight RGBA samples.
+template <typename Sample>
+void toLinear(const std::vector<std::uint8_t>& bytes, std::vector<glm::vec4>& pixels) {
+  constexpr std::size_t kLevels = std::size_t(std::numeric_limits<Sample>::max()) + 1;
+  std::vector<float> linear(kLevels);
+  for (std::size_t i = 0; i < kLevels; ++i) linear[i] = linearFromSrgb(float(i) / float(kLevels - 1));
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    std::array<Sample, 4> sample;
+    std::memcpy(sample.data(), bytes.data() + i * sizeof(sample), sizeof(sample));
+    const float alpha = float(sample[3]) / float(kLevels - 1);
+    pixels[i] = {alpha * linear[sample[0]], alpha * linear[sample[1]], alpha * linear[sample[2]], alpha};
+  }
+}
+
+Image decode(const std::filesystem::path& file, std::FILE* stream) {
+  std::string problem;
+  const auto refuse = [&]() {
+    fail(ExitCode::Input, "cannot read '{}': it is not a complete PNG image ({}); write it again",
+         file.string(), problem);
+  };
+  PngDecoder decoder(stream, problem);
+  if (!decoder.readHeader()) refuse();
+  if (decoder.width() * decoder.height() > kMaximumPixels)
+    fail(ExitCode::Input, "cannot read '{}': {}x{} pixels are too many; choose a smaller image",
+         file.string(), decoder.width(), decoder.height());
+
+  Image image;
+  image.size = {int(decoder.width()), int(decoder.height())};
+  image.pixels.resize(std::size_t(decoder.width() * decoder.height()));
+  std::vector<std::uint8_t> bytes(decoder.rowBytes() * std::size_t(image.size.y));
+  std::vector<png_bytep> rows;
+  for (std::size_t y = 0; y < std::size_t(image.size.y); ++y)
+    rows.push_back(bytes.data() + y * decoder.rowBytes());
+  if (!decoder.read(rows.data())) refuse();
+  if (decoder.isWide())
+    toLinear<std::uint16_t>(bytes, image.pixels);
+  else
+    toLinear<std::uint8_t>(bytes, image.pixels);
+  return image;
+}
+
 class PngEncoder {
  public:
   explicit PngEncoder(PngTarget& target)
@@ -110,6 +212,16 @@ class PngEncoder {
 };
 
 }  // namespace
+
+Image readPng(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    fail(ExitCode::Input, "cannot read '{}': there is no such file; check its name", file.string());
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
+  if (!stream)
+    fail(ExitCode::Input, "cannot read '{}': {}; check its permissions", file.string(), std::strerror(errno));
+  return decode(file, stream.get());
+}
 
 void writePng(const std::filesystem::path& file, const Image& image, const glm::vec3* background) {
   FV_CHECK_LT(0, image.size.x);

@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(Commands, Usage, testing::ValuesIn(kWrongUses),
 }  // namespace
 
 TEST_F(CommandTest, EveryCommandHasHelpWithItsOptions) {
-  for (const char* command : {"", "render", "info", "generate", "devices"}) {
+  for (const char* command : {"", "render", "oracle", "compare", "info", "generate", "devices"}) {
     const ProgramResult result = run(std::string(command) + " --help");
     expectSuccess(result);
     EXPECT_NE(result.out.find("--help"), std::string::npos);

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 #include <vector>
 
@@ -26,7 +27,7 @@ struct Png {
 };
 
 /// As stored, by libpng's simplified reader: no conversion.
-Png readPng(const std::filesystem::path& file) {
+Png readStored(const std::filesystem::path& file) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   EXPECT_NE(png_image_begin_read_from_file(&image, file.c_str()), 0) << image.message;
@@ -44,7 +45,7 @@ std::vector<std::uint8_t> writeAndRead(const std::vector<glm::vec4>& pixels,
   image.size = {int(pixels.size()), 1};
   image.pixels = pixels;
   writePng(folder / "a.png", image, background);
-  const Png png = readPng(folder / "a.png");
+  const Png png = readStored(folder / "a.png");
   EXPECT_EQ(png.channels, background ? 3 : 4);
   return png.bytes;
 }
@@ -84,7 +85,7 @@ TEST(Png, RowZeroIsTheTopAndSrgbIsDeclared) {
   image.pixels.assign(6, glm::vec4(0, 0, 0, 1));
   image.pixels[2] = {1, 0, 0, 1};  // top right
   writePng(folder / "a.png", image, nullptr);
-  const Png png = readPng(folder / "a.png");
+  const Png png = readStored(folder / "a.png");
   ASSERT_EQ(png.width, 3u);
   ASSERT_EQ(png.height, 2u);
   EXPECT_EQ(png.bytes[4 * 2], 255);
@@ -93,6 +94,129 @@ TEST(Png, RowZeroIsTheTopAndSrgbIsDeclared) {
   EXPECT_NE(bytes.find("sRGB"), std::string::npos);
   writePng(folder / "b.png", image, nullptr);
   EXPECT_EQ(readBytes(folder / "b.png"), bytes);
+}
+
+/// As libpng stores it, with sub-images where `interlace` says so. Rows of big-endian samples.
+void writeStored(const std::filesystem::path& file, glm::ivec2 size, int depth, int type,
+                 std::vector<std::uint8_t> bytes, int interlace = PNG_INTERLACE_NONE) {
+  std::FILE* stream = std::fopen(file.c_str(), "wb");
+  ASSERT_NE(stream, nullptr);
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png_create_info_struct(png);
+  png_init_io(png, stream);
+  png_set_IHDR(png, info, png_uint_32(size.x), png_uint_32(size.y), depth, type, interlace,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  const png_color palette[] = {{0, 255, 0}, {188, 0, 255}};
+  png_byte transparency[] = {0, 255};
+  if (type == PNG_COLOR_TYPE_PALETTE) {
+    png_set_PLTE(png, info, palette, 2);
+    png_set_tRNS(png, info, transparency, 2, nullptr);
+  }
+  png_write_info(png, info);
+  std::vector<png_bytep> rows;
+  const std::size_t rowBytes = png_get_rowbytes(png, info);
+  ASSERT_EQ(bytes.size(), rowBytes * std::size_t(size.y));
+  for (std::size_t y = 0; y < std::size_t(size.y); ++y) rows.push_back(bytes.data() + y * rowBytes);
+  png_write_image(png, rows.data());
+  png_write_end(png, nullptr);
+  png_destroy_write_struct(&png, &info);
+  std::fclose(stream);
+}
+
+void expectNear(const glm::vec4& pixel, const glm::vec4& expected) {
+  for (int c = 0; c < 4; ++c) EXPECT_NEAR(pixel[c], expected[c], 2e-6f) << "channel " << c;
+}
+
+TEST(PngInput, DecodesSrgbAndPremultiplies) {
+  const TemporaryFolder folder;
+  // By the curve of IEC 61966-2-1: byte 188 is 0.502886, 118 is 0.181164, 10 is 10 / 255 / 12.92 = 0.0030353.
+  writeStored(folder / "a.png", {2, 1}, 8, PNG_COLOR_TYPE_RGB_ALPHA, {188, 118, 10, 51, 255, 0, 188, 0});
+  const Image image = readPng(folder / "a.png");
+  ASSERT_EQ(image.size, glm::ivec2(2, 1));
+  EXPECT_TRUE(image.depth.empty());
+  expectNear(image.pixels[0], {0.2f * 0.502886f, 0.2f * 0.181164f, 0.2f * 0.0030353f, 0.2f});
+  expectNear(image.pixels[1], {0, 0, 0, 0});
+}
+
+TEST(PngInput, ReadsEveryKindOfFile) {
+  const TemporaryFolder folder;
+  const auto read = [&] { return readPng(folder / "a.png").pixels; };
+  writeStored(folder / "a.png", {1, 1}, 8, PNG_COLOR_TYPE_RGB, {255, 0, 188});
+  expectNear(read()[0], {1, 0, 0.502886f, 1});
+  writeStored(folder / "a.png", {1, 1}, 8, PNG_COLOR_TYPE_GRAY, {118});
+  expectNear(read()[0], {0.181164f, 0.181164f, 0.181164f, 1});
+  writeStored(folder / "a.png", {1, 1}, 8, PNG_COLOR_TYPE_GRAY_ALPHA, {255, 51});
+  expectNear(read()[0], {0.2f, 0.2f, 0.2f, 0.2f});
+  writeStored(folder / "a.png", {3, 1}, 1, PNG_COLOR_TYPE_GRAY, {0b01000000});
+  EXPECT_EQ(read()[1], glm::vec4(1.0f));
+  EXPECT_EQ(read()[2], glm::vec4(0, 0, 0, 1));
+  writeStored(folder / "a.png", {2, 1}, 8, PNG_COLOR_TYPE_PALETTE, {1, 0});
+  expectNear(read()[0], {0.502886f, 0, 1, 1});
+  expectNear(read()[1], {0, 0, 0, 0});
+  // 0x8000 of 16 bits is 0.500008, and 0.214048 in linear light; 0x0100 would be 1 if the bytes were swapped.
+  writeStored(folder / "a.png", {1, 1}, 16, PNG_COLOR_TYPE_RGB, {0x80, 0x00, 0x01, 0x00, 0xff, 0xff});
+  expectNear(read()[0], {0.214048f, 256.0f / 65535.0f / 12.92f, 1, 1});
+}
+
+TEST(PngInput, InterlacedRowsComeInOrder) {
+  const TemporaryFolder folder;
+  std::vector<std::uint8_t> bytes;
+  for (int i = 0; i < 9 * 11; ++i) bytes.push_back(std::uint8_t(2 * i));
+  writeStored(folder / "a.png", {9, 11}, 8, PNG_COLOR_TYPE_GRAY, bytes);
+  writeStored(folder / "b.png", {9, 11}, 8, PNG_COLOR_TYPE_GRAY, bytes, PNG_INTERLACE_ADAM7);
+  const Image image = readPng(folder / "b.png");
+  EXPECT_EQ(image.pixels, readPng(folder / "a.png").pixels);
+  for (std::size_t i = 1; i < image.pixels.size(); ++i)
+    ASSERT_GT(image.pixels[i].r, image.pixels[i - 1].r) << i;
+}
+
+TEST(PngInput, WhatWasReadIsWrittenAsTheSameBytes) {
+  const TemporaryFolder folder;
+  std::vector<std::uint8_t> bytes;
+  for (int i = 0; i < 256; ++i)
+    for (const int value : {i, 255 - i, i / 2, 255}) bytes.push_back(std::uint8_t(value));
+  writeStored(folder / "a.png", {16, 16}, 8, PNG_COLOR_TYPE_RGB_ALPHA, bytes);
+  writePng(folder / "b.png", readPng(folder / "a.png"), nullptr);
+  EXPECT_EQ(readStored(folder / "b.png").bytes, bytes);
+}
+
+TEST(PngInput, RefusesMissingForeignAndTruncatedFiles) {
+  const TemporaryFolder folder;
+  std::vector<std::uint8_t> noise(64 * 64 * 3);
+  std::uint32_t state = 1;
+  for (std::uint8_t& byte : noise) byte = std::uint8_t((state = state * 1664525u + 1013904223u) >> 24);
+  writeStored(folder / "a.png", {64, 64}, 8, PNG_COLOR_TYPE_RGB, noise);
+  std::string whole = readBytes(folder / "a.png");
+  test::writeBytes(folder / "text.png", "this is no picture");
+  test::writeBytes(folder / "empty.png", "");
+  test::writeBytes(folder / "short.png", whole.substr(0, whole.size() / 2));
+  test::writeBytes(folder / "header.png", whole.substr(0, 20));
+  whole[whole.size() / 2] ^= 0x55;
+  test::writeBytes(folder / "damaged.png", whole);
+  for (const char* name :
+       {"missing.png", "text.png", "empty.png", "short.png", "header.png", "damaged.png", ""}) {
+    try {
+      readPng(folder / name);
+      ADD_FAILURE() << "no error for " << name;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::Input);
+      EXPECT_NE(std::string(error.what()).find((folder / name).string()), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(PictureFile, IsReadByWhatItIsNotByItsName) {
+  const TemporaryFolder folder;
+  Image image;
+  image.size = {2, 1};
+  image.pixels = {{1, 0, 0, 1}, {0, 1, 0, 1}};
+  writePng(folder / "a.png", image, nullptr);
+  std::filesystem::rename(folder / "a.png", folder / "picture.exr");
+  EXPECT_EQ(readPicture(folder / "picture.exr").pixels, image.pixels);
+  writeExr(folder / "b.exr", image, {});
+  EXPECT_EQ(readPicture(folder / "b.exr").pixels, image.pixels);
+  test::writeBytes(folder / "text.png", "x");
+  EXPECT_THROW(readPicture(folder / "text.png"), Error);
 }
 
 TEST(PngDeathTest, FullDiskIsOneSentenceAndLeavesNoFile) {

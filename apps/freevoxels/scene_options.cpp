@@ -1,0 +1,57 @@
+#include "apps/freevoxels/scene_options.h"
+
+#include "apps/freevoxels/program.h"
+
+namespace freevoxels {
+
+void SceneOptions::add(CLI::App& app) {
+  input.add(app);
+  input.addGrid(app);
+  output.add(app);
+  classification.add(app);
+  camera.add(app);
+}
+
+void SceneOptions::check(const std::vector<std::string>& moreOutputs) const {
+  input.check();
+  camera.check();
+  output.check();
+  for (const std::string& file : moreOutputs) checkOutput(file);
+  std::vector<std::string> files = output.files;
+  files.insert(files.end(), moreOutputs.begin(), moreOutputs.end());
+  if (!proceduralName(input.input)) files.push_back(input.input);
+  checkDistinct(files);
+}
+
+Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
+  Scene scene;
+  scene.volume = input.open(maximumVoxels);
+  scene.classification = classification.resolve(scene.volume);
+  scene.camera = camera.resolve(scene.volume);
+  return scene;
+}
+
+void SceneOptions::warn(const Scene& scene) const {
+  warnAboutValues(scene.volume, !scene.classification.transferFunction);
+}
+
+OptionList SceneOptions::describe(const Scene& scene, const OptionList& method) const {
+  OptionList options;
+  input.describe(options);
+  classification.describe(options, scene.classification);
+  camera.describe(options, scene.camera);
+  options.insert(options.end(), method.begin(), method.end());
+  output.describe(options);
+  return options;
+}
+
+void SceneOptions::write(const Image& image, const Scene& scene, const std::string& command,
+                         const OptionList& options, std::map<std::string, std::string> facts) const {
+  facts.emplace("volume", scene.volume.source);
+  ExrOptions exr =
+      exrMetadata(command, options, facts, scene.camera, double(image.size.x) / double(image.size.y));
+  exr.fullFloat = output.fullFloat;
+  output.write(image, exr);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,38 @@
+#pragma once
+// What every command that makes pictures of a volume is told: the volume, what it is made of, from where it
+// is seen, and where the pictures go.
+
+#include "apps/freevoxels/camera_options.h"
+#include "apps/freevoxels/classification_options.h"
+#include "apps/freevoxels/input_options.h"
+#include "apps/freevoxels/output_options.h"
+
+namespace freevoxels {
+
+struct Scene {
+  Volume volume;
+  Classification classification;
+  Camera camera;
+};
+
+struct SceneOptions {
+  InputOptions input;
+  OutputOptions output;
+  ClassificationOptions classification;
+  CameraOptions camera;
+
+  void add(CLI::App& app);
+  /// Before any work; `moreOutputs` are the files that the command writes besides pictures.
+  void check(const std::vector<std::string>& moreOutputs = {}) const;
+  /// Reads the volume and what is made for it.
+  Scene open(std::uint64_t maximumVoxels) const;
+  /// One warning each for values of the scene's volume that are not drawn as they are.
+  void warn(const Scene& scene) const;
+  /// Everything resolved, with the options of the command's own between those of the camera and the outputs.
+  OptionList describe(const Scene& scene, const OptionList& method = {}) const;
+  /// `command` and `facts` as for exrMetadata, which the volume's source joins.
+  void write(const Image& image, const Scene& scene, const std::string& command, const OptionList& options,
+             std::map<std::string, std::string> facts) const;
+};
+
+}  // namespace freevoxels

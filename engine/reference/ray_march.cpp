@@ -1,0 +1,210 @@
+// Emission and absorption after Max 1995, "Optical models for direct volume rendering":
+//   C = integral of T(t) sigma(t) c(t) ds,   T = exp(-integral of sigma ds up to t).
+//
+// Within a cell the trilinear field f(x, y, z) is linear in each coordinate. Along the segment from a to b it
+// is a cubic of s in 0..1, and the values of f at the corners of the segment's bounding box are its polar
+// form:   f(s) = sum over i, j, k in {a, b} of f(i_x, j_y, k_z) s^m (1 - s)^(3 - m),   m = how many are b.
+// All terms are positive, so nothing cancels however large the extinction is.
+
+#include "engine/reference/ray_march.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace freevoxels {
+
+namespace {
+
+constexpr double kNegligibleTransmittance = 1e-7;
+
+/// Gauss-Legendre on 0..1, three points.
+constexpr std::array<double, 3> kNodes = {0.1127016653792583, 0.5, 0.8872983346207417};
+constexpr std::array<double, 3> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+/// Largest distance between neighbouring nodes, as a part of the interval.
+constexpr double kNodeDistance = 0.3872983346207417;
+
+/// Optical depth of a quadrature interval. At 1/2 the three points are exact to 1e-8.
+constexpr double kLongestDepth = 0.5;
+/// Intervals in a cell. Reached only where its optical depth is above 2000 and the ray ends at once.
+constexpr double kMostIntervals = 4096.0;
+
+/// Calls visit(cube, t0, t1) for the unit cubes from `first` to `last` that the ray passes between `enter`
+/// and `leave`, in order, until it returns false. The parts add up to the whole, whatever the rounding:
+/// planes beyond the range are not crossed.
+template <typename Visit>
+void walkCubes(glm::dvec3 origin, glm::dvec3 direction, glm::ivec3 first, glm::ivec3 last, double enter,
+               double leave, Visit&& visit) {
+  const glm::dvec3 start = glm::floor(origin + enter * direction);
+  glm::ivec3 cube(glm::clamp(start, glm::dvec3(first), glm::dvec3(last)));
+  while (enter < leave) {
+    double next = leave;
+    int crossed = -1;
+    for (int axis = 0; axis < 3; ++axis) {
+      const bool up = direction[axis] > 0.0;
+      if (direction[axis] == 0.0 || cube[axis] == (up ? last[axis] : first[axis])) continue;
+      const double t = (cube[axis] + (up ? 1.0 : 0.0) - origin[axis]) / direction[axis];
+      if (t >= next) continue;
+      next = t;
+      crossed = axis;
+    }
+    if (next > enter && !visit(cube, enter, next)) return;
+    if (crossed < 0) return;
+    enter = std::max(enter, next);
+    cube[crossed] += direction[crossed] > 0.0 ? 1 : -1;
+  }
+}
+
+/// A cubic as sum of term[m] s^m (1 - s)^(3 - m).
+struct Cubic {
+  std::array<glm::dvec4, 4> term{};
+
+  glm::dvec4 at(double s) const {
+    const double r = 1.0 - s;
+    return r * r * r * term[0] + r * r * s * term[1] + r * s * s * term[2] + s * s * s * term[3];
+  }
+};
+
+/// The field's extinction (a) and extinction times colour (rgb) from a to b, local coordinates of a cell in
+/// 0..1. `corner` is the cell's first.
+Cubic cubicAlong(const glm::vec4* corner, glm::dvec3 a, glm::dvec3 b) {
+  constexpr int n = ReferenceField::kBrickCorners;
+  Cubic cubic;
+  for (int i = 0; i < 2; ++i) {
+    std::array<glm::dvec4, 4> edges;
+    for (int edge = 0; edge < 4; ++edge) {
+      const glm::vec4* const start = corner + n * ((edge & 1) + n * (edge >> 1));
+      edges[std::size_t(edge)] = glm::mix(glm::dvec4(start[0]), glm::dvec4(start[1]), i == 0 ? a.x : b.x);
+    }
+    for (int j = 0; j < 2; ++j) {
+      const double y = j == 0 ? a.y : b.y;
+      const glm::dvec4 near = glm::mix(edges[0], edges[1], y), far = glm::mix(edges[2], edges[3], y);
+      cubic.term[std::size_t(i + j)] += glm::mix(near, far, a.z);
+      cubic.term[std::size_t(i + j + 1)] += glm::mix(near, far, b.z);
+    }
+  }
+  return cubic;
+}
+
+/// The integral of a cubic's extinction from 0: sum of term[m] s^m (1 - s)^(4 - m).
+struct Depth {
+  std::array<double, 5> term{};
+
+  Depth(const Cubic& cubic, double length) {
+    constexpr std::array<double, 4> kCubicBinomials = {1, 3, 3, 1};
+    constexpr std::array<double, 5> kQuarticBinomials = {1, 4, 6, 4, 1};
+    double sum = 0.0;
+    for (std::size_t m = 0; m < 4; ++m) {
+      sum += cubic.term[m].a / kCubicBinomials[m] * (length / 4.0);
+      term[m + 1] = kQuarticBinomials[m + 1] * sum;
+    }
+  }
+  double at(double s) const {
+    const double r = 1.0 - s;
+    return s * (r * r * r * term[1] + r * r * s * term[2] + r * s * s * term[3] + s * s * s * term[4]);
+  }
+};
+
+class March {
+ public:
+  March(const ReferenceField& field, const MarchedRay& ray, double step)
+      : field_(field), ray_(ray), intervals_(glm::length(ray.direction) * kNodeDistance / step) {}
+
+  RaySum run();
+
+ private:
+  bool crossBrick(glm::ivec3 position, double enter, double leave);
+  bool crossCell(const glm::vec4* corner, glm::ivec3 cell, double enter, double leave);
+  void addInterval(const Cubic& cubic, const Depth& depth, double begin, double end, double enter,
+                   double length);
+
+  const ReferenceField& field_;
+  const MarchedRay& ray_;
+  const double intervals_;  ///< per unit of t
+  double transmittance_ = 1.0;
+  RaySum sum_;
+};
+
+RaySum March::run() {
+  double enter = 0.0, leave = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double origin = ray_.origin[axis], direction = ray_.direction[axis];
+    const double low = -1.0, high = field_.dimensions()[axis];
+    if (direction == 0.0) {
+      if (origin <= low || origin >= high) return sum_;
+      continue;
+    }
+    const double t0 = (low - origin) / direction, t1 = (high - origin) / direction;
+    enter = std::max(enter, std::min(t0, t1));
+    leave = std::min(leave, std::max(t0, t1));
+  }
+  constexpr double edge = ReferenceField::kBrickCells;
+  walkCubes((ray_.origin + 1.0) / edge, ray_.direction / edge, glm::ivec3(0), field_.brickCount() - 1, enter,
+            leave,
+            [this](glm::ivec3 position, double t0, double t1) { return crossBrick(position, t0, t1); });
+  return sum_;
+}
+
+bool March::crossBrick(glm::ivec3 position, double enter, double leave) {
+  const ReferenceField::Brick* const brick = field_.brick(position);
+  if (!brick) return true;
+  constexpr int n = ReferenceField::kBrickCorners;
+  const glm::ivec3 first = position * ReferenceField::kBrickCells - 1;
+  bool goOn = true;
+  walkCubes(ray_.origin, ray_.direction, first, first + ReferenceField::kBrickCells - 1, enter, leave,
+            [&](glm::ivec3 cell, double t0, double t1) {
+              const glm::ivec3 local = cell - first;
+              goOn = crossCell(brick->data() + local.x + n * (local.y + n * local.z), cell, t0, t1);
+              return goOn;
+            });
+  return goOn;
+}
+
+bool March::crossCell(const glm::vec4* corner, glm::ivec3 cell, double enter, double leave) {
+  const auto local = [&](double t) {
+    return glm::clamp(ray_.origin + t * ray_.direction - glm::dvec3(cell), 0.0, 1.0);
+  };
+  const Cubic cubic = cubicAlong(corner, local(enter), local(leave));
+  const double length = (leave - enter) * ray_.worldLength;
+  const Depth depth(cubic, length);
+  const double total = depth.at(1.0);
+  if (!(total > 0.0)) return true;
+  const double wanted = std::max(total / kLongestDepth, (leave - enter) * intervals_);
+  const int count = int(std::ceil(std::min(wanted, kMostIntervals)));
+  for (int i = 0; i < count && transmittance_ >= kNegligibleTransmittance; ++i)
+    addInterval(cubic, depth, double(i) / count, double(i + 1) / count, enter, leave - enter);
+  return transmittance_ >= kNegligibleTransmittance;
+}
+
+/// The interval's light is its opacity times the mean colour in it, weighted by e.
+void March::addInterval(const Cubic& cubic, const Depth& depth, double begin, double end, double enter,
+                        double length) {
+  glm::dvec4 mean(0.0);
+  double distance = 0.0;
+  const double before = depth.at(begin);
+  double first = 0.0;  // weights relative to the first node's: the largest optical depths do not underflow
+  for (std::size_t i = 0; i < kNodes.size(); ++i) {
+    const double s = begin + kNodes[i] * (end - begin);
+    const double tau = depth.at(s);
+    if (i == 0) first = tau;
+    const glm::dvec4 emitted = kWeights[i] * std::exp(first - tau) * cubic.at(s);
+    mean += emitted;
+    distance += emitted.a * (enter + s * length);
+  }
+  if (!(mean.a > 0.0)) return;
+  const double thickness = depth.at(end) - before;
+  const double energy = transmittance_ * -std::expm1(-thickness);
+  sum_.color += energy / mean.a * glm::dvec3(mean);
+  sum_.opacity += energy;
+  sum_.distance += energy / mean.a * distance;
+  transmittance_ *= std::exp(-thickness);
+}
+
+}  // namespace
+
+RaySum marchRay(const ReferenceField& field, const MarchedRay& ray, double step) {
+  return March(field, ray, step).run();
+}
+
+}  // namespace freevoxels

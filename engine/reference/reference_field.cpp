@@ -1,0 +1,54 @@
+#include "engine/reference/reference_field.h"
+
+#include <tbb/parallel_for.h>
+
+namespace freevoxels {
+
+namespace {
+
+using Brick = ReferenceField::Brick;
+
+bool isInside(glm::ivec3 voxel, glm::ivec3 dimensions) {
+  return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) && glm::all(glm::lessThan(voxel, dimensions));
+}
+
+/// Null where no corner has extinction.
+std::unique_ptr<Brick> makeBrick(const Volume& volume, const Classification& classification,
+                                 glm::ivec3 position) {
+  constexpr int n = ReferenceField::kBrickCorners;
+  const glm::ivec3 first = position * ReferenceField::kBrickCells - 1;
+  Brick brick{};
+  bool anything = false;
+  std::size_t corner = 0;
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x, ++corner) {
+        const glm::ivec3 voxel = first + glm::ivec3(x, y, z);
+        if (!isInside(voxel, volume.dimensions)) continue;
+        const ClassifiedVoxel material =
+            classify(classification, volume.values[volume.at(voxel.x, voxel.y, voxel.z)]);
+        if (!(material.extinction > 0.0)) continue;
+        brick[corner] = glm::vec4(material.extinction * material.color, material.extinction);
+        anything = true;
+      }
+  return anything ? std::make_unique<Brick>(brick) : nullptr;
+}
+
+}  // namespace
+
+ReferenceField::ReferenceField(const Volume& volume, const Classification& classification,
+                               const Progress& progress)
+    : dimensions_(volume.dimensions),
+      brickCount_((volume.dimensions + kBrickCells) / kBrickCells),  // of dimensions + 1 cells
+      bricks_(std::size_t(brickCount_.x) * std::size_t(brickCount_.y) * std::size_t(brickCount_.z)) {
+  const std::size_t layer = std::size_t(brickCount_.x) * std::size_t(brickCount_.y);
+  for (int z = 0; z < brickCount_.z; ++z) {
+    tbb::parallel_for(std::size_t(0), layer, [&](std::size_t i) {
+      const glm::ivec3 position(int(i % std::size_t(brickCount_.x)), int(i / std::size_t(brickCount_.x)), z);
+      bricks_[std::size_t(z) * layer + i] = makeBrick(volume, classification, position);
+    });
+    if (progress) progress("classifying", double(z + 1) / brickCount_.z);
+  }
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,46 @@
+#pragma once
+// The continuous field that the oracle marches through: every voxel classified first, then extinction and
+// extinction times colour interpolated trilinearly between the voxel centres. Beyond the outermost centres
+// and at inactive voxels there is nothing, so that the field falls to 0 over one more voxel.
+
+#include <array>
+#include <glm/glm.hpp>
+#include <memory>
+#include <vector>
+
+#include "engine/core/stages.h"
+#include "engine/volume/classification.h"
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+/// A cell is the cube between eight neighbouring voxel centres: cell c reaches from c to c + 1 in index
+/// space, and the cells from -1 to dimensions - 1 hold the field. Bricks of 8³ cells, the first at cell -1,
+/// keep the values at all their cells' corners; a brick without any extinction is not there at all.
+class ReferenceField {
+ public:
+  static constexpr int kBrickCells = 8;
+  static constexpr int kBrickCorners = kBrickCells + 1;
+
+  /// Extinction times colour (rgb) and extinction (a), per world unit, at the corners of a brick's cells, x
+  /// fastest: classified in double precision, kept to 24 bits.
+  using Brick = std::array<glm::vec4, kBrickCorners * kBrickCorners * kBrickCorners>;
+
+  ReferenceField(const Volume& volume, const Classification& classification, const Progress& progress = {});
+
+  glm::ivec3 dimensions() const { return dimensions_; }
+  glm::ivec3 brickCount() const { return brickCount_; }
+  /// Null where the field is 0 throughout. The brick's cells start at 8 * position - 1.
+  const Brick* brick(glm::ivec3 position) const {
+    return bricks_[std::size_t(position.x) +
+                   std::size_t(brickCount_.x) *
+                       (std::size_t(position.y) + std::size_t(brickCount_.y) * std::size_t(position.z))]
+        .get();
+  }
+
+ private:
+  glm::ivec3 dimensions_, brickCount_;
+  std::vector<std::unique_ptr<Brick>> bricks_;
+};
+
+}  // namespace freevoxels
