@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/attenuation/directions.h"
-#include "engine/splatting/render_settings.h"
+#include "engine/attenuation/table_settings.h"
 #include "engine/volume/device_volume.h"
 
 namespace freevoxels {

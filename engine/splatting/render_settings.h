@@ -3,7 +3,7 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/attenuation/directions.h"
+#include "engine/attenuation/table_settings.h"
 
 namespace freevoxels {
 
@@ -15,11 +15,6 @@ enum class Composite : int {
 enum class AttenuationLookup : int {
   Bilinear = 0,  ///< of the four lattice directions around the viewing direction
   Nearest = 1,   ///< the paper's
-};
-
-struct TableSettings {
-  AttenuationCode code = AttenuationCode::Depth8;
-  bool pathLengthCorrection = true;
 };
 
 struct FrameSettings {
