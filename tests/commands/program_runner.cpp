@@ -61,6 +61,14 @@ ProgramResult runFreevoxels(const Arguments& arguments) {
   return result;
 }
 
+bool terminalsAvailable() {
+  int terminal = -1, program = -1;
+  if (openpty(&terminal, &program, nullptr, nullptr, nullptr) != 0) return false;
+  close(terminal);
+  close(program);
+  return true;
+}
+
 ProgramResult runFreevoxelsOnTerminal(const Arguments& arguments) {
   const File out(std::tmpfile());
   int terminal = -1, program = -1;

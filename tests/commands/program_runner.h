@@ -20,6 +20,9 @@ using Arguments = std::vector<std::string>;
 
 ProgramResult runFreevoxels(const Arguments& arguments);
 
+/// Whether this machine makes pseudo-terminals: some containers do not.
+bool terminalsAvailable();
+
 /// stderr is a terminal, whose contents become `err`.
 ProgramResult runFreevoxelsOnTerminal(const Arguments& arguments);
 
