@@ -89,10 +89,7 @@ void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings,
   vkCmdBindPipeline(buffer_, pipeline.bindPoint(), pipeline.handle());
   vkCmdPushDescriptorSetKHR(buffer_, pipeline.bindPoint(), pipeline.layout(), 0, std::uint32_t(writes.size()),
                             writes.data());
-  const VkShaderStageFlags stages = pipeline.bindPoint() == VK_PIPELINE_BIND_POINT_COMPUTE
-                                        ? VkShaderStageFlags(VK_SHADER_STAGE_COMPUTE_BIT)
-                                        : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
-  vkCmdPushConstants(buffer_, pipeline.layout(), stages, 0, std::uint32_t(pushBytes), push);
+  vkCmdPushConstants(buffer_, pipeline.layout(), pipeline.stages(), 0, std::uint32_t(pushBytes), push);
 }
 
 void Commands::dispatchThreads(const Pipeline& pipeline, glm::ivec3 threads) {

@@ -82,16 +82,21 @@ struct FixedState {
 
 }  // namespace
 
+VkShaderStageFlags Pipeline::stages() const {
+  return bindPoint_ == VK_PIPELINE_BIND_POINT_COMPUTE
+             ? VkShaderStageFlags(VK_SHADER_STAGE_COMPUTE_BIT)
+             : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
+}
+
 Pipeline::Pipeline(const Device& device, PipelineInterface interface, VkPipelineBindPoint bindPoint)
     : interface_(std::move(interface)), bindPoint_(bindPoint) {
   FV_CHECK_LE(interface_.pushConstantBytes, device.limits().maxPushConstantsSize);
-  const VkShaderStageFlags stages = bindPoint == VK_PIPELINE_BIND_POINT_COMPUTE
-                                        ? VkShaderStageFlags(VK_SHADER_STAGE_COMPUTE_BIT)
-                                        : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (std::uint32_t i = 0; i < interface_.bindings.size(); ++i)
-    bindings.push_back(
-        {.binding = i, .descriptorType = interface_.bindings[i], .descriptorCount = 1, .stageFlags = stages});
+    bindings.push_back({.binding = i,
+                        .descriptorType = interface_.bindings[i],
+                        .descriptorCount = 1,
+                        .stageFlags = stages()});
   const VkDescriptorSetLayoutCreateInfo setInfo{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
       .flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR,
@@ -101,7 +106,7 @@ Pipeline::Pipeline(const Device& device, PipelineInterface interface, VkPipeline
   VK_CHECK(vkCreateDescriptorSetLayout(device.handle(), &setInfo, nullptr, &set));
   setLayout_ = OwnedSetLayout(device.handle(), set);
 
-  const VkPushConstantRange range{.stageFlags = stages, .offset = 0, .size = interface_.pushConstantBytes};
+  const VkPushConstantRange range{.stageFlags = stages(), .offset = 0, .size = interface_.pushConstantBytes};
   const VkPipelineLayoutCreateInfo layoutInfo{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
       .setLayoutCount = 1,

@@ -33,6 +33,8 @@ class Pipeline {
   VkPipeline handle() const { return pipeline_.get(); }
   VkPipelineLayout layout() const { return layout_.get(); }
   VkPipelineBindPoint bindPoint() const { return bindPoint_; }
+  /// That see the descriptors and the push constants.
+  VkShaderStageFlags stages() const;
   const PipelineInterface& interface() const { return interface_; }
   /// Invocations of one workgroup; compute only.
   glm::ivec3 workgroup() const { return workgroup_; }

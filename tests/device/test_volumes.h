@@ -7,6 +7,7 @@
 
 #include "engine/image/image.h"
 #include "engine/volume/procedural.h"
+#include "tests/image_measures.h"
 
 namespace freevoxels {
 
@@ -35,16 +36,6 @@ inline Volume randomVolume(glm::ivec3 dimensions, const glm::dmat4& transform, d
     const double choice = uniform(generator), density = uniform(generator) * most;
     return choice < fill ? density : 0.0;
   });
-}
-
-/// Peak signal-to-noise ratio of premultiplied RGBA, in dB for a peak of 1.
-inline double psnr(const Image& a, const Image& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    const glm::dvec4 difference = glm::dvec4(a.pixels[i]) - glm::dvec4(b.pixels[i]);
-    sum += glm::dot(difference, difference);
-  }
-  return -10.0 * std::log10(sum / (4.0 * double(a.pixels.size())));
 }
 
 }  // namespace freevoxels

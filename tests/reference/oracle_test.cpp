@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "engine/reference/ray_march.h"
+#include "tests/image_measures.h"
 #include "tests/reference/reference_scene.h"
 
 namespace freevoxels {
@@ -82,23 +83,6 @@ RaySum tinySteps(const Volume& volume, const Classification& classification, con
     depth += thickness;
   }
   return sum;
-}
-
-double largestDifference(const Image& a, const Image& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i)
-    for (int c = 0; c < 4; ++c)
-      largest = std::max(largest, double(std::abs(a.pixels[i][c] - b.pixels[i][c])));
-  return largest;
-}
-
-double psnr(const Image& a, const Image& b) {
-  double squares = 0.0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    const glm::dvec4 difference(a.pixels[i] - b.pixels[i]);
-    squares += glm::dot(difference, difference);
-  }
-  return -10.0 * std::log10(squares / (4.0 * double(a.pixels.size())));
 }
 
 TEST(RayMarch, AHomogeneousBlockIsBeerLambertWithItsSkirt) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "engine/splatting/footprint.h"
+#include "tests/image_measures.h"
 #include "tests/reference/reference_scene.h"
 
 namespace freevoxels {
@@ -228,14 +229,6 @@ Scene randomScene() {
   return Scene(makeVolume({12, 9, 10}, sheared(),
                           [&](int, int, int) { return std::max(0.0, uniform(random) - 0.33); }),
                physical(1.5, {0.9f, 0.6f, 0.3f}));
-}
-
-double largestDifference(const Image& a, const Image& b) {
-  double largest = 0.0;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i)
-    for (int c = 0; c < 4; ++c)
-      largest = std::max(largest, double(std::abs(a.pixels[i][c] - b.pixels[i][c])));
-  return largest;
 }
 
 TEST(ReferenceSplats, OrderOfTheVoxelsDoesNotMatter) {

@@ -1,0 +1,29 @@
+#pragma once
+// How far two pictures of one size are apart, in premultiplied RGBA: the plain definitions, for tests.
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/image/image.h"
+
+namespace freevoxels {
+
+inline double largestDifference(const Image& a, const Image& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    for (int c = 0; c < 4; ++c)
+      largest = std::max(largest, double(std::abs(a.pixels[i][c] - b.pixels[i][c])));
+  return largest;
+}
+
+/// Peak signal-to-noise ratio, in dB for a peak of 1.
+inline double psnr(const Image& a, const Image& b) {
+  double squares = 0.0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    const glm::dvec4 difference = glm::dvec4(a.pixels[i]) - glm::dvec4(b.pixels[i]);
+    squares += glm::dot(difference, difference);
+  }
+  return -10.0 * std::log10(squares / (4.0 * double(a.pixels.size())));
+}
+
+}  // namespace freevoxels
