@@ -1,0 +1,79 @@
+#pragma once
+// What a validation run found: verdicts, tables, plots and pictures, in the order they are told.
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "engine/image/image.h"
+
+namespace freevoxels {
+
+/// One figure against what it may be. A figure that is NaN never passes.
+struct Check {
+  enum class Bound { AtMost, AtLeast };
+
+  std::string name;
+  double figure = 0.0;
+  Bound bound = Bound::AtMost;
+  double tolerance = 0.0;
+  std::string unit;   ///< "codes", "dB", ...; may be empty
+  std::string where;  ///< where the figure is worst: a voxel, a pixel, a view; may be empty
+
+  bool passed() const { return bound == Bound::AtMost ? figure <= tolerance : figure >= tolerance; }
+};
+
+struct ReportTable {
+  std::string caption;
+  std::vector<std::string> columns;            ///< the first names the rows
+  std::vector<std::vector<std::string>> rows;  ///< as many cells as columns
+};
+
+struct ReportPlot {
+  struct Series {
+    std::string name;
+    std::vector<glm::dvec2> points;  ///< x ascending
+  };
+  std::string caption, xLabel, yLabel;
+  std::vector<Series> series;
+};
+
+/// Pictures side by side; embedded as PNG over `background` (linear).
+struct ReportPictures {
+  struct Picture {
+    std::string caption;
+    Image image;
+  };
+  std::string caption;
+  std::vector<Picture> pictures;
+  glm::vec3 background{0.0f};
+};
+
+struct ReportSection {
+  std::string title;
+  std::string text;  ///< plain text, may be empty
+  std::vector<Check> checks;
+  std::vector<ReportTable> tables;
+  std::vector<ReportPlot> plots;
+  std::vector<ReportPictures> pictures;
+
+  bool passed() const;
+};
+
+struct Report {
+  std::map<std::string, std::string> facts;  ///< device, driver, version, settings, ...
+  std::vector<ReportSection> sections;
+
+  bool passed() const;
+};
+
+/// One file that needs nothing else: style, plots (SVG) and pictures (PNG) are inside. Atomic. Fails with
+/// ExitCode::Output.
+void writeHtml(const std::filesystem::path& file, const Report& report);
+
+/// Everything but the pictures' pixels. Atomic. Fails with ExitCode::Output.
+void writeJson(const std::filesystem::path& file, const Report& report);
+
+}  // namespace freevoxels
