@@ -6,6 +6,7 @@
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/core/error.h"
+#include "engine/splatting/depth_sort.h"
 #include "engine/splatting/resolve_pass.h"
 #include "engine/splatting/splat_pass.h"
 #include "engine/splatting/visible_voxels.h"
@@ -84,6 +85,7 @@ struct Renderer::State {
   VisibleVoxels visible;
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
+  std::unique_ptr<DepthSort> sort;
   std::vector<StageTime> buildTimes, frameTimes;
 };
 
@@ -115,17 +117,22 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   checkFrameFits(state_->device, settings);
   State& state = *state_;
   state.frameTimes.clear();
-  if (!state.splats || state.splats->withDistance() != settings.depth) {
-    state.splats = std::make_unique<SplatPass>(state.device, settings.depth);
+  const bool sorted = settings.composite == Composite::Sorted;
+  if (!state.splats || !state.splats->draws(settings)) {
+    state.splats = std::make_unique<SplatPass>(state.device, settings.depth, sorted);
     state.resolve = std::make_unique<ResolvePass>(state.device, settings.depth);
   }
+  if (sorted && !state.sort) state.sort = std::make_unique<DepthSort>(state.device, state.volume);
   const SplatTargets targets = makeTargets(state.device, settings);
   const FrameConstants frame =
       makeFrameConstants(state.device, state.volume, state.tableSettings, camera, settings);
 
   Commands commands(state.device);
-  state.splats->record(commands, {state.volume, state.table, state.visible}, frame, targets);
-  state.resolve->record(commands, frame, targets);
+  if (sorted) state.sort->record(commands, state.volume, state.visible, camera);
+  state.splats->record(commands,
+                       {state.volume, state.table, state.visible, sorted ? &state.sort->voxels() : nullptr},
+                       frame, targets);
+  if (!sorted || settings.depth) state.resolve->record(commands, frame, targets);
   commands.beginPass("read back");
   const TargetReadback color(state.device, commands, targets.colorEnergy, sizeof(glm::vec4));
   std::unique_ptr<TargetReadback> depth;

@@ -1,0 +1,31 @@
+#pragma once
+// The visible voxels back to front, for the sorted composite: Subr et al. 2007, Section 4.1.
+
+#include "engine/splatting/camera.h"
+#include "engine/splatting/radix_sort.h"
+#include "engine/splatting/visible_voxels.h"
+#include "engine/volume/device_volume.h"
+
+namespace freevoxels {
+
+/// COMPUTE depth_key.comp and those of RadixSort
+class DepthSort {
+ public:
+  DepthSort(const Device& device, const DeviceVolume& volume);
+
+  /// Farthest first by the distance of the voxel's centre in world space: from the eye, or for an
+  /// orthographic camera along the viewing axis. Voxels as far as each other to the rounding of 32-bit
+  /// floats, relative to the volume's middle, come in ascending order of the rounded distance or, where that
+  /// is the same, of index.
+  void record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible,
+              const Camera& camera) const;
+  /// uint: padded voxel indices, as many as there are visible voxels.
+  const Buffer& voxels() const { return pairs_.values; }
+
+ private:
+  Pipeline keys_;
+  RadixSort sort_;
+  SortPairs pairs_;
+};
+
+}  // namespace freevoxels
