@@ -28,6 +28,7 @@ class DepthSortTest : public DeviceTest {
   void expectSorted(const std::vector<std::uint32_t>& keys, std::uint32_t count) {
     std::vector<std::uint32_t> places(keys.size());
     std::iota(places.begin(), places.end(), 0u);
+    const RadixSort sort(device());
     const SortPairs pairs = makeSortPairs(device(), keys.size());
     if (!keys.empty()) {
       upload(device(), pairs.keys, std::as_bytes(std::span(keys)));
@@ -36,7 +37,7 @@ class DepthSortTest : public DeviceTest {
     upload(device(), pairs.count, std::as_bytes(std::span(&count, 1)));
     Commands commands(device());
     commands.beginPass("sort");
-    RadixSort(device()).record(commands, pairs);
+    sort.record(commands, pairs);
     commands.submitAndWait();
     std::vector<std::uint32_t> expected = places;
     std::stable_sort(expected.begin(), expected.begin() + count,
@@ -54,12 +55,14 @@ class DepthSortTest : public DeviceTest {
     const Classification classification{.densityScale = 1.0};
     const DeviceVolume onDevice = uploadVolume(device(), volume, classification);
     const VisibleVoxels visible = makeVisibleVoxels(device(), onDevice);
+    const ClassifyPass classify(device());
+    const CompactionPass compaction(device());
     const DepthSort sort(device(), onDevice);
     std::vector<std::vector<std::uint32_t>> orders;
     for (const Camera& camera : cameras) {
       Commands commands(device());
-      ClassifyPass(device()).record(commands, onDevice, classification);
-      CompactionPass(device()).record(commands, onDevice, visible);
+      classify.record(commands, onDevice, classification);
+      compaction.record(commands, onDevice, visible);
       sort.record(commands, onDevice, visible, camera);
       commands.submitAndWait();
       orders.push_back(read(sort.voxels(), downloadVisibleCount(device(), visible)));
