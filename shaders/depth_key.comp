@@ -1,8 +1,8 @@
 #version 460
-// The sort key of every visible voxel: ascending keys are back to front. The key is the distance from the eye
-// (orthographic: along the viewing axis) less that of the volume's middle, |m + o| - |m| = (2m + o) . o / (|m +
-// o| + |m|) with m from the eye to the middle and o from there to the voxel, so that a far eye takes no bits from
-// it.
+// The sort key of every visible voxel: ascending keys are back to front. It is made of the distance from the
+// eye (orthographic: along the viewing axis) less that of the volume's middle, so that a far eye takes no bits
+// from it: |m + o| - |m| = (2m + o) . o / (|m + o| + |m|), m from the eye to the middle, o from there to the
+// voxel.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 
@@ -34,7 +34,8 @@ float relativeDistance(vec3 index) {
 }
 
 void main() {
-  const uint i = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * kSortThreads + gl_LocalInvocationIndex;
+  const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+  const uint i = group * kSortThreads + gl_LocalInvocationIndex;
   if (i == 0) {
     uint total = 0;
     for (uint chunk = 0; chunk < push.chunkCount; ++chunk) total += chunks[chunk].splatCount;

@@ -31,8 +31,8 @@ FV_CONSTANT int kSweepThreads = 32;
 FV_CONSTANT int kSplatThreads = 64;
 FV_CONSTANT int kResolveTile = 8;
 
-// The sort takes its keys digit by digit. As many threads a workgroup as digits, so that each owns one; a fixed
-// number of workgroups, whatever the count, so that one of them can add up what all of them found.
+// The sort takes its keys digit by digit. As many threads a workgroup as digits, so that each owns one; a
+// fixed number of workgroups, whatever the count, so that one of them can add up what all of them found.
 FV_CONSTANT int kSortBits = 8;
 FV_CONSTANT int kSortDigits = 1 << kSortBits;
 FV_CONSTANT int kSortThreads = kSortDigits;

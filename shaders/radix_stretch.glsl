@@ -1,5 +1,5 @@
-// The stretch of pairs that is this workgroup's: whole tiles of one pair a thread. Included after interface.h and
-// a buffer with `count`.
+// The stretch of pairs that is this workgroup's: whole tiles of one pair a thread. Included after interface.h
+// and a buffer with `count`.
 
 uint stretchLength() {
   const uint tiles = (count + kSortThreads - 1) / kSortThreads;

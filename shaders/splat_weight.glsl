@@ -1,5 +1,5 @@
-// The footprint on the pixel's own ray, which is exact for perspective and for any voxel shape. Included by the
-// splats' fragment shaders, after interface.h.
+// The footprint on the pixel's own ray, which is exact for perspective and for any voxel shape. Included by
+// the splats' fragment shaders, after interface.h.
 
 layout(scalar, push_constant) uniform Push { SplatPush push; };
 
@@ -7,10 +7,9 @@ layout(location = 0) flat in vec4 colorEnergy;
 layout(location = 1) flat in vec4 conicDepth;
 layout(location = 2) flat in vec3 centerDistance;
 
-// |D|² at the pixel: constant.x + linear terms + squares, from the middle of the image.
+// |D|² at p from the middle of the image: linear . (1, x, y) + squares . (x², xy, y²).
 float rayLength2At(vec2 p, vec3 linear, vec3 squares) {
-  return linear.x + p.x * (linear.y + squares.x * p.x) +
-         p.y * (linear.z + squares.y * p.x + squares.z * p.y);
+  return linear.x + p.x * (linear.y + squares.x * p.x) + p.y * (linear.z + squares.y * p.x + squares.z * p.y);
 }
 
 float rayLength2() {

@@ -14,9 +14,8 @@ class DepthSort {
   DepthSort(const Device& device, const DeviceVolume& volume);
 
   /// Farthest first by the distance of the voxel's centre in world space: from the eye, or for an
-  /// orthographic camera along the viewing axis. Voxels as far as each other to the rounding of 32-bit
-  /// floats, relative to the volume's middle, come in ascending order of the rounded distance or, where that
-  /// is the same, of index.
+  /// orthographic camera along the viewing axis. Distances are 32-bit floats relative to that of the volume's
+  /// middle; where they are equal, voxels keep the order of their indices.
   void record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible,
               const Camera& camera) const;
   /// uint: padded voxel indices, as many as there are visible voxels.
