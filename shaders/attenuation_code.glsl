@@ -5,7 +5,8 @@ uint encodeDepth(int code, float depth) {
                              : uint(255.0 * exp(-depth) + 0.5);
 }
 
-float decodeTransmittance(int code, uint byte) {
+float decodeDepth(int code, uint byte) {
   const float fraction = float(byte) * (1.0 / 255.0);
-  return code == kCodeDepth8 ? exp(-kMaximumDepth * fraction * fraction) : fraction;
+  if (code == kCodeDepth8) return kMaximumDepth * fraction * fraction;
+  return byte == 0 ? kOpaqueDepth : -log(fraction);
 }

@@ -1,4 +1,4 @@
-// Transmittance from a voxel towards a general direction, from the table's 26 lattice directions: Subr et al.
+// Optical depth from a voxel towards a general direction, from the table's 26 lattice directions: Subr et al.
 // 2007, Section 3.3, there with the nearest one. Include after interface.h and attenuation_code.glsl, and
 // define PLANE_ADDRESS(direction) as the device address of that direction's codes.
 #extension GL_EXT_buffer_reference : require
@@ -12,15 +12,28 @@ int directionIndex(ivec3 d) {
   return cell < 13 ? cell : cell - 1;
 }
 
-float storedTransmittance(int code, ivec3 direction, uint voxel) {
+struct Towards {
+  vec3 direction;    // divided by its largest component: a point on the cube's face
+  float layer;       // world length of the direction
+  mat3 indexToWorld;
+  int code;          // kCode...
+  int lookup;        // kLookup...
+  bool pathLengthCorrection;
+};
+
+// As if the line along the stored direction were as long as the one that is asked for: a homogeneous medium
+// is exact in every direction.
+float storedDepth(Towards towards, ivec3 direction, uint voxel) {
   const uint word = CodePlane(PLANE_ADDRESS(directionIndex(direction))).words[voxel / 4];
-  return decodeTransmittance(code, bitfieldExtract(word, int(voxel & 3) * 8, 8));
+  const float depth = decodeDepth(towards.code, bitfieldExtract(word, int(voxel & 3) * 8, 8));
+  return towards.pathLengthCorrection ? depth * towards.layer / length(towards.indexToWorld * vec3(direction))
+                                      : depth;
 }
 
-// `direction` is divided by its largest component: a point on the cube's face, between four lattice
-// directions.
-float transmittanceTowards(int code, int lookup, vec3 direction, uint voxel) {
-  if (lookup == kLookupNearest) return storedTransmittance(code, ivec3(round(direction)), voxel);
+// Transmittances are interpolated, not depths: one dark direction would darken all.
+float depthTowards(Towards towards, uint voxel) {
+  const vec3 direction = towards.direction;
+  if (towards.lookup == kLookupNearest) return storedDepth(towards, ivec3(round(direction)), voxel);
   const vec3 low = floor(min(direction, 0.999999));
   const vec3 weight = direction - low;
   // The major axis has weight 0 or 1: both of its neighbours are the same face.
@@ -36,8 +49,8 @@ float transmittanceTowards(int code, int lookup, vec3 direction, uint voxel) {
       d[a] = int(low[a]) + i;
       d[b] = int(low[b]) + j;
       const float share = (i == 0 ? 1.0 - weight[a] : weight[a]) * (j == 0 ? 1.0 - weight[b] : weight[b]);
-      sum += share * storedTransmittance(code, d, voxel);
+      sum += share * exp(-storedDepth(towards, d, voxel));
     }
   }
-  return sum;
+  return -log(sum);
 }

@@ -38,7 +38,7 @@ FV_CONSTANT int kSortDigits = 1 << kSortBits;
 FV_CONSTANT int kSortThreads = kSortDigits;
 FV_CONSTANT int kSortGroups = 256;
 
-// Splats are set up and drawn in chunks of this many: the records of one chunk are 52 MiB, whatever the
+// Splats are set up and drawn in chunks of this many: the records of one chunk are 64 MiB, whatever the
 // volume.
 FV_CONSTANT int kSplatsPerChunk = 1 << 20;
 
@@ -48,6 +48,7 @@ FV_CONSTANT float kSplatPeak = 5.0f / (3.14159265358979f * kSplatRadius * kSplat
 
 FV_CONSTANT int kTableDirections = 26;
 FV_CONSTANT float kMaximumDepth = 16.0f;  // optical depth that the code depth8 ends at
+FV_CONSTANT float kOpaqueDepth = 32.0f;   // what the code linear8 means by a transmittance of 0
 
 // Must be engine/volume/volume.h's kInactiveVoxel.
 FV_CONSTANT float kInactiveScalar = -3.402823466e38f;
@@ -121,12 +122,13 @@ struct RadixPush {
 
 // One splat, ready to draw. Written by splat_setup.comp, pulled by splat.vert.
 struct Splat {
-  vec4 colorEnergy;   // e_v c_v and e_v, times the footprint's peak
+  vec4 colorEnergy;   // e_v c_v and e_v without the transmittance to the eye, times the footprint's peak
   vec2 center;        // pixels, (0, 0) = the top left corner of the image
   vec2 halfExtent;    // pixels; 0 = not drawn
   vec3 conic;         // xx, xy, yy: (r/R)² |D|² = xx dx² + 2 xy dx dy + yy dy² at (dx, dy) from the centre
   float opticalDepth; // t_v, times the footprint's peak, per world length of ray
   float distance;     // from the eye plane along the viewing axis, world units
+  vec3 depthToEye;    // of the voxel's centre, and how it changes per pixel along x and y
 };
 
 // The frame, as splat_setup.comp needs it. Index space is relative to the middle of the volume, so that
@@ -141,8 +143,10 @@ struct SetupFrame {
   vec3 ray;                // orthographic: the direction of all rays, index space
   int orthographic;
   int rowPitch;
-  int rows;                // extent along y
+  ivec3 dimensions;
   int lookup;              // kLookup...
+  int pathLengthCorrection;  // 0: every lattice step counts as long as any other
+  int gradient;            // 0: the transmittance to the eye is the same all over a footprint
   int code;                // kCode...
   uint opacityPoints;      // 0 = physical
   uint colorPoints;
@@ -175,7 +179,7 @@ struct ResolvePush {
 #ifdef __cplusplus
 static_assert(sizeof(ChunkArguments) == 48);
 static_assert(sizeof(DepthKeyPush) == 80);
-static_assert(sizeof(Splat) == 52);
+static_assert(sizeof(Splat) == 64);
 static_assert(sizeof(ResolvePush) == 84);
 }  // namespace freevoxels::shader
 #endif

@@ -5,6 +5,8 @@
 #include "interface.h"
 #include "splat_weight.glsl"
 
+layout(location = 3) flat in vec3 depthToEye;
+
 layout(location = 0) out vec4 colorEnergySum;
 layout(location = 1) out float opticalDepthSum;
 #ifdef WITH_DISTANCE
@@ -13,9 +15,13 @@ layout(location = 2) out float distanceSum;
 
 void main() {
   const float weight = splatWeight(rayLength2());
-  colorEnergySum = weight * colorEnergy;
+  // The optical depth on the pixel's own ray, to first order: what is half in the shadow of something shows
+  // its lit half.
+  const vec2 d = gl_FragCoord.xy - centerDistance.xy;
+  const float depth = max(depthToEye.x + dot(depthToEye.yz, d), 0.0);
+  colorEnergySum = weight * exp(-depth) * colorEnergy;
   opticalDepthSum = weight * conicDepth.w;
 #ifdef WITH_DISTANCE
-  distanceSum = weight * colorEnergy.a * centerDistance.z;
+  distanceSum = colorEnergySum.a * centerDistance.z;
 #endif
 }

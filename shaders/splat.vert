@@ -12,12 +12,14 @@ layout(scalar, binding = 0) readonly buffer Splats { Splat splats[]; };
 layout(location = 0) flat out vec4 colorEnergy;
 layout(location = 1) flat out vec4 conicDepth;      // conic, optical depth
 layout(location = 2) flat out vec3 centerDistance;  // centre, distance
+layout(location = 3) flat out vec3 depthToEye;      // at the centre, its gradient
 
 void main() {
   const Splat splat = splats[kQuads ? gl_InstanceIndex : gl_VertexIndex];
   colorEnergy = splat.colorEnergy;
   conicDepth = vec4(splat.conic, splat.opticalDepth);
   centerDistance = vec3(splat.center, splat.distance);
+  depthToEye = splat.depthToEye;
 
   const float size = 2.0 * max(splat.halfExtent.x, splat.halfExtent.y);
   vec2 position = splat.center;

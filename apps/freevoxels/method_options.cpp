@@ -29,9 +29,13 @@ void MethodOptions::add(CLI::App& app) {
          [this](std::int64_t count) { pathLengthCorrection = count > 0; },
          "Whether a diagonal step counts its length in full [yes]")
       ->group(group);
+  app.add_flag_function(
+         "--gradient,!--no-gradient", [this](std::int64_t count) { gradient = count > 0; },
+         "Whether transmittance varies across a splat [yes]")
+      ->group(group);
   app.add_flag("--paper", paper,
-               "As the paper: additive, nearest, linear8, no path-length correction; any of the four that is "
-               "given wins")
+               "As the paper: additive, nearest, linear8, no path-length correction, no gradient; any of the "
+               "five that is given wins")
       ->group(group);
 }
 
@@ -45,6 +49,7 @@ void MethodOptions::apply(FrameSettings& frame) const {
   frame.composite = Composite(composite.value_or(int(paper ? Composite::Additive : Composite::Normalised)));
   frame.attenuation = AttenuationLookup(
       attenuation.value_or(int(paper ? AttenuationLookup::Nearest : AttenuationLookup::Bilinear)));
+  frame.gradient = gradient.value_or(!paper);
 }
 
 void MethodOptions::describe(OptionList& options) const {
@@ -55,6 +60,7 @@ void MethodOptions::describe(OptionList& options) const {
   options.emplace_back("--code", kCodes[std::size_t(table().code)]);
   options.emplace_back(
       table().pathLengthCorrection ? "--path-length-correction" : "--no-path-length-correction", "");
+  options.emplace_back(frame.gradient ? "--gradient" : "--no-gradient", "");
 }
 
 }  // namespace freevoxels

@@ -15,6 +15,7 @@ namespace {
 
 static_assert(shader::kTableDirections == kDirectionCount);
 static_assert(shader::kMaximumDepth == float(kMaximumCodedDepth));
+static_assert(shader::kOpaqueDepth == float(kOpaqueDepth));
 static_assert(shader::kCodeDepth8 == int(AttenuationCode::Depth8));
 static_assert(shader::kCodeLinear8 == int(AttenuationCode::Linear8));
 

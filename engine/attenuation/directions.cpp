@@ -38,9 +38,10 @@ int encodeOpticalDepth(AttenuationCode code, double opticalDepth) {
   return int(std::lround(255.0 * std::sqrt(bounded / kMaximumCodedDepth)));
 }
 
-double decodeTransmittance(AttenuationCode code, int byte) {
+double decodeOpticalDepth(AttenuationCode code, int byte) {
   const double unit = byte / 255.0;
-  return code == AttenuationCode::Linear8 ? unit : std::exp(-kMaximumCodedDepth * unit * unit);
+  if (code == AttenuationCode::Depth8) return kMaximumCodedDepth * unit * unit;
+  return byte == 0 ? kOpaqueDepth : -std::log(unit);
 }
 
 DirectionBlend bilinearDirections(glm::dvec3 direction) {

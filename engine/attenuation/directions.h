@@ -27,14 +27,16 @@ enum class AttenuationCode : int {
 };
 
 inline constexpr double kMaximumCodedDepth = 16.0;
+/// What Linear8 means by a transmittance of 0.
+inline constexpr double kOpaqueDepth = 32.0;
 
 /// World length of a lattice step (path-length correction on), or the voxel size for every step (the paper's
 /// literal product, off).
 double stepLength(const glm::dmat4& indexToWorld, glm::ivec3 direction, bool pathLengthCorrection);
 
-/// Optical depth -> byte and byte -> transmittance, in double precision.
+/// In double precision.
 int encodeOpticalDepth(AttenuationCode code, double opticalDepth);
-double decodeTransmittance(AttenuationCode code, int byte);
+double decodeOpticalDepth(AttenuationCode code, int byte);
 
 /// The bilinear look-up of a general direction (Section 5 of the design, after Subr et al. 2007,
 /// Section 3.3): four lattice directions of one cube face and their weights, which add up to 1.

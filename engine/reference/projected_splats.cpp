@@ -87,7 +87,9 @@ std::optional<ProjectedSplat> SplatProjector::project(std::uint32_t index) const
   const glm::dvec3 k = inverse * q;
   ProjectedSplat splat;
   splat.distance = k.z;
-  splat.toEye = rays_.orthographic ? -rays_.direction : -q;
+  splat.toEye = toEye(voxel);
+  splat.pixelX = rays_.orthographic ? rays_.originX : k.z * rays_.directionX;
+  splat.pixelY = rays_.orthographic ? rays_.originY : k.z * rays_.directionY;
   if (!(k.z > 0.0)) return std::nullopt;
   glm::dvec3 u, v;
   if (rays_.orthographic) {
@@ -116,9 +118,17 @@ std::optional<ProjectedSplat> SplatProjector::project(std::uint32_t index) const
   return splat;
 }
 
-double SplatProjector::opacity(const ProjectedSplat& splat, double extinction) const {
+glm::dvec3 SplatProjector::toEye(glm::dvec3 position) const {
+  return rays_.orthographic ? -rays_.direction : rays_.origin - position;
+}
+
+double SplatProjector::layerLength(const ProjectedSplat& splat) const {
   const glm::dvec3 size = glm::abs(splat.toEye);
-  const double layer = glm::length(indexToWorld_ * (splat.toEye / std::max({size.x, size.y, size.z})));
+  return glm::length(indexToWorld_ * (splat.toEye / std::max({size.x, size.y, size.z})));
+}
+
+double SplatProjector::opacity(const ProjectedSplat& splat, double extinction) const {
+  const double layer = layerLength(splat);
   return -std::expm1(-extinction * layer) / layer;
 }
 
@@ -133,12 +143,14 @@ double SplatProjector::footprint(const ProjectedSplat& splat, glm::dvec2 pixel) 
 }
 
 void SplatProjector::forEachPixel(const ProjectedSplat& splat,
-                                  const std::function<void(std::size_t, double)>& visit) const {
+                                  const std::function<void(std::size_t, glm::dvec2, double)>& visit) const {
   const PixelBox box = boundingPixels(rays_, rayDirection(splat.centre), splat, imageSize_);
   for (int y = box.first.y; y <= box.last.y; ++y)
-    for (int x = box.first.x; x <= box.last.x; ++x)
-      visit(std::size_t(y) * std::size_t(imageSize_.x) + std::size_t(x),
-            footprint(splat, {x + 0.5, y + 0.5}));
+    for (int x = box.first.x; x <= box.last.x; ++x) {
+      const glm::dvec2 pixel(x + 0.5, y + 0.5);
+      visit(std::size_t(y) * std::size_t(imageSize_.x) + std::size_t(x), pixel - splat.centre,
+            footprint(splat, pixel));
+    }
 }
 
 }  // namespace freevoxels

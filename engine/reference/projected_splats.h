@@ -13,9 +13,10 @@
 namespace freevoxels {
 
 struct ProjectedSplat {
-  glm::dvec2 centre{0.0};  ///< pixels
-  double distance = 0.0;   ///< of the voxel's centre along the viewing axis, world units
-  glm::dvec3 toEye{0.0};   ///< index space, any length
+  glm::dvec2 centre{0.0};               ///< pixels
+  double distance = 0.0;                ///< of the voxel's centre along the viewing axis, world units
+  glm::dvec3 toEye{0.0};                ///< index space, any length
+  glm::dvec3 pixelX{0.0}, pixelY{0.0};  ///< a pixel's width and height at the voxel, index space
   glm::dmat2 shape{1.0};   ///< S'⁻¹ · |Dc|²: dᵀ shape d / |D|² is r²/R², or its widened like
   double amplitude = 1.0;  ///< sqrt(det S / det S')
 };
@@ -28,13 +29,19 @@ class SplatProjector {
   /// (k_z <= 0), or a perspective camera's eye plane cuts its kernel (k_z² <= R² (K Kᵀ)_zz).
   std::optional<ProjectedSplat> project(std::uint32_t voxel) const;
 
+  /// From a position in index space, which need not be a voxel's; index space, any length.
+  glm::dvec3 toEye(glm::dvec3 position) const;
+  /// World length of a lattice layer in the viewing direction.
+  double layerLength(const ProjectedSplat& splat) const;
   /// Opacity of one lattice layer in the viewing direction per world length: (1 - exp(-sigma s)) / s.
   double opacity(const ProjectedSplat& splat, double extinction) const;
 
-  /// Calls `visit` with the index of every pixel that the splat may cover and the line integral of the kernel
-  /// along that pixel's ray, in world length; 0 outside of the footprint.
-  void forEachPixel(const ProjectedSplat& splat,
-                    const std::function<void(std::size_t pixel, double omega)>& visit) const;
+  /// Calls `visit` with the index of every pixel that the splat may cover, its centre's offset from the
+  /// splat's, and the line integral of the kernel along that pixel's ray, in world length; 0 outside of the
+  /// footprint.
+  void forEachPixel(
+      const ProjectedSplat& splat,
+      const std::function<void(std::size_t pixel, glm::dvec2 offset, double omega)>& visit) const;
 
  private:
   glm::dvec3 rayDirection(glm::dvec2 pixel) const;

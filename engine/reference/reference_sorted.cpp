@@ -50,7 +50,7 @@ Image referenceSortedPicture(const Volume& volume, const Classification& classif
     if (!splat) continue;
     const ClassifiedVoxel material = classify(classification, volume.values[voxel]);
     const double opacity = projector.opacity(*splat, material.extinction);
-    projector.forEachPixel(*splat, [&](std::size_t pixel, double omega) {
+    projector.forEachPixel(*splat, [&](std::size_t pixel, glm::dvec2, double omega) {
       const double alpha = std::min(opacity * omega, 1.0);
       BlendedPixel& behind = blended[pixel];
       behind.color = alpha * glm::dvec4(material.color, 1.0) + (1.0 - alpha) * behind.color;

@@ -3,28 +3,34 @@
 
 #include "engine/reference/reference_splats.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
-#include "engine/attenuation/directions.h"
 #include "engine/core/error.h"
 #include "engine/reference/projected_splats.h"
+#include "engine/reference/reference_depth.h"
 
 namespace freevoxels {
 
 namespace {
 
+/// Optical depth to the eye at a voxel's centre, and its change per pixel.
+struct DepthToEye {
+  double centre = 0.0;
+  glm::dvec2 perPixel{0.0};
+};
+
 class SplatSummer {
  public:
   SplatSummer(const Volume& volume, const Classification& classification,
-              const std::vector<std::vector<std::uint8_t>>& table, AttenuationCode code, const Camera& camera,
-              const FrameSettings& settings)
+              const std::vector<std::vector<std::uint8_t>>& table, const TableSettings& tableSettings,
+              const Camera& camera, const FrameSettings& settings)
       : volume_(volume),
         classification_(classification),
-        table_(table),
-        code_(code),
         settings_(settings),
+        depth_(volume, table, tableSettings, settings.attenuation),
         projector_(volume, camera, settings.size),
         sums_(std::size_t(settings.size.x) * std::size_t(settings.size.y)) {}
 
@@ -32,35 +38,41 @@ class SplatSummer {
   std::vector<SplatSums> take() { return std::move(sums_); }
 
  private:
-  /// A(v, to eye).
-  double transmittance(std::uint32_t voxel, glm::dvec3 toEye) const {
-    const auto decode = [&](int direction) {
-      return decodeTransmittance(code_, table_[std::size_t(direction)][voxel]);
-    };
-    if (settings_.attenuation == AttenuationLookup::Nearest) return decode(nearestDirection(toEye));
-    const DirectionBlend blend = bilinearDirections(toEye);
-    double sum = 0.0;
-    for (std::size_t i = 0; i < 4; ++i) sum += blend.weights[i] * decode(blend.directions[i]);
-    return sum;
-  }
+  DepthToEye depthToEye(std::uint32_t voxel, const ProjectedSplat& splat, double extinction) const;
 
   const Volume& volume_;
   const Classification& classification_;
-  const std::vector<std::vector<std::uint8_t>>& table_;
-  const AttenuationCode code_;
   const FrameSettings& settings_;
+  const ReferenceDepth depth_;
   const SplatProjector projector_;
   std::vector<SplatSums> sums_;
 };
+
+DepthToEye SplatSummer::depthToEye(std::uint32_t voxel, const ProjectedSplat& splat,
+                                   double extinction) const {
+  const glm::uvec3 n(volume_.dimensions);
+  const glm::ivec3 position(voxel % n.x, voxel / n.x % n.y, voxel / n.x / n.y);
+  DepthToEye depth{.centre = depth_.towards(position, splat.toEye)};
+  if (!settings_.gradient) return depth;
+  const glm::dvec3 gradient =
+      depth_.gradient(position, extinction * projector_.layerLength(splat),
+                      [&](glm::ivec3 at) { return projector_.toEye(glm::dvec3(at)); });
+  // A widened footprint has the transmittances of the one that it stands for.
+  const double narrowing = std::sqrt(splat.amplitude);
+  depth.perPixel = narrowing * glm::dvec2(glm::dot(gradient, splat.pixelX), glm::dot(gradient, splat.pixelY));
+  return depth;
+}
 
 void SplatSummer::add(std::uint32_t voxel) {
   const std::optional<ProjectedSplat> splat = projector_.project(voxel);
   if (!splat) return;
   const ClassifiedVoxel material = classify(classification_, volume_.values[voxel]);
-  const double emitted = transmittance(voxel, splat->toEye) * projector_.opacity(*splat, material.extinction);
-  projector_.forEachPixel(*splat, [&](std::size_t pixel, double omega) {
+  const DepthToEye depth = depthToEye(voxel, *splat, material.extinction);
+  const double opacity = projector_.opacity(*splat, material.extinction);
+  projector_.forEachPixel(*splat, [&](std::size_t pixel, glm::dvec2 offset, double omega) {
     SplatSums& sums = sums_[pixel];
-    const double energy = emitted * omega;
+    const double inFront = std::max(depth.centre + glm::dot(depth.perPixel, offset), 0.0);
+    const double energy = opacity * std::exp(-inFront) * omega;
     sums.color += energy * material.color;
     sums.energy += energy;
     sums.depth += material.extinction * omega;
@@ -72,11 +84,10 @@ void SplatSummer::add(std::uint32_t voxel) {
 
 std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classification& classification,
                                           const std::vector<std::vector<std::uint8_t>>& table,
-                                          AttenuationCode code, const Camera& camera,
+                                          const TableSettings& tableSettings, const Camera& camera,
                                           const FrameSettings& settings,
                                           std::span<const std::uint32_t> voxels) {
-  FV_CHECK_EQ(table.size(), std::size_t(kDirectionCount));
-  SplatSummer summer(volume, classification, table, code, camera, settings);
+  SplatSummer summer(volume, classification, table, tableSettings, camera, settings);
   for (const std::uint32_t voxel : voxels) {
     FV_CHECK_LT(voxel, volume.voxelCount());
     summer.add(voxel);

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/attenuation/table_settings.h"
 #include "engine/image/image.h"
 #include "engine/splatting/camera.h"
 #include "engine/splatting/render_settings.h"
@@ -27,7 +28,7 @@ struct SplatSums {
 /// [direction][voxel].
 std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classification& classification,
                                           const std::vector<std::vector<std::uint8_t>>& table,
-                                          AttenuationCode code, const Camera& camera,
+                                          const TableSettings& tableSettings, const Camera& camera,
                                           const FrameSettings& settings,
                                           std::span<const std::uint32_t> voxels);
 

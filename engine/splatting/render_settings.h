@@ -22,6 +22,9 @@ struct FrameSettings {
   glm::ivec2 size{1024, 1024};
   Composite composite = Composite::Normalised;
   AttenuationLookup attenuation = AttenuationLookup::Bilinear;
+  /// Whether the optical depth to the eye varies across a footprint, to first order, or is the voxel
+  /// centre's, as in the paper.
+  bool gradient = true;
   bool depth = false;  ///< also make Image::depth
 };
 

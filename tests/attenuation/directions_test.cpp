@@ -54,14 +54,15 @@ TEST(Directions, CodesHaveTheirEndsAndDecodeToHalfACode) {
   EXPECT_EQ(encodeOpticalDepth(AttenuationCode::Linear8, 0.0), 255);
   EXPECT_EQ(encodeOpticalDepth(AttenuationCode::Linear8, 1e9), 0);
   EXPECT_EQ(encodeOpticalDepth(AttenuationCode::Linear8, std::log(2.0)), 128);
-  EXPECT_GT(decodeTransmittance(AttenuationCode::Depth8, 255), 0.0);
+  EXPECT_DOUBLE_EQ(decodeOpticalDepth(AttenuationCode::Depth8, 255), 16.0);
+  EXPECT_DOUBLE_EQ(decodeOpticalDepth(AttenuationCode::Linear8, 0), kOpaqueDepth);
   for (const AttenuationCode code : kCodes) {
     for (int byte = 0; byte < 256; ++byte) {
-      const double transmittance = decodeTransmittance(code, byte);
-      EXPECT_EQ(encodeOpticalDepth(code, -std::log(transmittance)), byte);
+      EXPECT_EQ(encodeOpticalDepth(code, decodeOpticalDepth(code, byte)), byte);
     }
     for (double depth = 0.0; depth < 12.0; depth += 0.01)
-      EXPECT_NEAR(decodeTransmittance(code, encodeOpticalDepth(code, depth)), std::exp(-depth), 0.0068);
+      EXPECT_NEAR(std::exp(-decodeOpticalDepth(code, encodeOpticalDepth(code, depth))), std::exp(-depth),
+                  0.0068);
   }
 }
 

@@ -130,11 +130,11 @@ TEST_F(RenderCommand, DefaultsAreWhatTheHelpSays) {
   EXPECT_NE(standard, render("--no-path-length-correction"));
 }
 
-TEST_F(RenderCommand, PaperIsFourOptionsAndYieldsToEach) {
-  const std::string four =
-      "--composite additive --attenuation nearest --code linear8 --no-path-length-correction";
-  EXPECT_EQ(render("--paper"), render(four));
-  EXPECT_EQ(render("--paper --composite normalised"), render(four.substr(four.find("--attenuation"))));
+TEST_F(RenderCommand, PaperIsFiveOptionsAndYieldsToEach) {
+  const std::string five =
+      "--composite additive --attenuation nearest --code linear8 --no-path-length-correction --no-gradient";
+  EXPECT_EQ(render("--paper"), render(five));
+  EXPECT_EQ(render("--paper --composite normalised"), render(five.substr(five.find("--attenuation"))));
   EXPECT_EQ(exrAttribute(render("--paper --path-length-correction"), "freevoxels:path-length-correction"),
             "yes");
 }

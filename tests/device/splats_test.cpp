@@ -19,7 +19,7 @@ class SplatTest : public DeviceTest {
                          const TableSettings& table, const Camera& camera, const FrameSettings& settings) {
     const auto extinction = referenceExtinction(volume, classification);
     const auto bytes = referenceTable(volume, extinction, table.code, table.pathLengthCorrection);
-    const auto sums = referenceSplatSums(volume, classification, bytes, table.code, camera, settings,
+    const auto sums = referenceSplatSums(volume, classification, bytes, table, camera, settings,
                                          referenceVisibleVoxels(extinction));
     return referenceResolve(sums, settings);
   }

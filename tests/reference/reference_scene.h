@@ -27,7 +27,7 @@ struct Scene {
   }
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings,
                               const std::vector<std::uint32_t>& list) const {
-    return referenceSplatSums(volume, classification, table, code, camera, settings, list);
+    return referenceSplatSums(volume, classification, table, {.code = code}, camera, settings, list);
   }
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) const {
     return sums(camera, settings, voxels);

@@ -27,8 +27,10 @@ double footprint(double r) {
 }
 
 /// A single pixel, far smaller than a voxel, whose centre looks along -z through (x, y).
-SplatSums sumsAt(const Scene& scene, double x, double y) {
-  return scene.sums(lookingDown(x, y, 1e-3), frameOf({1, 1})).at(0);
+SplatSums sumsAt(const Scene& scene, double x, double y, bool gradient = true) {
+  FrameSettings settings = frameOf({1, 1});
+  settings.gradient = gradient;
+  return scene.sums(lookingDown(x, y, 1e-3), settings).at(0);
 }
 
 /// p and q side by side in front, s and t behind them (Figure 4): opacities differ, one colour each.
@@ -51,13 +53,29 @@ TEST(ReferenceSplats, TwoLayersOfTwoVoxelsAddUpAsEquation10) {
     const double wp = footprint(x), wq = footprint(1.0 - x);
     const double p = wp * layers.a, q = wq * layers.b;  // of voxels with A = 1
     const double s = (1.0 - layers.a) * wp * layers.a, t = (1.0 - layers.b) * wq * layers.b;
-    const SplatSums sums = sumsAt(layers.scene, x, 0.0);
+    const SplatSums sums = sumsAt(layers.scene, x, 0.0, false);
     EXPECT_NEAR(sums.energy, p + q + s + t, 1e-6);  // the scalars are floats
     EXPECT_NEAR(sums.color.r, p + q + s + t, 1e-6);
     EXPECT_NEAR(sums.color.g, 0.5 * (p + q + s + t), 1e-6);
     EXPECT_NEAR(sums.depth, 2.0 * (wp * TwoLayers::sigma(layers.a) + wq * TwoLayers::sigma(layers.b)), 1e-6);
     // Front layer at z = 1, back layer at z = 0, the eye at z = 20.
     EXPECT_NEAR(sums.distance, 19.0 * (p + q) + 20.0 * (s + t), 1e-5);
+  }
+}
+
+/// Bytes made up so that the depth above the middle voxel is a ramp along x: across the whole footprint it is
+/// followed, and never below 0.
+TEST(ReferenceSplats, TransmittanceFollowsARampOfDepthAcrossTheFootprint) {
+  Scene scene(makeVolume({3, 1, 1}, glm::dmat4(1.0), [](int, int, int) { return 1.0; }), physical(0.5));
+  const auto depthOf = [](int byte) { return decodeOpticalDepth(AttenuationCode::Depth8, byte); };
+  scene.table[std::size_t(directionIndex(0, 0, 1))] = {0, 60, 90};
+  const double slope = (depthOf(90) - depthOf(0)) / 2.0;
+  scene.voxels = {1};
+  for (const double x : {-1.2, -0.7, 0.0, 0.4, 1.1}) {
+    const double depth = std::max(depthOf(60) + slope * x, 0.0);
+    const double layer = -std::expm1(-0.5) * footprint(x);
+    EXPECT_NEAR(sumsAt(scene, 1.0 + x, 0.0).energy, layer * std::exp(-depth), 1e-6) << x;
+    EXPECT_NEAR(sumsAt(scene, 1.0 + x, 0.0, false).energy, layer * std::exp(-depthOf(60)), 1e-6) << x;
   }
 }
 
@@ -328,7 +346,8 @@ TEST(ReferenceSplats, LooksTheTableUpInTheDirectionOfTheEye) {
   scene.table[std::size_t(directionIndex(0, 0, 1))][0] = 0;
   scene.table[std::size_t(directionIndex(1, 0, 1))][0] = 255;
   const glm::dvec3 between(0.25, 0.0, 1.0);
-  const double opaque = std::exp(-16.0), layer = glm::length(between);
+  const double layer = glm::length(between);
+  const double opaque = std::exp(-16.0 * layer / std::sqrt(2.0));  // as long as the line that is asked for
   const double emitted = -std::expm1(-layer) / layer * footprint(0.0);
   EXPECT_NEAR(energyTowards(between, AttenuationLookup::Nearest), emitted, 1e-9);
   EXPECT_NEAR(energyTowards(between, AttenuationLookup::Bilinear), (0.75 + 0.25 * opaque) * emitted, 1e-9);
