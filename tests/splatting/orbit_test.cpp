@@ -1,5 +1,7 @@
 #include "engine/splatting/orbit.h"
 
+#include <fmt/format.h>
+
 #include "tests/splatting/framed_box.h"
 
 namespace freevoxels {
