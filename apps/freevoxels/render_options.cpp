@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <span>
 
 #include "apps/freevoxels/progress_line.h"
 #include "engine/renderer.h"
@@ -39,14 +40,14 @@ void RenderOptions::add(CLI::App& app) {
       ->group("Messages");
 }
 
-void RenderOptions::check(const std::vector<std::vector<std::string>>& outputs) const {
+void RenderOptions::check(const FrameFiles& outputs) const {
   std::vector<std::string> pictures;
   for (const std::vector<std::string>& files : outputs)
     pictures.insert(pictures.end(), files.begin(), files.end());
   scene.withOutputs(std::move(pictures)).check(timings ? std::vector{*timings} : std::vector<std::string>{});
 }
 
-void RenderOptions::run(const std::vector<std::vector<std::string>>& outputs) const {
+void RenderOptions::run(const FrameFiles& outputs) const {
   const Clock::time_point start = Clock::now();
   messages.apply();
   check(outputs);
@@ -78,8 +79,14 @@ OptionList RenderOptions::describe(const Scene& view) const {
   return scene.describe(view, options);
 }
 
-void RenderOptions::draw(const Device& opened, const std::vector<std::vector<std::string>>& outputs,
-                         RunReport& report) const {
+void RenderOptions::write(const Image& image, const Scene& view, const std::vector<std::string>& files,
+                          const DeviceDescription& description) const {
+  // What a file says of its making is how `render` repeats this frame alone.
+  scene.withOutputs(files).write(image, view, "render", describe(view),
+                                 {{"device", description.name}, {"driver", description.driver}});
+}
+
+void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunReport& report) const {
   FrameSettings settings{.size = scene.camera.size, .depth = scene.output.wantsDepth()};
   method.apply(settings);
   checkFrameFits(opened, settings);
@@ -103,17 +110,16 @@ void RenderOptions::draw(const Device& opened, const std::vector<std::vector<std
     view.camera = cameras[frame];
     const std::string prefix = framePrefix(frame, outputs.size());
     const Image image = renderer.render(view.camera, settings, prefixed(line.progress(), prefix));
-    std::vector<StageTime> times = renderer.timings();
-    times.erase(times.begin(), times.begin() + std::ptrdiff_t(built.size()));
+    const std::vector<StageTime> times = renderer.timings();
+    addTimes(report.stages, std::span(times).subspan(built.size()));
+
+    line.begin(prefix + "writing pictures");
+    std::vector<StageTime> writing;
     {
-      line.begin(prefix + "writing pictures");
-      const StageTimer timer(times, "write pictures");
-      // What a file says of its making is how `render` repeats this frame alone.
-      scene.withOutputs(outputs[frame])
-          .write(image, view, "render", describe(view),
-                 {{"device", report.device.name}, {"driver", report.device.driver}});
+      const StageTimer timer(writing, "write pictures");
+      write(image, view, outputs[frame], report.device);
     }
-    addTimes(report.stages, times);
+    addTimes(report.stages, writing);
   }
   report.visibleVoxels = renderer.visibleVoxelCount();
 }

@@ -14,6 +14,9 @@ namespace freevoxels {
 
 class ProgressLine;
 
+/// [frame]: the pictures to write it to.
+using FrameFiles = std::vector<std::vector<std::string>>;
+
 struct RenderOptions {
   SceneOptions scene;
   MethodOptions method;
@@ -22,16 +25,17 @@ struct RenderOptions {
   std::optional<std::string> timings;
 
   void add(CLI::App& app);
-  /// Draws one frame of a full turn for each element of `outputs`, which are the files to write it to, in
-  /// place of `scene.output.files`. Refuses whatever can be refused before any work.
-  void run(const std::vector<std::vector<std::string>>& outputs) const;
+  /// Draws as many frames of a full turn as `outputs` has, which take the place of `scene.output.files`.
+  /// Refuses whatever can be refused before any work.
+  void run(const FrameFiles& outputs) const;
 
  private:
-  void check(const std::vector<std::vector<std::string>>& outputs) const;
-  void draw(const Device& device, const std::vector<std::vector<std::string>>& outputs,
-            RunReport& report) const;
+  void check(const FrameFiles& outputs) const;
+  void draw(const Device& device, const FrameFiles& outputs, RunReport& report) const;
   Scene open(const Device& device, ProgressLine& line, RunReport& report) const;
   OptionList describe(const Scene& scene) const;
+  void write(const Image& image, const Scene& scene, const std::vector<std::string>& files,
+             const DeviceDescription& device) const;
 };
 
 }  // namespace freevoxels
