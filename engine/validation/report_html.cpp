@@ -163,8 +163,9 @@ class HtmlWriter {
       const glm::ivec2 size = picture.image.size;
       const int scale = std::max(1, kSmallPicture / std::max({size.x, size.y, 1}));
       const std::string caption = escapeHtml(picture.caption);
-      add("<figure><img{} width=\"{}\" height=\"{}\" alt=\"{}\" src=\"data:image/png;base64,",
-          scale > 1 ? " class=\"small\"" : "", scale * size.x, scale * size.y, caption);
+      add("<figure style=\"max-width: max(8rem, {}px)\"><img{} width=\"{}\" height=\"{}\" alt=\"{}\" "
+          "src=\"data:image/png;base64,",
+          scale * size.x, scale > 1 ? " class=\"small\"" : "", scale * size.x, scale * size.y, caption);
       html_ += base64(encodePng(picture.image, &pictures.background));
       add("\"><figcaption>{}</figcaption></figure>\n", caption);
     }

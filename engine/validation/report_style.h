@@ -36,7 +36,7 @@ tbody th { font-weight: 400; }
 figure { margin: 1.6rem 0; break-inside: avoid; }
 figcaption { margin-top: .5rem; color: var(--quiet); font-size: .85rem; }
 .pictures { display: flex; flex-wrap: wrap; gap: 1rem; }
-.pictures figure { flex: 0 1 auto; margin: 0; min-width: 0; }
+.pictures figure { flex: 1 1 12rem; margin: 0; }
 .pictures figcaption { color: var(--ink); }
 img { display: block; max-width: 100%; height: auto; }
 .small { image-rendering: pixelated; }
