@@ -2,6 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine/splatting/orbit.h"
+
 namespace freevoxels {
 
 void CameraOptions::add(CLI::App& app) {
@@ -52,19 +54,30 @@ void CameraOptions::check() const {
 }
 
 Camera CameraOptions::resolve(const Volume& volume) const {
-  Camera camera = given();
-  if (!position || !lookAt) {
-    const glm::dvec2 angles = orbit.value_or(glm::dvec2(kDefaultAzimuth, kDefaultElevation));
-    const double aspect = double(size.x) / double(size.y);
-    const Camera framing = framingCamera(volume, angles.x, angles.y, aspect, given());
-    if (!lookAt) camera.lookAt = framing.lookAt;
-    if (!position) {
-      camera.position = camera.lookAt + (framing.position - framing.lookAt);
-      camera.up = framing.up;
-    }
+  return resolveOrbit(volume, 1).front();
+}
+
+std::vector<Camera> CameraOptions::resolveOrbit(const Volume& volume, int frames) const {
+  const glm::dvec2 angles = orbit.value_or(glm::dvec2(kDefaultAzimuth, kDefaultElevation));
+  const double aspect = double(size.x) / double(size.y);
+  const auto framing = [&](int count) {
+    return framingOrbit(volume, angles.x, angles.y, count, aspect, given());
+  };
+  if (position) {
+    Camera start = given();
+    if (!lookAt) start.lookAt = framing(1).front().lookAt;
+    checkCamera(start);
+    return orbitAboutUp(start, frames);
   }
-  checkCamera(camera);
-  return camera;
+  std::vector<Camera> cameras = framing(frames);
+  for (Camera& camera : cameras) {
+    const glm::dvec3 at = lookAt.value_or(camera.lookAt);
+    camera.position = at + (camera.position - camera.lookAt);
+    camera.lookAt = at;
+    camera.orthographicHeight = given().orthographicHeight;
+    checkCamera(camera);
+  }
+  return cameras;
 }
 
 void CameraOptions::describe(OptionList& options, const Camera& resolved) const {

@@ -2,6 +2,7 @@
 // The camera and the size of its image.
 
 #include <optional>
+#include <vector>
 
 #include "apps/freevoxels/option_values.h"
 #include "engine/splatting/camera.h"
@@ -23,6 +24,10 @@ struct CameraOptions {
   /// What is not given frames the volume: the position orbits the look-at point, which is the centre of the
   /// box.
   Camera resolve(const Volume& volume) const;
+  /// The cameras of a full turn, the first being `resolve`'s but for its distance. A position that was given
+  /// turns about the axis through the look-at point along `up`; the framing orbit turns about +y, with one
+  /// distance for all frames.
+  std::vector<Camera> resolveOrbit(const Volume& volume, int frames) const;
   void describe(OptionList& options, const Camera& resolved) const;
 
  private:

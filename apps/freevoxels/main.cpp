@@ -1,4 +1,4 @@
-// The command-line program: freevoxels render | oracle | compare | info | generate | devices.
+// The command-line program: freevoxels render | turntable | oracle | compare | info | generate | devices.
 
 #include <CLI/CLI.hpp>
 
@@ -9,16 +9,19 @@
 #include "apps/freevoxels/oracle_command.h"
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/render_command.h"
+#include "apps/freevoxels/turntable_command.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Draws volumes by order-independent FreeVoxel splatting.", "freevoxels");
   freevoxels::RenderCommand render;
+  freevoxels::TurntableCommand turntable;
   freevoxels::OracleCommand oracle;
   freevoxels::CompareCommand compare;
   freevoxels::InfoCommand info;
   freevoxels::GenerateCommand generate;
   freevoxels::DevicesCommand devices;
   render.add(app);
+  turntable.add(app);
   oracle.add(app);
   compare.add(app);
   info.add(app);

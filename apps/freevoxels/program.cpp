@@ -3,12 +3,14 @@
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/stat.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <new>
 
@@ -128,15 +130,21 @@ DeferredInterrupts::~DeferredInterrupts() {
 }
 
 void checkDistinct(const std::vector<std::string>& files) {
-  for (std::size_t i = 0; i < files.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j) {
-      std::error_code none;  // equivalent() fails where one of them is not there yet
-      if (std::filesystem::weakly_canonical(files[i], none) ==
-              std::filesystem::weakly_canonical(files[j], none) ||
-          std::filesystem::equivalent(files[i], files[j], none))
-        fail(ExitCode::Usage, "'{}' and '{}' are the same file: give every input and output its own",
-             files[j], files[i]);
-    }
+  std::map<std::string, std::string> known;  // what tells a file from others, and its name
+  const auto note = [&](const std::string& identity, const std::string& file) {
+    const auto [first, isNew] = known.emplace(identity, file);
+    if (!isNew)
+      fail(ExitCode::Usage, "'{}' and '{}' are the same file: give every input and output its own",
+           first->second, file);
+  };
+  for (const std::string& file : files) {
+    std::error_code error;
+    const std::filesystem::path path = std::filesystem::weakly_canonical(file, error);
+    if (!error) note(path.string(), file);
+    struct stat status {};
+    if (stat(file.c_str(), &status) == 0)  // two names of one file on the disk
+      note(fmt::format("{}:{}", status.st_dev, status.st_ino), file);
+  }
 }
 
 void checkOutput(const std::filesystem::path& file) {

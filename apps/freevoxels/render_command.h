@@ -1,11 +1,7 @@
 #pragma once
 // freevoxels render IN OUT...
 
-#include "apps/freevoxels/device_options.h"
-#include "apps/freevoxels/method_options.h"
-#include "apps/freevoxels/program.h"
-#include "apps/freevoxels/scene_options.h"
-#include "apps/freevoxels/timings_file.h"
+#include "apps/freevoxels/render_options.h"
 
 namespace freevoxels {
 
@@ -14,14 +10,7 @@ class RenderCommand {
   void add(CLI::App& app);
 
  private:
-  void run() const;
-  void draw(const Device& device, RunReport& report) const;
-
-  SceneOptions scene_;
-  MethodOptions method_;
-  DeviceOptions device_;
-  MessageOptions messages_;
-  std::optional<std::string> timings_;
+  RenderOptions options_;
 };
 
 }  // namespace freevoxels

@@ -23,6 +23,12 @@ void SceneOptions::check(const std::vector<std::string>& moreOutputs) const {
   checkDistinct(files);
 }
 
+SceneOptions SceneOptions::withOutputs(std::vector<std::string> files) const {
+  SceneOptions options = *this;
+  options.output.files = std::move(files);
+  return options;
+}
+
 Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
   Scene scene;
   scene.volume = input.open(maximumVoxels);

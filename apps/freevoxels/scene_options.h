@@ -24,6 +24,8 @@ struct SceneOptions {
   void add(CLI::App& app);
   /// Before any work; `moreOutputs` are the files that the command writes besides pictures.
   void check(const std::vector<std::string>& moreOutputs = {}) const;
+  /// The same scene with other files to write.
+  SceneOptions withOutputs(std::vector<std::string> files) const;
   /// Reads the volume and what is made for it.
   Scene open(std::uint64_t maximumVoxels) const;
   /// One warning each for values of the scene's volume that are not drawn as they are.

@@ -2,14 +2,24 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/text_table.h"
 #include "engine/core/atomic_file.h"
-#include "engine/core/checked_file.h"
 
 namespace freevoxels {
+
+void addTimes(std::vector<StageTime>& sums, std::span<const StageTime> times) {
+  for (const StageTime& time : times) {
+    const auto sum = std::ranges::find(sums, time.name, &StageTime::name);
+    if (sum != sums.end())
+      sum->milliseconds += time.milliseconds;
+    else
+      sums.push_back(time);
+  }
+}
 
 void logOptions(const OptionList& options) {
   TextTable table{.columns = {TextTable::Align::Left, TextTable::Align::Left}, .rows = {}};
@@ -47,11 +57,7 @@ void writeTimings(const std::filesystem::path& file, const RunReport& report) {
 
   const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
   const DeferredInterrupts wholeFile;
-  writeAtomically(file, [&](const std::filesystem::path& temporary) {
-    CheckedFile output(temporary);
-    output.write(text.data(), text.size());
-    output.close();
-  });
+  writeTextAtomically(file, text);
 }
 
 }  // namespace freevoxels

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include "apps/freevoxels/option_values.h"
@@ -18,6 +19,9 @@ struct RunReport {
   double totalMilliseconds = 0.0;
   std::uint64_t visibleVoxels = 0;
 };
+
+/// Adds each time to the one of its name, or appends it.
+void addTimes(std::vector<StageTime>& sums, std::span<const StageTime> times);
 
 /// As messages of --verbose.
 void logOptions(const OptionList& options);

@@ -10,6 +10,7 @@
 #include <string>
 #include <system_error>
 
+#include "engine/core/checked_file.h"
 #include "engine/core/error.h"
 
 namespace freevoxels {
@@ -123,6 +124,14 @@ void writeAtomically(const std::filesystem::path& destination,
   if (const int error = flushToDisk(temporary)) failBecause(destination, error);
   if (std::rename(temporary.c_str(), target.c_str()) != 0) failBecause(destination, errno);
   flushToDisk(folderOf(target));
+}
+
+void writeTextAtomically(const std::filesystem::path& destination, std::string_view text) {
+  writeAtomically(destination, [&](const std::filesystem::path& temporary) {
+    CheckedFile output(temporary);
+    output.write(text.data(), text.size());
+    output.close();
+  });
 }
 
 void checkWritable(const std::filesystem::path& destination) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <string_view>
 
 namespace freevoxels {
 
@@ -14,6 +15,9 @@ namespace freevoxels {
 /// are. `write` must throw when it could not write everything: core/checked_file.h helps.
 void writeAtomically(const std::filesystem::path& destination,
                      const std::function<void(const std::filesystem::path&)>& write);
+
+/// A file of these bytes.
+void writeTextAtomically(const std::filesystem::path& destination, std::string_view text);
 
 /// Fails early, before any work, if `destination` can clearly not be written: its folder is missing or not
 /// writable, or it is a folder itself.

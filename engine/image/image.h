@@ -1,6 +1,7 @@
 #pragma once
 // Pictures in memory, and their files.
 
+#include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <map>
@@ -40,5 +41,8 @@ Image readPicture(const std::filesystem::path& file);
 /// 8-bit sRGB. Straight alpha without a background; composited over `background` (linear Rec.709) and opaque
 /// with one. Atomic. Fails with ExitCode::Output.
 void writePng(const std::filesystem::path& file, const Image& image, const glm::vec3* background);
+
+/// The bytes of writePng's file.
+std::vector<std::uint8_t> encodePng(const Image& image, const glm::vec3* background);
 
 }  // namespace freevoxels

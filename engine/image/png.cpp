@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -56,16 +57,19 @@ std::vector<std::uint8_t> toBytes(const Image& image, const glm::vec3* backgroun
   return bytes;
 }
 
+/// Takes the file's next bytes; may throw.
+using Sink = std::function<void(const std::uint8_t* bytes, std::size_t count)>;
+
 /// What libpng's C callbacks know. No exception may cross libpng: it is kept here and thrown by `encode`.
 struct PngTarget {
-  CheckedFile& file;
+  const Sink& write;
   std::exception_ptr failure = nullptr;
 };
 
 void writeChunk(png_structp png, png_bytep bytes, std::size_t count) {
   auto* target = static_cast<PngTarget*>(png_get_io_ptr(png));
   try {
-    target->file.write(bytes, count);
+    target->write(bytes, count);
     return;
   } catch (...) {
     target->failure = std::current_exception();
@@ -211,6 +215,16 @@ class PngEncoder {
   png_infop info_ = nullptr;
 };
 
+void encode(const Image& image, const glm::vec3* background, const Sink& sink) {
+  FV_CHECK_LT(0, image.size.x);
+  FV_CHECK_LT(0, image.size.y);
+  FV_CHECK_EQ(image.pixels.size(), std::size_t(image.size.x) * std::size_t(image.size.y));
+  const std::vector<std::uint8_t> bytes = toBytes(image, background);
+  PngTarget target{sink};
+  PngEncoder encoder(target);
+  if (!encoder.write(image.size, background ? 3 : 4, bytes.data())) std::rethrow_exception(target.failure);
+}
+
 }  // namespace
 
 Image readPng(const std::filesystem::path& file) {
@@ -223,16 +237,19 @@ Image readPng(const std::filesystem::path& file) {
   return decode(file, stream.get());
 }
 
+std::vector<std::uint8_t> encodePng(const Image& image, const glm::vec3* background) {
+  std::vector<std::uint8_t> file;
+  encode(image, background, [&](const std::uint8_t* bytes, std::size_t count) {
+    file.insert(file.end(), bytes, bytes + count);
+  });
+  return file;
+}
+
 void writePng(const std::filesystem::path& file, const Image& image, const glm::vec3* background) {
-  FV_CHECK_LT(0, image.size.x);
-  FV_CHECK_LT(0, image.size.y);
-  FV_CHECK_EQ(image.pixels.size(), std::size_t(image.size.x) * std::size_t(image.size.y));
   writeAtomically(file, [&](const std::filesystem::path& temporary) {
-    const std::vector<std::uint8_t> bytes = toBytes(image, background);
     CheckedFile output(temporary);
-    PngTarget target{output};
-    PngEncoder encoder(target);
-    if (!encoder.write(image.size, background ? 3 : 4, bytes.data())) std::rethrow_exception(target.failure);
+    encode(image, background,
+           [&](const std::uint8_t* bytes, std::size_t count) { output.write(bytes, count); });
     output.close();
   });
 }

@@ -34,7 +34,7 @@ struct ReportTable {
 struct ReportPlot {
   struct Series {
     std::string name;
-    std::vector<glm::dvec2> points;  ///< x ascending
+    std::vector<glm::dvec2> points;  ///< x ascending; the line is broken where one is not finite
   };
   std::string caption, xLabel, yLabel;
   std::vector<Series> series;
@@ -59,21 +59,25 @@ struct ReportSection {
   std::vector<ReportPlot> plots;
   std::vector<ReportPictures> pictures;
 
-  bool passed() const;
+  std::size_t failures() const;
+  bool passed() const { return failures() == 0; }
 };
 
 struct Report {
   std::map<std::string, std::string> facts;  ///< device, driver, version, settings, ...
   std::vector<ReportSection> sections;
 
-  bool passed() const;
+  std::size_t checkCount() const;
+  std::size_t failures() const;
+  bool passed() const { return failures() == 0; }
 };
 
 /// One file that needs nothing else: style, plots (SVG) and pictures (PNG) are inside. Atomic. Fails with
 /// ExitCode::Output.
 void writeHtml(const std::filesystem::path& file, const Report& report);
 
-/// Everything but the pictures' pixels. Atomic. Fails with ExitCode::Output.
+/// Everything but the pictures' pixels. Numbers read back as the same doubles; what JSON has no number for is
+/// one of the strings "NaN", "Infinity", "-Infinity". Atomic. Fails with ExitCode::Output.
 void writeJson(const std::filesystem::path& file, const Report& report);
 
 }  // namespace freevoxels

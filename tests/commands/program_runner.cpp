@@ -108,6 +108,17 @@ Arguments words(const TemporaryFolder& folder, const std::string& words) {
   return arguments;
 }
 
+std::string exrAttribute(const std::string& bytes, const std::string& name) {
+  const std::string start = name + '\0' + "string" + '\0';
+  const std::size_t at = bytes.find(start);
+  if (at == std::string::npos) return "";
+  const std::size_t length = at + start.size();
+  std::size_t count = 0;
+  for (int i = 3; i >= 0; --i)
+    count = count * 256 + static_cast<unsigned char>(bytes[length + std::size_t(i)]);
+  return bytes.substr(length + 4, count);
+}
+
 void expectSuccess(const ProgramResult& result) {
   EXPECT_EQ(result.exitCode, 0) << result.err;
 }

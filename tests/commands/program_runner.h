@@ -32,6 +32,9 @@ ProgramResult runAndInterrupt(const Arguments& arguments, int signal, int millis
 /// `words` split at blanks, each starting with '@' being a file of `folder`: "render @a.vdb @a.png --quiet".
 Arguments words(const TemporaryFolder& folder, const std::string& words);
 
+/// Value of a string attribute in an EXR's header, empty where there is none.
+std::string exrAttribute(const std::string& bytes, const std::string& name);
+
 /// Done, and no words wasted on it: fails with what the program said.
 void expectSuccess(const ProgramResult& result);
 

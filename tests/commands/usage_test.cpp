@@ -75,6 +75,19 @@ constexpr WrongUse kWrongUses[] = {
     {"GridOfProcedural", "render procedural:cube @a.png --grid density", "--grid"},
     {"ZeroResolution", "render procedural:cube @a.png --resolution 0", "--resolution"},
     {"ResolutionOfFile", "render @a.vdb @a.png --resolution 8", "--resolution"},
+    {"NoFrames", "turntable procedural:cube @a_#.png --frames 0", "--frames"},
+    {"NegativeFrames", "turntable procedural:cube @a_#.png --frames -3", "--frames"},
+    {"AbsurdFrames", "turntable procedural:cube @a_#.png --frames 100001", "--frames"},
+    {"HalfAFrame", "turntable procedural:cube @a_#.png --frames 1.5", "--frames"},
+    {"FramesOfRender", "render procedural:cube @a.png --frames 3", "--frames"},
+    {"NoRun", "turntable procedural:cube @a.png", "run of #"},
+    {"RunInTheFolder", "turntable procedural:cube @##/a.png", "run of #"},
+    {"TwoRuns", "turntable procedural:cube @a_#_##.png", "several runs"},
+    {"OneOfTwoWithoutRun", "turntable procedural:cube @a_##.png @b.exr", "b.exr"},
+    {"TurntableExtension", "turntable procedural:cube @a_##.jpg", ".jpg"},
+    {"FramesThatMeet", "turntable procedural:cube @#.png @1#.png --frames 11", "same file"},
+    {"TurntableAtItsAxis", "turntable procedural:cube @#.png --camera-position 0,5,0 --look-at 0,0,0",
+     "--up"},
     {"GenerateNothing", "generate", "--list"},
     {"GenerateUnknown", "generate teapot @a.vdb", "teapot"},
     {"GeneratePicture", "generate cube @a.png", ".vdb"},
@@ -88,7 +101,8 @@ INSTANTIATE_TEST_SUITE_P(Commands, Usage, testing::ValuesIn(kWrongUses),
 }  // namespace
 
 TEST_F(CommandTest, EveryCommandHasHelpWithItsOptions) {
-  for (const char* command : {"", "render", "oracle", "compare", "info", "generate", "devices"}) {
+  for (const char* command :
+       {"", "render", "turntable", "oracle", "compare", "info", "generate", "devices"}) {
     const ProgramResult result = run(std::string(command) + " --help");
     expectSuccess(result);
     EXPECT_NE(result.out.find("--help"), std::string::npos);

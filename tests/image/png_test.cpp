@@ -78,6 +78,19 @@ TEST(Png, ClampsAndMakesNanBlack) {
   EXPECT_EQ(writeAndRead({{0.25f, kNan, 2.0f, 2.0f}}, &background), (Bytes{137, 0, 255}));
 }
 
+TEST(Png, InMemoryIsWhatTheFileHolds) {
+  const TemporaryFolder folder;
+  Image image;
+  image.size = {2, 1};
+  image.pixels = {{0.5f, 0.18f, 0.002f, 1.0f}, {0.1f, 0.0f, 0.0f, 0.5f}};
+  const glm::vec3 color(0.25f);
+  for (const glm::vec3* background : {static_cast<const glm::vec3*>(nullptr), &color}) {
+    writePng(folder / "a.png", image, background);
+    const Bytes bytes = encodePng(image, background);
+    EXPECT_EQ(readBytes(folder / "a.png"), std::string(bytes.begin(), bytes.end()));
+  }
+}
+
 TEST(Png, RowZeroIsTheTopAndSrgbIsDeclared) {
   const TemporaryFolder folder;
   Image image;

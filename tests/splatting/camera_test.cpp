@@ -1,33 +1,19 @@
 #include "engine/splatting/camera.h"
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "engine/core/error.h"
-#include "engine/volume/procedural.h"
+#include "tests/splatting/framed_box.h"
 
 namespace freevoxels {
 namespace {
 
-Volume box(glm::ivec3 dimensions, const glm::dmat4& indexToWorld) {
-  return makeVolume(dimensions, indexToWorld, [](int, int, int) { return 1.0; });
-}
-
-/// Rotated, anisotropic, sheared and moved.
-glm::dmat4 obliqueTransform() {
-  glm::dmat4 matrix(1.0);
-  matrix[0] = {0.3, 0.1, -0.05, 0.0};
-  matrix[1] = {-0.2, 0.5, 0.1, 0.0};
-  matrix[2] = {0.1, 0.0, 0.8, 0.0};
-  matrix[3] = {4.0, -2.0, 1.0, 1.0};
-  return matrix;
-}
+using test::box;
+using test::largestNdc;
+using test::obliqueTransform;
+using test::transformed;
 
 Camera obliqueCamera(bool orthographic) {
   Camera camera;
@@ -38,11 +24,6 @@ Camera obliqueCamera(bool orthographic) {
   camera.orthographicHeight = 3.0;
   camera.verticalFov = 40.0;
   return camera;
-}
-
-glm::dvec3 transformed(const glm::dmat4& matrix, glm::dvec3 point) {
-  const glm::dvec4 h = matrix * glm::dvec4(point, 1.0);
-  return glm::dvec3(h) / h.w;
 }
 
 TEST(Camera, CameraSpaceHasTheEyeAtZeroAndLooksAlongMinusZ) {
@@ -103,19 +84,6 @@ TEST(Camera, RowZeroIsTheTopOfTheImageAndColumnZeroTheLeft) {
     EXPECT_LT(topLeft.x, 0.0);
     EXPECT_GT(topLeft.y, 0.0);
   }
-}
-
-/// Of the 8 corners of the voxels' extent in the image: the largest |x| or |y| of NDC.
-double largestNdc(const Volume& volume, const Camera& camera, double aspect) {
-  double largest = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
-    const glm::dvec3 world = transformed(volume.indexToWorld, side * glm::dvec3(volume.dimensions) - 0.5);
-    EXPECT_LT(transformed(worldToCamera(camera), world).z, 0.0) << "behind the eye";
-    const glm::dvec3 ndc = transformed(worldToNdc(camera, aspect), world);
-    largest = std::max({largest, std::abs(ndc.x), std::abs(ndc.y)});
-  }
-  return largest;
 }
 
 TEST(Camera, FramesTheWholeBoxWithASmallMargin) {

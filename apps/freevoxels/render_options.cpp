@@ -1,0 +1,127 @@
+#include "apps/freevoxels/render_options.h"
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <span>
+
+#include "apps/freevoxels/progress_line.h"
+#include "engine/renderer.h"
+
+namespace freevoxels {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double millisecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// "frame 3 of 72: ", which starts what is said about one of several frames.
+std::string framePrefix(std::size_t frame, std::size_t frames) {
+  return frames == 1 ? "" : fmt::format("frame {} of {}: ", frame + 1, frames);
+}
+
+Progress prefixed(const Progress& progress, const std::string& prefix) {
+  if (!progress) return {};
+  return [progress, prefix](std::string_view stage, double fraction) {
+    progress(fmt::format("{}{}", prefix, stage), fraction);
+  };
+}
+
+}  // namespace
+
+void RenderOptions::add(CLI::App& app) {
+  scene.add(app);
+  method.add(app);
+  device.add(app);
+  messages.add(app);
+  addText(app, "--timings", "FILE.json", timings, "Write options, device and the time of each stage")
+      ->group("Messages");
+}
+
+void RenderOptions::check(const FrameFiles& outputs) const {
+  std::vector<std::string> pictures;
+  for (const std::vector<std::string>& files : outputs)
+    pictures.insert(pictures.end(), files.begin(), files.end());
+  scene.withOutputs(std::move(pictures)).check(timings ? std::vector{*timings} : std::vector<std::string>{});
+}
+
+void RenderOptions::run(const FrameFiles& outputs) const {
+  const Clock::time_point start = Clock::now();
+  messages.apply();
+  check(outputs);
+
+  device.withDevice([&](const Device& opened) {
+    RunReport report;
+    report.stages.push_back({"open device", millisecondsSince(start), false});
+    draw(opened, outputs, report);
+    report.totalMilliseconds = millisecondsSince(start);
+    logStages(report);
+    if (timings) writeTimings(*timings, report);
+  });
+
+  if (messages.quiet) return;
+  for (const std::vector<std::string>& files : outputs)
+    for (const std::string& file : files) fmt::print("{}\n", file);
+  if (timings) fmt::print("{}\n", *timings);
+}
+
+Scene RenderOptions::open(const Device& opened, ProgressLine& line, RunReport& report) const {
+  line.begin("reading " + scene.input.input);
+  const StageTimer timer(report.stages, "read volume");
+  return scene.open(maximumVoxels(opened));
+}
+
+OptionList RenderOptions::describe(const Scene& view) const {
+  OptionList options;
+  method.describe(options);
+  return scene.describe(view, options);
+}
+
+void RenderOptions::write(const Image& image, const Scene& view, const std::vector<std::string>& files,
+                          const DeviceDescription& description) const {
+  // What a file says of its making is how `render` repeats this frame alone.
+  scene.withOutputs(files).write(image, view, "render", describe(view),
+                                 {{"device", description.name}, {"driver", description.driver}});
+}
+
+void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunReport& report) const {
+  FrameSettings settings{.size = scene.camera.size, .depth = scene.output.wantsDepth()};
+  method.apply(settings);
+  checkFrameFits(opened, settings);
+
+  ProgressLine line(!messages.quiet);
+  Scene view = open(opened, line, report);
+  const std::vector<Camera> cameras = scene.camera.resolveOrbit(view.volume, int(outputs.size()));
+  view.camera = cameras.front();
+  report.device = opened.description();
+  report.options = describe(view);
+  if (outputs.size() > 1) report.options.emplace_back("--frames", fmt::format("{}", outputs.size()));
+  line.erase();
+  scene.warn(view);
+  logOptions(report.options);
+  mentionCpu(opened);
+
+  Renderer renderer(opened, view.volume, view.classification, method.table(), line.progress());
+  const std::vector<StageTime> built = renderer.timings();
+  addTimes(report.stages, built);
+  for (std::size_t frame = 0; frame < outputs.size(); ++frame) {
+    view.camera = cameras[frame];
+    const std::string prefix = framePrefix(frame, outputs.size());
+    const Image image = renderer.render(view.camera, settings, prefixed(line.progress(), prefix));
+    const std::vector<StageTime> times = renderer.timings();
+    addTimes(report.stages, std::span(times).subspan(built.size()));
+
+    line.begin(prefix + "writing pictures");
+    std::vector<StageTime> writing;
+    {
+      const StageTimer timer(writing, "write pictures");
+      write(image, view, outputs[frame], report.device);
+    }
+    addTimes(report.stages, writing);
+  }
+  report.visibleVoxels = renderer.visibleVoxelCount();
+}
+
+}  // namespace freevoxels

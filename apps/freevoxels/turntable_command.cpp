@@ -1,0 +1,35 @@
+#include "apps/freevoxels/turntable_command.h"
+
+#include <CLI/CLI.hpp>
+
+#include "apps/freevoxels/frame_names.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
+
+constexpr const char* kExamples =
+    "A run of # in the file name of each OUT becomes the number of the frame, from 0.\n"
+    "With --orbit (or neither) the camera turns about +y, its distance the least from which no frame cuts\n"
+    "the volume; a --camera-position turns about the axis through --look-at along --up.\n"
+    "Examples:\n"
+    "  freevoxels turntable cloud.vdb orbit_####.png --frames 120 --background 0.02,0.03,0.05\n"
+    "  freevoxels turntable cloud.vdb orbit_###.exr orbit_###.png --orbit 0,15 --size 1920x1080\n"
+    "  freevoxels turntable scan.vdb orbit_###.png --camera-position 300,0,80 --up 0,0,1\n";
+
+}  // namespace
+
+void TurntableCommand::add(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("turntable", "Draw a full turn around a volume, a picture a frame");
+  options_.add(*command);
+  addWholeNumber(*command, "--frames", "N", frames_, fmt::format("Frames of the turn [{}]", kDefaultFrames),
+                 {1.0, double(kMaximumFrames)})
+      ->group("Camera");
+  command->footer(kExamples);
+  command->callback(
+      [this] { options_.run(frameNames(options_.scene.output.files, frames_.value_or(kDefaultFrames))); });
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,130 @@
+// freevoxels turntable: the options of render, a picture a frame.
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "engine/image/image.h"
+#include "tests/commands/program_runner.h"
+#include "tests/image_measures.h"
+
+namespace freevoxels::test {
+
+namespace {
+
+constexpr const char* kSmall = " --resolution 24 --size 48x36 ";
+
+class TurntableCommand : public CommandTest {
+ protected:
+  ProgramResult turn(const std::string& text) const {
+    const ProgramResult result = run("turntable procedural:cloud " + text + kSmall);
+    expectSuccess(result);
+    return result;
+  }
+  glm::dvec3 vectorOf(const std::string& file, const std::string& option) const {
+    glm::dvec3 value(0.0);
+    char comma = 0;
+    std::istringstream text(exrAttribute(readBytes(folder / file), "freevoxels:" + option));
+    text >> value.x >> comma >> value.y >> comma >> value.z;
+    EXPECT_TRUE(text) << file << " " << option;
+    return value;
+  }
+  double distanceOf(const std::string& file) const {
+    return glm::length(vectorOf(file, "camera-position") - vectorOf(file, "look-at"));
+  }
+};
+
+}  // namespace
+
+TEST_F(TurntableCommand, WritesEveryFrameOfEveryOutputAndPrintsThem) {
+  const ProgramResult result = turn("@a_##.exr @b#.png --frames 3");
+  std::string expected;
+  for (const char* name : {"a_00.exr", "b0.png", "a_01.exr", "b1.png", "a_02.exr", "b2.png"})
+    expected += (folder / name).string() + "\n";
+  EXPECT_EQ(result.out, expected);
+  EXPECT_EQ(folder.fileCount(), 6u);
+  EXPECT_NE(readExr(folder / "a_00.exr").pixels, readExr(folder / "a_01.exr").pixels);
+  EXPECT_NE(readExr(folder / "a_01.exr").pixels, readExr(folder / "a_02.exr").pixels);
+}
+
+TEST_F(TurntableCommand, NumbersGrowBeyondTheirPlace) {
+  turn("@#.png --frames 11 --quiet");
+  EXPECT_TRUE(std::filesystem::exists(folder / "0.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "10.png"));
+  EXPECT_EQ(folder.fileCount(), 11u);
+}
+
+TEST_F(TurntableCommand, TheRecordedCommandRepeatsOneFrame) {
+  turn("@####.exr --frames 5 --float --aov depth --paper --orbit 10,-20 --up 0.1,1,0");
+  for (const char* name : {"0000.exr", "0003.exr"}) {
+    const std::string frame = readBytes(folder / name);
+    const std::string command = exrAttribute(frame, "freevoxels:command");
+    ASSERT_TRUE(command.starts_with("freevoxels render ")) << command;
+    Arguments arguments = words(command.substr(std::string("freevoxels ").size()));
+    arguments.push_back((folder / "again.exr").string());
+    expectSuccess(runFreevoxels(arguments));
+    EXPECT_TRUE(frame == readBytes(folder / "again.exr")) << command;
+  }
+}
+
+TEST_F(TurntableCommand, TurnsAtOneDistance) {
+  turn("@#.exr --frames 4 --orbit 20,30");
+  const double distance = distanceOf("0.exr");
+  for (const char* name : {"1.exr", "2.exr", "3.exr"}) EXPECT_NEAR(distanceOf(name), distance, 1e-9) << name;
+  const glm::dvec3 centre = vectorOf("0.exr", "look-at");
+  const glm::dvec3 first = vectorOf("0.exr", "camera-position") - centre;
+  const glm::dvec3 opposite = vectorOf("2.exr", "camera-position") - centre;
+  EXPECT_LT(glm::length(first * glm::dvec3(-1, 1, -1) - opposite), 1e-9);
+  EXPECT_NEAR(first.y / distance, 0.5, 1e-9);
+}
+
+TEST_F(TurntableCommand, AFullTurnComesBackToTheFirstFrame) {
+  turn("@a#.exr --frames 4 --orbit 20,10 --float");
+  turn("@b#.exr --frames 4 --orbit 380,10 --float");
+  EXPECT_LT(largestDifference(readExr(folder / "a0.exr"), readExr(folder / "b0.exr")), 1e-3);
+  EXPECT_GT(largestDifference(readExr(folder / "a0.exr"), readExr(folder / "a1.exr")), 1e-2);
+}
+
+TEST_F(TurntableCommand, OneFrameIsThePictureOfRender) {
+  turn("@#.exr --frames 1 --float");
+  expectSuccess(run(std::string("render procedural:cloud @r.exr --float") + kSmall));
+  EXPECT_TRUE(readBytes(folder / "0.exr") == readBytes(folder / "r.exr"));
+}
+
+TEST_F(TurntableCommand, APositionTurnsAboutUp) {
+  turn("@#.exr --frames 4 --camera-position 2,3,1 --look-at 0.5,0,0 --up 0,0,1");
+  const glm::dvec3 expected[] = {{2, 3, 1}, {-2.5, 1.5, 1}, {-1, -3, 1}, {3.5, -1.5, 1}};
+  for (int i = 0; i < 4; ++i)
+    EXPECT_LT(glm::length(vectorOf(std::to_string(i) + ".exr", "camera-position") - expected[i]), 1e-9) << i;
+}
+
+TEST_F(TurntableCommand, TimingsSumTheFrames) {
+  turn("@#.png --frames 3 --timings @t.json");
+  const auto json = nlohmann::json::parse(readBytes(folder / "t.json"));
+  EXPECT_EQ(json.at("options").at("frames"), "3");
+  std::vector<std::string> names;
+  for (const auto& stage : json.at("stages")) names.push_back(stage.at("name"));
+  for (const char* once : {"attenuation sweeps", "splat draw", "write pictures"})
+    EXPECT_EQ(std::ranges::count(names, once), 1) << once;
+}
+
+TEST_F(TurntableCommand, ProgressCountsTheFrames) {
+  if (!terminalsAvailable()) GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
+  const ProgramResult shown =
+      runFreevoxelsOnTerminal(words(std::string("turntable procedural:cloud @#.png --frames 3") + kSmall));
+  expectSuccess(shown);
+  for (const char* text : {"frame 1 of 3", "frame 3 of 3"})
+    EXPECT_NE(shown.err.find(text), std::string::npos) << shown.err;
+  EXPECT_TRUE(shown.err.ends_with("\r\033[K"));
+}
+
+TEST_F(TurntableCommand, OutputsAreCheckedBeforeAnyWork) {
+  expectCleanRefusal("turntable procedural:cloud @none/#.png", ExitCode::Output, "none");
+  std::filesystem::create_directory(folder / "07.png");
+  expectCleanRefusal("turntable procedural:cloud @##.png --frames 9", ExitCode::Output, "07.png");
+  expectSuccess(run("generate cube @3.png.vdb --resolution 8 --quiet"));
+  std::filesystem::create_symlink(folder / "3.png.vdb", folder / "3.png");
+  expectCleanRefusal("turntable @3.png.vdb @#.png --frames 4", ExitCode::Usage, "same file");
+}
+
+}  // namespace freevoxels::test
