@@ -1,7 +1,7 @@
 #include "engine/renderer.h"
 
 #include <algorithm>
-#include <cstring>
+#include <optional>
 #include <span>
 
 #include "engine/attenuation/attenuation_table.h"
@@ -10,6 +10,7 @@
 #include "engine/splatting/splat_pass.h"
 #include "engine/splatting/visible_voxels.h"
 #include "engine/volume/device_volume.h"
+#include "engine/vulkan/target_readback.h"
 
 namespace freevoxels {
 
@@ -41,26 +42,6 @@ void checkFits(const Device& device, glm::ivec3 dimensions) {
          device.description().memoryBytes >> 20);
 }
 
-/// Copies a target to the host through a read-back buffer; recorded with the frame, read after it.
-class TargetReadback {
- public:
-  TargetReadback(const Device& device, Commands& commands, const RenderTarget& target,
-                 std::size_t bytesPerPixel)
-      : buffer_(device, std::uint64_t(target.size().x) * std::uint64_t(target.size().y) * bytesPerPixel,
-                MemoryUse::Readback, "picture") {
-    commands.copy(target, buffer_);
-  }
-  template <typename Pixel>
-  std::vector<Pixel> read() const {
-    std::vector<Pixel> pixels(buffer_.bytes() / sizeof(Pixel));
-    std::memcpy(pixels.data(), buffer_.mapped(), buffer_.bytes());
-    return pixels;
-  }
-
- private:
-  Buffer buffer_;
-};
-
 }  // namespace
 
 VolumeMemory volumeMemory(glm::ivec3 dimensions) {
@@ -85,7 +66,27 @@ struct Renderer::State {
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
   std::vector<StageTime> buildTimes, frameTimes;
+
+  struct Frame {
+    FrameConstants constants;
+    SplatTargets targets;
+  };
+  Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings);
 };
+
+/// Up to the sums in the targets.
+Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const Camera& camera,
+                                                     const FrameSettings& settings) {
+  frameTimes.clear();
+  if (!splats || splats->withDistance() != settings.depth) {
+    splats = std::make_unique<SplatPass>(device, settings.depth);
+    resolve = std::make_unique<ResolvePass>(device, settings.depth);
+  }
+  Frame frame{.constants = makeFrameConstants(device, volume, tableSettings, camera, settings),
+              .targets = makeTargets(device, settings)};
+  splats->record(commands, {volume, table, visible}, frame.constants, frame.targets);
+  return frame;
+}
 
 Renderer::Renderer(const Device& device, const Volume& volume, const Classification& classification,
                    const TableSettings& table, const Progress& progress) {
@@ -114,23 +115,13 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   checkCamera(camera);
   checkFrameFits(state_->device, settings);
   State& state = *state_;
-  state.frameTimes.clear();
-  if (!state.splats || state.splats->withDistance() != settings.depth) {
-    state.splats = std::make_unique<SplatPass>(state.device, settings.depth);
-    state.resolve = std::make_unique<ResolvePass>(state.device, settings.depth);
-  }
-  const SplatTargets targets = makeTargets(state.device, settings);
-  const FrameConstants frame =
-      makeFrameConstants(state.device, state.volume, state.tableSettings, camera, settings);
-
   Commands commands(state.device);
-  state.splats->record(commands, {state.volume, state.table, state.visible}, frame, targets);
-  state.resolve->record(commands, frame, targets);
+  const State::Frame frame = state.recordSplats(commands, camera, settings);
+  state.resolve->record(commands, frame.constants, frame.targets);
   commands.beginPass("read back");
-  const TargetReadback color(state.device, commands, targets.colorEnergy, sizeof(glm::vec4));
-  std::unique_ptr<TargetReadback> depth;
-  if (settings.depth)
-    depth = std::make_unique<TargetReadback>(state.device, commands, targets.distance, sizeof(float));
+  const TargetReadback color(state.device, commands, frame.targets.colorEnergy);
+  std::optional<TargetReadback> depth;
+  if (settings.depth) depth.emplace(state.device, commands, frame.targets.distance);
   commands.submitAndWait(progress);
   state.frameTimes = commands.times();
 
@@ -138,6 +129,19 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   return {.size = settings.size,
           .pixels = color.read<glm::vec4>(),
           .depth = depth ? depth->read<float>() : std::vector<float>()};
+}
+
+std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSettings& settings) {
+  checkCamera(camera);
+  checkFrameFits(state_->device, settings);
+  State& state = *state_;
+  Commands commands(state.device);
+  const State::Frame frame = state.recordSplats(commands, camera, settings);
+  commands.beginPass("read back");
+  const SumsReadback sums(state.device, commands, frame.targets);
+  commands.submitAndWait();
+  state.frameTimes = commands.times();
+  return sums.read(frame.constants);
 }
 
 std::vector<StageTime> Renderer::timings() const {
@@ -150,16 +154,20 @@ std::uint64_t Renderer::visibleVoxelCount() const {
   return downloadVisibleCount(state_->device, state_->visible);
 }
 
+std::vector<float> Renderer::downloadExtinction() const {
+  const GridLayout& layout = state_->volume.layout;
+  std::vector<float> padded(layout.paddedVoxels());
+  download(state_->device, state_->volume.extinction, std::as_writable_bytes(std::span(padded)));
+  return layout.withoutPadding(padded);
+}
+
 std::vector<std::vector<std::uint8_t>> Renderer::downloadTable() const {
   return freevoxels::downloadTable(state_->device, state_->volume.layout, state_->table);
 }
 
 std::vector<std::uint32_t> Renderer::downloadVisibleVoxels() const {
-  const GridLayout& layout = state_->volume.layout;
-  std::vector<std::uint32_t> voxels(visibleVoxelCount());
-  download(state_->device, state_->visible.indices, std::as_writable_bytes(std::span(voxels)));
-  for (std::uint32_t& voxel : voxels)
-    voxel -= voxel / std::uint32_t(layout.rowPitch) * std::uint32_t(layout.rowPitch - layout.dimensions.x);
+  std::vector<std::uint32_t> voxels = freevoxels::downloadVisibleVoxels(state_->device, state_->visible);
+  for (std::uint32_t& voxel : voxels) voxel = state_->volume.layout.unpaddedIndex(voxel);
   return voxels;
 }
 

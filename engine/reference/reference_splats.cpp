@@ -23,6 +23,7 @@
 
 #include "engine/attenuation/directions.h"
 #include "engine/core/error.h"
+#include "engine/reference/reference_table.h"
 #include "engine/splatting/footprint.h"
 
 namespace freevoxels {
@@ -121,11 +122,12 @@ PixelBox boundingPixels(const PixelRays& rays, const Splat& splat, glm::ivec2 si
 
 class SplatSummer {
  public:
-  SplatSummer(const Volume& volume, const Classification& classification,
+  SplatSummer(const Volume& volume, const Classification& classification, std::span<const double> extinction,
               const std::vector<std::vector<std::uint8_t>>& table, AttenuationCode code, const Camera& camera,
               const FrameSettings& settings)
       : volume_(volume),
         classification_(classification),
+        extinction_(extinction),
         table_(table),
         code_(code),
         settings_(settings),
@@ -168,6 +170,7 @@ class SplatSummer {
 
   const Volume& volume_;
   const Classification& classification_;
+  const std::span<const double> extinction_;
   const std::vector<std::vector<std::uint8_t>>& table_;
   const AttenuationCode code_;
   const FrameSettings& settings_;
@@ -182,18 +185,19 @@ void SplatSummer::add(std::uint32_t voxel) {
   const std::optional<Splat> splat = project(rays_, position);
   if (!splat) return;
   const glm::dvec3 toEye = rays_.orthographic ? -rays_.direction : rays_.origin - position;
-  const ClassifiedVoxel material = classify(classification_, volume_.values[voxel]);
+  const double sigma = extinction_[voxel];
+  const glm::dvec3 albedo = classify(classification_, volume_.values[voxel]).color;
   const double layer = layerLength(toEye);
-  const double emitted = transmittance(voxel, toEye) * -std::expm1(-material.extinction * layer) / layer;
+  const double emitted = transmittance(voxel, toEye) * -std::expm1(-sigma * layer) / layer;
   const PixelBox box = boundingPixels(rays_, *splat, settings_.size);
   for (int y = box.first.y; y <= box.last.y; ++y)
     for (int x = box.first.x; x <= box.last.x; ++x) {
       const double omega = footprint(*splat, {x + 0.5, y + 0.5});
       SplatSums& sums = sums_[std::size_t(y) * std::size_t(settings_.size.x) + std::size_t(x)];
       const double energy = emitted * omega;
-      sums.color += energy * material.color;
+      sums.color += energy * albedo;
       sums.energy += energy;
-      sums.depth += material.extinction * omega;
+      sums.depth += sigma * omega;
       sums.distance += energy * splat->distance;
     }
 }
@@ -205,8 +209,19 @@ std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classifica
                                           AttenuationCode code, const Camera& camera,
                                           const FrameSettings& settings,
                                           std::span<const std::uint32_t> voxels) {
+  return referenceSplatSums(volume, classification, referenceExtinction(volume, classification), table, code,
+                            camera, settings, voxels);
+}
+
+std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classification& classification,
+                                          std::span<const double> extinction,
+                                          const std::vector<std::vector<std::uint8_t>>& table,
+                                          AttenuationCode code, const Camera& camera,
+                                          const FrameSettings& settings,
+                                          std::span<const std::uint32_t> voxels) {
   FV_CHECK_EQ(table.size(), std::size_t(kDirectionCount));
-  SplatSummer summer(volume, classification, table, code, camera, settings);
+  FV_CHECK_EQ(extinction.size(), volume.voxelCount());
+  SplatSummer summer(volume, classification, extinction, table, code, camera, settings);
   for (const std::uint32_t voxel : voxels) {
     FV_CHECK_LT(voxel, volume.voxelCount());
     summer.add(voxel);
