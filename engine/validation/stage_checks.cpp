@@ -29,7 +29,7 @@ constexpr double kPictureTolerance = 1e-5, kDistanceTolerance = 1e-5;
 /// An error in a pixel's sum counts relative to the pixel, but to no less than this part of the picture's
 /// largest: at the rim of a single footprint a sum is (1 - r²/R²)⁴ of an r that is nearly R, of which 32-bit
 /// floats keep few digits, and nobody sees any.
-constexpr double kSumsFloor = 1e-2;
+constexpr double kSumsFloor = 5e-2;
 /// A mean distance is compared where the pixel has at least this alpha.
 constexpr float kLeastAlpha = 1e-3f;
 
@@ -221,7 +221,7 @@ void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, R
 constexpr const char* kExplanation =
     "Every stage on the device against a double-precision version on the CPU that is given what the device "
     "made in the stage before. Extinction is relative to the voxel's own; the splat sums are relative to the "
-    "pixel's own, or to 1 % of the picture's largest where that is more.";
+    "pixel's own, or to 5 % of the picture's largest where that is more.";
 
 }  // namespace
 
