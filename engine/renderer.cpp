@@ -6,8 +6,10 @@
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/core/error.h"
+#include "engine/splatting/depth_sort.h"
 #include "engine/splatting/resolve_pass.h"
 #include "engine/splatting/splat_pass.h"
+#include "engine/splatting/sums_readback.h"
 #include "engine/splatting/visible_voxels.h"
 #include "engine/volume/device_volume.h"
 #include "engine/vulkan/target_readback.h"
@@ -65,6 +67,7 @@ struct Renderer::State {
   VisibleVoxels visible;
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
+  std::unique_ptr<DepthSort> sort;
   std::vector<StageTime> buildTimes, frameTimes;
 
   struct Frame {
@@ -74,17 +77,21 @@ struct Renderer::State {
   Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings);
 };
 
-/// Up to the sums in the targets.
+/// Up to the sums in the targets; the sorted picture is made there, and has none.
 Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const Camera& camera,
                                                      const FrameSettings& settings) {
   frameTimes.clear();
-  if (!splats || splats->withDistance() != settings.depth) {
-    splats = std::make_unique<SplatPass>(device, settings.depth);
+  const bool sorted = settings.composite == Composite::Sorted;
+  if (!splats || !splats->draws(settings)) {
+    splats = std::make_unique<SplatPass>(device, settings.depth, sorted);
     resolve = std::make_unique<ResolvePass>(device, settings.depth);
   }
+  if (sorted && !sort) sort = std::make_unique<DepthSort>(device, volume);
   Frame frame{.constants = makeFrameConstants(device, volume, tableSettings, camera, settings),
               .targets = makeTargets(device, settings)};
-  splats->record(commands, {volume, table, visible}, frame.constants, frame.targets);
+  if (sorted) sort->record(commands, volume, visible, camera);
+  splats->record(commands, {volume, table, visible, sorted ? &sort->voxels() : nullptr}, frame.constants,
+                 frame.targets);
   return frame;
 }
 
@@ -117,7 +124,8 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   State& state = *state_;
   Commands commands(state.device);
   const State::Frame frame = state.recordSplats(commands, camera, settings);
-  state.resolve->record(commands, frame.constants, frame.targets);
+  if (settings.composite != Composite::Sorted || settings.depth)
+    state.resolve->record(commands, frame.constants, frame.targets);
   commands.beginPass("read back");
   const TargetReadback color(state.device, commands, frame.targets.colorEnergy);
   std::optional<TargetReadback> depth;
@@ -132,6 +140,7 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
 }
 
 std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSettings& settings) {
+  FV_CHECK_LT(int(settings.composite), int(Composite::Sorted));
   checkCamera(camera);
   checkFrameFits(state_->device, settings);
   State& state = *state_;

@@ -31,6 +31,13 @@ FV_CONSTANT int kSweepThreads = 32;
 FV_CONSTANT int kSplatThreads = 64;
 FV_CONSTANT int kResolveTile = 8;
 
+// The sort takes its keys digit by digit. As many threads a workgroup as digits, so that each owns one; a
+// fixed number of workgroups, whatever the count, so that one of them can add up what all of them found.
+FV_CONSTANT int kSortBits = 8;
+FV_CONSTANT int kSortDigits = 1 << kSortBits;
+FV_CONSTANT int kSortThreads = kSortDigits;
+FV_CONSTANT int kSortGroups = 256;
+
 // Splats are set up and drawn in chunks of this many: the records of one chunk are 52 MiB, whatever the
 // volume.
 FV_CONSTANT int kSplatsPerChunk = 1 << 20;
@@ -53,8 +60,10 @@ FV_CONSTANT int kCodeDepth8 = 0;
 FV_CONSTANT int kCodeLinear8 = 1;
 FV_CONSTANT int kLookupBilinear = 0;
 FV_CONSTANT int kLookupNearest = 1;
+FV_CONSTANT int kLookupNone = 2;  // A = 1
 FV_CONSTANT int kCompositeNormalised = 0;
 FV_CONSTANT int kCompositeAdditive = 1;
+FV_CONSTANT int kCompositeSorted = 2;
 
 // classify.comp
 struct ClassifyPush {
@@ -91,6 +100,23 @@ struct ChunkArguments {
   uint splatCount;
   uint vertexCount, instanceCount, firstVertex, firstInstance;              // points: one vertex a splat
   uint quadVertexCount, quadInstanceCount, quadFirstVertex, quadFirstInstance;  // quads: one instance a splat
+};
+
+// depth_key.comp
+struct DepthKeyPush {
+  mat3 indexToWorld;   // linear part
+  vec3 middle;         // of the volume, index space
+  vec3 eyeToMiddle;    // world units; orthographic: the viewing direction, of length 1
+  float eyeDistance;   // |eyeToMiddle|
+  int orthographic;
+  int rowPitch;
+  int rows;            // extent along y
+  uint chunkCount;
+};
+
+// radix_count.comp and radix_scatter.comp
+struct RadixPush {
+  uint shift;  // of the digit that this pass sorts by
 };
 
 // One splat, ready to draw. Written by splat_setup.comp, pulled by splat.vert.
@@ -132,6 +158,8 @@ struct SplatPush {
   vec2 imageMiddle;        // pixels
   vec3 rayLength2;         // |D|² of the pixel ray in index space at (x, y) from the middle: rayLength2 . (1, x, y)
   vec3 rayLength2Squares;  //   + rayLength2Squares . (x², xy, y²)
+  vec3 worldLength2;       // the same in world space
+  vec3 worldLength2Squares;
   vec2 viewportOrigin;   // of the enlarged viewport, pixels
   vec2 viewportSize;
 };
@@ -146,6 +174,7 @@ struct ResolvePush {
 
 #ifdef __cplusplus
 static_assert(sizeof(ChunkArguments) == 48);
+static_assert(sizeof(DepthKeyPush) == 80);
 static_assert(sizeof(Splat) == 52);
 static_assert(sizeof(ResolvePush) == 84);
 }  // namespace freevoxels::shader

@@ -1,6 +1,7 @@
 #version 460
 // The sums of a pixel become its colour, in place. Additive: Subr et al. 2007, Eq. 10 and 11. Normalised:
-// alpha is exact and the sums only decide how the colours along the ray mix.
+// alpha is exact and the sums only decide how the colours along the ray mix. Sorted: the colour is there
+// already.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 
@@ -28,7 +29,7 @@ void main() {
     const float weighted = imageLoad(meanDistance, pixel).r;
     imageStore(meanDistance, pixel, vec4(sums.a > 0.0 ? weighted / sums.a : uintBitsToFloat(0x7f800000u)));
   }
-  vec4 result = sums * worldPerIndex;
+  vec4 result = push.composite == kCompositeSorted ? sums : sums * worldPerIndex;
   if (push.composite == kCompositeNormalised) {
     const float alpha = opacityOf(imageLoad(opticalDepth, pixel).r * worldPerIndex);
     result = vec4(result.rgb * (result.a > 0.0 ? alpha / result.a : 1.0), alpha);

@@ -111,7 +111,9 @@ void main() {
   const vec3 size = abs(toEye);
   const vec3 direction = toEye / max(size.x, max(size.y, size.z));
   const float layer = length(frame.indexToWorld * direction);  // world length of one lattice layer
-  const float transmittance = transmittanceTowards(frame.code, frame.lookup, direction, voxel);
+  const float transmittance = frame.lookup == kLookupNone
+                                  ? 1.0
+                                  : transmittanceTowards(frame.code, frame.lookup, direction, voxel);
 
   const float sigma = extinction[voxel];
   const float peak = kSplatPeak * footprint.amplitude;

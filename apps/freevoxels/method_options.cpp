@@ -8,7 +8,7 @@ namespace freevoxels {
 namespace {
 
 // In the order of the enumerators.
-const std::vector<std::string> kComposites{"normalised", "additive"};
+const std::vector<std::string> kComposites{"normalised", "additive", "sorted"};
 const std::vector<std::string> kAttenuations{"bilinear", "nearest"};
 const std::vector<std::string> kCodes{"depth8", "linear8"};
 
@@ -16,7 +16,9 @@ const std::vector<std::string> kCodes{"depth8", "linear8"};
 
 void MethodOptions::add(CLI::App& app) {
   const char* const group = "Method";
-  addWord(app, "--composite", kComposites, composite, "How the splats' sum becomes the picture [normalised]")
+  addWord(app, "--composite", kComposites, composite,
+          "How the splats become the picture; sorted is back-to-front alpha blending, to compare with "
+          "[normalised]")
       ->group(group);
   addWord(app, "--attenuation", kAttenuations, attenuation,
           "How the table is looked up between its directions [bilinear]")

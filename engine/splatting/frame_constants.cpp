@@ -15,6 +15,7 @@ namespace {
 static_assert(shader::kSplatRadius == float(kFootprintRadius));
 static_assert(shader::kLookupNearest == int(AttenuationLookup::Nearest));
 static_assert(shader::kCompositeAdditive == int(Composite::Additive));
+static_assert(shader::kCompositeSorted == int(Composite::Sorted));
 
 /// Image positions of the box's corners and the smallest distance from the eye plane.
 struct ProjectedBox {
@@ -35,6 +36,14 @@ ProjectedBox projectBox(const glm::dmat3& toPixel, const PixelRays& rays, glm::i
   }
   return box;
 }
+
+/// |ray + x rayX + y rayY|² = linear . (1, x, y) + squares . (x², xy, y²)
+struct LengthSquared {
+  LengthSquared(glm::dvec3 ray, glm::dvec3 rayX, glm::dvec3 rayY)
+      : linear(glm::dot(ray, ray), 2.0 * glm::dot(ray, rayX), 2.0 * glm::dot(ray, rayY)),
+        squares(glm::dot(rayX, rayX), 2.0 * glm::dot(rayX, rayY), glm::dot(rayY, rayY)) {}
+  glm::dvec3 linear, squares;
+};
 
 /// No splat of the volume reaches further than this from its centre, in pixels. For a perspective camera a
 /// kernel at distance t reaches at most R |K0 - x K2| / (t - R |K2|) along x (splat_setup.comp has the bound
@@ -67,6 +76,8 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
   const glm::dvec3 eyeToMiddle = middle - rays.origin;
 
+  const int lookup =
+      settings.composite == Composite::Sorted ? shader::kLookupNone : int(settings.attenuation);
   FrameConstants frame{};
   frame.setup = {.indexToWorld = linear,
                  .indexToPixel = toPixel,
@@ -79,7 +90,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                  .orthographic = rays.orthographic ? 1 : 0,
                  .rowPitch = volume.layout.rowPitch,
                  .rows = volume.layout.dimensions.y,
-                 .lookup = int(settings.attenuation),
+                 .lookup = lookup,
                  .code = int(table.code),
                  .opacityPoints = volume.opacityPointCount,
                  .colorPoints = volume.colorPointCount,
@@ -104,12 +115,14 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   const glm::dvec2 imageMiddle = 0.5 * glm::dvec2(settings.size);
   const glm::dvec3 rayX = rays.directionX, rayY = rays.directionY;
   const glm::dvec3 ray = rays.direction + imageMiddle.x * rayX + imageMiddle.y * rayY;
-  frame.splat = {
-      .imageMiddle = imageMiddle,
-      .rayLength2 = glm::dvec3(glm::dot(ray, ray), 2.0 * glm::dot(ray, rayX), 2.0 * glm::dot(ray, rayY)),
-      .rayLength2Squares = glm::dvec3(glm::dot(rayX, rayX), 2.0 * glm::dot(rayX, rayY), glm::dot(rayY, rayY)),
-      .viewportOrigin = glm::vec2(-frame.viewportMargin),
-      .viewportSize = glm::vec2(settings.size) + 2.0f * frame.viewportMargin};
+  const LengthSquared index(ray, rayX, rayY), world(linear * ray, linear * rayX, linear * rayY);
+  frame.splat = {.imageMiddle = imageMiddle,
+                 .rayLength2 = index.linear,
+                 .rayLength2Squares = index.squares,
+                 .worldLength2 = world.linear,
+                 .worldLength2Squares = world.squares,
+                 .viewportOrigin = glm::vec2(-frame.viewportMargin),
+                 .viewportSize = glm::vec2(settings.size) + 2.0f * frame.viewportMargin};
   return frame;
 }
 

@@ -10,6 +10,7 @@ namespace freevoxels {
 enum class Composite : int {
   Normalised = 0,  ///< alpha from the exact optical depth, colour from the order-independent mix
   Additive = 1,    ///< the plain sum: Subr et al. 2007, Eq. 10 and 11
+  Sorted = 2,      ///< back to front alpha blending, without the table, to compare with: Eq. 9
 };
 
 enum class AttenuationLookup : int {

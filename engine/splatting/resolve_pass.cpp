@@ -16,8 +16,10 @@ ResolvePass::ResolvePass(const Device& device, bool withDistance)
                                     {withDistance ? 1u : 0u})) {}
 
 void ResolvePass::record(Commands& commands, const FrameConstants& frame, const SplatTargets& targets) const {
-  const std::array<Binding, 3> images{&targets.colorEnergy, &targets.opticalDepth,
-                                      withDistance_ ? &targets.distance : &targets.opticalDepth};
+  // Where there is no T or no distance, it is not read: the other one takes its place.
+  const std::array<Binding, 3> images{
+      &targets.colorEnergy, targets.opticalDepth.exists() ? &targets.opticalDepth : &targets.distance,
+      withDistance_ ? &targets.distance : &targets.opticalDepth};
   commands.beginPass("resolve");
   commands.dispatch(pipeline_, images, frame.resolve, {targets.colorEnergy.size(), 1});
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_TRANSFER_BIT);

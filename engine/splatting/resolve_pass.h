@@ -5,7 +5,8 @@
 
 namespace freevoxels {
 
-/// COMPUTE resolve.comp, in place: colorEnergy becomes premultiplied RGBA, distance the mean distance.
+/// COMPUTE resolve.comp, in place: colorEnergy becomes premultiplied RGBA, distance the mean distance. A
+/// sorted frame without distances needs none.
 class ResolvePass {
  public:
   ResolvePass(const Device& device, bool withDistance);

@@ -6,6 +6,8 @@
 #include "embedded/splat_fragment.h"
 #include "embedded/splat_fragment_distance.h"
 #include "embedded/splat_setup.h"
+#include "embedded/splat_sorted.h"
+#include "embedded/splat_sorted_distance.h"
 #include "embedded/splat_vertex.h"
 #include "engine/core/error.h"
 
@@ -19,21 +21,29 @@ constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BI
 constexpr VkPipelineStageFlags2 kDraw = VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
 constexpr VkPipelineStageFlags2 kOutput = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
 
-Pipeline makeSplatPipeline(const Device& device, bool quads, bool withDistance) {
-  const ShaderCode fragment = withDistance ? ShaderCode{splat_fragment_distance_spv, "splat with distance"}
-                                           : ShaderCode{splat_fragment_spv, "splat"};
+ShaderCode fragmentShader(bool withDistance, bool sorted) {
+  if (sorted)
+    return withDistance ? ShaderCode{splat_sorted_distance_spv, "sorted splat with distance"}
+                        : ShaderCode{splat_sorted_spv, "sorted splat"};
+  return withDistance ? ShaderCode{splat_fragment_distance_spv, "splat with distance"}
+                      : ShaderCode{splat_fragment_spv, "splat"};
+}
+
+Pipeline makeSplatPipeline(const Device& device, bool quads, bool withDistance, bool sorted) {
   const std::array formats{kColorFormat, kScalarFormat, kScalarFormat};
-  return makeAdditivePipeline(
-      device, {splat_vertex_spv, "splat"}, fragment,
+  return makeGraphicsPipeline(
+      device, {splat_vertex_spv, "splat"}, fragmentShader(withDistance, sorted),
       {.bindings = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, .pushConstantBytes = sizeof(shader::SplatPush)},
       quads ? VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP : VK_PRIMITIVE_TOPOLOGY_POINT_LIST,
-      std::span(formats).first(withDistance ? 3 : 2), {quads ? 1u : 0u});
+      std::span(formats).first(1u + (sorted ? 0u : 1u) + (withDistance ? 1u : 0u)),
+      sorted ? Blend::Over : Blend::Additive, {quads ? 1u : 0u});
 }
 
 }  // namespace
 
 std::vector<const RenderTarget*> SplatTargets::all() const {
-  std::vector targets{&colorEnergy, &opticalDepth};
+  std::vector targets{&colorEnergy};
+  if (opticalDepth.exists()) targets.push_back(&opticalDepth);
   if (distance.exists()) targets.push_back(&distance);
   return targets;
 }
@@ -52,21 +62,24 @@ void checkFrameFits(const Device& device, const FrameSettings& settings) {
 
 SplatTargets makeTargets(const Device& device, const FrameSettings& settings) {
   SplatTargets targets{.colorEnergy = RenderTarget(device, settings.size, kColorFormat, "C and E"),
-                       .opticalDepth = RenderTarget(device, settings.size, kScalarFormat, "T"),
+                       .opticalDepth = {},
                        .distance = {}};
+  if (settings.composite != Composite::Sorted)
+    targets.opticalDepth = RenderTarget(device, settings.size, kScalarFormat, "T");
   if (settings.depth) targets.distance = RenderTarget(device, settings.size, kScalarFormat, "distance");
   return targets;
 }
 
-SplatPass::SplatPass(const Device& device, bool withDistance)
+SplatPass::SplatPass(const Device& device, bool withDistance, bool sorted)
     : device_(device),
       withDistance_(withDistance),
+      sorted_(sorted),
       setup_(makeComputePipeline(device, {splat_setup_spv, "splat set-up"},
                                  {.bindings = std::vector(8, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
                                   .pushConstantBytes = sizeof(shader::SetupPush)},
                                  {shader::kSplatThreads, 1, 1})),
-      points_(makeSplatPipeline(device, false, withDistance)),
-      quads_(makeSplatPipeline(device, true, withDistance)),
+      points_(makeSplatPipeline(device, false, withDistance, sorted)),
+      quads_(makeSplatPipeline(device, true, withDistance, sorted)),
       frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "frame") {}
 
 void SplatPass::beginRendering(Commands& commands, const SplatTargets& targets, const FrameConstants& frame,
@@ -103,7 +116,7 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
   const std::array<Binding, 8> setup{&frame_,
                                      &inputs.volume.transferPoints,
                                      &inputs.table.planeAddresses,
-                                     &inputs.visible.indices,
+                                     inputs.order ? inputs.order : &inputs.visible.indices,
                                      &inputs.volume.scalars,
                                      &inputs.volume.extinction,
                                      &inputs.visible.chunks,

@@ -1,5 +1,5 @@
 #pragma once
-// Visible voxels to the sums of a frame: set-up and additive draw. Subr et al. 2007, Section 3.3 and 4.1.
+// Visible voxels to the sums of a frame: set-up and blended draw. Subr et al. 2007, Section 3.3 and 4.1.
 
 #include <array>
 #include <vector>
@@ -13,10 +13,11 @@
 
 namespace freevoxels {
 
-/// The sums of a frame: C and E, T, and where depth is asked for, the sum of e times distance.
+/// The sums of a frame: C and E, T, and where depth is asked for, the sum of e times distance. Sorted:
+/// premultiplied colour and alpha, and the distance blended like the colour.
 struct SplatTargets {
   RenderTarget colorEnergy;   ///< RGBA32F
-  RenderTarget opticalDepth;  ///< R32F
+  RenderTarget opticalDepth;  ///< R32F, or does not exist (sorted)
   RenderTarget distance;      ///< R32F, or does not exist
   std::vector<const RenderTarget*> all() const;
 };
@@ -41,23 +42,27 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
 /// layout GENERAL, visible to compute.
 class SplatPass {
  public:
-  SplatPass(const Device& device, bool withDistance);
+  SplatPass(const Device& device, bool withDistance, bool sorted = false);
 
   struct Inputs {
     const DeviceVolume& volume;
     const AttenuationTable& table;
     const VisibleVoxels& visible;
+    const Buffer* order = nullptr;  ///< the visible voxels as they are to be drawn; null: as they are listed
   };
   void record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,
               const SplatTargets& targets);
-  bool withDistance() const { return withDistance_; }
+  /// Whether it was made for such frames.
+  bool draws(const FrameSettings& settings) const {
+    return withDistance_ == settings.depth && sorted_ == (settings.composite == Composite::Sorted);
+  }
 
  private:
   void beginRendering(Commands& commands, const SplatTargets& targets, const FrameConstants& frame,
                       VkAttachmentLoadOp load) const;
 
   const Device& device_;
-  bool withDistance_;
+  bool withDistance_, sorted_;
   Pipeline setup_, points_, quads_;
   Buffer frame_;   ///< shader::SetupFrame
   Buffer splats_;  ///< shader::Splat of one chunk

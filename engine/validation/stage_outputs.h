@@ -13,6 +13,7 @@
 #include "engine/splatting/splat_sums.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
+#include "engine/vulkan/device.h"
 
 namespace freevoxels {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
+#include "engine/splatting/sums_readback.h"
 
 namespace freevoxels {
 

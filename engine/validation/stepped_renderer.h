@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "engine/attenuation/attenuation_table.h"
+#include "engine/splatting/camera.h"
+#include "engine/splatting/render_settings.h"
 #include "engine/splatting/splat_sums.h"
 #include "engine/splatting/visible_voxels.h"
 #include "engine/volume/device_volume.h"

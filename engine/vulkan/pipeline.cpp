@@ -37,25 +37,30 @@ class SpecialisationInfo {
   VkSpecializationInfo info_{};
 };
 
-/// Everything of an additive pipeline that is the same for all of them.
+VkPipelineColorBlendAttachmentState blendState(Blend blend) {
+  const VkBlendFactor kept =
+      blend == Blend::Additive ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
+  return {.blendEnable = VK_TRUE,
+          .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
+          .dstColorBlendFactor = kept,
+          .colorBlendOp = VK_BLEND_OP_ADD,
+          .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
+          .dstAlphaBlendFactor = kept,
+          .alphaBlendOp = VK_BLEND_OP_ADD,
+          .colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
+                            VK_COLOR_COMPONENT_A_BIT};
+}
+
+/// Everything of a graphics pipeline but its shaders.
 struct FixedState {
-  FixedState(VkPrimitiveTopology topology, std::size_t attachments) : blends(attachments, kAdditive) {
+  FixedState(VkPrimitiveTopology topology, std::size_t attachments, Blend mode)
+      : blends(attachments, blendState(mode)) {
     assembly.topology = topology;
     blend.attachmentCount = std::uint32_t(blends.size());
     blend.pAttachments = blends.data();
   }
   FixedState(const FixedState&) = delete;
 
-  static constexpr VkPipelineColorBlendAttachmentState kAdditive{
-      .blendEnable = VK_TRUE,
-      .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
-      .dstColorBlendFactor = VK_BLEND_FACTOR_ONE,
-      .colorBlendOp = VK_BLEND_OP_ADD,
-      .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
-      .dstAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
-      .alphaBlendOp = VK_BLEND_OP_ADD,
-      .colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
-                        VK_COLOR_COMPONENT_A_BIT};
   static constexpr std::array kDynamic{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
 
   std::vector<VkPipelineColorBlendAttachmentState> blends;
@@ -139,9 +144,10 @@ Pipeline makeComputePipeline(const Device& device, const ShaderCode& code, Pipel
   return result;
 }
 
-Pipeline makeAdditivePipeline(const Device& device, const ShaderCode& vertex, const ShaderCode& fragment,
+Pipeline makeGraphicsPipeline(const Device& device, const ShaderCode& vertex, const ShaderCode& fragment,
                               PipelineInterface interface, VkPrimitiveTopology topology,
-                              std::span<const VkFormat> attachments, const Specialisation& constants) {
+                              std::span<const VkFormat> attachments, Blend blend,
+                              const Specialisation& constants) {
   Pipeline result(device, std::move(interface), VK_PIPELINE_BIND_POINT_GRAPHICS);
   const OwnedShaderModule vertexModule = makeModule(device, vertex);
   const OwnedShaderModule fragmentModule = makeModule(device, fragment);
@@ -157,7 +163,7 @@ Pipeline makeAdditivePipeline(const Device& device, const ShaderCode& vertex, co
                                       .module = fragmentModule.get(),
                                       .pName = "main",
                                       .pSpecializationInfo = specialisation.get()}};
-  const FixedState state(topology, attachments.size());
+  const FixedState state(topology, attachments.size(), blend);
   const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
                                                 .colorAttachmentCount = std::uint32_t(attachments.size()),
                                                 .pColorAttachmentFormats = attachments.data()};

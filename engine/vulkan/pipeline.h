@@ -27,6 +27,12 @@ struct PipelineInterface {
 /// Values of the specialisation constants 0, 1, 2, ...: ints or bools.
 using Specialisation = std::vector<std::uint32_t>;
 
+/// What a fragment does to an attachment.
+enum class Blend {
+  Additive,  ///< source + destination
+  Over,      ///< source + (1 - alpha of the fragment's output for this attachment) * destination
+};
+
 class Pipeline {
  public:
   Pipeline() = default;
@@ -42,8 +48,9 @@ class Pipeline {
  private:
   friend Pipeline makeComputePipeline(const Device&, const ShaderCode&, PipelineInterface, glm::ivec3,
                                       const Specialisation&);
-  friend Pipeline makeAdditivePipeline(const Device&, const ShaderCode&, const ShaderCode&, PipelineInterface,
-                                       VkPrimitiveTopology, std::span<const VkFormat>, const Specialisation&);
+  friend Pipeline makeGraphicsPipeline(const Device&, const ShaderCode&, const ShaderCode&, PipelineInterface,
+                                       VkPrimitiveTopology, std::span<const VkFormat>, Blend,
+                                       const Specialisation&);
   Pipeline(const Device& device, PipelineInterface interface, VkPipelineBindPoint bindPoint);
 
   PipelineInterface interface_;
@@ -58,10 +65,11 @@ class Pipeline {
 Pipeline makeComputePipeline(const Device& device, const ShaderCode& code, PipelineInterface interface,
                              glm::ivec3 workgroup, const Specialisation& constants = {});
 
-/// No vertex input (vertices are pulled), no depth, no culling; every attachment is blended with source +
-/// destination. Viewport and scissor are dynamic.
-Pipeline makeAdditivePipeline(const Device& device, const ShaderCode& vertex, const ShaderCode& fragment,
+/// No vertex input (vertices are pulled), no depth, no culling; all attachments are blended alike. Viewport
+/// and scissor are dynamic.
+Pipeline makeGraphicsPipeline(const Device& device, const ShaderCode& vertex, const ShaderCode& fragment,
                               PipelineInterface interface, VkPrimitiveTopology topology,
-                              std::span<const VkFormat> attachments, const Specialisation& constants = {});
+                              std::span<const VkFormat> attachments, Blend blend,
+                              const Specialisation& constants = {});
 
 }  // namespace freevoxels

@@ -139,6 +139,22 @@ TEST_F(RenderCommand, PaperIsFourOptionsAndYieldsToEach) {
             "yes");
 }
 
+/// It leaks, so that it is another picture, and has no use for the table.
+TEST_F(RenderCommand, SortedIsAnotherPictureWithoutTheTable) {
+  const auto pixels = [&](const std::string& options) {
+    render(options + " --float --aov depth");
+    return readExr(folder / "a.exr");
+  };
+  const Image sorted = pixels("--composite sorted"), normalised = pixels("");
+  EXPECT_NE(sorted.pixels, normalised.pixels);
+  for (std::size_t i = 0; i < sorted.pixels.size(); ++i)
+    ASSERT_LE(sorted.pixels[i].a, normalised.pixels[i].a + 0.01f) << "pixel " << i;
+  const Image paper = pixels("--paper --composite sorted");
+  EXPECT_EQ(sorted.pixels, paper.pixels);
+  EXPECT_EQ(sorted.depth, paper.depth);
+  EXPECT_EQ(exrAttribute(render("--composite sorted"), "freevoxels:composite"), "sorted");
+}
+
 TEST_F(RenderCommand, CameraOptionsMoveTheCamera) {
   const std::string standard = render("");
   for (const char* options : {"--camera-position 0,0,3", "--look-at 0.2,0,0", "--fov 60", "--orthographic 1",

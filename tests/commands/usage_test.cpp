@@ -61,7 +61,7 @@ constexpr WrongUse kWrongUses[] = {
     {"BrightAlbedo", "render procedural:cube @a.png --albedo 2,0,0", "--albedo"},
     {"TwoClassifications", "render procedural:cube @a.png --albedo 1,0,0 --transfer-function @t.json",
      "--albedo"},
-    {"UnknownComposite", "render procedural:cube @a.png --composite sorted", "'sorted'"},
+    {"UnknownComposite", "render procedural:cube @a.png --composite summed", "'summed'"},
     {"UnknownAttenuation", "render procedural:cube @a.png --attenuation cubic", "'cubic'"},
     {"UnknownCode", "render procedural:cube @a.png --code float", "'float'"},
     {"UnknownAov", "render procedural:cube @a.exr --aov normal", "'normal'"},

@@ -1,4 +1,4 @@
-#include "engine/splatting/splat_sums.h"
+#include "engine/splatting/sums_readback.h"
 
 namespace freevoxels {
 
@@ -15,14 +15,6 @@ double worldPerIndex(const shader::ResolvePush& rays, glm::dvec2 pixel) {
 }
 
 }  // namespace
-
-SplatSums& SplatSums::operator+=(const SplatSums& other) {
-  color += other.color;
-  energy += other.energy;
-  depth += other.depth;
-  distance += other.distance;
-  return *this;
-}
 
 SumsReadback::SumsReadback(const Device& device, Commands& commands, const SplatTargets& targets)
     : colorEnergy_(device, commands, targets.colorEnergy),

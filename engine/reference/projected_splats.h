@@ -1,0 +1,49 @@
+#pragma once
+// Voxels as the camera sees them, in double precision: what the references for the additive and for the
+// sorted picture share.
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "engine/splatting/camera.h"
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+struct ProjectedSplat {
+  glm::dvec2 centre{0.0};  ///< pixels
+  double distance = 0.0;   ///< of the voxel's centre along the viewing axis, world units
+  glm::dvec3 toEye{0.0};   ///< index space, any length
+  glm::dmat2 shape{1.0};   ///< S'⁻¹ · |Dc|²: dᵀ shape d / |D|² is r²/R², or its widened like
+  double amplitude = 1.0;  ///< sqrt(det S / det S')
+};
+
+class SplatProjector {
+ public:
+  SplatProjector(const Volume& volume, const Camera& camera, glm::ivec2 imageSize);
+
+  /// Empty where the voxel (an index into Volume::values) is not drawn: its centre is behind the eye plane
+  /// (k_z <= 0), or a perspective camera's eye plane cuts its kernel (k_z² <= R² (K Kᵀ)_zz).
+  std::optional<ProjectedSplat> project(std::uint32_t voxel) const;
+
+  /// Opacity of one lattice layer in the viewing direction per world length: (1 - exp(-sigma s)) / s.
+  double opacity(const ProjectedSplat& splat, double extinction) const;
+
+  /// Calls `visit` with the index of every pixel that the splat may cover and the line integral of the kernel
+  /// along that pixel's ray, in world length; 0 outside of the footprint.
+  void forEachPixel(const ProjectedSplat& splat,
+                    const std::function<void(std::size_t pixel, double omega)>& visit) const;
+
+ private:
+  glm::dvec3 rayDirection(glm::dvec2 pixel) const;
+  double footprint(const ProjectedSplat& splat, glm::dvec2 pixel) const;
+
+  glm::ivec3 dimensions_;
+  glm::ivec2 imageSize_;
+  PixelRays rays_;
+  glm::dmat3 indexToWorld_;
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,71 @@
+#include "engine/reference/reference_sorted.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include "engine/reference/projected_splats.h"
+
+namespace freevoxels {
+
+namespace {
+
+struct BlendedPixel {
+  glm::dvec4 color{0.0};  ///< premultiplied, and alpha
+  double distance = 0.0;  ///< premultiplied too
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> referenceBackToFront(const Volume& volume, const Camera& camera,
+                                                std::span<const std::uint32_t> voxels) {
+  const glm::dvec3 axis = glm::normalize(camera.lookAt - camera.position);
+  const auto distance = [&](glm::dvec3 index) {
+    const glm::dvec3 toVoxel = glm::dvec3(volume.indexToWorld * glm::dvec4(index, 1.0)) - camera.position;
+    return camera.orthographic ? glm::dot(axis, toVoxel) : glm::length(toVoxel);
+  };
+  const double middle = distance(0.5 * glm::dvec3(volume.dimensions - 1));
+  const glm::uvec3 n(volume.dimensions);
+  struct Entry {
+    float distance;
+    std::uint32_t voxel;
+  };
+  std::vector<Entry> entries;
+  for (const std::uint32_t voxel : voxels) {
+    const glm::dvec3 index(voxel % n.x, voxel / n.x % n.y, voxel / n.x / n.y);
+    entries.push_back({float(distance(index) - middle), voxel});
+  }
+  std::ranges::stable_sort(entries, std::ranges::greater(), &Entry::distance);
+  std::vector<std::uint32_t> sorted;
+  for (const Entry& entry : entries) sorted.push_back(entry.voxel);
+  return sorted;
+}
+
+Image referenceSortedPicture(const Volume& volume, const Classification& classification, const Camera& camera,
+                             const FrameSettings& settings, std::span<const std::uint32_t> voxels) {
+  const SplatProjector projector(volume, camera, settings.size);
+  std::vector<BlendedPixel> blended(std::size_t(settings.size.x) * std::size_t(settings.size.y));
+  for (const std::uint32_t voxel : referenceBackToFront(volume, camera, voxels)) {
+    const std::optional<ProjectedSplat> splat = projector.project(voxel);
+    if (!splat) continue;
+    const ClassifiedVoxel material = classify(classification, volume.values[voxel]);
+    const double opacity = projector.opacity(*splat, material.extinction);
+    projector.forEachPixel(*splat, [&](std::size_t pixel, double omega) {
+      const double alpha = std::min(opacity * omega, 1.0);
+      BlendedPixel& behind = blended[pixel];
+      behind.color = alpha * glm::dvec4(material.color, 1.0) + (1.0 - alpha) * behind.color;
+      behind.distance = alpha * splat->distance + (1.0 - alpha) * behind.distance;
+    });
+  }
+  Image image;
+  image.size = settings.size;
+  for (const BlendedPixel& pixel : blended) {
+    image.pixels.emplace_back(pixel.color);
+    if (settings.depth)
+      image.depth.push_back(pixel.color.a > 0.0 ? float(pixel.distance / pixel.color.a)
+                                                : std::numeric_limits<float>::infinity());
+  }
+  return image;
+}
+
+}  // namespace freevoxels

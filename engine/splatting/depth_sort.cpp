@@ -1,0 +1,49 @@
+#include "engine/splatting/depth_sort.h"
+
+#include <array>
+
+#include "embedded/depth_key.h"
+#include "shaders/interface.h"
+
+namespace freevoxels {
+
+namespace {
+
+shader::DepthKeyPush depthKeyPush(const DeviceVolume& volume, const VisibleVoxels& visible,
+                                  const Camera& camera) {
+  const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
+  const glm::dvec3 eyeToMiddle =
+      camera.orthographic ? glm::normalize(camera.lookAt - camera.position)
+                          : glm::dvec3(volume.indexToWorld * glm::dvec4(middle, 1.0)) - camera.position;
+  return {.indexToWorld = glm::dmat3(volume.indexToWorld),
+          .middle = middle,
+          .eyeToMiddle = eyeToMiddle,
+          .eyeDistance = float(glm::length(eyeToMiddle)),
+          .orthographic = camera.orthographic ? 1 : 0,
+          .rowPitch = volume.layout.rowPitch,
+          .rows = volume.layout.dimensions.y,
+          .chunkCount = visible.chunkCount};
+}
+
+}  // namespace
+
+DepthSort::DepthSort(const Device& device, const DeviceVolume& volume)
+    : keys_(makeComputePipeline(device, {depth_key_spv, "depth keys"},
+                                {.bindings = std::vector(5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                                 .pushConstantBytes = sizeof(shader::DepthKeyPush)},
+                                {shader::kSortThreads, 1, 1})),
+      sort_(device),
+      pairs_(makeSortPairs(device, volume.activeVoxels)) {}
+
+void DepthSort::record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible,
+                       const Camera& camera) const {
+  constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  const std::array<Binding, 5> keys{&visible.indices, &visible.chunks, &pairs_.count, &pairs_.keys,
+                                    &pairs_.values};
+  commands.beginPass("depth sort");
+  commands.dispatchLinear(keys_, keys, depthKeyPush(volume, visible, camera), pairs_.capacity);
+  commands.barrier(kCompute, kCompute);
+  sort_.record(commands, pairs_);
+}
+
+}  // namespace freevoxels

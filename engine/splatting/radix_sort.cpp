@@ -1,0 +1,70 @@
+#include "engine/splatting/radix_sort.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "embedded/radix_count.h"
+#include "embedded/radix_scan.h"
+#include "embedded/radix_scatter.h"
+#include "shaders/interface.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+constexpr int kThreads = shader::kSortGroups * shader::kSortThreads;
+static_assert(32 / shader::kSortBits % 2 == 0, "the last pass must end in SortPairs::keys and values");
+
+Pipeline makePass(const Device& device, ShaderCode code, std::size_t buffers) {
+  return makeComputePipeline(device, code,
+                             {.bindings = std::vector(buffers, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                              .pushConstantBytes = sizeof(shader::RadixPush)},
+                             {shader::kSortThreads, 1, 1});
+}
+
+}  // namespace
+
+SortPairs makeSortPairs(const Device& device, std::uint64_t capacity) {
+  SortPairs pairs;
+  pairs.capacity = std::max<std::uint64_t>(capacity, 1);
+  const auto uints = [&](std::uint64_t count, const char* name) {
+    return Buffer(device, count * sizeof(std::uint32_t), MemoryUse::Device, name);
+  };
+  pairs.count = uints(1, "pair count");
+  pairs.keys = uints(pairs.capacity, "sort keys");
+  pairs.values = uints(pairs.capacity, "sort values");
+  pairs.spareKeys = uints(pairs.capacity, "spare sort keys");
+  pairs.spareValues = uints(pairs.capacity, "spare sort values");
+  pairs.offsets = uints(std::uint64_t(shader::kSortGroups) * shader::kSortDigits, "sort offsets");
+  return pairs;
+}
+
+RadixSort::RadixSort(const Device& device)
+    : count_(makePass(device, {radix_count_spv, "radix count"}, 3)),
+      scan_(makePass(device, {radix_scan_spv, "radix scan"}, 1)),
+      scatter_(makePass(device, {radix_scatter_spv, "radix scatter"}, 6)) {}
+
+void RadixSort::record(Commands& commands, const SortPairs& pairs) const {
+  const Buffer *keys = &pairs.keys, *values = &pairs.values;
+  const Buffer *sortedKeys = &pairs.spareKeys, *sortedValues = &pairs.spareValues;
+  for (std::uint32_t shift = 0; shift < 32; shift += shader::kSortBits) {
+    const shader::RadixPush push{shift};
+    const std::array<Binding, 3> count{&pairs.count, keys, &pairs.offsets};
+    const std::array<Binding, 1> scan{&pairs.offsets};
+    const std::array<Binding, 6> scatter{&pairs.count,   keys,       values,
+                                         &pairs.offsets, sortedKeys, sortedValues};
+    commands.dispatch(count_, count, push, {kThreads, 1, 1});
+    commands.barrier(kCompute, kCompute);
+    commands.dispatch(scan_, scan, push, {shader::kSortThreads, 1, 1});
+    commands.barrier(kCompute, kCompute);
+    commands.dispatch(scatter_, scatter, push, {kThreads, 1, 1});
+    commands.barrier(kCompute, kCompute);
+    std::swap(keys, sortedKeys);
+    std::swap(values, sortedValues);
+  }
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,35 @@
+#pragma once
+// Sorting of key-value pairs on the device: least significant digit first, eight bits a pass, stable.
+
+#include <cstdint>
+
+#include "engine/vulkan/buffer.h"
+#include "engine/vulkan/commands.h"
+
+namespace freevoxels {
+
+/// Pairs to sort, and the room that it takes: 16 bytes a pair.
+struct SortPairs {
+  Buffer count;                   ///< one uint, at most `capacity`; the device may write it
+  Buffer keys, values;            ///< uint; sorted in place
+  Buffer spareKeys, spareValues;  ///< uint
+  Buffer offsets;                 ///< uint [kSortGroups][kSortDigits]
+  std::uint64_t capacity = 0;     ///< pairs
+};
+
+/// `capacity` of 0 counts as 1.
+SortPairs makeSortPairs(const Device& device, std::uint64_t capacity);
+
+/// COMPUTE radix_count.comp, radix_scan.comp, radix_scatter.comp, for each of a key's four digits
+class RadixSort {
+ public:
+  explicit RadixSort(const Device& device);
+  /// Ascending keys; pairs with equal keys keep their order. Count, keys and values must be visible to
+  /// compute; leaves them so.
+  void record(Commands& commands, const SortPairs& pairs) const;
+
+ private:
+  Pipeline count_, scan_, scatter_;
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,55 @@
+#version 460
+// Third of a digit's three passes: every pair goes to its place, pairs of one digit in the order they are in.
+// A bit mask a digit says which threads of the tile hold it; a pair's rank is the bits before its own.
+#extension GL_GOOGLE_include_directive : require
+#include "interface.h"
+
+layout(local_size_x = kSortThreads) in;
+layout(scalar, push_constant) uniform Push { RadixPush push; };
+layout(scalar, binding = 0) readonly buffer Count { uint count; };
+layout(scalar, binding = 1) readonly buffer Keys { uint keys[]; };
+layout(scalar, binding = 2) readonly buffer Values { uint values[]; };
+layout(scalar, binding = 3) readonly buffer Offsets { uint offsets[]; };  // [group][digit]
+layout(scalar, binding = 4) writeonly buffer SortedKeys { uint sortedKeys[]; };
+layout(scalar, binding = 5) writeonly buffer SortedValues { uint sortedValues[]; };
+#include "radix_stretch.glsl"
+
+const uint kWords = kSortThreads / 32;
+shared uint next[kSortDigits];  // where the stretch's next pair with this digit goes
+shared uint masks[kWords][kSortDigits];
+
+void main() {
+  const uint thread = gl_LocalInvocationIndex;
+  const uint word = thread / 32, bit = thread % 32;
+  next[thread] = offsets[gl_WorkGroupID.x * kSortDigits + thread];
+  for (uint w = 0; w < kWords; ++w) masks[w][thread] = 0;
+  barrier();
+
+  const uint last = stretchLast();
+  for (uint tile = stretchFirst(); tile < last; tile += kSortThreads) {
+    const uint i = tile + thread;
+    const bool mine = i < last;
+    const uint key = mine ? keys[i] : 0;
+    const uint digit = (key >> push.shift) & (kSortDigits - 1);
+    if (mine) atomicOr(masks[word][digit], 1u << bit);
+    barrier();
+
+    uint rank = 0, inTile = 0;
+    if (mine) {
+      for (uint w = 0; w < kWords; ++w) {
+        const uint mask = masks[w][digit];
+        inTile += bitCount(mask);
+        rank += w < word ? bitCount(mask) : w == word ? bitCount(mask & ((1u << bit) - 1)) : 0;
+      }
+      sortedKeys[next[digit] + rank] = key;
+      sortedValues[next[digit] + rank] = values[i];
+    }
+    barrier();
+
+    if (mine && rank + 1 == inTile) {
+      next[digit] += inTile;
+      for (uint w = 0; w < kWords; ++w) masks[w][digit] = 0;
+    }
+    barrier();
+  }
+}

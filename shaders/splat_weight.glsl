@@ -1,0 +1,32 @@
+// The footprint on the pixel's own ray, which is exact for perspective and for any voxel shape. Included by
+// the splats' fragment shaders, after interface.h.
+
+layout(scalar, push_constant) uniform Push { SplatPush push; };
+
+layout(location = 0) flat in vec4 colorEnergy;
+layout(location = 1) flat in vec4 conicDepth;
+layout(location = 2) flat in vec3 centerDistance;
+
+// |D|² at p from the middle of the image: linear . (1, x, y) + squares . (x², xy, y²).
+float rayLength2At(vec2 p, vec3 linear, vec3 squares) {
+  return linear.x + p.x * (linear.y + squares.x * p.x) + p.y * (linear.z + squares.y * p.x + squares.z * p.y);
+}
+
+float rayLength2() {
+  return rayLength2At(gl_FragCoord.xy - push.imageMiddle, push.rayLength2, push.rayLength2Squares);
+}
+
+// World length of the pixel's ray per index length, from rayLength2().
+float worldPerIndex(float length2) {
+  const vec2 p = gl_FragCoord.xy - push.imageMiddle;
+  return sqrt(rayLength2At(p, push.worldLength2, push.worldLength2Squares) / length2);
+}
+
+// f(r) without its peak.
+float splatWeight(float length2) {
+  const vec2 d = gl_FragCoord.xy - centerDistance.xy;
+  const vec3 conic = conicDepth.xyz;
+  const float r2 = (d.x * (conic.x * d.x + 2.0 * conic.y * d.y) + conic.z * d.y * d.y) / length2;
+  const float w = max(1.0 - r2, 0.0);
+  return (w * w) * (w * w);
+}
