@@ -1,7 +1,7 @@
 #include "engine/renderer.h"
 
 #include <algorithm>
-#include <cstring>
+#include <optional>
 #include <span>
 
 #include "engine/attenuation/attenuation_table.h"
@@ -9,8 +9,10 @@
 #include "engine/splatting/depth_sort.h"
 #include "engine/splatting/resolve_pass.h"
 #include "engine/splatting/splat_pass.h"
+#include "engine/splatting/sums_readback.h"
 #include "engine/splatting/visible_voxels.h"
 #include "engine/volume/device_volume.h"
+#include "engine/vulkan/target_readback.h"
 
 namespace freevoxels {
 
@@ -42,26 +44,6 @@ void checkFits(const Device& device, glm::ivec3 dimensions) {
          device.description().memoryBytes >> 20);
 }
 
-/// Copies a target to the host through a read-back buffer; recorded with the frame, read after it.
-class TargetReadback {
- public:
-  TargetReadback(const Device& device, Commands& commands, const RenderTarget& target,
-                 std::size_t bytesPerPixel)
-      : buffer_(device, std::uint64_t(target.size().x) * std::uint64_t(target.size().y) * bytesPerPixel,
-                MemoryUse::Readback, "picture") {
-    commands.copy(target, buffer_);
-  }
-  template <typename Pixel>
-  std::vector<Pixel> read() const {
-    std::vector<Pixel> pixels(buffer_.bytes() / sizeof(Pixel));
-    std::memcpy(pixels.data(), buffer_.mapped(), buffer_.bytes());
-    return pixels;
-  }
-
- private:
-  Buffer buffer_;
-};
-
 }  // namespace
 
 VolumeMemory volumeMemory(glm::ivec3 dimensions) {
@@ -87,7 +69,31 @@ struct Renderer::State {
   std::unique_ptr<ResolvePass> resolve;
   std::unique_ptr<DepthSort> sort;
   std::vector<StageTime> buildTimes, frameTimes;
+
+  struct Frame {
+    FrameConstants constants;
+    SplatTargets targets;
+  };
+  Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings);
 };
+
+/// Up to the sums in the targets; the sorted picture is made there, and has none.
+Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const Camera& camera,
+                                                     const FrameSettings& settings) {
+  frameTimes.clear();
+  const bool sorted = settings.composite == Composite::Sorted;
+  if (!splats || !splats->draws(settings)) {
+    splats = std::make_unique<SplatPass>(device, settings.depth, sorted);
+    resolve = std::make_unique<ResolvePass>(device, settings.depth);
+  }
+  if (sorted && !sort) sort = std::make_unique<DepthSort>(device, volume);
+  Frame frame{.constants = makeFrameConstants(device, volume, tableSettings, camera, settings),
+              .targets = makeTargets(device, settings)};
+  if (sorted) sort->record(commands, volume, visible, camera);
+  splats->record(commands, {volume, table, visible, sorted ? &sort->voxels() : nullptr}, frame.constants,
+                 frame.targets);
+  return frame;
+}
 
 Renderer::Renderer(const Device& device, const Volume& volume, const Classification& classification,
                    const TableSettings& table, const Progress& progress) {
@@ -116,28 +122,14 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   checkCamera(camera);
   checkFrameFits(state_->device, settings);
   State& state = *state_;
-  state.frameTimes.clear();
-  const bool sorted = settings.composite == Composite::Sorted;
-  if (!state.splats || !state.splats->draws(settings)) {
-    state.splats = std::make_unique<SplatPass>(state.device, settings.depth, sorted);
-    state.resolve = std::make_unique<ResolvePass>(state.device, settings.depth);
-  }
-  if (sorted && !state.sort) state.sort = std::make_unique<DepthSort>(state.device, state.volume);
-  const SplatTargets targets = makeTargets(state.device, settings);
-  const FrameConstants frame =
-      makeFrameConstants(state.device, state.volume, state.tableSettings, camera, settings);
-
   Commands commands(state.device);
-  if (sorted) state.sort->record(commands, state.volume, state.visible, camera);
-  state.splats->record(commands,
-                       {state.volume, state.table, state.visible, sorted ? &state.sort->voxels() : nullptr},
-                       frame, targets);
-  if (!sorted || settings.depth) state.resolve->record(commands, frame, targets);
+  const State::Frame frame = state.recordSplats(commands, camera, settings);
+  if (settings.composite != Composite::Sorted || settings.depth)
+    state.resolve->record(commands, frame.constants, frame.targets);
   commands.beginPass("read back");
-  const TargetReadback color(state.device, commands, targets.colorEnergy, sizeof(glm::vec4));
-  std::unique_ptr<TargetReadback> depth;
-  if (settings.depth)
-    depth = std::make_unique<TargetReadback>(state.device, commands, targets.distance, sizeof(float));
+  const TargetReadback color(state.device, commands, frame.targets.colorEnergy);
+  std::optional<TargetReadback> depth;
+  if (settings.depth) depth.emplace(state.device, commands, frame.targets.distance);
   commands.submitAndWait(progress);
   state.frameTimes = commands.times();
 
@@ -145,6 +137,20 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   return {.size = settings.size,
           .pixels = color.read<glm::vec4>(),
           .depth = depth ? depth->read<float>() : std::vector<float>()};
+}
+
+std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSettings& settings) {
+  FV_CHECK_LT(int(settings.composite), int(Composite::Sorted));
+  checkCamera(camera);
+  checkFrameFits(state_->device, settings);
+  State& state = *state_;
+  Commands commands(state.device);
+  const State::Frame frame = state.recordSplats(commands, camera, settings);
+  commands.beginPass("read back");
+  const SumsReadback sums(state.device, commands, frame.targets);
+  commands.submitAndWait();
+  state.frameTimes = commands.times();
+  return sums.read(frame.constants);
 }
 
 std::vector<StageTime> Renderer::timings() const {
@@ -157,16 +163,20 @@ std::uint64_t Renderer::visibleVoxelCount() const {
   return downloadVisibleCount(state_->device, state_->visible);
 }
 
+std::vector<float> Renderer::downloadExtinction() const {
+  const GridLayout& layout = state_->volume.layout;
+  std::vector<float> padded(layout.paddedVoxels());
+  download(state_->device, state_->volume.extinction, std::as_writable_bytes(std::span(padded)));
+  return layout.withoutPadding(padded);
+}
+
 std::vector<std::vector<std::uint8_t>> Renderer::downloadTable() const {
   return freevoxels::downloadTable(state_->device, state_->volume.layout, state_->table);
 }
 
 std::vector<std::uint32_t> Renderer::downloadVisibleVoxels() const {
-  const GridLayout& layout = state_->volume.layout;
-  std::vector<std::uint32_t> voxels(visibleVoxelCount());
-  download(state_->device, state_->visible.indices, std::as_writable_bytes(std::span(voxels)));
-  for (std::uint32_t& voxel : voxels)
-    voxel -= voxel / std::uint32_t(layout.rowPitch) * std::uint32_t(layout.rowPitch - layout.dimensions.x);
+  std::vector<std::uint32_t> voxels = freevoxels::downloadVisibleVoxels(state_->device, state_->visible);
+  for (std::uint32_t& voxel : voxels) voxel = state_->volume.layout.unpaddedIndex(voxel);
   return voxels;
 }
 

@@ -9,6 +9,7 @@
 #include "engine/image/image.h"
 #include "engine/splatting/camera.h"
 #include "engine/splatting/render_settings.h"
+#include "engine/splatting/splat_sums.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 #include "engine/vulkan/device.h"
@@ -40,11 +41,17 @@ class Renderer {
 
   Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
 
-  /// Of the constructor and of the last render, in order.
+  /// One a pixel, row 0 is the top: what render() resolves. They do not depend on `settings.composite`,
+  /// which must not be Sorted. Sums of the parts of a volume add up to those of the whole.
+  std::vector<SplatSums> renderSums(const Camera& camera, const FrameSettings& settings);
+
+  /// Of the constructor and of the last frame, in order.
   std::vector<StageTime> timings() const;
-  /// How many voxels the last render drew.
+  /// How many voxels the last frame drew.
   std::uint64_t visibleVoxelCount() const;
-  /// Bytes [direction][voxel], voxels x fastest without padding: for tests and validation.
+  /// Per world unit, voxels x fastest without padding: for tests and validation, as the next two.
+  std::vector<float> downloadExtinction() const;
+  /// Bytes [direction][voxel], voxels x fastest without padding.
   std::vector<std::vector<std::uint8_t>> downloadTable() const;
   /// Indices of the visible voxels, into Volume::values, in the order they are drawn.
   std::vector<std::uint32_t> downloadVisibleVoxels() const;

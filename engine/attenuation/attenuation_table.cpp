@@ -131,14 +131,11 @@ void AttenuationSweep::recordBundles(Commands& commands, const DeviceVolume& vol
 
 std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const GridLayout& layout,
                                                      const AttenuationTable& table) {
-  const std::size_t width = std::size_t(layout.dimensions.x), pitch = std::size_t(layout.rowPitch);
-  const std::size_t rows = layout.paddedVoxels() / pitch;
   std::vector<std::uint8_t> padded(layout.paddedVoxels());
-  std::vector<std::vector<std::uint8_t>> result(kDirectionCount, std::vector<std::uint8_t>(rows * width));
-  for (std::size_t d = 0; d < kDirectionCount; ++d) {
-    download(device, table.planes[d], std::as_writable_bytes(std::span(padded)));
-    for (std::size_t row = 0; row < rows; ++row)
-      std::copy_n(padded.data() + row * pitch, width, result[d].data() + row * width);
+  std::vector<std::vector<std::uint8_t>> result;
+  for (const Buffer& plane : table.planes) {
+    download(device, plane, std::as_writable_bytes(std::span(padded)));
+    result.push_back(layout.withoutPadding(padded));
   }
   return result;
 }

@@ -19,7 +19,7 @@ enum class ExitCode : int {
   Output = 4,
   Device = 5,
   OutOfMemory = 6,
-  Comparison = 7  ///< freevoxels compare --fail-above: the pictures differ more than was allowed
+  Comparison = 7  ///< not as it should be: compare --fail-above, or a check of freevoxels-validate
 };
 
 class Error : public std::runtime_error {

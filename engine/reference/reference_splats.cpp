@@ -11,6 +11,7 @@
 #include "engine/core/error.h"
 #include "engine/reference/projected_splats.h"
 #include "engine/reference/reference_depth.h"
+#include "engine/reference/reference_table.h"
 
 namespace freevoxels {
 
@@ -24,11 +25,12 @@ struct DepthToEye {
 
 class SplatSummer {
  public:
-  SplatSummer(const Volume& volume, const Classification& classification,
+  SplatSummer(const Volume& volume, const Classification& classification, std::span<const double> extinction,
               const std::vector<std::vector<std::uint8_t>>& table, const TableSettings& tableSettings,
               const Camera& camera, const FrameSettings& settings)
       : volume_(volume),
         classification_(classification),
+        extinction_(extinction),
         settings_(settings),
         depth_(volume, table, tableSettings, settings.attenuation),
         projector_(volume, camera, settings.size),
@@ -42,6 +44,7 @@ class SplatSummer {
 
   const Volume& volume_;
   const Classification& classification_;
+  const std::span<const double> extinction_;
   const FrameSettings& settings_;
   const ReferenceDepth depth_;
   const SplatProjector projector_;
@@ -66,16 +69,17 @@ DepthToEye SplatSummer::depthToEye(std::uint32_t voxel, const ProjectedSplat& sp
 void SplatSummer::add(std::uint32_t voxel) {
   const std::optional<ProjectedSplat> splat = projector_.project(voxel);
   if (!splat) return;
-  const ClassifiedVoxel material = classify(classification_, volume_.values[voxel]);
-  const DepthToEye depth = depthToEye(voxel, *splat, material.extinction);
-  const double opacity = projector_.opacity(*splat, material.extinction);
+  const double sigma = extinction_[voxel];
+  const glm::dvec3 albedo = classify(classification_, volume_.values[voxel]).color;
+  const DepthToEye depth = depthToEye(voxel, *splat, sigma);
+  const double opacity = projector_.opacity(*splat, sigma);
   projector_.forEachPixel(*splat, [&](std::size_t pixel, glm::dvec2 offset, double omega) {
     SplatSums& sums = sums_[pixel];
     const double inFront = std::max(depth.centre + glm::dot(depth.perPixel, offset), 0.0);
     const double energy = opacity * std::exp(-inFront) * omega;
-    sums.color += energy * material.color;
+    sums.color += energy * albedo;
     sums.energy += energy;
-    sums.depth += material.extinction * omega;
+    sums.depth += sigma * omega;
     sums.distance += energy * splat->distance;
   });
 }
@@ -87,7 +91,18 @@ std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classifica
                                           const TableSettings& tableSettings, const Camera& camera,
                                           const FrameSettings& settings,
                                           std::span<const std::uint32_t> voxels) {
-  SplatSummer summer(volume, classification, table, tableSettings, camera, settings);
+  return referenceSplatSums(volume, classification, referenceExtinction(volume, classification), table,
+                            tableSettings, camera, settings, voxels);
+}
+
+std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classification& classification,
+                                          std::span<const double> extinction,
+                                          const std::vector<std::vector<std::uint8_t>>& table,
+                                          const TableSettings& tableSettings, const Camera& camera,
+                                          const FrameSettings& settings,
+                                          std::span<const std::uint32_t> voxels) {
+  FV_CHECK_EQ(extinction.size(), volume.voxelCount());
+  SplatSummer summer(volume, classification, extinction, table, tableSettings, camera, settings);
   for (const std::uint32_t voxel : voxels) {
     FV_CHECK_LT(voxel, volume.voxelCount());
     summer.add(voxel);

@@ -11,22 +11,23 @@
 #include "engine/image/image.h"
 #include "engine/splatting/camera.h"
 #include "engine/splatting/render_settings.h"
+#include "engine/splatting/splat_sums.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
 
-/// The sums of one pixel, before the resolve. Additive over any partition of the voxels.
-struct SplatSums {
-  glm::dvec3 color{0.0};  ///< C
-  double energy = 0.0;    ///< E
-  double depth = 0.0;     ///< T, optical depth along the pixel's ray
-  double distance = 0.0;  ///< sum of e_v times the voxel's distance along the viewing axis
-};
-
 /// Sums over the voxels listed (indices into Volume::values), in that order. `table` holds bytes
 /// [direction][voxel].
 std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classification& classification,
+                                          const std::vector<std::vector<std::uint8_t>>& table,
+                                          const TableSettings& tableSettings, const Camera& camera,
+                                          const FrameSettings& settings,
+                                          std::span<const std::uint32_t> voxels);
+
+/// The same with the extinction of every voxel given: the classification only colours.
+std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classification& classification,
+                                          std::span<const double> extinction,
                                           const std::vector<std::vector<std::uint8_t>>& table,
                                           const TableSettings& tableSettings, const Camera& camera,
                                           const FrameSettings& settings,

@@ -3,6 +3,8 @@
 
 #include "engine/reference/reference_table.h"
 
+#include <tbb/parallel_for.h>
+
 #include "engine/core/error.h"
 
 namespace freevoxels {
@@ -45,13 +47,13 @@ std::vector<double> referenceOpticalDepth(const Volume& volume, const std::vecto
 std::vector<std::vector<std::uint8_t>> referenceTable(const Volume& volume,
                                                       const std::vector<double>& extinction,
                                                       AttenuationCode code, bool pathLengthCorrection) {
-  std::vector<std::vector<std::uint8_t>> table;
-  for (int direction = 0; direction < kDirectionCount; ++direction) {
-    std::vector<std::uint8_t>& bytes = table.emplace_back();
+  std::vector<std::vector<std::uint8_t>> table(kDirectionCount);
+  tbb::parallel_for(0, kDirectionCount, [&](int direction) {
+    std::vector<std::uint8_t>& bytes = table[std::size_t(direction)];
     bytes.reserve(volume.voxelCount());
     for (const double depth : referenceOpticalDepth(volume, extinction, direction, pathLengthCorrection))
       bytes.push_back(std::uint8_t(encodeOpticalDepth(code, depth)));
-  }
+  });
   return table;
 }
 

@@ -77,4 +77,10 @@ std::uint64_t downloadVisibleCount(const Device& device, const VisibleVoxels& vi
   return total;
 }
 
+std::vector<std::uint32_t> downloadVisibleVoxels(const Device& device, const VisibleVoxels& visible) {
+  std::vector<std::uint32_t> voxels(downloadVisibleCount(device, visible));
+  download(device, visible.indices, std::as_writable_bytes(std::span(voxels)));
+  return voxels;
+}
+
 }  // namespace freevoxels

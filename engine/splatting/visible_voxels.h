@@ -2,6 +2,9 @@
 // The list of voxels that have something to draw, in ascending order, made on the device and never read back
 // for drawing.
 
+#include <cstdint>
+#include <vector>
+
 #include "engine/volume/device_volume.h"
 
 namespace freevoxels {
@@ -27,5 +30,8 @@ class CompactionPass {
 
 /// Sum of the chunks' splat counts. Reads back.
 std::uint64_t downloadVisibleCount(const Device& device, const VisibleVoxels& visible);
+
+/// The list: padded indices. Reads back.
+std::vector<std::uint32_t> downloadVisibleVoxels(const Device& device, const VisibleVoxels& visible);
 
 }  // namespace freevoxels

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <vector>
 
 #include "engine/core/stages.h"
 #include "engine/volume/classification.h"
@@ -23,6 +24,18 @@ struct GridLayout {
   /// Voxels with the padding.
   std::uint64_t paddedVoxels() const {
     return std::uint64_t(rowPitch) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z);
+  }
+  /// Of a voxel that is no padding: its index in Volume::values.
+  std::uint32_t unpaddedIndex(std::uint32_t padded) const {
+    return padded - padded / std::uint32_t(rowPitch) * std::uint32_t(rowPitch - dimensions.x);
+  }
+  template <typename Value>
+  std::vector<Value> withoutPadding(const std::vector<Value>& padded) const {
+    std::vector<Value> values;
+    values.reserve(padded.size() / std::size_t(rowPitch) * std::size_t(dimensions.x));
+    for (auto row = padded.begin(); row != padded.end(); row += rowPitch)
+      values.insert(values.end(), row, row + dimensions.x);
+    return values;
   }
 };
 

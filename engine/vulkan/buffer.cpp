@@ -110,6 +110,7 @@ void upload(const Device& device, const Buffer& buffer, std::span<const std::byt
 
 void download(const Device& device, const Buffer& buffer, std::span<std::byte> data) {
   FV_CHECK_LE(data.size(), buffer.bytes());
+  if (data.empty()) return;
   if (buffer.mapped() != nullptr) {
     std::memcpy(data.data(), buffer.mapped(), data.size());
     return;

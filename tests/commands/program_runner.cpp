@@ -32,15 +32,15 @@ std::string contents(std::FILE* file) {
   return text;
 }
 
-pid_t start(const Arguments& arguments, int out, int err) {
+pid_t start(const char* program, const Arguments& arguments, int out, int err) {
   const pid_t child = fork();
   if (child != 0) return child;
-  std::vector<char*> argv{const_cast<char*>(FREEVOXELS_PROGRAM)};
+  std::vector<char*> argv{const_cast<char*>(program)};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   dup2(out, STDOUT_FILENO);
   dup2(err, STDERR_FILENO);
-  execv(FREEVOXELS_PROGRAM, argv.data());
+  execv(program, argv.data());
   _exit(127);
 }
 
@@ -52,13 +52,17 @@ int waitFor(pid_t child) {
 
 }  // namespace
 
-ProgramResult runFreevoxels(const Arguments& arguments) {
+ProgramResult runProgramFile(const char* program, const Arguments& arguments) {
   const File out(std::tmpfile()), err(std::tmpfile());
   ProgramResult result;
-  result.exitCode = waitFor(start(arguments, fileno(out.get()), fileno(err.get())));
+  result.exitCode = waitFor(start(program, arguments, fileno(out.get()), fileno(err.get())));
   result.out = contents(out.get());
   result.err = contents(err.get());
   return result;
+}
+
+ProgramResult runFreevoxels(const Arguments& arguments) {
+  return runProgramFile(FREEVOXELS_PROGRAM, arguments);
 }
 
 bool terminalsAvailable() {
@@ -74,7 +78,7 @@ ProgramResult runFreevoxelsOnTerminal(const Arguments& arguments) {
   int terminal = -1, program = -1;
   if (openpty(&terminal, &program, nullptr, nullptr, nullptr) != 0)
     return {.exitCode = 127, .out = "", .err = ""};
-  const pid_t child = start(arguments, fileno(out.get()), program);
+  const pid_t child = start(FREEVOXELS_PROGRAM, arguments, fileno(out.get()), program);
   close(program);
 
   ProgramResult result;
@@ -90,7 +94,7 @@ ProgramResult runFreevoxelsOnTerminal(const Arguments& arguments) {
 
 ProgramResult runAndInterrupt(const Arguments& arguments, int signal, int milliseconds) {
   const File out(std::tmpfile()), err(std::tmpfile());
-  const pid_t child = start(arguments, fileno(out.get()), fileno(err.get()));
+  const pid_t child = start(FREEVOXELS_PROGRAM, arguments, fileno(out.get()), fileno(err.get()));
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
   if (child > 0) kill(child, signal);
   ProgramResult result;

@@ -18,6 +18,8 @@ struct ProgramResult {
 
 using Arguments = std::vector<std::string>;
 
+/// Another program than freevoxels, by its path.
+ProgramResult runProgramFile(const char* program, const Arguments& arguments);
 ProgramResult runFreevoxels(const Arguments& arguments);
 
 /// Whether this machine makes pseudo-terminals: some containers do not.

@@ -3,6 +3,7 @@
 #include "engine/splatting/depth_sort.h"
 
 #include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
 #include <numeric>
 #include <random>
 #include <span>

@@ -15,52 +15,6 @@ namespace {
 
 using RendererTest = DeviceTest;
 
-/// A homogeneous box, exactly.
-struct BoxPicture {
-  Image image;                 ///< 1 - exp(-sigma * chord), averaged over 4x4 rays a pixel
-  std::vector<bool> interior;  ///< pixels whose rays enter and leave away from the box's edges
-};
-
-BoxPicture boxPicture(const Volume& volume, double sigma, glm::vec3 color, const Camera& camera,
-                      glm::ivec2 size) {
-  const PixelRays rays = pixelRays(camera, size, volume.indexToWorld);
-  const glm::dvec3 low(-0.5), high = glm::dvec3(volume.dimensions) - 0.5;
-  const std::size_t pixels = std::size_t(size.x) * std::size_t(size.y);
-  BoxPicture box{{.size = size, .pixels = std::vector<glm::vec4>(pixels), .depth = {}},
-                 std::vector<bool>(pixels)};
-  // Until the ray is 2 voxels inside the face at `p` it stays 2 voxels away from the others.
-  const auto awayFromEdges = [&](glm::dvec3 p, glm::dvec3 direction) {
-    const glm::dvec3 depth = glm::min(p - low, high - p), speed = glm::abs(direction);
-    const int face = depth.x <= depth.y && depth.x <= depth.z ? 0 : depth.y <= depth.z ? 1 : 2;
-    bool away = true;
-    for (int axis = 0; axis < 3; ++axis)
-      away = away && (axis == face || depth[axis] >= 2.0 + 2.0 * speed[axis] / speed[face]);
-    return away;
-  };
-  constexpr int kSamples = 4;
-  for (std::size_t i = 0; i < pixels; ++i) {
-    double alpha = 0.0;
-    bool interior = true;
-    for (int sample = 0; sample < kSamples * kSamples; ++sample) {
-      const double x = double(i % std::size_t(size.x)) + (sample % kSamples + 0.5) / kSamples;
-      const double y = double(i / std::size_t(size.x)) + (sample / kSamples + 0.5) / kSamples;
-      const glm::dvec3 origin = rays.origin + x * rays.originX + y * rays.originY;
-      const glm::dvec3 direction = rays.direction + x * rays.directionX + y * rays.directionY;
-      const glm::dvec3 a = (low - origin) / direction, b = (high - origin) / direction;
-      const glm::dvec3 near = glm::min(a, b), far = glm::max(a, b);
-      const double enter = std::max({near.x, near.y, near.z}), leave = std::min({far.x, far.y, far.z});
-      const double world = glm::length(glm::dmat3(volume.indexToWorld) * direction);
-      if (leave > enter) alpha += -std::expm1(-sigma * (leave - enter) * world);
-      interior = interior && leave > enter && awayFromEdges(origin + enter * direction, direction) &&
-                 awayFromEdges(origin + leave * direction, direction);
-    }
-    alpha /= kSamples * kSamples;
-    box.image.pixels[i] = glm::vec4(glm::dvec4(glm::dvec3(color) * alpha, alpha));
-    box.interior[i] = interior;
-  }
-  return box;
-}
-
 /// A smooth kernel cannot draw the box's sharp edges, whose silhouettes are all that limits the whole
 /// picture: most where a face is seen edge-on. Away from them the picture is the closed form.
 TEST_F(RendererTest, HomogeneousCubeIsBeerLambertFromAnyDirection) {

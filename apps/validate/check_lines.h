@@ -1,0 +1,17 @@
+#pragma once
+// A section's checks for a person at a terminal.
+
+#include <string>
+#include <vector>
+
+#include "engine/validation/report.h"
+
+namespace freevoxels::validate {
+
+/// The section's title, then a line a check: verdict, name, figure, bound, unit, where it is worst.
+std::vector<std::string> checkLines(const ReportSection& section);
+
+/// "1.2e-05 > 1e-05 relative, pixel (1, 2)"
+std::string figureAgainstBound(const Check& check);
+
+}  // namespace freevoxels::validate

@@ -1,0 +1,112 @@
+// freevoxels-validate: whether this device draws what it should, stage by stage.
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "apps/freevoxels/device_options.h"
+#include "apps/freevoxels/input_options.h"
+#include "apps/freevoxels/program.h"
+#include "apps/freevoxels/progress_line.h"
+#include "apps/validate/check_lines.h"
+#include "apps/validate/section_jobs.h"
+#include "engine/core/error.h"
+
+namespace {
+
+using namespace freevoxels;
+using validate::SectionJob;
+
+void print(const ReportSection& section) {
+  for (const std::string& line : validate::checkLines(section)) fmt::print("{}\n", line);
+  std::fflush(stdout);
+}
+
+Report runAll(const std::vector<SectionJob>& jobs) {
+  ProgressLine line(true);
+  Report report;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    line.begin(fmt::format("{} of {}: {}", i + 1, jobs.size(), jobs[i].name));
+    report.sections.push_back(jobs[i].run());
+    line.erase();
+    print(report.sections.back());
+  }
+  return report;
+}
+
+/// The last line, and the exit code.
+void conclude(const Report& report, double seconds) {
+  std::size_t checks = 0, failed = 0;
+  const Check* first = nullptr;
+  for (const ReportSection& section : report.sections) {
+    checks += section.checks.size();
+    failed += std::size_t(std::ranges::count_if(section.checks, [](const Check& c) { return !c.passed(); }));
+    const auto bad = std::ranges::find_if(section.checks, [](const Check& c) { return !c.passed(); });
+    if (first == nullptr && bad != section.checks.end()) first = &*bad;
+  }
+  fmt::print("{}: {} checks, {} failed, {:.0f} s on {}\n", failed == 0 ? "PASSED" : "FAILED", checks, failed,
+             seconds, report.facts.at("device"));
+  if (first != nullptr)
+    fail(ExitCode::Comparison, "{} of {} checks failed, the first: {}: {}", failed, checks, first->name,
+         validate::figureAgainstBound(*first));
+}
+
+/// Where the report goes, if anywhere.
+struct ReportFiles {
+  std::optional<std::string> html, json;
+
+  void add(CLI::App& app) {
+    addText(app, "--report", "FILE.html", html, "Write the report, pictures included, as one page");
+    addText(app, "--json", "FILE", json, "Write the figures for programs");
+  }
+  /// Before any work.
+  void check(const std::vector<std::string>& inputs) const {
+    std::vector<std::string> files = inputs;
+    for (const auto& file : {html, json})
+      if (file) {
+        checkOutput(*file);
+        files.push_back(*file);
+      }
+    checkDistinct(files);
+  }
+  void write(const Report& report) const {
+    const DeferredInterrupts wholeFiles;
+    if (html) writeHtml(*html, report);
+    if (json) writeJson(*json, report);
+  }
+};
+
+void validateOn(const Device& device, const validate::Extent& extent, const ReportFiles& files) {
+  const auto start = std::chrono::steady_clock::now();
+  Report report = runAll(validate::planSections(device, extent));
+  report.facts = {{"device", device.description().name},
+                  {"driver", device.description().driver},
+                  {"version", programVersion()},
+                  {"extent", extent.quick ? "quick" : "whole"}};
+  files.write(report);
+  conclude(report, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app(
+      "Checks on one device that every stage computes what it should: against double precision on the CPU, "
+      "against closed forms, and that what must not matter does not.",
+      "freevoxels-validate");
+  DeviceOptions device;
+  validate::Extent extent;
+  ReportFiles files;
+  app.add_option("FILE", extent.files, "OpenVDB files to check as well, the middle of those that are large");
+  app.add_flag("--quick", extent.quick, "Small volumes and pictures");
+  addResolution(app, extent.resolution)->description("Voxels along an edge of the procedural volumes");
+  files.add(app);
+  device.add(app);
+  app.footer("Exit codes: 0 all checks passed, 7 some failed, others as of 'freevoxels'.");
+  app.callback([&] {
+    files.check(extent.files);
+    device.withDevice([&](const Device& opened) { validateOn(opened, extent, files); });
+  });
+  return runProgram(app, argc, argv);
+}

@@ -1,0 +1,29 @@
+#pragma once
+// What a validation run does: a list of jobs, each of which makes one section of the report.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/validation/report.h"
+#include "engine/vulkan/device.h"
+
+namespace freevoxels::validate {
+
+struct SectionJob {
+  std::string name;  ///< for the progress line
+  std::function<ReportSection()> run;
+};
+
+struct Extent {
+  bool quick = false;             ///< small volumes and pictures
+  std::optional<int> resolution;  ///< of the procedural volumes, in place of the usual ones
+  std::vector<std::string> files;
+};
+
+/// Closed forms, then stages and invariances of every procedural volume and every file. The files are read at
+/// once, so that one that cannot be fails before any work. `device` has to outlive the jobs.
+std::vector<SectionJob> planSections(const Device& device, const Extent& extent);
+
+}  // namespace freevoxels::validate

@@ -1,0 +1,21 @@
+#pragma once
+// The same field stored along other axes: index space permuted and mirrored, the world as it was.
+
+#include <glm/glm.hpp>
+
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+struct AxisChange {
+  glm::ivec3 axis{0, 1, 2};    ///< new axis i is the old axis axis[i] ...
+  glm::bvec3 mirrored{false};  ///< ... backwards
+
+  /// Of an old direction.
+  glm::ivec3 direction(glm::ivec3 old) const;
+  /// Of an old voxel in a volume that had `dimensions`.
+  glm::ivec3 voxel(glm::ivec3 old, glm::ivec3 dimensions) const;
+  Volume apply(const Volume& volume) const;
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,221 @@
+#include "engine/validation/invariances.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <random>
+
+#include "engine/core/error.h"
+#include "engine/reference/reference_splats.h"
+#include "engine/validation/axis_change.h"
+#include "engine/validation/stage_outputs.h"
+#include "engine/validation/stepped_renderer.h"
+#include "engine/validation/worst.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// Sums of a few hundred 32-bit floats in another order, relative to the largest in the picture.
+constexpr double kOrderTolerance = 1e-5;
+constexpr double kPictureTolerance = 1e-5;
+/// A code may round to either side when a line is swept by another shader; that moves a colour of a pixel
+/// where few voxels mix.
+constexpr double kAxesTolerance = 5e-3;
+
+struct Frame {
+  const Device& device;
+  const ValidationScene& scene;
+  Camera camera;
+  FrameSettings settings;
+};
+
+using Component = double (*)(const SplatSums&);
+constexpr std::array<Component, 5> kComponents{
+    [](const SplatSums& s) { return s.color.r; }, [](const SplatSums& s) { return s.color.g; },
+    [](const SplatSums& s) { return s.color.b; }, [](const SplatSums& s) { return s.energy; },
+    [](const SplatSums& s) { return s.depth; }};
+
+double largestOf(const std::vector<SplatSums>& sums, Component value) {
+  double largest = 0.0;
+  for (const SplatSums& s : sums) largest = std::max(largest, value(s));
+  return largest;
+}
+
+/// Every component relative to its largest in the picture.
+Worst sumsDifference(const std::vector<SplatSums>& a, const std::vector<SplatSums>& b, glm::ivec2 size) {
+  FV_CHECK_EQ(a.size(), b.size());
+  Worst worst;
+  for (const Component value : kComponents) {
+    const double largest = largestOf(a, value);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      const double difference = std::abs(value(a[i]) - value(b[i]));
+      worst.take(difference == 0.0 ? 0.0 : difference / largest, [&] { return pixelText(size, i); });
+    }
+  }
+  return worst;
+}
+
+void checkOrder(const Frame& frame, const SteppedVolume& steps, const std::vector<SplatSums>& whole,
+                ReportSection& section) {
+  const auto compare = [&](const char* name, const std::vector<std::uint32_t>& voxels) {
+    const auto sums = drawVoxels(frame.device, steps, voxels, frame.camera, frame.settings);
+    section.checks.push_back(
+        sumsDifference(whole, sums, frame.settings.size).atMost(kOrderTolerance, name, "relative"));
+  };
+  std::vector<std::uint32_t> voxels = steps.voxels;
+  std::ranges::reverse(voxels);
+  compare("order: drawn backwards", voxels);
+  std::shuffle(voxels.begin(), voxels.end(), std::mt19937(3));
+  compare("order: drawn in random order", voxels);
+}
+
+std::vector<SplatSums> sumOfGroups(const Frame& frame, const SteppedVolume& steps, unsigned groups) {
+  std::vector<std::vector<std::uint32_t>> parts(groups);
+  std::mt19937 generator(groups);
+  for (const std::uint32_t voxel : steps.voxels) parts[generator() % groups].push_back(voxel);
+  std::vector<SplatSums> total(std::size_t(frame.settings.size.x) * std::size_t(frame.settings.size.y));
+  for (const auto& part : parts) {
+    const auto sums = drawVoxels(frame.device, steps, part, frame.camera, frame.settings);
+    for (std::size_t i = 0; i < total.size(); ++i) total[i] += sums[i];
+  }
+  return total;
+}
+
+void checkGroups(const Frame& frame, const SteppedVolume& steps, const Image& picture,
+                 ReportSection& section) {
+  for (const unsigned groups : {2u, 5u}) {
+    const Image added = referenceResolve(sumOfGroups(frame, steps, groups), frame.settings);
+    section.checks.push_back(
+        largestDifference(picture, added)
+            .atMost(kPictureTolerance,
+                    fmt::format("partition: {} random groups, added and resolved once", groups)));
+  }
+}
+
+Check checkRunToRun(const Frame& frame, StageOutputs& first, const TableBytes& table, const Image& picture) {
+  const auto second = deviceStages(frame.device)(frame.scene.volume, frame.scene.classification, {});
+  const TableBytes tableAgain = second->table();
+  Worst worst;
+  for (int d = 0; d < kDirectionCount; ++d)
+    worst.take(table[std::size_t(d)] == tableAgain[std::size_t(d)] ? 0.0 : 1.0,
+               [&] { return "table, " + directionText(d); });
+  for (const Image& again :
+       {first.picture(frame.camera, frame.settings), second->picture(frame.camera, frame.settings)})
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+      worst.take(std::memcmp(&picture.pixels[i], &again.pixels[i], sizeof(glm::vec4)) == 0 ? 0.0 : 1.0,
+                 [&] { return pixelText(frame.settings.size, i); });
+  return worst.atMost(0.0, "run to run: the same bits");
+}
+
+/// Optical depths that a depth8 byte stands for are this far from the byte's own: half a code, and rounding.
+double codeWidth(int byte) {
+  const double next = byte + 0.501;
+  return kMaximumCodedDepth * (next * next - double(byte) * byte) / (255.0 * 255.0);
+}
+
+double codedDepth(int byte) {
+  return kMaximumCodedDepth * byte * byte / (255.0 * 255.0);
+}
+
+/// What a voxel sees along d, itself, and what it sees the other way is the whole line, whichever of the
+/// line's voxels is asked.
+Check checkOpposites(const Volume& volume, const std::vector<float>& extinction, const TableBytes& table) {
+  const glm::ivec3 n = volume.dimensions;
+  Worst worst;
+  for (int d = 0; d < kDirectionCount / 2; ++d) {
+    const glm::ivec3 step = directionAt(d);
+    const double length = stepLength(volume.indexToWorld, step, true);
+    const auto& ahead = table[std::size_t(d)];
+    const auto& behind = table[std::size_t(kDirectionCount - 1 - d)];
+    for (int z = 0; z < n.z; ++z)
+      for (int y = 0; y < n.y; ++y)
+        for (int x = 0; x < n.x; ++x) {
+          const glm::ivec3 next = glm::ivec3(x, y, z) + step;
+          if (glm::any(glm::lessThan(next, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(next, n)))
+            continue;
+          const std::size_t v = volume.at(x, y, z), w = volume.at(next.x, next.y, next.z);
+          const std::array<int, 4> bytes{ahead[v], behind[v], ahead[w], behind[w]};
+          if (std::ranges::find(bytes, 255) != bytes.end()) continue;  // 16 or more
+          double allowance = 0.0;
+          for (const int byte : bytes) allowance += codeWidth(byte);
+          const double atV = codedDepth(bytes[0]) + double(extinction[v]) * length + codedDepth(bytes[1]);
+          const double atW = codedDepth(bytes[2]) + double(extinction[w]) * length + codedDepth(bytes[3]);
+          worst.take(std::abs(atV - atW) / allowance,
+                     [&] { return fmt::format("{}, {}", directionText(d), voxelText(volume, v)); });
+        }
+  }
+  return worst.atMost(1.0, "opposite directions: depth of a line from each of its voxels", "of rounding");
+}
+
+Worst changedTableDifference(const Volume& volume, const TableBytes& table, const Volume& changed,
+                             const TableBytes& changedTable, const AxisChange& change) {
+  const glm::ivec3 n = volume.dimensions;
+  Worst worst;
+  for (int d = 0; d < kDirectionCount; ++d) {
+    const glm::ivec3 e = change.direction(directionAt(d));
+    const auto& plane = changedTable[std::size_t(directionIndex(e.x, e.y, e.z))];
+    for (int z = 0; z < n.z; ++z)
+      for (int y = 0; y < n.y; ++y)
+        for (int x = 0; x < n.x; ++x) {
+          const glm::ivec3 w = change.voxel({x, y, z}, n);
+          const std::size_t voxel = volume.at(x, y, z);
+          worst.take(std::abs(int(table[std::size_t(d)][voxel]) - int(plane[changed.at(w.x, w.y, w.z)])),
+                     [&] { return fmt::format("{}, {}", directionText(d), voxelText(volume, voxel)); });
+        }
+  }
+  return worst;
+}
+
+struct NamedChange {
+  const char* name;
+  AxisChange change;
+};
+const std::array<NamedChange, 3> kChanges{
+    {{"mirrored along all axes", {{0, 1, 2}, glm::bvec3(true)}},
+     {"x, y, z stored as y, z, x", {{1, 2, 0}, glm::bvec3(false)}},
+     {"x, y, z stored as z, -y, x", {{2, 1, 0}, {false, true, false}}}}};
+
+void checkAxes(const Frame& frame, const TableBytes& table, const Image& picture, ReportSection& section) {
+  for (const NamedChange& named : kChanges) {
+    const Volume changed = named.change.apply(frame.scene.volume);
+    const auto outputs = deviceStages(frame.device)(changed, frame.scene.classification, {});
+    section.checks.push_back(
+        changedTableDifference(frame.scene.volume, table, changed, outputs->table(), named.change)
+            .atMost(1.0, fmt::format("axes: table, {}", named.name), "codes"));
+    section.checks.push_back(largestDifference(picture, outputs->picture(frame.camera, frame.settings))
+                                 .atMost(kAxesTolerance, fmt::format("axes: picture, {}", named.name)));
+  }
+}
+
+}  // namespace
+
+ReportSection invariances(const Device& device, const ValidationScene& scene, glm::ivec2 size) {
+  ReportSection section{.title = fmt::format("Invariances: {}", scene.name),
+                        .text =
+                            "What must change nothing but rounding: the order in which voxels are drawn, "
+                            "drawing them in groups apart, running again, and the axes that the same "
+                            "field is stored along."};
+  const Frame frame{
+      .device = device,
+      .scene = scene,
+      .camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, double(size.x) / size.y, {}),
+      .settings = {.size = size}};
+  const auto outputs = deviceStages(device)(scene.volume, scene.classification, {});
+  const TableBytes table = outputs->table();
+  const Image picture = outputs->picture(frame.camera, frame.settings);
+  const std::vector<SplatSums> sums = outputs->sums(frame.camera, frame.settings);
+  {
+    const SteppedVolume steps = prepareSteps(device, scene.volume, scene.classification, {});
+    checkOrder(frame, steps, sums, section);
+    checkGroups(frame, steps, picture, section);
+  }
+  section.checks.push_back(checkRunToRun(frame, *outputs, table, picture));
+  section.checks.push_back(checkOpposites(scene.volume, outputs->extinction(), table));
+  checkAxes(frame, table, picture, section);
+  return section;
+}
+
+}  // namespace freevoxels

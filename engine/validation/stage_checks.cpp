@@ -1,0 +1,260 @@
+#include "engine/validation/stage_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+
+#include "engine/core/error.h"
+#include "engine/image/metrics.h"
+#include "engine/reference/reference_splats.h"
+#include "engine/reference/reference_table.h"
+#include "engine/validation/worst.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// A transfer function's -log(1 - alpha) in 32-bit floats loses up to 1 / (1 - kMaximumOpacity) = 4096 units
+/// in the last place of alpha, of 8.3 that are left.
+constexpr double kExtinctionTolerance = 1e-4;
+constexpr double kCodeTolerance = 1.0;
+constexpr double kSumsTolerance = 1e-4;
+constexpr double kPictureTolerance = 1e-5, kDistanceTolerance = 1e-5;
+
+/// An error in a pixel's sum counts relative to the pixel, but to no less than this part of the picture's
+/// largest: at the rim of a single footprint a sum is (1 - r²/R²)⁴ of an r that is nearly R, of which 32-bit
+/// floats keep few digits, and nobody sees any.
+constexpr double kSumsFloor = 5e-2;
+/// A mean distance is compared where the pixel has at least this alpha.
+constexpr float kLeastAlpha = 1e-3f;
+
+struct TableVariant {
+  const char* name;
+  TableSettings settings;
+};
+constexpr std::array<TableVariant, 4> kTables{
+    {{"depth8", {AttenuationCode::Depth8, true}},
+     {"depth8, steps of one length", {AttenuationCode::Depth8, false}},
+     {"linear8", {AttenuationCode::Linear8, true}},
+     {"linear8, steps of one length", {AttenuationCode::Linear8, false}}}};
+
+/// In parallel projection all voxels see the eye in one direction, so that rounding cannot choose another
+/// nearest one.
+struct Method {
+  const char* name;
+  std::size_t table;  ///< of kTables
+  bool orthographic;
+  Composite composite;
+  AttenuationLookup attenuation;
+  bool depth;
+};
+constexpr std::array<Method, 2> kMethods{
+    {{"default", 0, false, Composite::Normalised, AttenuationLookup::Bilinear, true},
+     {"the paper's", 3, true, Composite::Additive, AttenuationLookup::Nearest, false}}};
+
+/// Of one scene and one table variant on the device.
+struct Outcome {
+  const ValidationScene& scene;
+  TableSettings settings;
+  StageOutputs& device;
+  std::vector<double> extinction;
+  TableBytes table;
+  std::vector<std::uint32_t> visible;
+};
+
+double relativeDifference(double value, double reference) {
+  if (value == reference) return 0.0;
+  return reference == 0.0 ? kInfinity : std::abs(value / reference - 1.0);
+}
+
+Check checkExtinction(const Outcome& outcome) {
+  const Volume& volume = outcome.scene.volume;
+  const std::vector<double> reference = referenceExtinction(volume, outcome.scene.classification);
+  FV_CHECK_EQ(outcome.extinction.size(), reference.size());
+  Worst worst;
+  for (std::size_t i = 0; i < reference.size(); ++i)
+    worst.take(relativeDifference(outcome.extinction[i], reference[i]), [&] { return voxelText(volume, i); });
+  return worst.atMost(kExtinctionTolerance, "classify: extinction", "relative");
+}
+
+Check checkVisible(const Outcome& outcome) {
+  const std::vector<std::uint32_t> reference = referenceVisibleVoxels(outcome.extinction);
+  const std::size_t length = std::max(reference.size(), outcome.visible.size());
+  const auto entry = [](const std::vector<std::uint32_t>& list, std::size_t i) {
+    return i < list.size() ? std::optional(list[i]) : std::nullopt;
+  };
+  Check check{.name = "visible voxels: entries that differ", .unit = "entries"};
+  for (std::size_t i = 0; i < length; ++i) {
+    if (entry(reference, i) == entry(outcome.visible, i)) continue;
+    if (check.figure++ == 0.0)
+      check.where = fmt::format("from entry {} on, {}", i,
+                                voxelText(outcome.scene.volume, entry(reference, i).value_or(0)));
+  }
+  return check;
+}
+
+/// One direction of the table.
+struct PlaneDifference {
+  int largest = 0;
+  std::size_t where = 0, differing = 0, bytes = 0;
+
+  std::string text() const {
+    return fmt::format("{} ({:.3g} %)", largest, 100.0 * double(differing) / double(bytes));
+  }
+};
+
+PlaneDifference comparePlanes(const std::vector<std::uint8_t>& plane,
+                              const std::vector<std::uint8_t>& reference) {
+  FV_CHECK_EQ(plane.size(), reference.size());
+  PlaneDifference result{.bytes = plane.size()};
+  for (std::size_t i = 0; i < plane.size(); ++i) {
+    const int difference = std::abs(int(plane[i]) - int(reference[i]));
+    if (difference > 0) ++result.differing;
+    if (difference > result.largest) {
+      result.largest = difference;
+      result.where = i;
+    }
+  }
+  return result;
+}
+
+/// Adds a column to `rows`, which has a row a direction.
+Check checkTable(const Outcome& outcome, const char* name, std::vector<std::vector<std::string>>& rows) {
+  const TableBytes reference = referenceTable(outcome.scene.volume, outcome.extinction, outcome.settings.code,
+                                              outcome.settings.pathLengthCorrection);
+  FV_CHECK_EQ(outcome.table.size(), reference.size());
+  Worst worst;
+  for (int d = 0; d < kDirectionCount; ++d) {
+    const PlaneDifference difference =
+        comparePlanes(outcome.table[std::size_t(d)], reference[std::size_t(d)]);
+    worst.take(difference.largest, [&] {
+      return fmt::format("{}, {}", directionText(d), voxelText(outcome.scene.volume, difference.where));
+    });
+    rows[std::size_t(d)].push_back(difference.text());
+  }
+  return worst.atMost(kCodeTolerance, fmt::format("table: {}", name), "codes");
+}
+
+struct Channel {
+  const char* name;
+  glm::dvec3 (*of)(const SplatSums&);
+};
+constexpr std::array<Channel, 4> kChannels{
+    {{"C", [](const SplatSums& s) { return s.color; }},
+     {"E", [](const SplatSums& s) { return glm::dvec3(s.energy); }},
+     {"T", [](const SplatSums& s) { return glm::dvec3(s.depth); }},
+     {"sum of e z", [](const SplatSums& s) { return glm::dvec3(s.distance); }}}};
+
+/// NaN if any is.
+double largestComponent(glm::dvec3 v) {
+  return std::isnan(v.x + v.y + v.z) ? std::numeric_limits<double>::quiet_NaN() : std::max({v.x, v.y, v.z});
+}
+
+Check checkSums(const std::vector<SplatSums>& sums, const std::vector<SplatSums>& reference,
+                const Channel& channel, glm::ivec2 size, const char* method) {
+  FV_CHECK_EQ(sums.size(), reference.size());
+  double brightest = 0.0;
+  for (const SplatSums& s : reference) brightest = std::max(brightest, largestComponent(channel.of(s)));
+  Worst worst;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    const glm::dvec3 expected = channel.of(reference[i]);
+    const double difference = largestComponent(glm::abs(channel.of(sums[i]) - expected));
+    const double scale = std::max(largestComponent(expected), kSumsFloor * brightest);
+    worst.take(difference == 0.0 ? 0.0 : difference / scale, [&] { return pixelText(size, i); });
+  }
+  return worst.atMost(kSumsTolerance, fmt::format("splat sums: {}, {}", channel.name, method), "relative");
+}
+
+Check checkDistance(const Image& picture, const Image& reference, const char* method) {
+  Worst worst;
+  for (std::size_t i = 0; i < picture.depth.size(); ++i)
+    if (reference.pixels[i].a >= kLeastAlpha)
+      worst.take(relativeDifference(double(picture.depth[i]), double(reference.depth[i])),
+                 [&] { return pixelText(picture.size, i); });
+  return worst.atMost(kDistanceTolerance, fmt::format("resolve: distance, {}", method), "relative");
+}
+
+/// The difference, opaque and brightened for the eye.
+Image brightened(const Image& difference, float factor) {
+  Image result = difference;
+  for (glm::vec4& pixel : result.pixels)
+    pixel = glm::vec4(glm::min(factor * glm::vec3(pixel), glm::vec3(1.0f)), 1.0f);
+  return result;
+}
+
+ReportPictures showPictures(const Image& picture, const Image& reference, const char* method) {
+  constexpr float kBrightness = 1e4f;
+  return {.caption = fmt::format("Method: {}", method),
+          .pictures = {{"device", picture},
+                       {"reference, from the device's table", reference},
+                       {fmt::format("difference x {:g}", kBrightness),
+                        brightened(absoluteDifference(picture, reference), kBrightness)}},
+          .background = glm::vec3(0.01f)};
+}
+
+void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, ReportSection& section) {
+  const ValidationScene& scene = outcome.scene;
+  const FrameSettings settings{
+      .size = size, .composite = method.composite, .attenuation = method.attenuation, .depth = method.depth};
+  const Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation,
+                                      double(size.x) / size.y, {.orthographic = method.orthographic});
+  const std::vector<SplatSums> sums = outcome.device.sums(camera, settings);
+  const std::vector<SplatSums> reference =
+      referenceSplatSums(scene.volume, scene.classification, outcome.extinction, outcome.table,
+                         outcome.settings, camera, settings, outcome.visible);
+  for (const Channel& channel : std::span(kChannels).first(method.depth ? 4 : 3))
+    section.checks.push_back(checkSums(sums, reference, channel, size, method.name));
+
+  const Image picture = outcome.device.picture(camera, settings);
+  const Image resolved = referenceResolve(sums, settings);
+  section.checks.push_back(largestDifference(picture, resolved)
+                               .atMost(kPictureTolerance, fmt::format("resolve: RGBA, {}", method.name)));
+  if (method.depth) section.checks.push_back(checkDistance(picture, resolved, method.name));
+  section.pictures.push_back(showPictures(picture, referenceResolve(reference, settings), method.name));
+}
+
+constexpr const char* kExplanation =
+    "Every stage on the device against a double-precision version on the CPU that is given what the device "
+    "made in the stage before. Extinction is relative to the voxel's own; the splat sums are relative to the "
+    "pixel's own, or to 5 % of the picture's largest where that is more.";
+
+}  // namespace
+
+ReportSection stageChecks(const StageMaker& make, const ValidationScene& scene, glm::ivec2 size) {
+  ReportSection section{.title = fmt::format("Stages: {}", scene.name), .text = kExplanation};
+  ReportTable directions{.caption = "Largest difference in codes, and the share of bytes that differ",
+                         .columns = {"direction"},
+                         .rows = {}};
+  for (int d = 0; d < kDirectionCount; ++d) {
+    const glm::ivec3 v = directionAt(d);
+    directions.rows.push_back({fmt::format("{}, {}, {}", v.x, v.y, v.z)});
+  }
+  for (std::size_t variant = 0; variant < kTables.size(); ++variant) {
+    const TableSettings settings = kTables[variant].settings;
+    const auto device = make(scene.volume, scene.classification, settings);
+    const std::vector<float> extinction = device->extinction();
+    const Outcome outcome{.scene = scene,
+                          .settings = settings,
+                          .device = *device,
+                          .extinction = {extinction.begin(), extinction.end()},
+                          .table = device->table(),
+                          .visible = device->visibleVoxels()};
+    if (variant == 0) {
+      section.checks.push_back(checkExtinction(outcome));
+      section.checks.push_back(checkVisible(outcome));
+    }
+    directions.columns.push_back(kTables[variant].name);
+    section.checks.push_back(checkTable(outcome, kTables[variant].name, directions.rows));
+    for (const Method& method : kMethods)
+      if (method.table == variant) checkFrame(outcome, method, size, section);
+  }
+  section.tables.push_back(std::move(directions));
+  return section;
+}
+
+}  // namespace freevoxels

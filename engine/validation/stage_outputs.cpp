@@ -1,0 +1,37 @@
+#include "engine/validation/stage_outputs.h"
+
+#include "engine/renderer.h"
+
+namespace freevoxels {
+
+namespace {
+
+class RendererOutputs : public StageOutputs {
+ public:
+  RendererOutputs(const Device& device, const Volume& volume, const Classification& classification,
+                  const TableSettings& table)
+      : renderer_(device, volume, classification, table) {}
+
+  std::vector<float> extinction() override { return renderer_.downloadExtinction(); }
+  TableBytes table() override { return renderer_.downloadTable(); }
+  std::vector<std::uint32_t> visibleVoxels() override { return renderer_.downloadVisibleVoxels(); }
+  std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
+    return renderer_.renderSums(camera, settings);
+  }
+  Image picture(const Camera& camera, const FrameSettings& settings) override {
+    return renderer_.render(camera, settings);
+  }
+
+ private:
+  Renderer renderer_;
+};
+
+}  // namespace
+
+StageMaker deviceStages(const Device& device) {
+  return [&device](const Volume& volume, const Classification& classification, const TableSettings& table) {
+    return std::make_unique<RendererOutputs>(device, volume, classification, table);
+  };
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,68 @@
+#include "engine/validation/stepped_renderer.h"
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+#include "engine/splatting/sums_readback.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// What visible_scan.comp writes for a list of `count` voxels.
+std::vector<shader::ChunkArguments> chunkArguments(std::size_t count, std::uint32_t chunks) {
+  std::vector<shader::ChunkArguments> arguments;
+  for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
+    const std::size_t first = std::min(count, std::size_t(chunk) * shader::kSplatsPerChunk);
+    const auto splats = std::uint32_t(std::min<std::size_t>(count - first, shader::kSplatsPerChunk));
+    arguments.push_back({.groupsX = (splats + shader::kSplatThreads - 1) / shader::kSplatThreads,
+                         .groupsY = 1,
+                         .groupsZ = 1,
+                         .splatCount = splats,
+                         .vertexCount = splats,
+                         .instanceCount = 1,
+                         .quadVertexCount = 4,
+                         .quadInstanceCount = splats});
+  }
+  return arguments;
+}
+
+}  // namespace
+
+SteppedVolume prepareSteps(const Device& device, const Volume& volume, const Classification& classification,
+                           const TableSettings& table) {
+  SteppedVolume steps{.volume = uploadVolume(device, volume, classification)};
+  steps.table = makeTable(device, steps.volume.layout, table);
+  steps.visible = makeVisibleVoxels(device, steps.volume);
+  const ClassifyPass classify(device);
+  const AttenuationSweep sweep(device, table.code);
+  const CompactionPass compaction(device);
+  Commands commands(device);
+  classify.record(commands, steps.volume, classification);
+  sweep.record(commands, steps.volume, steps.table);
+  compaction.record(commands, steps.volume, steps.visible);
+  commands.submitAndWait();
+  steps.voxels = downloadVisibleVoxels(device, steps.visible);
+  return steps;
+}
+
+std::vector<SplatSums> drawVoxels(const Device& device, const SteppedVolume& steps,
+                                  std::span<const std::uint32_t> voxels, const Camera& camera,
+                                  const FrameSettings& settings) {
+  FV_CHECK_LE(voxels.size_bytes(), steps.visible.indices.bytes());
+  const auto chunks = chunkArguments(voxels.size(), steps.visible.chunkCount);
+  if (!voxels.empty()) upload(device, steps.visible.indices, std::as_bytes(voxels));
+  upload(device, steps.visible.chunks, std::as_bytes(std::span(chunks)));
+
+  const FrameConstants frame =
+      makeFrameConstants(device, steps.volume, steps.table.settings, camera, settings);
+  const SplatTargets targets = makeTargets(device, settings);
+  SplatPass splats(device, settings.depth);
+  Commands commands(device);
+  splats.record(commands, {steps.volume, steps.table, steps.visible}, frame, targets);
+  const SumsReadback sums(device, commands, targets);
+  commands.submitAndWait();
+  return sums.read(frame);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,34 @@
+#pragma once
+// The passes one by one, for checks that draw chosen voxels in a chosen order, or that look at and replace
+// what one pass made before the next uses it.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/attenuation/attenuation_table.h"
+#include "engine/splatting/camera.h"
+#include "engine/splatting/render_settings.h"
+#include "engine/splatting/splat_sums.h"
+#include "engine/splatting/visible_voxels.h"
+#include "engine/volume/device_volume.h"
+
+namespace freevoxels {
+
+/// What the passes before the camera leave on the device.
+struct SteppedVolume {
+  DeviceVolume volume;
+  AttenuationTable table;
+  VisibleVoxels visible;
+  std::vector<std::uint32_t> voxels;  ///< the visible ones, padded indices in the order of the list
+};
+
+SteppedVolume prepareSteps(const Device& device, const Volume& volume, const Classification& classification,
+                           const TableSettings& table);
+
+/// The sums of just these voxels (padded indices), drawn in this order. No more than are active.
+std::vector<SplatSums> drawVoxels(const Device& device, const SteppedVolume& steps,
+                                  std::span<const std::uint32_t> voxels, const Camera& camera,
+                                  const FrameSettings& settings);
+
+}  // namespace freevoxels

@@ -1,0 +1,35 @@
+#include "engine/validation/worst.h"
+
+#include <fmt/format.h>
+
+#include "engine/attenuation/directions.h"
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+std::string voxelText(const Volume& volume, std::size_t voxel) {
+  const std::size_t x = std::size_t(volume.dimensions.x), y = std::size_t(volume.dimensions.y);
+  return fmt::format("voxel ({}, {}, {})", voxel % x, voxel / x % y, voxel / x / y);
+}
+
+std::string directionText(int direction) {
+  const glm::ivec3 d = directionAt(direction);
+  return fmt::format("direction ({}, {}, {})", d.x, d.y, d.z);
+}
+
+std::string pixelText(glm::ivec2 imageSize, std::size_t pixel) {
+  const std::size_t width = std::size_t(imageSize.x);
+  return fmt::format("pixel ({}, {})", pixel % width, pixel / width);
+}
+
+Worst largestDifference(const Image& a, const Image& b) {
+  FV_CHECK_EQ(a.pixels.size(), b.pixels.size());
+  Worst worst;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i)
+    for (int c = 0; c < 4; ++c)
+      worst.take(std::abs(double(a.pixels[i][c]) - double(b.pixels[i][c])),
+                 [&] { return pixelText(a.size, i); });
+  return worst;
+}
+
+}  // namespace freevoxels

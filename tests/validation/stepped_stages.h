@@ -1,0 +1,59 @@
+#pragma once
+// The stages pass by pass, with everything between them open: a test breaks one, and those after it go on
+// with what it made, as they would after the real bug.
+
+#include <functional>
+#include <utility>
+
+#include "engine/reference/reference_splats.h"
+#include "engine/validation/stage_outputs.h"
+#include "engine/validation/stepped_renderer.h"
+
+namespace freevoxels::test {
+
+struct SteppedStages : StageOutputs {
+  const Device& device;
+  Volume source;
+  SteppedVolume steps;
+  std::vector<std::uint32_t> listed;  ///< what the list of visible voxels says, padded
+  std::vector<std::uint32_t> drawn;   ///< what is drawn, padded
+  std::function<Image(const std::vector<SplatSums>&, const FrameSettings&)> resolve = referenceResolve;
+
+  SteppedStages(const Device& on, Volume volume, const Classification& classification,
+                const TableSettings& table)
+      : device(on),
+        source(std::move(volume)),
+        steps(prepareSteps(device, source, classification, table)),
+        listed(steps.voxels),
+        drawn(steps.voxels) {}
+
+  std::vector<float> extinction() override {
+    std::vector<float> padded(steps.volume.layout.paddedVoxels());
+    download(device, steps.volume.extinction, std::as_writable_bytes(std::span(padded)));
+    return steps.volume.layout.withoutPadding(padded);
+  }
+  TableBytes table() override { return downloadTable(device, steps.volume.layout, steps.table); }
+  std::vector<std::uint32_t> visibleVoxels() override {
+    std::vector<std::uint32_t> voxels;
+    for (const std::uint32_t voxel : listed) voxels.push_back(steps.volume.layout.unpaddedIndex(voxel));
+    return voxels;
+  }
+  std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
+    return drawVoxels(device, steps, drawn, camera, settings);
+  }
+  Image picture(const Camera& camera, const FrameSettings& settings) override {
+    return resolve(sums(camera, settings), settings);
+  }
+
+  /// In the order of Volume::values.
+  void replacePlane(int direction, const std::vector<std::uint8_t>& bytes) {
+    const GridLayout& layout = steps.volume.layout;
+    std::vector<std::uint8_t> padded(layout.paddedVoxels());
+    for (std::size_t i = 0; i < padded.size(); ++i)
+      if (int(i % std::size_t(layout.rowPitch)) < layout.dimensions.x)
+        padded[i] = bytes[layout.unpaddedIndex(std::uint32_t(i))];
+    upload(device, steps.table.planes[std::size_t(direction)], std::as_bytes(std::span(padded)));
+  }
+};
+
+}  // namespace freevoxels::test
