@@ -5,6 +5,7 @@
 #include <span>
 
 #include "engine/attenuation/attenuation_table.h"
+#include "engine/attenuation/ray_sweep.h"
 #include "engine/core/error.h"
 #include "engine/splatting/depth_sort.h"
 #include "engine/splatting/resolve_pass.h"
@@ -59,6 +60,17 @@ std::uint64_t maximumVoxels(const Device& device) {
                   device.description().memoryBytes / kBytesPerPaddedVoxel);
 }
 
+namespace {
+
+RaySource eyeOf(const Camera& camera, const glm::dmat4& indexToWorld) {
+  const glm::dmat4 worldToIndex = glm::inverse(indexToWorld);
+  if (camera.orthographic)
+    return {.place = glm::dmat3(worldToIndex) * (camera.position - camera.lookAt), .atInfinity = true};
+  return {.place = glm::dvec3(worldToIndex * glm::dvec4(camera.position, 1.0))};
+}
+
+}  // namespace
+
 struct Renderer::State {
   const Device& device;
   TableSettings tableSettings;
@@ -68,6 +80,7 @@ struct Renderer::State {
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
   std::unique_ptr<DepthSort> sort;
+  std::unique_ptr<RaySweep> rays;
   std::vector<StageTime> buildTimes, frameTimes;
 
   struct Frame {
@@ -90,6 +103,11 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
   Frame frame{.constants = makeFrameConstants(device, volume, tableSettings, camera, settings),
               .targets = makeTargets(device, settings)};
   if (sorted) sort->record(commands, volume, visible, camera);
+  if (!sorted && settings.attenuation == AttenuationLookup::Exact) {
+    if (!rays) rays = std::make_unique<RaySweep>(device);
+    rays->record(commands, volume, eyeOf(camera, volume.indexToWorld));
+    std::ranges::copy(rays->fans(), frame.constants.setup.fans);
+  }
   splats->record(commands, {volume, table, visible, sorted ? &sort->voxels() : nullptr}, frame.constants,
                  frame.targets);
   return frame;

@@ -1,5 +1,5 @@
 // Optical depth between a voxel and the eye, exclusive of the voxel, and its gradient across the lines of
-// sight. Include after direction_lookup.glsl; `frame` is the SetupFrame.
+// sight. Include after direction_lookup.glsl and ray_lookup.glsl; `frame` is the SetupFrame.
 
 // Divided by its largest component, so that its length is that of one lattice layer.
 vec3 directionToEye(vec3 position) {
@@ -11,8 +11,7 @@ vec3 directionToEye(vec3 position) {
 // In world units.
 float layerLength(vec3 direction) { return length(frame.indexToWorld * direction); }
 
-float depthToEye(vec3 position) {
-  if (frame.lookup == kLookupNone) return 0.0;
+float tableDepth(vec3 position) {
   const vec3 direction = directionToEye(position);
   const Towards towards = Towards(direction, layerLength(direction), frame.indexToWorld, frame.code, frame.lookup,
                                   frame.pathLengthCorrection != 0);
@@ -20,20 +19,39 @@ float depthToEye(vec3 position) {
   return depthTowards(towards, uint(voxel.x + frame.rowPitch * (voxel.y + frame.dimensions.y * voxel.z)));
 }
 
-// Per voxel, index space. Differences between the neighbours in the lattice layer; along the line of sight
-// the depth falls by that of a layer.
-vec3 depthGradient(vec3 position, float layerDepth) {
+// Between the neighbours, each with its own line of sight; one-sided at the volume's faces.
+float tableSlope(vec3 position, int axis) {
+  vec3 before = position, after = position;
+  before[axis] = max(position[axis] - 1.0, 0.0);
+  after[axis] = min(position[axis] + 1.0, float(frame.dimensions[axis] - 1));
+  return (tableDepth(after) - tableDepth(before)) / max(after[axis] - before[axis], 1.0);
+}
+
+struct DepthToEye {
+  float depth;
+  vec3 gradient;  // per voxel, index space
+};
+
+// `layerDepth` is the voxel's own, of one lattice layer.
+DepthToEye depthToEye(vec3 position, float layerDepth) {
+  DepthToEye result = DepthToEye(0.0, vec3(0.0));
+  if (frame.lookup == kLookupNone) return result;
   const vec3 direction = directionToEye(position);
-  const vec3 size = abs(direction);
-  const int major = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  vec3 gradient = vec3(0.0);
-  [[unroll]] for (int i = 1; i < 3; ++i) {
-    const int axis = (major + i) % 3;
-    vec3 before = position, after = position;
-    before[axis] = max(position[axis] - 1.0, 0.0);
-    after[axis] = min(position[axis] + 1.0, float(frame.dimensions[axis] - 1));
-    gradient[axis] = (depthToEye(after) - depthToEye(before)) / max(after[axis] - before[axis], 1.0);
+  const int fan = fanIndex(-direction), axis = fan / 2;
+  const int sideA = (axis + 1) % 3, sideB = (axis + 2) % 3;
+  vec2 slope = vec2(0.0);
+  if (frame.lookup == kLookupExact) {
+    const vec3 ray = rayDepth(frame.fans[fan], position);
+    result.depth = ray.x;
+    slope = ray.yz;
+  } else {
+    result.depth = tableDepth(position);
+    if (frame.gradient != 0) slope = vec2(tableSlope(position, sideA), tableSlope(position, sideB));
   }
-  gradient[major] = -(layerDepth + dot(gradient, direction)) / direction[major];
-  return gradient;
+  if (frame.gradient == 0) return result;
+  result.gradient[sideA] = slope.x;
+  result.gradient[sideB] = slope.y;
+  // Along the line of sight the depth falls by that of a layer.
+  result.gradient[axis] = -(layerDepth + dot(result.gradient, direction)) / direction[axis];
+  return result;
 }

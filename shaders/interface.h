@@ -28,6 +28,7 @@ FV_CONSTANT int kScanThreads = 256;
 
 FV_CONSTANT int kClassifyThreads = 64;
 FV_CONSTANT int kSweepThreads = 32;
+FV_CONSTANT int kRaySweepThreads = 64;
 FV_CONSTANT int kSplatThreads = 64;
 FV_CONSTANT int kResolveTile = 8;
 
@@ -61,7 +62,8 @@ FV_CONSTANT int kCodeDepth8 = 0;
 FV_CONSTANT int kCodeLinear8 = 1;
 FV_CONSTANT int kLookupBilinear = 0;
 FV_CONSTANT int kLookupNearest = 1;
-FV_CONSTANT int kLookupNone = 2;  // A = 1
+FV_CONSTANT int kLookupExact = 2;
+FV_CONSTANT int kLookupNone = 3;  // A = 1
 FV_CONSTANT int kCompositeNormalised = 0;
 FV_CONSTANT int kCompositeAdditive = 1;
 FV_CONSTANT int kCompositeSorted = 2;
@@ -86,6 +88,28 @@ struct SweepPush {
   int marchStart;    // offset of the first plane, the one at which the lines enter the volume
   int marchStride;   // to the next plane; negative when marching down
   float stepLength;  // world length of a lattice step
+};
+
+// engine/attenuation/ray_fans.h says what the members mean.
+struct RayFan {
+  int axis;
+  int direction;
+  int firstPlane;
+  int planeCount;
+  ivec2 rayCount;
+  vec2 origin, slope;
+  float convergence;
+  float farthest;
+  float spacing;
+  uvec2 depths;  // device address: two halves a uint, of planes 2k and 2k + 1; by k and ray
+};
+
+// ray_sweep.comp
+struct RaySweepPush {
+  RayFan fan;
+  mat3 indexToWorld;
+  ivec3 dimensions;
+  int rowPitch;
 };
 
 // visible_count.comp, visible_scan.comp, visible_write.comp
@@ -151,6 +175,7 @@ struct SetupFrame {
   uint opacityPoints;      // 0 = physical
   uint colorPoints;
   vec3 albedo;
+  RayFan fans[6];          // kLookupExact: from the eye
 };
 
 struct SetupPush {
@@ -180,6 +205,7 @@ struct ResolvePush {
 static_assert(sizeof(ChunkArguments) == 48);
 static_assert(sizeof(DepthKeyPush) == 80);
 static_assert(sizeof(Splat) == 64);
+static_assert(sizeof(RaySweepPush) == 112);
 static_assert(sizeof(ResolvePush) == 84);
 }  // namespace freevoxels::shader
 #endif

@@ -18,6 +18,7 @@ layout(scalar, binding = 6) readonly buffer Chunks { ChunkArguments chunks[]; };
 layout(scalar, binding = 7) writeonly buffer Splats { Splat splats[]; };
 #define PLANE_ADDRESS(direction) planeAddresses[direction]
 #include "direction_lookup.glsl"
+#include "ray_lookup.glsl"
 #include "depth_to_eye.glsl"
 #include "splat_projection.glsl"
 
@@ -60,12 +61,10 @@ void main() {
   splat.conic = footprint.conic;
   splat.opticalDepth = sigma * peak;
   splat.distance = footprint.distance;
-  splat.depthToEye = vec3(depthToEye(position), vec2(0.0));
-  if (frame.gradient != 0) {
-    // In pixels; over the footprint that was, where it has been widened.
-    const vec3 gradient = depthGradient(position, layerDepth) * sqrt(footprint.amplitude);
-    const float pixelLength = frame.orthographic != 0 ? 1.0 : footprint.distance;
-    splat.depthToEye.yz = pixelLength * vec2(dot(gradient, frame.pixelX), dot(gradient, frame.pixelY));
-  }
+  const DepthToEye toEye = depthToEye(position, layerDepth);
+  // Per pixel; a widened footprint keeps the transmittances of the one that it stands for.
+  const float perPixel = sqrt(footprint.amplitude) * (frame.orthographic != 0 ? 1.0 : footprint.distance);
+  splat.depthToEye =
+      vec3(toEye.depth, perPixel * vec2(dot(toEye.gradient, frame.pixelX), dot(toEye.gradient, frame.pixelY)));
   splats[local] = splat;
 }

@@ -9,7 +9,7 @@ namespace {
 
 // In the order of the enumerators.
 const std::vector<std::string> kComposites{"normalised", "additive", "sorted"};
-const std::vector<std::string> kAttenuations{"bilinear", "nearest"};
+const std::vector<std::string> kAttenuations{"bilinear", "nearest", "exact"};
 const std::vector<std::string> kCodes{"depth8", "linear8"};
 
 }  // namespace
@@ -21,7 +21,9 @@ void MethodOptions::add(CLI::App& app) {
           "[normalised]")
       ->group(group);
   addWord(app, "--attenuation", kAttenuations, attenuation,
-          "How the table is looked up between its directions [bilinear]")
+          "How the table is looked up between its directions; exact needs none, and a sweep from the eye for "
+          "every "
+          "frame [bilinear]")
       ->group(group);
   addWord(app, "--code", kCodes, code, "What a byte of the table holds [depth8]")->group(group);
   app.add_flag_function(

@@ -14,6 +14,7 @@ namespace {
 
 static_assert(shader::kSplatRadius == float(kFootprintRadius));
 static_assert(shader::kLookupNearest == int(AttenuationLookup::Nearest));
+static_assert(shader::kLookupExact == int(AttenuationLookup::Exact));
 static_assert(shader::kCompositeAdditive == int(Composite::Additive));
 static_assert(shader::kCompositeSorted == int(Composite::Sorted));
 

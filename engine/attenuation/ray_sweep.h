@@ -1,0 +1,28 @@
+#pragma once
+// Optical depths along the ray fans of a source, on the device: one dispatch a fan, a thread a ray.
+
+#include "engine/attenuation/ray_fans.h"
+#include "engine/volume/device_volume.h"
+#include "shaders/interface.h"
+
+namespace freevoxels {
+
+/// COMPUTE ray_sweep.comp
+class RaySweep {
+ public:
+  explicit RaySweep(const Device& device);
+
+  /// Sweeps the volume for this source; the depths replace those of the last one. Fails with
+  /// ExitCode::OutOfMemory.
+  void record(Commands& commands, const DeviceVolume& volume, const RaySource& source);
+  /// Of the last source, for look-ups: index 2 axis + (direction > 0).
+  const std::array<shader::RayFan, 6>& fans() const { return fans_; }
+
+ private:
+  const Device& device_;
+  Pipeline pipeline_;
+  Buffer depths_;  ///< uint: two halves, of planes 2k and 2k + 1; by fan, k and ray
+  std::array<shader::RayFan, 6> fans_{};
+};
+
+}  // namespace freevoxels

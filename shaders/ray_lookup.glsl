@@ -1,0 +1,45 @@
+// Optical depth between the source of a ray sweep and a position on one of its planes, and how it changes
+// within the plane. Include after interface.h and GL_EXT_buffer_reference_uvec2.
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RayDepths { uint pairs[]; };
+
+// `fromSource` is the direction in which the ray leaves it.
+int fanIndex(vec3 fromSource) {
+  const vec3 size = abs(fromSource);
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  return 2 * axis + (fromSource[axis] > 0.0 ? 1 : 0);
+}
+
+// Catmull-Rom weights of the samples at -1, 0, 1, 2 for a position x in 0..1, and their derivative.
+vec4 cubicWeights(float x) {
+  return 0.5 * vec4(x * (-1.0 + x * (2.0 - x)), 2.0 + x * x * (-5.0 + 3.0 * x), x * (1.0 + x * (4.0 - 3.0 * x)),
+                    x * x * (-1.0 + x));
+}
+vec4 cubicSlopes(float x) {
+  return 0.5 * vec4(-1.0 + x * (4.0 - 3.0 * x), x * (-10.0 + 9.0 * x), 1.0 + x * (8.0 - 9.0 * x), x * (-2.0 + 3.0 * x));
+}
+
+// The depth, and its change per voxel along the fan's two sides.
+vec3 rayDepth(RayFan fan, vec3 position) {
+  const float up = position[fan.axis] - fan.farthest;
+  const vec2 side = vec2(position[(fan.axis + 1) % 3], position[(fan.axis + 2) % 3]);
+  const float apart = fan.spacing * (1.0 + fan.convergence * up);
+  const vec2 place = (side - fan.origin - fan.slope * up) / apart;
+  const vec2 low = clamp(floor(place), vec2(1.0), vec2(fan.rayCount - 3));
+  const vec2 w = clamp(place - low, 0.0, 1.0);
+  const int plane = (int(position[fan.axis]) - fan.firstPlane) * fan.direction;
+  const uint row = uint(fan.rayCount.x);
+  uint first = uint(plane / 2) * row * uint(fan.rayCount.y) + uint(low.x) - 1 + (uint(low.y) - 1) * row;
+  RayDepths depths = RayDepths(fan.depths);
+  const vec4 weightsX = cubicWeights(w.x), slopesX = cubicSlopes(w.x);
+  const vec4 weightsY = cubicWeights(w.y), slopesY = cubicSlopes(w.y);
+  vec3 sum = vec3(0.0);
+  [[unroll]] for (int j = 0; j < 4; ++j) {
+    vec4 line;
+    [[unroll]] for (int i = 0; i < 4; ++i) line[i] = unpackHalf2x16(depths.pairs[first + i])[plane & 1];
+    const float value = dot(line, weightsX);
+    sum += vec3(value * weightsY[j], vec2(dot(line, slopesX) * weightsY[j], value * slopesY[j]) / apart);
+    first += row;
+  }
+  return vec3(max(sum.x, 0.0), sum.yz);
+}

@@ -1,0 +1,82 @@
+#version 460
+// Optical depth along the rays of a fan (engine/attenuation/ray_fans.h), a thread a ray: at every plane of
+// voxels, what the planes before it hold. Subr et al. 2007, Eq. 5, along rays instead of lattice lines.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+#include "interface.h"
+
+layout(local_size_x = kRaySweepThreads) in;
+layout(scalar, push_constant) uniform Push { RaySweepPush push; };
+layout(scalar, binding = 0) readonly buffer Extinction { float extinction[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Depths { uint pairs[]; };
+
+// Half floats end at 65504.
+const float kLargestDepth = 60000.0;
+
+int sideA, sideB, strideA, strideB, strideAxis;
+
+float extinctionAt(int plane, ivec2 side) {
+  const bool inside = side.x >= 0 && side.y >= 0 && side.x < push.dimensions[sideA] && side.y < push.dimensions[sideB];
+  return inside ? extinction[plane * strideAxis + side.x * strideA + side.y * strideB] : 0.0;
+}
+
+float interpolated(int plane, vec2 position) {
+  const vec2 low = floor(position);
+  const vec2 w = position - low;
+  const ivec2 corner = ivec2(low);
+  return mix(mix(extinctionAt(plane, corner), extinctionAt(plane, corner + ivec2(1, 0)), w.x),
+             mix(extinctionAt(plane, corner + ivec2(0, 1)), extinctionAt(plane, corner + ivec2(1, 1)), w.x), w.y);
+}
+
+// The planes, counted from the first, between which the ray is near enough to the volume to be looked up: x
+// to y.
+ivec2 planesWithin(vec2 atFirst, vec2 perPlane) {
+  float enter = 0.0, leave = float(push.fan.planeCount - 1);
+  const vec2 high = vec2(push.dimensions[sideA], push.dimensions[sideB]) + 1.0;
+  [[unroll]] for (int side = 0; side < 2; ++side) {
+    const float reach = 2.0 + 2.0 * push.fan.spacing;
+    const float slope = abs(perPlane[side]) < 1e-7 ? 1e-7 : perPlane[side];
+    const float t0 = (-reach - atFirst[side]) / slope, t1 = (high[side] + reach - atFirst[side]) / slope;
+    enter = max(enter, min(t0, t1));
+    leave = min(leave, max(t0, t1));
+  }
+  return ivec2(floor(enter), ceil(leave));
+}
+
+void main() {
+  const uint ray = gl_LocalInvocationID.x + kRaySweepThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
+  const RayFan fan = push.fan;
+  const uint rays = uint(fan.rayCount.x * fan.rayCount.y);
+  if (ray >= rays) return;
+  sideA = (fan.axis + 1) % 3;
+  sideB = (fan.axis + 2) % 3;
+  const ivec3 strides = ivec3(1, push.rowPitch, push.rowPitch * push.dimensions.y);
+  strideA = strides[sideA];
+  strideB = strides[sideB];
+  strideAxis = strides[fan.axis];
+
+  const vec2 offset = fan.spacing * vec2(ray % fan.rayCount.x, ray / fan.rayCount.x);
+  const vec2 slope = fan.slope + offset * fan.convergence;  // along the axis upwards
+  const vec2 atFirst = fan.origin + offset + slope * (float(fan.firstPlane) - fan.farthest);
+  const vec2 perPlane = slope * float(fan.direction);
+  vec3 layerStep;
+  layerStep[fan.axis] = 1.0;
+  layerStep[sideA] = slope.x;
+  layerStep[sideB] = slope.y;
+  const float layer = length(push.indexToWorld * layerStep);
+
+  const ivec2 planes = planesWithin(atFirst, perPlane);
+  Depths depths = Depths(fan.depths);
+  float depth = 0.0;
+  for (int pair = planes.x / 2; pair <= planes.y / 2; ++pair) {
+    vec2 halves;
+    [[unroll]] for (int i = 0; i < 2; ++i) {
+      const int plane = 2 * pair + i;
+      halves[i] = depth;
+      if (plane < fan.planeCount)
+        depth += layer * interpolated(fan.firstPlane + fan.direction * plane, atFirst + perPlane * float(plane));
+    }
+    depths.pairs[uint(pair) * rays + ray] = packHalf2x16(min(halves, kLargestDepth));
+  }
+}
