@@ -15,8 +15,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr std::uint64_t kBytesPerPaddedVoxel = 2 * sizeof(float) + kDirectionCount + sizeof(std::uint32_t);
-
 /// Bytes of the largest buffer of voxels that the passes can bind.
 std::uint64_t largestBinding(const Device& device) {
   const std::uint64_t texels = std::uint64_t(device.limits().maxTexelBufferElements) * sizeof(glm::vec4);
@@ -24,7 +22,7 @@ std::uint64_t largestBinding(const Device& device) {
                    std::uint64_t(device.maximumAllocation())});
 }
 
-void checkFits(const Device& device, glm::ivec3 dimensions) {
+void checkFits(const Device& device, glm::ivec3 dimensions, DirectionSet directions) {
   const std::uint64_t binding = GridLayout(dimensions).paddedVoxels() * sizeof(float);
   if (binding > largestBinding(device))
     fail(ExitCode::OutOfMemory,
@@ -32,13 +30,15 @@ void checkFits(const Device& device, glm::ivec3 dimensions) {
          "the volume",
          dimensions.x, dimensions.y, dimensions.z, binding >> 20, device.description().name,
          largestBinding(device) >> 20);
-  const std::uint64_t total = volumeMemory(dimensions).total();
+  const std::uint64_t total = volumeMemory(dimensions, directions).total();
   if (total > device.description().memoryBytes)
     fail(ExitCode::OutOfMemory,
-         "a volume of {}x{}x{} voxels needs {} MiB of device memory and {} has {} MiB: crop or resample the "
-         "volume",
-         dimensions.x, dimensions.y, dimensions.z, total >> 20, device.description().name,
-         device.description().memoryBytes >> 20);
+         "a volume of {}x{}x{} voxels with {} directions needs {} MiB of device memory and {} has {} MiB: "
+         "crop "
+         "or resample the volume{}",
+         dimensions.x, dimensions.y, dimensions.z, directionCount(directions), total >> 20,
+         device.description().name, device.description().memoryBytes >> 20,
+         directions == DirectionSet::Directions26 ? "" : ", or take 26 directions");
 }
 
 /// Copies a target to the host through a read-back buffer; recorded with the frame, read after it.
@@ -63,17 +63,18 @@ class TargetReadback {
 
 }  // namespace
 
-VolumeMemory volumeMemory(glm::ivec3 dimensions) {
+VolumeMemory volumeMemory(glm::ivec3 dimensions, DirectionSet directions) {
   const std::uint64_t voxels = GridLayout(dimensions).paddedVoxels();
   return {.scalars = voxels * sizeof(float),
           .extinction = voxels * sizeof(float),
-          .table = voxels * kDirectionCount,
+          .table = voxels * std::uint64_t(directionCount(directions)),
           .visibleVoxels = voxels * sizeof(std::uint32_t)};
 }
 
-std::uint64_t maximumVoxels(const Device& device) {
-  return std::min(largestBinding(device) / sizeof(float),
-                  device.description().memoryBytes / kBytesPerPaddedVoxel);
+std::uint64_t maximumVoxels(const Device& device, DirectionSet directions) {
+  const glm::ivec3 row(shader::kRowAlignment, 1, 1);
+  const std::uint64_t bytesPerVoxel = volumeMemory(row, directions).total() / shader::kRowAlignment;
+  return std::min(largestBinding(device) / sizeof(float), device.description().memoryBytes / bytesPerVoxel);
 }
 
 struct Renderer::State {
@@ -89,7 +90,7 @@ struct Renderer::State {
 
 Renderer::Renderer(const Device& device, const Volume& volume, const Classification& classification,
                    const TableSettings& table, const Progress& progress) {
-  checkFits(device, volume.dimensions);
+  checkFits(device, volume.dimensions, table.directions);
   state_ = std::make_unique<State>(State{.device = device, .tableSettings = table});
   {
     const StageTimer timer(state_->buildTimes, "upload");
@@ -98,7 +99,7 @@ Renderer::Renderer(const Device& device, const Volume& volume, const Classificat
     state_->visible = makeVisibleVoxels(device, state_->volume);
   }
   const ClassifyPass classify(device);
-  const AttenuationSweep sweep(device, table.code);
+  const AttenuationSweep sweep(device, table);
   const CompactionPass compaction(device);
   Commands commands(device);
   classify.record(commands, state_->volume, classification);

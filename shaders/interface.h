@@ -39,7 +39,6 @@ FV_CONSTANT int kSplatsPerChunk = 1 << 20;
 FV_CONSTANT float kSplatRadius = 1.3960250075605876f;
 FV_CONSTANT float kSplatPeak = 5.0f / (3.14159265358979f * kSplatRadius * kSplatRadius);
 
-FV_CONSTANT int kTableDirections = 26;
 FV_CONSTANT float kMaximumDepth = 16.0f;  // optical depth that the code depth8 ends at
 
 // Must be engine/volume/volume.h's kInactiveVoxel.
@@ -76,6 +75,16 @@ struct SweepPush {
   int marchStart;    // offset of the first plane, the one at which the lines enter the volume
   int marchStride;   // to the next plane; negative when marching down
   float stepLength;  // world length of a lattice step
+};
+
+// attenuation_sweep_half.comp. Strides are in voxels of the padded grid.
+struct HalfSweepPush {
+  int rowPitch;
+  int marchCount, marchStride, marchStep;  // extent, stride and step of the march axis; step -2, -1, 1 or 2
+  int sideCount, sideStride, sideStep;     // the same of the axis that is neither x nor the march axis
+  float stepLength;                        // world length of half a step: of one layer
+  int halfwayRows;                         // rows around the middle of a step: 1, 2 or 4,
+  ivec2 halfway[4];                        // by their offsets along the march and side axes
 };
 
 // visible_count.comp, visible_scan.comp, visible_write.comp
@@ -118,6 +127,7 @@ struct SetupFrame {
   int rows;                // extent along y
   int lookup;              // kLookup...
   int code;                // kCode...
+  int cells;               // that the table's directions divide the cube's half edge into
   uint opacityPoints;      // 0 = physical
   uint colorPoints;
   vec3 albedo;
@@ -146,6 +156,7 @@ struct ResolvePush {
 
 #ifdef __cplusplus
 static_assert(sizeof(ChunkArguments) == 48);
+static_assert(sizeof(HalfSweepPush) == 68);
 static_assert(sizeof(Splat) == 52);
 static_assert(sizeof(ResolvePush) == 84);
 }  // namespace freevoxels::shader

@@ -10,13 +10,13 @@
 layout(local_size_x = kSplatThreads) in;
 layout(scalar, push_constant) uniform Push { SetupPush push; };
 layout(scalar, binding = 0) readonly buffer Frame { SetupFrame frame; };
-layout(scalar, binding = 2) readonly buffer PlaneAddresses { uvec2 planeAddresses[kTableDirections]; };
+layout(scalar, binding = 2) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
 layout(scalar, binding = 3) readonly buffer VisibleVoxels { uint visibleVoxels[]; };
 layout(scalar, binding = 4) readonly buffer Scalars { float scalars[]; };
 layout(scalar, binding = 5) readonly buffer Extinction { float extinction[]; };
 layout(scalar, binding = 6) readonly buffer Chunks { ChunkArguments chunks[]; };
 layout(scalar, binding = 7) writeonly buffer Splats { Splat splats[]; };
-#define PLANE_ADDRESS(direction) planeAddresses[direction]
+#define PLANE_ADDRESS(cell) planeAddresses[cell]
 #include "direction_lookup.glsl"
 
 // (1 - exp(-x)) / x, also right for small x.
@@ -111,7 +111,7 @@ void main() {
   const vec3 size = abs(toEye);
   const vec3 direction = toEye / max(size.x, max(size.y, size.z));
   const float layer = length(frame.indexToWorld * direction);  // world length of one lattice layer
-  const float transmittance = transmittanceTowards(frame.code, frame.lookup, direction, voxel);
+  const float transmittance = transmittanceTowards(frame.code, frame.lookup, frame.cells, direction, voxel);
 
   const float sigma = extinction[voxel];
   const float peak = kSplatPeak * footprint.amplitude;

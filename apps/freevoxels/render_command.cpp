@@ -65,7 +65,7 @@ void RenderCommand::draw(const Device& device, RunReport& report) const {
   line.begin("reading " + scene_.input.input);
   const Scene scene = [&] {
     const StageTimer timer(report.stages, "read volume");
-    return scene_.open(maximumVoxels(device));
+    return scene_.open(maximumVoxels(device, method_.table().directions));
   }();
   OptionList method;
   method_.describe(method);

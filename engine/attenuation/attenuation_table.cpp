@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "embedded/attenuation_sweep.h"
+#include "embedded/attenuation_sweep_half.h"
 #include "embedded/attenuation_sweep_x.h"
 #include "engine/core/error.h"
 #include "shaders/interface.h"
@@ -13,7 +14,6 @@ namespace freevoxels {
 
 namespace {
 
-static_assert(shader::kTableDirections == kDirectionCount);
 static_assert(shader::kMaximumDepth == float(kMaximumCodedDepth));
 static_assert(shader::kCodeDepth8 == int(AttenuationCode::Depth8));
 static_assert(shader::kCodeLinear8 == int(AttenuationCode::Linear8));
@@ -51,11 +51,41 @@ shader::SweepPush sweepPush(const DeviceVolume& volume, glm::ivec3 direction, bo
   return push;
 }
 
-Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Specialisation& constants) {
+/// The distances from a voxel to those nearest to the middle of a step, along one axis.
+std::vector<int> halfwayOffsets(int step) {
+  if (step % 2 == 0) return {step / 2};
+  return {0, step};
+}
+
+/// As sweepPush, for a direction whose lattice step is its cell.
+shader::HalfSweepPush halfSweepPush(const DeviceVolume& volume, glm::ivec3 cell, double stepLength) {
+  const glm::ivec3 extent = volume.layout.dimensions;
+  const int row = volume.layout.rowPitch, plane = row * extent.y;
+  shader::HalfSweepPush push{.rowPitch = row, .stepLength = float(stepLength)};
+  const bool alongZ = cell.z != 0;
+  push.marchCount = alongZ ? extent.z : extent.y;
+  push.marchStride = alongZ ? plane : row;
+  push.marchStep = alongZ ? -cell.z : -cell.y;
+  push.sideCount = alongZ ? extent.y : extent.z;
+  push.sideStride = alongZ ? row : plane;
+  push.sideStep = alongZ ? -cell.y : 0;
+  for (const int march : halfwayOffsets(-push.marchStep))
+    for (const int side : halfwayOffsets(-push.sideStep)) push.halfway[push.halfwayRows++] = {march, side};
+  return push;
+}
+
+/// Of the direction {-1,0,1}³.
+const Buffer& planeOf(const AttenuationTable& table, glm::ivec3 direction) {
+  const DirectionSet set = table.settings.directions;
+  return table.planes[std::size_t(directionIndex(set, direction * int(set)))];
+}
+
+Pipeline makeSweepPipeline(const Device& device, ShaderCode code, std::size_t pushBytes,
+                           const Specialisation& constants) {
   return makeComputePipeline(
       device, code,
       {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-       .pushConstantBytes = sizeof(shader::SweepPush)},
+       .pushConstantBytes = std::uint32_t(pushBytes)},
       {shader::kSweepThreads, 1, 1}, constants);
 }
 
@@ -63,29 +93,37 @@ Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Speciali
 
 AttenuationTable makeTable(const Device& device, const GridLayout& layout, const TableSettings& settings) {
   AttenuationTable table{.settings = settings};
-  std::array<VkDeviceAddress, kDirectionCount> addresses{};
-  for (int i = 0; i < kDirectionCount; ++i) {
-    const glm::ivec3 d = directionAt(i);
+  const DirectionSet set = settings.directions;
+  const int edge = 2 * int(set) + 1;
+  std::vector<VkDeviceAddress> addresses(std::size_t(edge * edge * edge), 0);
+  for (int i = 0; i < directionCount(set); ++i) {
+    const glm::dvec3 d = directionAt(set, i);
     const std::string name = fmt::format("attenuation {},{},{}", d.x, d.y, d.z);
-    table.planes[std::size_t(i)] = Buffer(device, layout.paddedVoxels(), MemoryUse::Device, name.c_str());
-    addresses[std::size_t(i)] = table.planes[std::size_t(i)].address();
+    table.planes.emplace_back(device, layout.paddedVoxels(), MemoryUse::Device, name.c_str());
+    addresses[std::size_t(cellNumber(set, directionCell(set, i)))] = table.planes.back().address();
   }
-  table.planeAddresses = Buffer(device, sizeof(addresses), MemoryUse::Device, "attenuation addresses");
-  upload(device, table.planeAddresses, std::as_bytes(std::span(addresses)));
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(addresses));
+  table.planeAddresses = Buffer(device, bytes.size(), MemoryUse::Device, "attenuation addresses");
+  upload(device, table.planeAddresses, bytes);
   return table;
 }
 
-AttenuationSweep::AttenuationSweep(const Device& device, AttenuationCode code)
+AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings)
     : voxelsPerThread_(device.isCpu() ? 16 : 4),
       blockBytes_(device.isCpu() ? kCpuBlockBytes : std::numeric_limits<std::uint64_t>::max()) {
-  const auto codeConstant = std::uint32_t(code);
+  const auto code = std::uint32_t(settings.code), voxels = std::uint32_t(voxelsPerThread_);
   for (int step = -1; step <= 1; ++step)
     bundles_[std::size_t(step + 1)] =
-        makeSweepPipeline(device, {attenuation_sweep_spv, "attenuation sweep"},
-                          {codeConstant, std::uint32_t(voxelsPerThread_), std::uint32_t(step)});
+        makeSweepPipeline(device, {attenuation_sweep_spv, "attenuation sweep"}, sizeof(shader::SweepPush),
+                          {code, voxels, std::uint32_t(step)});
   for (int step : {-1, 1})
     rows_[step > 0 ? 1 : 0] = makeSweepPipeline(device, {attenuation_sweep_x_spv, "attenuation sweep x"},
-                                                {codeConstant, std::uint32_t(step)});
+                                                sizeof(shader::SweepPush), {code, std::uint32_t(step)});
+  if (settings.directions == DirectionSet::Directions98)
+    for (int step = -2; step <= 2; ++step)
+      halves_.push_back(makeSweepPipeline(device, {attenuation_sweep_half_spv, "attenuation sweep half"},
+                                          sizeof(shader::HalfSweepPush),
+                                          {code, voxels, std::uint32_t(step)}));
 }
 
 void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume,
@@ -97,6 +135,7 @@ void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume,
         recordRows(commands, volume, table);
       else
         recordBundles(commands, volume, table, {y, z});
+  if (!halves_.empty()) recordHalfDirections(commands, volume, table);
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
@@ -104,8 +143,7 @@ void AttenuationSweep::recordRows(Commands& commands, const DeviceVolume& volume
                                   const AttenuationTable& table) const {
   for (int x : {-1, 1}) {
     const shader::SweepPush push = sweepPush(volume, {x, 0, 0}, table.settings.pathLengthCorrection);
-    const std::array<Binding, 2> bindings{&volume.extinctionQuads,
-                                          &table.planes[std::size_t(directionIndex(x, 0, 0))]};
+    const std::array<Binding, 2> bindings{&volume.extinctionQuads, &planeOf(table, {x, 0, 0})};
     commands.dispatchLinear(rows_[x > 0 ? 0 : 1], bindings, push, std::uint64_t(push.lineCount));
   }
 }
@@ -121,11 +159,26 @@ void AttenuationSweep::recordBundles(Commands& commands, const DeviceVolume& vol
       shader::SweepPush push = sweepPush(volume, {x, yz}, table.settings.pathLengthCorrection);
       push.firstLine = first;
       push.lastLine = std::min(first + block, push.lineCount);
-      const std::array<Binding, 2> bindings{&volume.extinctionQuads,
-                                            &table.planes[std::size_t(directionIndex(x, yz.x, yz.y))]};
+      const std::array<Binding, 2> bindings{&volume.extinctionQuads, &planeOf(table, {x, yz})};
       commands.dispatchLinear(bundles_[std::size_t(1 - x)], bindings, push,
                               std::uint64_t(push.lastLine - first) * std::uint64_t(bundles));
     }
+}
+
+void AttenuationSweep::recordHalfDirections(Commands& commands, const DeviceVolume& volume,
+                                            const AttenuationTable& table) const {
+  const TableSettings& settings = table.settings;
+  for (int i = 0; i < directionCount(settings.directions); ++i) {
+    const glm::ivec3 cell = directionCell(settings.directions, i);
+    if (cell % int(settings.directions) == glm::ivec3(0)) continue;  // one of the 26
+    const double layer =
+        stepLength(volume.indexToWorld, directionAt(settings.directions, i), settings.pathLengthCorrection);
+    const shader::HalfSweepPush push = halfSweepPush(volume, cell, layer);
+    const std::array<Binding, 2> bindings{&volume.extinctionQuads, &table.planes[std::size_t(i)]};
+    const int lines = push.sideCount * std::abs(push.marchStep);
+    commands.dispatchLinear(halves_[std::size_t(2 - cell.x)], bindings, push,
+                            std::uint64_t(lines) * std::uint64_t(push.rowPitch / voxelsPerThread_));
+  }
 }
 
 std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const GridLayout& layout,
@@ -133,11 +186,12 @@ std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const
   const std::size_t width = std::size_t(layout.dimensions.x), pitch = std::size_t(layout.rowPitch);
   const std::size_t rows = layout.paddedVoxels() / pitch;
   std::vector<std::uint8_t> padded(layout.paddedVoxels());
-  std::vector<std::vector<std::uint8_t>> result(kDirectionCount, std::vector<std::uint8_t>(rows * width));
-  for (std::size_t d = 0; d < kDirectionCount; ++d) {
-    download(device, table.planes[d], std::as_writable_bytes(std::span(padded)));
+  std::vector<std::vector<std::uint8_t>> result;
+  for (const Buffer& plane : table.planes) {
+    std::vector<std::uint8_t>& bytes = result.emplace_back(rows * width);
+    download(device, plane, std::as_writable_bytes(std::span(padded)));
     for (std::size_t row = 0; row < rows; ++row)
-      std::copy_n(padded.data() + row * pitch, width, result[d].data() + row * width);
+      std::copy_n(padded.data() + row * pitch, width, bytes.data() + row * width);
   }
   return result;
 }

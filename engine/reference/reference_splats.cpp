@@ -128,6 +128,7 @@ class SplatSummer {
         classification_(classification),
         table_(table),
         code_(code),
+        directions_(directionSetOf(table.size())),
         settings_(settings),
         rays_(pixelRays(camera, settings.size, volume.indexToWorld)),
         indexToWorld_(volume.indexToWorld),
@@ -142,8 +143,9 @@ class SplatSummer {
     const auto decode = [&](int direction) {
       return decodeTransmittance(code_, table_[std::size_t(direction)][voxel]);
     };
-    if (settings_.attenuation == AttenuationLookup::Nearest) return decode(nearestDirection(toEye));
-    const DirectionBlend blend = bilinearDirections(toEye);
+    if (settings_.attenuation == AttenuationLookup::Nearest)
+      return decode(nearestDirection(directions_, toEye));
+    const DirectionBlend blend = bilinearDirections(directions_, toEye);
     double sum = 0.0;
     for (std::size_t i = 0; i < 4; ++i) sum += blend.weights[i] * decode(blend.directions[i]);
     return sum;
@@ -170,6 +172,7 @@ class SplatSummer {
   const Classification& classification_;
   const std::vector<std::vector<std::uint8_t>>& table_;
   const AttenuationCode code_;
+  const DirectionSet directions_;
   const FrameSettings& settings_;
   const PixelRays rays_;
   const glm::dmat3 indexToWorld_;
@@ -205,7 +208,6 @@ std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classifica
                                           AttenuationCode code, const Camera& camera,
                                           const FrameSettings& settings,
                                           std::span<const std::uint32_t> voxels) {
-  FV_CHECK_EQ(table.size(), std::size_t(kDirectionCount));
   SplatSummer summer(volume, classification, table, code, camera, settings);
   for (const std::uint32_t voxel : voxels) {
     FV_CHECK_LT(voxel, volume.voxelCount());

@@ -81,6 +81,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                  .rows = volume.layout.dimensions.y,
                  .lookup = int(settings.attenuation),
                  .code = int(table.code),
+                 .cells = int(table.directions),
                  .opacityPoints = volume.opacityPointCount,
                  .colorPoints = volume.colorPointCount,
                  .albedo = volume.albedo};

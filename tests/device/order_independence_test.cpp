@@ -29,7 +29,7 @@ class OrderIndependenceTest : public DeviceTest {
     camera_ = framingCamera(volume, 35.0, 25.0, 1.0, {});
     Commands commands(device());
     const ClassifyPass classify(device());
-    const AttenuationSweep sweep(device(), table_.settings.code);
+    const AttenuationSweep sweep(device(), table_.settings);
     const CompactionPass compaction(device());
     classify.record(commands, volume_, classification);
     sweep.record(commands, volume_, table_);

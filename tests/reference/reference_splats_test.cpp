@@ -314,10 +314,10 @@ TEST(ReferenceSplats, LooksTheTableUpInTheDirectionOfTheEye) {
     settings.attenuation = lookup;
     return scene.sums(camera, settings).at(0).energy;
   };
-  for (int d = 0; d < kDirectionCount; ++d) {
+  for (int d = 0; d < directionCount(DirectionSet::Directions26); ++d) {
     for (auto& bytes : scene.table) bytes[0] = 200;
     scene.table[std::size_t(d)][0] = 0;  // clear in this direction only
-    const glm::dvec3 direction(directionAt(d));
+    const glm::dvec3 direction = directionAt(DirectionSet::Directions26, d);
     if (direction.x == 0.0 && direction.z == 0.0) continue;  // along `up`
     const double layer = glm::length(direction);
     const double clear = -std::expm1(-layer) / layer * footprint(0.0);
@@ -325,8 +325,8 @@ TEST(ReferenceSplats, LooksTheTableUpInTheDirectionOfTheEye) {
     EXPECT_NEAR(energyTowards(direction, AttenuationLookup::Nearest), clear, 1e-9);
     EXPECT_LT(energyTowards(-direction, AttenuationLookup::Bilinear), 0.01 * clear);
   }
-  scene.table[std::size_t(directionIndex(0, 0, 1))][0] = 0;
-  scene.table[std::size_t(directionIndex(1, 0, 1))][0] = 255;
+  scene.table[std::size_t(directionIndex(DirectionSet::Directions26, {0, 0, 1}))][0] = 0;
+  scene.table[std::size_t(directionIndex(DirectionSet::Directions26, {1, 0, 1}))][0] = 255;
   const glm::dvec3 between(0.25, 0.0, 1.0);
   const double opaque = std::exp(-16.0), layer = glm::length(between);
   const double emitted = -std::expm1(-layer) / layer * footprint(0.0);

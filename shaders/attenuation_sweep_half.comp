@@ -1,0 +1,70 @@
+#version 460
+// The attenuation table for one of the 72 directions half-way between those of Subr et al. 2007, Section 3.1:
+// Eq. 5 along lattice lines with steps of two layers, such as (2,1,0) or (2,2,1).
+//
+// As attenuation_sweep.comp. The layer in the middle of a step is crossed between voxels: its extinction there
+// is the mean of the two or four around the line (one where no component is odd in that layer's plane), and
+// counts although the voxel at the step's end may be outside. A march by two planes a step has two families of
+// lines, over the even and over the odd planes.
+#extension GL_GOOGLE_include_directive : require
+#include "interface.h"
+#include "attenuation_code.glsl"
+#include "line_bundle.glsl"
+
+layout(scalar, push_constant) uniform Push { HalfSweepPush push; };
+
+bool outside(int index, int count) { return index < 0 || index >= count; }
+
+// What loadRow has read, half-way along the step towards where the march comes from. Nothing beyond the row.
+float halfway(int j, int window, int quads) {
+  if (kSize == 0) return sigma[j];
+  const int before = j - kWindowStep;
+  const bool entry = j % 4 == (kStepX > 0 ? 0 : 3) && isEntry(j / 4 - kMargin, window, quads);
+  const float neighbour = entry ? 0.0 : sigma[before];
+  return kSize == 2 ? neighbour : 0.5 * (sigma[j] + neighbour);
+}
+
+void addHalfwayRow(int window, int quads, int phase, float stepLength) {
+  [[unroll]] for (int j = 0; j < 4 * kQuads; ++j)
+    if (isLine(lineOf(j, phase))) depths[lineOf(j, phase)] += halfway(j, window, quads) * stepLength;
+}
+
+int rowOf(int plane, int side) { return (plane * push.marchStride + side * push.sideStride) / 4; }
+
+void main() {
+  const int quads = push.rowPitch / 4;
+  const int bundles = push.rowPitch / kVoxels;
+  const int thread = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kSweepThreads);
+  const int line = thread / bundles;
+  const int family = line / push.sideCount;
+  if (family >= abs(push.marchStep)) return;
+
+  restartLines();
+  int window = thread % bundles * kWords;  // first quad of voxels that this thread writes
+  int side = line - family * push.sideCount;
+  int plane = push.marchStep > 0 ? family : push.marchCount - 1 - family;
+
+  while (!outside(plane, push.marchCount)) {
+    [[unroll]] for (int phase = 0; phase < kPhases; ++phase) {
+      if (outside(plane, push.marchCount)) break;
+      restartWrappedLines(window, quads, phase);
+      for (int i = 0; i < push.halfwayRows; ++i) {
+        const ivec2 place = ivec2(plane, side) + push.halfway[i];
+        if (outside(place.x, push.marchCount) || outside(place.y, push.sideCount)) continue;
+        loadRow(rowOf(place.x, place.y), window, quads);
+        addHalfwayRow(window, quads, phase, push.stepLength / push.halfwayRows);
+      }
+      writeWindow(rowOf(plane, side), window, quads, phase);
+      loadRow(rowOf(plane, side), window, quads);
+      addRow(phase, push.stepLength);
+
+      plane += push.marchStep;
+      side += push.sideStep;
+      if (outside(side, push.sideCount)) {
+        restartLines();
+        side = (side + 2 * push.sideCount) % push.sideCount;
+      }
+    }
+    window = wrapped(window + kWindowStep, quads);
+  }
+}
