@@ -11,25 +11,40 @@
 #include "attenuation_code.glsl"
 #include "line_bundle.glsl"
 
+layout(constant_id = 3) const int kHalfwayRows = 1;  // around the middle of a step: 1, 2 or 4
+
 layout(scalar, push_constant) uniform Push { HalfSweepPush push; };
 
 bool outside(int index, int count) { return index < 0 || index >= count; }
 
-// What loadRow has read, half-way along the step towards where the march comes from. Nothing beyond the row.
+int rowOf(int plane, int side) { return (plane * push.marchStride + side * push.sideStride) / 4; }
+
+// The mean of the rows around the middle of the step; nothing beyond the volume.
+void loadHalfwayRows(int plane, int side, int window, int quads) {
+  [[unroll]] for (int j = 0; j < 4 * kQuads; ++j) sigma[j] = 0.0;
+  [[unroll]] for (int i = 0; i < kHalfwayRows; ++i) {
+    const ivec2 place = ivec2(plane, side) + push.halfway[i];
+    const ivec2 inside = clamp(place, ivec2(0), ivec2(push.marchCount, push.sideCount) - 1);
+    const float share = place == inside ? 1.0 / kHalfwayRows : 0.0;
+    [[unroll]] for (int q = 0; q < kQuads; ++q) {
+      const vec4 quad = share * loadQuad(rowOf(inside.x, inside.y), q, window, quads);
+      [[unroll]] for (int c = 0; c < 4; ++c) sigma[4 * q + c] += quad[c];
+    }
+  }
+}
+
+// The rows' mean half-way along the step towards where the march comes from; nothing beyond the row.
 float halfway(int j, int window, int quads) {
   if (kSize == 0) return sigma[j];
-  const int before = j - kWindowStep;
   const bool entry = j % 4 == (kStepX > 0 ? 0 : 3) && isEntry(j / 4 - kMargin, window, quads);
-  const float neighbour = entry ? 0.0 : sigma[before];
+  const float neighbour = entry ? 0.0 : sigma[j - kWindowStep];
   return kSize == 2 ? neighbour : 0.5 * (sigma[j] + neighbour);
 }
 
-void addHalfwayRow(int window, int quads, int phase, float stepLength) {
+void addHalfwayRows(int window, int quads, int phase, float stepLength) {
   [[unroll]] for (int j = 0; j < 4 * kQuads; ++j)
     if (isLine(lineOf(j, phase))) depths[lineOf(j, phase)] += halfway(j, window, quads) * stepLength;
 }
-
-int rowOf(int plane, int side) { return (plane * push.marchStride + side * push.sideStride) / 4; }
 
 void main() {
   const int quads = push.rowPitch / 4;
@@ -48,12 +63,8 @@ void main() {
     [[unroll]] for (int phase = 0; phase < kPhases; ++phase) {
       if (outside(plane, push.marchCount)) break;
       restartWrappedLines(window, quads, phase);
-      for (int i = 0; i < push.halfwayRows; ++i) {
-        const ivec2 place = ivec2(plane, side) + push.halfway[i];
-        if (outside(place.x, push.marchCount) || outside(place.y, push.sideCount)) continue;
-        loadRow(rowOf(place.x, place.y), window, quads);
-        addHalfwayRow(window, quads, phase, push.stepLength / push.halfwayRows);
-      }
+      loadHalfwayRows(plane, side, window, quads);
+      addHalfwayRows(window, quads, phase, push.stepLength);
       writeWindow(rowOf(plane, side), window, quads, phase);
       loadRow(rowOf(plane, side), window, quads);
       addRow(phase, push.stepLength);

@@ -83,8 +83,7 @@ struct HalfSweepPush {
   int marchCount, marchStride, marchStep;  // extent, stride and step of the march axis; step -2, -1, 1 or 2
   int sideCount, sideStride, sideStep;     // the same of the axis that is neither x nor the march axis
   float stepLength;                        // world length of half a step: of one layer
-  int halfwayRows;                         // rows around the middle of a step: 1, 2 or 4,
-  ivec2 halfway[4];                        // by their offsets along the march and side axes
+  ivec2 halfway[4];                        // rows around the middle of a step: offsets on the march and side axes
 };
 
 // visible_count.comp, visible_scan.comp, visible_write.comp
@@ -156,7 +155,7 @@ struct ResolvePush {
 
 #ifdef __cplusplus
 static_assert(sizeof(ChunkArguments) == 48);
-static_assert(sizeof(HalfSweepPush) == 68);
+static_assert(sizeof(HalfSweepPush) == 64);
 static_assert(sizeof(Splat) == 52);
 static_assert(sizeof(ResolvePush) == 84);
 }  // namespace freevoxels::shader

@@ -51,9 +51,13 @@ void restartWrappedLines(int window, int quads, int phase) {
     }
 }
 
+vec4 loadQuad(int row, int q, int window, int quads) {
+  return texelFetch(extinction, row + wrapped(window + q - kMargin, quads));
+}
+
 void loadRow(int row, int window, int quads) {
   [[unroll]] for (int q = 0; q < kQuads; ++q) {
-    const vec4 quad = texelFetch(extinction, row + wrapped(window + q - kMargin, quads));
+    const vec4 quad = loadQuad(row, q, window, quads);
     [[unroll]] for (int c = 0; c < 4; ++c) sigma[4 * q + c] = quad[c];
   }
 }

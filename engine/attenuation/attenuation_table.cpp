@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "embedded/attenuation_sweep.h"
-#include "embedded/attenuation_sweep_half.h"
 #include "embedded/attenuation_sweep_x.h"
 #include "engine/core/error.h"
 #include "shaders/interface.h"
@@ -51,41 +50,17 @@ shader::SweepPush sweepPush(const DeviceVolume& volume, glm::ivec3 direction, bo
   return push;
 }
 
-/// The distances from a voxel to those nearest to the middle of a step, along one axis.
-std::vector<int> halfwayOffsets(int step) {
-  if (step % 2 == 0) return {step / 2};
-  return {0, step};
-}
-
-/// As sweepPush, for a direction whose lattice step is its cell.
-shader::HalfSweepPush halfSweepPush(const DeviceVolume& volume, glm::ivec3 cell, double stepLength) {
-  const glm::ivec3 extent = volume.layout.dimensions;
-  const int row = volume.layout.rowPitch, plane = row * extent.y;
-  shader::HalfSweepPush push{.rowPitch = row, .stepLength = float(stepLength)};
-  const bool alongZ = cell.z != 0;
-  push.marchCount = alongZ ? extent.z : extent.y;
-  push.marchStride = alongZ ? plane : row;
-  push.marchStep = alongZ ? -cell.z : -cell.y;
-  push.sideCount = alongZ ? extent.y : extent.z;
-  push.sideStride = alongZ ? row : plane;
-  push.sideStep = alongZ ? -cell.y : 0;
-  for (const int march : halfwayOffsets(-push.marchStep))
-    for (const int side : halfwayOffsets(-push.sideStep)) push.halfway[push.halfwayRows++] = {march, side};
-  return push;
-}
-
 /// Of the direction {-1,0,1}³.
 const Buffer& planeOf(const AttenuationTable& table, glm::ivec3 direction) {
   const DirectionSet set = table.settings.directions;
   return table.planes[std::size_t(directionIndex(set, direction * int(set)))];
 }
 
-Pipeline makeSweepPipeline(const Device& device, ShaderCode code, std::size_t pushBytes,
-                           const Specialisation& constants) {
+Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Specialisation& constants) {
   return makeComputePipeline(
       device, code,
       {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-       .pushConstantBytes = std::uint32_t(pushBytes)},
+       .pushConstantBytes = sizeof(shader::SweepPush)},
       {shader::kSweepThreads, 1, 1}, constants);
 }
 
@@ -111,19 +86,16 @@ AttenuationTable makeTable(const Device& device, const GridLayout& layout, const
 AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings)
     : voxelsPerThread_(device.isCpu() ? 16 : 4),
       blockBytes_(device.isCpu() ? kCpuBlockBytes : std::numeric_limits<std::uint64_t>::max()) {
-  const auto code = std::uint32_t(settings.code), voxels = std::uint32_t(voxelsPerThread_);
+  const auto code = std::uint32_t(settings.code);
   for (int step = -1; step <= 1; ++step)
     bundles_[std::size_t(step + 1)] =
-        makeSweepPipeline(device, {attenuation_sweep_spv, "attenuation sweep"}, sizeof(shader::SweepPush),
-                          {code, voxels, std::uint32_t(step)});
+        makeSweepPipeline(device, {attenuation_sweep_spv, "attenuation sweep"},
+                          {code, std::uint32_t(voxelsPerThread_), std::uint32_t(step)});
   for (int step : {-1, 1})
     rows_[step > 0 ? 1 : 0] = makeSweepPipeline(device, {attenuation_sweep_x_spv, "attenuation sweep x"},
-                                                sizeof(shader::SweepPush), {code, std::uint32_t(step)});
+                                                {code, std::uint32_t(step)});
   if (settings.directions == DirectionSet::Directions98)
-    for (int step = -2; step <= 2; ++step)
-      halves_.push_back(makeSweepPipeline(device, {attenuation_sweep_half_spv, "attenuation sweep half"},
-                                          sizeof(shader::HalfSweepPush),
-                                          {code, voxels, std::uint32_t(step)}));
+    halves_.emplace(device, settings.code, voxelsPerThread_);
 }
 
 void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume,
@@ -135,7 +107,7 @@ void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume,
         recordRows(commands, volume, table);
       else
         recordBundles(commands, volume, table, {y, z});
-  if (!halves_.empty()) recordHalfDirections(commands, volume, table);
+  if (halves_) halves_->record(commands, volume, table);
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
@@ -163,22 +135,6 @@ void AttenuationSweep::recordBundles(Commands& commands, const DeviceVolume& vol
       commands.dispatchLinear(bundles_[std::size_t(1 - x)], bindings, push,
                               std::uint64_t(push.lastLine - first) * std::uint64_t(bundles));
     }
-}
-
-void AttenuationSweep::recordHalfDirections(Commands& commands, const DeviceVolume& volume,
-                                            const AttenuationTable& table) const {
-  const TableSettings& settings = table.settings;
-  for (int i = 0; i < directionCount(settings.directions); ++i) {
-    const glm::ivec3 cell = directionCell(settings.directions, i);
-    if (cell % int(settings.directions) == glm::ivec3(0)) continue;  // one of the 26
-    const double layer =
-        stepLength(volume.indexToWorld, directionAt(settings.directions, i), settings.pathLengthCorrection);
-    const shader::HalfSweepPush push = halfSweepPush(volume, cell, layer);
-    const std::array<Binding, 2> bindings{&volume.extinctionQuads, &table.planes[std::size_t(i)]};
-    const int lines = push.sideCount * std::abs(push.marchStep);
-    commands.dispatchLinear(halves_[std::size_t(2 - cell.x)], bindings, push,
-                            std::uint64_t(lines) * std::uint64_t(push.rowPitch / voxelsPerThread_));
-  }
 }
 
 std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const GridLayout& layout,

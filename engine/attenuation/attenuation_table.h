@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/attenuation/directions.h"
+#include "engine/attenuation/half_sweep.h"
 #include "engine/attenuation/table_settings.h"
 #include "engine/volume/device_volume.h"
 
@@ -32,14 +34,12 @@ class AttenuationSweep {
   void recordRows(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const;
   void recordBundles(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table,
                      glm::ivec2 yz) const;
-  void recordHalfDirections(Commands& commands, const DeviceVolume& volume,
-                            const AttenuationTable& table) const;
 
   int voxelsPerThread_;
   std::uint64_t blockBytes_;
   std::array<Pipeline, 3> bundles_;  ///< by the march's step in x, -1, 0, 1
   std::array<Pipeline, 2> rows_;     ///< directions +x and -x
-  std::vector<Pipeline> halves_;     ///< by the march's step in x, -2 to 2; for 98 directions
+  std::optional<HalfSweep> halves_;  ///< of 98 directions
 };
 
 /// Bytes [direction][voxel] without padding.

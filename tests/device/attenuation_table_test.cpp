@@ -1,8 +1,9 @@
 // The table on the device against the double-precision reference and against Beer-Lambert.
 
 #include <cmath>
+#include <map>
 
-#include "engine/attenuation/directions.h"
+#include "engine/attenuation/attenuation_table.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/reference/reference_table.h"
 #include "engine/renderer.h"
@@ -42,9 +43,23 @@ bool leavesSideways(glm::dvec3 outside, glm::dvec3 direction, glm::ivec3 size) {
 
 class AttenuationTableTest : public DeviceTest {
  protected:
+  /// As Renderer makes it, with the pipelines kept for the next volume.
+  Table tableOnDevice(const Volume& volume, const Classification& classification,
+                      const TableSettings& settings) {
+    const auto [sweep, isNew] = sweeps_.try_emplace({settings.code, settings.directions}, device(), settings);
+    const DeviceVolume onDevice = uploadVolume(device(), volume, classification);
+    const AttenuationTable table = makeTable(device(), onDevice.layout, settings);
+    const ClassifyPass classify(device());
+    Commands commands(device());
+    classify.record(commands, onDevice, classification);
+    sweep->second.record(commands, onDevice, table);
+    commands.submitAndWait();
+    return downloadTable(device(), onDevice.layout, table);
+  }
+
   void expectWithinOneCode(const Volume& volume, const TableSettings& settings) {
     const Classification classification{.densityScale = 1.0};
-    const Table table = Renderer(device(), volume, classification, settings).downloadTable();
+    const Table table = tableOnDevice(volume, classification, settings);
     const Table reference = referenceTable(volume, referenceExtinction(volume, classification), settings);
     const WorstByte worst = worstByte(table, reference);
     const glm::dvec3 d =
@@ -60,6 +75,9 @@ class AttenuationTableTest : public DeviceTest {
         for (DirectionSet set : {DirectionSet::Directions26, DirectionSet::Directions98})
           expectWithinOneCode(volume, {code, corrected, set});
   }
+
+ private:
+  std::map<std::pair<AttenuationCode, DirectionSet>, AttenuationSweep> sweeps_;
 };
 
 TEST_F(AttenuationTableTest, OddSizedRandomVolumesMatchTheReference) {
