@@ -2,10 +2,9 @@
 // The attenuation table for one of the 72 directions half-way between those of Subr et al. 2007, Section 3.1:
 // Eq. 5 along lattice lines with steps of two layers, such as (2,1,0) or (2,2,1).
 //
-// As attenuation_sweep.comp. The layer in the middle of a step is crossed between voxels: its extinction there
-// is the mean of the two or four around the line (one where no component is odd in that layer's plane), and
-// counts although the voxel at the step's end may be outside. A march by two planes a step has two families of
-// lines, over the even and over the odd planes.
+// As attenuation_sweep.comp, but for the layer in the middle of a step, which the line crosses between voxels:
+// its extinction is the mean of the two or four around the line, and counts also where the voxel at the step's
+// end is outside. A march by two planes a step has two families of lines, over even and over odd planes.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "attenuation_code.glsl"
