@@ -19,8 +19,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr std::uint64_t kBytesPerPaddedVoxel = 2 * sizeof(float) + kDirectionCount + sizeof(std::uint32_t);
-
 /// Bytes of the largest buffer of voxels that the passes can bind.
 std::uint64_t largestBinding(const Device& device) {
   const std::uint64_t texels = std::uint64_t(device.limits().maxTexelBufferElements) * sizeof(glm::vec4);
@@ -28,7 +26,7 @@ std::uint64_t largestBinding(const Device& device) {
                    std::uint64_t(device.maximumAllocation())});
 }
 
-void checkFits(const Device& device, glm::ivec3 dimensions) {
+void checkFits(const Device& device, glm::ivec3 dimensions, DirectionSet directions) {
   const std::uint64_t binding = GridLayout(dimensions).paddedVoxels() * sizeof(float);
   if (binding > largestBinding(device))
     fail(ExitCode::OutOfMemory,
@@ -36,40 +34,32 @@ void checkFits(const Device& device, glm::ivec3 dimensions) {
          "the volume",
          dimensions.x, dimensions.y, dimensions.z, binding >> 20, device.description().name,
          largestBinding(device) >> 20);
-  const std::uint64_t total = volumeMemory(dimensions).total();
+  const std::uint64_t total = volumeMemory(dimensions, directions).total();
   if (total > device.description().memoryBytes)
     fail(ExitCode::OutOfMemory,
-         "a volume of {}x{}x{} voxels needs {} MiB of device memory and {} has {} MiB: crop or resample the "
-         "volume",
-         dimensions.x, dimensions.y, dimensions.z, total >> 20, device.description().name,
-         device.description().memoryBytes >> 20);
+         "a volume of {}x{}x{} voxels with {} directions needs {} MiB of device memory and {} has {} MiB: "
+         "crop "
+         "or resample the volume{}",
+         dimensions.x, dimensions.y, dimensions.z, directionCount(directions), total >> 20,
+         device.description().name, device.description().memoryBytes >> 20,
+         directions == DirectionSet::Directions26 ? "" : ", or take 26 directions");
 }
 
 }  // namespace
 
-VolumeMemory volumeMemory(glm::ivec3 dimensions) {
+VolumeMemory volumeMemory(glm::ivec3 dimensions, DirectionSet directions) {
   const std::uint64_t voxels = GridLayout(dimensions).paddedVoxels();
   return {.scalars = voxels * sizeof(float),
           .extinction = voxels * sizeof(float),
-          .table = voxels * kDirectionCount,
+          .table = voxels * std::uint64_t(directionCount(directions)),
           .visibleVoxels = voxels * sizeof(std::uint32_t)};
 }
 
-std::uint64_t maximumVoxels(const Device& device) {
-  return std::min(largestBinding(device) / sizeof(float),
-                  device.description().memoryBytes / kBytesPerPaddedVoxel);
+std::uint64_t maximumVoxels(const Device& device, DirectionSet directions) {
+  const glm::ivec3 row(shader::kRowAlignment, 1, 1);
+  const std::uint64_t bytesPerVoxel = volumeMemory(row, directions).total() / shader::kRowAlignment;
+  return std::min(largestBinding(device) / sizeof(float), device.description().memoryBytes / bytesPerVoxel);
 }
-
-namespace {
-
-RaySource eyeOf(const Camera& camera, const glm::dmat4& indexToWorld) {
-  const glm::dmat4 worldToIndex = glm::inverse(indexToWorld);
-  if (camera.orthographic)
-    return {.place = glm::dmat3(worldToIndex) * (camera.position - camera.lookAt), .atInfinity = true};
-  return {.place = glm::dvec3(worldToIndex * glm::dvec4(camera.position, 1.0))};
-}
-
-}  // namespace
 
 struct Renderer::State {
   const Device& device;
@@ -105,7 +95,7 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
   if (sorted) sort->record(commands, volume, visible, camera);
   if (!sorted && settings.attenuation == AttenuationLookup::Exact) {
     if (!rays) rays = std::make_unique<RaySweep>(device);
-    rays->record(commands, volume, eyeOf(camera, volume.indexToWorld));
+    rays->record(commands, volume, eyeSource(camera, volume.indexToWorld));
     std::ranges::copy(rays->fans(), frame.constants.setup.fans);
   }
   splats->record(commands, {volume, table, visible, sorted ? &sort->voxels() : nullptr}, frame.constants,
@@ -115,7 +105,7 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
 
 Renderer::Renderer(const Device& device, const Volume& volume, const Classification& classification,
                    const TableSettings& table, const Progress& progress) {
-  checkFits(device, volume.dimensions);
+  checkFits(device, volume.dimensions, table.directions);
   state_ = std::make_unique<State>(State{.device = device, .tableSettings = table});
   {
     const StageTimer timer(state_->buildTimes, "upload");
@@ -124,7 +114,7 @@ Renderer::Renderer(const Device& device, const Volume& volume, const Classificat
     state_->visible = makeVisibleVoxels(device, state_->volume);
   }
   const ClassifyPass classify(device);
-  const AttenuationSweep sweep(device, table.code);
+  const AttenuationSweep sweep(device, table);
   const CompactionPass compaction(device);
   Commands commands(device);
   classify.record(commands, state_->volume, classification);

@@ -16,16 +16,16 @@
 
 namespace freevoxels {
 
-/// Device memory for a volume of these dimensions, in bytes.
+/// Device memory for a volume of these dimensions with a table of these directions, in bytes.
 struct VolumeMemory {
   std::uint64_t scalars = 0, extinction = 0, table = 0, visibleVoxels = 0;
   std::uint64_t total() const { return scalars + extinction + table + visibleVoxels; }
 };
-VolumeMemory volumeMemory(glm::ivec3 dimensions);
+VolumeMemory volumeMemory(glm::ivec3 dimensions, DirectionSet directions);
 
-/// How many voxels a volume may have to be rendered on this device at all (rows are padded: see
-/// volumeMemory).
-std::uint64_t maximumVoxels(const Device& device);
+/// How many voxels a volume may have to be rendered on this device at all with a table of these directions
+/// (rows are padded: see volumeMemory).
+std::uint64_t maximumVoxels(const Device& device, DirectionSet directions);
 
 /// Fails with ExitCode::OutOfMemory where this device cannot hold such a frame: before any other work.
 void checkFrameFits(const Device& device, const FrameSettings& settings);

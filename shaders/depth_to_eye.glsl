@@ -13,7 +13,7 @@ float layerLength(vec3 direction) { return length(frame.indexToWorld * direction
 
 float tableDepth(vec3 position) {
   const vec3 direction = directionToEye(position);
-  const Towards towards = Towards(direction, layerLength(direction), frame.indexToWorld, frame.code, frame.lookup,
+  const Towards towards = Towards(direction, layerLength(direction), frame.indexToWorld, frame.cells, frame.code, frame.lookup,
                                   frame.pathLengthCorrection != 0);
   const ivec3 voxel = ivec3(position);
   return depthTowards(towards, uint(voxel.x + frame.rowPitch * (voxel.y + frame.dimensions.y * voxel.z)));

@@ -47,9 +47,8 @@ FV_CONSTANT int kSplatsPerChunk = 1 << 20;
 FV_CONSTANT float kSplatRadius = 1.3960250075605876f;
 FV_CONSTANT float kSplatPeak = 5.0f / (3.14159265358979f * kSplatRadius * kSplatRadius);
 
-FV_CONSTANT int kTableDirections = 26;
 FV_CONSTANT float kMaximumDepth = 16.0f;  // optical depth that the code depth8 ends at
-FV_CONSTANT float kOpaqueDepth = 32.0f;   // what the code linear8 means by a transmittance of 0
+FV_CONSTANT float kOpaqueDepth = 32.0f;   // what the code linear8 means by a transmittance of 0; rays end there
 
 // Must be engine/volume/volume.h's kInactiveVoxel.
 FV_CONSTANT float kInactiveScalar = -3.402823466e38f;
@@ -90,6 +89,15 @@ struct SweepPush {
   float stepLength;  // world length of a lattice step
 };
 
+// attenuation_sweep_half.comp. Strides are in voxels of the padded grid.
+struct HalfSweepPush {
+  int rowPitch;
+  int marchCount, marchStride, marchStep;  // extent, stride and step of the march axis; step -2, -1, 1 or 2
+  int sideCount, sideStride, sideStep;     // the same of the axis that is neither x nor the march axis
+  float stepLength;                        // world length of half a step: of one layer
+  ivec2 halfway[4];                        // rows around the middle of a step: offsets on the march and side axes
+};
+
 // engine/attenuation/ray_fans.h says what the members mean.
 struct RayFan {
   int axis;
@@ -101,7 +109,7 @@ struct RayFan {
   float convergence;
   float farthest;
   float spacing;
-  uvec2 depths;  // device address: two halves a uint, of planes 2k and 2k + 1; by k and ray
+  uvec2 depths;  // device address: by k and ray, sqrt(depth / kOpaqueDepth) of planes 2k and 2k + 1, 16 bits each
 };
 
 // ray_sweep.comp
@@ -172,6 +180,7 @@ struct SetupFrame {
   int pathLengthCorrection;  // 0: every lattice step counts as long as any other
   int gradient;            // 0: the transmittance to the eye is the same all over a footprint
   int code;                // kCode...
+  int cells;               // that the table's directions divide the cube's half edge into
   uint opacityPoints;      // 0 = physical
   uint colorPoints;
   vec3 albedo;
@@ -204,6 +213,7 @@ struct ResolvePush {
 #ifdef __cplusplus
 static_assert(sizeof(ChunkArguments) == 48);
 static_assert(sizeof(DepthKeyPush) == 80);
+static_assert(sizeof(HalfSweepPush) == 64);
 static_assert(sizeof(Splat) == 64);
 static_assert(sizeof(RaySweepPush) == 112);
 static_assert(sizeof(ResolvePush) == 84);

@@ -36,7 +36,8 @@ vec3 rayDepth(RayFan fan, vec3 position) {
   vec3 sum = vec3(0.0);
   [[unroll]] for (int j = 0; j < 4; ++j) {
     vec4 line;
-    [[unroll]] for (int i = 0; i < 4; ++i) line[i] = unpackHalf2x16(depths.pairs[first + i])[plane & 1];
+    [[unroll]] for (int i = 0; i < 4; ++i) line[i] = unpackUnorm2x16(depths.pairs[first + i])[plane & 1];
+    line *= line * kOpaqueDepth;
     const float value = dot(line, weightsX);
     sum += vec3(value * weightsY[j], vec2(dot(line, slopesX) * weightsY[j], value * slopesY[j]) / apart);
     first += row;

@@ -11,9 +11,6 @@ layout(scalar, push_constant) uniform Push { RaySweepPush push; };
 layout(scalar, binding = 0) readonly buffer Extinction { float extinction[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Depths { uint pairs[]; };
 
-// Half floats end at 65504.
-const float kLargestDepth = 60000.0;
-
 int sideA, sideB, strideA, strideB, strideAxis;
 
 float extinctionAt(int plane, ivec2 side) {
@@ -70,13 +67,13 @@ void main() {
   Depths depths = Depths(fan.depths);
   float depth = 0.0;
   for (int pair = planes.x / 2; pair <= planes.y / 2; ++pair) {
-    vec2 halves;
+    vec2 planeDepths;
     [[unroll]] for (int i = 0; i < 2; ++i) {
       const int plane = 2 * pair + i;
-      halves[i] = depth;
+      planeDepths[i] = depth;
       if (plane < fan.planeCount)
         depth += layer * interpolated(fan.firstPlane + fan.direction * plane, atFirst + perPlane * float(plane));
     }
-    depths.pairs[uint(pair) * rays + ray] = packHalf2x16(min(halves, kLargestDepth));
+    depths.pairs[uint(pair) * rays + ray] = packUnorm2x16(sqrt(min(planeDepths, kOpaqueDepth) / kOpaqueDepth));
   }
 }

@@ -10,13 +10,13 @@
 layout(local_size_x = kSplatThreads) in;
 layout(scalar, push_constant) uniform Push { SetupPush push; };
 layout(scalar, binding = 0) readonly buffer Frame { SetupFrame frame; };
-layout(scalar, binding = 2) readonly buffer PlaneAddresses { uvec2 planeAddresses[kTableDirections]; };
+layout(scalar, binding = 2) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
 layout(scalar, binding = 3) readonly buffer VisibleVoxels { uint visibleVoxels[]; };
 layout(scalar, binding = 4) readonly buffer Scalars { float scalars[]; };
 layout(scalar, binding = 5) readonly buffer Extinction { float extinction[]; };
 layout(scalar, binding = 6) readonly buffer Chunks { ChunkArguments chunks[]; };
 layout(scalar, binding = 7) writeonly buffer Splats { Splat splats[]; };
-#define PLANE_ADDRESS(direction) planeAddresses[direction]
+#define PLANE_ADDRESS(cell) planeAddresses[cell]
 #include "direction_lookup.glsl"
 #include "ray_lookup.glsl"
 #include "depth_to_eye.glsl"

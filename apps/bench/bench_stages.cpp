@@ -40,22 +40,23 @@ DeviceVolume classified(const Device& device, const Volume& volume) {
 
 }  // namespace
 
-Result sweeps(const Device& device, int resolution, int runs) {
+Result sweeps(const Device& device, DirectionSet directions, int resolution, int runs) {
   const Volume volume =
       unitVoxels(glm::ivec3(resolution), [](int x, int y, int z) { return float((x + 2 * y + 3 * z) % 7); });
   const DeviceVolume onDevice = classified(device, volume);
-  const AttenuationTable table = makeTable(device, onDevice.layout, {});
-  const AttenuationSweep sweep(device, table.settings.code);
+  const AttenuationTable table = makeTable(device, onDevice.layout, {.directions = directions});
+  const AttenuationSweep sweep(device, table.settings);
   const double time = least(runs, [&] {
     Commands commands(device);
     sweep.record(commands, onDevice, table);
     commands.submitAndWait();
     return total(commands);
   });
-  return {.name = fmt::format("26 sweeps, {0}x{0}x{0}", resolution),
+  const auto count = std::uint64_t(directionCount(directions));
+  return {.name = fmt::format("{0} sweeps, {1}x{1}x{1}", count, resolution),
           .milliseconds = time,
-          .copyMilliseconds = copyTime(27 * volume.voxelCount()),
-          .perSecond = 26.0 * double(volume.voxelCount()) / time * 1e3};
+          .copyMilliseconds = copyTime((count + 1) * volume.voxelCount()),
+          .perSecond = double(count * volume.voxelCount()) / time * 1e3};
 }
 
 Result compaction(const Device& device, int resolution, int runs) {
@@ -100,7 +101,7 @@ Result splats(const Device& device, double pixels, int runs) {
 }
 
 Result wholeRender(const Device& device, const InputOptions& input, int runs) {
-  const Volume volume = input.open(maximumVoxels(device));
+  const Volume volume = input.open(maximumVoxels(device, DirectionSet::Directions26));
   const Classification classification{.densityScale = automaticDensityScale(volume)};
   const FrameSettings settings{.size = {1024, 1024}};
   const double time = least(runs, [&] {

@@ -3,12 +3,13 @@
 
 #include "apps/bench/measure.h"
 #include "apps/freevoxels/input_options.h"
+#include "engine/attenuation/directions.h"
 #include "engine/vulkan/device.h"
 
 namespace freevoxels::bench {
 
-/// The 26 sweeps over an N³ volume, beside a copy of 27 N³ bytes.
-Result sweeps(const Device& device, int resolution, int runs);
+/// The sweeps for all D directions of a set over an N³ volume, beside a copy of (D + 1) N³ bytes.
+Result sweeps(const Device& device, DirectionSet directions, int resolution, int runs);
 
 /// The list of visible voxels of an N³ volume of which a thirtieth is visible, beside a copy of 4 N³ bytes.
 Result compaction(const Device& device, int resolution, int runs);

@@ -41,22 +41,27 @@ std::vector<GridInfo> describeInput(const InputOptions& input) {
 
 void printTable(const std::vector<GridInfo>& grids) {
   using enum TextTable::Align;
-  TextTable table{.columns = {Left, Left, Left, Right, Right, Left, Left, Left, Right, Right, Right, Left},
-                  .rows = {{"GRID", "TYPE", "CLASS", "ACTIVE VOXELS", "DIMENSIONS", "BOUNDING BOX",
-                            "VOXEL SIZE", "VALUES", "MEMORY", "TABLE", "ON DEVICE", ""}}};
+  TextTable table{
+      .columns = {Left, Left, Left, Right, Right, Left, Left, Left, Right, Right, Right, Right, Right, Left},
+      .rows = {{"GRID", "TYPE", "CLASS", "ACTIVE VOXELS", "DIMENSIONS", "BOUNDING BOX", "VOXEL SIZE",
+                "VALUES", "MEMORY", "TABLE 26", "ON DEVICE", "TABLE 98", "ON DEVICE", ""}}};
   for (const GridInfo& grid : grids) {
     const bool empty = grid.activeVoxels == 0;
     const glm::ivec3 low = grid.boundsMinimum, high = grid.boundsMaximum, size = grid.dimensions;
-    const VolumeMemory memory = volumeMemory(grid.renderDimensions);
     table.rows.push_back(
         {grid.name, grid.valueType, grid.gridClass, fmt::format("{}", grid.activeVoxels),
          empty ? "-" : fmt::format("{}x{}x{}", size.x, size.y, size.z),
          empty ? "-" : fmt::format("{}..{} {}..{} {}..{}", low.x, high.x, low.y, high.y, low.z, high.z),
          fmt::format("{:.4g} {:.4g} {:.4g}", grid.voxelSize.x, grid.voxelSize.y, grid.voxelSize.z),
          grid.hasRange ? fmt::format("{:.4g}..{:.4g}", grid.minimum, grid.maximum) : "-",
-         bytesText(grid.memoryBytes), grid.unusable.empty() ? bytesText(memory.table) : "-",
-         grid.unusable.empty() ? bytesText(memory.total()) : "-",
-         grid.unusable.empty() ? "" : "not drawable: " + grid.unusable});
+         bytesText(grid.memoryBytes)});
+    std::vector<std::string>& row = table.rows.back();
+    for (const DirectionSet directions : {DirectionSet::Directions26, DirectionSet::Directions98}) {
+      const VolumeMemory memory = volumeMemory(grid.renderDimensions, directions);
+      row.push_back(grid.unusable.empty() ? bytesText(memory.table) : "-");
+      row.push_back(grid.unusable.empty() ? bytesText(memory.total()) : "-");
+    }
+    row.push_back(grid.unusable.empty() ? "" : "not drawable: " + grid.unusable);
   }
   for (const std::string& line : table.lines()) fmt::print("{}\n", line);
 }
@@ -77,9 +82,12 @@ nlohmann::ordered_json toJson(const GridInfo& grid) {
     json["not_drawable"] = grid.unusable;
     return json;
   }
-  const VolumeMemory memory = volumeMemory(grid.renderDimensions);
+  const VolumeMemory memory = volumeMemory(grid.renderDimensions, DirectionSet::Directions26);
   json["table_bytes"] = memory.table;
   json["device_bytes"] = memory.total();
+  const VolumeMemory memory98 = volumeMemory(grid.renderDimensions, DirectionSet::Directions98);
+  json["table_98_bytes"] = memory98.table;
+  json["device_98_bytes"] = memory98.total();
   return json;
 }
 
@@ -90,7 +98,8 @@ void InfoCommand::add(CLI::App& app) {
   input_.add(*command);
   command->add_flag("--json", json_, "Print JSON for programs");
   command->footer(
-      "TABLE is the FreeVoxel table of the grid, ON DEVICE all device memory of the volume.\n"
+      "TABLE 26 and TABLE 98 are the FreeVoxel table of the grid with so many directions, ON DEVICE all\n"
+      "device memory of the volume with it.\n"
       "Examples:\n"
       "  freevoxels info cloud.vdb\n"
       "  freevoxels info procedural:cloud --resolution 256 --json\n");

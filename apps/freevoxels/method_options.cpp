@@ -11,6 +11,8 @@ namespace {
 const std::vector<std::string> kComposites{"normalised", "additive", "sorted"};
 const std::vector<std::string> kAttenuations{"bilinear", "nearest", "exact"};
 const std::vector<std::string> kCodes{"depth8", "linear8"};
+// In ascending order of DirectionSet's values, from 1.
+const std::vector<std::string> kDirections{"26", "98"};
 
 }  // namespace
 
@@ -21,9 +23,11 @@ void MethodOptions::add(CLI::App& app) {
           "[normalised]")
       ->group(group);
   addWord(app, "--attenuation", kAttenuations, attenuation,
-          "How the table is looked up between its directions; exact needs none, and a sweep from the eye for "
-          "every "
-          "frame [bilinear]")
+          "How the table is looked up between its directions; exact needs none, but a sweep from the eye for "
+          "every frame [bilinear]")
+      ->group(group);
+  addWord(app, "--directions", kDirections, directions,
+          "How many directions the table holds; 98 are more exact and take more memory and time [26]")
       ->group(group);
   addWord(app, "--code", kCodes, code, "What a byte of the table holds [depth8]")->group(group);
   app.add_flag_function(
@@ -35,16 +39,18 @@ void MethodOptions::add(CLI::App& app) {
          "--gradient,!--no-gradient", [this](std::int64_t count) { gradient = count > 0; },
          "Whether transmittance varies across a splat [yes]")
       ->group(group);
-  app.add_flag("--paper", paper,
-               "As the paper: additive, nearest, linear8, no path-length correction, no gradient; any of the "
-               "five that is given wins")
+  app.add_flag(
+         "--paper", paper,
+         "As the paper: additive, nearest, 26 directions, linear8, no path-length correction, no gradient; "
+         "any of the six that is given wins")
       ->group(group);
 }
 
 TableSettings MethodOptions::table() const {
   return {
       .code = AttenuationCode(code.value_or(int(paper ? AttenuationCode::Linear8 : AttenuationCode::Depth8))),
-      .pathLengthCorrection = pathLengthCorrection.value_or(!paper)};
+      .pathLengthCorrection = pathLengthCorrection.value_or(!paper),
+      .directions = DirectionSet(directions.value_or(0) + 1)};
 }
 
 void MethodOptions::apply(FrameSettings& frame) const {
@@ -59,6 +65,7 @@ void MethodOptions::describe(OptionList& options) const {
   apply(frame);
   options.emplace_back("--composite", kComposites[std::size_t(frame.composite)]);
   options.emplace_back("--attenuation", kAttenuations[std::size_t(frame.attenuation)]);
+  options.emplace_back("--directions", kDirections[std::size_t(table().directions) - 1]);
   options.emplace_back("--code", kCodes[std::size_t(table().code)]);
   options.emplace_back(
       table().pathLengthCorrection ? "--path-length-correction" : "--no-path-length-correction", "");

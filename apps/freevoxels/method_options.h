@@ -1,6 +1,6 @@
 #pragma once
 // How the picture is computed, where the paper and FreeVoxels differ. `--paper` takes the paper's side in all
-// five, but an option that is given explicitly wins over it.
+// six, but an option that is given explicitly wins over it.
 
 #include <optional>
 
@@ -11,7 +11,7 @@ namespace freevoxels {
 
 struct MethodOptions {
   bool paper = false;
-  std::optional<int> composite, attenuation, code;
+  std::optional<int> composite, attenuation, directions, code;
   std::optional<bool> pathLengthCorrection, gradient;
 
   void add(CLI::App& app);

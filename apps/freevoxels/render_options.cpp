@@ -70,7 +70,7 @@ void RenderOptions::run(const FrameFiles& outputs) const {
 Scene RenderOptions::open(const Device& opened, ProgressLine& line, RunReport& report) const {
   line.begin("reading " + scene.input.input);
   const StageTimer timer(report.stages, "read volume");
-  return scene.open(maximumVoxels(opened));
+  return scene.open(maximumVoxels(opened, method.table().directions));
 }
 
 OptionList RenderOptions::describe(const Scene& view) const {

@@ -57,13 +57,14 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
     for (const ProceduralScene& scene : kProcedural)
       addScene(jobs, device, fmt::format("{} at {}^3", scene.name, resolution), picture,
                [resolution, &scene, &device] {
-                 return makeValidationScene(openProcedural(scene.name, resolution, maximumVoxels(device)),
+                 return makeValidationScene(openProcedural(scene.name, resolution,
+                                                           maximumVoxels(device, DirectionSet::Directions98)),
                                             scene.color, resolution);
                });
   for (const std::string& file : extent.files) {
     const auto scene = std::make_shared<ValidationScene>(
-        makeValidationScene(readVdb(file, "", maximumVoxels(device)), SceneColor::Density,
-                            extent.quick ? kQuickFileEdge : kWholeFileEdge));
+        makeValidationScene(readVdb(file, "", maximumVoxels(device, DirectionSet::Directions98)),
+                            SceneColor::Density, extent.quick ? kQuickFileEdge : kWholeFileEdge));
     addScene(jobs, device, file, picture, [scene] { return *scene; });
   }
   return jobs;

@@ -13,7 +13,6 @@ namespace freevoxels {
 
 namespace {
 
-static_assert(shader::kTableDirections == kDirectionCount);
 static_assert(shader::kMaximumDepth == float(kMaximumCodedDepth));
 static_assert(shader::kOpaqueDepth == float(kOpaqueDepth));
 static_assert(shader::kCodeDepth8 == int(AttenuationCode::Depth8));
@@ -52,6 +51,12 @@ shader::SweepPush sweepPush(const DeviceVolume& volume, glm::ivec3 direction, bo
   return push;
 }
 
+/// Of the direction {-1,0,1}³.
+const Buffer& planeOf(const AttenuationTable& table, glm::ivec3 direction) {
+  const DirectionSet set = table.settings.directions;
+  return table.planes[std::size_t(directionIndex(set, direction * int(set)))];
+}
+
 Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Specialisation& constants) {
   return makeComputePipeline(
       device, code,
@@ -64,29 +69,34 @@ Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Speciali
 
 AttenuationTable makeTable(const Device& device, const GridLayout& layout, const TableSettings& settings) {
   AttenuationTable table{.settings = settings};
-  std::array<VkDeviceAddress, kDirectionCount> addresses{};
-  for (int i = 0; i < kDirectionCount; ++i) {
-    const glm::ivec3 d = directionAt(i);
+  const DirectionSet set = settings.directions;
+  const int edge = 2 * int(set) + 1;
+  std::vector<VkDeviceAddress> addresses(std::size_t(edge * edge * edge), 0);
+  for (int i = 0; i < directionCount(set); ++i) {
+    const glm::dvec3 d = directionAt(set, i);
     const std::string name = fmt::format("attenuation {},{},{}", d.x, d.y, d.z);
-    table.planes[std::size_t(i)] = Buffer(device, layout.paddedVoxels(), MemoryUse::Device, name.c_str());
-    addresses[std::size_t(i)] = table.planes[std::size_t(i)].address();
+    table.planes.emplace_back(device, layout.paddedVoxels(), MemoryUse::Device, name.c_str());
+    addresses[std::size_t(cellNumber(set, directionCell(set, i)))] = table.planes.back().address();
   }
-  table.planeAddresses = Buffer(device, sizeof(addresses), MemoryUse::Device, "attenuation addresses");
-  upload(device, table.planeAddresses, std::as_bytes(std::span(addresses)));
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(addresses));
+  table.planeAddresses = Buffer(device, bytes.size(), MemoryUse::Device, "attenuation addresses");
+  upload(device, table.planeAddresses, bytes);
   return table;
 }
 
-AttenuationSweep::AttenuationSweep(const Device& device, AttenuationCode code)
+AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings)
     : voxelsPerThread_(device.isCpu() ? 16 : 4),
       blockBytes_(device.isCpu() ? kCpuBlockBytes : std::numeric_limits<std::uint64_t>::max()) {
-  const auto codeConstant = std::uint32_t(code);
+  const auto code = std::uint32_t(settings.code);
   for (int step = -1; step <= 1; ++step)
     bundles_[std::size_t(step + 1)] =
         makeSweepPipeline(device, {attenuation_sweep_spv, "attenuation sweep"},
-                          {codeConstant, std::uint32_t(voxelsPerThread_), std::uint32_t(step)});
+                          {code, std::uint32_t(voxelsPerThread_), std::uint32_t(step)});
   for (int step : {-1, 1})
     rows_[step > 0 ? 1 : 0] = makeSweepPipeline(device, {attenuation_sweep_x_spv, "attenuation sweep x"},
-                                                {codeConstant, std::uint32_t(step)});
+                                                {code, std::uint32_t(step)});
+  if (settings.directions == DirectionSet::Directions98)
+    halves_.emplace(device, settings.code, voxelsPerThread_);
 }
 
 void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume,
@@ -98,6 +108,7 @@ void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume,
         recordRows(commands, volume, table);
       else
         recordBundles(commands, volume, table, {y, z});
+  if (halves_) halves_->record(commands, volume, table);
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
@@ -105,8 +116,7 @@ void AttenuationSweep::recordRows(Commands& commands, const DeviceVolume& volume
                                   const AttenuationTable& table) const {
   for (int x : {-1, 1}) {
     const shader::SweepPush push = sweepPush(volume, {x, 0, 0}, table.settings.pathLengthCorrection);
-    const std::array<Binding, 2> bindings{&volume.extinctionQuads,
-                                          &table.planes[std::size_t(directionIndex(x, 0, 0))]};
+    const std::array<Binding, 2> bindings{&volume.extinctionQuads, &planeOf(table, {x, 0, 0})};
     commands.dispatchLinear(rows_[x > 0 ? 0 : 1], bindings, push, std::uint64_t(push.lineCount));
   }
 }
@@ -122,8 +132,7 @@ void AttenuationSweep::recordBundles(Commands& commands, const DeviceVolume& vol
       shader::SweepPush push = sweepPush(volume, {x, yz}, table.settings.pathLengthCorrection);
       push.firstLine = first;
       push.lastLine = std::min(first + block, push.lineCount);
-      const std::array<Binding, 2> bindings{&volume.extinctionQuads,
-                                            &table.planes[std::size_t(directionIndex(x, yz.x, yz.y))]};
+      const std::array<Binding, 2> bindings{&volume.extinctionQuads, &planeOf(table, {x, yz})};
       commands.dispatchLinear(bundles_[std::size_t(1 - x)], bindings, push,
                               std::uint64_t(push.lastLine - first) * std::uint64_t(bundles));
     }

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "engine/attenuation/directions.h"
+#include "engine/attenuation/half_sweep.h"
 #include "engine/attenuation/table_settings.h"
 #include "engine/volume/device_volume.h"
 
@@ -13,18 +15,19 @@ namespace freevoxels {
 
 struct AttenuationTable {
   /// One byte a voxel and direction, in the layout of the volume; directions in the order of directions.h.
-  std::array<Buffer, kDirectionCount> planes;
-  Buffer planeAddresses;  ///< kDirectionCount device addresses
+  std::vector<Buffer> planes;
+  Buffer planeAddresses;  ///< the planes' device addresses by cellNumber, 0 where a cell is no direction
   TableSettings settings;
 };
 
 AttenuationTable makeTable(const Device& device, const GridLayout& layout, const TableSettings& settings);
 
-/// COMPUTE attenuation_sweep.comp and attenuation_sweep_x.comp: a dispatch a direction (more, over blocks of
-/// lines, on a CPU device), none of which waits for another.
+/// COMPUTE attenuation_sweep.comp, attenuation_sweep_x.comp and, for 98 directions,
+/// attenuation_sweep_half.comp: a dispatch a direction (of the 26 more, over blocks of lines, on a CPU
+/// device), none of which waits for another.
 class AttenuationSweep {
  public:
-  AttenuationSweep(const Device& device, AttenuationCode code);
+  AttenuationSweep(const Device& device, const TableSettings& settings);
   void record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const;
 
  private:
@@ -36,6 +39,7 @@ class AttenuationSweep {
   std::uint64_t blockBytes_;
   std::array<Pipeline, 3> bundles_;  ///< by the march's step in x, -1, 0, 1
   std::array<Pipeline, 2> rows_;     ///< directions +x and -x
+  std::optional<HalfSweep> halves_;  ///< of 98 directions
 };
 
 /// Bytes [direction][voxel] without padding.

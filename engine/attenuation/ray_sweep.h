@@ -21,7 +21,7 @@ class RaySweep {
  private:
   const Device& device_;
   Pipeline pipeline_;
-  Buffer depths_;  ///< uint: two halves, of planes 2k and 2k + 1; by fan, k and ray
+  Buffer depths_;  ///< uint: codes of planes 2k and 2k + 1; by fan, k and ray
   std::array<shader::RayFan, 6> fans_{};
 };
 

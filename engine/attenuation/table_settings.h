@@ -7,7 +7,8 @@ namespace freevoxels {
 
 struct TableSettings {
   AttenuationCode code = AttenuationCode::Depth8;
-  bool pathLengthCorrection = true;  ///< off: every lattice step has the length of a voxel, as in the paper
+  bool pathLengthCorrection = true;  ///< off: every layer of voxels is as thick as a voxel, as in the paper
+  DirectionSet directions = DirectionSet::Directions26;
 };
 
 }  // namespace freevoxels

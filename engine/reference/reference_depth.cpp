@@ -1,42 +1,201 @@
 #include "engine/reference/reference_depth.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "engine/core/error.h"
 
 namespace freevoxels {
 
-int majorAxis(glm::dvec3 direction) {
+namespace {
+
+/// The first of several.
+int largestAxis(glm::dvec3 direction) {
   const glm::dvec3 size = glm::abs(direction);
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
 }
 
+/// As long as a lattice layer.
 glm::dvec3 acrossLayer(glm::dvec3 direction) {
-  return direction / std::abs(direction[majorAxis(direction)]);
+  return direction / std::abs(direction[largestAxis(direction)]);
 }
 
-ReferenceDepth::ReferenceDepth(const Volume& volume, const std::vector<std::vector<std::uint8_t>>& table,
-                               const TableSettings& settings, AttenuationLookup lookup)
-    : volume_(volume), table_(table), settings_(settings), lookup_(lookup) {
-  FV_CHECK_EQ(table.size(), std::size_t(kDirectionCount));
-}
+class TableDepth : public ReferenceDepth {
+ public:
+  TableDepth(const Volume& volume, const std::vector<std::vector<std::uint8_t>>& table,
+             const TableSettings& settings, AttenuationLookup lookup, ToEye toEye)
+      : volume_(volume), table_(table), settings_(settings), lookup_(lookup), toEye_(std::move(toEye)) {
+    FV_CHECK_EQ(table.size(), std::size_t(directionCount(settings.directions)));
+  }
 
-double ReferenceDepth::towards(glm::ivec3 voxel, glm::dvec3 toEye) const {
+  double at(glm::ivec3 voxel) const override;
+  double slope(glm::ivec3 voxel, int axis) const override {
+    glm::ivec3 before = voxel, after = voxel;
+    before[axis] = std::max(voxel[axis] - 1, 0);
+    after[axis] = std::min(voxel[axis] + 1, volume_.dimensions[axis] - 1);
+    return before == after ? 0.0 : (at(after) - at(before)) / (after[axis] - before[axis]);
+  }
+
+ private:
+  const Volume& volume_;
+  const std::vector<std::vector<std::uint8_t>>& table_;
+  const TableSettings settings_;
+  const AttenuationLookup lookup_;
+  const ToEye toEye_;
+};
+
+double TableDepth::at(glm::ivec3 voxel) const {
+  const glm::dvec3 toEye = toEye_(glm::dvec3(voxel));
   const glm::dmat3 toWorld(volume_.indexToWorld);
   const double layer = glm::length(toWorld * acrossLayer(toEye));
   const std::size_t index = volume_.at(voxel.x, voxel.y, voxel.z);
+  const DirectionSet set = settings_.directions;
   const auto stored = [&](int direction) {
     const double depth = decodeOpticalDepth(settings_.code, table_[std::size_t(direction)][index]);
     if (!settings_.pathLengthCorrection) return depth;
-    return depth * layer / glm::length(toWorld * glm::dvec3(directionAt(direction)));
+    return depth * layer / stepLength(volume_.indexToWorld, directionAt(set, direction), true);
   };
-  if (lookup_ == AttenuationLookup::Nearest) return stored(nearestDirection(toEye));
-  const DirectionBlend blend = bilinearDirections(toEye);
+  if (lookup_ == AttenuationLookup::Nearest) return stored(nearestDirection(set, toEye));
+  const DirectionBlend blend = bilinearDirections(set, toEye);
   double transmittance = 0.0;
   for (std::size_t i = 0; i < 4; ++i)
     transmittance += blend.weights[i] * std::exp(-stored(blend.directions[i]));
   return -std::log(transmittance);
+}
+
+/// Catmull-Rom as a Hermite spline: value and derivative at x between p[1] and p[2].
+std::pair<double, double> spline(const std::array<double, 4>& p, double x) {
+  const double m1 = (p[2] - p[0]) / 2.0, m2 = (p[3] - p[1]) / 2.0, rise = p[2] - p[1];
+  const double b = 3.0 * rise - 2.0 * m1 - m2, a = m1 + m2 - 2.0 * rise;
+  return {p[1] + x * (m1 + x * (b + x * a)), m1 + x * (2.0 * b + x * 3.0 * a)};
+}
+
+class RayDepth : public ReferenceDepth {
+ public:
+  RayDepth(const Volume& volume, std::span<const double> extinction, const RaySource& source);
+
+  double at(glm::ivec3 voxel) const override { return std::max(lookUp(voxel).first, 0.0); }
+  double slope(glm::ivec3 voxel, int axis) const override {
+    return lookUp(voxel).second[axis == (fanOf(voxel).axis + 1) % 3 ? 0 : 1];
+  }
+
+ private:
+  const RayFan& fanOf(glm::ivec3 voxel) const {
+    return fans_[std::size_t(
+        fanIndex(source_.atInfinity ? -source_.place : glm::dvec3(voxel) - source_.place))];
+  }
+  double extinctionAt(int axis, int plane, glm::ivec2 side) const;
+  double interpolated(int axis, int plane, glm::dvec2 side) const;
+  void march(std::size_t fan, int i, int j);
+  std::pair<double, glm::dvec2> lookUp(glm::ivec3 voxel) const;
+
+  const Volume& volume_;
+  const std::span<const double> extinction_;
+  const RaySource source_;
+  const std::array<RayFan, 6> fans_;
+  std::array<std::vector<double>, 6> depths_;  ///< by fan: [plane][j][i]
+};
+
+RayDepth::RayDepth(const Volume& volume, std::span<const double> extinction, const RaySource& source)
+    : volume_(volume), extinction_(extinction), source_(source), fans_(rayFans(volume.dimensions, source)) {
+  for (std::size_t f = 0; f < fans_.size(); ++f) {
+    depths_[f].resize(fans_[f].rays() * std::size_t(fans_[f].planeCount));
+    if (depths_[f].empty()) continue;
+    for (int j = 0; j < fans_[f].rayCount.y; ++j)
+      for (int i = 0; i < fans_[f].rayCount.x; ++i) march(f, i, j);
+  }
+}
+
+double RayDepth::extinctionAt(int axis, int plane, glm::ivec2 side) const {
+  glm::ivec3 v;
+  v[axis] = plane;
+  v[(axis + 1) % 3] = side.x;
+  v[(axis + 2) % 3] = side.y;
+  const glm::ivec3 n = volume_.dimensions;
+  if (v.x < 0 || v.y < 0 || v.z < 0 || v.x >= n.x || v.y >= n.y || v.z >= n.z) return 0.0;
+  return extinction_[volume_.at(v.x, v.y, v.z)];
+}
+
+double RayDepth::interpolated(int axis, int plane, glm::dvec2 side) const {
+  const glm::ivec2 low(glm::floor(side));
+  double sum = 0.0;
+  for (int b = 0; b < 2; ++b)
+    for (int a = 0; a < 2; ++a) {
+      const glm::ivec2 corner = low + glm::ivec2(a, b);
+      const glm::dvec2 share = 1.0 - glm::abs(side - glm::dvec2(corner));
+      sum += share.x * share.y * extinctionAt(axis, plane, corner);
+    }
+  return sum;
+}
+
+void RayDepth::march(std::size_t f, int i, int j) {
+  const RayFan& fan = fans_[f];
+  const glm::dvec2 offset = fan.spacing * glm::dvec2(i, j);
+  const glm::dvec2 slope = fan.slope + offset * fan.convergence;
+  glm::dvec3 step;
+  step[fan.axis] = 1.0;
+  step[(fan.axis + 1) % 3] = slope.x;
+  step[(fan.axis + 2) % 3] = slope.y;
+  const double layer = glm::length(glm::dmat3(volume_.indexToWorld) * step);
+  double depth = 0.0;
+  for (int k = 0; k < fan.planeCount; ++k) {
+    const int plane = fan.firstPlane + fan.direction * k;
+    depths_[f][std::size_t(i) + std::size_t(fan.rayCount.x) *
+                                    (std::size_t(j) + std::size_t(fan.rayCount.y) * std::size_t(k))] =
+        std::min(depth, kOpaqueDepth);
+    depth += layer * interpolated(fan.axis, plane, fan.origin + offset + slope * (plane - fan.farthest));
+  }
+}
+
+std::pair<double, glm::dvec2> RayDepth::lookUp(glm::ivec3 voxel) const {
+  const RayFan& fan = fanOf(voxel);
+  const std::vector<double>& depths = depths_[std::size_t(&fan - fans_.data())];
+  const double up = voxel[fan.axis] - fan.farthest;
+  const double apart = fan.spacing * (1.0 + fan.convergence * up);
+  const glm::dvec2 side(voxel[(fan.axis + 1) % 3], voxel[(fan.axis + 2) % 3]);
+  const glm::dvec2 place = (side - fan.origin - fan.slope * up) / apart;
+  const glm::ivec2 low = glm::clamp(glm::ivec2(glm::floor(place)), glm::ivec2(1), fan.rayCount - 3);
+  const glm::dvec2 x = glm::clamp(place - glm::dvec2(low), 0.0, 1.0);
+  const int plane = (voxel[fan.axis] - fan.firstPlane) * fan.direction;
+  std::array<double, 4> values, slopes;
+  for (int j = 0; j < 4; ++j) {
+    std::array<double, 4> line;
+    for (int i = 0; i < 4; ++i)
+      line[std::size_t(i)] =
+          depths[std::size_t(low.x - 1 + i) +
+                 std::size_t(fan.rayCount.x) *
+                     (std::size_t(low.y - 1 + j) + std::size_t(fan.rayCount.y) * std::size_t(plane))];
+    std::tie(values[std::size_t(j)], slopes[std::size_t(j)]) = spline(line, x.x);
+  }
+  const auto [value, alongY] = spline(values, x.y);
+  return {value, glm::dvec2(spline(slopes, x.y).first, alongY) / apart};
+}
+
+}  // namespace
+
+glm::dvec3 ReferenceDepth::gradient(glm::ivec3 voxel, glm::dvec3 toEye, double layerDepth) const {
+  const glm::dvec3 direction = acrossLayer(toEye);
+  const int along = largestAxis(direction);
+  glm::dvec3 gradient(0.0);
+  for (int axis = 0; axis < 3; ++axis)
+    if (axis != along) gradient[axis] = slope(voxel, axis);
+  gradient[along] = -(layerDepth + glm::dot(gradient, direction)) / direction[along];
+  return gradient;
+}
+
+std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume,
+                                           const std::vector<std::vector<std::uint8_t>>& table,
+                                           const TableSettings& settings, AttenuationLookup lookup,
+                                           ToEye toEye) {
+  return std::make_unique<TableDepth>(volume, table, settings, lookup, std::move(toEye));
+}
+
+std::unique_ptr<ReferenceDepth> rayDepth(const Volume& volume, std::span<const double> extinction,
+                                         const RaySource& source) {
+  return std::make_unique<RayDepth>(volume, extinction, source);
 }
 
 }  // namespace freevoxels

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "engine/core/error.h"
@@ -32,8 +33,11 @@ class SplatSummer {
         classification_(classification),
         extinction_(extinction),
         settings_(settings),
-        depth_(volume, table, tableSettings, settings.attenuation),
         projector_(volume, camera, settings.size),
+        depth_(settings.attenuation == AttenuationLookup::Exact
+                   ? rayDepth(volume, extinction, eyeSource(camera, volume.indexToWorld))
+                   : tableDepth(volume, table, tableSettings, settings.attenuation,
+                                [this](glm::dvec3 position) { return projector_.toEye(position); })),
         sums_(std::size_t(settings.size.x) * std::size_t(settings.size.y)) {}
 
   void add(std::uint32_t voxel);
@@ -46,8 +50,8 @@ class SplatSummer {
   const Classification& classification_;
   const std::span<const double> extinction_;
   const FrameSettings& settings_;
-  const ReferenceDepth depth_;
   const SplatProjector projector_;
+  const std::unique_ptr<ReferenceDepth> depth_;
   std::vector<SplatSums> sums_;
 };
 
@@ -55,11 +59,10 @@ DepthToEye SplatSummer::depthToEye(std::uint32_t voxel, const ProjectedSplat& sp
                                    double extinction) const {
   const glm::uvec3 n(volume_.dimensions);
   const glm::ivec3 position(voxel % n.x, voxel / n.x % n.y, voxel / n.x / n.y);
-  DepthToEye depth{.centre = depth_.towards(position, splat.toEye)};
+  DepthToEye depth{.centre = depth_->at(position)};
   if (!settings_.gradient) return depth;
   const glm::dvec3 gradient =
-      depth_.gradient(position, extinction * projector_.layerLength(splat),
-                      [&](glm::ivec3 at) { return projector_.toEye(glm::dvec3(at)); });
+      depth_->gradient(position, splat.toEye, extinction * projector_.layerLength(splat));
   // A widened footprint has the transmittances of the one that it stands for.
   const double narrowing = std::sqrt(splat.amplitude);
   depth.perPixel = narrowing * glm::dvec2(glm::dot(gradient, splat.pixelX), glm::dot(gradient, splat.pixelY));

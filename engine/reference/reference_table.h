@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/attenuation/directions.h"
+#include "engine/attenuation/table_settings.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 
@@ -14,14 +14,14 @@ namespace freevoxels {
 /// Extinction of every voxel of the volume, x fastest, per world unit.
 std::vector<double> referenceExtinction(const Volume& volume, const Classification& classification);
 
-/// Optical depth from each voxel's neighbour along `directionAt(direction)` to the outside: exclusive of the
-/// voxel.
+/// Optical depth from half a layer of voxels beyond each voxel's centre to the outside, along a direction of
+/// the set: exclusive of the voxel.
 std::vector<double> referenceOpticalDepth(const Volume& volume, const std::vector<double>& extinction,
-                                          int direction, bool pathLengthCorrection);
+                                          DirectionSet set, int direction, bool pathLengthCorrection);
 
-/// The bytes of the table for all 26 directions, [direction][voxel].
+/// The bytes of the table for all its directions, [direction][voxel].
 std::vector<std::vector<std::uint8_t>> referenceTable(const Volume& volume,
                                                       const std::vector<double>& extinction,
-                                                      AttenuationCode code, bool pathLengthCorrection);
+                                                      const TableSettings& settings);
 
 }  // namespace freevoxels

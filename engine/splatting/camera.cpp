@@ -134,6 +134,13 @@ Camera framingCamera(const Volume& volume, double azimuth, double elevation, dou
   return camera;
 }
 
+RaySource eyeSource(const Camera& camera, const glm::dmat4& indexToWorld) {
+  const glm::dmat4 worldToIndex = glm::inverse(indexToWorld);
+  if (camera.orthographic)
+    return {.place = glm::dmat3(worldToIndex) * (camera.position - camera.lookAt), .atInfinity = true};
+  return {.place = glm::dvec3(worldToIndex * glm::dvec4(camera.position, 1.0))};
+}
+
 PixelRays pixelRays(const Camera& camera, glm::ivec2 imageSize, const glm::dmat4& indexToWorld) {
   const glm::dmat4 worldToIndex = glm::inverse(indexToWorld);
   const glm::dmat3 linear(worldToIndex);

@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 
+#include "engine/attenuation/ray_fans.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -45,6 +46,9 @@ struct PixelRays {
   glm::dvec3 direction, directionX, directionY;
   bool orthographic = false;
 };
+
+/// Where the lines of sight start: the eye, or an orthographic camera's direction towards it.
+RaySource eyeSource(const Camera& camera, const glm::dmat4& indexToWorld);
 
 PixelRays pixelRays(const Camera& camera, glm::ivec2 imageSize, const glm::dmat4& indexToWorld);
 

@@ -95,6 +95,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                  .pathLengthCorrection = table.pathLengthCorrection ? 1 : 0,
                  .gradient = settings.gradient && lookup != shader::kLookupNone ? 1 : 0,
                  .code = int(table.code),
+                 .cells = int(table.directions),
                  .opacityPoints = volume.opacityPointCount,
                  .colorPoints = volume.colorPointCount,
                  .albedo = volume.albedo};

@@ -7,6 +7,7 @@
 
 #include "engine/splatting/footprint.h"
 #include "engine/validation/homogeneous_box.h"
+#include "engine/validation/lattice_steps.h"
 #include "engine/validation/worst.h"
 #include "engine/volume/procedural.h"
 
@@ -45,16 +46,17 @@ Check checkTable(const StageMaker& make, AttenuationCode code) {
   const Volume volume = constantVolume(size, shearedTransform(size), sigma);
   const TableBytes table = make(volume, physical(1.0, glm::vec3(1.0f)), {.code = code})->table();
   Worst worst;
-  for (int d = 0; d < kDirectionCount; ++d) {
-    const double step = stepLength(volume.indexToWorld, directionAt(d), true);
+  for (int d = 0; d < kLatticeStepCount; ++d) {
+    const double step = stepLength(volume.indexToWorld, latticeStep(d), true);
     for (int z = 0; z < size.z; ++z)
       for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x) {
           const std::size_t voxel = volume.at(x, y, z);
-          const int steps = voxelsAhead({x, y, z}, directionAt(d), size);
+          const int steps = voxelsAhead({x, y, z}, latticeStep(d), size);
           const int expected = encodeOpticalDepth(code, sigma * steps * step);
-          worst.take(std::abs(table[std::size_t(d)][voxel] - expected),
-                     [&] { return fmt::format("{}, {}", directionText(d), voxelText(volume, voxel)); });
+          worst.take(std::abs(table[std::size_t(d)][voxel] - expected), [&] {
+            return fmt::format("{}, {}", directionText(kLatticeSteps, d), voxelText(volume, voxel));
+          });
         }
   }
   return worst.atMost(1.0,
@@ -149,7 +151,8 @@ Check checkTwoVoxels(const StageMaker& make) {
   for (const double x : {0.0, 0.2, 0.5, 0.9}) {
     const double p = footprintAt(x) * a, q = footprintAt(1.0 - x) * b;
     const double expected = p + q + (1.0 - a) * p + (1.0 - b) * q;
-    const double energy = device->sums(lookingDown(x, 0.0, 1e-3), {.size = {1, 1}, .gradient = false}).at(0).energy;
+    const double energy =
+        device->sums(lookingDown(x, 0.0, 1e-3), {.size = {1, 1}, .gradient = false}).at(0).energy;
     worst.take(std::abs(energy - expected), [&] { return fmt::format("x = {}", x); });
   }
   return worst.atMost(kRoundingTolerance, "two layers of two voxels add up as Eq. 10");

@@ -10,6 +10,7 @@
 #include "engine/core/error.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/validation/axis_change.h"
+#include "engine/validation/lattice_steps.h"
 #include "engine/validation/stage_outputs.h"
 #include "engine/validation/stepped_renderer.h"
 #include "engine/validation/worst.h"
@@ -99,9 +100,9 @@ Check checkRunToRun(const Frame& frame, StageOutputs& first, const TableBytes& t
   const auto second = deviceStages(frame.device)(frame.scene.volume, frame.scene.classification, {});
   const TableBytes tableAgain = second->table();
   Worst worst;
-  for (int d = 0; d < kDirectionCount; ++d)
+  for (int d = 0; d < kLatticeStepCount; ++d)
     worst.take(table[std::size_t(d)] == tableAgain[std::size_t(d)] ? 0.0 : 1.0,
-               [&] { return "table, " + directionText(d); });
+               [&] { return "table, " + directionText(kLatticeSteps, d); });
   for (const Image& again :
        {first.picture(frame.camera, frame.settings), second->picture(frame.camera, frame.settings)})
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
@@ -125,11 +126,11 @@ double codedDepth(int byte) {
 Check checkOpposites(const Volume& volume, const std::vector<float>& extinction, const TableBytes& table) {
   const glm::ivec3 n = volume.dimensions;
   Worst worst;
-  for (int d = 0; d < kDirectionCount / 2; ++d) {
-    const glm::ivec3 step = directionAt(d);
+  for (int d = 0; d < kLatticeStepCount / 2; ++d) {
+    const glm::ivec3 step = latticeStep(d);
     const double length = stepLength(volume.indexToWorld, step, true);
     const auto& ahead = table[std::size_t(d)];
-    const auto& behind = table[std::size_t(kDirectionCount - 1 - d)];
+    const auto& behind = table[std::size_t(kLatticeStepCount - 1 - d)];
     for (int z = 0; z < n.z; ++z)
       for (int y = 0; y < n.y; ++y)
         for (int x = 0; x < n.x; ++x) {
@@ -143,8 +144,9 @@ Check checkOpposites(const Volume& volume, const std::vector<float>& extinction,
           for (const int byte : bytes) allowance += codeWidth(byte);
           const double atV = codedDepth(bytes[0]) + double(extinction[v]) * length + codedDepth(bytes[1]);
           const double atW = codedDepth(bytes[2]) + double(extinction[w]) * length + codedDepth(bytes[3]);
-          worst.take(std::abs(atV - atW) / allowance,
-                     [&] { return fmt::format("{}, {}", directionText(d), voxelText(volume, v)); });
+          worst.take(std::abs(atV - atW) / allowance, [&] {
+            return fmt::format("{}, {}", directionText(kLatticeSteps, d), voxelText(volume, v));
+          });
         }
   }
   return worst.atMost(1.0, "opposite directions: depth of a line from each of its voxels", "of rounding");
@@ -154,16 +156,18 @@ Worst changedTableDifference(const Volume& volume, const TableBytes& table, cons
                              const TableBytes& changedTable, const AxisChange& change) {
   const glm::ivec3 n = volume.dimensions;
   Worst worst;
-  for (int d = 0; d < kDirectionCount; ++d) {
-    const glm::ivec3 e = change.direction(directionAt(d));
-    const auto& plane = changedTable[std::size_t(directionIndex(e.x, e.y, e.z))];
+  for (int d = 0; d < kLatticeStepCount; ++d) {
+    const glm::ivec3 e = change.direction(latticeStep(d));
+    const auto& plane = changedTable[std::size_t(directionIndex(kLatticeSteps, e))];
     for (int z = 0; z < n.z; ++z)
       for (int y = 0; y < n.y; ++y)
         for (int x = 0; x < n.x; ++x) {
           const glm::ivec3 w = change.voxel({x, y, z}, n);
           const std::size_t voxel = volume.at(x, y, z);
-          worst.take(std::abs(int(table[std::size_t(d)][voxel]) - int(plane[changed.at(w.x, w.y, w.z)])),
-                     [&] { return fmt::format("{}, {}", directionText(d), voxelText(volume, voxel)); });
+          worst.take(
+              std::abs(int(table[std::size_t(d)][voxel]) - int(plane[changed.at(w.x, w.y, w.z)])), [&] {
+                return fmt::format("{}, {}", directionText(kLatticeSteps, d), voxelText(volume, voxel));
+              });
         }
   }
   return worst;

@@ -11,6 +11,7 @@
 #include "engine/image/metrics.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/reference/reference_table.h"
+#include "engine/validation/lattice_steps.h"
 #include "engine/validation/worst.h"
 
 namespace freevoxels {
@@ -37,11 +38,12 @@ struct TableVariant {
   const char* name;
   TableSettings settings;
 };
-constexpr std::array<TableVariant, 4> kTables{
+constexpr std::array<TableVariant, 5> kTables{
     {{"depth8", {AttenuationCode::Depth8, true}},
      {"depth8, steps of one length", {AttenuationCode::Depth8, false}},
      {"linear8", {AttenuationCode::Linear8, true}},
-     {"linear8, steps of one length", {AttenuationCode::Linear8, false}}}};
+     {"linear8, steps of one length", {AttenuationCode::Linear8, false}},
+     {"depth8, 98 directions", {AttenuationCode::Depth8, true, DirectionSet::Directions98}}}};
 
 /// In parallel projection all voxels see the eye in one direction, so that rounding cannot choose another
 /// nearest one.
@@ -51,11 +53,13 @@ struct Method {
   bool orthographic;
   Composite composite;
   AttenuationLookup attenuation;
-  bool depth;
+  bool gradient, depth;
 };
-constexpr std::array<Method, 2> kMethods{
-    {{"default", 0, false, Composite::Normalised, AttenuationLookup::Bilinear, true},
-     {"the paper's", 3, true, Composite::Additive, AttenuationLookup::Nearest, false}}};
+constexpr std::array<Method, 4> kMethods{
+    {{"default", 0, false, Composite::Normalised, AttenuationLookup::Bilinear, true, true},
+     {"exact", 0, false, Composite::Normalised, AttenuationLookup::Exact, true, false},
+     {"the paper's", 3, true, Composite::Additive, AttenuationLookup::Nearest, false, false},
+     {"98 directions", 4, false, Composite::Normalised, AttenuationLookup::Bilinear, true, false}}};
 
 /// Of one scene and one table variant on the device.
 struct Outcome {
@@ -123,19 +127,19 @@ PlaneDifference comparePlanes(const std::vector<std::uint8_t>& plane,
   return result;
 }
 
-/// Adds a column to `rows`, which has a row a direction.
+/// Adds a column to `rows`, which has a row for each of the 26 directions, unless the table has others.
 Check checkTable(const Outcome& outcome, const char* name, std::vector<std::vector<std::string>>& rows) {
-  const TableBytes reference = referenceTable(outcome.scene.volume, outcome.extinction, outcome.settings.code,
-                                              outcome.settings.pathLengthCorrection);
+  const DirectionSet set = outcome.settings.directions;
+  const TableBytes reference = referenceTable(outcome.scene.volume, outcome.extinction, outcome.settings);
   FV_CHECK_EQ(outcome.table.size(), reference.size());
   Worst worst;
-  for (int d = 0; d < kDirectionCount; ++d) {
+  for (int d = 0; d < directionCount(set); ++d) {
     const PlaneDifference difference =
         comparePlanes(outcome.table[std::size_t(d)], reference[std::size_t(d)]);
     worst.take(difference.largest, [&] {
-      return fmt::format("{}, {}", directionText(d), voxelText(outcome.scene.volume, difference.where));
+      return fmt::format("{}, {}", directionText(set, d), voxelText(outcome.scene.volume, difference.where));
     });
-    rows[std::size_t(d)].push_back(difference.text());
+    if (set == kLatticeSteps) rows[std::size_t(d)].push_back(difference.text());
   }
   return worst.atMost(kCodeTolerance, fmt::format("table: {}", name), "codes");
 }
@@ -199,8 +203,11 @@ ReportPictures showPictures(const Image& picture, const Image& reference, const 
 
 void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, ReportSection& section) {
   const ValidationScene& scene = outcome.scene;
-  const FrameSettings settings{
-      .size = size, .composite = method.composite, .attenuation = method.attenuation, .depth = method.depth};
+  const FrameSettings settings{.size = size,
+                               .composite = method.composite,
+                               .attenuation = method.attenuation,
+                               .gradient = method.gradient,
+                               .depth = method.depth};
   const Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation,
                                       double(size.x) / size.y, {.orthographic = method.orthographic});
   const std::vector<SplatSums> sums = outcome.device.sums(camera, settings);
@@ -230,8 +237,8 @@ ReportSection stageChecks(const StageMaker& make, const ValidationScene& scene, 
   ReportTable directions{.caption = "Largest difference in codes, and the share of bytes that differ",
                          .columns = {"direction"},
                          .rows = {}};
-  for (int d = 0; d < kDirectionCount; ++d) {
-    const glm::ivec3 v = directionAt(d);
+  for (int d = 0; d < kLatticeStepCount; ++d) {
+    const glm::ivec3 v = latticeStep(d);
     directions.rows.push_back({fmt::format("{}, {}, {}", v.x, v.y, v.z)});
   }
   for (std::size_t variant = 0; variant < kTables.size(); ++variant) {
@@ -248,7 +255,7 @@ ReportSection stageChecks(const StageMaker& make, const ValidationScene& scene, 
       section.checks.push_back(checkExtinction(outcome));
       section.checks.push_back(checkVisible(outcome));
     }
-    directions.columns.push_back(kTables[variant].name);
+    if (settings.directions == kLatticeSteps) directions.columns.push_back(kTables[variant].name);
     section.checks.push_back(checkTable(outcome, kTables[variant].name, directions.rows));
     for (const Method& method : kMethods)
       if (method.table == variant) checkFrame(outcome, method, size, section);

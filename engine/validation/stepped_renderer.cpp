@@ -35,7 +35,7 @@ SteppedVolume prepareSteps(const Device& device, const Volume& volume, const Cla
   steps.table = makeTable(device, steps.volume.layout, table);
   steps.visible = makeVisibleVoxels(device, steps.volume);
   const ClassifyPass classify(device);
-  const AttenuationSweep sweep(device, table.code);
+  const AttenuationSweep sweep(device, table);
   const CompactionPass compaction(device);
   Commands commands(device);
   classify.record(commands, steps.volume, classification);

@@ -12,8 +12,8 @@ std::string voxelText(const Volume& volume, std::size_t voxel) {
   return fmt::format("voxel ({}, {}, {})", voxel % x, voxel / x % y, voxel / x / y);
 }
 
-std::string directionText(int direction) {
-  const glm::ivec3 d = directionAt(direction);
+std::string directionText(DirectionSet set, int direction) {
+  const glm::dvec3 d = directionAt(set, direction);
   return fmt::format("direction ({}, {}, {})", d.x, d.y, d.z);
 }
 

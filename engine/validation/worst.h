@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 #include <string>
 
+#include "engine/attenuation/directions.h"
 #include "engine/validation/report.h"
 #include "engine/volume/volume.h"
 
@@ -39,8 +40,8 @@ class Worst {
 
 /// "voxel (1, 2, 3)", of an index into Volume::values
 std::string voxelText(const Volume& volume, std::size_t voxel);
-/// "direction (1, 0, -1)"
-std::string directionText(int direction);
+/// "direction (1, 0, -0.5)"
+std::string directionText(DirectionSet set, int direction);
 /// "pixel (1, 2)", of an index in reading order
 std::string pixelText(glm::ivec2 imageSize, std::size_t pixel);
 

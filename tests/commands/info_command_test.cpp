@@ -32,10 +32,13 @@ TEST_F(InfoCommand, ShowsWhatGenerateWrote) {
   EXPECT_NEAR(grid.at("voxel_size").at(0), 1.0 / 20.0, 1e-9);
   EXPECT_GE(grid.at("table_bytes"), 26 * grid.at("active_voxels").get<int>());
   EXPECT_GT(grid.at("device_bytes"), grid.at("table_bytes"));
+  const auto bytes = [&](const char* name) { return grid.at(name).get<std::uint64_t>(); };
+  EXPECT_EQ(26 * bytes("table_98_bytes"), 98 * bytes("table_bytes"));
+  EXPECT_EQ(bytes("device_98_bytes") - bytes("table_98_bytes"), bytes("device_bytes") - bytes("table_bytes"));
 
   const ProgramResult table = run("info @cube.vdb");
   expectSuccess(table);
-  for (const char* word : {"density", "float", "fog volume", "TABLE"})
+  for (const char* word : {"density", "float", "fog volume", "TABLE 26", "TABLE 98"})
     EXPECT_NE(table.out.find(word), std::string::npos) << table.out;
 }
 

@@ -109,20 +109,23 @@ TEST_F(RenderCommand, DepthIsTheDistanceOfWhatIsSeen) {
 TEST_F(RenderCommand, DefaultsAreWhatTheHelpSays) {
   const std::string standard = render("");
   EXPECT_EQ(standard, render("--orbit 35,25 --fov 35 --up 0,1,0 --albedo 0.9,0.9,0.9"));
-  EXPECT_EQ(standard,
-            render("--composite normalised --attenuation bilinear --code depth8 --path-length-correction"));
+  EXPECT_EQ(standard, render("--composite normalised --attenuation bilinear --directions 26 --code depth8 "
+                             "--path-length-correction"));
   EXPECT_EQ(standard, render("--fov 60 --fov 35"));  // the last counts
   EXPECT_NE(standard, render("--orbit 36,25"));
   EXPECT_NE(standard, render("--attenuation nearest"));
+  EXPECT_NE(standard, render("--directions 98"));
   EXPECT_NE(standard, render("--code linear8"));
   EXPECT_NE(standard, render("--no-path-length-correction"));
 }
 
-TEST_F(RenderCommand, PaperIsFiveOptionsAndYieldsToEach) {
-  const std::string five =
-      "--composite additive --attenuation nearest --code linear8 --no-path-length-correction --no-gradient";
-  EXPECT_EQ(render("--paper"), render(five));
-  EXPECT_EQ(render("--paper --composite normalised"), render(five.substr(five.find("--attenuation"))));
+TEST_F(RenderCommand, PaperIsSixOptionsAndYieldsToEach) {
+  const std::string six =
+      "--composite additive --attenuation nearest --directions 26 --code linear8 --no-path-length-correction "
+      "--no-gradient";
+  EXPECT_EQ(render("--paper"), render(six));
+  EXPECT_EQ(render("--paper --composite normalised"), render(six.substr(six.find("--attenuation"))));
+  EXPECT_EQ(exrAttribute(render("--paper --directions 98"), "freevoxels:directions"), "98");
   EXPECT_EQ(exrAttribute(render("--paper --path-length-correction"), "freevoxels:path-length-correction"),
             "yes");
 }

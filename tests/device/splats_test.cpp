@@ -18,7 +18,7 @@ class SplatTest : public DeviceTest {
   static Image reference(const Volume& volume, const Classification& classification,
                          const TableSettings& table, const Camera& camera, const FrameSettings& settings) {
     const auto extinction = referenceExtinction(volume, classification);
-    const auto bytes = referenceTable(volume, extinction, table.code, table.pathLengthCorrection);
+    const auto bytes = referenceTable(volume, extinction, table);
     const auto sums = referenceSplatSums(volume, classification, bytes, table, camera, settings,
                                          referenceVisibleVoxels(extinction));
     return referenceResolve(sums, settings);
@@ -83,6 +83,14 @@ TEST_F(SplatTest, ThePapersSettingsMatchTheReference) {
       v, framingCamera(v, 35.0, 25.0, 1.0, {}),
       {.size = {90, 90}, .composite = Composite::Additive, .attenuation = AttenuationLookup::Nearest},
       {AttenuationCode::Linear8, false});
+}
+
+TEST_F(SplatTest, NinetyEightDirectionsMatchTheReference) {
+  const Volume v = volume(true);
+  const TableSettings table{.directions = DirectionSet::Directions98};
+  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.25, {}), {.size = {125, 100}}, table);
+  expectSamePicture(v, framingCamera(v, -110.0, -40.0, 1.0, {}),
+                    {.size = {90, 90}, .attenuation = AttenuationLookup::Nearest}, table);
 }
 
 TEST_F(SplatTest, WideAngleMatchesTheReference) {

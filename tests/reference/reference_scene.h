@@ -23,7 +23,7 @@ struct Scene {
       : volume(std::move(v)), classification(c), code(attenuationCode) {
     const std::vector<double> extinction = referenceExtinction(volume, classification);
     voxels = referenceVisibleVoxels(extinction);
-    table = referenceTable(volume, extinction, code, true);
+    table = referenceTable(volume, extinction, {.code = code});
   }
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings,
                               const std::vector<std::uint32_t>& list) const {

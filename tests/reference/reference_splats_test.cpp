@@ -68,7 +68,7 @@ TEST(ReferenceSplats, TwoLayersOfTwoVoxelsAddUpAsEquation10) {
 TEST(ReferenceSplats, TransmittanceFollowsARampOfDepthAcrossTheFootprint) {
   Scene scene(makeVolume({3, 1, 1}, glm::dmat4(1.0), [](int, int, int) { return 1.0; }), physical(0.5));
   const auto depthOf = [](int byte) { return decodeOpticalDepth(AttenuationCode::Depth8, byte); };
-  scene.table[std::size_t(directionIndex(0, 0, 1))] = {0, 60, 90};
+  scene.table[std::size_t(directionIndex(DirectionSet::Directions26, {0, 0, 1}))] = {0, 60, 90};
   const double slope = (depthOf(90) - depthOf(0)) / 2.0;
   scene.voxels = {1};
   for (const double x : {-1.2, -0.7, 0.0, 0.4, 1.1}) {
@@ -332,10 +332,10 @@ TEST(ReferenceSplats, LooksTheTableUpInTheDirectionOfTheEye) {
     settings.attenuation = lookup;
     return scene.sums(camera, settings).at(0).energy;
   };
-  for (int d = 0; d < kDirectionCount; ++d) {
+  for (int d = 0; d < directionCount(DirectionSet::Directions26); ++d) {
     for (auto& bytes : scene.table) bytes[0] = 200;
     scene.table[std::size_t(d)][0] = 0;  // clear in this direction only
-    const glm::dvec3 direction(directionAt(d));
+    const glm::dvec3 direction = directionAt(DirectionSet::Directions26, d);
     if (direction.x == 0.0 && direction.z == 0.0) continue;  // along `up`
     const double layer = glm::length(direction);
     const double clear = -std::expm1(-layer) / layer * footprint(0.0);
@@ -343,8 +343,8 @@ TEST(ReferenceSplats, LooksTheTableUpInTheDirectionOfTheEye) {
     EXPECT_NEAR(energyTowards(direction, AttenuationLookup::Nearest), clear, 1e-9);
     EXPECT_LT(energyTowards(-direction, AttenuationLookup::Bilinear), 0.01 * clear);
   }
-  scene.table[std::size_t(directionIndex(0, 0, 1))][0] = 0;
-  scene.table[std::size_t(directionIndex(1, 0, 1))][0] = 255;
+  scene.table[std::size_t(directionIndex(DirectionSet::Directions26, {0, 0, 1}))][0] = 0;
+  scene.table[std::size_t(directionIndex(DirectionSet::Directions26, {1, 0, 1}))][0] = 255;
   const glm::dvec3 between(0.25, 0.0, 1.0);
   const double layer = glm::length(between);
   const double opaque = std::exp(-16.0 * layer / std::sqrt(2.0));  // as long as the line that is asked for

@@ -3,6 +3,7 @@
 
 #include "engine/reference/reference_table.h"
 #include "engine/validation/closed_forms.h"
+#include "engine/validation/lattice_steps.h"
 #include "engine/validation/stage_checks.h"
 #include "tests/device/device_fixture.h"
 #include "tests/device/test_volumes.h"
@@ -20,7 +21,7 @@ Classification thicker(Classification classification) {
 
 void swapTwoPlanes(SteppedStages& stages) {
   const TableBytes table = stages.table();
-  const int a = directionIndex(1, 0, -1), b = directionIndex(0, 1, 1);
+  const int a = directionIndex(kLatticeSteps, {1, 0, -1}), b = directionIndex(kLatticeSteps, {0, 1, 1});
   stages.replacePlane(a, table[std::size_t(b)]);
   stages.replacePlane(b, table[std::size_t(a)]);
 }
@@ -30,10 +31,11 @@ void includeTheVoxelItself(SteppedStages& stages) {
   const std::vector<float> values = stages.extinction();
   const std::vector<double> extinction(values.begin(), values.end());
   const TableSettings& settings = stages.steps.table.settings;
-  for (int d = 0; d < kDirectionCount; ++d) {
+  for (int d = 0; d < kLatticeStepCount; ++d) {
     const double length =
-        stepLength(stages.source.indexToWorld, directionAt(d), settings.pathLengthCorrection);
-    const auto ahead = referenceOpticalDepth(stages.source, extinction, d, settings.pathLengthCorrection);
+        stepLength(stages.source.indexToWorld, latticeStep(d), settings.pathLengthCorrection);
+    const auto ahead =
+        referenceOpticalDepth(stages.source, extinction, kLatticeSteps, d, settings.pathLengthCorrection);
     std::vector<std::uint8_t> bytes;
     for (std::size_t i = 0; i < ahead.size(); ++i)
       bytes.push_back(std::uint8_t(encodeOpticalDepth(settings.code, ahead[i] + extinction[i] * length)));
@@ -43,7 +45,7 @@ void includeTheVoxelItself(SteppedStages& stages) {
 
 /// By two codes, in the middle voxel.
 void changeOneByte(SteppedStages& stages) {
-  const int direction = directionIndex(-1, 1, 0);
+  const int direction = directionIndex(kLatticeSteps, {-1, 1, 0});
   std::vector<std::uint8_t> plane = stages.table()[std::size_t(direction)];
   std::uint8_t& byte = plane[plane.size() / 2];
   byte = std::uint8_t(byte < 128 ? byte + 2 : byte - 2);

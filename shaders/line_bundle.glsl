@@ -1,0 +1,77 @@
+// What the sweeps that march along z or y share: a bundle of lattice lines that are neighbours in x, carried
+// by one thread. Include after interface.h and attenuation_code.glsl.
+//
+// Lines that leave the box sideways enter again on the other side with an optical depth of 0: as many lines as
+// the entry plane has voxels cover every voxel exactly once, and no face needs a case of its own.
+//
+// With a step in x the bundle moves along the rows plane by plane while the words it writes do not. So a thread
+// writes the aligned words of a window that moves by four voxels every kPhases planes, and carries kExtraLines
+// more than it writes.
+
+layout(constant_id = 0) const int kCode = kCodeDepth8;
+layout(constant_id = 1) const int kVoxels = 16;  // a multiple of 4
+layout(constant_id = 2) const int kStepX = 0;    // of the march, -2 to 2
+
+layout(local_size_x = kSweepThreads) in;
+layout(binding = 0) uniform textureBuffer extinction;
+layout(scalar, binding = 1) writeonly buffer Plane { uint words[]; };
+
+const int kSize = kStepX < 0 ? -kStepX : kStepX;
+const int kPhases = kSize == 0 ? 1 : kSize == 1 ? 4 : 2;
+const int kExtraLines = kSize * (kPhases - 1);
+const int kWords = kVoxels / 4;
+const int kMargin = kSize == 0 ? 0 : 1;         // quads looked at on either side of the window
+const int kQuads = kWords + 2 * kMargin;
+const int kWindowStep = kStepX < 0 ? -1 : kStepX > 0 ? 1 : 0;  // quads, every kPhases planes
+
+float depths[kVoxels + kExtraLines];  // of the lines, up to the current plane
+float sigma[4 * kQuads];              // of a row, from kMargin quads before the window
+
+int wrapped(int index, int count) { return index < 0 ? index + count : index >= count ? index - count : index; }
+
+// At phase p the window's voxel i lies on line i + lineOffset(p), and sigma[j] on line lineOf(j, p).
+int lineOffset(int phase) { return kStepX > 0 ? kExtraLines - kSize * phase : kSize * phase; }
+int lineOf(int j, int phase) { return j - 4 * kMargin + lineOffset(phase); }
+bool isLine(int line) { return line >= 0 && line < kVoxels + kExtraLines; }
+
+// Whether this quad of the window is the one in which the march enters the rows.
+bool isEntry(int quad, int window, int quads) { return wrapped(window + quad, quads) == (kStepX > 0 ? 0 : quads - 1); }
+
+void restartLines() {
+  [[unroll]] for (int line = 0; line < kVoxels + kExtraLines; ++line) depths[line] = 0.0;
+}
+
+// Lines that have just come around the end of the row start again at the boundary of the volume.
+void restartWrappedLines(int window, int quads, int phase) {
+  if (kSize == 0) return;
+  [[unroll]] for (int q = -1; q <= kWords; ++q)
+    [[unroll]] for (int i = 0; i < kSize; ++i) {
+      const int line = 4 * q + (kStepX > 0 ? i : 3 - i) + lineOffset(phase);
+      if (isLine(line) && isEntry(q, window, quads)) depths[line] = 0.0;
+    }
+}
+
+vec4 loadQuad(int row, int q, int window, int quads) {
+  return texelFetch(extinction, row + wrapped(window + q - kMargin, quads));
+}
+
+void loadRow(int row, int window, int quads) {
+  [[unroll]] for (int q = 0; q < kQuads; ++q) {
+    const vec4 quad = loadQuad(row, q, window, quads);
+    [[unroll]] for (int c = 0; c < 4; ++c) sigma[4 * q + c] = quad[c];
+  }
+}
+
+void addRow(int phase, float stepLength) {
+  [[unroll]] for (int j = 0; j < 4 * kQuads; ++j)
+    if (isLine(lineOf(j, phase))) depths[lineOf(j, phase)] += sigma[j] * stepLength;
+}
+
+void writeWindow(int row, int window, int quads, int phase) {
+  [[unroll]] for (int w = 0; w < kWords; ++w) {
+    uint word = 0;
+    [[unroll]] for (int c = 0; c < 4; ++c)
+      word |= encodeDepth(kCode, depths[4 * w + c + lineOffset(phase)]) << (8 * c);
+    words[row + wrapped(window + w, quads)] = word;
+  }
+}
