@@ -4,9 +4,9 @@
 //
 // A ray belongs to the fan of its largest component, as a pixel to a face of a cube map. The rays of a fan
 // meet the planes of voxels across its axis: there the extinction is interpolated bilinearly, and the depth
-// so far is kept. The rays of a fan are a voxel apart at its farthest plane and nearer to each other before.
-// A depth is interpolated once, when a voxel looks up the four rays around it; sweeps that interpolate from
-// plane to plane blur it N times.
+// so far is kept. They are half a voxel apart at the farthest plane and nearer to each other before. A depth
+// is interpolated once, when a voxel looks up the rays around it; sweeps that interpolate from plane to plane
+// blur it N times.
 
 #include <array>
 #include <cstdint>
@@ -38,8 +38,8 @@ struct RayFan {
 };
 
 /// In the order of fanIndex. Every voxel except one at the source itself lies between four rays of its fan.
-/// A fan has at most twice as many rays as the volume has lines of voxels along the axis: where the source is
-/// so near that more would be needed, they are further apart.
+/// A fan has at most about six rays for every line of voxels along its axis: where that is not enough, as for
+/// a source near to the volume, they are further apart.
 std::array<RayFan, 6> rayFans(glm::ivec3 dimensions, const RaySource& source);
 
 /// Of the largest component of the direction in which a ray leaves the source.

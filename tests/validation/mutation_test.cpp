@@ -3,7 +3,6 @@
 
 #include "engine/reference/reference_table.h"
 #include "engine/validation/closed_forms.h"
-#include "engine/validation/lattice_steps.h"
 #include "engine/validation/stage_checks.h"
 #include "tests/device/device_fixture.h"
 #include "tests/device/test_volumes.h"
@@ -19,9 +18,15 @@ Classification thicker(Classification classification) {
   return classification;
 }
 
+/// Of a lattice step, whichever directions the table holds.
+int planeOf(const SteppedStages& stages, glm::ivec3 step) {
+  const DirectionSet set = stages.steps.table.settings.directions;
+  return directionIndex(set, int(set) * step);
+}
+
 void swapTwoPlanes(SteppedStages& stages) {
   const TableBytes table = stages.table();
-  const int a = directionIndex(kLatticeSteps, {1, 0, -1}), b = directionIndex(kLatticeSteps, {0, 1, 1});
+  const int a = planeOf(stages, {1, 0, -1}), b = planeOf(stages, {0, 1, 1});
   stages.replacePlane(a, table[std::size_t(b)]);
   stages.replacePlane(b, table[std::size_t(a)]);
 }
@@ -31,11 +36,11 @@ void includeTheVoxelItself(SteppedStages& stages) {
   const std::vector<float> values = stages.extinction();
   const std::vector<double> extinction(values.begin(), values.end());
   const TableSettings& settings = stages.steps.table.settings;
-  for (int d = 0; d < kLatticeStepCount; ++d) {
-    const double length =
-        stepLength(stages.source.indexToWorld, latticeStep(d), settings.pathLengthCorrection);
-    const auto ahead =
-        referenceOpticalDepth(stages.source, extinction, kLatticeSteps, d, settings.pathLengthCorrection);
+  for (int d = 0; d < directionCount(settings.directions); ++d) {
+    const double length = stepLength(stages.source.indexToWorld, directionAt(settings.directions, d),
+                                     settings.pathLengthCorrection);
+    const auto ahead = referenceOpticalDepth(stages.source, extinction, settings.directions, d,
+                                             settings.pathLengthCorrection);
     std::vector<std::uint8_t> bytes;
     for (std::size_t i = 0; i < ahead.size(); ++i)
       bytes.push_back(std::uint8_t(encodeOpticalDepth(settings.code, ahead[i] + extinction[i] * length)));
@@ -45,7 +50,7 @@ void includeTheVoxelItself(SteppedStages& stages) {
 
 /// By two codes, in the middle voxel.
 void changeOneByte(SteppedStages& stages) {
-  const int direction = directionIndex(kLatticeSteps, {-1, 1, 0});
+  const int direction = planeOf(stages, {-1, 1, 0});
   std::vector<std::uint8_t> plane = stages.table()[std::size_t(direction)];
   std::uint8_t& byte = plane[plane.size() / 2];
   byte = std::uint8_t(byte < 128 ? byte + 2 : byte - 2);
@@ -159,7 +164,7 @@ TEST_F(MutationTest, WithoutOneEverythingPasses) {
 TEST_F(MutationTest, AWrongByteIsFoundWhereItIs) {
   const auto failed =
       failedChecks(stageChecks(stages({"", "", changeOneByte}), scene(SceneColor::Density), kFrame));
-  ASSERT_EQ(failed.size(), 4u);  // a table for each of the four settings
+  ASSERT_EQ(failed.size(), 5u);  // a table for each of the five settings
   for (const Check& check : failed) {
     EXPECT_EQ(check.figure, 2.0);
     EXPECT_EQ(check.where, "direction (-1, 1, 0), voxel (0, 5, 4)");
