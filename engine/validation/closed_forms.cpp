@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/splatting/footprint.h"
+#include "engine/validation/equal_voxels.h"
 #include "engine/validation/homogeneous_box.h"
 #include "engine/validation/worst.h"
 #include "engine/volume/procedural.h"
@@ -18,25 +18,6 @@ constexpr double kInsideTolerance = 2e-3;    ///< of a homogeneous cube, whose f
 constexpr double kRippleTolerance = 3e-3;    ///< of a full layer of footprints (footprint.h)
 constexpr double kRoundingTolerance = 1e-5;  ///< of a few splats in 32-bit floats
 constexpr double kIntegralTolerance = 1e-4;  ///< of 300² pixels
-
-Volume constantVolume(glm::ivec3 dimensions, const glm::dmat4& transform, double value) {
-  return makeVolume(dimensions, transform, [&](int, int, int) { return value; });
-}
-
-Classification physical(double densityScale, glm::vec3 albedo) {
-  return {.densityScale = densityScale, .albedo = albedo};
-}
-
-/// Looks along -z through (x, y), `height` world units high.
-Camera lookingDown(double x, double y, double height) {
-  return {
-      .position = {x, y, 20.0}, .lookAt = {x, y, 0.0}, .orthographic = true, .orthographicHeight = height};
-}
-
-double footprintAt(double distance) {
-  const double inside = std::max(0.0, 1.0 - distance * distance / (kFootprintRadius * kFootprintRadius));
-  return kFootprintPeak * std::pow(inside, 4.0);
-}
 
 /// Eq. 5 of a homogeneous box is sigma times the steps ahead times their length.
 Check checkTable(const StageMaker& make, AttenuationCode code) {
@@ -143,13 +124,14 @@ Check checkEmpty(const StageMaker& make) {
 Check checkTwoVoxels(const StageMaker& make) {
   const double a = 127.0 / 255.0, b = 51.0 / 255.0;  // linear8 holds 1 - a and 1 - b exactly
   const Volume volume =
-      makeVolume({2, 1, 2}, glm::dmat4(1.0), [&](int x, int, int) { return -std::log1p(-(x == 0 ? a : b)); });
+      makeVolume({2, 1, 2}, glm::dmat4(1.0), [&](int x, int, int) { return extinctionOf(x == 0 ? a : b); });
   const auto device = make(volume, physical(1.0, glm::vec3(1.0f)), {.code = AttenuationCode::Linear8});
   Worst worst;
   for (const double x : {0.0, 0.2, 0.5, 0.9}) {
     const double p = footprintAt(x) * a, q = footprintAt(1.0 - x) * b;
     const double expected = p + q + (1.0 - a) * p + (1.0 - b) * q;
-    const double energy = device->sums(lookingDown(x, 0.0, 1e-3), {.size = {1, 1}, .gradient = false}).at(0).energy;
+    const double energy =
+        device->sums(lookingDown(x, 0.0, 1e-3), {.size = {1, 1}, .gradient = false}).at(0).energy;
     worst.take(std::abs(energy - expected), [&] { return fmt::format("x = {}", x); });
   }
   return worst.atMost(kRoundingTolerance, "two layers of two voxels add up as Eq. 10");
@@ -160,7 +142,7 @@ Check checkFullLayers(const StageMaker& make) {
   const double alpha = 153.0 / 255.0;
   const Volume volume = constantVolume({7, 7, 2}, glm::dmat4(1.0), 1.0);
   const auto device =
-      make(volume, physical(-std::log1p(-alpha), glm::vec3(1.0f)), {.code = AttenuationCode::Linear8});
+      make(volume, physical(extinctionOf(alpha), glm::vec3(1.0f)), {.code = AttenuationCode::Linear8});
   const double expected = alpha + (1.0 - alpha) * alpha;
   Worst worst;
   for (const glm::dvec2 at : {glm::dvec2(3.0, 3.0), glm::dvec2(3.5, 3.0), glm::dvec2(3.3, 2.6)}) {

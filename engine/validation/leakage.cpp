@@ -1,0 +1,126 @@
+#include "engine/validation/leakage.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+
+#include "engine/validation/equal_voxels.h"
+#include "engine/validation/worst.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// Voxels along the edges of a layer: footprints reach less than two voxels far.
+constexpr int kLayerEdge = 7;
+/// The middle of a voxel, and between four.
+constexpr std::array<glm::dvec2, 2> kPlaces{{{3.0, 3.0}, {3.5, 3.5}}};
+constexpr std::array<const char*, 2> kPlaceNames{"middle of a voxel", "between four voxels"};
+
+constexpr double kProductTolerance = 1e-4;
+constexpr double kRippleTolerance = 3e-3;  ///< of a full layer of footprints (footprint.h)
+
+/// Transmittances.
+struct Stack {
+  double opacity = 0.0;
+  int layers = 0;
+  double exact = 0.0;                     ///< (1 - opacity)^layers, Eq. 8
+  std::array<double, 2> normalisedDepth;  ///< optical depth at each of the places
+  std::array<double, 2> sorted;
+  std::array<double, 2> product;  ///< what Eq. 9 makes of `sorted`
+
+  double normalised(std::size_t place) const { return std::exp(-normalisedDepth[place]); }
+  std::string text() const { return fmt::format("{} layers of {}", layers, opacity); }
+};
+
+/// Every splat of every layer attenuates by itself.
+double productOfSplats(double opacity, int layers, glm::dvec2 at) {
+  double layer = 1.0;
+  for (int y = 0; y < kLayerEdge; ++y)
+    for (int x = 0; x < kLayerEdge; ++x)
+      layer *= 1.0 - opacity * footprintAt(glm::distance(glm::dvec2(x, y), at));
+  return std::pow(layer, layers);
+}
+
+Stack drawStack(const StageMaker& make, double opacity, int layers) {
+  Stack stack{.opacity = opacity, .layers = layers, .exact = std::pow(1.0 - opacity, layers)};
+  const Volume volume = constantVolume({kLayerEdge, kLayerEdge, layers}, glm::dmat4(1.0), 1.0);
+  const auto outputs = make(volume, physical(extinctionOf(opacity), glm::vec3(1.0f)), {});
+  for (std::size_t i = 0; i < kPlaces.size(); ++i) {
+    const Camera camera = lookingDown(kPlaces[i].x, kPlaces[i].y, 1e-3);
+    const FrameSettings sorted{.size = {1, 1}, .composite = Composite::Sorted};
+    stack.normalisedDepth[i] = outputs->sums(camera, {.size = {1, 1}}).at(0).depth;
+    stack.sorted[i] = 1.0 - double(outputs->picture(camera, sorted).pixels.at(0).a);
+    stack.product[i] = productOfSplats(opacity, layers, kPlaces[i]);
+  }
+  return stack;
+}
+
+void addChecks(const std::vector<Stack>& stacks, ReportSection& section) {
+  Worst sorted, normalised;
+  for (const Stack& stack : stacks)
+    for (std::size_t i = 0; i < kPlaces.size(); ++i) {
+      const auto where = [&] { return fmt::format("{}, {}", stack.text(), kPlaceNames[i]); };
+      sorted.take(std::abs(stack.sorted[i] - stack.product[i]), where);
+      const double depth = extinctionOf(stack.opacity) * stack.layers;
+      normalised.take(std::abs(stack.normalisedDepth[i] / depth - 1.0), where);
+    }
+  section.checks.push_back(
+      sorted.atMost(kProductTolerance, "sorted blending leaks as the product of Eq. 9 says"));
+  section.checks.push_back(normalised.atMost(
+      kRippleTolerance, "normalised FreeVoxels have the layers' optical depth (Eq. 8)", "relative"));
+}
+
+ReportTable transmittanceTable(const std::vector<Stack>& stacks) {
+  ReportTable table{.caption = "Transmittance of stacks of equal layers",
+                    .columns = {"opacity of a layer", "layers", "exact", "FreeVoxels, middle",
+                                "FreeVoxels, between", "sorted, middle", "sorted, between"},
+                    .rows = {}};
+  const auto cell = [](double transmittance) { return fmt::format("{:.3g}", transmittance); };
+  for (const Stack& stack : stacks)
+    table.rows.push_back({fmt::format("{}", stack.opacity), fmt::format("{}", stack.layers),
+                          cell(stack.exact), cell(stack.normalised(0)), cell(stack.normalised(1)),
+                          cell(stack.sorted[0]), cell(stack.sorted[1])});
+  return table;
+}
+
+/// What each lets through too much, between four voxels.
+ReportPlot leakPlot(const std::vector<Stack>& stacks) {
+  ReportPlot plot{
+      .caption = "Light that leaks through, between four voxels: transmittance less (1 - alpha)^k",
+      .xLabel = "layers k",
+      .yLabel = "leaked transmittance",
+      .series = {}};
+  const auto add = [&](const char* method, auto transmittance) {
+    for (const Stack& stack : stacks) {
+      const std::string name = fmt::format("{}, alpha {}", method, stack.opacity);
+      if (plot.series.empty() || plot.series.back().name != name)
+        plot.series.push_back({.name = name, .points = {}});
+      plot.series.back().points.emplace_back(stack.layers, transmittance(stack) - stack.exact);
+    }
+  };
+  add("sorted", [](const Stack& stack) { return stack.sorted[1]; });
+  add("FreeVoxels", [](const Stack& stack) { return stack.normalised(1); });
+  return plot;
+}
+
+}  // namespace
+
+ReportSection leakageOfLayers(const StageMaker& make, const LayerStacks& stacks) {
+  std::vector<Stack> drawn;
+  for (const double opacity : stacks.opacities)
+    for (const int layers : stacks.layers) drawn.push_back(drawStack(make, opacity, layers));
+  ReportSection section{
+      .title = "Subr et al. 2007, Eq. 8 and 9: leakage against layers and opacity",
+      .text =
+          "Stacks of k layers of opacity alpha let (1 - alpha)^k of the light behind them through (Eq. 8). "
+          "Blended back to front, each splat attenuates by itself, so that the product of Eq. 9 over all "
+          "splats that overlap a pixel comes through: too much, and more of it between voxels."};
+  addChecks(drawn, section);
+  section.tables.push_back(transmittanceTable(drawn));
+  section.plots.push_back(leakPlot(drawn));
+  return section;
+}
+
+}  // namespace freevoxels
