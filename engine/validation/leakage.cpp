@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
+#include <string>
+#include <utility>
 
 #include "engine/validation/equal_voxels.h"
 #include "engine/validation/worst.h"
@@ -26,9 +30,9 @@ struct Stack {
   double opacity = 0.0;
   int layers = 0;
   double exact = 0.0;                     ///< (1 - opacity)^layers, Eq. 8
-  std::array<double, 2> normalisedDepth;  ///< optical depth at each of the places
-  std::array<double, 2> sorted;
-  std::array<double, 2> product;  ///< what Eq. 9 makes of `sorted`
+  std::array<double, 2> normalisedDepth{};  ///< optical depth at each of the places
+  std::array<double, 2> sorted{};
+  std::array<double, 2> product{};  ///< what Eq. 9 makes of `sorted`
 
   double normalised(std::size_t place) const { return std::exp(-normalisedDepth[place]); }
   std::string text() const { return fmt::format("{} layers of {}", layers, opacity); }
@@ -85,24 +89,26 @@ ReportTable transmittanceTable(const std::vector<Stack>& stacks) {
   return table;
 }
 
-/// What each lets through too much, between four voxels.
-ReportPlot leakPlot(const std::vector<Stack>& stacks) {
-  ReportPlot plot{
-      .caption = "Light that leaks through, between four voxels: transmittance less (1 - alpha)^k",
-      .xLabel = "layers k",
-      .yLabel = "leaked transmittance",
-      .series = {}};
-  const auto add = [&](const char* method, auto transmittance) {
-    for (const Stack& stack : stacks) {
-      const std::string name = fmt::format("{}, alpha {}", method, stack.opacity);
-      if (plot.series.empty() || plot.series.back().name != name)
-        plot.series.push_back({.name = name, .points = {}});
-      plot.series.back().points.emplace_back(stack.layers, transmittance(stack) - stack.exact);
-    }
-  };
-  add("sorted", [](const Stack& stack) { return stack.sorted[1]; });
-  add("FreeVoxels", [](const Stack& stack) { return stack.normalised(1); });
-  return plot;
+/// What comes through too much between four voxels.
+void addSortedLeak(const std::vector<Stack>& stacks, ReportPlot& plot) {
+  for (const Stack& stack : stacks) {
+    const std::string name = fmt::format("sorted, alpha {}", stack.opacity);
+    if (plot.series.empty() || plot.series.back().name != name)
+      plot.series.push_back({.name = name, .points = {}});
+    plot.series.back().points.emplace_back(stack.layers, stack.sorted[1] - stack.exact);
+  }
+}
+
+/// At each number of layers, at the opacity where it is most.
+void addNormalisedLeak(const std::vector<Stack>& stacks, ReportPlot& plot) {
+  std::map<int, double> leaks;
+  for (const Stack& stack : stacks) {
+    double& leak = leaks[stack.layers];
+    leak = std::max(leak, stack.normalised(1) - stack.exact);
+  }
+  ReportPlot::Series series{.name = "FreeVoxels, any alpha", .points = {}};
+  for (const auto& [layers, leak] : leaks) series.points.emplace_back(layers, leak);
+  plot.series.push_back(std::move(series));
 }
 
 }  // namespace
@@ -119,7 +125,14 @@ ReportSection leakageOfLayers(const StageMaker& make, const LayerStacks& stacks)
           "splats that overlap a pixel comes through: too much, and more of it between voxels."};
   addChecks(drawn, section);
   section.tables.push_back(transmittanceTable(drawn));
-  section.plots.push_back(leakPlot(drawn));
+  ReportPlot plot{
+      .caption = "Light that leaks through, between four voxels: transmittance less (1 - alpha)^k",
+      .xLabel = "layers k",
+      .yLabel = "leaked transmittance",
+      .series = {}};
+  addSortedLeak(drawn, plot);
+  addNormalisedLeak(drawn, plot);
+  section.plots.push_back(std::move(plot));
   return section;
 }
 

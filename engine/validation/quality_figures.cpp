@@ -31,7 +31,8 @@ Check leastPsnr(const QualityFigures& scene, std::size_t method, const std::stri
 Check againstSorted(const QualityFigures& scene, std::size_t method, const std::string& name,
                     std::size_t sorted) {
   const auto gain = [&](std::size_t view) {
-    return scene.figures[method][view].psnr - scene.figures[sorted][view].psnr;
+    const double own = scene.figures[method][view].psnr, other = scene.figures[sorted][view].psnr;
+    return own == other ? 0.0 : own - other;  // both may be infinite
   };
   std::size_t worst = 0;
   for (std::size_t view = 1; view < scene.views.size(); ++view)
