@@ -11,6 +11,7 @@
 
 #include "engine/validation/equal_voxels.h"
 #include "engine/validation/worst.h"
+#include "engine/volume/procedural.h"
 
 namespace freevoxels {
 
@@ -22,6 +23,8 @@ constexpr int kLayerEdge = 7;
 constexpr std::array<glm::dvec2, 2> kPlaces{{{3.0, 3.0}, {3.5, 3.5}}};
 constexpr std::array<const char*, 2> kPlaceNames{"middle of a voxel", "between four voxels"};
 
+constexpr int kPixelsPerVoxel = 4;  ///< small enough that no footprint is widened
+
 constexpr double kProductTolerance = 1e-4;
 constexpr double kRippleTolerance = 3e-3;  ///< of a full layer of footprints (footprint.h)
 
@@ -29,7 +32,7 @@ constexpr double kRippleTolerance = 3e-3;  ///< of a full layer of footprints (f
 struct Stack {
   double opacity = 0.0;
   int layers = 0;
-  double exact = 0.0;                     ///< (1 - opacity)^layers, Eq. 8
+  double exact = 0.0;                       ///< (1 - opacity)^layers, Eq. 8
   std::array<double, 2> normalisedDepth{};  ///< optical depth at each of the places
   std::array<double, 2> sorted{};
   std::array<double, 2> product{};  ///< what Eq. 9 makes of `sorted`
@@ -47,18 +50,52 @@ double productOfSplats(double opacity, int layers, glm::dvec2 at) {
   return std::pow(layer, layers);
 }
 
-Stack drawStack(const StageMaker& make, double opacity, int layers) {
-  Stack stack{.opacity = opacity, .layers = layers, .exact = std::pow(1.0 - opacity, layers)};
-  const Volume volume = constantVolume({kLayerEdge, kLayerEdge, layers}, glm::dmat4(1.0), 1.0);
-  const auto outputs = make(volume, physical(extinctionOf(opacity), glm::vec3(1.0f)), {});
-  for (std::size_t i = 0; i < kPlaces.size(); ++i) {
-    const Camera camera = lookingDown(kPlaces[i].x, kPlaces[i].y, 1e-3);
-    const FrameSettings sorted{.size = {1, 1}, .composite = Composite::Sorted};
-    stack.normalisedDepth[i] = outputs->sums(camera, {.size = {1, 1}}).at(0).depth;
-    stack.sorted[i] = 1.0 - double(outputs->picture(camera, sorted).pixels.at(0).a);
-    stack.product[i] = productOfSplats(opacity, layers, kPlaces[i]);
+/// All stacks side by side in one volume of density = extinction: opacities along x, layers along y.
+Volume volumeOf(const LayerStacks& stacks) {
+  const glm::ivec3 size(kLayerEdge * int(stacks.opacities.size()), kLayerEdge * int(stacks.layers.size()),
+                        stacks.layers.back());
+  return makeVolume(size, glm::dmat4(1.0), [&](int x, int y, int z) {
+    const double opacity = stacks.opacities[std::size_t(x / kLayerEdge)];
+    return z < stacks.layers[std::size_t(y / kLayerEdge)] ? extinctionOf(opacity) : 0.0;
+  });
+}
+
+/// The volume from above; pixel centres are at multiples of 1 / kPixelsPerVoxel from voxel (0, 0).
+struct View {
+  glm::ivec2 size;
+  Camera camera;
+
+  explicit View(const Volume& volume) : size(kPixelsPerVoxel * glm::ivec2(volume.dimensions)) {
+    const glm::dvec2 middle = 0.5 * glm::dvec2(size - 1) / double(kPixelsPerVoxel);
+    camera = lookingDown(middle.x, middle.y, double(volume.dimensions.y));
   }
-  return stack;
+  std::size_t pixelAt(glm::dvec2 position) const {
+    const glm::ivec2 pixel(position * double(kPixelsPerVoxel));
+    return std::size_t(pixel.x) + std::size_t(size.x) * std::size_t(size.y - 1 - pixel.y);
+  }
+};
+
+std::vector<Stack> drawStacks(const StageMaker& make, const LayerStacks& stacks) {
+  const Volume volume = volumeOf(stacks);
+  const View view(volume);
+  const auto outputs = make(volume, physical(1.0, glm::vec3(1.0f)), {});
+  const std::vector<SplatSums> sums = outputs->sums(view.camera, {.size = view.size});
+  const Image sorted = outputs->picture(view.camera, {.size = view.size, .composite = Composite::Sorted});
+  std::vector<Stack> drawn;
+  for (std::size_t x = 0; x < stacks.opacities.size(); ++x)
+    for (std::size_t y = 0; y < stacks.layers.size(); ++y) {
+      const double opacity = stacks.opacities[x];
+      const int layers = stacks.layers[y];
+      Stack stack{.opacity = opacity, .layers = layers, .exact = std::pow(1.0 - opacity, layers)};
+      for (std::size_t i = 0; i < kPlaces.size(); ++i) {
+        const std::size_t pixel = view.pixelAt(double(kLayerEdge) * glm::dvec2(x, y) + kPlaces[i]);
+        stack.normalisedDepth[i] = sums.at(pixel).depth;
+        stack.sorted[i] = 1.0 - double(sorted.pixels.at(pixel).a);
+        stack.product[i] = productOfSplats(opacity, layers, kPlaces[i]);
+      }
+      drawn.push_back(stack);
+    }
+  return drawn;
 }
 
 void addChecks(const std::vector<Stack>& stacks, ReportSection& section) {
@@ -114,9 +151,7 @@ void addNormalisedLeak(const std::vector<Stack>& stacks, ReportPlot& plot) {
 }  // namespace
 
 ReportSection leakageOfLayers(const StageMaker& make, const LayerStacks& stacks) {
-  std::vector<Stack> drawn;
-  for (const double opacity : stacks.opacities)
-    for (const int layers : stacks.layers) drawn.push_back(drawStack(make, opacity, layers));
+  const std::vector<Stack> drawn = drawStacks(make, stacks);
   ReportSection section{
       .title = "Subr et al. 2007, Eq. 8 and 9: leakage against layers and opacity",
       .text =

@@ -10,7 +10,7 @@ namespace freevoxels {
 
 struct LayerStacks {
   std::vector<double> opacities{0.1, 0.3, 0.6, 0.9};  ///< of a layer, below 1
-  std::vector<int> layers{1, 2, 4, 8, 16};            ///< ascending, 16 at most
+  std::vector<int> layers{1, 2, 4, 8, 16};            ///< ascending, at most 16: the eye is 20 voxels up
 };
 
 /// What stacks of equal layers let through, looked at straight on in the middle of a voxel and between four:
