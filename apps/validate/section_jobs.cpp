@@ -9,6 +9,9 @@
 #include "engine/renderer.h"
 #include "engine/validation/closed_forms.h"
 #include "engine/validation/invariances.h"
+#include "engine/validation/leakage.h"
+#include "engine/validation/paper_figures.h"
+#include "engine/validation/quality.h"
 #include "engine/validation/stage_checks.h"
 #include "engine/volume/vdb.h"
 
@@ -17,8 +20,14 @@ namespace freevoxels::validate {
 namespace {
 
 constexpr int kQuickFileEdge = 40, kWholeFileEdge = 128;
+constexpr int kQuickProcedural = 32;  ///< voxels along an edge
 constexpr int kQuickPicture = 80, kWholePicture = 144;
 constexpr int kQuickCube = 40, kWholeCube = 64;
+constexpr int kQuickQuality = 48;  ///< voxels along an edge where pictures meet the oracle
+constexpr int kQuickQualityPicture = 80, kWholeQualityPicture = 128, kLargeQualityPicture = 160;
+/// Where a voxel is as large as the parts of a volume, no method has to reach anything.
+constexpr int kLeastResolutionWithGoals = 48;
+constexpr int kTurntableResolution = 64, kTurntableFrames = 72, kTurntablePicture = 96;
 
 struct ProceduralScene {
   const char* name;
@@ -41,9 +50,65 @@ void addScene(std::vector<SectionJob>& jobs, const Device& device, const std::st
                   [=, &device] { return invariances(device, makeScene(), picture); }});
 }
 
-std::vector<int> resolutions(const Extent& extent) {
+std::vector<int> resolutions(const Extent& extent, int quick) {
   if (extent.resolution) return {*extent.resolution};
-  return extent.quick ? std::vector{32} : std::vector{64, 128};
+  return extent.quick ? std::vector{quick} : std::vector{64, 128};
+}
+
+QualityScene openQualityScene(const Device& device, const QualitySubject& subject, int resolution) {
+  return makeQualityScene(subject, resolution,
+                          openProcedural(subject.procedural, resolution, maximumVoxels(device)));
+}
+
+int qualityPicture(const Extent& extent, int resolution) {
+  if (extent.quick) return kQuickQualityPicture;
+  return resolution < 128 ? kWholeQualityPicture : kLargeQualityPicture;
+}
+
+/// A job a volume, and one that sums up what those before it found.
+void addQuality(std::vector<SectionJob>& jobs, const Device& device, const Extent& extent) {
+  const auto found = std::make_shared<std::vector<QualityFigures>>();
+  for (const int resolution : resolutions(extent, kQuickQuality))
+    for (const QualitySubject& subject : kQualitySubjects)
+      jobs.push_back({fmt::format("picture quality of {} at {}^3", subject.procedural, resolution),
+                      [=, &device, &subject] {
+                        const QualityRun run{.views = extent.quick ? quickQualityViews() : qualityViews(),
+                                             .pictureEdge = qualityPicture(extent, resolution),
+                                             .hasGoals = resolution >= kLeastResolutionWithGoals};
+                        auto [section, figures] = pictureQuality(
+                            deviceStages(device), openQualityScene(device, subject, resolution),
+                            qualityMethods(), run);
+                        found->push_back(std::move(figures));
+                        return section;
+                      }});
+  jobs.push_back(
+      {"summary of picture quality", [found] { return summariseQuality(*found, qualityMethods()); }});
+}
+
+void addTurntable(std::vector<SectionJob>& jobs, const Device& device) {
+  jobs.push_back({"picture quality around the head", [&device] {
+                    return turntableQuality(
+                        deviceStages(device),
+                        openQualityScene(device, kQualitySubjects.front(), kTurntableResolution),
+                        kTurntableFrames, kTurntablePicture);
+                  }});
+}
+
+void addPaperFigures(std::vector<SectionJob>& jobs, const Device& device) {
+  jobs.push_back({"figure 2 of the paper", [&device] { return paperFigure2(deviceStages(device)); }});
+  jobs.push_back({"figure 6 of the paper", [&device] { return paperFigure6(deviceStages(device)); }});
+  jobs.push_back({"leakage against layers", [&device] { return leakageOfLayers(deviceStages(device), {}); }});
+}
+
+/// One view of a file's volume: the default method and sorted blending.
+ReportSection fileQuality(const Device& device, const ValidationScene& scene, int pictureEdge) {
+  const std::vector<QualityMethod>& all = qualityMethods();
+  const QualityView view;
+  return pictureQuality(deviceStages(device),
+                        {.name = scene.name, .volume = scene.volume, .classification = scene.classification},
+                        {all.front(), all[sortedMethod(all)]},
+                        {.views = {&view, 1}, .pictureEdge = pictureEdge})
+      .section;
 }
 
 }  // namespace
@@ -53,7 +118,7 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
   const int cube = extent.quick ? kQuickCube : kWholeCube;
   std::vector<SectionJob> jobs;
   jobs.push_back({"closed forms", [&device, cube] { return closedForms(deviceStages(device), cube); }});
-  for (const int resolution : resolutions(extent))
+  for (const int resolution : resolutions(extent, kQuickProcedural))
     for (const ProceduralScene& scene : kProcedural)
       addScene(jobs, device, fmt::format("{} at {}^3", scene.name, resolution), picture,
                [resolution, &scene, &device] {
@@ -61,11 +126,17 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
                                                            maximumVoxels(device, DirectionSet::Directions98)),
                                             scene.color, resolution);
                });
+  addPaperFigures(jobs, device);
+  addQuality(jobs, device, extent);
+  if (!extent.quick && !extent.resolution) addTurntable(jobs, device);
   for (const std::string& file : extent.files) {
     const auto scene = std::make_shared<ValidationScene>(
         makeValidationScene(readVdb(file, "", maximumVoxels(device, DirectionSet::Directions98)),
                             SceneColor::Density, extent.quick ? kQuickFileEdge : kWholeFileEdge));
     addScene(jobs, device, file, picture, [scene] { return *scene; });
+    const int edge = extent.quick ? kQuickQualityPicture : kWholeQualityPicture;
+    jobs.push_back({fmt::format("picture quality of {}", file),
+                    [scene, edge, &device] { return fileQuality(device, *scene, edge); }});
   }
   return jobs;
 }

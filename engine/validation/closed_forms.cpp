@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/splatting/footprint.h"
+#include "engine/validation/equal_voxels.h"
 #include "engine/validation/homogeneous_box.h"
 #include "engine/validation/lattice_steps.h"
 #include "engine/validation/worst.h"
@@ -19,25 +19,6 @@ constexpr double kInsideTolerance = 2e-3;    ///< of a homogeneous cube, whose f
 constexpr double kRippleTolerance = 3e-3;    ///< of a full layer of footprints (footprint.h)
 constexpr double kRoundingTolerance = 1e-5;  ///< of a few splats in 32-bit floats
 constexpr double kIntegralTolerance = 1e-4;  ///< of 300² pixels
-
-Volume constantVolume(glm::ivec3 dimensions, const glm::dmat4& transform, double value) {
-  return makeVolume(dimensions, transform, [&](int, int, int) { return value; });
-}
-
-Classification physical(double densityScale, glm::vec3 albedo) {
-  return {.densityScale = densityScale, .albedo = albedo};
-}
-
-/// Looks along -z through (x, y), `height` world units high.
-Camera lookingDown(double x, double y, double height) {
-  return {
-      .position = {x, y, 20.0}, .lookAt = {x, y, 0.0}, .orthographic = true, .orthographicHeight = height};
-}
-
-double footprintAt(double distance) {
-  const double inside = std::max(0.0, 1.0 - distance * distance / (kFootprintRadius * kFootprintRadius));
-  return kFootprintPeak * std::pow(inside, 4.0);
-}
 
 /// Eq. 5 of a homogeneous box is sigma times the steps ahead times their length.
 Check checkTable(const StageMaker& make, AttenuationCode code) {
@@ -145,7 +126,7 @@ Check checkEmpty(const StageMaker& make) {
 Check checkTwoVoxels(const StageMaker& make) {
   const double a = 127.0 / 255.0, b = 51.0 / 255.0;  // linear8 holds 1 - a and 1 - b exactly
   const Volume volume =
-      makeVolume({2, 1, 2}, glm::dmat4(1.0), [&](int x, int, int) { return -std::log1p(-(x == 0 ? a : b)); });
+      makeVolume({2, 1, 2}, glm::dmat4(1.0), [&](int x, int, int) { return extinctionOf(x == 0 ? a : b); });
   const auto device = make(volume, physical(1.0, glm::vec3(1.0f)), {.code = AttenuationCode::Linear8});
   Worst worst;
   for (const double x : {0.0, 0.2, 0.5, 0.9}) {
@@ -163,7 +144,7 @@ Check checkFullLayers(const StageMaker& make) {
   const double alpha = 153.0 / 255.0;
   const Volume volume = constantVolume({7, 7, 2}, glm::dmat4(1.0), 1.0);
   const auto device =
-      make(volume, physical(-std::log1p(-alpha), glm::vec3(1.0f)), {.code = AttenuationCode::Linear8});
+      make(volume, physical(extinctionOf(alpha), glm::vec3(1.0f)), {.code = AttenuationCode::Linear8});
   const double expected = alpha + (1.0 - alpha) * alpha;
   Worst worst;
   for (const glm::dvec2 at : {glm::dvec2(3.0, 3.0), glm::dvec2(3.5, 3.0), glm::dvec2(3.3, 2.6)}) {

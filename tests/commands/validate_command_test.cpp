@@ -40,6 +40,9 @@ TEST_F(ValidateCommand, PassesOnSmallVolumesAndSaysSoLineByLine) {
   // Six procedural volumes and the file.
   EXPECT_EQ(linesWith(result.out, "Stages: "), 7u);
   EXPECT_EQ(linesWith(result.out, "Invariances: "), 7u);
+  // Four procedural volumes, their summary, and the file.
+  EXPECT_EQ(linesWith(result.out, "Picture quality: "), 6u);
+  EXPECT_EQ(linesWith(result.out, "Subr et al. 2007, "), 3u);
   EXPECT_NE(result.out.find("cloud.vdb density, "), std::string::npos) << result.out;
 }
 

@@ -1,0 +1,26 @@
+#pragma once
+// Boxes of equal voxels of size 1 looked at straight on: what a pixel far smaller than a voxel sees is the
+// sum, or the product, of a few footprints.
+
+#include <glm/glm.hpp>
+
+#include "engine/splatting/camera.h"
+#include "engine/volume/classification.h"
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+Volume constantVolume(glm::ivec3 dimensions, const glm::dmat4& transform, double value);
+
+Classification physical(double densityScale, glm::vec3 albedo);
+
+/// Extinction of a voxel of size 1 with this opacity.
+double extinctionOf(double opacity);
+
+/// Looks along -z through (x, y), orthographic, `height` world units high.
+Camera lookingDown(double x, double y, double height);
+
+/// The footprint (engine/splatting/footprint.h) at this distance of the ray from the voxel's centre.
+double footprintAt(double distance);
+
+}  // namespace freevoxels

@@ -1,0 +1,17 @@
+#pragma once
+// Figures 2 and 6 of Subr et al. 2007, drawn by the device.
+
+#include "engine/validation/report.h"
+#include "engine/validation/stage_outputs.h"
+
+namespace freevoxels {
+
+/// Figure 2: what the attenuation table of a uniform, grey, translucent cube holds for three directions, as
+/// the brightness of its voxels; and against Beer-Lambert.
+ReportSection paperFigure2(const StageMaker& make);
+
+/// Figure 6: a uniform translucent cube of few voxels, blended back to front and as FreeVoxels; and how far
+/// the opacity of each is from the oracle's.
+ReportSection paperFigure6(const StageMaker& make);
+
+}  // namespace freevoxels

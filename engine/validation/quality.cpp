@@ -1,0 +1,159 @@
+#include "engine/validation/quality.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "engine/core/error.h"
+#include "engine/image/flip.h"
+#include "engine/image/metrics.h"
+#include "engine/reference/oracle.h"
+#include "engine/splatting/orbit.h"
+#include "engine/validation/worst.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr double kTurntableElevation = 10.0;
+constexpr double kLargestJump = 1.0;  ///< dB
+/// Differences below 1/8 can be told apart.
+constexpr float kDifferenceGain = 8.0f;
+
+std::vector<Image> oraclePictures(const QualityScene& scene, const std::vector<Camera>& cameras,
+                                  glm::ivec2 size) {
+  std::vector<Image> pictures;
+  for (const Camera& camera : cameras)
+    pictures.push_back(renderOracle(scene.volume, scene.classification, camera, {.size = size}).image);
+  return pictures;
+}
+
+std::vector<Image> methodPictures(const StageMaker& make, const QualityScene& scene,
+                                  const QualityMethod& method, const std::vector<Camera>& cameras,
+                                  glm::ivec2 size) {
+  FrameSettings settings = method.frame;
+  settings.size = size;
+  const auto outputs = make(scene.volume, scene.classification, method.table);
+  std::vector<Image> pictures;
+  for (const Camera& camera : cameras) pictures.push_back(outputs->picture(camera, settings));
+  return pictures;
+}
+
+std::vector<PictureFigures> figuresOf(const std::vector<Image>& pictures, const std::vector<Image>& oracle) {
+  std::vector<PictureFigures> figures;
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    figures.push_back(compareToOracle(pictures[i], oracle[i]));
+  return figures;
+}
+
+/// |test - reference| of the colours, opaque.
+Image visibleDifference(const Image& test, const Image& reference) {
+  Image difference = absoluteDifference(test, reference);
+  for (glm::vec4& pixel : difference.pixels) pixel = glm::vec4(kDifferenceGain * glm::vec3(pixel), 1.0f);
+  return difference;
+}
+
+Image flipPicture(const Image& test, const Image& reference) {
+  const glm::vec3 grey(kFlipBackground);
+  const Image shown = compositeOver(reference, grey);
+  return magmaPicture(hdrFlip(compositeOver(test, grey), shown, flipExposures(shown)));
+}
+
+ReportPictures worstPictures(const std::string& view, const Image& oracle, const QualityMethod& first,
+                             const Image& picture, const Image& sorted) {
+  return {.caption = fmt::format("The view {}, where the method \"{}\" is worst", view, first.name),
+          .pictures = {{"oracle", oracle},
+                       {first.name, picture},
+                       {fmt::format("{}: {:g} times the difference", first.name, kDifferenceGain),
+                        visibleDifference(picture, oracle)},
+                       {first.name + ": HDR-FLIP, black 0, yellow 1", flipPicture(picture, oracle)},
+                       {"sorted", sorted}},
+          .background = {}};
+}
+
+const char* const kQualityText =
+    "Pictures against the oracle, a converged ray march on the CPU. PSNR is of premultiplied RGBA; HDR-FLIP "
+    "is "
+    "the mean of the map, with both pictures over a grey of 0.18. \"nearest, additive (paper)\" is the "
+    "method "
+    "of Subr et al. 2007 (Eq. 5 and 10); \"sorted\" is back-to-front alpha blending (Eq. 9).";
+
+std::vector<double> turntablePsnr(const StageMaker& make, const QualityScene& scene,
+                                  const QualityMethod& method, const std::vector<Camera>& cameras,
+                                  const std::vector<Image>& oracle) {
+  std::vector<double> psnr;
+  const std::vector<Image> pictures = methodPictures(make, scene, method, cameras, oracle.front().size);
+  for (std::size_t i = 0; i < pictures.size(); ++i)
+    psnr.push_back(compareImages(pictures[i], oracle[i]).psnr);
+  return psnr;
+}
+
+}  // namespace
+
+QualityResult pictureQuality(const StageMaker& make, const QualityScene& scene,
+                             const std::vector<QualityMethod>& methods, const QualityRun& run) {
+  const glm::ivec2 size(run.pictureEdge);
+  std::vector<Camera> cameras;
+  for (const QualityView& view : run.views) cameras.push_back(viewCamera(scene.volume, view));
+  const std::vector<Image> oracle = oraclePictures(scene, cameras, size);
+  QualityFigures figures{.scene = scene.name,
+                         .thin = scene.thin,
+                         .hasGoals = run.hasGoals,
+                         .views = {run.views.begin(), run.views.end()},
+                         .figures = {}};
+  std::vector<std::vector<Image>> pictures;
+  for (const QualityMethod& method : methods) {
+    pictures.push_back(methodPictures(make, scene, method, cameras, size));
+    figures.figures.push_back(figuresOf(pictures.back(), oracle));
+  }
+  const std::size_t worst = figures.worstView(0);
+  ReportSection section{
+      .title = fmt::format("Picture quality: {}, {}x{} pixels", scene.name, size.x, size.y),
+      .text = kQualityText,
+      .checks = sceneChecks(figures, methods),
+      .tables = {methodTable(figures, methods)},
+      .plots = {},
+      .pictures = {worstPictures(viewText(run.views[worst]), oracle[worst], methods.front(),
+                                 pictures.front()[worst], pictures[sortedMethod(methods)][worst])}};
+  if (run.views.size() > 1) section.tables.push_back(viewTable(figures, methods));
+  return {std::move(section), std::move(figures)};
+}
+
+Check largestJump(const std::vector<glm::dvec2>& series, double tolerance, std::string name) {
+  FV_CHECK_LT(0u, series.size());
+  Worst worst;
+  for (std::size_t i = 0; i < series.size(); ++i)
+    worst.take(std::abs(series[(i + 1) % series.size()].y - series[i].y),
+               [&] { return fmt::format("after azimuth {:g}", series[i].x); });
+  return worst.atMost(tolerance, std::move(name), "dB");
+}
+
+ReportSection turntableQuality(const StageMaker& make, const QualityScene& scene, int frames,
+                               int pictureEdge) {
+  const std::vector<Camera> cameras = framingOrbit(scene.volume, 0.0, kTurntableElevation, frames, 1.0, {});
+  const std::vector<Image> oracle = oraclePictures(scene, cameras, glm::ivec2(pictureEdge));
+  ReportSection section{
+      .title = fmt::format("Picture quality: a turn around {}", scene.name),
+      .text = fmt::format("{} frames of {}x{} pixels at elevation {:g}, from one distance. A step from one "
+                          "frame to the next would be seen as popping.",
+                          frames, pictureEdge, pictureEdge, kTurntableElevation)};
+  ReportPlot plot{.caption = "PSNR against the oracle",
+                  .xLabel = "azimuth in degrees",
+                  .yLabel = "PSNR in dB",
+                  .series = {}};
+  const std::vector<QualityMethod>& methods = qualityMethods();
+  for (const QualityMethod* method : {&methods.front(), &methods[sortedMethod(methods)]}) {
+    ReportPlot::Series series{.name = method->name, .points = {}};
+    for (const double psnr : turntablePsnr(make, scene, *method, cameras, oracle))
+      series.points.emplace_back(360.0 * double(series.points.size()) / frames, psnr);
+    plot.series.push_back(std::move(series));
+  }
+  section.checks.push_back(
+      largestJump(plot.series.front().points, kLargestJump,
+                  fmt::format("{}: PSNR from one frame to the next", methods.front().name)));
+  section.plots.push_back(std::move(plot));
+  return section;
+}
+
+}  // namespace freevoxels

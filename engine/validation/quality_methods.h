@@ -1,0 +1,35 @@
+#pragma once
+// The ways to draw that are compared with the oracle, and what their pictures have to reach.
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/attenuation/table_settings.h"
+#include "engine/splatting/render_settings.h"
+
+namespace freevoxels {
+
+/// PSNR in dB, of premultiplied RGBA.
+struct QualityGoals {
+  std::optional<double> mean;       ///< over all views of all volumes
+  std::optional<double> least;      ///< of any view of a volume that is not thin
+  std::optional<double> leastThin;  ///< of any view of a thin one
+  bool notBelowSorted = false;      ///< at least as good as sorted blending in every view
+};
+
+struct QualityMethod {
+  std::string name;
+  TableSettings table;
+  FrameSettings frame;  ///< apart from the size
+  QualityGoals goals;
+};
+
+/// The first is the default method. One is sorted blending.
+const std::vector<QualityMethod>& qualityMethods();
+
+/// Where in a list that holds one sorted blending is.
+std::size_t sortedMethod(const std::vector<QualityMethod>& methods);
+
+}  // namespace freevoxels
