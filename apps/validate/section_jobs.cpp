@@ -56,8 +56,9 @@ std::vector<int> resolutions(const Extent& extent, int quick) {
 }
 
 QualityScene openQualityScene(const Device& device, const QualitySubject& subject, int resolution) {
-  return makeQualityScene(subject, resolution,
-                          openProcedural(subject.procedural, resolution, maximumVoxels(device)));
+  return makeQualityScene(
+      subject, resolution,
+      openProcedural(subject.procedural, resolution, maximumVoxels(device, DirectionSet::Directions98)));
 }
 
 int qualityPicture(const Extent& extent, int resolution) {

@@ -32,7 +32,7 @@ QualityResult pictureQuality(const StageMaker& make, const QualityScene& scene,
 Check largestJump(const std::vector<glm::dvec2>& series, double tolerance, std::string name);
 
 /// A turn at elevation 10 in as many frames from one distance: PSNR of the first method, whose frames may
-/// differ by 1 dB from their neighbours, and of sorted blending.
+/// differ by 1 dB from their neighbours, of the others with goals for every view, and of sorted blending.
 ReportSection turntableQuality(const StageMaker& make, const QualityScene& scene, int frames,
                                int pictureEdge);
 
