@@ -10,6 +10,7 @@
 #include "engine/reference/oracle.h"
 #include "engine/validation/equal_voxels.h"
 #include "engine/validation/homogeneous_box.h"
+#include "engine/validation/lattice_steps.h"
 #include "engine/validation/quality_scenes.h"
 #include "engine/validation/worst.h"
 #include "engine/volume/procedural.h"
@@ -55,7 +56,7 @@ Classification asBrightness(const Volume& volume) {
 }
 
 Check checkTransmittances(const Volume& shown, int direction) {
-  const glm::ivec3 d = directionAt(direction), size = shown.dimensions;
+  const glm::ivec3 d = latticeStep(direction), size = shown.dimensions;
   const double step = stepLength(shown.indexToWorld, d, true);
   Worst worst;
   for (int z = 0; z < size.z; ++z)
@@ -67,7 +68,7 @@ Check checkTransmittances(const Volume& shown, int direction) {
                    [&] { return voxelText(shown, voxel); });
       }
   return worst.atMost(kHalfCodeTransmittance, fmt::format("figure 2: transmittance is exp(-sigma n |d|), {}",
-                                                          directionText(direction)));
+                                                          directionText(kLatticeSteps, direction)));
 }
 
 double meanAlphaError(const Image& picture, const Image& oracle) {
@@ -123,12 +124,14 @@ ReportSection paperFigure2(const StageMaker& make) {
           "Seen from azimuth -35, elevation 25: +x points to the upper right, +y up, +z to the lower right",
       .pictures = {},
       .background = kShownBackground};
-  for (const int direction : {directionIndex(1, 0, 0), directionIndex(1, 1, 0), directionIndex(1, 1, 1)}) {
+  for (const int direction :
+       {directionIndex(kLatticeSteps, {1, 0, 0}), directionIndex(kLatticeSteps, {1, 1, 0}),
+        directionIndex(kLatticeSteps, {1, 1, 1})}) {
     const Volume shown = transmittances(cube, table[std::size_t(direction)]);
     section.checks.push_back(checkTransmittances(shown, direction));
     const auto outputs = make(shown, asBrightness(shown), {});
-    pictures.pictures.push_back(
-        {directionText(direction), outputs->picture(viewCamera(shown, kTableView), {.size = kTablePicture})});
+    pictures.pictures.push_back({directionText(kLatticeSteps, direction),
+                                 outputs->picture(viewCamera(shown, kTableView), {.size = kTablePicture})});
   }
   section.pictures.push_back(std::move(pictures));
   return section;

@@ -1,6 +1,7 @@
 // The paper's figures, drawn by the device, and that a device which draws something else is noticed.
 
 #include "engine/validation/paper_figures.h"
+#include "engine/validation/lattice_steps.h"
 
 #include "engine/validation/leakage.h"
 #include "tests/device/device_fixture.h"
@@ -18,7 +19,8 @@ struct WrongStages : StageOutputs {
   std::vector<float> extinction() override { return right->extinction(); }
   TableBytes table() override {
     TableBytes bytes = right->table();
-    std::swap(bytes[std::size_t(directionIndex(1, 0, 0))], bytes[std::size_t(directionIndex(0, 1, 0))]);
+    std::swap(bytes[std::size_t(directionIndex(kLatticeSteps, {1, 0, 0}))],
+              bytes[std::size_t(directionIndex(kLatticeSteps, {0, 1, 0}))]);
     return bytes;
   }
   std::vector<std::uint32_t> visibleVoxels() override { return right->visibleVoxels(); }
