@@ -61,9 +61,13 @@ QualityScene openQualityScene(const Device& device, const QualitySubject& subjec
       openProcedural(subject.procedural, resolution, maximumVoxels(device, DirectionSet::Directions98)));
 }
 
-int qualityPicture(const Extent& extent, int resolution) {
-  if (extent.quick) return kQuickQualityPicture;
-  return resolution < 128 ? kWholeQualityPicture : kLargeQualityPicture;
+/// The oracle takes long for thin parts: fewer views of them, and smaller, where there are many voxels.
+QualityRun qualityRun(const Extent& extent, const QualitySubject& subject, int resolution) {
+  const bool many = resolution >= 128, costly = many && subject.thin;
+  const int whole = many && !costly ? kLargeQualityPicture : kWholeQualityPicture;
+  return {.views = extent.quick || costly ? quickQualityViews() : qualityViews(),
+          .pictureEdge = extent.quick ? kQuickQualityPicture : whole,
+          .hasGoals = resolution >= kLeastResolutionWithGoals};
 }
 
 /// A job a volume, and one that sums up what those before it found.
@@ -73,12 +77,9 @@ void addQuality(std::vector<SectionJob>& jobs, const Device& device, const Exten
     for (const QualitySubject& subject : kQualitySubjects)
       jobs.push_back({fmt::format("picture quality of {} at {}^3", subject.procedural, resolution),
                       [=, &device, &subject] {
-                        const QualityRun run{.views = extent.quick ? quickQualityViews() : qualityViews(),
-                                             .pictureEdge = qualityPicture(extent, resolution),
-                                             .hasGoals = resolution >= kLeastResolutionWithGoals};
                         auto [section, figures] = pictureQuality(
                             deviceStages(device), openQualityScene(device, subject, resolution),
-                            qualityMethods(), run);
+                            qualityMethods(), qualityRun(extent, subject, resolution));
                         found->push_back(std::move(figures));
                         return section;
                       }});

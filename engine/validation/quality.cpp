@@ -74,10 +74,9 @@ ReportPictures worstPictures(const std::string& view, const Image& oracle, const
 
 const char* const kQualityText =
     "Pictures against the oracle, a converged ray march on the CPU. PSNR is of premultiplied RGBA; HDR-FLIP "
-    "is "
-    "the mean of the map, with both pictures over a grey of 0.18. \"nearest, additive (paper)\" is the "
-    "method "
-    "of Subr et al. 2007 (Eq. 5 and 10); \"sorted\" is back-to-front alpha blending (Eq. 9).";
+    "is the mean of the map, with both pictures over a grey of 0.18: over black, pictures that are mostly "
+    "empty would be judged at exposures that nobody looks at them with. \"nearest, additive (paper)\" is the "
+    "method of Subr et al. 2007 (Eq. 5 and 10); \"sorted\" is back-to-front alpha blending (Eq. 9).";
 
 std::vector<double> turntablePsnr(const StageMaker& make, const QualityScene& scene,
                                   const QualityMethod& method, const std::vector<Camera>& cameras,
