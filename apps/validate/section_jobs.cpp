@@ -61,11 +61,11 @@ QualityScene openQualityScene(const Device& device, const QualitySubject& subjec
       openProcedural(subject.procedural, resolution, maximumVoxels(device, DirectionSet::Directions98)));
 }
 
-/// The oracle takes long for thin parts: fewer views of them, and smaller, where there are many voxels.
+/// Pictures of thin parts are smaller: the oracle takes long for them.
 QualityRun qualityRun(const Extent& extent, const QualitySubject& subject, int resolution) {
-  const bool many = resolution >= 128, costly = many && subject.thin;
-  const int whole = many && !costly ? kLargeQualityPicture : kWholeQualityPicture;
-  return {.views = extent.quick || costly ? quickQualityViews() : qualityViews(),
+  const bool large = resolution >= 128 && !subject.thin;
+  const int whole = large ? kLargeQualityPicture : kWholeQualityPicture;
+  return {.views = extent.quick ? quickQualityViews() : qualityViews(),
           .pictureEdge = extent.quick ? kQuickQualityPicture : whole,
           .hasGoals = resolution >= kLeastResolutionWithGoals};
 }
