@@ -37,7 +37,8 @@ DepthToEye depthToEye(vec3 position, float layerDepth) {
   DepthToEye result = DepthToEye(0.0, vec3(0.0));
   if (frame.lookup == kLookupNone) return result;
   const vec3 direction = directionToEye(position);
-  const int fan = fanIndex(-direction), axis = fan / 2;
+  const int fan = fanIndex(-direction);
+  const int axis = frame.lookup == kLookupExact ? frame.fans[fan].axis : fan / 2;
   const int sideA = (axis + 1) % 3, sideB = (axis + 2) % 3;
   vec2 slope = vec2(0.0);
   if (frame.lookup == kLookupExact) {

@@ -34,7 +34,8 @@ float storedDepth(Towards towards, ivec3 cell, uint voxel) {
 // Between four directions of the table. Transmittances are interpolated, not depths: one dark direction would
 // darken all.
 float depthTowards(Towards towards, uint voxel) {
-  const vec3 point = towards.direction * towards.cells;
+  // A division may round to just beyond 1.
+  const vec3 point = clamp(towards.direction, -1.0, 1.0) * towards.cells;
   if (towards.lookup == kLookupNearest) return storedDepth(towards, ivec3(round(point)), voxel);
   const vec3 low = floor(min(point, 0.999999 * towards.cells));
   const vec3 weight = point - low;

@@ -184,7 +184,7 @@ struct SetupFrame {
   uint opacityPoints;      // 0 = physical
   uint colorPoints;
   vec3 albedo;
-  RayFan fans[6];          // kLookupExact: from the eye
+  RayFan fans[6];          // kLookupExact: from the eye, by fanIndex; orthographic six times the same
 };
 
 struct SetupPush {

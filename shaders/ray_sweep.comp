@@ -38,7 +38,7 @@ ivec2 planesWithin(vec2 atFirst, vec2 perPlane) {
     enter = max(enter, min(t0, t1));
     leave = min(leave, max(t0, t1));
   }
-  return ivec2(floor(enter), ceil(leave));
+  return ivec2(floor(min(enter, float(push.fan.planeCount))), ceil(max(leave, -1.0)));
 }
 
 void main() {

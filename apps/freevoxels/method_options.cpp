@@ -23,8 +23,8 @@ void MethodOptions::add(CLI::App& app) {
           "[normalised]")
       ->group(group);
   addWord(app, "--attenuation", kAttenuations, attenuation,
-          "How the table is looked up between its directions; exact needs none, but a sweep from the eye for "
-          "every frame [bilinear]")
+          "How the table is looked up between its directions; exact does not read it, but "
+          "sweeps from the eye for every frame [bilinear]")
       ->group(group);
   addWord(app, "--directions", kDirections, directions,
           "How many directions the table holds; 98 are more exact and take more memory and time [26]")

@@ -1,6 +1,6 @@
 #pragma once
 // Rays from an eye or a light through a volume, along which its optical depth is summed up exactly: Subr et
-// al. 2007, Eq. 4, for one source instead of for 26 directions.
+// al. 2007, Eq. 4, for one source instead of for the directions of a table.
 //
 // A ray belongs to the fan of its largest component, as a pixel to a face of a cube map. The rays of a fan
 // meet the planes of voxels across its axis: there the extinction is interpolated bilinearly, and the depth

@@ -1,8 +1,11 @@
 #include "engine/attenuation/ray_sweep.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 
 #include "embedded/ray_sweep.h"
+#include "engine/core/error.h"
 
 namespace freevoxels {
 
@@ -26,6 +29,24 @@ shader::RayFan deviceFan(const RayFan& fan, VkDeviceAddress depths) {
           .depths = {std::uint32_t(depths), std::uint32_t(depths >> 32)}};
 }
 
+void checkFits(const Device& device, const std::array<RayFan, 6>& fans) {
+  std::uint64_t bytes = 0, largest = 0;
+  for (const RayFan& fan : fans) {
+    bytes += depthBytes(fan);
+    largest = std::max(largest, depthBytes(fan));
+  }
+  // Shaders index the depths of a fan with 31 bits.
+  const std::uint64_t most = std::uint64_t(std::numeric_limits<std::int32_t>::max()) * sizeof(std::uint32_t);
+  const std::uint64_t fits =
+      std::min(std::uint64_t(device.maximumAllocation()), device.description().memoryBytes);
+  if (bytes > fits || largest > most)
+    fail(ExitCode::OutOfMemory,
+         "--attenuation exact needs {} MiB for its rays from here and {} has {} MiB in one piece: use "
+         "--attenuation "
+         "bilinear, or a smaller volume",
+         bytes >> 20, device.description().name, std::min(fits, most) >> 20);
+}
+
 }  // namespace
 
 RaySweep::RaySweep(const Device& device)
@@ -37,9 +58,13 @@ RaySweep::RaySweep(const Device& device)
 
 void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RaySource& source) {
   const std::array<RayFan, 6> fans = rayFans(volume.layout.dimensions, source);
+  checkFits(device_, fans);
   std::uint64_t bytes = 0;
   for (const RayFan& fan : fans) bytes += depthBytes(fan);
-  if (depths_.bytes() < bytes) depths_ = Buffer(device_, bytes, MemoryUse::Device, "ray depths");
+  if (depths_.bytes() < bytes) {
+    depths_ = {};  // not both at once
+    depths_ = Buffer(device_, bytes, MemoryUse::Device, "ray depths");
+  }
 
   commands.beginPass("ray sweep");
   VkDeviceAddress address = depths_.address();
@@ -53,6 +78,10 @@ void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RayS
     const std::array<Binding, 1> bindings{&volume.extinction};
     commands.dispatchLinear(pipeline_, bindings, push, fans[i].rays());
     address += depthBytes(fans[i]);
+    if (source.atInfinity) {
+      fans_.fill(fans_[i]);
+      break;
+    }
   }
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }

@@ -12,10 +12,11 @@ class RaySweep {
  public:
   explicit RaySweep(const Device& device);
 
-  /// Sweeps the volume for this source; the depths replace those of the last one. Fails with
-  /// ExitCode::OutOfMemory.
+  /// Sweeps the volume for this source; the depths replace those of the last one, on which no work may be
+  /// under way. Fails with ExitCode::OutOfMemory.
   void record(Commands& commands, const DeviceVolume& volume, const RaySource& source);
-  /// Of the last source, for look-ups: index 2 axis + (direction > 0).
+  /// Of the last source, for look-ups: index 2 axis + (direction > 0). Parallel rays have one fan, which is
+  /// in all six places, so that no look-up has to choose it with the same rounding.
   const std::array<shader::RayFan, 6>& fans() const { return fans_; }
 
  private:

@@ -47,7 +47,7 @@ struct LengthSquared {
 };
 
 /// No splat of the volume reaches further than this from its centre, in pixels. For a perspective camera a
-/// kernel at distance t reaches at most R |K0 - x K2| / (t - R |K2|) along x (splat_setup.comp has the bound
+/// kernel at distance t reaches at most R |K0 - x K2| / (t - R |K2|) along x (splat_projection.glsl has the bound
 /// itself).
 double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions) {
   const double widened = kFootprintRadius;  // a widened footprint grows by no more than this

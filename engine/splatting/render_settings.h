@@ -14,7 +14,7 @@ enum class Composite : int {
 };
 
 enum class AttenuationLookup : int {
-  Bilinear = 0,  ///< of the four lattice directions around the viewing direction
+  Bilinear = 0,  ///< of the four directions of the table around the viewing direction
   Nearest = 1,   ///< the paper's
   Exact = 2,     ///< not from the table: along rays from the eye (ray_fans.h), once a frame
 };

@@ -69,6 +69,26 @@ TEST_F(SplatTest, ShearedVoxelsMatchTheReference) {
   expectSamePicture(v, framingCamera(v, -110.0, -40.0, 0.8, {}), {.size = {96, 120}});
 }
 
+TEST_F(SplatTest, ExactMatchesTheReference) {
+  const Volume v = volume(true);
+  for (const Composite composite : {Composite::Normalised, Composite::Additive})
+    expectSamePicture(v, framingCamera(v, -110.0, -40.0, 0.8, {}),
+                      {.size = {96, 120}, .composite = composite, .attenuation = AttenuationLookup::Exact});
+}
+
+/// Where two components of the direction are the same but for rounding, the rays and the voxels that look
+/// them up must agree on one.
+TEST_F(SplatTest, ExactMatchesTheReferenceInParallelAlongDiagonals) {
+  const Volume v = volume(false);
+  Camera base;
+  base.orthographic = true;
+  for (const glm::dvec2 orbit :
+       {glm::dvec2(45, 25), glm::dvec2(45, 0), glm::dvec2(225, 25), glm::dvec2(0, 45)})
+    expectSamePicture(
+        v, framingCamera(v, orbit.x, orbit.y, 1.0, base),
+        {.size = {60, 60}, .composite = Composite::Additive, .attenuation = AttenuationLookup::Exact});
+}
+
 TEST_F(SplatTest, OrthographicMatchesTheReference) {
   const Volume v = volume(true);
   Camera base;
