@@ -62,8 +62,10 @@ void main() {
   splat.opticalDepth = sigma * peak;
   splat.distance = footprint.distance;
   const DepthToEye toEye = depthToEye(position, layerDepth);
-  // Per pixel; a widened footprint keeps the transmittances of the one that it stands for.
-  const float perPixel = sqrt(footprint.amplitude) * (frame.orthographic != 0 ? 1.0 : footprint.distance);
+  // Per pixel. In a pixel that a footprint had to be widened to, the depth changes from voxel to voxel, and the
+  // voxel's own gradient soon says nothing: it fades with the widening.
+  const float fade = footprint.amplitude * footprint.amplitude * footprint.amplitude * footprint.amplitude;
+  const float perPixel = fade * (frame.orthographic != 0 ? 1.0 : footprint.distance);
   splat.depthToEye =
       vec3(toEye.depth, perPixel * vec2(dot(toEye.gradient, frame.pixelX), dot(toEye.gradient, frame.pixelY)));
   splats[local] = splat;

@@ -63,9 +63,9 @@ DepthToEye SplatSummer::depthToEye(std::uint32_t voxel, const ProjectedSplat& sp
   if (!settings_.gradient) return depth;
   const glm::dvec3 gradient =
       depth_->gradient(position, splat.toEye, extinction * projector_.layerLength(splat));
-  // A widened footprint has the transmittances of the one that it stands for.
-  const double narrowing = std::sqrt(splat.amplitude);
-  depth.perPixel = narrowing * glm::dvec2(glm::dot(gradient, splat.pixelX), glm::dot(gradient, splat.pixelY));
+  // It fades with the widening: a widened footprint stands for a pixel in which the depth changes often.
+  const double fade = std::pow(splat.amplitude, 4.0);
+  depth.perPixel = fade * glm::dvec2(glm::dot(gradient, splat.pixelX), glm::dot(gradient, splat.pixelY));
   return depth;
 }
 
