@@ -219,7 +219,7 @@ TEST(PictureQuality, NoticesAFrameOfATurntableThatPops) {
   ASSERT_EQ(popping.failures(), 1u);
   EXPECT_NEAR(popping.checks[0].figure, 20.0 * std::log10(1.5), 1e-3);
   ASSERT_EQ(popping.plots.size(), 1u);
-  ASSERT_EQ(popping.plots[0].series.size(), 2u);
+  ASSERT_EQ(popping.plots[0].series.size(), 3u);  // default, exact, sorted
   EXPECT_EQ(popping.plots[0].series[0].points.size(), 4u);
   EXPECT_EQ(popping.plots[0].series[0].points[2].x, 180.0);
 }
