@@ -23,8 +23,8 @@ constexpr int kQuickFileEdge = 40, kWholeFileEdge = 128;
 constexpr int kQuickProcedural = 32;  ///< voxels along an edge
 constexpr int kQuickPicture = 80, kWholePicture = 96;
 constexpr int kQuickCube = 40, kWholeCube = 64;
-constexpr int kQuickQuality = 64;  ///< voxels along an edge where pictures meet the oracle
-constexpr int kQuickQualityPicture = 80, kWholeQualityPicture = 96, kLargeQualityPicture = 128;
+constexpr int kQuickQuality = 48;  ///< voxels along an edge where pictures meet the oracle
+constexpr int kQuickQualityPicture = 96, kWholeQualityPicture = 128, kLargeQualityPicture = 160;
 /// Where a voxel is as large as the parts of a volume, no method has to reach anything.
 constexpr int kLeastResolutionWithGoals = 64;
 constexpr int kTurntableResolution = 64, kTurntableFrames = 72, kTurntablePicture = 64;

@@ -73,6 +73,12 @@ std::pair<double, double> spline(const std::array<double, 4>& p, double x) {
   return {p[1] + x * (m1 + x * (b + x * a)), m1 + x * (2.0 * b + x * 3.0 * a)};
 }
 
+/// As ray_sweep.comp keeps it: the square root of its part of kOpaqueDepth, in 16 bits.
+double storedRayDepth(double depth) {
+  const double code = std::round(65535.0 * std::sqrt(std::min(depth, kOpaqueDepth) / kOpaqueDepth));
+  return kOpaqueDepth * (code / 65535.0) * (code / 65535.0);
+}
+
 class RayDepth : public ReferenceDepth {
  public:
   RayDepth(const Volume& volume, std::span<const double> extinction, const RaySource& source);
@@ -145,7 +151,7 @@ void RayDepth::march(std::size_t f, int i, int j) {
     const int plane = fan.firstPlane + fan.direction * k;
     depths_[f][std::size_t(i) + std::size_t(fan.rayCount.x) *
                                     (std::size_t(j) + std::size_t(fan.rayCount.y) * std::size_t(k))] =
-        std::min(depth, kOpaqueDepth);
+        storedRayDepth(depth);
     depth += layer * interpolated(fan.axis, plane, fan.origin + offset + slope * (plane - fan.farthest));
   }
 }
