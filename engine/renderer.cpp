@@ -5,7 +5,6 @@
 #include <span>
 
 #include "engine/attenuation/attenuation_table.h"
-#include "engine/attenuation/ray_sweep.h"
 #include "engine/core/error.h"
 #include "engine/splatting/depth_sort.h"
 #include "engine/splatting/resolve_pass.h"
@@ -65,24 +64,38 @@ struct Renderer::State {
   const Device& device;
   TableSettings tableSettings;
   DeviceVolume volume;
-  AttenuationTable table;
+  std::optional<AttenuationTable> table;
   VisibleVoxels visible;
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
   std::unique_ptr<DepthSort> sort;
-  std::unique_ptr<RaySweep> rays;
   std::vector<StageTime> buildTimes, frameTimes;
 
   struct Frame {
     FrameConstants constants;
     SplatTargets targets;
   };
-  Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings);
+  const AttenuationTable& sweptTable(const Progress& progress = {});
+  Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
+                     const Progress& progress = {});
 };
+
+/// Made when a frame reads it first; its time is that frame's.
+const AttenuationTable& Renderer::State::sweptTable(const Progress& progress) {
+  if (table) return *table;
+  AttenuationTable made = makeTable(device, volume.layout, tableSettings);
+  const AttenuationSweep sweep(device, tableSettings);
+  Commands commands(device);
+  sweep.record(commands, volume, made);
+  commands.submitAndWait(progress);
+  std::ranges::copy(commands.times(), std::back_inserter(frameTimes));
+  return table.emplace(std::move(made));
+}
 
 /// Up to the sums in the targets; the sorted picture is made there, and has none.
 Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const Camera& camera,
-                                                     const FrameSettings& settings) {
+                                                     const FrameSettings& settings,
+                                                     const Progress& progress) {
   frameTimes.clear();
   const bool sorted = settings.composite == Composite::Sorted;
   if (!splats || !splats->draws(settings)) {
@@ -93,13 +106,12 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
   Frame frame{.constants = makeFrameConstants(device, volume, tableSettings, camera, settings),
               .targets = makeTargets(device, settings)};
   if (sorted) sort->record(commands, volume, visible, camera);
-  if (!sorted && settings.attenuation == AttenuationLookup::Exact) {
-    if (!rays) rays = std::make_unique<RaySweep>(device);
-    rays->record(commands, volume, eyeSource(camera, volume.indexToWorld));
-    std::ranges::copy(rays->fans(), frame.constants.setup.fans);
-  }
-  splats->record(commands, {volume, table, visible, sorted ? &sort->voxels() : nullptr}, frame.constants,
-                 frame.targets);
+  splats->record(commands,
+                 {.volume = volume,
+                  .table = settings.readsTable() ? &sweptTable(progress) : nullptr,
+                  .visible = visible,
+                  .order = sorted ? &sort->voxels() : nullptr},
+                 frame.constants, frame.targets);
   return frame;
 }
 
@@ -110,15 +122,12 @@ Renderer::Renderer(const Device& device, const Volume& volume, const Classificat
   {
     const StageTimer timer(state_->buildTimes, "upload");
     state_->volume = uploadVolume(device, volume, classification);
-    state_->table = makeTable(device, state_->volume.layout, table);
     state_->visible = makeVisibleVoxels(device, state_->volume);
   }
   const ClassifyPass classify(device);
-  const AttenuationSweep sweep(device, table);
   const CompactionPass compaction(device);
   Commands commands(device);
   classify.record(commands, state_->volume, classification);
-  sweep.record(commands, state_->volume, state_->table);
   compaction.record(commands, state_->volume, state_->visible);
   commands.submitAndWait(progress);
   std::ranges::copy(commands.times(), std::back_inserter(state_->buildTimes));
@@ -131,7 +140,7 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   checkFrameFits(state_->device, settings);
   State& state = *state_;
   Commands commands(state.device);
-  const State::Frame frame = state.recordSplats(commands, camera, settings);
+  const State::Frame frame = state.recordSplats(commands, camera, settings, progress);
   if (settings.composite != Composite::Sorted || settings.depth)
     state.resolve->record(commands, frame.constants, frame.targets);
   commands.beginPass("read back");
@@ -139,7 +148,7 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   std::optional<TargetReadback> depth;
   if (settings.depth) depth.emplace(state.device, commands, frame.targets.distance);
   commands.submitAndWait(progress);
-  state.frameTimes = commands.times();
+  std::ranges::copy(commands.times(), std::back_inserter(state.frameTimes));
 
   const StageTimer timer(state.frameTimes, "copy to host");
   return {.size = settings.size,
@@ -157,7 +166,7 @@ std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSet
   commands.beginPass("read back");
   const SumsReadback sums(state.device, commands, frame.targets);
   commands.submitAndWait();
-  state.frameTimes = commands.times();
+  std::ranges::copy(commands.times(), std::back_inserter(state.frameTimes));
   return sums.read(frame.constants);
 }
 
@@ -179,7 +188,7 @@ std::vector<float> Renderer::downloadExtinction() const {
 }
 
 std::vector<std::vector<std::uint8_t>> Renderer::downloadTable() const {
-  return freevoxels::downloadTable(state_->device, state_->volume.layout, state_->table);
+  return freevoxels::downloadTable(state_->device, state_->volume.layout, state_->sweptTable());
 }
 
 std::vector<std::uint32_t> Renderer::downloadVisibleVoxels() const {

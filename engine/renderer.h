@@ -32,9 +32,9 @@ void checkFrameFits(const Device& device, const FrameSettings& settings);
 
 class Renderer {
  public:
-  /// Uploads the volume and makes everything that does not depend on the camera: extinction, attenuation
-  /// table, list of visible voxels. Fails with ExitCode::OutOfMemory, before allocating, where the device's
-  /// limits are too small.
+  /// Uploads the volume and makes what every frame needs: extinction and the list of visible voxels. The
+  /// attenuation table is made for the first frame that reads it. Fails with ExitCode::OutOfMemory, before
+  /// allocating, where the device's limits are too small.
   Renderer(const Device& device, const Volume& volume, const Classification& classification,
            const TableSettings& table, const Progress& progress = {});
   ~Renderer();

@@ -1,5 +1,5 @@
 // Optical depth from a voxel towards a general direction, from the directions of the table: Subr et al. 2007,
-// Section 3.3, there with the nearest one. Include after interface.h and attenuation_code.glsl, and define
+// Section 3.3, there with the nearest one. Include after interface.h, major_axis.glsl and attenuation_code.glsl, and define
 // PLANE_ADDRESS(cell) as the device address of the codes of the direction with that cell number.
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -40,8 +40,7 @@ float depthTowards(Towards towards, uint voxel) {
   const vec3 low = floor(min(point, 0.999999 * towards.cells));
   const vec3 weight = point - low;
   // The major axis has weight 0 or 1: both of its neighbours are the same face.
-  const vec3 size = abs(point);
-  const int major = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const int major = majorAxis(point);
   const int a = (major + 1) % 3;
   const int b = (major + 2) % 3;
   ivec3 cell;

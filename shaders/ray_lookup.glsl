@@ -1,12 +1,11 @@
 // Optical depth between the source of a ray sweep and a position on one of its planes, and how it changes
-// within the plane. Include after interface.h and GL_EXT_buffer_reference_uvec2.
+// within the plane. Include after interface.h, major_axis.glsl and GL_EXT_buffer_reference_uvec2.
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RayDepths { uint pairs[]; };
 
 // `fromSource` is the direction in which the ray leaves it.
 int fanIndex(vec3 fromSource) {
-  const vec3 size = abs(fromSource);
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const int axis = majorAxis(fromSource);
   return 2 * axis + (fromSource[axis] > 0.0 ? 1 : 0);
 }
 

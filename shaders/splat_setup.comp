@@ -17,6 +17,7 @@ layout(scalar, binding = 5) readonly buffer Extinction { float extinction[]; };
 layout(scalar, binding = 6) readonly buffer Chunks { ChunkArguments chunks[]; };
 layout(scalar, binding = 7) writeonly buffer Splats { Splat splats[]; };
 #define PLANE_ADDRESS(cell) planeAddresses[cell]
+#include "major_axis.glsl"
 #include "direction_lookup.glsl"
 #include "ray_lookup.glsl"
 #include "depth_to_eye.glsl"

@@ -87,9 +87,13 @@ RayFan fanFrom(glm::dvec3 source, glm::ivec3 dimensions, int axis, int direction
 
 }  // namespace
 
+int majorAxis(glm::dvec3 direction) {
+  const glm::dvec3 size = glm::abs(direction);
+  return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+}
+
 int fanIndex(glm::dvec3 fromSource) {
-  const glm::dvec3 size = glm::abs(fromSource);
-  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const int axis = majorAxis(fromSource);
   return 2 * axis + (fromSource[axis] > 0.0 ? 1 : 0);
 }
 

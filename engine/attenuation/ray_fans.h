@@ -42,6 +42,9 @@ struct RayFan {
 /// a source near to the volume, they are further apart.
 std::array<RayFan, 6> rayFans(glm::ivec3 dimensions, const RaySource& source);
 
+/// The axis of the largest component, the first of several.
+int majorAxis(glm::dvec3 direction);
+
 /// Of the largest component of the direction in which a ray leaves the source.
 int fanIndex(glm::dvec3 fromSource);
 

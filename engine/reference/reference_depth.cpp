@@ -12,15 +12,9 @@ namespace freevoxels {
 
 namespace {
 
-/// The first of several.
-int largestAxis(glm::dvec3 direction) {
-  const glm::dvec3 size = glm::abs(direction);
-  return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-}
-
 /// As long as a lattice layer.
 glm::dvec3 acrossLayer(glm::dvec3 direction) {
-  return direction / std::abs(direction[largestAxis(direction)]);
+  return direction / std::abs(direction[majorAxis(direction)]);
 }
 
 class TableDepth : public ReferenceDepth {
@@ -184,7 +178,7 @@ std::pair<double, glm::dvec2> RayDepth::lookUp(glm::ivec3 voxel) const {
 
 glm::dvec3 ReferenceDepth::gradient(glm::ivec3 voxel, glm::dvec3 toEye, double layerDepth) const {
   const glm::dvec3 direction = acrossLayer(toEye);
-  const int along = largestAxis(direction);
+  const int along = majorAxis(direction);
   glm::dvec3 gradient(0.0);
   for (int axis = 0; axis < 3; ++axis)
     if (axis != along) gradient[axis] = slope(voxel, axis);

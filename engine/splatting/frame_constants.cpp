@@ -108,6 +108,8 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                    .size = settings.size,
                    .composite = int(settings.composite)};
 
+  frame.eye = eyeSource(camera, volume.indexToWorld);
+
   const double largestPoint = double(device.limits().pointSizeRange[1]);
   const double reach = largestHalfExtent(toPixel, rays, volume.layout.dimensions);
   const double margin = std::ceil(largestPoint / 2.0);

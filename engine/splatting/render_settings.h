@@ -27,6 +27,10 @@ struct FrameSettings {
   /// centre's, as in the paper.
   bool gradient = true;
   bool depth = false;  ///< also make Image::depth
+
+  bool readsTable() const {
+    return composite != Composite::Sorted && attenuation != AttenuationLookup::Exact;
+  }
 };
 
 }  // namespace freevoxels

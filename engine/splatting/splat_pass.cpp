@@ -107,6 +107,17 @@ void SplatPass::beginRendering(Commands& commands, const SplatTargets& targets, 
   vkCmdSetScissor(commands.handle(), 0, 1, &scissor);
 }
 
+void SplatPass::recordFrame(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame) {
+  shader::SetupFrame setup = frame.setup;
+  if (setup.lookup == shader::kLookupExact) {
+    if (!rays_) rays_.emplace(device_);
+    rays_->record(commands, volume, frame.eye);
+    std::ranges::copy(rays_->fans(), setup.fans);
+  }
+  commands.beginPass("splat set-up");
+  commands.update(frame_, setup);
+}
+
 void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,
                        const SplatTargets& targets) {
   const std::uint64_t count =
@@ -115,7 +126,7 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
     splats_ = Buffer(device_, count * sizeof(shader::Splat), MemoryUse::Device, "splats");
   const std::array<Binding, 8> setup{&frame_,
                                      &inputs.volume.transferPoints,
-                                     &inputs.table.planeAddresses,
+                                     inputs.table ? &inputs.table->planeAddresses : &frame_,  // any buffer
                                      inputs.order ? inputs.order : &inputs.visible.indices,
                                      &inputs.volume.scalars,
                                      &inputs.volume.extinction,
@@ -127,8 +138,7 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
     commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kOutput,
                         kOutput);
 
-  commands.beginPass("splat set-up");
-  commands.update(frame_, frame.setup);
+  recordFrame(commands, inputs.volume, frame);
   for (std::uint32_t chunk = 0; chunk < inputs.visible.chunkCount; ++chunk) {
     const VkDeviceSize arguments = chunk * sizeof(shader::ChunkArguments);
     commands.beginPass("splat set-up");

@@ -2,9 +2,11 @@
 // Visible voxels to the sums of a frame: set-up and blended draw. Subr et al. 2007, Section 3.3 and 4.1.
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "engine/attenuation/attenuation_table.h"
+#include "engine/attenuation/ray_sweep.h"
 #include "engine/splatting/camera.h"
 #include "engine/splatting/render_settings.h"
 #include "engine/splatting/visible_voxels.h"
@@ -29,6 +31,7 @@ struct FrameConstants {
   shader::SetupFrame setup;
   shader::SplatPush splat;
   shader::ResolvePush resolve;
+  RaySource eye;
   bool quads = false;  ///< some splat may be larger than the device's largest point
   float viewportMargin =
       0.0f;  ///< pixels around the image, so that points centred outside it are not clipped
@@ -38,15 +41,16 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                                   const TableSettings& table, const Camera& camera,
                                   const FrameSettings& settings);
 
-/// COMPUTE splat_setup.comp and GRAPHICS splat.vert + splat.frag, chunk by chunk. Leaves the targets in
-/// layout GENERAL, visible to compute.
+/// COMPUTE ray_sweep.comp where transmittances are exact, then COMPUTE splat_setup.comp and GRAPHICS
+/// splat.vert
+/// + splat.frag, chunk by chunk. Leaves the targets in layout GENERAL, visible to compute.
 class SplatPass {
  public:
   SplatPass(const Device& device, bool withDistance, bool sorted = false);
 
   struct Inputs {
     const DeviceVolume& volume;
-    const AttenuationTable& table;
+    const AttenuationTable* table;  ///< null where FrameSettings::readsTable says no
     const VisibleVoxels& visible;
     const Buffer* order = nullptr;  ///< the visible voxels as they are to be drawn; null: as they are listed
   };
@@ -58,12 +62,14 @@ class SplatPass {
   }
 
  private:
+  void recordFrame(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame);
   void beginRendering(Commands& commands, const SplatTargets& targets, const FrameConstants& frame,
                       VkAttachmentLoadOp load) const;
 
   const Device& device_;
   bool withDistance_, sorted_;
   Pipeline setup_, points_, quads_;
+  std::optional<RaySweep> rays_;
   Buffer frame_;   ///< shader::SetupFrame
   Buffer splats_;  ///< shader::Splat of one chunk
 };

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/attenuation/ray_sweep.h"
 #include "engine/core/error.h"
 #include "engine/splatting/sums_readback.h"
 
@@ -55,17 +54,12 @@ std::vector<SplatSums> drawVoxels(const Device& device, const SteppedVolume& ste
   if (!voxels.empty()) upload(device, steps.visible.indices, std::as_bytes(voxels));
   upload(device, steps.visible.chunks, std::as_bytes(std::span(chunks)));
 
-  FrameConstants frame =
+  const FrameConstants frame =
       makeFrameConstants(device, steps.volume, steps.table.settings, camera, settings);
   const SplatTargets targets = makeTargets(device, settings);
   SplatPass splats(device, settings.depth);
-  RaySweep rays(device);
   Commands commands(device);
-  if (settings.attenuation == AttenuationLookup::Exact) {
-    rays.record(commands, steps.volume, eyeSource(camera, steps.volume.indexToWorld));
-    std::ranges::copy(rays.fans(), frame.setup.fans);
-  }
-  splats.record(commands, {steps.volume, steps.table, steps.visible}, frame, targets);
+  splats.record(commands, {steps.volume, &steps.table, steps.visible}, frame, targets);
   const SumsReadback sums(device, commands, targets);
   commands.submitAndWait();
   return sums.read(frame);
