@@ -83,6 +83,7 @@ PixelMean Sampler::sample(std::size_t pixel, int samples) const {
       ray.origin = rays_.origin + at.x * rays_.originX + at.y * rays_.originY;
       ray.direction = rays_.direction + at.x * rays_.directionX + at.y * rays_.directionY;
       ray.worldLength = glm::length(indexToWorld_ * ray.direction);
+      ray.distance = settings_.depth;
       const RaySum sum = marchRay(field_, ray, settings_.step);
       mean.color += glm::dvec4(sum.color, sum.opacity);
       mean.distance += sum.distance;

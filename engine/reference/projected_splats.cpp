@@ -70,6 +70,9 @@ SplatProjector::SplatProjector(const Volume& volume, const Camera& camera, glm::
     : dimensions_(volume.dimensions),
       imageSize_(imageSize),
       rays_(pixelRays(camera, imageSize, volume.indexToWorld)),
+      toPixel_(glm::inverse(rays_.orthographic
+                                ? glm::dmat3(rays_.originX, rays_.originY, rays_.direction)
+                                : glm::dmat3(rays_.directionX, rays_.directionY, rays_.direction))),
       indexToWorld_(volume.indexToWorld) {}
 
 glm::dvec3 SplatProjector::rayDirection(glm::dvec2 pixel) const {
@@ -79,12 +82,8 @@ glm::dvec3 SplatProjector::rayDirection(glm::dvec2 pixel) const {
 std::optional<ProjectedSplat> SplatProjector::project(std::uint32_t index) const {
   const glm::uvec3 n(dimensions_);
   const glm::dvec3 voxel(index % n.x, index / n.x % n.y, index / n.x / n.y);
-  const glm::dmat3 basis = rays_.orthographic
-                               ? glm::dmat3(rays_.originX, rays_.originY, rays_.direction)
-                               : glm::dmat3(rays_.directionX, rays_.directionY, rays_.direction);
-  const glm::dmat3 inverse = glm::inverse(basis);
   const glm::dvec3 q = voxel - rays_.origin;
-  const glm::dvec3 k = inverse * q;
+  const glm::dvec3 k = toPixel_ * q;
   ProjectedSplat splat;
   splat.distance = k.z;
   splat.toEye = toEye(voxel);
@@ -97,7 +96,7 @@ std::optional<ProjectedSplat> SplatProjector::project(std::uint32_t index) const
     u = glm::cross(rays_.originX, rays_.direction);
     v = glm::cross(rays_.originY, rays_.direction);
   } else {
-    const glm::dvec3 rowZ(inverse[0][2], inverse[1][2], inverse[2][2]);
+    const glm::dvec3 rowZ(toPixel_[0][2], toPixel_[1][2], toPixel_[2][2]);
     if (!(k.z * k.z - kR2 * glm::dot(rowZ, rowZ) > 0.0)) return std::nullopt;
     splat.centre = {k.x / k.z, k.y / k.z};
     u = glm::cross(q, rays_.directionX);
@@ -139,7 +138,8 @@ double SplatProjector::footprint(const ProjectedSplat& splat, glm::dvec2 pixel) 
   const double inside = 1.0 - glm::dot(d, splat.shape * d) / direction2;
   if (!(inside > 0.0)) return 0.0;
   const double worldPerIndex = glm::length(indexToWorld_ * direction) / std::sqrt(direction2);
-  return kFootprintPeak * splat.amplitude * std::pow(inside, 4.0) * worldPerIndex;
+  const double squared = inside * inside;
+  return kFootprintPeak * splat.amplitude * squared * squared * worldPerIndex;
 }
 
 void SplatProjector::forEachPixel(const ProjectedSplat& splat,

@@ -50,6 +50,8 @@ class SplatProjector {
   glm::ivec3 dimensions_;
   glm::ivec2 imageSize_;
   PixelRays rays_;
+  glm::dmat3 toPixel_;  ///< from the eye, index space, to (x, y, 1) times the distance; orthographic (x, y,
+                        ///< distance)
   glm::dmat3 indexToWorld_;
 };
 

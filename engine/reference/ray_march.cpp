@@ -66,6 +66,17 @@ struct Cubic {
   }
 };
 
+/// Whether any of the cell's corners has extinction. `corner` is the cell's first.
+bool isFilled(const glm::vec4* corner) {
+  constexpr int n = ReferenceField::kBrickCorners;
+  float sum = 0.0f;
+  for (int edge = 0; edge < 4; ++edge) {
+    const glm::vec4* const start = corner + n * ((edge & 1) + n * (edge >> 1));
+    sum += start[0].a + start[1].a;
+  }
+  return sum > 0.0f;
+}
+
 /// The field's extinction (a) and extinction times colour (rgb) from a to b, local coordinates of a cell in
 /// 0..1. `corner` is the cell's first.
 Cubic cubicAlong(const glm::vec4* corner, glm::dvec3 a, glm::dvec3 b) {
@@ -116,6 +127,7 @@ class March {
  private:
   bool crossBrick(glm::ivec3 position, double enter, double leave);
   bool crossCell(const glm::vec4* corner, glm::ivec3 cell, double enter, double leave);
+  void addEvenly(double thickness);
   void addInterval(const Cubic& cubic, const Depth& depth, double begin, double end, double enter,
                    double length);
 
@@ -162,6 +174,7 @@ bool March::crossBrick(glm::ivec3 position, double enter, double leave) {
 }
 
 bool March::crossCell(const glm::vec4* corner, glm::ivec3 cell, double enter, double leave) {
+  if (!isFilled(corner)) return true;
   const auto local = [&](double t) {
     return glm::clamp(ray_.origin + t * ray_.direction - glm::dvec3(cell), 0.0, 1.0);
   };
@@ -170,11 +183,23 @@ bool March::crossCell(const glm::vec4* corner, glm::ivec3 cell, double enter, do
   const Depth depth(cubic, length);
   const double total = depth.at(1.0);
   if (!(total > 0.0)) return true;
+  if (field_.evenColor() && !ray_.distance) {
+    addEvenly(total);
+    return transmittance_ >= kNegligibleTransmittance;
+  }
   const double wanted = std::max(total / kLongestDepth, (leave - enter) * intervals_);
   const int count = int(std::ceil(std::min(wanted, kMostIntervals)));
   for (int i = 0; i < count && transmittance_ >= kNegligibleTransmittance; ++i)
     addInterval(cubic, depth, double(i) / count, double(i + 1) / count, enter, leave - enter);
   return transmittance_ >= kNegligibleTransmittance;
+}
+
+/// One colour everywhere needs no quadrature.
+void March::addEvenly(double thickness) {
+  const double energy = transmittance_ * -std::expm1(-thickness);
+  sum_.color += energy * *field_.evenColor();
+  sum_.opacity += energy;
+  transmittance_ *= std::exp(-thickness);
 }
 
 /// The interval's light is its opacity times the mean colour in it, weighted by e.

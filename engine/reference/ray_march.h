@@ -11,6 +11,7 @@ namespace freevoxels {
 struct MarchedRay {
   glm::dvec3 origin, direction;
   double worldLength = 1.0;  ///< of `direction` in the world
+  bool distance = true;      ///< whether RaySum::distance is wanted
 };
 
 /// With e = T sigma ds, T the transmittance from the ray's start:

@@ -1,5 +1,7 @@
 #include "engine/reference/reference_depth.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,6 +25,8 @@ class TableDepth : public ReferenceDepth {
              const TableSettings& settings, AttenuationLookup lookup, ToEye toEye)
       : volume_(volume), table_(table), settings_(settings), lookup_(lookup), toEye_(std::move(toEye)) {
     FV_CHECK_EQ(table.size(), std::size_t(directionCount(settings.directions)));
+    for (int i = 0; i < int(table.size()); ++i)
+      layerLengths_.push_back(stepLength(volume.indexToWorld, directionAt(settings.directions, i), true));
   }
 
   double at(glm::ivec3 voxel) const override;
@@ -39,6 +43,7 @@ class TableDepth : public ReferenceDepth {
   const TableSettings settings_;
   const AttenuationLookup lookup_;
   const ToEye toEye_;
+  std::vector<double> layerLengths_;  ///< by direction, world length
 };
 
 double TableDepth::at(glm::ivec3 voxel) const {
@@ -50,7 +55,7 @@ double TableDepth::at(glm::ivec3 voxel) const {
   const auto stored = [&](int direction) {
     const double depth = decodeOpticalDepth(settings_.code, table_[std::size_t(direction)][index]);
     if (!settings_.pathLengthCorrection) return depth;
-    return depth * layer / stepLength(volume_.indexToWorld, directionAt(set, direction), true);
+    return depth * layer / layerLengths_[std::size_t(direction)];
   };
   if (lookup_ == AttenuationLookup::Nearest) return stored(nearestDirection(set, toEye));
   const DirectionBlend blend = bilinearDirections(set, toEye);
@@ -104,8 +109,9 @@ RayDepth::RayDepth(const Volume& volume, std::span<const double> extinction, con
   for (std::size_t f = 0; f < fans_.size(); ++f) {
     depths_[f].resize(fans_[f].rays() * std::size_t(fans_[f].planeCount));
     if (depths_[f].empty()) continue;
-    for (int j = 0; j < fans_[f].rayCount.y; ++j)
+    tbb::parallel_for(0, fans_[f].rayCount.y, [&](int j) {
       for (int i = 0; i < fans_[f].rayCount.x; ++i) march(f, i, j);
+    });
   }
 }
 

@@ -41,6 +41,7 @@ ReferenceField::ReferenceField(const Volume& volume, const Classification& class
     : dimensions_(volume.dimensions),
       brickCount_((volume.dimensions + kBrickCells) / kBrickCells),  // of dimensions + 1 cells
       bricks_(std::size_t(brickCount_.x) * std::size_t(brickCount_.y) * std::size_t(brickCount_.z)) {
+  if (!classification.transferFunction) evenColor_ = classification.albedo;
   const std::size_t layer = std::size_t(brickCount_.x) * std::size_t(brickCount_.y);
   for (int z = 0; z < brickCount_.z; ++z) {
     tbb::parallel_for(std::size_t(0), layer, [&](std::size_t i) {

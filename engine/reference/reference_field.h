@@ -6,6 +6,7 @@
 #include <array>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/core/stages.h"
@@ -30,6 +31,8 @@ class ReferenceField {
 
   glm::ivec3 dimensions() const { return dimensions_; }
   glm::ivec3 brickCount() const { return brickCount_; }
+  /// Where all voxels have one colour.
+  const std::optional<glm::dvec3>& evenColor() const { return evenColor_; }
   /// Null where the field is 0 throughout. The brick's cells start at 8 * position - 1.
   const Brick* brick(glm::ivec3 position) const {
     return bricks_[std::size_t(position.x) +
@@ -40,6 +43,7 @@ class ReferenceField {
 
  private:
   glm::ivec3 dimensions_, brickCount_;
+  std::optional<glm::dvec3> evenColor_;
   std::vector<std::unique_ptr<Brick>> bricks_;
 };
 

@@ -3,6 +3,9 @@
 
 #include "engine/reference/reference_splats.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,6 +20,9 @@
 namespace freevoxels {
 
 namespace {
+
+/// The list is added up in about as many, each with a picture of its own, whatever the number of cores.
+constexpr std::size_t kParts = 16;
 
 /// Optical depth to the eye at a voxel's centre, and its change per pixel.
 struct DepthToEye {
@@ -37,11 +43,9 @@ class SplatSummer {
         depth_(settings.attenuation == AttenuationLookup::Exact
                    ? rayDepth(volume, extinction, eyeSource(camera, volume.indexToWorld))
                    : tableDepth(volume, table, tableSettings, settings.attenuation,
-                                [this](glm::dvec3 position) { return projector_.toEye(position); })),
-        sums_(std::size_t(settings.size.x) * std::size_t(settings.size.y)) {}
+                                [this](glm::dvec3 position) { return projector_.toEye(position); })) {}
 
-  void add(std::uint32_t voxel);
-  std::vector<SplatSums> take() { return std::move(sums_); }
+  void add(std::uint32_t voxel, std::vector<SplatSums>& picture) const;
 
  private:
   DepthToEye depthToEye(std::uint32_t voxel, const ProjectedSplat& splat, double extinction) const;
@@ -52,7 +56,6 @@ class SplatSummer {
   const FrameSettings& settings_;
   const SplatProjector projector_;
   const std::unique_ptr<ReferenceDepth> depth_;
-  std::vector<SplatSums> sums_;
 };
 
 DepthToEye SplatSummer::depthToEye(std::uint32_t voxel, const ProjectedSplat& splat,
@@ -69,7 +72,7 @@ DepthToEye SplatSummer::depthToEye(std::uint32_t voxel, const ProjectedSplat& sp
   return depth;
 }
 
-void SplatSummer::add(std::uint32_t voxel) {
+void SplatSummer::add(std::uint32_t voxel, std::vector<SplatSums>& picture) const {
   const std::optional<ProjectedSplat> splat = projector_.project(voxel);
   if (!splat) return;
   const double sigma = extinction_[voxel];
@@ -77,7 +80,7 @@ void SplatSummer::add(std::uint32_t voxel) {
   const DepthToEye depth = depthToEye(voxel, *splat, sigma);
   const double opacity = projector_.opacity(*splat, sigma);
   projector_.forEachPixel(*splat, [&](std::size_t pixel, glm::dvec2 offset, double omega) {
-    SplatSums& sums = sums_[pixel];
+    SplatSums& sums = picture[pixel];
     const double inFront = std::max(depth.centre + glm::dot(depth.perPixel, offset), 0.0);
     const double energy = opacity * std::exp(-inFront) * omega;
     sums.color += energy * albedo;
@@ -105,12 +108,23 @@ std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classifica
                                           const FrameSettings& settings,
                                           std::span<const std::uint32_t> voxels) {
   FV_CHECK_EQ(extinction.size(), volume.voxelCount());
-  SplatSummer summer(volume, classification, extinction, table, tableSettings, camera, settings);
-  for (const std::uint32_t voxel : voxels) {
-    FV_CHECK_LT(voxel, volume.voxelCount());
-    summer.add(voxel);
-  }
-  return summer.take();
+  const SplatSummer summer(volume, classification, extinction, table, tableSettings, camera, settings);
+  using Picture = std::vector<SplatSums>;
+  using Range = tbb::blocked_range<std::size_t>;
+  const auto addRange = [&](const Range& range, Picture picture) {
+    for (const std::uint32_t voxel : voxels.subspan(range.begin(), range.size())) {
+      FV_CHECK_LT(voxel, volume.voxelCount());
+      summer.add(voxel, picture);
+    }
+    return picture;
+  };
+  const auto join = [](Picture left, const Picture& right) {
+    for (std::size_t i = 0; i < left.size(); ++i) left[i] += right[i];
+    return left;
+  };
+  const Picture empty(std::size_t(settings.size.x) * std::size_t(settings.size.y));
+  const Range all(0, voxels.size(), std::max<std::size_t>(voxels.size() / kParts, 1));
+  return tbb::parallel_deterministic_reduce(all, empty, addRange, join);
 }
 
 std::vector<std::uint32_t> referenceVisibleVoxels(const std::vector<double>& extinction) {
