@@ -20,25 +20,27 @@ namespace freevoxels::validate {
 namespace {
 
 constexpr int kQuickFileEdge = 40, kWholeFileEdge = 128;
-constexpr int kQuickProcedural = 32;  ///< voxels along an edge
+constexpr int kQuickProcedural = 32, kMedium = 64, kLarge = 128;  ///< voxels along an edge
 constexpr int kQuickPicture = 80, kWholePicture = 96;
 constexpr int kQuickCube = 40, kWholeCube = 64;
 constexpr int kQuickQuality = 48;  ///< voxels along an edge where pictures meet the oracle
-constexpr int kQuickQualityPicture = 96, kWholeQualityPicture = 128, kLargeQualityPicture = 160;
+constexpr int kQuickQualityPicture = 96, kWholeQualityPicture = 160, kLargeQualityPicture = 256;
 /// Where a voxel is as large as the parts of a volume, no method has to reach anything.
-constexpr int kLeastResolutionWithGoals = 64;
-constexpr int kTurntableResolution = 64, kTurntableFrames = 72, kTurntablePicture = 64;
+constexpr int kLeastResolutionWithGoals = kMedium;
+constexpr int kTurntableResolution = kMedium, kTurntableFrames = 72, kTurntablePicture = 64;
 
+/// Of the large ones a full one, which is drawn in several chunks, and a sparse one say what size can change.
 struct ProceduralScene {
   const char* name;
   SceneColor color;
+  bool alsoLarge = false;
 };
-constexpr std::array<ProceduralScene, 6> kProcedural{{{"cube", SceneColor::Density},
+constexpr std::array<ProceduralScene, 6> kProcedural{{{"cube", SceneColor::Density, true},
                                                       {"cloud", SceneColor::TransferFunction},
                                                       {"marschner-lobb", SceneColor::Density},
                                                       {"shells", SceneColor::TransferFunction},
                                                       {"rods", SceneColor::Density},
-                                                      {"head", SceneColor::TransferFunction}}};
+                                                      {"head", SceneColor::TransferFunction, true}}};
 
 /// `makeScene` is called when the job runs: a scene is in memory no longer than it is needed.
 template <typename MakeScene>
@@ -52,7 +54,7 @@ void addScene(std::vector<SectionJob>& jobs, const Device& device, const std::st
 
 std::vector<int> resolutions(const Extent& extent, int quick) {
   if (extent.resolution) return {*extent.resolution};
-  return extent.quick ? std::vector{quick} : std::vector{64, 128};
+  return extent.quick ? std::vector{quick} : std::vector{kMedium, kLarge};
 }
 
 QualityScene openQualityScene(const Device& device, const QualitySubject& subject, int resolution) {
@@ -61,10 +63,9 @@ QualityScene openQualityScene(const Device& device, const QualitySubject& subjec
       openProcedural(subject.procedural, resolution, maximumVoxels(device, DirectionSet::Directions98)));
 }
 
-/// Pictures of thin parts are smaller: the oracle takes long for them.
-QualityRun qualityRun(const Extent& extent, const QualitySubject& subject, int resolution) {
-  const bool large = resolution >= 128 && !subject.thin;
-  const int whole = large ? kLargeQualityPicture : kWholeQualityPicture;
+/// Pictures have more than a pixel a voxel: with less, no method shows what it can.
+QualityRun qualityRun(const Extent& extent, int resolution) {
+  const int whole = resolution >= kLarge ? kLargeQualityPicture : kWholeQualityPicture;
   return {.views = extent.quick ? quickQualityViews() : qualityViews(),
           .pictureEdge = extent.quick ? kQuickQualityPicture : whole,
           .hasGoals = resolution >= kLeastResolutionWithGoals};
@@ -79,7 +80,7 @@ void addQuality(std::vector<SectionJob>& jobs, const Device& device, const Exten
                       [=, &device, &subject] {
                         auto [section, figures] = pictureQuality(
                             deviceStages(device), openQualityScene(device, subject, resolution),
-                            qualityMethods(), qualityRun(extent, subject, resolution));
+                            qualityMethods(), qualityRun(extent, resolution));
                         found->push_back(std::move(figures));
                         return section;
                       }});
@@ -121,13 +122,15 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
   std::vector<SectionJob> jobs;
   jobs.push_back({"closed forms", [&device, cube] { return closedForms(deviceStages(device), cube); }});
   for (const int resolution : resolutions(extent, kQuickProcedural))
-    for (const ProceduralScene& scene : kProcedural)
+    for (const ProceduralScene& scene : kProcedural) {
+      if (resolution == kLarge && !extent.resolution && !scene.alsoLarge) continue;
       addScene(jobs, device, fmt::format("{} at {}^3", scene.name, resolution), picture,
                [resolution, &scene, &device] {
                  return makeValidationScene(openProcedural(scene.name, resolution,
                                                            maximumVoxels(device, DirectionSet::Directions98)),
                                             scene.color, resolution);
                });
+    }
   addPaperFigures(jobs, device);
   addQuality(jobs, device, extent);
   if (!extent.quick && !extent.resolution) addTurntable(jobs, device);

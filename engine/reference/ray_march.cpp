@@ -127,6 +127,7 @@ class March {
  private:
   bool crossBrick(glm::ivec3 position, double enter, double leave);
   bool crossCell(const glm::vec4* corner, glm::ivec3 cell, double enter, double leave);
+  double absorb(double thickness);
   void addEvenly(double thickness);
   void addInterval(const Cubic& cubic, const Depth& depth, double begin, double end, double enter,
                    double length);
@@ -194,12 +195,18 @@ bool March::crossCell(const glm::vec4* corner, glm::ivec3 cell, double enter, do
   return transmittance_ >= kNegligibleTransmittance;
 }
 
+/// Returns the light that an optical depth takes away: as much as it emits at colour 1.
+double March::absorb(double thickness) {
+  const double energy = transmittance_ * -std::expm1(-thickness);
+  sum_.opacity += energy;
+  transmittance_ -= energy;
+  return energy;
+}
+
 /// One colour everywhere needs no quadrature.
 void March::addEvenly(double thickness) {
-  const double energy = transmittance_ * -std::expm1(-thickness);
+  const double energy = absorb(thickness);
   sum_.color += energy * *field_.evenColor();
-  sum_.opacity += energy;
-  transmittance_ *= std::exp(-thickness);
 }
 
 /// The interval's light is its opacity times the mean colour in it, weighted by e.
@@ -213,17 +220,15 @@ void March::addInterval(const Cubic& cubic, const Depth& depth, double begin, do
     const double s = begin + kNodes[i] * (end - begin);
     const double tau = depth.at(s);
     if (i == 0) first = tau;
-    const glm::dvec4 emitted = kWeights[i] * std::exp(first - tau) * cubic.at(s);
+    const double seen = i == 0 ? 1.0 : std::exp(first - tau);
+    const glm::dvec4 emitted = kWeights[i] * seen * cubic.at(s);
     mean += emitted;
     distance += emitted.a * (enter + s * length);
   }
   if (!(mean.a > 0.0)) return;
-  const double thickness = depth.at(end) - before;
-  const double energy = transmittance_ * -std::expm1(-thickness);
+  const double energy = absorb(depth.at(end) - before);
   sum_.color += energy / mean.a * glm::dvec3(mean);
-  sum_.opacity += energy;
   sum_.distance += energy / mean.a * distance;
-  transmittance_ *= std::exp(-thickness);
 }
 
 }  // namespace
