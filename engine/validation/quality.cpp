@@ -16,9 +16,6 @@ namespace freevoxels {
 
 namespace {
 
-/// How much doubling the oracle's rays may still change a pixel: its pictures are then 80 dB from those of a
-/// quarter of this, for a third of the time, and what is measured with them is below 65 dB.
-constexpr double kOracleTolerance = 4e-3;
 constexpr double kTurntableElevation = 10.0;
 constexpr double kLargestJump = 1.0;  ///< dB
 /// Differences below 1/8 can be told apart.
@@ -29,7 +26,7 @@ std::vector<Image> oraclePictures(const QualityScene& scene, const std::vector<C
   std::vector<Image> pictures;
   for (const Camera& camera : cameras)
     pictures.push_back(renderOracle(scene.volume, scene.classification, camera,
-                                    {.size = size, .tolerance = kOracleTolerance})
+                                    {.size = size, .tolerance = kQualityTolerance})
                            .image);
   return pictures;
 }

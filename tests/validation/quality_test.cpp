@@ -153,7 +153,9 @@ struct OracleStages : StageOutputs {
   std::vector<std::uint32_t> visibleVoxels() override { return {}; }
   std::vector<SplatSums> sums(const Camera&, const FrameSettings&) override { return {}; }
   Image picture(const Camera& camera, const FrameSettings& settings) override {
-    Image image = renderOracle(volume, classification, camera, {.size = settings.size}).image;
+    Image image =
+        renderOracle(volume, classification, camera, {.size = settings.size, .tolerance = kQualityTolerance})
+            .image;
     change(image, settings, pictures++);
     return image;
   }
