@@ -9,6 +9,9 @@ namespace freevoxels {
 
 namespace {
 
+/// Of the volume whose voxels are what opacities refer to: one of another resolution shows the same medium.
+constexpr double kUnitResolution = 64.0;
+
 constexpr std::array<QualityView, 12> kViews{{{0, 0},
                                               {90, 0},
                                               {0, 90},
@@ -77,7 +80,9 @@ QualityScene makeQualityScene(const QualitySubject& subject, int resolution, Vol
                      .classification = {},
                      .thin = subject.thin};
   cropToActive(scene.volume);
-  scene.classification.transferFunction = qualityTransferFunction(subject.color, scene.volume);
+  TransferFunction function = qualityTransferFunction(subject.color, scene.volume);
+  function.unitDistance *= resolution / kUnitResolution;
+  scene.classification.transferFunction = std::move(function);
   return scene;
 }
 

@@ -34,7 +34,8 @@ struct QualityScene {
   bool thin = false;
 };
 
-/// `volume`, made of `resolution`³ voxels, is cropped to its active voxels.
+/// `volume`, made of `resolution`³ voxels, is cropped to its active voxels. Its medium is the same at every
+/// resolution: opacities of the transfer function are of a 64th of the edge.
 QualityScene makeQualityScene(const QualitySubject& subject, int resolution, Volume volume);
 
 /// In degrees, as for framingCamera.
