@@ -1,4 +1,4 @@
-// A voxel's footprint on the image. Include after interface.h; `frame` is the SetupFrame.
+// A block's footprint on the image. Include after interface.h; `frame` is the SetupFrame.
 
 struct Footprint {
   vec2 center, halfExtent;
@@ -21,13 +21,13 @@ void widenToPixel(inout Footprint footprint, vec3 shape, float scale) {
   footprint.halfExtent *= sqrt(widened.xz / shape.xz);
 }
 
-// The kernel's sphere of radius R around the index position `offset` (from the volume's middle) seen from the
-// eye: all rays D with |q x D|² <= R² |D|². Returns false behind the eye, and in perspective also where it
-// reaches the eye plane.
-bool project(vec3 offset, out Footprint footprint) {
+// The kernel's sphere of radius R, times the edge of a block, around the index position `offset` (from the
+// volume's middle) seen from the eye: all rays D with |q x D|² <= R² |D|². Returns false behind the eye, and in
+// perspective also where it reaches the eye plane.
+bool project(vec3 offset, float edge, out Footprint footprint) {
   const vec3 q = offset + frame.eyeToMiddle;
   const vec3 pixel = frame.indexToPixel * offset + frame.middleInPixels;
-  const float radius2 = kSplatRadius * kSplatRadius;
+  const float radius2 = (kSplatRadius * edge) * (kSplatRadius * edge);
   const vec3 ray = frame.orthographic != 0 ? frame.ray : q / pixel.z;
   const vec3 u = frame.orthographic != 0 ? cross(frame.pixelX, ray) : cross(q, frame.pixelX);
   const vec3 v = frame.orthographic != 0 ? cross(frame.pixelY, ray) : cross(q, frame.pixelY);

@@ -44,7 +44,7 @@ Result sweeps(const Device& device, DirectionSet directions, int resolution, int
   const Volume volume =
       unitVoxels(glm::ivec3(resolution), [](int x, int y, int z) { return float((x + 2 * y + 3 * z) % 7); });
   const DeviceVolume onDevice = classified(device, volume);
-  const AttenuationTable table = makeTable(device, onDevice.layout, {.directions = directions});
+  const AttenuationTable table = makeTable(device, onDevice.hierarchy, {.directions = directions});
   const AttenuationSweep sweep(device, table.settings);
   const double time = least(runs, [&] {
     Commands commands(device);

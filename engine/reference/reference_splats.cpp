@@ -27,64 +27,81 @@ struct DepthToEye {
 class SplatSummer {
  public:
   SplatSummer(const Volume& volume, const Classification& classification, std::span<const double> extinction,
-              const std::vector<std::vector<std::uint8_t>>& table, const TableSettings& tableSettings,
-              const Camera& camera, const FrameSettings& settings)
+              const std::vector<std::vector<std::uint8_t>>& table, std::span<const LevelData> coarser,
+              const TableSettings& tableSettings, const Camera& camera, const FrameSettings& settings)
       : volume_(volume),
         classification_(classification),
         extinction_(extinction),
+        coarser_(coarser),
         settings_(settings),
         projector_(volume, camera, settings.size),
         depth_(settings.attenuation == AttenuationLookup::Exact
                    ? rayDepth(volume, extinction, eyeSource(camera, volume.indexToWorld))
-                   : tableDepth(volume, table, tableSettings, settings.attenuation,
+                   : tableDepth(volume, table, coarser, tableSettings, settings.attenuation,
                                 [this](glm::dvec3 position) { return projector_.toEye(position); })),
         sums_(std::size_t(settings.size.x) * std::size_t(settings.size.y)) {}
 
-  void add(std::uint32_t voxel);
+  void add(const Block& block);
+  Block voxel(std::uint32_t index) const { return projector_.voxel(index); }
   std::vector<SplatSums> take() { return std::move(sums_); }
 
  private:
-  DepthToEye depthToEye(std::uint32_t voxel, const ProjectedSplat& splat, double extinction) const;
+  ClassifiedVoxel materialOf(const Block& block) const;
+  DepthToEye depthToEye(const Block& block, const ProjectedSplat& splat, double extinction, int layers) const;
 
   const Volume& volume_;
   const Classification& classification_;
   const std::span<const double> extinction_;
+  const std::span<const LevelData> coarser_;
   const FrameSettings& settings_;
   const SplatProjector projector_;
   const std::unique_ptr<ReferenceDepth> depth_;
   std::vector<SplatSums> sums_;
 };
 
-DepthToEye SplatSummer::depthToEye(std::uint32_t voxel, const ProjectedSplat& splat,
-                                   double extinction) const {
-  const glm::uvec3 n(volume_.dimensions);
-  const glm::ivec3 position(voxel % n.x, voxel / n.x % n.y, voxel / n.x / n.y);
-  DepthToEye depth{.centre = depth_->at(position)};
+ClassifiedVoxel SplatSummer::materialOf(const Block& block) const {
+  if (block.level == 0) {
+    const std::size_t voxel = volume_.at(block.cell.x, block.cell.y, block.cell.z);
+    return {extinction_[voxel], classify(classification_, volume_.values[voxel]).color};
+  }
+  const LevelData& level = coarser_[std::size_t(block.level) - 1];
+  const std::size_t index = level.at(block.cell);
+  return {level.extinction[index],
+          level.colors.empty() ? glm::dvec3(classification_.albedo) : level.colors[index]};
+}
+
+DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& splat, double extinction,
+                                   int layers) const {
+  // The mean over a block is the depth of its middle layer: what lies in front of it has none of its own.
+  const double layer = projector_.layerLength(splat);
+  const double before = 0.5 * (layers - 1) * extinction * depth_->countedLength(layer);
+  DepthToEye depth{.centre = std::max(depth_->at(block) - before, 0.0)};
   if (!settings_.gradient) return depth;
-  const glm::dvec3 gradient =
-      depth_->gradient(position, splat.toEye, extinction * projector_.layerLength(splat));
+  const glm::dvec3 gradient = depth_->gradient(block, splat.toEye, extinction * layer);
   // It fades with the widening: a widened footprint stands for a pixel in which the depth changes often.
-  const double fade = std::pow(splat.amplitude, 4.0);
+  const double fade = std::pow(splat.widening, 4.0);
   depth.perPixel = fade * glm::dvec2(glm::dot(gradient, splat.pixelX), glm::dot(gradient, splat.pixelY));
   return depth;
 }
 
-void SplatSummer::add(std::uint32_t voxel) {
-  const std::optional<ProjectedSplat> splat = projector_.project(voxel);
+void SplatSummer::add(const Block& block) {
+  const std::optional<ProjectedSplat> splat = projector_.project(block);
   if (!splat) return;
-  const double sigma = extinction_[voxel];
-  const glm::dvec3 albedo = classify(classification_, volume_.values[voxel]).color;
-  const DepthToEye depth = depthToEye(voxel, *splat, sigma);
-  const double opacity = projector_.opacity(*splat, sigma);
-  projector_.forEachPixel(*splat, [&](std::size_t pixel, glm::dvec2 offset, double omega) {
+  const auto [sigma, albedo] = materialOf(block);
+  const int layers = projector_.box(block).extent[majorAxis(splat->toEye)];
+  const DepthToEye depth = depthToEye(block, *splat, sigma, layers);
+  const double opacity = projector_.opacity(*splat, sigma, layers);
+  const auto addTo = [&, color = albedo, extinction = sigma](std::size_t pixel, glm::dvec2 offset,
+                                                             double omega) {
     SplatSums& sums = sums_[pixel];
     const double inFront = std::max(depth.centre + glm::dot(depth.perPixel, offset), 0.0);
     const double energy = opacity * std::exp(-inFront) * omega;
-    sums.color += energy * albedo;
+    sums.color += energy * color;
     sums.energy += energy;
-    sums.depth += sigma * omega;
+    sums.depth += extinction * omega;
     sums.distance += energy * splat->distance;
-  });
+  };
+  projector_.forEachPixel(*splat, addTo);
 }
 
 }  // namespace
@@ -105,10 +122,25 @@ std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classifica
                                           const FrameSettings& settings,
                                           std::span<const std::uint32_t> voxels) {
   FV_CHECK_EQ(extinction.size(), volume.voxelCount());
-  SplatSummer summer(volume, classification, extinction, table, tableSettings, camera, settings);
+  SplatSummer summer(volume, classification, extinction, table, {}, tableSettings, camera, settings);
   for (const std::uint32_t voxel : voxels) {
     FV_CHECK_LT(voxel, volume.voxelCount());
-    summer.add(voxel);
+    summer.add(summer.voxel(voxel));
+  }
+  return summer.take();
+}
+
+std::vector<SplatSums> referenceBlockSums(const Volume& volume, const Classification& classification,
+                                          std::span<const double> extinction,
+                                          const std::vector<std::vector<std::uint8_t>>& table,
+                                          std::span<const LevelData> coarser,
+                                          const TableSettings& tableSettings, const Camera& camera,
+                                          const FrameSettings& settings, std::span<const Block> blocks) {
+  FV_CHECK_EQ(extinction.size(), volume.voxelCount());
+  SplatSummer summer(volume, classification, extinction, table, coarser, tableSettings, camera, settings);
+  for (const Block& block : blocks) {
+    FV_CHECK_LE(std::size_t(block.level), coarser.size());
+    summer.add(block);
   }
   return summer.take();
 }

@@ -64,7 +64,7 @@ Allocation allocate(const Device& device, const VkMemoryRequirements& needs, Mem
 /// Waits.
 void upload(const Device& device, const Buffer& buffer, std::span<const std::byte> data);
 
-/// Copies the first data.size() bytes of `buffer` to the host. Waits.
-void download(const Device& device, const Buffer& buffer, std::span<std::byte> data);
+/// Copies data.size() bytes of `buffer`, from byte `first` on, to the host. Waits.
+void download(const Device& device, const Buffer& buffer, std::span<std::byte> data, VkDeviceSize first = 0);
 
 }  // namespace freevoxels
