@@ -1,4 +1,4 @@
-// A drawn block. Include after blocks.glsl; `frame` is the SetupFrame.
+// A drawn block. Include after blocks.glsl; `frame` is the SetupFrame, `extinction` that of all blocks.
 
 struct Block {
   int level;
@@ -22,4 +22,23 @@ Block blockAt(uint address) {
   int level = 0;
   while (level + 1 < frame.levelCount && address >= frame.levels[level + 1].first) ++level;
   return blockOf(level, cellAt(frame.levels[level], address));
+}
+
+// Where a block's extinction is, as its children have it: one that is half empty is drawn where the other half is.
+vec3 centerOfMass(Block block) {
+  if (block.level == 0) return block.center;
+  const BlockLevel children = frame.levels[block.level - 1];
+  const float sigma = extinction[blockAddress(frame.levels[block.level], block.cell)];
+  vec3 sum = vec3(0.0);
+  float mass = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const ivec3 cell = 2 * block.cell + ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+    if (any(greaterThanEqual(cell, children.dimensions))) continue;
+    const Block child = blockOf(block.level - 1, cell);
+    const vec3 part = vec3(child.extent) / vec3(block.extent);
+    const float share = extinction[blockAddress(children, cell)] / sigma * part.x * part.y * part.z;
+    sum += share * (child.center - block.center);
+    mass += share;
+  }
+  return block.center + sum / mass;
 }

@@ -4,6 +4,7 @@ struct Footprint {
   vec2 center, halfExtent;
   vec3 conic;
   float amplitude;  // 1, less where the footprint is widened
+  float edge2;      // square of the edge in pixels where it is shortest
   float distance;
 };
 
@@ -12,6 +13,7 @@ struct Footprint {
 void widenToPixel(inout Footprint footprint, vec3 shape, float scale) {
   const float before = shape.x * shape.z - shape.y * shape.y;
   const float largest = 0.5 * (shape.x + shape.z) + length(vec2(0.5 * (shape.x - shape.z), shape.y));
+  footprint.edge2 = before / largest / (kSplatRadius * kSplatRadius);
   const float missing = kSplatRadius * kSplatRadius - before / largest;
   if (missing <= 0.0) return;
   const vec3 widened = shape + vec3(missing, 0.0, missing);

@@ -45,7 +45,7 @@ void main() {
 
   Splat splat;
   Footprint footprint;
-  if (!project(block.center - frame.middle, float(block.edge), footprint)) {
+  if (!project(centerOfMass(block) - frame.middle, float(block.edge), footprint)) {
     splat.halfExtent = vec2(0.0);
     splats[local] = splat;
     return;
@@ -65,8 +65,9 @@ void main() {
   splat.distance = footprint.distance;
   const DepthToEye toEye = depthToEye(block, sigma);
   // Per pixel. In a pixel that a footprint had to be widened to, the depth changes from voxel to voxel, and the
-  // voxel's own gradient soon says nothing: it fades with the widening.
-  const float fade = footprint.amplitude * footprint.amplitude * footprint.amplitude * footprint.amplitude;
+  // voxel's own gradient soon says nothing: it fades with the widening; a block's with that of its children.
+  const float kept = footprint.amplitude * (block.level == 0 ? 1.0 : min(0.25 * footprint.edge2, 1.0));
+  const float fade = (kept * kept) * (kept * kept);
   const float perPixel = fade * (frame.orthographic != 0 ? 1.0 : footprint.distance);
   splat.depthToEye =
       vec3(toEye.depth, perPixel * vec2(dot(toEye.gradient, frame.pixelX), dot(toEye.gradient, frame.pixelY)));

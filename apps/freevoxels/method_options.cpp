@@ -40,18 +40,19 @@ void MethodOptions::add(CLI::App& app) {
          "--gradient,!--no-gradient", [this](std::int64_t count) { gradient = count > 0; },
          "Whether transmittance varies across a splat [yes]")
       ->group(group);
-  addNumber(app, "--lod", "PIXELS", lod,
-            "Size on the image up to which blocks of voxels are drawn as one splat; 0: always voxels, as sorted "
-            "is whatever this is [1]",
-            {.minimum = 0.0})
+  addNumber(
+      app, "--lod", "PIXELS", lod,
+      "Size on the image up to which blocks of voxels are drawn as one splat; 0: always voxels, as sorted "
+      "is whatever this is [1]",
+      {.minimum = 0.0})
       ->group(group);
   addWord(app, "--hierarchy-filter", kHierarchyFilters, hierarchyFilter,
           "Which mean of its voxels' transmittances a block has [geometric]")
       ->group(group);
-  app.add_flag(
-         "--paper", paper,
-         "As the paper: additive, nearest, 26 directions, linear8, no path-length correction, no gradient, lod "
-         "0; any of the seven that is given wins")
+  app.add_flag("--paper", paper,
+               "As the paper: additive, nearest, 26 directions, linear8, no path-length correction, no "
+               "gradient, lod "
+               "0; any of the seven that is given wins")
       ->group(group);
 }
 

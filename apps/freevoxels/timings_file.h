@@ -29,7 +29,8 @@ void logOptions(const OptionList& options);
 void logStages(const RunReport& report);
 
 /// {"version", "device": {"name", "type", "uuid", "driver"}, "options": {NAME: VALUE},
-///  "stages": [{"name", "milliseconds", "on_device"}], "visible_voxels", "drawn_blocks", "total_milliseconds"}.
+///  "stages": [{"name", "milliseconds", "on_device"}], "visible_voxels", "drawn_blocks",
+///  "total_milliseconds"}.
 /// Atomic.
 void writeTimings(const std::filesystem::path& file, const RunReport& report);
 

@@ -82,18 +82,17 @@ Block SplatProjector::voxel(std::uint32_t index) const {
   return {0, glm::ivec3(index % n.x, index / n.x % n.y, index / n.x / n.y)};
 }
 
-std::optional<ProjectedSplat> SplatProjector::project(const Block& block) const {
-  const glm::dvec3 centre = box(block).centre();
+std::optional<ProjectedSplat> SplatProjector::project(const Block& block, glm::dvec3 place) const {
   const double radius2 = kR2 * block.edge() * block.edge();
   const glm::dmat3 basis = rays_.orthographic
                                ? glm::dmat3(rays_.originX, rays_.originY, rays_.direction)
                                : glm::dmat3(rays_.directionX, rays_.directionY, rays_.direction);
   const glm::dmat3 inverse = glm::inverse(basis);
-  const glm::dvec3 q = centre - rays_.origin;
+  const glm::dvec3 q = place - rays_.origin;
   const glm::dvec3 k = inverse * q;
   ProjectedSplat splat;
   splat.distance = k.z;
-  splat.toEye = toEye(centre);
+  splat.toEye = toEye(box(block).centre());
   splat.pixelX = rays_.orthographic ? rays_.originX : k.z * rays_.directionX;
   splat.pixelY = rays_.orthographic ? rays_.originY : k.z * rays_.directionY;
   if (!(k.z > 0.0)) return std::nullopt;
@@ -114,6 +113,7 @@ std::optional<ProjectedSplat> SplatProjector::project(const Block& block) const 
   const glm::dmat2 quadratic(glm::dot(u, u), glm::dot(u, v), glm::dot(u, v), glm::dot(v, v));
   const glm::dmat2 shape = radius2 * central2 * glm::inverse(quadratic);
   const double narrowest = smallerEigenvalue(shape);
+  splat.edge2 = narrowest / kR2;
   if (narrowest < kR2) {
     const glm::dmat2 widened = shape + glm::dmat2(kR2 - narrowest);
     splat.widening = std::sqrt(glm::determinant(shape) / glm::determinant(widened));

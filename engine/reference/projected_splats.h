@@ -16,10 +16,11 @@ namespace freevoxels {
 struct ProjectedSplat {
   glm::dvec2 centre{0.0};               ///< pixels
   double distance = 0.0;                ///< of the centre along the viewing axis, world units
-  glm::dvec3 toEye{0.0};                ///< index space, any length
+  glm::dvec3 toEye{0.0};                ///< from the block's own centre, index space, any length
   glm::dvec3 pixelX{0.0}, pixelY{0.0};  ///< a pixel's width and height there, index space
   glm::dmat2 shape{1.0};   ///< S'⁻¹ · |Dc|²: dᵀ shape d / |D|² is r²/R², or its widened like
   double widening = 1.0;   ///< sqrt(det S / det S')
+  double edge2 = 1.0;      ///< square of the edge in pixels where it is shortest
   double amplitude = 1.0;  ///< the widening times the block's voxels, over those of a face of its cube
 };
 
@@ -27,9 +28,12 @@ class SplatProjector {
  public:
   SplatProjector(const Volume& volume, const Camera& camera, glm::ivec2 imageSize);
 
-  /// Empty where the block is not drawn: the centre of what it has of the volume is behind the eye plane
-  /// (k_z <= 0), or a perspective camera's eye plane cuts its kernel (k_z² <= R² (K Kᵀ)_zz).
-  std::optional<ProjectedSplat> project(const Block& block) const;
+  /// With its kernel around `place` in index space. Empty where it is not drawn: the place is behind the eye
+  /// plane (k_z <= 0), or a perspective camera's eye plane cuts the kernel (k_z² <= R² (K Kᵀ)_zz).
+  std::optional<ProjectedSplat> project(const Block& block, glm::dvec3 place) const;
+  std::optional<ProjectedSplat> project(const Block& block) const {
+    return project(block, box(block).centre());
+  }
   /// Of an index into Volume::values.
   Block voxel(std::uint32_t index) const;
   BlockBox box(const Block& block) const { return boxOf(block, dimensions_); }

@@ -46,7 +46,9 @@ class SplatSummer {
   std::vector<SplatSums> take() { return std::move(sums_); }
 
  private:
+  double extinctionOf(const Block& block) const;
   ClassifiedVoxel materialOf(const Block& block) const;
+  glm::dvec3 centreOfMass(const Block& block) const;
   DepthToEye depthToEye(const Block& block, const ProjectedSplat& splat, double extinction, int layers) const;
 
   const Volume& volume_;
@@ -59,15 +61,37 @@ class SplatSummer {
   std::vector<SplatSums> sums_;
 };
 
+double SplatSummer::extinctionOf(const Block& block) const {
+  if (block.level == 0) return extinction_[volume_.at(block.cell.x, block.cell.y, block.cell.z)];
+  const LevelData& level = coarser_[std::size_t(block.level) - 1];
+  return level.extinction[level.at(block.cell)];
+}
+
 ClassifiedVoxel SplatSummer::materialOf(const Block& block) const {
+  const double extinction = extinctionOf(block);
   if (block.level == 0) {
     const std::size_t voxel = volume_.at(block.cell.x, block.cell.y, block.cell.z);
-    return {extinction_[voxel], classify(classification_, volume_.values[voxel]).color};
+    return {extinction, classify(classification_, volume_.values[voxel]).color};
   }
   const LevelData& level = coarser_[std::size_t(block.level) - 1];
-  const std::size_t index = level.at(block.cell);
-  return {level.extinction[index],
-          level.colors.empty() ? glm::dvec3(classification_.albedo) : level.colors[index]};
+  return {extinction,
+          level.colors.empty() ? glm::dvec3(classification_.albedo) : level.colors[level.at(block.cell)]};
+}
+
+/// Of the extinction, which every child has at its own centre.
+glm::dvec3 SplatSummer::centreOfMass(const Block& block) const {
+  if (block.level == 0) return projector_.box(block).centre();
+  glm::dvec3 sum(0.0);
+  double masses = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Block child{block.level - 1, 2 * block.cell + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)};
+    const BlockBox box = projector_.box(child);
+    if (glm::any(glm::lessThanEqual(box.extent, glm::ivec3(0)))) continue;
+    const double mass = extinctionOf(child) * box.voxels();
+    sum += mass * box.centre();
+    masses += mass;
+  }
+  return sum / masses;
 }
 
 DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& splat, double extinction,
@@ -79,13 +103,15 @@ DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& spl
   if (!settings_.gradient) return depth;
   const glm::dvec3 gradient = depth_->gradient(block, splat.toEye, extinction * layer);
   // It fades with the widening: a widened footprint stands for a pixel in which the depth changes often.
-  const double fade = std::pow(splat.widening, 4.0);
+  // The children of a block that is not widened may have been.
+  const double ofChildren = block.level == 0 ? 1.0 : std::min(splat.edge2 / 4.0, 1.0);
+  const double fade = std::pow(splat.widening * ofChildren, 4.0);
   depth.perPixel = fade * glm::dvec2(glm::dot(gradient, splat.pixelX), glm::dot(gradient, splat.pixelY));
   return depth;
 }
 
 void SplatSummer::add(const Block& block) {
-  const std::optional<ProjectedSplat> splat = projector_.project(block);
+  const std::optional<ProjectedSplat> splat = projector_.project(block, centreOfMass(block));
   if (!splat) return;
   const auto [sigma, albedo] = materialOf(block);
   const int layers = projector_.box(block).extent[majorAxis(splat->toEye)];
