@@ -12,11 +12,14 @@ namespace {
 /// What the device's rounding may move a distance by, and more, relative.
 constexpr double kMargin = 1e-3;
 
-/// Pixels that a voxel's edge is long at distance 1 in the middle of the image; orthographic: at any
-/// distance.
+/// Pixels that a voxel's edge is long at most at distance 1, at the sides of the image, where perspective
+/// stretches it; orthographic: anywhere.
 double pixelsPerEdge(const glm::dmat3& rows, const PixelRays& rays, glm::ivec2 imageSize) {
-  const glm::dvec2 middle = rays.orthographic ? glm::dvec2(0.0) : 0.5 * glm::dvec2(imageSize);
-  return std::max(glm::length(rows[0] - middle.x * rows[2]), glm::length(rows[1] - middle.y * rows[2]));
+  double longest = 0.0;
+  for (int axis = 0; axis < 2; ++axis)
+    for (const double side : {0.0, rays.orthographic ? 0.0 : double(imageSize[axis])})
+      longest = std::max(longest, glm::length(rows[axis] - side * rows[2]));
+  return longest;
 }
 
 /// Least and largest nearestDistance of the blocks of a level.

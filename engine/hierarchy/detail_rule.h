@@ -25,9 +25,9 @@ struct DetailRule {
   bool isSmall(const Block& block) const;
 };
 
-/// Blocks of at most `lod` pixels, or of the next level above which all are larger; 0: voxels. The edge of a
-/// block counts as long as it is at the most, whichever way it points, in the middle of the image at the
-/// block's distance. Whatever `lod` is, no block's kernel reaches the eye plane.
+/// Blocks of at most `lod` pixels; 0: voxels. The edge of a block counts as long as it can be, whichever way
+/// it points and wherever in the image it is, at the block's distance. Whatever `lod` is, no block's kernel
+/// reaches the eye plane.
 DetailRule detailRule(const HierarchyLayout& hierarchy, const PixelRays& rays, glm::ivec2 imageSize,
                       double lod);
 
