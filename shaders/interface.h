@@ -32,6 +32,7 @@ FV_CONSTANT int kRaySweepThreads = 64;
 FV_CONSTANT int kSplatThreads = 64;
 FV_CONSTANT int kResolveTile = 8;
 FV_CONSTANT int kLevelThreads = 64;
+FV_CONSTANT int kLevelBlocksPerThread = 8;  // of the table: their children's codes are one texel a row
 
 // Levels of the octree: more than any volume has whose voxels 32 bits can number.
 FV_CONSTANT int kMaximumLevels = 32;
@@ -154,7 +155,7 @@ struct TableLevelPush {
   BlockLevel child, parent;
   ivec3 voxels;
   int childEdge;
-  uint wordCount;      // of the parent level: four codes each
+  uint threadCount;    // kLevelBlocksPerThread blocks of the parent level each
 };
 
 // cut_select.comp and cut_write.comp, one level of the cut

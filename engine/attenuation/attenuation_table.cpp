@@ -76,7 +76,9 @@ AttenuationTable makeTable(const Device& device, const HierarchyLayout& hierarch
   for (int i = 0; i < directionCount(set); ++i) {
     const glm::dvec3 d = directionAt(set, i);
     const std::string name = fmt::format("attenuation {},{},{}", d.x, d.y, d.z);
-    table.planes.emplace_back(device, hierarchy.paddedBlocks(), MemoryUse::Device, name.c_str());
+    table.planes.emplace_back(device, hierarchy.paddedBlocks(), MemoryUse::Device, name.c_str(),
+                              VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+    table.planeTexels.emplace_back(device, table.planes.back(), VK_FORMAT_R32G32B32A32_UINT);
     addresses[std::size_t(cellNumber(set, directionCell(set, i)))] = table.planes.back().address();
   }
   const std::span<const std::byte> bytes = std::as_bytes(std::span(addresses));

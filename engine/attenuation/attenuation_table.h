@@ -17,6 +17,7 @@ struct AttenuationTable {
   /// One byte a block and direction, of all levels (hierarchy_layout.h), of which AttenuationSweep fills the
   /// voxels'; directions in the order of directions.h.
   std::vector<Buffer> planes;
+  std::vector<QuadView> planeTexels;  ///< sixteen bytes of a plane a texel
   Buffer planeAddresses;  ///< the planes' device addresses by cellNumber, 0 where a cell is no direction
   TableSettings settings;
 };

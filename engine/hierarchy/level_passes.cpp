@@ -16,6 +16,7 @@ constexpr const char* kPassName = "octree levels";
 
 static_assert(shader::kFilterGeometric == int(HierarchyFilter::Geometric));
 static_assert(shader::kFilterArithmetic == int(HierarchyFilter::Arithmetic));
+static_assert(shader::kRowAlignment % 16 == 0);  // a texel of codes is of one row
 
 shader::MediumLevelPush mediumPush(const DeviceVolume& volume, int level) {
   const HierarchyLayout& hierarchy = volume.hierarchy;
@@ -56,26 +57,27 @@ void MediumLevels::record(Commands& commands, const DeviceVolume& volume) const 
 }
 
 TableLevels::TableLevels(const Device& device, const TableSettings& settings)
-    : pipeline_(makeComputePipeline(device, {table_level_spv, "table level"},
-                                    {.bindings = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                                     .pushConstantBytes = sizeof(shader::TableLevelPush)},
-                                    {shader::kLevelThreads, 1, 1},
-                                    {std::uint32_t(settings.code), std::uint32_t(settings.filter)})) {}
+    : pipeline_(makeComputePipeline(
+          device, {table_level_spv, "table level"},
+          {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+           .pushConstantBytes = sizeof(shader::TableLevelPush)},
+          {shader::kLevelThreads, 1, 1}, {std::uint32_t(settings.code), std::uint32_t(settings.filter)})) {}
 
 void TableLevels::record(Commands& commands, const DeviceVolume& volume,
                          const AttenuationTable& table) const {
   const HierarchyLayout& hierarchy = volume.hierarchy;
-  const std::array<Binding, 1> bindings{&table.planeAddresses};
-  const auto cells = std::uint32_t(table.planeAddresses.bytes() / sizeof(VkDeviceAddress));
   commands.beginPass(kPassName);
   for (int level = 1; level <= hierarchy.top(); ++level) {
-    const shader::TableLevelPush push{
-        .child = hierarchy.onDevice(level - 1),
-        .parent = hierarchy.onDevice(level),
-        .voxels = volume.layout.dimensions,
-        .childEdge = Block{.level = level - 1}.edge(),
-        .wordCount = std::uint32_t(hierarchy.levels[std::size_t(level)].paddedVoxels() / 4)};
-    commands.dispatchLinear(pipeline_, bindings, push, push.wordCount, cells);
+    const std::uint64_t blocks = hierarchy.levels[std::size_t(level)].paddedVoxels();
+    const shader::TableLevelPush push{.child = hierarchy.onDevice(level - 1),
+                                      .parent = hierarchy.onDevice(level),
+                                      .voxels = volume.layout.dimensions,
+                                      .childEdge = Block{.level = level - 1}.edge(),
+                                      .threadCount = std::uint32_t(blocks / shader::kLevelBlocksPerThread)};
+    for (std::size_t direction = 0; direction < table.planes.size(); ++direction) {
+      const std::array<Binding, 2> bindings{&table.planeTexels[direction], &table.planes[direction]};
+      commands.dispatchLinear(pipeline_, bindings, push, push.threadCount);
+    }
     commands.barrier(kCompute, kCompute);
   }
 }

@@ -32,7 +32,7 @@ class MediumLevels {
   std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
 };
 
-/// COMPUTE table_level.comp: the attenuation table; a dispatch a level.
+/// COMPUTE table_level.comp: the attenuation table; a dispatch a level and direction.
 class TableLevels {
  public:
   TableLevels(const Device& device, const TableSettings& settings);

@@ -81,10 +81,10 @@ Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const ch
   address_ = vkGetBufferDeviceAddress(device.handle(), &address);
 }
 
-QuadView::QuadView(const Device& device, const Buffer& buffer) {
+QuadView::QuadView(const Device& device, const Buffer& buffer, VkFormat format) {
   const VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
                                     .buffer = buffer.handle(),
-                                    .format = VK_FORMAT_R32G32B32A32_SFLOAT,
+                                    .format = format,
                                     .range = VK_WHOLE_SIZE};
   VkBufferView view = VK_NULL_HANDLE;
   VK_CHECK(vkCreateBufferView(device.handle(), &info, nullptr, &view));

@@ -36,12 +36,12 @@ class Commands {
     dispatchThreads(pipeline, threads);
   }
   /// `count` invocations in a row; the shader computes its index from gl_WorkGroupID.x + y *
-  /// gl_NumWorkGroups.x. The whole `layers` times, gl_WorkGroupID.z says which.
+  /// gl_NumWorkGroups.x.
   template <typename Push>
   void dispatchLinear(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
-                      std::uint64_t count, std::uint32_t layers = 1) {
+                      std::uint64_t count) {
     bind(pipeline, bindings, &push, sizeof(Push));
-    dispatchInvocations(pipeline, count, layers);
+    dispatchInvocations(pipeline, count);
   }
   template <typename Push>
   void dispatchIndirect(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
@@ -76,7 +76,7 @@ class Commands {
 
  private:
   void dispatchThreads(const Pipeline& pipeline, glm::ivec3 threads);
-  void dispatchInvocations(const Pipeline& pipeline, std::uint64_t count, std::uint32_t layers);
+  void dispatchInvocations(const Pipeline& pipeline, std::uint64_t count);
   void writeTimestamp();
   void reportProgress(const Progress& progress) const;
 
