@@ -19,7 +19,7 @@ namespace {
 constexpr double kExtinctionTolerance = 1e-5;  ///< of sums of eight 32-bit floats
 constexpr double kColorTolerance = 1e-3;       ///< of 16-bit halves
 constexpr double kCodeTolerance = 1.0;
-constexpr double kPictureTolerance = 1e-3;
+constexpr double kPictureTolerance = 1e-5;
 constexpr int kCameras = 24;
 
 struct Variant {

@@ -59,9 +59,9 @@ class HierarchyTest : public DeviceTest {
     const auto sums = referenceBlockSums(volume, classification, voxels.extinction, voxels.table,
                                          renderer.downloadLevels(), table, camera, settings, drawn);
     const Image expected = referenceResolve(sums, settings);
-    EXPECT_LE(largestDifference(picture, expected), 1e-3);
+    EXPECT_LE(largestDifference(picture, expected), 1e-4);
     EXPECT_LE(worstRelativeDepth(picture, expected), 1e-3);
-    EXPECT_GE(psnr(picture, expected), 75.0);
+    EXPECT_GE(psnr(picture, expected), 90.0);
   }
 };
 
