@@ -44,7 +44,7 @@ void MethodOptions::add(CLI::App& app) {
       app, "--lod", "PIXELS", lod,
       "Size on the image up to which blocks of voxels are drawn as one splat; 0: always voxels, as sorted "
       "is whatever this is [1]",
-      {.minimum = 0.0})
+      {0.0, 1e6})
       ->group(group);
   addWord(app, "--hierarchy-filter", kHierarchyFilters, hierarchyFilter,
           "Which mean of its voxels' transmittances a block has [geometric]")
