@@ -6,6 +6,8 @@
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/core/error.h"
+#include "engine/hierarchy/cut_pass.h"
+#include "engine/hierarchy/level_passes.h"
 #include "engine/splatting/depth_sort.h"
 #include "engine/splatting/resolve_pass.h"
 #include "engine/splatting/splat_pass.h"
@@ -26,7 +28,7 @@ std::uint64_t largestBinding(const Device& device) {
 }
 
 void checkFits(const Device& device, glm::ivec3 dimensions, DirectionSet directions) {
-  const std::uint64_t binding = GridLayout(dimensions).paddedVoxels() * sizeof(float);
+  const std::uint64_t binding = volumeMemory(dimensions, directions).extinction;
   if (binding > largestBinding(device))
     fail(ExitCode::OutOfMemory,
          "a volume of {}x{}x{} voxels needs a buffer of {} MiB and {} binds at most {} MiB: crop or resample "
@@ -47,17 +49,24 @@ void checkFits(const Device& device, glm::ivec3 dimensions, DirectionSet directi
 }  // namespace
 
 VolumeMemory volumeMemory(glm::ivec3 dimensions, DirectionSet directions) {
-  const std::uint64_t voxels = GridLayout(dimensions).paddedVoxels();
+  const HierarchyLayout hierarchy(dimensions);
+  const std::uint64_t voxels = hierarchy.levels.front().paddedVoxels(), blocks = hierarchy.paddedBlocks();
+  // A list of all blocks and one of those of a frame, with a bit for each that could be one.
+  const std::uint64_t lists = (blocks + voxels) * sizeof(std::uint32_t) + blocks / 8;
   return {.scalars = voxels * sizeof(float),
-          .extinction = voxels * sizeof(float),
-          .table = voxels * std::uint64_t(directionCount(directions)),
-          .visibleVoxels = voxels * sizeof(std::uint32_t)};
+          .extinction = blocks * sizeof(float),
+          .table = blocks * std::uint64_t(directionCount(directions)),
+          .blockColors = hierarchy.paddedCoarseBlocks() * sizeof(glm::uvec2),
+          .lists = lists};
 }
 
 std::uint64_t maximumVoxels(const Device& device, DirectionSet directions) {
-  const glm::ivec3 row(shader::kRowAlignment, 1, 1);
-  const std::uint64_t bytesPerVoxel = volumeMemory(row, directions).total() / shader::kRowAlignment;
-  return std::min(largestBinding(device) / sizeof(float), device.description().memoryBytes / bytesPerVoxel);
+  const glm::ivec3 cube(1024);  // has the fewest blocks a voxel
+  const auto voxels = double(GridLayout(cube).voxels());
+  const VolumeMemory memory = volumeMemory(cube, directions);
+  return std::uint64_t(
+      std::min(double(largestBinding(device)) * (voxels / double(memory.extinction)),
+               double(device.description().memoryBytes) * (voxels / double(memory.total()))));
 }
 
 struct Renderer::State {
@@ -65,7 +74,12 @@ struct Renderer::State {
   TableSettings tableSettings;
   DeviceVolume volume;
   std::optional<AttenuationTable> table;
+  bool tableHasLevels = false;
   VisibleVoxels visible;
+  std::optional<LevelLists> levels;
+  std::optional<CutPass> cutter;
+  DetailRule lastRule;  ///< of the last frame
+  const VisibleVoxels* lastDrawn = nullptr;
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
   std::unique_ptr<DepthSort> sort;
@@ -76,6 +90,9 @@ struct Renderer::State {
     SplatTargets targets;
   };
   const AttenuationTable& sweptTable(const Progress& progress = {});
+  const AttenuationTable& tableWithLevels(const Progress& progress = {});
+  const LevelLists& blockLists();
+  const VisibleVoxels& recordCut(Commands& commands, const DetailRule& rule);
   Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
                      const Progress& progress = {});
 };
@@ -83,13 +100,39 @@ struct Renderer::State {
 /// Made when a frame reads it first; its time is that frame's.
 const AttenuationTable& Renderer::State::sweptTable(const Progress& progress) {
   if (table) return *table;
-  AttenuationTable made = makeTable(device, volume.layout, tableSettings);
+  AttenuationTable made = makeTable(device, volume.hierarchy, tableSettings);
   const AttenuationSweep sweep(device, tableSettings);
   Commands commands(device);
   sweep.record(commands, volume, made);
   commands.submitAndWait(progress);
   std::ranges::copy(commands.times(), std::back_inserter(frameTimes));
   return table.emplace(std::move(made));
+}
+
+/// Its levels are made when a frame first may draw a block.
+const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progress) {
+  const AttenuationTable& swept = sweptTable(progress);
+  if (tableHasLevels) return swept;
+  const TableLevels pass(device, tableSettings);
+  Commands commands(device);
+  pass.record(commands, volume, swept);
+  commands.submitAndWait(progress);
+  std::ranges::copy(commands.times(), std::back_inserter(frameTimes));
+  tableHasLevels = true;
+  return swept;
+}
+
+const LevelLists& Renderer::State::blockLists() {
+  if (!levels) levels = makeMediumLevels(device, volume, visible, frameTimes);
+  return *levels;
+}
+
+/// The list of what a frame draws.
+const VisibleVoxels& Renderer::State::recordCut(Commands& commands, const DetailRule& rule) {
+  if (rule.coarsest == 0) return visible;
+  if (rule.isOneLevel()) return blockLists().of(rule.finest, visible);
+  if (!cutter) cutter.emplace(device);
+  return cutter->record(commands, volume, visible, blockLists(), rule);
 }
 
 /// Up to the sums in the targets; the sorted picture is made there, and has none.
@@ -106,12 +149,15 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
   Frame frame{.constants = makeFrameConstants(device, volume, tableSettings, camera, settings),
               .targets = makeTargets(device, settings)};
   if (sorted) sort->record(commands, volume, visible, camera);
-  splats->record(commands,
-                 {.volume = volume,
-                  .table = settings.readsTable() ? &sweptTable(progress) : nullptr,
-                  .visible = visible,
-                  .order = sorted ? &sort->voxels() : nullptr},
-                 frame.constants, frame.targets);
+  const AttenuationTable* read = nullptr;
+  if (settings.readsTable())
+    read = frame.constants.detail.coarsest > 0 ? &tableWithLevels(progress) : &sweptTable(progress);
+  lastRule = frame.constants.detail;
+  lastDrawn = &recordCut(commands, lastRule);
+  splats->record(
+      commands,
+      {.volume = volume, .table = read, .visible = *lastDrawn, .order = sorted ? &sort->voxels() : nullptr},
+      frame.constants, frame.targets);
   return frame;
 }
 
@@ -188,7 +234,35 @@ std::vector<float> Renderer::downloadExtinction() const {
 }
 
 std::vector<std::vector<std::uint8_t>> Renderer::downloadTable() const {
-  return freevoxels::downloadTable(state_->device, state_->volume.layout, state_->sweptTable());
+  return freevoxels::downloadTable(state_->device, state_->volume.hierarchy, state_->sweptTable());
+}
+
+std::vector<std::uint64_t> Renderer::drawnCounts() const {
+  if (state_->lastDrawn == nullptr) return {};
+  if (!state_->lastRule.isOneLevel()) return state_->cutter->countDrawn();
+  std::vector<std::uint64_t> counts(std::size_t(state_->lastRule.finest), 0);
+  counts.push_back(downloadVisibleCount(state_->device, *state_->lastDrawn));
+  return counts;
+}
+
+std::vector<Block> Renderer::downloadDrawnBlocks() const {
+  std::vector<Block> blocks;
+  if (state_->lastDrawn == nullptr) return blocks;
+  for (const std::uint32_t index : freevoxels::downloadVisibleVoxels(state_->device, *state_->lastDrawn))
+    blocks.push_back(state_->volume.hierarchy.blockAt(index));
+  return blocks;
+}
+
+std::vector<LevelData> Renderer::downloadLevels() const {
+  const AttenuationTable& table = state_->tableWithLevels();
+  state_->blockLists();
+  std::vector<LevelData> levels;
+  for (int level = 1; level <= state_->volume.hierarchy.top(); ++level) {
+    LevelData data = downloadMedium(state_->device, state_->volume, level);
+    data.table = freevoxels::downloadTable(state_->device, state_->volume.hierarchy, table, level);
+    levels.push_back(std::move(data));
+  }
+  return levels;
 }
 
 std::vector<std::uint32_t> Renderer::downloadVisibleVoxels() const {

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "engine/core/stages.h"
+#include "engine/hierarchy/hierarchy_layout.h"
+#include "engine/hierarchy/level_data.h"
 #include "engine/image/image.h"
 #include "engine/splatting/camera.h"
 #include "engine/splatting/render_settings.h"
@@ -16,10 +18,13 @@
 
 namespace freevoxels {
 
-/// Device memory for a volume of these dimensions with a table of these directions, in bytes.
+/// Device memory for a volume of these dimensions with a table of these directions, in bytes: of all levels
+/// of the octree, with as many blocks to draw as there can be.
 struct VolumeMemory {
-  std::uint64_t scalars = 0, extinction = 0, table = 0, visibleVoxels = 0;
-  std::uint64_t total() const { return scalars + extinction + table + visibleVoxels; }
+  std::uint64_t scalars = 0, extinction = 0, table = 0;
+  std::uint64_t blockColors = 0;  ///< only with a transfer function
+  std::uint64_t lists = 0;        ///< of visible voxels and blocks, and of those of a frame
+  std::uint64_t total() const { return scalars + extinction + table + blockColors + lists; }
 };
 VolumeMemory volumeMemory(glm::ivec3 dimensions, DirectionSet directions);
 
@@ -33,7 +38,8 @@ void checkFrameFits(const Device& device, const FrameSettings& settings);
 class Renderer {
  public:
   /// Uploads the volume and makes what every frame needs: extinction and the list of visible voxels. The
-  /// attenuation table is made for the first frame that reads it. Fails with ExitCode::OutOfMemory, before
+  /// attenuation table is made for the first frame that reads it, the octree for the first that may draw its
+  /// blocks. Fails with ExitCode::OutOfMemory, before
   /// allocating, where the device's limits are too small.
   Renderer(const Device& device, const Volume& volume, const Classification& classification,
            const TableSettings& table, const Progress& progress = {});
@@ -48,14 +54,20 @@ class Renderer {
 
   /// Of the constructor and of the last frame, in order.
   std::vector<StageTime> timings() const;
-  /// How many voxels the last frame drew.
+  /// How many voxels hold anything.
   std::uint64_t visibleVoxelCount() const;
+  /// How many blocks of each level the last frame drew, voxels first.
+  std::vector<std::uint64_t> drawnCounts() const;
   /// Per world unit, voxels x fastest without padding: for tests and validation, as the next two.
   std::vector<float> downloadExtinction() const;
   /// Bytes [direction][voxel], voxels x fastest without padding.
   std::vector<std::vector<std::uint8_t>> downloadTable() const;
   /// Indices of the visible voxels, into Volume::values, in the order they are drawn.
   std::vector<std::uint32_t> downloadVisibleVoxels() const;
+  /// What the last frame drew, in that order, if it was not sorted.
+  std::vector<Block> downloadDrawnBlocks() const;
+  /// Of the levels above the voxels, the first has blocks of 2³ voxels.
+  std::vector<LevelData> downloadLevels() const;
 
  private:
   struct State;

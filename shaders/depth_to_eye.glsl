@@ -1,5 +1,5 @@
-// Optical depth between a voxel and the eye, exclusive of the voxel, and its gradient across the lines of
-// sight. Include after direction_lookup.glsl and ray_lookup.glsl; `frame` is the SetupFrame.
+// Optical depth between a block and the eye, exclusive of the block, and its gradient across the lines of
+// sight. Include after direction_lookup.glsl, ray_lookup.glsl and block_at.glsl; `frame` is the SetupFrame.
 
 // Divided by its largest component, so that its length is that of one lattice layer.
 vec3 directionToEye(vec3 position) {
@@ -11,20 +11,30 @@ vec3 directionToEye(vec3 position) {
 // In world units.
 float layerLength(vec3 direction) { return length(frame.indexToWorld * direction); }
 
-float tableDepth(vec3 position) {
-  const vec3 direction = directionToEye(position);
+// How many layers of voxels the line of sight crosses in a block.
+int layersOf(Block block, vec3 direction) { return block.extent[majorAxis(direction)]; }
+
+// The mean over the block's voxels.
+float tableDepth(Block block) {
+  const vec3 direction = directionToEye(block.center);
   const Towards towards = Towards(direction, layerLength(direction), frame.indexToWorld, frame.cells, frame.code, frame.lookup,
                                   frame.pathLengthCorrection != 0);
-  const ivec3 voxel = ivec3(position);
-  return depthTowards(towards, uint(voxel.x + frame.rowPitch * (voxel.y + frame.dimensions.y * voxel.z)));
+  return depthTowards(towards, blockAddress(frame.levels[block.level], block.cell));
 }
 
 // Between the neighbours, each with its own line of sight; one-sided at the volume's faces.
-float tableSlope(vec3 position, int axis) {
-  vec3 before = position, after = position;
-  before[axis] = max(position[axis] - 1.0, 0.0);
-  after[axis] = min(position[axis] + 1.0, float(frame.dimensions[axis] - 1));
-  return (tableDepth(after) - tableDepth(before)) / max(after[axis] - before[axis], 1.0);
+float tableSlope(Block block, int axis) {
+  ivec3 low = block.cell, high = block.cell;
+  low[axis] = max(block.cell[axis] - 1, 0);
+  high[axis] = min(block.cell[axis] + 1, frame.levels[block.level].dimensions[axis] - 1);
+  const Block before = blockOf(block.level, low), after = blockOf(block.level, high);
+  return (tableDepth(after) - tableDepth(before)) / max(after.center[axis] - before.center[axis], 1.0);
+}
+
+// At the block's centre, which may lie between two planes: then the mean of what the line of sight has there.
+vec3 rayDepthOf(RayFan fan, Block block, vec3 direction) {
+  if (block.extent[fan.axis] % 2 == 1) return rayDepth(fan, block.center);
+  return 0.5 * (rayDepth(fan, block.center + 0.5 * direction) + rayDepth(fan, block.center - 0.5 * direction));
 }
 
 struct DepthToEye {
@@ -32,23 +42,28 @@ struct DepthToEye {
   vec3 gradient;  // per voxel, index space
 };
 
-// `layerDepth` is the voxel's own, of one lattice layer.
-DepthToEye depthToEye(vec3 position, float layerDepth) {
+// `sigma` is the block's extinction.
+DepthToEye depthToEye(Block block, float sigma) {
   DepthToEye result = DepthToEye(0.0, vec3(0.0));
   if (frame.lookup == kLookupNone) return result;
-  const vec3 direction = directionToEye(position);
+  const vec3 direction = directionToEye(block.center);
+  const float layerDepth = sigma * layerLength(direction);
   const int fan = fanIndex(-direction);
   const int axis = frame.lookup == kLookupExact ? frame.fans[fan].axis : fan / 2;
   const int sideA = (axis + 1) % 3, sideB = (axis + 2) % 3;
   vec2 slope = vec2(0.0);
   if (frame.lookup == kLookupExact) {
-    const vec3 ray = rayDepth(frame.fans[fan], position);
+    const vec3 ray = rayDepthOf(frame.fans[fan], block, direction);
     result.depth = ray.x;
     slope = ray.yz;
   } else {
-    result.depth = tableDepth(position);
-    if (frame.gradient != 0) slope = vec2(tableSlope(position, sideA), tableSlope(position, sideB));
+    result.depth = tableDepth(block);
+    if (frame.gradient != 0) slope = vec2(tableSlope(block, sideA), tableSlope(block, sideB));
   }
+  // A block's mean depth is that of its middle layer: what lies in front of it is less by its own layers before.
+  const bool inFull = frame.lookup == kLookupExact || frame.pathLengthCorrection != 0;
+  const float before = 0.5 * float(layersOf(block, direction) - 1) * (inFull ? layerDepth : sigma * frame.voxelSize);
+  result.depth = max(result.depth - before, 0.0);
   if (frame.gradient == 0) return result;
   result.gradient[sideA] = slope.x;
   result.gradient[sideB] = slope.y;

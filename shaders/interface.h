@@ -31,6 +31,16 @@ FV_CONSTANT int kSweepThreads = 32;
 FV_CONSTANT int kRaySweepThreads = 64;
 FV_CONSTANT int kSplatThreads = 64;
 FV_CONSTANT int kResolveTile = 8;
+FV_CONSTANT int kLevelThreads = 64;
+FV_CONSTANT int kLevelBlocksPerThread = 8;  // of the table: their children's codes are one texel a row
+
+// Levels of the octree: more than any volume has whose voxels 32 bits can number.
+FV_CONSTANT int kMaximumLevels = 32;
+
+// Blocks that one invocation and one workgroup of the cut look at: a bit each of a word.
+FV_CONSTANT int kCutBlocksPerThread = 32;
+FV_CONSTANT int kCutThreads = 64;
+FV_CONSTANT int kCutBlocksPerGroup = kCutBlocksPerThread * kCutThreads;
 
 // The sort takes its keys digit by digit. As many threads a workgroup as digits, so that each owns one; a
 // fixed number of workgroups, whatever the count, so that one of them can add up what all of them found.
@@ -59,6 +69,8 @@ FV_CONSTANT float kMaximumExtinction = 1e30f;
 
 FV_CONSTANT int kCodeDepth8 = 0;
 FV_CONSTANT int kCodeLinear8 = 1;
+FV_CONSTANT int kFilterGeometric = 0;
+FV_CONSTANT int kFilterArithmetic = 1;
 FV_CONSTANT int kLookupBilinear = 0;
 FV_CONSTANT int kLookupNearest = 1;
 FV_CONSTANT int kLookupExact = 2;
@@ -120,8 +132,49 @@ struct RaySweepPush {
   int rowPitch;
 };
 
+// One level of the octree: engine/hierarchy/hierarchy_layout.h.
+struct BlockLevel {
+  uint first;       // index of its first block
+  int rowPitch;
+  ivec3 dimensions;
+};
+
+// medium_level.comp
+struct MediumLevelPush {
+  BlockLevel child, parent;
+  ivec3 voxels;        // the volume's dimensions
+  int childEdge;       // voxels along a child's edge
+  uint parentCount;    // blocks of the parent level with the padding
+  float childLength;   // world length of a child's edge
+  uint firstColor;     // index of the first block that has a colour: of level 1
+  uint opacityPoints, colorPoints;
+};
+
+// table_level.comp
+struct TableLevelPush {
+  BlockLevel child, parent;
+  ivec3 voxels;
+  int childEdge;
+  uint threadCount;    // kLevelBlocksPerThread blocks of the parent level each
+};
+
+// cut_select.comp and cut_write.comp, one level of the cut
+struct CutPush {
+  BlockLevel level;
+  int edge;            // voxels along a block's edge
+  uint blockCount;     // of the list of this level's blocks that hold anything
+  uint firstGroup;     // of this level among the workgroups of all levels
+  int finest;          // no level below is drawn
+  int coarsest;        // no level above is drawn
+  vec3 viewAxis;       // distance from the eye plane: viewAxis . (index - middle) + middleDistance
+  vec3 middle;         // of the volume, index space
+  float middleDistance;
+  float edgePerDistance;  // a block is small where its edge, in voxels, is at most this times its distance
+};
+
 // visible_count.comp, visible_scan.comp, visible_write.comp
 struct VisiblePush {
+  uint first;        // index of the first voxel, or of a level's first block
   uint voxelCount;   // of the padded grid
   uint groupCount;   // workgroups of the count and write passes
   uint chunkCount;   // draw chunks whose arguments visible_scan.comp writes
@@ -174,8 +227,10 @@ struct SetupFrame {
   vec3 pixelX, pixelY;     // how the ray moves with x and y: its direction, or orthographic its origin; index space
   vec3 ray;                // orthographic: the direction of all rays, index space
   int orthographic;
-  int rowPitch;
   ivec3 dimensions;
+  BlockLevel levels[kMaximumLevels];
+  int levelCount;
+  float voxelSize;         // edge of the cube with a voxel's volume, world units
   int lookup;              // kLookup...
   int pathLengthCorrection;  // 0: every lattice step counts as long as any other
   int gradient;            // 0: the transmittance to the eye is the same all over a footprint
@@ -211,12 +266,16 @@ struct ResolvePush {
 };
 
 #ifdef __cplusplus
+static_assert(sizeof(BlockLevel) == 20);
 static_assert(sizeof(ChunkArguments) == 48);
+static_assert(sizeof(CutPush) == 72);
 static_assert(sizeof(DepthKeyPush) == 80);
 static_assert(sizeof(HalfSweepPush) == 64);
+static_assert(sizeof(MediumLevelPush) == 76);
 static_assert(sizeof(Splat) == 64);
 static_assert(sizeof(RaySweepPush) == 112);
 static_assert(sizeof(ResolvePush) == 84);
+static_assert(sizeof(TableLevelPush) == 60);
 }  // namespace freevoxels::shader
 #endif
 #endif

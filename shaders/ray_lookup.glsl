@@ -26,7 +26,7 @@ vec3 rayDepth(RayFan fan, vec3 position) {
   const vec2 place = (side - fan.origin - fan.slope * up) / apart;
   const vec2 low = clamp(floor(place), vec2(1.0), vec2(fan.rayCount - 3));
   const vec2 w = clamp(place - low, 0.0, 1.0);
-  const int plane = (int(position[fan.axis]) - fan.firstPlane) * fan.direction;
+  const int plane = clamp((int(round(position[fan.axis])) - fan.firstPlane) * fan.direction, 0, fan.planeCount - 1);
   const uint row = uint(fan.rayCount.x);
   uint first = uint(plane / 2) * row * uint(fan.rayCount.y) + uint(low.x) - 1 + (uint(low.y) - 1) * row;
   RayDepths depths = RayDepths(fan.depths);

@@ -4,6 +4,7 @@
 // already.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
+#include "opacity.glsl"
 
 layout(constant_id = 0) const bool kWithDistance = false;
 
@@ -12,9 +13,6 @@ layout(scalar, push_constant) uniform Push { ResolvePush push; };
 layout(binding = 0, rgba32f) uniform image2D colorEnergy;      // C, E -> premultiplied colour, alpha
 layout(binding = 1, r32f) readonly uniform image2D opticalDepth;  // T
 layout(binding = 2, r32f) uniform image2D meanDistance;        // sum of e times distance -> mean distance
-
-// 1 - exp(-x), also right for small x.
-float opacityOf(float x) { return x < 0.02 ? x * (1.0 - x * (1.0 / 2.0 - x * (1.0 / 6.0))) : 1.0 - exp(-x); }
 
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);

@@ -1,9 +1,10 @@
-// A voxel's footprint on the image. Include after interface.h; `frame` is the SetupFrame.
+// A block's footprint on the image. Include after interface.h; `frame` is the SetupFrame.
 
 struct Footprint {
   vec2 center, halfExtent;
   vec3 conic;
   float amplitude;  // 1, less where the footprint is widened
+  float edge2;      // square of the edge in pixels where it is shortest
   float distance;
 };
 
@@ -12,6 +13,7 @@ struct Footprint {
 void widenToPixel(inout Footprint footprint, vec3 shape, float scale) {
   const float before = shape.x * shape.z - shape.y * shape.y;
   const float largest = 0.5 * (shape.x + shape.z) + length(vec2(0.5 * (shape.x - shape.z), shape.y));
+  footprint.edge2 = before / largest / (kSplatRadius * kSplatRadius);
   const float missing = kSplatRadius * kSplatRadius - before / largest;
   if (missing <= 0.0) return;
   const vec3 widened = shape + vec3(missing, 0.0, missing);
@@ -21,13 +23,13 @@ void widenToPixel(inout Footprint footprint, vec3 shape, float scale) {
   footprint.halfExtent *= sqrt(widened.xz / shape.xz);
 }
 
-// The kernel's sphere of radius R around the index position `offset` (from the volume's middle) seen from the
-// eye: all rays D with |q x D|² <= R² |D|². Returns false behind the eye, and in perspective also where it
-// reaches the eye plane.
-bool project(vec3 offset, out Footprint footprint) {
+// The kernel's sphere of radius R, times the edge of a block, around the index position `offset` (from the
+// volume's middle) seen from the eye: all rays D with |q x D|² <= R² |D|². Returns false behind the eye, and in
+// perspective also where it reaches the eye plane.
+bool project(vec3 offset, float edge, out Footprint footprint) {
   const vec3 q = offset + frame.eyeToMiddle;
   const vec3 pixel = frame.indexToPixel * offset + frame.middleInPixels;
-  const float radius2 = kSplatRadius * kSplatRadius;
+  const float radius2 = (kSplatRadius * edge) * (kSplatRadius * edge);
   const vec3 ray = frame.orthographic != 0 ? frame.ray : q / pixel.z;
   const vec3 u = frame.orthographic != 0 ? cross(frame.pixelX, ray) : cross(q, frame.pixelX);
   const vec3 v = frame.orthographic != 0 ? cross(frame.pixelY, ray) : cross(q, frame.pixelY);

@@ -1,9 +1,10 @@
 #version 460
-// A visible voxel becomes a splat: its transmittance to the eye, colour, and footprint on the image (Subr et
-// al. 2007, Section 3.3 and 4.1, Eq. 10). Independent of every other voxel.
+// A voxel or a block of them becomes a splat: its transmittance to the eye, colour, and footprint on the image
+// (Subr et al. 2007, Section 3.3 and 4.1, Eq. 10). Independent of every other one.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "attenuation_code.glsl"
+#include "blocks.glsl"
 #define TRANSFER_BINDING 1
 #include "transfer_function.glsl"
 
@@ -16,10 +17,12 @@ layout(scalar, binding = 4) readonly buffer Scalars { float scalars[]; };
 layout(scalar, binding = 5) readonly buffer Extinction { float extinction[]; };
 layout(scalar, binding = 6) readonly buffer Chunks { ChunkArguments chunks[]; };
 layout(scalar, binding = 7) writeonly buffer Splats { Splat splats[]; };
+layout(scalar, binding = 8) readonly buffer BlockColors { uvec2 blockColors[]; };
 #define PLANE_ADDRESS(cell) planeAddresses[cell]
 #include "major_axis.glsl"
 #include "direction_lookup.glsl"
 #include "ray_lookup.glsl"
+#include "block_at.glsl"
 #include "depth_to_eye.glsl"
 #include "splat_projection.glsl"
 
@@ -28,44 +31,43 @@ float selfAttenuation(float x) {
   return x < 0.02 ? 1.0 - x * (1.0 / 2.0 - x * (1.0 / 6.0 - x * (1.0 / 24.0))) : (1.0 - exp(-x)) / x;
 }
 
-vec3 colorOf(uint voxel) {
+vec3 colorOf(Block block, uint address) {
   if (frame.opacityPoints == 0) return frame.albedo;
-  return evaluatePoints(frame.opacityPoints, frame.colorPoints, scalars[voxel]);
-}
-
-vec3 positionOf(uint voxel) {
-  const uint row = voxel / frame.rowPitch;
-  const uint plane = row / frame.dimensions.y;
-  return vec3(voxel - row * frame.rowPitch, row - plane * frame.dimensions.y, plane);
+  if (block.level > 0) return unpackColor(blockColors[address - frame.levels[1].first]);
+  return evaluatePoints(frame.opacityPoints, frame.colorPoints, scalars[address]);
 }
 
 void main() {
   const uint local = gl_GlobalInvocationID.x;
   if (local >= chunks[push.chunk].splatCount) return;
-  const uint voxel = visibleVoxels[push.chunk * kSplatsPerChunk + local];
-  const vec3 position = positionOf(voxel);
+  const uint address = visibleVoxels[push.chunk * kSplatsPerChunk + local];
+  const Block block = blockAt(address);
 
   Splat splat;
   Footprint footprint;
-  if (!project(position - frame.middle, footprint)) {
+  if (!project(centerOfMass(block) - frame.middle, float(block.edge), footprint)) {
     splat.halfExtent = vec2(0.0);
     splats[local] = splat;
     return;
   }
-  const float sigma = extinction[voxel];
-  const float layerDepth = sigma * layerLength(directionToEye(position));
-  const float peak = kSplatPeak * footprint.amplitude;
-  const float energy = sigma * selfAttenuation(layerDepth) * peak;
-  splat.colorEnergy = vec4(energy * colorOf(voxel), energy);
+  const float sigma = extinction[address];
+  const vec3 direction = directionToEye(block.center);
+  const float depth = sigma * layerLength(direction) * float(layersOf(block, direction));
+  // The kernel of a block is as much wider as its edge is longer, and integrates to the voxels it has.
+  const vec3 part = vec3(block.extent) / float(block.edge);
+  const float peak = kSplatPeak * footprint.amplitude * float(block.edge) * (part.x * part.y * part.z);
+  const float energy = sigma * selfAttenuation(depth) * peak;
+  splat.colorEnergy = vec4(energy * colorOf(block, address), energy);
   splat.center = footprint.center;
   splat.halfExtent = footprint.halfExtent;
   splat.conic = footprint.conic;
   splat.opticalDepth = sigma * peak;
   splat.distance = footprint.distance;
-  const DepthToEye toEye = depthToEye(position, layerDepth);
+  const DepthToEye toEye = depthToEye(block, sigma);
   // Per pixel. In a pixel that a footprint had to be widened to, the depth changes from voxel to voxel, and the
-  // voxel's own gradient soon says nothing: it fades with the widening.
-  const float fade = footprint.amplitude * footprint.amplitude * footprint.amplitude * footprint.amplitude;
+  // voxel's own gradient soon says nothing: it fades with the widening; a block's with that of its children.
+  const float kept = footprint.amplitude * (block.level == 0 ? 1.0 : min(0.25 * footprint.edge2, 1.0));
+  const float fade = (kept * kept) * (kept * kept);
   const float perPixel = fade * (frame.orthographic != 0 ? 1.0 : footprint.distance);
   splat.depthToEye =
       vec3(toEye.depth, perPixel * vec2(dot(toEye.gradient, frame.pixelX), dot(toEye.gradient, frame.pixelY)));

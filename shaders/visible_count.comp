@@ -18,7 +18,7 @@ void main() {
   if (first < push.voxelCount) {
     uint count = 0;
     [[unroll]] for (uint q = 0; q < kCountVoxelsPerThread / 4; ++q) {
-      const bvec4 visible = greaterThan(texelFetch(extinction, int(first / 4 + q)), vec4(0.0));
+      const bvec4 visible = greaterThan(texelFetch(extinction, int((push.first + first) / 4 + q)), vec4(0.0));
       count += uint(visible.x) + uint(visible.y) + uint(visible.z) + uint(visible.w);
     }
     atomicAdd(total, count);

@@ -19,7 +19,7 @@ void main() {
   uint mask = 0;  // bit i: voxel first + i is visible
   if (first < push.voxelCount) {
     [[unroll]] for (uint q = 0; q < kCountVoxelsPerThread / 4; ++q) {
-      const bvec4 visible = greaterThan(texelFetch(extinction, int(first / 4 + q)), vec4(0.0));
+      const bvec4 visible = greaterThan(texelFetch(extinction, int((push.first + first) / 4 + q)), vec4(0.0));
       [[unroll]] for (uint c = 0; c < 4; ++c) mask |= uint(visible[c]) << (4 * q + c);
     }
   }
@@ -29,5 +29,5 @@ void main() {
   if (mask == 0) return;
   uint offset = groupOffsets[group];
   for (uint i = 0; i < thread; ++i) offset += counts[i];
-  for (; mask != 0; mask &= mask - 1) visibleVoxels[offset++] = first + uint(findLSB(mask));
+  for (; mask != 0; mask &= mask - 1) visibleVoxels[offset++] = push.first + first + uint(findLSB(mask));
 }

@@ -1,7 +1,11 @@
 #include "apps/bench/bench_stages.h"
 
 #include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
 
+#include "engine/hierarchy/level_passes.h"
 #include "engine/renderer.h"
 #include "engine/splatting/splat_pass.h"
 #include "engine/volume/procedural.h"
@@ -44,7 +48,7 @@ Result sweeps(const Device& device, DirectionSet directions, int resolution, int
   const Volume volume =
       unitVoxels(glm::ivec3(resolution), [](int x, int y, int z) { return float((x + 2 * y + 3 * z) % 7); });
   const DeviceVolume onDevice = classified(device, volume);
-  const AttenuationTable table = makeTable(device, onDevice.layout, {.directions = directions});
+  const AttenuationTable table = makeTable(device, onDevice.hierarchy, {.directions = directions});
   const AttenuationSweep sweep(device, table.settings);
   const double time = least(runs, [&] {
     Commands commands(device);
@@ -57,6 +61,59 @@ Result sweeps(const Device& device, DirectionSet directions, int resolution, int
           .milliseconds = time,
           .copyMilliseconds = copyTime((count + 1) * volume.voxelCount()),
           .perSecond = double(count * volume.voxelCount()) / time * 1e3};
+}
+
+Result octree(const Device& device, AttenuationCode code, int resolution, int runs) {
+  const Volume volume =
+      unitVoxels(glm::ivec3(resolution), [](int x, int y, int z) { return float((x + 2 * y + 3 * z) % 7); });
+  const DeviceVolume onDevice = classified(device, volume);
+  const AttenuationTable table = makeTable(device, onDevice.hierarchy, {.code = code});
+  const AttenuationSweep sweep(device, table.settings);
+  const MediumLevels medium(device, onDevice);
+  const TableLevels levels(device, table.settings);
+  double sweeps = std::numeric_limits<double>::max();
+  const double time = least(runs, [&] {
+    Commands before(device), commands(device);
+    sweep.record(before, onDevice, table);
+    before.submitAndWait();
+    sweeps = std::min(sweeps, total(before));
+    medium.record(commands, onDevice);
+    levels.record(commands, onDevice, table);
+    commands.submitAndWait();
+    return total(commands);
+  });
+  return {.name = fmt::format("octree, {0}x{0}x{0}, {1}: {2:.2f} of the sweeps", resolution,
+                              code == AttenuationCode::Depth8 ? "depth8" : "linear8", time / sweeps),
+          .milliseconds = time,
+          .copyMilliseconds = copyTime(27 * volume.voxelCount()),
+          .perSecond = 26.0 * double(volume.voxelCount()) / time * 1e3};
+}
+
+std::vector<Result> zoom(const Device& device, int resolution, int runs) {
+  Volume volume = makeProcedural("cloud", resolution);
+  Renderer renderer(device, volume, {.densityScale = automaticDensityScale(volume)}, {});
+  const glm::ivec2 size(1024);
+  Camera camera = framingCamera(volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
+  const glm::dvec3 toEye = glm::normalize(camera.position - camera.lookAt);
+  const double height = 2.0 * std::tan(camera.verticalFov * std::numbers::pi / 360.0);
+  std::vector<Result> results;
+  for (const double pixels : {4.0, 1.0, 0.5, 0.25, 0.125})
+    for (const float lod : {0.0f, 1.0f}) {
+      camera.position = camera.lookAt + size.y * volume.voxelSize() / (height * pixels) * toEye;
+      renderer.render(camera, {.size = size, .lod = lod});  // what is made once
+      const double time = least(runs, [&] {
+        renderer.render(camera, {.size = size, .lod = lod});
+        const std::vector<StageTime> times = renderer.timings();
+        return passTime(times, "level of detail") + passTime(times, "splat set-up") +
+               passTime(times, "splat draw");
+      });
+      std::uint64_t splats = 0;
+      for (const std::uint64_t count : renderer.drawnCounts()) splats += count;
+      results.push_back({.name = fmt::format("cloud {}^3, {:g} pixels a voxel, --lod {:g}: {} splats",
+                                             resolution, pixels, lod, splats),
+                         .milliseconds = time});
+    }
+  return results;
 }
 
 Result compaction(const Device& device, int resolution, int runs) {

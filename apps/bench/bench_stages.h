@@ -1,6 +1,8 @@
 #pragma once
 // The stages that freevoxels-bench measures, each by the device's own clock.
 
+#include <vector>
+
 #include "apps/bench/measure.h"
 #include "apps/freevoxels/input_options.h"
 #include "engine/attenuation/directions.h"
@@ -10,6 +12,14 @@ namespace freevoxels::bench {
 
 /// The sweeps for all D directions of a set over an N³ volume, beside a copy of (D + 1) N³ bytes.
 Result sweeps(const Device& device, DirectionSet directions, int resolution, int runs);
+
+/// The octree's levels above the voxels, beside a copy of the voxels' 27 N³ bytes; the name has the ratio to
+/// the 26 sweeps.
+Result octree(const Device& device, AttenuationCode code, int resolution, int runs);
+
+/// Choosing, setting up and drawing the blocks of a cloud of N³ voxels from near to far, without and with
+/// level of detail.
+std::vector<Result> zoom(const Device& device, int resolution, int runs);
 
 /// The list of visible voxels of an N³ volume of which a thirtieth is visible, beside a copy of 4 N³ bytes.
 Result compaction(const Device& device, int resolution, int runs);

@@ -23,6 +23,10 @@ std::vector<Result> measureAll(const Device& device, const std::vector<std::stri
     results.push_back(bench::sweeps(device, DirectionSet::Directions26, resolution, runs));
   for (int resolution : {64, 128})
     results.push_back(bench::sweeps(device, DirectionSet::Directions98, resolution, runs));
+  for (int resolution : quick ? std::vector{64, 128} : std::vector{64, 128, 256})
+    results.push_back(bench::octree(device, AttenuationCode::Depth8, resolution, runs));
+  results.push_back(bench::octree(device, AttenuationCode::Linear8, 128, runs));
+  for (Result& result : bench::zoom(device, 128, runs)) results.push_back(std::move(result));
   results.push_back(bench::compaction(device, quick ? 128 : 256, runs));
   for (double pixels : {3.0, 5.0, 9.0}) results.push_back(bench::splats(device, pixels, runs));
   for (const std::string& input : inputs) {

@@ -11,6 +11,7 @@ namespace {
 const std::vector<std::string> kComposites{"normalised", "additive", "sorted"};
 const std::vector<std::string> kAttenuations{"bilinear", "nearest", "exact"};
 const std::vector<std::string> kCodes{"depth8", "linear8"};
+const std::vector<std::string> kHierarchyFilters{"geometric", "arithmetic"};
 // In ascending order of DirectionSet's values, from 1.
 const std::vector<std::string> kDirections{"26", "98"};
 
@@ -39,10 +40,19 @@ void MethodOptions::add(CLI::App& app) {
          "--gradient,!--no-gradient", [this](std::int64_t count) { gradient = count > 0; },
          "Whether transmittance varies across a splat [yes]")
       ->group(group);
-  app.add_flag(
-         "--paper", paper,
-         "As the paper: additive, nearest, 26 directions, linear8, no path-length correction, no gradient; "
-         "any of the six that is given wins")
+  addNumber(
+      app, "--lod", "PIXELS", lod,
+      "Size on the image up to which blocks of voxels are drawn as one splat; 0: always voxels, as sorted "
+      "is whatever this is [1]",
+      {0.0, 1e6})
+      ->group(group);
+  addWord(app, "--hierarchy-filter", kHierarchyFilters, hierarchyFilter,
+          "Which mean of its voxels' transmittances a block has [geometric]")
+      ->group(group);
+  app.add_flag("--paper", paper,
+               "As the paper: additive, nearest, 26 directions, linear8, no path-length correction, no "
+               "gradient, lod "
+               "0; any of the seven that is given wins")
       ->group(group);
 }
 
@@ -50,7 +60,8 @@ TableSettings MethodOptions::table() const {
   return {
       .code = AttenuationCode(code.value_or(int(paper ? AttenuationCode::Linear8 : AttenuationCode::Depth8))),
       .pathLengthCorrection = pathLengthCorrection.value_or(!paper),
-      .directions = DirectionSet(directions.value_or(0) + 1)};
+      .directions = DirectionSet(directions.value_or(0) + 1),
+      .filter = HierarchyFilter(hierarchyFilter.value_or(int(HierarchyFilter::Geometric)))};
 }
 
 void MethodOptions::apply(FrameSettings& frame) const {
@@ -58,6 +69,7 @@ void MethodOptions::apply(FrameSettings& frame) const {
   frame.attenuation = AttenuationLookup(
       attenuation.value_or(int(paper ? AttenuationLookup::Nearest : AttenuationLookup::Bilinear)));
   frame.gradient = gradient.value_or(!paper);
+  frame.lod = float(lod.value_or(paper ? 0.0 : 1.0));
 }
 
 void MethodOptions::describe(OptionList& options) const {
@@ -70,6 +82,8 @@ void MethodOptions::describe(OptionList& options) const {
   options.emplace_back(
       table().pathLengthCorrection ? "--path-length-correction" : "--no-path-length-correction", "");
   options.emplace_back(frame.gradient ? "--gradient" : "--no-gradient", "");
+  options.emplace_back("--lod", numberText(lod.value_or(double(frame.lod))));
+  options.emplace_back("--hierarchy-filter", kHierarchyFilters[std::size_t(table().filter)]);
 }
 
 }  // namespace freevoxels

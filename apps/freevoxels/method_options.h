@@ -1,6 +1,6 @@
 #pragma once
 // How the picture is computed, where the paper and FreeVoxels differ. `--paper` takes the paper's side in all
-// six, but an option that is given explicitly wins over it.
+// seven, but an option that is given explicitly wins over it.
 
 #include <optional>
 
@@ -11,8 +11,9 @@ namespace freevoxels {
 
 struct MethodOptions {
   bool paper = false;
-  std::optional<int> composite, attenuation, directions, code;
+  std::optional<int> composite, attenuation, directions, code, hierarchyFilter;
   std::optional<bool> pathLengthCorrection, gradient;
+  std::optional<double> lod;
 
   void add(CLI::App& app);
   TableSettings table() const;

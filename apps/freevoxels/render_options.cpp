@@ -122,6 +122,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
     addTimes(report.stages, writing);
   }
   report.visibleVoxels = renderer.visibleVoxelCount();
+  report.drawnBlocks = renderer.drawnCounts();
 }
 
 }  // namespace freevoxels

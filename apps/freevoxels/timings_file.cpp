@@ -37,6 +37,9 @@ void logStages(const RunReport& report) {
   table.rows.push_back({"total", fmt::format("{:.2f}", report.totalMilliseconds), ""});
   for (const std::string& line : table.lines()) spdlog::debug("{}", line);
   spdlog::debug("{} visible voxels", report.visibleVoxels);
+  for (std::size_t level = 0; level < report.drawnBlocks.size(); ++level)
+    if (report.drawnBlocks[level] > 0)
+      spdlog::debug("{} blocks of {}³ voxels drawn in the last frame", report.drawnBlocks[level], 1 << level);
 }
 
 void writeTimings(const std::filesystem::path& file, const RunReport& report) {
@@ -53,6 +56,7 @@ void writeTimings(const std::filesystem::path& file, const RunReport& report) {
     json["stages"].push_back(
         {{"name", stage.name}, {"milliseconds", stage.milliseconds}, {"on_device", stage.onDevice}});
   json["visible_voxels"] = report.visibleVoxels;
+  json["drawn_blocks"] = report.drawnBlocks;
   json["total_milliseconds"] = report.totalMilliseconds;
 
   const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

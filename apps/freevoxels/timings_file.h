@@ -18,6 +18,7 @@ struct RunReport {
   std::vector<StageTime> stages;
   double totalMilliseconds = 0.0;
   std::uint64_t visibleVoxels = 0;
+  std::vector<std::uint64_t> drawnBlocks;  ///< of the last frame by level, voxels first
 };
 
 /// Adds each time to the one of its name, or appends it.
@@ -28,7 +29,9 @@ void logOptions(const OptionList& options);
 void logStages(const RunReport& report);
 
 /// {"version", "device": {"name", "type", "uuid", "driver"}, "options": {NAME: VALUE},
-///  "stages": [{"name", "milliseconds", "on_device"}], "visible_voxels", "total_milliseconds"}. Atomic.
+///  "stages": [{"name", "milliseconds", "on_device"}], "visible_voxels", "drawn_blocks",
+///  "total_milliseconds"}.
+/// Atomic.
 void writeTimings(const std::filesystem::path& file, const RunReport& report);
 
 }  // namespace freevoxels

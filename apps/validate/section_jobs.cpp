@@ -8,8 +8,10 @@
 #include "apps/freevoxels/input_options.h"
 #include "engine/renderer.h"
 #include "engine/validation/closed_forms.h"
+#include "engine/validation/detail_quality.h"
 #include "engine/validation/invariances.h"
 #include "engine/validation/leakage.h"
+#include "engine/validation/level_checks.h"
 #include "engine/validation/paper_figures.h"
 #include "engine/validation/quality.h"
 #include "engine/validation/stage_checks.h"
@@ -27,6 +29,7 @@ constexpr int kQuickQuality = 48;  ///< voxels along an edge where pictures meet
 constexpr int kQuickQualityPicture = 96, kWholeQualityPicture = 160, kLargeQualityPicture = 256;
 /// Where a voxel is as large as the parts of a volume, no method has to reach anything.
 constexpr int kLeastResolutionWithGoals = kMedium;
+constexpr int kDetailResolution = kMedium;
 constexpr int kTurntableResolution = kMedium, kTurntableFrames = 72, kTurntablePicture = 64;
 
 /// Of the large ones a full one, which is drawn in several chunks, and a sparse one say what size can change.
@@ -50,6 +53,8 @@ void addScene(std::vector<SectionJob>& jobs, const Device& device, const std::st
                   [=, &device] { return stageChecks(deviceStages(device), makeScene(), picture); }});
   jobs.push_back({fmt::format("invariances of {}", name),
                   [=, &device] { return invariances(device, makeScene(), picture); }});
+  jobs.push_back({fmt::format("levels of {}", name),
+                  [=, &device] { return levelChecks(device, makeScene(), picture); }});
 }
 
 std::vector<int> resolutions(const Extent& extent, int quick) {
@@ -97,6 +102,20 @@ void addTurntable(std::vector<SectionJob>& jobs, const Device& device) {
                   }});
 }
 
+/// Of the volumes without parts of the size of a voxel.
+void addDetail(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
+  const int resolution = quick ? kQuickQuality : kDetailResolution;
+  for (const QualitySubject& subject : kQualitySubjects) {
+    if (subject.thin) continue;
+    const auto scene = [=, &device, &subject] { return openQualityScene(device, subject, resolution); };
+    jobs.push_back({fmt::format("level of detail of {}", subject.procedural),
+                    [=, &device] { return detailQuality(device, scene()); }});
+    if (!quick)
+      jobs.push_back({fmt::format("zoom to {}", subject.procedural),
+                      [=, &device] { return zoomQuality(device, scene()); }});
+  }
+}
+
 void addPaperFigures(std::vector<SectionJob>& jobs, const Device& device) {
   jobs.push_back({"figure 2 of the paper", [&device] { return paperFigure2(deviceStages(device)); }});
   jobs.push_back({"figure 6 of the paper", [&device] { return paperFigure6(deviceStages(device)); }});
@@ -132,6 +151,7 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
                });
     }
   addPaperFigures(jobs, device);
+  addDetail(jobs, device, extent.quick);
   addQuality(jobs, device, extent);
   if (!extent.quick && !extent.resolution) addTurntable(jobs, device);
   for (const std::string& file : extent.files) {

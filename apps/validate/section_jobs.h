@@ -22,9 +22,9 @@ struct Extent {
   std::vector<std::string> files;
 };
 
-/// Closed forms, stages and invariances of every procedural volume, the paper's figures, picture quality, and
-/// all but the figures of every file. The files are read at once, so that one that cannot be fails before any
-/// work. `device` has to outlive the jobs.
+/// Closed forms; stages, invariances and levels of every procedural volume; the paper's figures, level of
+/// detail, picture quality; and of every file its stages, invariances, levels and picture quality. The files
+/// are read at once, so that one that cannot be fails before any work. `device` has to outlive the jobs.
 std::vector<SectionJob> planSections(const Device& device, const Extent& extent);
 
 }  // namespace freevoxels::validate

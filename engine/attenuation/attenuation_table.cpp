@@ -67,7 +67,8 @@ Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Speciali
 
 }  // namespace
 
-AttenuationTable makeTable(const Device& device, const GridLayout& layout, const TableSettings& settings) {
+AttenuationTable makeTable(const Device& device, const HierarchyLayout& hierarchy,
+                           const TableSettings& settings) {
   AttenuationTable table{.settings = settings};
   const DirectionSet set = settings.directions;
   const int edge = 2 * int(set) + 1;
@@ -75,7 +76,9 @@ AttenuationTable makeTable(const Device& device, const GridLayout& layout, const
   for (int i = 0; i < directionCount(set); ++i) {
     const glm::dvec3 d = directionAt(set, i);
     const std::string name = fmt::format("attenuation {},{},{}", d.x, d.y, d.z);
-    table.planes.emplace_back(device, layout.paddedVoxels(), MemoryUse::Device, name.c_str());
+    table.planes.emplace_back(device, hierarchy.paddedBlocks(), MemoryUse::Device, name.c_str(),
+                              VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+    table.planeTexels.emplace_back(device, table.planes.back(), VK_FORMAT_R32G32B32A32_UINT);
     addresses[std::size_t(cellNumber(set, directionCell(set, i)))] = table.planes.back().address();
   }
   const std::span<const std::byte> bytes = std::as_bytes(std::span(addresses));
@@ -138,12 +141,13 @@ void AttenuationSweep::recordBundles(Commands& commands, const DeviceVolume& vol
     }
 }
 
-std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const GridLayout& layout,
-                                                     const AttenuationTable& table) {
+std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const HierarchyLayout& hierarchy,
+                                                     const AttenuationTable& table, int level) {
+  const GridLayout& layout = hierarchy.levels[std::size_t(level)];
   std::vector<std::uint8_t> padded(layout.paddedVoxels());
   std::vector<std::vector<std::uint8_t>> result;
   for (const Buffer& plane : table.planes) {
-    download(device, plane, std::as_writable_bytes(std::span(padded)));
+    download(device, plane, std::as_writable_bytes(std::span(padded)), hierarchy.first[std::size_t(level)]);
     result.push_back(layout.withoutPadding(padded));
   }
   return result;

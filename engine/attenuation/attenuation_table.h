@@ -14,13 +14,16 @@
 namespace freevoxels {
 
 struct AttenuationTable {
-  /// One byte a voxel and direction, in the layout of the volume; directions in the order of directions.h.
+  /// One byte a block and direction, of all levels (hierarchy_layout.h), of which AttenuationSweep fills the
+  /// voxels'; directions in the order of directions.h.
   std::vector<Buffer> planes;
+  std::vector<QuadView> planeTexels;  ///< sixteen bytes of a plane a texel
   Buffer planeAddresses;  ///< the planes' device addresses by cellNumber, 0 where a cell is no direction
   TableSettings settings;
 };
 
-AttenuationTable makeTable(const Device& device, const GridLayout& layout, const TableSettings& settings);
+AttenuationTable makeTable(const Device& device, const HierarchyLayout& hierarchy,
+                           const TableSettings& settings);
 
 /// COMPUTE attenuation_sweep.comp, attenuation_sweep_x.comp and, for 98 directions,
 /// attenuation_sweep_half.comp: a dispatch a direction (of the 26 more, over blocks of lines, on a CPU
@@ -42,8 +45,8 @@ class AttenuationSweep {
   std::optional<HalfSweep> halves_;  ///< of 98 directions
 };
 
-/// Bytes [direction][voxel] without padding.
-std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const GridLayout& layout,
-                                                     const AttenuationTable& table);
+/// Bytes [direction][block] of one level, without padding.
+std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const HierarchyLayout& hierarchy,
+                                                     const AttenuationTable& table, int level = 0);
 
 }  // namespace freevoxels

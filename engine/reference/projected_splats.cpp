@@ -6,7 +6,8 @@
 //   perspective:   r² = |q x D|² / |D|²  = dᵀ G d / |D|²,   G = [U·U U·V; U·V V·V],  U = q x X,  V = q x Y
 //   orthographic:  the same with U = Ox x D, V = Oy x D,    Ox, Oy the derivatives of the ray's origin, |D|
 //   constant.
-// The kernel's radius R makes it an ellipse with the squared semi-axes (in pixels) S = R² |Dc|² G⁻¹, and
+// A block's kernel is a voxel's, as much wider as its edge is longer. The kernel's radius R makes it an
+// ellipse with the squared semi-axes (in pixels) S = R² |Dc|² G⁻¹, and
 //   r²/R² = dᵀ S⁻¹ d · |Dc|²/|D|².
 // Where the smaller semi-axis is below R pixels (a voxel smaller than a pixel), S grows to S' = S + (R² - l)
 // I, l its smaller eigenvalue, and the footprint's peak shrinks by sqrt(det S / det S'), which keeps its
@@ -79,14 +80,18 @@ glm::dvec3 SplatProjector::rayDirection(glm::dvec2 pixel) const {
   return rays_.direction + pixel.x * rays_.directionX + pixel.y * rays_.directionY;
 }
 
-std::optional<ProjectedSplat> SplatProjector::project(std::uint32_t index) const {
+Block SplatProjector::voxel(std::uint32_t index) const {
   const glm::uvec3 n(dimensions_);
-  const glm::dvec3 voxel(index % n.x, index / n.x % n.y, index / n.x / n.y);
-  const glm::dvec3 q = voxel - rays_.origin;
+  return {0, glm::ivec3(index % n.x, index / n.x % n.y, index / n.x / n.y)};
+}
+
+std::optional<ProjectedSplat> SplatProjector::project(const Block& block, glm::dvec3 place) const {
+  const double radius2 = kR2 * block.edge() * block.edge();
+  const glm::dvec3 q = place - rays_.origin;
   const glm::dvec3 k = toPixel_ * q;
   ProjectedSplat splat;
   splat.distance = k.z;
-  splat.toEye = toEye(voxel);
+  splat.toEye = toEye(box(block).centre());
   splat.pixelX = rays_.orthographic ? rays_.originX : k.z * rays_.directionX;
   splat.pixelY = rays_.orthographic ? rays_.originY : k.z * rays_.directionY;
   if (!(k.z > 0.0)) return std::nullopt;
@@ -97,7 +102,7 @@ std::optional<ProjectedSplat> SplatProjector::project(std::uint32_t index) const
     v = glm::cross(rays_.originY, rays_.direction);
   } else {
     const glm::dvec3 rowZ(toPixel_[0][2], toPixel_[1][2], toPixel_[2][2]);
-    if (!(k.z * k.z - kR2 * glm::dot(rowZ, rowZ) > 0.0)) return std::nullopt;
+    if (!(k.z * k.z - radius2 * glm::dot(rowZ, rowZ) > 0.0)) return std::nullopt;
     splat.centre = {k.x / k.z, k.y / k.z};
     u = glm::cross(q, rays_.directionX);
     v = glm::cross(q, rays_.directionY);
@@ -105,15 +110,17 @@ std::optional<ProjectedSplat> SplatProjector::project(std::uint32_t index) const
   const glm::dvec3 central = rayDirection(splat.centre);
   const double central2 = glm::dot(central, central);
   const glm::dmat2 quadratic(glm::dot(u, u), glm::dot(u, v), glm::dot(u, v), glm::dot(v, v));
-  const glm::dmat2 shape = kR2 * central2 * glm::inverse(quadratic);
+  const glm::dmat2 shape = radius2 * central2 * glm::inverse(quadratic);
   const double narrowest = smallerEigenvalue(shape);
+  splat.edge2 = narrowest / kR2;
   if (narrowest < kR2) {
     const glm::dmat2 widened = shape + glm::dmat2(kR2 - narrowest);
-    splat.amplitude = std::sqrt(glm::determinant(shape) / glm::determinant(widened));
+    splat.widening = std::sqrt(glm::determinant(shape) / glm::determinant(widened));
     splat.shape = central2 * glm::inverse(widened);
   } else {
-    splat.shape = quadratic / kR2;
+    splat.shape = quadratic / radius2;
   }
+  splat.amplitude = splat.widening * box(block).voxels() / (double(block.edge()) * block.edge());
   return splat;
 }
 
@@ -126,9 +133,9 @@ double SplatProjector::layerLength(const ProjectedSplat& splat) const {
   return glm::length(indexToWorld_ * (splat.toEye / std::max({size.x, size.y, size.z})));
 }
 
-double SplatProjector::opacity(const ProjectedSplat& splat, double extinction) const {
-  const double layer = layerLength(splat);
-  return -std::expm1(-extinction * layer) / layer;
+double SplatProjector::opacity(const ProjectedSplat& splat, double extinction, int layers) const {
+  const double length = layers * layerLength(splat);
+  return -std::expm1(-extinction * length) / length;
 }
 
 double SplatProjector::footprint(const ProjectedSplat& splat, glm::dvec2 pixel) const {

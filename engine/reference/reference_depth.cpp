@@ -22,38 +22,54 @@ glm::dvec3 acrossLayer(glm::dvec3 direction) {
 class TableDepth : public ReferenceDepth {
  public:
   TableDepth(const Volume& volume, const std::vector<std::vector<std::uint8_t>>& table,
-             const TableSettings& settings, AttenuationLookup lookup, ToEye toEye)
-      : volume_(volume), table_(table), settings_(settings), lookup_(lookup), toEye_(std::move(toEye)) {
+             std::span<const LevelData> coarser, const TableSettings& settings, AttenuationLookup lookup,
+             ToEye toEye)
+      : volume_(volume),
+        table_(table),
+        coarser_(coarser),
+        settings_(settings),
+        lookup_(lookup),
+        toEye_(std::move(toEye)) {
     FV_CHECK_EQ(table.size(), std::size_t(directionCount(settings.directions)));
     for (int i = 0; i < int(table.size()); ++i)
       layerLengths_.push_back(stepLength(volume.indexToWorld, directionAt(settings.directions, i), true));
   }
 
-  double at(glm::ivec3 voxel) const override;
-  double slope(glm::ivec3 voxel, int axis) const override {
-    glm::ivec3 before = voxel, after = voxel;
-    before[axis] = std::max(voxel[axis] - 1, 0);
-    after[axis] = std::min(voxel[axis] + 1, volume_.dimensions[axis] - 1);
-    return before == after ? 0.0 : (at(after) - at(before)) / (after[axis] - before[axis]);
+  double at(const Block& block) const override;
+  double slope(const Block& block, int axis) const override {
+    Block before = block, after = block;
+    before.cell[axis] = std::max(block.cell[axis] - 1, 0);
+    after.cell[axis] = std::min(block.cell[axis] + 1, (volume_.dimensions[axis] - 1) / block.edge());
+    const double apart = centre(after)[axis] - centre(before)[axis];
+    return before == after ? 0.0 : (at(after) - at(before)) / apart;
+  }
+  double countedLength(double layerLength) const override {
+    return settings_.pathLengthCorrection ? layerLength : volume_.voxelSize();
   }
 
  private:
+  glm::dvec3 centre(const Block& block) const { return boxOf(block, volume_.dimensions).centre(); }
+
   const Volume& volume_;
   const std::vector<std::vector<std::uint8_t>>& table_;
+  const std::span<const LevelData> coarser_;
   const TableSettings settings_;
   const AttenuationLookup lookup_;
   const ToEye toEye_;
   std::vector<double> layerLengths_;  ///< by direction, world length
 };
 
-double TableDepth::at(glm::ivec3 voxel) const {
-  const glm::dvec3 toEye = toEye_(glm::dvec3(voxel));
+double TableDepth::at(const Block& block) const {
+  const glm::dvec3 toEye = toEye_(centre(block));
   const glm::dmat3 toWorld(volume_.indexToWorld);
   const double layer = glm::length(toWorld * acrossLayer(toEye));
-  const std::size_t index = volume_.at(voxel.x, voxel.y, voxel.z);
+  const LevelData* level = block.level == 0 ? nullptr : &coarser_[std::size_t(block.level) - 1];
+  const auto& table = level == nullptr ? table_ : level->table;
+  const std::size_t index =
+      level == nullptr ? volume_.at(block.cell.x, block.cell.y, block.cell.z) : level->at(block.cell);
   const DirectionSet set = settings_.directions;
   const auto stored = [&](int direction) {
-    const double depth = decodeOpticalDepth(settings_.code, table_[std::size_t(direction)][index]);
+    const double depth = decodeOpticalDepth(settings_.code, table[std::size_t(direction)][index]);
     if (!settings_.pathLengthCorrection) return depth;
     return depth * layer / layerLengths_[std::size_t(direction)];
   };
@@ -82,20 +98,24 @@ class RayDepth : public ReferenceDepth {
  public:
   RayDepth(const Volume& volume, std::span<const double> extinction, const RaySource& source);
 
-  double at(glm::ivec3 voxel) const override { return std::max(lookUp(voxel).first, 0.0); }
-  double slope(glm::ivec3 voxel, int axis) const override {
-    return lookUp(voxel).second[axis == (fanOf(voxel).axis + 1) % 3 ? 0 : 1];
+  double at(const Block& block) const override { return lookUp(block).x; }
+  double slope(const Block& block, int axis) const override {
+    const RayFan& fan = fanOf(boxOf(block, volume_.dimensions).centre());
+    return lookUp(block)[axis == (fan.axis + 1) % 3 ? 1 : 2];
   }
 
  private:
-  const RayFan& fanOf(glm::ivec3 voxel) const {
-    return fans_[std::size_t(
-        fanIndex(source_.atInfinity ? -source_.place : glm::dvec3(voxel) - source_.place))];
+  glm::dvec3 fromSource(glm::dvec3 position) const {
+    return source_.atInfinity ? -source_.place : position - source_.place;
+  }
+  const RayFan& fanOf(glm::dvec3 position) const {
+    return fans_[std::size_t(fanIndex(fromSource(position)))];
   }
   double extinctionAt(int axis, int plane, glm::ivec2 side) const;
   double interpolated(int axis, int plane, glm::dvec2 side) const;
   void march(std::size_t fan, int i, int j);
-  std::pair<double, glm::dvec2> lookUp(glm::ivec3 voxel) const;
+  glm::dvec3 lookUp(const Block& block) const;
+  glm::dvec3 lookUp(const RayFan& fan, glm::dvec3 onPlane) const;
 
   const Volume& volume_;
   const std::span<const double> extinction_;
@@ -156,16 +176,26 @@ void RayDepth::march(std::size_t f, int i, int j) {
   }
 }
 
-std::pair<double, glm::dvec2> RayDepth::lookUp(glm::ivec3 voxel) const {
-  const RayFan& fan = fanOf(voxel);
+/// The depth, and its slopes along the fan's two sides.
+glm::dvec3 RayDepth::lookUp(const Block& block) const {
+  const BlockBox box = boxOf(block, volume_.dimensions);
+  const glm::dvec3 centre = box.centre();
+  const RayFan& fan = fanOf(centre);
+  if (box.extent[fan.axis] % 2 == 1) return lookUp(fan, centre);
+  const glm::dvec3 ray = fromSource(centre), halfLayer = 0.5 * ray / ray[fan.axis];
+  return 0.5 * (lookUp(fan, centre + halfLayer) + lookUp(fan, centre - halfLayer));
+}
+
+glm::dvec3 RayDepth::lookUp(const RayFan& fan, glm::dvec3 onPlane) const {
   const std::vector<double>& depths = depths_[std::size_t(&fan - fans_.data())];
-  const double up = voxel[fan.axis] - fan.farthest;
+  const double up = onPlane[fan.axis] - fan.farthest;
   const double apart = fan.spacing * (1.0 + fan.convergence * up);
-  const glm::dvec2 side(voxel[(fan.axis + 1) % 3], voxel[(fan.axis + 2) % 3]);
+  const glm::dvec2 side(onPlane[(fan.axis + 1) % 3], onPlane[(fan.axis + 2) % 3]);
   const glm::dvec2 place = (side - fan.origin - fan.slope * up) / apart;
   const glm::ivec2 low = glm::clamp(glm::ivec2(glm::floor(place)), glm::ivec2(1), fan.rayCount - 3);
   const glm::dvec2 x = glm::clamp(place - glm::dvec2(low), 0.0, 1.0);
-  const int plane = (voxel[fan.axis] - fan.firstPlane) * fan.direction;
+  const int plane = std::clamp((int(std::lround(onPlane[fan.axis])) - fan.firstPlane) * fan.direction, 0,
+                               fan.planeCount - 1);
   std::array<double, 4> values, slopes;
   for (int j = 0; j < 4; ++j) {
     std::array<double, 4> line;
@@ -177,26 +207,26 @@ std::pair<double, glm::dvec2> RayDepth::lookUp(glm::ivec3 voxel) const {
     std::tie(values[std::size_t(j)], slopes[std::size_t(j)]) = spline(line, x.x);
   }
   const auto [value, alongY] = spline(values, x.y);
-  return {value, glm::dvec2(spline(slopes, x.y).first, alongY) / apart};
+  return {std::max(value, 0.0), spline(slopes, x.y).first / apart, alongY / apart};
 }
 
 }  // namespace
 
-glm::dvec3 ReferenceDepth::gradient(glm::ivec3 voxel, glm::dvec3 toEye, double layerDepth) const {
+glm::dvec3 ReferenceDepth::gradient(const Block& block, glm::dvec3 toEye, double layerDepth) const {
   const glm::dvec3 direction = acrossLayer(toEye);
   const int along = majorAxis(direction);
   glm::dvec3 gradient(0.0);
   for (int axis = 0; axis < 3; ++axis)
-    if (axis != along) gradient[axis] = slope(voxel, axis);
+    if (axis != along) gradient[axis] = slope(block, axis);
   gradient[along] = -(layerDepth + glm::dot(gradient, direction)) / direction[along];
   return gradient;
 }
 
 std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume,
                                            const std::vector<std::vector<std::uint8_t>>& table,
-                                           const TableSettings& settings, AttenuationLookup lookup,
-                                           ToEye toEye) {
-  return std::make_unique<TableDepth>(volume, table, settings, lookup, std::move(toEye));
+                                           std::span<const LevelData> coarser, const TableSettings& settings,
+                                           AttenuationLookup lookup, ToEye toEye) {
+  return std::make_unique<TableDepth>(volume, table, coarser, settings, lookup, std::move(toEye));
 }
 
 std::unique_ptr<ReferenceDepth> rayDepth(const Volume& volume, std::span<const double> extinction,

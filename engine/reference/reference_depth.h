@@ -1,5 +1,5 @@
 #pragma once
-// Optical depth between voxels and the eye, exclusive of the voxel, and its gradient across the lines of
+// Optical depth between blocks and the eye, exclusive of the block, and its gradient across the lines of
 // sight, in double precision: from the attenuation table (Subr et al. 2007, Section 3.3), or along the rays
 // of a source.
 
@@ -11,6 +11,8 @@
 
 #include "engine/attenuation/ray_fans.h"
 #include "engine/attenuation/table_settings.h"
+#include "engine/hierarchy/hierarchy_layout.h"
+#include "engine/hierarchy/level_data.h"
 #include "engine/splatting/render_settings.h"
 #include "engine/volume/volume.h"
 
@@ -20,14 +22,18 @@ class ReferenceDepth {
  public:
   virtual ~ReferenceDepth() = default;
 
-  virtual double at(glm::ivec3 voxel) const = 0;
+  /// The mean over the block's voxels.
+  virtual double at(const Block& block) const = 0;
   /// Change per voxel along an axis of the lattice layer: one that is not the largest component of the line
   /// of sight.
-  virtual double slope(glm::ivec3 voxel, int axis) const = 0;
+  virtual double slope(const Block& block, int axis) const = 0;
+  /// World length that a layer of voxels counts in the depths, where in the line of sight it is
+  /// `layerLength`.
+  virtual double countedLength(double layerLength) const { return layerLength; }
 
-  /// Per voxel, index space: the slopes, and along the line of sight a fall by `layerDepth`, the voxel's own
-  /// optical depth, per lattice layer. `toEye` may have any length.
-  glm::dvec3 gradient(glm::ivec3 voxel, glm::dvec3 toEye, double layerDepth) const;
+  /// Per voxel, index space: the slopes, and along the line of sight a fall by `layerDepth`, the optical
+  /// depth of one lattice layer. `toEye` may have any length.
+  glm::dvec3 gradient(const Block& block, glm::dvec3 toEye, double layerDepth) const;
 };
 
 /// From a position in index space towards the eye, any length.
@@ -36,14 +42,16 @@ using ToEye = std::function<glm::dvec3(glm::dvec3 position)>;
 /// -log of the mean of the four transmittances around the line of sight, or the nearest one's. With
 /// path-length correction a stored depth is scaled by the world length of a lattice layer in the viewing
 /// direction over that in the stored one. Slopes are differences between neighbours, one-sided at the
-/// volume's faces. `table` holds bytes [direction][voxel]; keeps references.
+/// volume's faces. `table` holds bytes [direction][voxel], `coarser` the levels above the voxels; keeps
+/// references.
 std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume,
                                            const std::vector<std::vector<std::uint8_t>>& table,
-                                           const TableSettings& settings, AttenuationLookup lookup,
-                                           ToEye toEye);
+                                           std::span<const LevelData> coarser, const TableSettings& settings,
+                                           AttenuationLookup lookup, ToEye toEye);
 
 /// Sums along every ray of the source's fans (ray_fans.h), between which depths and slopes are those of
-/// Catmull and Rom's spline. `extinction` has a value a voxel.
+/// Catmull and Rom's spline. A block whose centre lies between two planes has the mean of what its line of
+/// sight has there. `extinction` has a value a voxel.
 std::unique_ptr<ReferenceDepth> rayDepth(const Volume& volume, std::span<const double> extinction,
                                          const RaySource& source);
 

@@ -46,7 +46,7 @@ Image referenceSortedPicture(const Volume& volume, const Classification& classif
   const SplatProjector projector(volume, camera, settings.size);
   std::vector<BlendedPixel> blended(std::size_t(settings.size.x) * std::size_t(settings.size.y));
   for (const std::uint32_t voxel : referenceBackToFront(volume, camera, voxels)) {
-    const std::optional<ProjectedSplat> splat = projector.project(voxel);
+    const std::optional<ProjectedSplat> splat = projector.project(projector.voxel(voxel));
     if (!splat) continue;
     const ClassifiedVoxel material = classify(classification, volume.values[voxel]);
     const double opacity = projector.opacity(*splat, material.extinction);

@@ -33,61 +33,124 @@ struct DepthToEye {
 class SplatSummer {
  public:
   SplatSummer(const Volume& volume, const Classification& classification, std::span<const double> extinction,
-              const std::vector<std::vector<std::uint8_t>>& table, const TableSettings& tableSettings,
-              const Camera& camera, const FrameSettings& settings)
+              const std::vector<std::vector<std::uint8_t>>& table, std::span<const LevelData> coarser,
+              const TableSettings& tableSettings, const Camera& camera, const FrameSettings& settings)
       : volume_(volume),
         classification_(classification),
         extinction_(extinction),
+        coarser_(coarser),
         settings_(settings),
         projector_(volume, camera, settings.size),
         depth_(settings.attenuation == AttenuationLookup::Exact
                    ? rayDepth(volume, extinction, eyeSource(camera, volume.indexToWorld))
-                   : tableDepth(volume, table, tableSettings, settings.attenuation,
+                   : tableDepth(volume, table, coarser, tableSettings, settings.attenuation,
                                 [this](glm::dvec3 position) { return projector_.toEye(position); })) {}
 
-  void add(std::uint32_t voxel, std::vector<SplatSums>& picture) const;
+  /// Over a list of what `blockOf` makes blocks of.
+  template <typename Item, typename BlockOf>
+  std::vector<SplatSums> sum(std::span<const Item> list, const BlockOf& blockOf) const;
+  Block voxel(std::uint32_t index) const { return projector_.voxel(index); }
 
  private:
-  DepthToEye depthToEye(std::uint32_t voxel, const ProjectedSplat& splat, double extinction) const;
+  void add(const Block& block, std::vector<SplatSums>& picture) const;
+  double extinctionOf(const Block& block) const;
+  ClassifiedVoxel materialOf(const Block& block) const;
+  glm::dvec3 centreOfMass(const Block& block) const;
+  DepthToEye depthToEye(const Block& block, const ProjectedSplat& splat, double extinction, int layers) const;
 
   const Volume& volume_;
   const Classification& classification_;
   const std::span<const double> extinction_;
+  const std::span<const LevelData> coarser_;
   const FrameSettings& settings_;
   const SplatProjector projector_;
   const std::unique_ptr<ReferenceDepth> depth_;
 };
 
-DepthToEye SplatSummer::depthToEye(std::uint32_t voxel, const ProjectedSplat& splat,
-                                   double extinction) const {
-  const glm::uvec3 n(volume_.dimensions);
-  const glm::ivec3 position(voxel % n.x, voxel / n.x % n.y, voxel / n.x / n.y);
-  DepthToEye depth{.centre = depth_->at(position)};
+double SplatSummer::extinctionOf(const Block& block) const {
+  if (block.level == 0) return extinction_[volume_.at(block.cell.x, block.cell.y, block.cell.z)];
+  const LevelData& level = coarser_[std::size_t(block.level) - 1];
+  return level.extinction[level.at(block.cell)];
+}
+
+ClassifiedVoxel SplatSummer::materialOf(const Block& block) const {
+  const double extinction = extinctionOf(block);
+  if (block.level == 0) {
+    const std::size_t voxel = volume_.at(block.cell.x, block.cell.y, block.cell.z);
+    return {extinction, classify(classification_, volume_.values[voxel]).color};
+  }
+  const LevelData& level = coarser_[std::size_t(block.level) - 1];
+  return {extinction,
+          level.colors.empty() ? glm::dvec3(classification_.albedo) : level.colors[level.at(block.cell)]};
+}
+
+/// Of the extinction, which every child has at its own centre.
+glm::dvec3 SplatSummer::centreOfMass(const Block& block) const {
+  if (block.level == 0) return projector_.box(block).centre();
+  glm::dvec3 sum(0.0);
+  double masses = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Block child{block.level - 1, 2 * block.cell + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)};
+    const BlockBox box = projector_.box(child);
+    if (glm::any(glm::lessThanEqual(box.extent, glm::ivec3(0)))) continue;
+    const double mass = extinctionOf(child) * box.voxels();
+    sum += mass * box.centre();
+    masses += mass;
+  }
+  return sum / masses;
+}
+
+DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& splat, double extinction,
+                                   int layers) const {
+  // The mean over a block is the depth of its middle layer: what lies in front of it has none of its own.
+  const double layer = projector_.layerLength(splat);
+  const double before = 0.5 * (layers - 1) * extinction * depth_->countedLength(layer);
+  DepthToEye depth{.centre = std::max(depth_->at(block) - before, 0.0)};
   if (!settings_.gradient) return depth;
-  const glm::dvec3 gradient =
-      depth_->gradient(position, splat.toEye, extinction * projector_.layerLength(splat));
+  const glm::dvec3 gradient = depth_->gradient(block, splat.toEye, extinction * layer);
   // It fades with the widening: a widened footprint stands for a pixel in which the depth changes often.
-  const double fade = std::pow(splat.amplitude, 4.0);
+  // The children of a block that is not widened may have been.
+  const double ofChildren = block.level == 0 ? 1.0 : std::min(splat.edge2 / 4.0, 1.0);
+  const double fade = std::pow(splat.widening * ofChildren, 4.0);
   depth.perPixel = fade * glm::dvec2(glm::dot(gradient, splat.pixelX), glm::dot(gradient, splat.pixelY));
   return depth;
 }
 
-void SplatSummer::add(std::uint32_t voxel, std::vector<SplatSums>& picture) const {
-  const std::optional<ProjectedSplat> splat = projector_.project(voxel);
+void SplatSummer::add(const Block& block, std::vector<SplatSums>& picture) const {
+  const std::optional<ProjectedSplat> splat = projector_.project(block, centreOfMass(block));
   if (!splat) return;
-  const double sigma = extinction_[voxel];
-  const glm::dvec3 albedo = classify(classification_, volume_.values[voxel]).color;
-  const DepthToEye depth = depthToEye(voxel, *splat, sigma);
-  const double opacity = projector_.opacity(*splat, sigma);
-  projector_.forEachPixel(*splat, [&](std::size_t pixel, glm::dvec2 offset, double omega) {
+  const auto [sigma, albedo] = materialOf(block);
+  const int layers = projector_.box(block).extent[majorAxis(splat->toEye)];
+  const DepthToEye depth = depthToEye(block, *splat, sigma, layers);
+  const double opacity = projector_.opacity(*splat, sigma, layers);
+  const auto addTo = [&, color = albedo, extinction = sigma](std::size_t pixel, glm::dvec2 offset,
+                                                             double omega) {
     SplatSums& sums = picture[pixel];
     const double inFront = std::max(depth.centre + glm::dot(depth.perPixel, offset), 0.0);
     const double energy = opacity * std::exp(-inFront) * omega;
-    sums.color += energy * albedo;
+    sums.color += energy * color;
     sums.energy += energy;
-    sums.depth += sigma * omega;
+    sums.depth += extinction * omega;
     sums.distance += energy * splat->distance;
-  });
+  };
+  projector_.forEachPixel(*splat, addTo);
+}
+
+template <typename Item, typename BlockOf>
+std::vector<SplatSums> SplatSummer::sum(std::span<const Item> list, const BlockOf& blockOf) const {
+  using Picture = std::vector<SplatSums>;
+  using Range = tbb::blocked_range<std::size_t>;
+  const auto addRange = [&](const Range& range, Picture picture) {
+    for (const Item& item : list.subspan(range.begin(), range.size())) add(blockOf(item), picture);
+    return picture;
+  };
+  const auto join = [](Picture left, const Picture& right) {
+    for (std::size_t i = 0; i < left.size(); ++i) left[i] += right[i];
+    return left;
+  };
+  const Picture empty(std::size_t(settings_.size.x) * std::size_t(settings_.size.y));
+  const Range all(0, list.size(), std::max<std::size_t>(list.size() / kParts, 1));
+  return tbb::parallel_deterministic_reduce(all, empty, addRange, join);
 }
 
 }  // namespace
@@ -108,23 +171,26 @@ std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classifica
                                           const FrameSettings& settings,
                                           std::span<const std::uint32_t> voxels) {
   FV_CHECK_EQ(extinction.size(), volume.voxelCount());
-  const SplatSummer summer(volume, classification, extinction, table, tableSettings, camera, settings);
-  using Picture = std::vector<SplatSums>;
-  using Range = tbb::blocked_range<std::size_t>;
-  const auto addRange = [&](const Range& range, Picture picture) {
-    for (const std::uint32_t voxel : voxels.subspan(range.begin(), range.size())) {
-      FV_CHECK_LT(voxel, volume.voxelCount());
-      summer.add(voxel, picture);
-    }
-    return picture;
-  };
-  const auto join = [](Picture left, const Picture& right) {
-    for (std::size_t i = 0; i < left.size(); ++i) left[i] += right[i];
-    return left;
-  };
-  const Picture empty(std::size_t(settings.size.x) * std::size_t(settings.size.y));
-  const Range all(0, voxels.size(), std::max<std::size_t>(voxels.size() / kParts, 1));
-  return tbb::parallel_deterministic_reduce(all, empty, addRange, join);
+  const SplatSummer summer(volume, classification, extinction, table, {}, tableSettings, camera, settings);
+  return summer.sum(voxels, [&](std::uint32_t voxel) {
+    FV_CHECK_LT(voxel, volume.voxelCount());
+    return summer.voxel(voxel);
+  });
+}
+
+std::vector<SplatSums> referenceBlockSums(const Volume& volume, const Classification& classification,
+                                          std::span<const double> extinction,
+                                          const std::vector<std::vector<std::uint8_t>>& table,
+                                          std::span<const LevelData> coarser,
+                                          const TableSettings& tableSettings, const Camera& camera,
+                                          const FrameSettings& settings, std::span<const Block> blocks) {
+  FV_CHECK_EQ(extinction.size(), volume.voxelCount());
+  const SplatSummer summer(volume, classification, extinction, table, coarser, tableSettings, camera,
+                           settings);
+  return summer.sum(blocks, [&](const Block& block) {
+    FV_CHECK_LE(std::size_t(block.level), coarser.size());
+    return block;
+  });
 }
 
 std::vector<std::uint32_t> referenceVisibleVoxels(const std::vector<double>& extinction) {

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "engine/attenuation/table_settings.h"
+#include "engine/hierarchy/hierarchy_layout.h"
+#include "engine/hierarchy/level_data.h"
 #include "engine/image/image.h"
 #include "engine/splatting/camera.h"
 #include "engine/splatting/render_settings.h"
@@ -32,6 +34,15 @@ std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classifica
                                           const TableSettings& tableSettings, const Camera& camera,
                                           const FrameSettings& settings,
                                           std::span<const std::uint32_t> voxels);
+
+/// The same of blocks of the octree; `coarser` are its levels above the voxels, as far as blocks of them are
+/// drawn.
+std::vector<SplatSums> referenceBlockSums(const Volume& volume, const Classification& classification,
+                                          std::span<const double> extinction,
+                                          const std::vector<std::vector<std::uint8_t>>& table,
+                                          std::span<const LevelData> coarser,
+                                          const TableSettings& tableSettings, const Camera& camera,
+                                          const FrameSettings& settings, std::span<const Block> blocks);
 
 /// Indices of the voxels with extinction above 0, ascending.
 std::vector<std::uint32_t> referenceVisibleVoxels(const std::vector<double>& extinction);

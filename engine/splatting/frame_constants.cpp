@@ -47,13 +47,16 @@ struct LengthSquared {
 };
 
 /// No splat of the volume reaches further than this from its centre, in pixels. For a perspective camera a
-/// kernel at distance t reaches at most R |K0 - x K2| / (t - R |K2|) along x (splat_projection.glsl has the bound
-/// itself).
-double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions) {
+/// kernel at distance t reaches at most R |K0 - x K2| / (t - R |K2|) along x (splat_projection.glsl has the
+/// bound itself).
+double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions,
+                         const DetailRule& detail) {
   const double widened = kFootprintRadius;  // a widened footprint grows by no more than this
   const glm::dmat3 rows = glm::transpose(toPixel);
   if (rays.orthographic)
-    return kFootprintRadius * std::max(glm::length(rows[0]), glm::length(rows[1])) + widened;
+    return kFootprintRadius * Block{.level = detail.coarsest}.edge() *
+               std::max(glm::length(rows[0]), glm::length(rows[1])) +
+           widened;
   const ProjectedBox box = projectBox(toPixel, rays, dimensions);
   const double clearance = box.nearest - kFootprintRadius * glm::length(rows[2]);
   if (clearance <= 0.0) return std::numeric_limits<double>::infinity();
@@ -61,7 +64,11 @@ double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::
   for (int axis = 0; axis < 2; ++axis)
     for (double end : {box.low[axis], box.high[axis]})
       steepest = std::max(steepest, glm::length(rows[axis] - end * rows[2]));
-  return kFootprintRadius * steepest / clearance + widened;
+  const double voxels = kFootprintRadius * steepest / clearance;
+  // The edge of a block that is drawn is at most this times its distance.
+  const double steepestBlock = detail.coarsest > 0 ? kFootprintRadius * detail.edgePerDistance : 0.0;
+  const double blocks = steepestBlock * steepest / (1.0 - steepestBlock * glm::length(rows[2]));
+  return std::max(voxels, blocks) + widened;
 }
 
 }  // namespace
@@ -89,8 +96,9 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                  .pixelY = pixelY,
                  .ray = rays.direction,
                  .orthographic = rays.orthographic ? 1 : 0,
-                 .rowPitch = volume.layout.rowPitch,
                  .dimensions = volume.layout.dimensions,
+                 .levelCount = int(volume.hierarchy.levels.size()),
+                 .voxelSize = float(volume.voxelSize),
                  .lookup = lookup,
                  .pathLengthCorrection = table.pathLengthCorrection ? 1 : 0,
                  .gradient = settings.gradient && lookup != shader::kLookupNone ? 1 : 0,
@@ -99,6 +107,10 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                  .opacityPoints = volume.opacityPointCount,
                  .colorPoints = volume.colorPointCount,
                  .albedo = volume.albedo};
+  for (int level = 0; level < frame.setup.levelCount; ++level)
+    frame.setup.levels[level] = volume.hierarchy.onDevice(level);
+  frame.detail = detailRule(volume.hierarchy, rays, settings.size,
+                            settings.composite == Composite::Sorted ? 0.0 : double(settings.lod));
   frame.resolve = {.ray = rays.direction,
                    .rayX = rays.directionX,
                    .rayY = rays.directionY,
@@ -111,7 +123,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   frame.eye = eyeSource(camera, volume.indexToWorld);
 
   const double largestPoint = double(device.limits().pointSizeRange[1]);
-  const double reach = largestHalfExtent(toPixel, rays, volume.layout.dimensions);
+  const double reach = largestHalfExtent(toPixel, rays, volume.layout.dimensions, frame.detail);
   const double margin = std::ceil(largestPoint / 2.0);
   const double widest = double(std::max(settings.size.x, settings.size.y)) + 2.0 * margin;
   frame.quads = 2.0 * reach > largestPoint || widest > double(device.limits().maxViewportDimensions[0]) ||

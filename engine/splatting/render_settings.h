@@ -26,6 +26,9 @@ struct FrameSettings {
   /// Whether the optical depth to the eye varies across a footprint, to first order, or is the voxel
   /// centre's, as in the paper.
   bool gradient = true;
+  /// Pixels that the edge of a block of voxels may be long to be drawn as one splat; 0: voxels only. Sorted
+  /// pictures are of voxels, whatever this is.
+  float lod = 1.0f;
   bool depth = false;  ///< also make Image::depth
 
   bool readsTable() const {

@@ -75,7 +75,7 @@ SplatPass::SplatPass(const Device& device, bool withDistance, bool sorted)
       withDistance_(withDistance),
       sorted_(sorted),
       setup_(makeComputePipeline(device, {splat_setup_spv, "splat set-up"},
-                                 {.bindings = std::vector(8, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                                 {.bindings = std::vector(9, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
                                   .pushConstantBytes = sizeof(shader::SetupPush)},
                                  {shader::kSplatThreads, 1, 1})),
       points_(makeSplatPipeline(device, false, withDistance, sorted)),
@@ -124,14 +124,17 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
       std::clamp<std::uint64_t>(inputs.volume.activeVoxels, 1, shader::kSplatsPerChunk);
   if (splats_.bytes() < count * sizeof(shader::Splat))
     splats_ = Buffer(device_, count * sizeof(shader::Splat), MemoryUse::Device, "splats");
-  const std::array<Binding, 8> setup{&frame_,
+  const Buffer& anyBuffer = frame_;
+  const Buffer& colors = inputs.volume.blockColors;
+  const std::array<Binding, 9> setup{&frame_,
                                      &inputs.volume.transferPoints,
-                                     inputs.table ? &inputs.table->planeAddresses : &frame_,  // any buffer
+                                     inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
                                      inputs.order ? inputs.order : &inputs.visible.indices,
                                      &inputs.volume.scalars,
                                      &inputs.volume.extinction,
                                      &inputs.visible.chunks,
-                                     &splats_};
+                                     &splats_,
+                                     colors.bytes() > 0 ? &colors : &anyBuffer};
   const std::array<Binding, 1> draw{&splats_};
   const Pipeline& pipeline = frame.quads ? quads_ : points_;
   for (const RenderTarget* target : targets.all())

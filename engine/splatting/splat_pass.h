@@ -7,6 +7,7 @@
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/attenuation/ray_sweep.h"
+#include "engine/hierarchy/detail_rule.h"
 #include "engine/splatting/camera.h"
 #include "engine/splatting/render_settings.h"
 #include "engine/splatting/visible_voxels.h"
@@ -32,6 +33,7 @@ struct FrameConstants {
   shader::SplatPush splat;
   shader::ResolvePush resolve;
   RaySource eye;
+  DetailRule detail;
   bool quads = false;  ///< some splat may be larger than the device's largest point
   float viewportMargin =
       0.0f;  ///< pixels around the image, so that points centred outside it are not clipped
@@ -51,7 +53,7 @@ class SplatPass {
   struct Inputs {
     const DeviceVolume& volume;
     const AttenuationTable* table;  ///< null where FrameSettings::readsTable says no
-    const VisibleVoxels& visible;
+    const VisibleVoxels& visible;   ///< the blocks to draw, by FrameConstants::detail
     const Buffer* order = nullptr;  ///< the visible voxels as they are to be drawn; null: as they are listed
   };
   void record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,

@@ -30,12 +30,13 @@ Pipeline makePass(const Device& device, ShaderCode code, std::vector<VkDescripto
 
 }  // namespace
 
-VisibleVoxels makeVisibleVoxels(const Device& device, const DeviceVolume& volume) {
+VisibleVoxels makeVisibleVoxels(const Device& device, const DeviceVolume& volume, int level) {
   VisibleVoxels result;
-  const std::uint64_t most = std::max<std::uint64_t>(volume.activeVoxels, 1);
+  const GridLayout& layout = volume.hierarchy.levels[std::size_t(level)];
+  const std::uint64_t most = std::clamp<std::uint64_t>(volume.activeVoxels, 1, layout.voxels());
   result.chunkCount = std::uint32_t((most + shader::kSplatsPerChunk - 1) / shader::kSplatsPerChunk);
-  result.groupOffsets = Buffer(device, groupsFor(volume.layout) * sizeof(std::uint32_t), MemoryUse::Device,
-                               "visible group offsets");
+  result.groupOffsets =
+      Buffer(device, groupsFor(layout) * sizeof(std::uint32_t), MemoryUse::Device, "visible group offsets");
   result.indices = Buffer(device, most * sizeof(std::uint32_t), MemoryUse::Device, "visible voxels");
   result.chunks = Buffer(device, result.chunkCount * sizeof(shader::ChunkArguments), MemoryUse::Device,
                          "chunk arguments", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
@@ -49,10 +50,12 @@ CompactionPass::CompactionPass(const Device& device)
       write_(makePass(device, {visible_write_spv, "visible write"}, {kTexels, kStorage, kStorage},
                       shader::kCountThreads)) {}
 
-void CompactionPass::record(Commands& commands, const DeviceVolume& volume,
-                            const VisibleVoxels& visible) const {
-  const std::uint32_t groups = groupsFor(volume.layout);
-  const shader::VisiblePush push{.voxelCount = std::uint32_t(volume.layout.paddedVoxels()),
+void CompactionPass::record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible,
+                            int level) const {
+  const GridLayout& layout = volume.hierarchy.levels[std::size_t(level)];
+  const std::uint32_t groups = groupsFor(layout);
+  const shader::VisiblePush push{.first = volume.hierarchy.first[std::size_t(level)],
+                                 .voxelCount = std::uint32_t(layout.paddedVoxels()),
                                  .groupCount = groups,
                                  .chunkCount = visible.chunkCount};
   const std::array<Binding, 2> count{&volume.extinctionQuads, &visible.groupOffsets};

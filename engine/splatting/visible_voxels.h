@@ -1,6 +1,6 @@
 #pragma once
-// The list of voxels that have something to draw, in ascending order, made on the device and never read back
-// for drawing.
+// The list of voxels, or blocks of a level of the octree, that have something to draw, in ascending order,
+// made on the device and never read back for drawing.
 
 #include <cstdint>
 #include <vector>
@@ -11,18 +11,20 @@ namespace freevoxels {
 
 struct VisibleVoxels {
   Buffer groupOffsets;  ///< uint: counts, then offsets, of each workgroup's stretch of voxels
-  Buffer indices;       ///< uint: padded voxel indices, ascending
+  Buffer indices;       ///< uint: as of HierarchyLayout::indexOf, ascending
   Buffer chunks;        ///< shader::ChunkArguments of each draw chunk
   std::uint32_t chunkCount = 0;
 };
 
-VisibleVoxels makeVisibleVoxels(const Device& device, const DeviceVolume& volume);
+/// Room for all blocks of a level (hierarchy_layout.h) that can hold anything.
+VisibleVoxels makeVisibleVoxels(const Device& device, const DeviceVolume& volume, int level = 0);
 
 /// COMPUTE visible_count.comp, visible_scan.comp, visible_write.comp
 class CompactionPass {
  public:
   explicit CompactionPass(const Device& device);
-  void record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible) const;
+  void record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible,
+              int level = 0) const;
 
  private:
   Pipeline count_, scan_, write_;

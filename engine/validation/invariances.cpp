@@ -206,7 +206,7 @@ ReportSection invariances(const Device& device, const ValidationScene& scene, gl
       .device = device,
       .scene = scene,
       .camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, double(size.x) / size.y, {}),
-      .settings = {.size = size}};
+      .settings = {.size = size, .lod = 0.0f}};
   const auto outputs = deviceStages(device)(scene.volume, scene.classification, {});
   const TableBytes table = outputs->table();
   const Image picture = outputs->picture(frame.camera, frame.settings);

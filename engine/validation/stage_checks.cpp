@@ -207,6 +207,7 @@ void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, R
                                .composite = method.composite,
                                .attenuation = method.attenuation,
                                .gradient = method.gradient,
+                               .lod = 0.0f,
                                .depth = method.depth};
   const Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation,
                                       double(size.x) / size.y, {.orthographic = method.orthographic});

@@ -32,7 +32,7 @@ std::vector<shader::ChunkArguments> chunkArguments(std::size_t count, std::uint3
 SteppedVolume prepareSteps(const Device& device, const Volume& volume, const Classification& classification,
                            const TableSettings& table) {
   SteppedVolume steps{.volume = uploadVolume(device, volume, classification)};
-  steps.table = makeTable(device, steps.volume.layout, table);
+  steps.table = makeTable(device, steps.volume.hierarchy, table);
   steps.visible = makeVisibleVoxels(device, steps.volume);
   const ClassifyPass classify(device);
   const AttenuationSweep sweep(device, table);

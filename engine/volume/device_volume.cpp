@@ -37,20 +37,16 @@ void uploadScalars(const Device& device, const Volume& volume, const DeviceVolum
 
 }  // namespace
 
-GridLayout::GridLayout(glm::ivec3 size)
-    : dimensions(size),
-      rowPitch((size.x + shader::kRowAlignment - 1) / shader::kRowAlignment * shader::kRowAlignment) {}
-
 DeviceVolume uploadVolume(const Device& device, const Volume& volume, const Classification& classification) {
   DeviceVolume result{.layout = GridLayout(volume.dimensions),
+                      .hierarchy = HierarchyLayout(volume.dimensions),
                       .indexToWorld = volume.indexToWorld,
                       .albedo = classification.albedo,
                       .voxelSize = volume.voxelSize(),
                       .activeVoxels = volume.activeVoxels};
-  const VkDeviceSize bytes = result.layout.paddedVoxels() * sizeof(float);
-  result.scalars = Buffer(device, bytes, MemoryUse::Device, "scalars");
-  result.extinction =
-      Buffer(device, bytes, MemoryUse::Device, "extinction", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  result.scalars = Buffer(device, result.layout.paddedVoxels() * sizeof(float), MemoryUse::Device, "scalars");
+  result.extinction = Buffer(device, result.hierarchy.paddedBlocks() * sizeof(float), MemoryUse::Device,
+                             "extinction", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
   result.extinctionQuads = QuadView(device, result.extinction);
   uploadScalars(device, volume, result);
 
@@ -61,6 +57,9 @@ DeviceVolume uploadVolume(const Device& device, const Volume& volume, const Clas
     for (const auto& point : function.color) points.emplace_back(point.scalar, point.color);
     result.opacityPointCount = std::uint32_t(function.opacity.size());
     result.colorPointCount = std::uint32_t(function.color.size());
+    if (result.hierarchy.top() > 0)
+      result.blockColors = Buffer(device, result.hierarchy.paddedCoarseBlocks() * sizeof(glm::uvec2),
+                                  MemoryUse::Device, "block colours");
   } else {
     points.emplace_back(0.0f);  // a binding needs a buffer
   }

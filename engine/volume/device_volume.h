@@ -6,44 +6,23 @@
 #include <vector>
 
 #include "engine/core/stages.h"
+#include "engine/hierarchy/hierarchy_layout.h"
 #include "engine/volume/classification.h"
+#include "engine/volume/grid_layout.h"
 #include "engine/volume/volume.h"
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/commands.h"
 
 namespace freevoxels {
 
-/// How voxels lie in device buffers: x fastest, rows padded with inactive voxels to a multiple of
-/// kRowAlignment.
-struct GridLayout {
-  glm::ivec3 dimensions{0};
-  int rowPitch = 0;
-
-  explicit GridLayout(glm::ivec3 size);
-  GridLayout() = default;
-  /// Voxels with the padding.
-  std::uint64_t paddedVoxels() const {
-    return std::uint64_t(rowPitch) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z);
-  }
-  /// Of a voxel that is no padding: its index in Volume::values.
-  std::uint32_t unpaddedIndex(std::uint32_t padded) const {
-    return padded - padded / std::uint32_t(rowPitch) * std::uint32_t(rowPitch - dimensions.x);
-  }
-  template <typename Value>
-  std::vector<Value> withoutPadding(const std::vector<Value>& padded) const {
-    std::vector<Value> values;
-    values.reserve(padded.size() / std::size_t(rowPitch) * std::size_t(dimensions.x));
-    for (auto row = padded.begin(); row != padded.end(); row += rowPitch)
-      values.insert(values.end(), row, row + dimensions.x);
-    return values;
-  }
-};
-
 struct DeviceVolume {
   GridLayout layout;
-  Buffer scalars;     ///< float
-  Buffer extinction;  ///< float, per world unit; written by ClassifyPass
+  HierarchyLayout hierarchy;  ///< its level 0 is `layout`
+  Buffer scalars;             ///< float
+  Buffer extinction;  ///< float, per world unit, of all levels; ClassifyPass writes the voxels', LevelPass
+                      ///< the rest
   QuadView extinctionQuads;
+  Buffer blockColors;     ///< four halves, of the levels above the voxels; empty where there is one colour
   Buffer transferPoints;  ///< vec4: opacity points, then colour points (transfer_function.glsl)
   std::uint32_t opacityPointCount = 0, colorPointCount = 0;  ///< 0 = physical
   glm::dmat4 indexToWorld{1.0};

@@ -81,10 +81,10 @@ Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const ch
   address_ = vkGetBufferDeviceAddress(device.handle(), &address);
 }
 
-QuadView::QuadView(const Device& device, const Buffer& buffer) {
+QuadView::QuadView(const Device& device, const Buffer& buffer, VkFormat format) {
   const VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
                                     .buffer = buffer.handle(),
-                                    .format = VK_FORMAT_R32G32B32A32_SFLOAT,
+                                    .format = format,
                                     .range = VK_WHOLE_SIZE};
   VkBufferView view = VK_NULL_HANDLE;
   VK_CHECK(vkCreateBufferView(device.handle(), &info, nullptr, &view));
@@ -108,11 +108,11 @@ void upload(const Device& device, const Buffer& buffer, std::span<const std::byt
   }
 }
 
-void download(const Device& device, const Buffer& buffer, std::span<std::byte> data) {
-  FV_CHECK_LE(data.size(), buffer.bytes());
+void download(const Device& device, const Buffer& buffer, std::span<std::byte> data, VkDeviceSize first) {
+  FV_CHECK_LE(first + data.size(), buffer.bytes());
   if (data.empty()) return;
   if (buffer.mapped() != nullptr) {
-    std::memcpy(data.data(), buffer.mapped(), data.size());
+    std::memcpy(data.data(), buffer.mapped() + first, data.size());
     return;
   }
   const Buffer staging(device, std::min<VkDeviceSize>(kStagingBytes, data.size()), MemoryUse::Readback,
@@ -120,7 +120,7 @@ void download(const Device& device, const Buffer& buffer, std::span<std::byte> d
   for (VkDeviceSize done = 0; done < data.size(); done += staging.bytes()) {
     const VkDeviceSize size = std::min<VkDeviceSize>(staging.bytes(), data.size() - done);
     Commands commands(device);
-    commands.copy(buffer, staging, {.srcOffset = done, .dstOffset = 0, .size = size});
+    commands.copy(buffer, staging, {.srcOffset = first + done, .dstOffset = 0, .size = size});
     commands.submitAndWait();
     std::memcpy(data.data() + done, staging.mapped(), size);
   }

@@ -36,14 +36,14 @@ class Buffer {
   std::byte* mapped_ = nullptr;
 };
 
-/// A buffer of floats seen as RGBA texels, four voxels each: loads through the texture path, which lavapipe
-/// gathers for all lanes at once where storage-buffer loads go lane by lane (sweeps take two thirds of the
-/// time).
+/// A buffer seen as texels of 16 bytes, four floats or four 32-bit words each: loads through the texture
+/// path, which lavapipe gathers for all lanes at once where storage-buffer loads go lane by lane (sweeps take
+/// two thirds of the time).
 class QuadView {
  public:
   QuadView() = default;
   /// The buffer needs VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT.
-  QuadView(const Device& device, const Buffer& buffer);
+  QuadView(const Device& device, const Buffer& buffer, VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT);
   VkBufferView handle() const { return view_.get(); }
 
  private:
@@ -64,7 +64,7 @@ Allocation allocate(const Device& device, const VkMemoryRequirements& needs, Mem
 /// Waits.
 void upload(const Device& device, const Buffer& buffer, std::span<const std::byte> data);
 
-/// Copies the first data.size() bytes of `buffer` to the host. Waits.
-void download(const Device& device, const Buffer& buffer, std::span<std::byte> data);
+/// Copies data.size() bytes of `buffer`, from byte `first` on, to the host. Waits.
+void download(const Device& device, const Buffer& buffer, std::span<std::byte> data, VkDeviceSize first = 0);
 
 }  // namespace freevoxels

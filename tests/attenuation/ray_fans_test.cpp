@@ -119,7 +119,7 @@ TEST(RayFans, DepthsAreThoseOfEachVoxelsOwnLineOfSight) {
     forEachVoxel([&](glm::ivec3 voxel) {
       if ((voxel.x + 2 * voxel.y + 3 * voxel.z) % 11 != 0) return;
       const double marched = marchedDepth(volume, source, voxel);
-      worst = std::max(worst, std::abs(depth->at(voxel) - marched));
+      worst = std::max(worst, std::abs(depth->at({0, voxel}) - marched));
       deepest = std::max(deepest, marched);
     });
     EXPECT_LT(worst, 0.02 * deepest) << source.place.x;
@@ -138,10 +138,10 @@ TEST(RayFans, SlopesAreTheChangeOfDepth) {
   const double expected = layers * (0.02 * 9 + 0.01 * 6);
   const double halfCode =
       std::sqrt(expected * kOpaqueDepth) / 65535.0;  // of the 16 bits that a depth is kept in
-  EXPECT_NEAR(depth->at(voxel), expected, 1.01 * halfCode);
-  EXPECT_NEAR(depth->slope(voxel, 0), layers * 0.02, 3.0 * halfCode);
-  EXPECT_NEAR(depth->slope(voxel, 1), layers * 0.01, 3.0 * halfCode);
-  const glm::dvec3 gradient = depth->gradient(voxel, {0.0, 0.0, 4.0}, 0.24);
+  EXPECT_NEAR(depth->at({0, voxel}), expected, 1.01 * halfCode);
+  EXPECT_NEAR(depth->slope({0, voxel}, 0), layers * 0.02, 3.0 * halfCode);
+  EXPECT_NEAR(depth->slope({0, voxel}, 1), layers * 0.01, 3.0 * halfCode);
+  const glm::dvec3 gradient = depth->gradient({0, voxel}, {0.0, 0.0, 4.0}, 0.24);
   EXPECT_NEAR(gradient.z, -0.24, 1e-9);
 }
 

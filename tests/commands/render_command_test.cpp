@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -119,12 +120,13 @@ TEST_F(RenderCommand, DefaultsAreWhatTheHelpSays) {
   EXPECT_NE(standard, render("--no-path-length-correction"));
 }
 
-TEST_F(RenderCommand, PaperIsSixOptionsAndYieldsToEach) {
-  const std::string six =
+TEST_F(RenderCommand, PaperIsSevenOptionsAndYieldsToEach) {
+  const std::string seven =
       "--composite additive --attenuation nearest --directions 26 --code linear8 --no-path-length-correction "
-      "--no-gradient";
-  EXPECT_EQ(render("--paper"), render(six));
-  EXPECT_EQ(render("--paper --composite normalised"), render(six.substr(six.find("--attenuation"))));
+      "--no-gradient --lod 0";
+  EXPECT_EQ(render("--paper"), render(seven));
+  EXPECT_EQ(render("--paper --composite normalised"), render(seven.substr(seven.find("--attenuation"))));
+  EXPECT_EQ(exrAttribute(render("--paper --lod 2.5"), "freevoxels:lod"), "2.5");
   EXPECT_EQ(exrAttribute(render("--paper --directions 98"), "freevoxels:directions"), "98");
   EXPECT_EQ(exrAttribute(render("--paper --path-length-correction"), "freevoxels:path-length-correction"),
             "yes");
@@ -144,6 +146,21 @@ TEST_F(RenderCommand, SortedIsAnotherPictureWithoutTheTable) {
   EXPECT_EQ(sorted.pixels, paper.pixels);
   EXPECT_EQ(sorted.depth, paper.depth);
   EXPECT_EQ(exrAttribute(render("--composite sorted"), "freevoxels:composite"), "sorted");
+}
+
+TEST_F(RenderCommand, LevelOfDetailDrawsFewerBlocks) {
+  const auto drawn = [&](const std::string& options) {
+    render(options + " --timings " + (folder / "t.json").string());
+    std::ifstream file(folder / "t.json");
+    return nlohmann::json::parse(file).at("drawn_blocks").get<std::vector<std::uint64_t>>();
+  };
+  const auto voxels = drawn("--lod 0"), blocks = drawn("--lod 64");
+  EXPECT_EQ(voxels.size(), 1u);
+  ASSERT_GT(blocks.size(), 1u);
+  EXPECT_LT(blocks.back(), voxels[0]);
+  EXPECT_NE(render("--lod 64"), render("--lod 64 --hierarchy-filter arithmetic"));
+  EXPECT_EQ(exrAttribute(render("--hierarchy-filter arithmetic"), "freevoxels:hierarchy-filter"),
+            "arithmetic");
 }
 
 TEST_F(RenderCommand, CameraOptionsMoveTheCamera) {

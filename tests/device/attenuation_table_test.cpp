@@ -48,13 +48,13 @@ class AttenuationTableTest : public DeviceTest {
                       const TableSettings& settings) {
     const auto [sweep, isNew] = sweeps_.try_emplace({settings.code, settings.directions}, device(), settings);
     const DeviceVolume onDevice = uploadVolume(device(), volume, classification);
-    const AttenuationTable table = makeTable(device(), onDevice.layout, settings);
+    const AttenuationTable table = makeTable(device(), onDevice.hierarchy, settings);
     const ClassifyPass classify(device());
     Commands commands(device());
     classify.record(commands, onDevice, classification);
     sweep->second.record(commands, onDevice, table);
     commands.submitAndWait();
-    return downloadTable(device(), onDevice.layout, table);
+    return downloadTable(device(), onDevice.hierarchy, table);
   }
 
   void expectWithinOneCode(const Volume& volume, const TableSettings& settings) {

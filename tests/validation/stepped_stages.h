@@ -32,7 +32,7 @@ struct SteppedStages : StageOutputs {
     download(device, steps.volume.extinction, std::as_writable_bytes(std::span(padded)));
     return steps.volume.layout.withoutPadding(padded);
   }
-  TableBytes table() override { return downloadTable(device, steps.volume.layout, steps.table); }
+  TableBytes table() override { return downloadTable(device, steps.volume.hierarchy, steps.table); }
   std::vector<std::uint32_t> visibleVoxels() override {
     std::vector<std::uint32_t> voxels;
     for (const std::uint32_t voxel : listed) voxels.push_back(steps.volume.layout.unpaddedIndex(voxel));

@@ -1,0 +1,36 @@
+#pragma once
+// The octree computed the plain way, on the CPU in double precision: Subr et al. 2007, Section 3.2, Eq. 7.
+
+#include <span>
+#include <vector>
+
+#include "engine/attenuation/table_settings.h"
+#include "engine/hierarchy/hierarchy_layout.h"
+#include "engine/hierarchy/level_data.h"
+#include "engine/splatting/camera.h"
+#include "engine/splatting/render_settings.h"
+#include "engine/volume/classification.h"
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+/// Level 0: the voxels, with colours unless all are the albedo. `table` may be empty.
+LevelData referenceVoxelLevel(const Volume& volume, const Classification& classification,
+                              std::vector<double> extinction, std::vector<std::vector<std::uint8_t>> table);
+
+/// Level `level` from the one below it. Extinction is the mean over the block's voxels, colour the mean of
+/// the children's weighted by their voxels and their opacity along an edge, the attenuation the mean that
+/// `settings.filter` names, a transmittance stored as 0 counting as half the smallest code.
+LevelData referenceParents(const LevelData& children, int level, const Volume& volume,
+                           const TableSettings& settings);
+
+/// All levels above the voxels, each from the one below.
+std::vector<LevelData> referenceLevels(const LevelData& voxels, const Volume& volume,
+                                       const TableSettings& settings);
+
+/// Blocks that hold anything and are drawn by the rule of engine/hierarchy/detail_rule.h; `extinction` is of
+/// the voxels.
+std::vector<Block> referenceCut(const Volume& volume, std::span<const double> extinction,
+                                const Camera& camera, const FrameSettings& settings);
+
+}  // namespace freevoxels

@@ -1,0 +1,177 @@
+#include "engine/validation/level_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <random>
+
+#include "engine/core/error.h"
+#include "engine/reference/reference_hierarchy.h"
+#include "engine/reference/reference_splats.h"
+#include "engine/renderer.h"
+#include "engine/validation/worst.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr double kExtinctionTolerance = 1e-5;  ///< of sums of eight 32-bit floats
+constexpr double kColorTolerance = 1e-3;       ///< of 16-bit halves
+constexpr double kCodeTolerance = 1.0;
+constexpr double kPictureTolerance = 1e-5;
+constexpr int kCameras = 24;
+
+struct Variant {
+  const char* name;
+  TableSettings settings;
+};
+const std::array<Variant, 4> kVariants{
+    {{"depth8", {}},
+     {"depth8, arithmetic", {.filter = HierarchyFilter::Arithmetic}},
+     {"linear8", {.code = AttenuationCode::Linear8}},
+     {"depth8, 98 directions", {.directions = DirectionSet::Directions98}}}};
+
+std::string blockText(int level, std::size_t index) {
+  return fmt::format("level {}, block {}", level, index);
+}
+
+double opticalDepthOf(const LevelData& level, int number, glm::ivec3 dimensions) {
+  double sum = 0.0;
+  const glm::ivec3 n = level.dimensions;
+  for (int z = 0; z < n.z; ++z)
+    for (int y = 0; y < n.y; ++y)
+      for (int x = 0; x < n.x; ++x)
+        sum += level.extinction[level.at({x, y, z})] * boxOf({number, {x, y, z}}, dimensions).voxels();
+  return sum;
+}
+
+void compareMedium(const LevelData& level, const LevelData& reference, int number, Worst& extinction,
+                   Worst& color) {
+  FV_CHECK_EQ(level.extinction.size(), reference.extinction.size());
+  FV_CHECK_EQ(level.colors.size(), reference.colors.size());
+  for (std::size_t i = 0; i < level.extinction.size(); ++i) {
+    const double expected = reference.extinction[i], difference = std::abs(level.extinction[i] - expected);
+    extinction.take(difference == 0.0 ? 0.0 : difference / expected, [&] { return blockText(number, i); });
+  }
+  for (std::size_t i = 0; i < level.colors.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      color.take(std::abs(level.colors[i][c] - reference.colors[i][c]), [&] { return blockText(number, i); });
+}
+
+void compareTables(const LevelData& level, const LevelData& reference, int number, DirectionSet set,
+                   Worst& worst) {
+  FV_CHECK_EQ(level.table.size(), reference.table.size());
+  for (std::size_t d = 0; d < level.table.size(); ++d) {
+    FV_CHECK_EQ(level.table[d].size(), reference.table[d].size());
+    for (std::size_t i = 0; i < level.table[d].size(); ++i)
+      worst.take(std::abs(int(level.table[d][i]) - int(reference.table[d][i])),
+                 [&] { return fmt::format("{}, {}", directionText(set, int(d)), blockText(number, i)); });
+  }
+}
+
+/// Anywhere about the volume or in it, looking at a place in it.
+Camera randomCamera(const Volume& volume, std::mt19937& generator) {
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  const auto place = [&](double beyond) {
+    const glm::dvec3 part(uniform(generator), uniform(generator), uniform(generator));
+    const glm::dvec3 index = (part * (1.0 + 2.0 * beyond) - beyond) * glm::dvec3(volume.dimensions);
+    return glm::dvec3(volume.indexToWorld * glm::dvec4(index, 1.0));
+  };
+  Camera camera{.position = place(2.0 * uniform(generator)), .lookAt = place(0.0)};
+  camera.verticalFov = 20.0 + 80.0 * uniform(generator);
+  return camera;
+}
+
+/// Each camera with a level of detail at which several levels are likely.
+Check checkCoverage(Renderer& renderer, const Volume& volume, std::span<const double> extinction,
+                    glm::ivec2 size) {
+  std::mt19937 generator(5);
+  Worst worst;
+  for (int i = 0; i < kCameras; ++i) {
+    FrameSettings settings{.size = size, .attenuation = AttenuationLookup::Nearest};
+    const Camera camera = randomCamera(volume, generator);
+    settings.lod = float(std::uniform_real_distribution<double>(0.5, 40.0)(generator));
+    renderer.render(camera, settings);
+    worst.take(double(coverageErrors(volume, extinction, renderer.downloadDrawnBlocks())),
+               [&] { return fmt::format("camera {}", i); });
+  }
+  return worst.atMost(0.0, "cut: voxels that are not covered once, from random places", "voxels");
+}
+
+/// From near enough for several levels.
+Check checkCutPicture(Renderer& renderer, const ValidationScene& scene, const LevelData& voxels,
+                      std::span<const LevelData> levels, const TableSettings& table, glm::ivec2 size) {
+  Camera camera =
+      framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, double(size.x) / size.y, {});
+  camera.position = camera.lookAt + 0.6 * (camera.position - camera.lookAt);
+  const FrameSettings settings{.size = size, .lod = 6.0f};
+  const Image picture = renderer.render(camera, settings);
+  const auto sums = referenceBlockSums(scene.volume, scene.classification, voxels.extinction, voxels.table,
+                                       levels, table, camera, settings, renderer.downloadDrawnBlocks());
+  return largestDifference(picture, referenceResolve(sums, settings))
+      .atMost(kPictureTolerance, "cut: picture of several levels");
+}
+
+}  // namespace
+
+std::vector<Check> compareLevels(const Volume& volume, const LevelData& voxels,
+                                 std::span<const LevelData> levels, const TableSettings& settings,
+                                 const char* name) {
+  Worst extinction, color, depth, table;
+  const double whole = opticalDepthOf(voxels, 0, volume.dimensions);
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const int level = int(i) + 1;
+    const LevelData reference = referenceParents(i == 0 ? voxels : levels[i - 1], level, volume, settings);
+    compareMedium(levels[i], reference, level, extinction, color);
+    compareTables(levels[i], reference, level, settings.directions, table);
+    const double kept = opticalDepthOf(levels[i], level, volume.dimensions);
+    depth.take(kept == whole ? 0.0 : std::abs(kept / whole - 1.0),
+               [&] { return fmt::format("level {}", level); });
+  }
+  return {extinction.atMost(kExtinctionTolerance, fmt::format("octree: extinction, {}", name), "relative"),
+          color.atMost(kColorTolerance, fmt::format("octree: colour, {}", name)),
+          depth.atMost(kExtinctionTolerance, fmt::format("octree: optical depth of the whole, {}", name),
+                       "relative"),
+          table.atMost(kCodeTolerance, fmt::format("octree: table, {}", name), "codes")};
+}
+
+std::size_t coverageErrors(const Volume& volume, std::span<const double> extinction,
+                           std::span<const Block> blocks) {
+  std::vector<int> covered(volume.voxelCount(), 0);
+  for (const Block& block : blocks) {
+    const BlockBox box = boxOf(block, volume.dimensions);
+    const glm::ivec3 end = box.first + box.extent;
+    for (int z = box.first.z; z < end.z; ++z)
+      for (int y = box.first.y; y < end.y; ++y)
+        for (int x = box.first.x; x < end.x; ++x) ++covered[volume.at(x, y, z)];
+  }
+  std::size_t errors = 0;
+  for (std::size_t i = 0; i < covered.size(); ++i)
+    if (covered[i] > 1 || (covered[i] == 0 && extinction[i] > 0.0)) ++errors;
+  return errors;
+}
+
+ReportSection levelChecks(const Device& device, const ValidationScene& scene, glm::ivec2 size) {
+  ReportSection section{
+      .title = fmt::format("Levels: {}", scene.name),
+      .text =
+          "Every level of the octree on the device against a double-precision version on the CPU that is "
+          "given what the device made of the level below; the cuts of random cameras, in which every voxel "
+          "is in one block; and a cut of several levels drawn by both."};
+  for (const Variant& variant : kVariants) {
+    Renderer renderer(device, scene.volume, scene.classification, variant.settings);
+    const std::vector<float> extinction = renderer.downloadExtinction();
+    const LevelData voxels = referenceVoxelLevel(
+        scene.volume, scene.classification, {extinction.begin(), extinction.end()}, renderer.downloadTable());
+    const std::vector<LevelData> levels = renderer.downloadLevels();
+    for (Check& check : compareLevels(scene.volume, voxels, levels, variant.settings, variant.name))
+      section.checks.push_back(std::move(check));
+    if (&variant != &kVariants.front()) continue;
+    section.checks.push_back(checkCoverage(renderer, scene.volume, voxels.extinction, size));
+    section.checks.push_back(checkCutPicture(renderer, scene, voxels, levels, variant.settings, size));
+  }
+  return section;
+}
+
+}  // namespace freevoxels

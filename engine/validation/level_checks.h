@@ -1,0 +1,30 @@
+#pragma once
+// The octree and its cuts (Subr et al. 2007, Section 3.2) against the plain double-precision version on the
+// CPU.
+
+#include <span>
+#include <vector>
+
+#include "engine/attenuation/table_settings.h"
+#include "engine/hierarchy/hierarchy_layout.h"
+#include "engine/hierarchy/level_data.h"
+#include "engine/validation/report.h"
+#include "engine/validation/validation_scene.h"
+#include "engine/vulkan/device.h"
+
+namespace freevoxels {
+
+/// Every level given the one below it, the first given `voxels`: extinction and colours, whether the optical
+/// depth of the whole is kept, the table.
+std::vector<Check> compareLevels(const Volume& volume, const LevelData& voxels,
+                                 std::span<const LevelData> levels, const TableSettings& settings,
+                                 const char* name);
+
+/// Voxels with extinction that are not in exactly one of the blocks.
+std::size_t coverageErrors(const Volume& volume, std::span<const double> extinction,
+                           std::span<const Block> blocks);
+
+/// Levels, coverage by the cuts of random cameras, and the sums of a cut of several levels.
+ReportSection levelChecks(const Device& device, const ValidationScene& scene, glm::ivec2 size);
+
+}  // namespace freevoxels

@@ -1,0 +1,43 @@
+#pragma once
+// How a box of values lies in device buffers.
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "shaders/interface.h"
+
+namespace freevoxels {
+
+/// x fastest, rows padded to a multiple of kRowAlignment with voxels that hold nothing.
+struct GridLayout {
+  glm::ivec3 dimensions{0};
+  int rowPitch = 0;
+
+  explicit GridLayout(glm::ivec3 size)
+      : dimensions(size),
+        rowPitch((size.x + shader::kRowAlignment - 1) / shader::kRowAlignment * shader::kRowAlignment) {}
+  GridLayout() = default;
+  std::uint64_t voxels() const {
+    return std::uint64_t(dimensions.x) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z);
+  }
+  /// Voxels with the padding.
+  std::uint64_t paddedVoxels() const {
+    return std::uint64_t(rowPitch) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z);
+  }
+  /// Of a voxel that is no padding: its index in Volume::values.
+  std::uint32_t unpaddedIndex(std::uint32_t padded) const {
+    return padded - padded / std::uint32_t(rowPitch) * std::uint32_t(rowPitch - dimensions.x);
+  }
+  template <typename Value>
+  std::vector<Value> withoutPadding(const std::vector<Value>& padded) const {
+    std::vector<Value> values;
+    values.reserve(padded.size() / std::size_t(rowPitch) * std::size_t(dimensions.x));
+    for (auto row = padded.begin(); row != padded.end(); row += rowPitch)
+      values.insert(values.end(), row, row + dimensions.x);
+    return values;
+  }
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,50 @@
+#version 460
+// A level of the octree from the one below, a thread a block: extinction, the mean over the voxels inside of the
+// volume, which conserves optical depth, and colour, the mean weighted by the children's opacities. Subr et al.
+// 2007, Section 3.2.
+#extension GL_GOOGLE_include_directive : require
+#include "interface.h"
+#include "blocks.glsl"
+#include "opacity.glsl"
+#define TRANSFER_BINDING 1
+#include "transfer_function.glsl"
+
+layout(constant_id = 0) const bool kColors = false;      // there is more than one colour
+layout(constant_id = 1) const bool kFromVoxels = false;  // the children are voxels
+
+layout(local_size_x = kLevelThreads) in;
+layout(scalar, push_constant) uniform Push { MediumLevelPush push; };
+layout(scalar, binding = 0) buffer Extinction { float extinction[]; };
+layout(scalar, binding = 2) readonly buffer Scalars { float scalars[]; };
+layout(scalar, binding = 3) buffer BlockColors { uvec2 blockColors[]; };
+
+vec3 childColor(uint address) {
+  if (kFromVoxels) return evaluatePoints(push.opacityPoints, push.colorPoints, scalars[address]);
+  return unpackColor(blockColors[address - push.firstColor]);
+}
+
+void main() {
+  const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kLevelThreads;
+  if (i >= push.parentCount) return;
+  const uint address = push.parent.first + i;
+  const ivec3 cell = cellAt(push.parent, address);
+  const vec3 inside = vec3(extentInside(cell, 2 * push.childEdge, push.voxels));
+  float mean = 0.0, opacity = 0.0;
+  vec3 color = vec3(0.0);
+  for (int corner = 0; corner < 8; ++corner) {
+    const ivec3 child = 2 * cell + ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+    if (any(greaterThanEqual(child, push.child.dimensions))) continue;
+    const vec3 part = vec3(extentInside(child, push.childEdge, push.voxels)) / inside;
+    const float share = part.x * part.y * part.z;
+    const uint childAddress = blockAddress(push.child, child);
+    const float sigma = extinction[childAddress];
+    mean += share * sigma;
+    if (kColors && sigma > 0.0) {
+      const float weight = share * opacityOf(sigma * push.childLength);
+      opacity += weight;
+      color += weight * childColor(childAddress);
+    }
+  }
+  extinction[address] = mean;  // padding has no children: 0
+  if (kColors) blockColors[address - push.firstColor] = packColor(opacity > 0.0 ? color / opacity : vec3(0.0));
+}
