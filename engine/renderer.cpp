@@ -108,7 +108,7 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
   if (sorted) sort->record(commands, volume, visible, camera);
   splats->record(commands,
                  {.volume = volume,
-                  .table = settings.readsTable() ? &sweptTable(progress) : nullptr,
+                  .table = frame.constants.readsTable() ? &sweptTable(progress) : nullptr,
                   .visible = visible,
                   .order = sorted ? &sort->voxels() : nullptr},
                  frame.constants, frame.targets);

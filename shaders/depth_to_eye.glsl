@@ -1,9 +1,12 @@
 // Optical depth between a voxel and the eye, exclusive of the voxel, and its gradient across the lines of
 // sight. Include after direction_lookup.glsl and ray_lookup.glsl; `frame` is the SetupFrame.
 
+const float kAtEye = 1e-3;  // voxels; nearer to the eye a position has no direction
+
 // Divided by its largest component, so that its length is that of one lattice layer.
 vec3 directionToEye(vec3 position) {
-  const vec3 toEye = frame.orthographic != 0 ? -frame.ray : -(position - frame.middle + frame.eyeToMiddle);
+  vec3 toEye = -(position - frame.middle + frame.eyeToMiddle);
+  if (frame.orthographic != 0 || dot(toEye, toEye) < kAtEye * kAtEye) toEye = -frame.ray;
   const vec3 size = abs(toEye);
   return toEye / max(size.x, max(size.y, size.z));
 }

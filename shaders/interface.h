@@ -62,7 +62,7 @@ FV_CONSTANT int kCodeLinear8 = 1;
 FV_CONSTANT int kLookupBilinear = 0;
 FV_CONSTANT int kLookupNearest = 1;
 FV_CONSTANT int kLookupExact = 2;
-FV_CONSTANT int kLookupNone = 3;  // A = 1
+FV_CONSTANT int kLookupNone = 4;  // A = 1; 3 is AttenuationLookup::Auto, which is one of the others here
 FV_CONSTANT int kCompositeNormalised = 0;
 FV_CONSTANT int kCompositeAdditive = 1;
 FV_CONSTANT int kCompositeSorted = 2;
@@ -158,9 +158,12 @@ struct Splat {
   vec2 center;        // pixels, (0, 0) = the top left corner of the image
   vec2 halfExtent;    // pixels; 0 = not drawn
   vec3 conic;         // xx, xy, yy: (r/R)² |D|² = xx dx² + 2 xy dx dy + yy dy² at (dx, dy) from the centre
-  float opticalDepth; // t_v, times the footprint's peak, per world length of ray
+  float opticalDepth; // t_v, times the footprint's peak, per world length of ray; less than 0: the kernel is cut
   float distance;     // from the eye plane along the viewing axis, world units
   vec3 depthToEye;    // of the voxel's centre, and how it changes per pixel along x and y
+  // A kernel that the eye plane cuts, q from the eye to its centre in index space: `conic` is q . D of the pixel
+  // (0, 0) and its change per pixel along x and y; `depthToEye` is the depth at the eye, its change per world
+  // length along the ray, and |q|².
 };
 
 // The frame, as splat_setup.comp needs it. Index space is relative to the middle of the volume, so that

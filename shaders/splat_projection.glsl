@@ -1,10 +1,14 @@
-// A voxel's footprint on the image. Include after interface.h; `frame` is the SetupFrame.
+// A voxel's footprint on the image. Include after interface.h and part_ahead.glsl; `frame` is the SetupFrame.
+
+const float kBeyondImage = 1e6;  // pixels
 
 struct Footprint {
   vec2 center, halfExtent;
   vec3 conic;
   float amplitude;  // 1, less where the footprint is widened
   float distance;
+  float ahead;      // orthographic: the part of the kernel in front of the eye plane, about
+  bool cut;         // by a perspective camera's eye plane
 };
 
 // A footprint narrower than the pixel lattice can sample is widened to it, with its integral kept: `shape`
@@ -21,9 +25,37 @@ void widenToPixel(inout Footprint footprint, vec3 shape, float scale) {
   footprint.halfExtent *= sqrt(widened.xz / shape.xz);
 }
 
+// Where along an axis of the image rays can pass a kernel that the eye plane cuts: at x with
+// (k - x z)² <= R² |row - x rowZ|², k and z its centre's place along `row` and `rowZ`. That is not between two
+// roots, but on one side of them; on the other side is what lies behind the eye.
+vec2 cutBounds(float k, float z, vec3 row, vec3 rowZ) {
+  const float radius2 = kSplatRadius * kSplatRadius;
+  const float a = z * z - radius2 * dot(rowZ, rowZ);
+  const float b = k * z - radius2 * dot(row, rowZ);
+  const float c = k * k - radius2 * dot(row, row);
+  const float discriminant = b * b - a * c;
+  if (!(discriminant > 0.0)) return vec2(-kBeyondImage, kBeyondImage);
+  const float larger = b + (b < 0.0 ? -1.0 : 1.0) * sqrt(discriminant);
+  const float near = c / larger;
+  const float far = clamp(larger / min(a, -1e-30), -kBeyondImage, kBeyondImage);
+  const float slack = 2.0;  // for rounding, pixels
+  return k > near * z ? vec2(max(near, far) - slack, kBeyondImage) : vec2(-kBeyondImage, min(near, far) + slack);
+}
+
+// Its footprint is integrated along each pixel's ray from the eye on: `conic` is how far along the ray of the
+// pixel (0, 0), and more per pixel, the kernel's centre is, times |D|.
+void projectCut(vec3 q, vec3 pixel, inout Footprint footprint) {
+  const mat3 rows = transpose(frame.indexToPixel);
+  const vec2 x = cutBounds(pixel.x, pixel.z, rows[0], rows[2]);
+  const vec2 y = cutBounds(pixel.y, pixel.z, rows[1], rows[2]);
+  footprint.center = 0.5 * vec2(x.x + x.y, y.x + y.y);
+  footprint.halfExtent = 0.5 * vec2(x.y - x.x, y.y - y.x);
+  footprint.conic = vec3(dot(q, frame.ray), dot(q, frame.pixelX), dot(q, frame.pixelY));
+  footprint.cut = true;
+}
+
 // The kernel's sphere of radius R around the index position `offset` (from the volume's middle) seen from the
-// eye: all rays D with |q x D|² <= R² |D|². Returns false behind the eye, and in perspective also where it
-// reaches the eye plane.
+// eye: all rays D with |q x D|² <= R² |D|². Returns false behind the eye.
 bool project(vec3 offset, out Footprint footprint) {
   const vec3 q = offset + frame.eyeToMiddle;
   const vec3 pixel = frame.indexToPixel * offset + frame.middleInPixels;
@@ -37,17 +69,24 @@ bool project(vec3 offset, out Footprint footprint) {
       vec3(quadric.z, -quadric.y, quadric.x) * (radius2 * scale / (quadric.x * quadric.z - quadric.y * quadric.y));
   footprint.conic = quadric / radius2;
   footprint.amplitude = 1.0;
-  footprint.distance = pixel.z;
-  if (pixel.z <= 0.0) return false;
+  footprint.distance = max(pixel.z, 0.0);
+  footprint.ahead = 1.0;
+  footprint.cut = false;
+  const mat3 rows = transpose(frame.indexToPixel);
+  const float reach = kSplatRadius * length(rows[2]);
+  if (pixel.z <= -reach) return false;
 
   if (frame.orthographic != 0) {
     footprint.center = pixel.xy;
     footprint.halfExtent = sqrt(shape.xz);
+    footprint.ahead = partAhead(pixel.z / reach);
   } else {
     // The bounds of the projected sphere, from its dual conic R² K Kᵀ - k kᵀ in pixels around the centre.
-    const mat3 rows = transpose(frame.indexToPixel);
     const float nearest = pixel.z * pixel.z - radius2 * dot(rows[2], rows[2]);
-    if (nearest <= 0.0) return false;
+    if (pixel.z <= 0.0 || nearest <= 0.0) {
+      projectCut(q, pixel, footprint);
+      return true;
+    }
     footprint.center = pixel.xy / pixel.z;
     const vec3 rowX = rows[0] - footprint.center.x * rows[2];
     const vec3 rowY = rows[1] - footprint.center.y * rows[2];

@@ -21,6 +21,7 @@ layout(scalar, binding = 7) writeonly buffer Splats { Splat splats[]; };
 #include "direction_lookup.glsl"
 #include "ray_lookup.glsl"
 #include "depth_to_eye.glsl"
+#include "part_ahead.glsl"
 #include "splat_projection.glsl"
 
 // (1 - exp(-x)) / x, also right for small x.
@@ -54,7 +55,7 @@ void main() {
   }
   const float sigma = extinction[voxel];
   const float layerDepth = sigma * layerLength(directionToEye(position));
-  const float peak = kSplatPeak * footprint.amplitude;
+  const float peak = kSplatPeak * footprint.amplitude * footprint.ahead;
   const float energy = sigma * selfAttenuation(layerDepth) * peak;
   splat.colorEnergy = vec4(energy * colorOf(voxel), energy);
   splat.center = footprint.center;
@@ -69,5 +70,11 @@ void main() {
   const float perPixel = fade * (frame.orthographic != 0 ? 1.0 : footprint.distance);
   splat.depthToEye =
       vec3(toEye.depth, perPixel * vec2(dot(toEye.gradient, frame.pixelX), dot(toEye.gradient, frame.pixelY)));
+  if (footprint.cut) {
+    const vec3 fromEye = position - frame.middle + frame.eyeToMiddle;
+    splat.opticalDepth = -splat.opticalDepth;
+    splat.depthToEye = vec3(toEye.depth, 0.0, dot(fromEye, fromEye));
+    if (frame.gradient != 0) splat.depthToEye.xy += sigma * vec2(-length(frame.indexToWorld * fromEye), 1.0);
+  }
   splats[local] = splat;
 }

@@ -69,7 +69,7 @@ std::pair<double, double> spline(const std::array<double, 4>& p, double x) {
 
 /// As ray_sweep.comp keeps it: the square root of its part of kOpaqueDepth, in 16 bits.
 double storedRayDepth(double depth) {
-  const double code = std::round(65535.0 * std::sqrt(std::min(depth, kOpaqueDepth) / kOpaqueDepth));
+  const double code = std::round(65535.0 * std::sqrt(std::clamp(depth / kOpaqueDepth, 0.0, 1.0)));
   return kOpaqueDepth * (code / 65535.0) * (code / 65535.0);
 }
 
@@ -89,6 +89,7 @@ class RayDepth : public ReferenceDepth {
   }
   double extinctionAt(int axis, int plane, glm::ivec2 side) const;
   double interpolated(int axis, int plane, glm::dvec2 side) const;
+  double sourceCut(const RayFan& fan, glm::dvec2 offset, glm::dvec2 slope) const;
   void march(std::size_t fan, int i, int j);
   std::pair<double, glm::dvec2> lookUp(glm::ivec3 voxel) const;
 
@@ -131,6 +132,20 @@ double RayDepth::interpolated(int axis, int plane, glm::dvec2 side) const {
   return sum;
 }
 
+/// What a ray that starts within the volume has in front of its first layer, in layers: the extinction along
+/// it is linear between the planes on either side of the source. Less than 0 where the source is in that
+/// layer.
+double RayDepth::sourceCut(const RayFan& fan, glm::dvec2 offset, glm::dvec2 slope) const {
+  const double distance = source_.atInfinity ? 1.0 : std::abs(fan.firstPlane - source_.place[fan.axis]);
+  if (distance >= 1.0) return 0.0;
+  const auto at = [&](int plane) {
+    return interpolated(fan.axis, plane, fan.origin + offset + slope * (plane - fan.farthest));
+  };
+  const double first = at(fan.firstPlane), before = at(fan.firstPlane - fan.direction);
+  const double source = distance * before + (1.0 - distance) * first;
+  return distance * (source + first) / 2.0 - first / 2.0;
+}
+
 void RayDepth::march(std::size_t f, int i, int j) {
   const RayFan& fan = fans_[f];
   const glm::dvec2 offset = fan.spacing * glm::dvec2(i, j);
@@ -140,7 +155,7 @@ void RayDepth::march(std::size_t f, int i, int j) {
   step[(fan.axis + 1) % 3] = slope.x;
   step[(fan.axis + 2) % 3] = slope.y;
   const double layer = glm::length(glm::dmat3(volume_.indexToWorld) * step);
-  double depth = 0.0;
+  double depth = layer * sourceCut(fan, offset, slope);
   for (int k = 0; k < fan.planeCount; ++k) {
     const int plane = fan.firstPlane + fan.direction * k;
     depths_[f][std::size_t(i) + std::size_t(fan.rayCount.x) *
@@ -153,13 +168,14 @@ void RayDepth::march(std::size_t f, int i, int j) {
 std::pair<double, glm::dvec2> RayDepth::lookUp(glm::ivec3 voxel) const {
   const RayFan& fan = fanOf(voxel);
   const std::vector<double>& depths = depths_[std::size_t(&fan - fans_.data())];
-  const double up = voxel[fan.axis] - fan.farthest;
+  const int plane =
+      std::max((voxel[fan.axis] - fan.firstPlane) * fan.direction, 0);  // at the source: the first
+  const double up = fan.firstPlane + fan.direction * plane - fan.farthest;
   const double apart = fan.spacing * (1.0 + fan.convergence * up);
   const glm::dvec2 side(voxel[(fan.axis + 1) % 3], voxel[(fan.axis + 2) % 3]);
   const glm::dvec2 place = (side - fan.origin - fan.slope * up) / apart;
   const glm::ivec2 low = glm::clamp(glm::ivec2(glm::floor(place)), glm::ivec2(1), fan.rayCount - 3);
   const glm::dvec2 x = glm::clamp(place - glm::dvec2(low), 0.0, 1.0);
-  const int plane = (voxel[fan.axis] - fan.firstPlane) * fan.direction;
   std::array<double, 4> values, slopes;
   for (int j = 0; j < 4; ++j) {
     std::array<double, 4> line;

@@ -18,10 +18,17 @@ namespace freevoxels {
 
 namespace {
 
-/// Optical depth to the eye at a voxel's centre, and its change per pixel.
+/// Optical depth to the eye at a voxel's centre, and its change per pixel; for a kernel that is cut, its
+/// change per world length along the ray, from the centre's distance on.
 struct DepthToEye {
   double centre = 0.0;
   glm::dvec2 perPixel{0.0};
+  double perLength = 0.0, distance = 0.0;
+
+  double at(const CoveredPixel& pixel) const {
+    const double along = perLength * (pixel.ahead - distance);
+    return std::max(centre + glm::dot(perPixel, pixel.offset) + along, 0.0);
+  }
 };
 
 class SplatSummer {
@@ -34,16 +41,15 @@ class SplatSummer {
         extinction_(extinction),
         settings_(settings),
         projector_(volume, camera, settings.size),
-        depth_(settings.attenuation == AttenuationLookup::Exact
-                   ? rayDepth(volume, extinction, eyeSource(camera, volume.indexToWorld))
-                   : tableDepth(volume, table, tableSettings, settings.attenuation,
-                                [this](glm::dvec3 position) { return projector_.toEye(position); })),
+        depth_(depthFor(table, tableSettings, camera)),
         sums_(std::size_t(settings.size.x) * std::size_t(settings.size.y)) {}
 
   void add(std::uint32_t voxel);
   std::vector<SplatSums> take() { return std::move(sums_); }
 
  private:
+  std::unique_ptr<ReferenceDepth> depthFor(const std::vector<std::vector<std::uint8_t>>& table,
+                                           const TableSettings& tableSettings, const Camera& camera) const;
   DepthToEye depthToEye(std::uint32_t voxel, const ProjectedSplat& splat, double extinction) const;
 
   const Volume& volume_;
@@ -55,12 +61,29 @@ class SplatSummer {
   std::vector<SplatSums> sums_;
 };
 
+std::unique_ptr<ReferenceDepth> SplatSummer::depthFor(const std::vector<std::vector<std::uint8_t>>& table,
+                                                      const TableSettings& tableSettings,
+                                                      const Camera& camera) const {
+  const glm::dmat4& indexToWorld = volume_.indexToWorld;
+  const AttenuationLookup lookup =
+      resolveAttenuation(settings_.attenuation, eyeIsInside(camera, volume_.dimensions, indexToWorld));
+  if (lookup == AttenuationLookup::Exact)
+    return rayDepth(volume_, extinction_, eyeSource(camera, indexToWorld));
+  return tableDepth(volume_, table, tableSettings, lookup,
+                    [this](glm::dvec3 position) { return projector_.toEye(position); });
+}
+
 DepthToEye SplatSummer::depthToEye(std::uint32_t voxel, const ProjectedSplat& splat,
                                    double extinction) const {
   const glm::uvec3 n(volume_.dimensions);
   const glm::ivec3 position(voxel % n.x, voxel / n.x % n.y, voxel / n.x / n.y);
   DepthToEye depth{.centre = depth_->at(position)};
   if (!settings_.gradient) return depth;
+  if (splat.cut) {
+    depth.perLength = extinction;
+    depth.distance = projector_.distanceFromEye(splat);
+    return depth;
+  }
   const glm::dvec3 gradient =
       depth_->gradient(position, splat.toEye, extinction * projector_.layerLength(splat));
   // It fades with the widening: a widened footprint stands for a pixel in which the depth changes often.
@@ -76,13 +99,12 @@ void SplatSummer::add(std::uint32_t voxel) {
   const glm::dvec3 albedo = classify(classification_, volume_.values[voxel]).color;
   const DepthToEye depth = depthToEye(voxel, *splat, sigma);
   const double opacity = projector_.opacity(*splat, sigma);
-  projector_.forEachPixel(*splat, [&](std::size_t pixel, glm::dvec2 offset, double omega) {
-    SplatSums& sums = sums_[pixel];
-    const double inFront = std::max(depth.centre + glm::dot(depth.perPixel, offset), 0.0);
-    const double energy = opacity * std::exp(-inFront) * omega;
+  projector_.forEachPixel(*splat, [&](const CoveredPixel& pixel) {
+    SplatSums& sums = sums_[pixel.index];
+    const double energy = opacity * std::exp(-depth.at(pixel)) * pixel.omega;
     sums.color += energy * albedo;
     sums.energy += energy;
-    sums.depth += sigma * omega;
+    sums.depth += sigma * pixel.omega;
     sums.distance += energy * splat->distance;
   });
 }

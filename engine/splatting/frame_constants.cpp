@@ -47,8 +47,8 @@ struct LengthSquared {
 };
 
 /// No splat of the volume reaches further than this from its centre, in pixels. For a perspective camera a
-/// kernel at distance t reaches at most R |K0 - x K2| / (t - R |K2|) along x (splat_projection.glsl has the bound
-/// itself).
+/// kernel at distance t reaches at most R |K0 - x K2| / (t - R |K2|) along x (splat_projection.glsl has the
+/// bound itself).
 double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions) {
   const double widened = kFootprintRadius;  // a widened footprint grows by no more than this
   const glm::dmat3 rows = glm::transpose(toPixel);
@@ -77,8 +77,10 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
   const glm::dvec3 eyeToMiddle = middle - rays.origin;
 
-  const int lookup =
-      settings.composite == Composite::Sorted ? shader::kLookupNone : int(settings.attenuation);
+  const bool inside = eyeIsInside(camera, volume.layout.dimensions, volume.indexToWorld);
+  const int lookup = settings.composite == Composite::Sorted
+                         ? shader::kLookupNone
+                         : int(resolveAttenuation(settings.attenuation, inside));
   FrameConstants frame{};
   frame.setup = {.indexToWorld = linear,
                  .indexToPixel = toPixel,
