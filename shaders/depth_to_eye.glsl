@@ -14,6 +14,24 @@ vec3 directionToEye(vec3 position) {
 // In world units.
 float layerLength(vec3 direction) { return length(frame.indexToWorld * direction); }
 
+// Of an eye inside the volume: A_B / A_V of Subr et al. 2007, Section 3.3. Between the voxels around the eye, half
+// of each included.
+float depthBeyond(Towards towards, ivec3 cell) {
+  if (frame.eyeInside == 0) return 0.0;
+  const vec3 place = clamp(frame.middle - frame.eyeToMiddle, vec3(0.0), vec3(frame.dimensions - 1));
+  const ivec3 low = ivec3(place);
+  const vec3 w = place - vec3(low);
+  float sum = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const ivec3 side = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+    const vec3 share = mix(1.0 - w, w, vec3(side));
+    const ivec3 v = min(low + side, frame.dimensions - 1);
+    const uint index = uint(v.x + frame.rowPitch * (v.y + frame.dimensions.y * v.z));
+    sum += share.x * share.y * share.z * (storedDepth(towards, cell, index) + 0.5 * towards.layer * extinction[index]);
+  }
+  return sum;
+}
+
 float tableDepth(vec3 position) {
   const vec3 direction = directionToEye(position);
   const Towards towards = Towards(direction, layerLength(direction), frame.indexToWorld, frame.cells, frame.code, frame.lookup,

@@ -175,11 +175,13 @@ struct SetupFrame {
   vec3 eyeToMiddle;        // from the ray origin, index space
   vec3 middleInPixels;     // indexToPixel * eyeToMiddle
   vec3 pixelX, pixelY;     // how the ray moves with x and y: its direction, or orthographic its origin; index space
-  vec3 ray;                // orthographic: the direction of all rays, index space
+  vec3 ray;                // of pixel (0, 0), index space; orthographic: all rays have its direction
+  vec2 imageSize;          // pixels
   int orthographic;
   int rowPitch;
   ivec3 dimensions;
   int lookup;              // kLookup...
+  int eyeInside;           // the volume's box
   int pathLengthCorrection;  // 0: every lattice step counts as long as any other
   int gradient;            // 0: the transmittance to the eye is the same all over a footprint
   int code;                // kCode...

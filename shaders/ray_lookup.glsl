@@ -20,6 +20,7 @@ vec4 cubicSlopes(float x) {
 
 // The depth, and its change per voxel along the fan's two sides.
 vec3 rayDepth(RayFan fan, vec3 position) {
+  if (fan.planeCount == 0) return vec3(0.0);  // only of a voxel at the source
   const int plane = max((int(position[fan.axis]) - fan.firstPlane) * fan.direction, 0);  // at the source: the first
   const float up = float(fan.firstPlane + fan.direction * plane) - fan.farthest;
   const vec2 side = vec2(position[(fan.axis + 1) % 3], position[(fan.axis + 2) % 3]);

@@ -1,6 +1,11 @@
 // A voxel's footprint on the image. Include after interface.h and part_ahead.glsl; `frame` is the SetupFrame.
 
 const float kBeyondImage = 1e6;  // pixels
+const float kBoundsSlack = 2.0;  // pixels: for rounding, and for what a footprint is widened by
+
+bool besideImage(vec2 low, vec2 high) {
+  return any(lessThan(high, vec2(-kBoundsSlack))) || any(greaterThan(low, frame.imageSize + kBoundsSlack));
+}
 
 struct Footprint {
   vec2 center, halfExtent;
@@ -38,13 +43,13 @@ vec2 cutBounds(float k, float z, vec3 row, vec3 rowZ) {
   const float larger = b + (b < 0.0 ? -1.0 : 1.0) * sqrt(discriminant);
   const float near = c / larger;
   const float far = clamp(larger / min(a, -1e-30), -kBeyondImage, kBeyondImage);
-  const float slack = 2.0;  // for rounding, pixels
-  return k > near * z ? vec2(max(near, far) - slack, kBeyondImage) : vec2(-kBeyondImage, min(near, far) + slack);
+  return k > near * z ? vec2(max(near, far) - kBoundsSlack, kBeyondImage)
+                      : vec2(-kBeyondImage, min(near, far) + kBoundsSlack);
 }
 
 // Its footprint is integrated along each pixel's ray from the eye on: `conic` is how far along the ray of the
 // pixel (0, 0), and more per pixel, the kernel's centre is, times |D|.
-void projectCut(vec3 q, vec3 pixel, inout Footprint footprint) {
+bool projectCut(vec3 q, vec3 pixel, inout Footprint footprint) {
   const mat3 rows = transpose(frame.indexToPixel);
   const vec2 x = cutBounds(pixel.x, pixel.z, rows[0], rows[2]);
   const vec2 y = cutBounds(pixel.y, pixel.z, rows[1], rows[2]);
@@ -52,10 +57,12 @@ void projectCut(vec3 q, vec3 pixel, inout Footprint footprint) {
   footprint.halfExtent = 0.5 * vec2(x.y - x.x, y.y - y.x);
   footprint.conic = vec3(dot(q, frame.ray), dot(q, frame.pixelX), dot(q, frame.pixelY));
   footprint.cut = true;
+  return !besideImage(vec2(x.x, y.x), vec2(x.y, y.y));
 }
 
 // The kernel's sphere of radius R around the index position `offset` (from the volume's middle) seen from the
-// eye: all rays D with |q x D|² <= R² |D|². Returns false behind the eye.
+// eye: all rays D with |q x D|² <= R² |D|². Returns false behind the eye, and in perspective beside the image:
+// just ahead of the eye plane footprints there have bounds that reach far over it.
 bool project(vec3 offset, out Footprint footprint) {
   const vec3 q = offset + frame.eyeToMiddle;
   const vec3 pixel = frame.indexToPixel * offset + frame.middleInPixels;
@@ -83,16 +90,15 @@ bool project(vec3 offset, out Footprint footprint) {
   } else {
     // The bounds of the projected sphere, from its dual conic R² K Kᵀ - k kᵀ in pixels around the centre.
     const float nearest = pixel.z * pixel.z - radius2 * dot(rows[2], rows[2]);
-    if (pixel.z <= 0.0 || nearest <= 0.0) {
-      projectCut(q, pixel, footprint);
-      return true;
-    }
+    if (pixel.z <= 0.0 || nearest <= 0.0) return projectCut(q, pixel, footprint);
     footprint.center = pixel.xy / pixel.z;
     const vec3 rowX = rows[0] - footprint.center.x * rows[2];
     const vec3 rowY = rows[1] - footprint.center.y * rows[2];
     const vec2 shift = radius2 * vec2(dot(rowX, rows[2]), dot(rowY, rows[2]));
-    const vec2 reach = sqrt(shift * shift + radius2 * vec2(dot(rowX, rowX), dot(rowY, rowY)) * nearest);
-    footprint.halfExtent = (abs(shift) + reach) / nearest;
+    const vec2 spread = sqrt(shift * shift + radius2 * vec2(dot(rowX, rowX), dot(rowY, rowY)) * nearest);
+    if (besideImage(footprint.center - (shift + spread) / nearest, footprint.center - (shift - spread) / nearest))
+      return false;
+    footprint.halfExtent = (abs(shift) + spread) / nearest;
   }
   widenToPixel(footprint, shape, scale);
   return true;

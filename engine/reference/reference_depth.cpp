@@ -19,9 +19,16 @@ glm::dvec3 acrossLayer(glm::dvec3 direction) {
 
 class TableDepth : public ReferenceDepth {
  public:
-  TableDepth(const Volume& volume, const std::vector<std::vector<std::uint8_t>>& table,
-             const TableSettings& settings, AttenuationLookup lookup, ToEye toEye)
-      : volume_(volume), table_(table), settings_(settings), lookup_(lookup), toEye_(std::move(toEye)) {
+  TableDepth(const Volume& volume, std::span<const double> extinction,
+             const std::vector<std::vector<std::uint8_t>>& table, const TableSettings& settings,
+             AttenuationLookup lookup, ToEye toEye, std::optional<glm::dvec3> eyeInside)
+      : volume_(volume),
+        extinction_(extinction),
+        table_(table),
+        settings_(settings),
+        lookup_(lookup),
+        toEye_(std::move(toEye)),
+        eyeInside_(eyeInside) {
     FV_CHECK_EQ(table.size(), std::size_t(directionCount(settings.directions)));
   }
 
@@ -34,12 +41,39 @@ class TableDepth : public ReferenceDepth {
   }
 
  private:
+  /// As long as if its line's layers had this world length.
+  double stored(int direction, std::size_t voxel, double layer) const;
+  double beyondEye(int direction, double layer) const;
+
   const Volume& volume_;
+  const std::span<const double> extinction_;
   const std::vector<std::vector<std::uint8_t>>& table_;
   const TableSettings settings_;
   const AttenuationLookup lookup_;
   const ToEye toEye_;
+  const std::optional<glm::dvec3> eyeInside_;
 };
+
+double TableDepth::stored(int direction, std::size_t voxel, double layer) const {
+  const double depth = decodeOpticalDepth(settings_.code, table_[std::size_t(direction)][voxel]);
+  if (!settings_.pathLengthCorrection) return depth;
+  return depth * layer / stepLength(volume_.indexToWorld, directionAt(settings_.directions, direction), true);
+}
+
+double TableDepth::beyondEye(int direction, double layer) const {
+  if (!eyeInside_) return 0.0;
+  const glm::dvec3 place = glm::clamp(*eyeInside_, glm::dvec3(0.0), glm::dvec3(volume_.dimensions - 1));
+  double sum = 0.0;
+  for (int z = int(place.z); z <= std::min(int(place.z) + 1, volume_.dimensions.z - 1); ++z)
+    for (int y = int(place.y); y <= std::min(int(place.y) + 1, volume_.dimensions.y - 1); ++y)
+      for (int x = int(place.x); x <= std::min(int(place.x) + 1, volume_.dimensions.x - 1); ++x) {
+        const glm::dvec3 share = 1.0 - glm::abs(place - glm::dvec3(x, y, z));
+        const std::size_t voxel = volume_.at(x, y, z);
+        sum += share.x * share.y * share.z *
+               (stored(direction, voxel, layer) + layer * extinction_[voxel] / 2.0);
+      }
+  return sum;
+}
 
 double TableDepth::at(glm::ivec3 voxel) const {
   const glm::dvec3 toEye = toEye_(glm::dvec3(voxel));
@@ -47,16 +81,14 @@ double TableDepth::at(glm::ivec3 voxel) const {
   const double layer = glm::length(toWorld * acrossLayer(toEye));
   const std::size_t index = volume_.at(voxel.x, voxel.y, voxel.z);
   const DirectionSet set = settings_.directions;
-  const auto stored = [&](int direction) {
-    const double depth = decodeOpticalDepth(settings_.code, table_[std::size_t(direction)][index]);
-    if (!settings_.pathLengthCorrection) return depth;
-    return depth * layer / stepLength(volume_.indexToWorld, directionAt(set, direction), true);
+  const auto depth = [&](int direction) {
+    return std::max(stored(direction, index, layer) - beyondEye(direction, layer), 0.0);
   };
-  if (lookup_ == AttenuationLookup::Nearest) return stored(nearestDirection(set, toEye));
+  if (lookup_ == AttenuationLookup::Nearest) return depth(nearestDirection(set, toEye));
   const DirectionBlend blend = bilinearDirections(set, toEye);
   double transmittance = 0.0;
   for (std::size_t i = 0; i < 4; ++i)
-    transmittance += blend.weights[i] * std::exp(-stored(blend.directions[i]));
+    transmittance += blend.weights[i] * std::exp(-depth(blend.directions[i]));
   return -std::log(transmittance);
 }
 
@@ -136,8 +168,8 @@ double RayDepth::interpolated(int axis, int plane, glm::dvec2 side) const {
 /// it is linear between the planes on either side of the source. Less than 0 where the source is in that
 /// layer.
 double RayDepth::sourceCut(const RayFan& fan, glm::dvec2 offset, glm::dvec2 slope) const {
-  const double distance = source_.atInfinity ? 1.0 : std::abs(fan.firstPlane - source_.place[fan.axis]);
-  if (distance >= 1.0) return 0.0;
+  if (source_.atInfinity) return 0.0;
+  const double distance = std::min(std::abs(fan.firstPlane - source_.place[fan.axis]), 1.0);
   const auto at = [&](int plane) {
     return interpolated(fan.axis, plane, fan.origin + offset + slope * (plane - fan.farthest));
   };
@@ -167,6 +199,7 @@ void RayDepth::march(std::size_t f, int i, int j) {
 
 std::pair<double, glm::dvec2> RayDepth::lookUp(glm::ivec3 voxel) const {
   const RayFan& fan = fanOf(voxel);
+  if (fan.planeCount == 0) return {0.0, glm::dvec2(0.0)};  // only of a voxel at the source
   const std::vector<double>& depths = depths_[std::size_t(&fan - fans_.data())];
   const int plane =
       std::max((voxel[fan.axis] - fan.firstPlane) * fan.direction, 0);  // at the source: the first
@@ -202,11 +235,12 @@ glm::dvec3 ReferenceDepth::gradient(glm::ivec3 voxel, glm::dvec3 toEye, double l
   return gradient;
 }
 
-std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume,
+std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume, std::span<const double> extinction,
                                            const std::vector<std::vector<std::uint8_t>>& table,
                                            const TableSettings& settings, AttenuationLookup lookup,
-                                           ToEye toEye) {
-  return std::make_unique<TableDepth>(volume, table, settings, lookup, std::move(toEye));
+                                           ToEye toEye, std::optional<glm::dvec3> eyeInside) {
+  return std::make_unique<TableDepth>(volume, extinction, table, settings, lookup, std::move(toEye),
+                                      eyeInside);
 }
 
 std::unique_ptr<ReferenceDepth> rayDepth(const Volume& volume, std::span<const double> extinction,

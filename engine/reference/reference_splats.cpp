@@ -64,13 +64,14 @@ class SplatSummer {
 std::unique_ptr<ReferenceDepth> SplatSummer::depthFor(const std::vector<std::vector<std::uint8_t>>& table,
                                                       const TableSettings& tableSettings,
                                                       const Camera& camera) const {
-  const glm::dmat4& indexToWorld = volume_.indexToWorld;
-  const AttenuationLookup lookup =
-      resolveAttenuation(settings_.attenuation, eyeIsInside(camera, volume_.dimensions, indexToWorld));
-  if (lookup == AttenuationLookup::Exact)
-    return rayDepth(volume_, extinction_, eyeSource(camera, indexToWorld));
-  return tableDepth(volume_, table, tableSettings, lookup,
-                    [this](glm::dvec3 position) { return projector_.toEye(position); });
+  const RaySource eye = eyeSource(camera, volume_.indexToWorld);
+  const bool inside = eyeIsInside(camera, volume_.dimensions, volume_.indexToWorld);
+  const AttenuationLookup lookup = resolveAttenuation(settings_.attenuation, inside);
+  if (lookup == AttenuationLookup::Exact) return rayDepth(volume_, extinction_, eye);
+  return tableDepth(
+      volume_, extinction_, table, tableSettings, lookup,
+      [this](glm::dvec3 position) { return projector_.toEye(position); },
+      inside ? std::optional(eye.place) : std::nullopt);
 }
 
 DepthToEye SplatSummer::depthToEye(std::uint32_t voxel, const ProjectedSplat& splat,
