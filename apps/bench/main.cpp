@@ -25,6 +25,8 @@ std::vector<Result> measureAll(const Device& device, const std::vector<std::stri
     results.push_back(bench::sweeps(device, DirectionSet::Directions98, resolution, runs));
   results.push_back(bench::compaction(device, quick ? 128 : 256, runs));
   for (double pixels : {3.0, 5.0, 9.0}) results.push_back(bench::splats(device, pixels, runs));
+  for (const Result& result : bench::flight(device, quick ? 64 : 128, quick ? 1 : 2))
+    results.push_back(result);
   for (const std::string& input : inputs) {
     InputOptions options;
     options.input = input;

@@ -8,6 +8,7 @@
 #include "apps/freevoxels/input_options.h"
 #include "engine/renderer.h"
 #include "engine/validation/closed_forms.h"
+#include "engine/validation/fly_through_quality.h"
 #include "engine/validation/invariances.h"
 #include "engine/validation/leakage.h"
 #include "engine/validation/paper_figures.h"
@@ -28,6 +29,8 @@ constexpr int kQuickQualityPicture = 96, kWholeQualityPicture = 128, kLargeQuali
 /// Where a voxel is as large as the parts of a volume, no method has to reach anything.
 constexpr int kLeastResolutionWithGoals = 64;
 constexpr int kTurntableResolution = 64, kTurntableFrames = 72, kTurntablePicture = 64;
+constexpr int kQuickFlightFrames = 8, kWholeFlightFrames = 60, kFlightPicture = 64;
+constexpr int kFlightSubject = 2;  ///< of kQualitySubjects: the cloud
 
 struct ProceduralScene {
   const char* name;
@@ -96,6 +99,17 @@ void addTurntable(std::vector<SectionJob>& jobs, const Device& device) {
                   }});
 }
 
+void addFlight(std::vector<SectionJob>& jobs, const Device& device, const Extent& extent) {
+  const int resolution = extent.quick ? kQuickQuality : kLeastResolutionWithGoals;
+  const int frames = extent.quick ? kQuickFlightFrames : kWholeFlightFrames;
+  jobs.push_back({"picture quality within the cloud", [=, &device] {
+                    return flyThroughQuality(
+                        deviceStages(device),
+                        openQualityScene(device, kQualitySubjects[kFlightSubject], resolution), frames,
+                        kFlightPicture);
+                  }});
+}
+
 void addPaperFigures(std::vector<SectionJob>& jobs, const Device& device) {
   jobs.push_back({"figure 2 of the paper", [&device] { return paperFigure2(deviceStages(device)); }});
   jobs.push_back({"figure 6 of the paper", [&device] { return paperFigure6(deviceStages(device)); }});
@@ -131,6 +145,7 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
   addPaperFigures(jobs, device);
   addQuality(jobs, device, extent);
   if (!extent.quick && !extent.resolution) addTurntable(jobs, device);
+  if (!extent.resolution) addFlight(jobs, device, extent);
   for (const std::string& file : extent.files) {
     const auto scene = std::make_shared<ValidationScene>(
         makeValidationScene(readVdb(file, "", maximumVoxels(device, DirectionSet::Directions98)),
