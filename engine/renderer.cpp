@@ -150,7 +150,7 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
               .targets = makeTargets(device, settings)};
   if (sorted) sort->record(commands, volume, visible, camera);
   const AttenuationTable* read = nullptr;
-  if (settings.readsTable())
+  if (frame.constants.readsTable())
     read = frame.constants.detail.coarsest > 0 ? &tableWithLevels(progress) : &sweptTable(progress);
   lastRule = frame.constants.detail;
   lastDrawn = &recordCut(commands, lastRule);

@@ -1,9 +1,12 @@
 // Optical depth between a block and the eye, exclusive of the block, and its gradient across the lines of
 // sight. Include after direction_lookup.glsl, ray_lookup.glsl and block_at.glsl; `frame` is the SetupFrame.
 
+const float kAtEye = 1e-3;  // voxels; nearer to the eye a position has no direction
+
 // Divided by its largest component, so that its length is that of one lattice layer.
 vec3 directionToEye(vec3 position) {
-  const vec3 toEye = frame.orthographic != 0 ? -frame.ray : -(position - frame.middle + frame.eyeToMiddle);
+  vec3 toEye = -(position - frame.middle + frame.eyeToMiddle);
+  if (frame.orthographic != 0 || dot(toEye, toEye) < kAtEye * kAtEye) toEye = -frame.ray;
   const vec3 size = abs(toEye);
   return toEye / max(size.x, max(size.y, size.z));
 }
@@ -13,6 +16,24 @@ float layerLength(vec3 direction) { return length(frame.indexToWorld * direction
 
 // How many layers of voxels the line of sight crosses in a block.
 int layersOf(Block block, vec3 direction) { return block.extent[majorAxis(direction)]; }
+
+// Of an eye inside the volume: A_B / A_V of Subr et al. 2007, Section 3.3. Between the voxels around the eye, half
+// of each included.
+float depthBeyond(Towards towards, ivec3 cell) {
+  if (frame.eyeInside == 0) return 0.0;
+  const vec3 place = clamp(frame.middle - frame.eyeToMiddle, vec3(0.0), vec3(frame.dimensions - 1));
+  const ivec3 low = ivec3(place);
+  const vec3 w = place - vec3(low);
+  float sum = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const ivec3 side = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+    const vec3 share = mix(1.0 - w, w, vec3(side));
+    const ivec3 v = min(low + side, frame.dimensions - 1);
+    const uint index = blockAddress(frame.levels[0], v);
+    sum += share.x * share.y * share.z * (storedDepth(towards, cell, index) + 0.5 * towards.layer * extinction[index]);
+  }
+  return sum;
+}
 
 // The mean over the block's voxels.
 float tableDepth(Block block) {

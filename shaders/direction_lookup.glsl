@@ -31,12 +31,19 @@ float storedDepth(Towards towards, ivec3 cell, uint voxel) {
   return depth * towards.layer * float(towards.cells) / length(towards.indexToWorld * vec3(cell));
 }
 
+// What of a stored depth lies beyond where the voxel is looked at from, for the includer to define.
+float depthBeyond(Towards towards, ivec3 cell);
+
+float depthUpTo(Towards towards, ivec3 cell, uint voxel) {
+  return max(storedDepth(towards, cell, voxel) - depthBeyond(towards, cell), 0.0);
+}
+
 // Between four directions of the table. Transmittances are interpolated, not depths: one dark direction would
 // darken all.
 float depthTowards(Towards towards, uint voxel) {
   // A division may round to just beyond 1.
   const vec3 point = clamp(towards.direction, -1.0, 1.0) * towards.cells;
-  if (towards.lookup == kLookupNearest) return storedDepth(towards, ivec3(round(point)), voxel);
+  if (towards.lookup == kLookupNearest) return depthUpTo(towards, ivec3(round(point)), voxel);
   const vec3 low = floor(min(point, 0.999999 * towards.cells));
   const vec3 weight = point - low;
   // The major axis has weight 0 or 1: both of its neighbours are the same face.
@@ -51,7 +58,7 @@ float depthTowards(Towards towards, uint voxel) {
       cell[a] = int(low[a]) + i;
       cell[b] = int(low[b]) + j;
       const float share = (i == 0 ? 1.0 - weight[a] : weight[a]) * (j == 0 ? 1.0 - weight[b] : weight[b]);
-      sum += share * exp(-storedDepth(towards, cell, voxel));
+      sum += share * exp(-depthUpTo(towards, cell, voxel));
     }
   }
   return -log(sum);

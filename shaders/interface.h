@@ -74,7 +74,7 @@ FV_CONSTANT int kFilterArithmetic = 1;
 FV_CONSTANT int kLookupBilinear = 0;
 FV_CONSTANT int kLookupNearest = 1;
 FV_CONSTANT int kLookupExact = 2;
-FV_CONSTANT int kLookupNone = 3;  // A = 1
+FV_CONSTANT int kLookupNone = 4;  // A = 1; 3 is AttenuationLookup::Auto, which is one of the others here
 FV_CONSTANT int kCompositeNormalised = 0;
 FV_CONSTANT int kCompositeAdditive = 1;
 FV_CONSTANT int kCompositeSorted = 2;
@@ -211,9 +211,12 @@ struct Splat {
   vec2 center;        // pixels, (0, 0) = the top left corner of the image
   vec2 halfExtent;    // pixels; 0 = not drawn
   vec3 conic;         // xx, xy, yy: (r/R)² |D|² = xx dx² + 2 xy dx dy + yy dy² at (dx, dy) from the centre
-  float opticalDepth; // t_v, times the footprint's peak, per world length of ray
+  float opticalDepth; // t_v, times the footprint's peak, per world length of ray; less than 0: the kernel is cut
   float distance;     // from the eye plane along the viewing axis, world units
   vec3 depthToEye;    // of the voxel's centre, and how it changes per pixel along x and y
+  // A kernel that the eye plane cuts, q from the eye to its centre in index space: `conic` is q . D of the pixel
+  // (0, 0) and its change per pixel along x and y; `depthToEye` is the depth at the eye, its change per world
+  // length along the ray, and |q|².
 };
 
 // The frame, as splat_setup.comp needs it. Index space is relative to the middle of the volume, so that
@@ -225,13 +228,15 @@ struct SetupFrame {
   vec3 eyeToMiddle;        // from the ray origin, index space
   vec3 middleInPixels;     // indexToPixel * eyeToMiddle
   vec3 pixelX, pixelY;     // how the ray moves with x and y: its direction, or orthographic its origin; index space
-  vec3 ray;                // orthographic: the direction of all rays, index space
+  vec3 ray;                // of pixel (0, 0), index space; orthographic: all rays have its direction
+  vec2 imageSize;          // pixels
   int orthographic;
   ivec3 dimensions;
   BlockLevel levels[kMaximumLevels];
   int levelCount;
   float voxelSize;         // edge of the cube with a voxel's volume, world units
   int lookup;              // kLookup...
+  int eyeInside;           // the volume's box
   int pathLengthCorrection;  // 0: every lattice step counts as long as any other
   int gradient;            // 0: the transmittance to the eye is the same all over a footprint
   int code;                // kCode...

@@ -20,13 +20,15 @@ vec4 cubicSlopes(float x) {
 
 // The depth, and its change per voxel along the fan's two sides.
 vec3 rayDepth(RayFan fan, vec3 position) {
-  const float up = position[fan.axis] - fan.farthest;
+  if (fan.planeCount == 0) return vec3(0.0);  // only of a voxel at the source
+  // At the source: the first.
+  const int plane = clamp((int(round(position[fan.axis])) - fan.firstPlane) * fan.direction, 0, fan.planeCount - 1);
+  const float up = float(fan.firstPlane + fan.direction * plane) - fan.farthest;
   const vec2 side = vec2(position[(fan.axis + 1) % 3], position[(fan.axis + 2) % 3]);
   const float apart = fan.spacing * (1.0 + fan.convergence * up);
   const vec2 place = (side - fan.origin - fan.slope * up) / apart;
   const vec2 low = clamp(floor(place), vec2(1.0), vec2(fan.rayCount - 3));
   const vec2 w = clamp(place - low, 0.0, 1.0);
-  const int plane = clamp((int(round(position[fan.axis])) - fan.firstPlane) * fan.direction, 0, fan.planeCount - 1);
   const uint row = uint(fan.rayCount.x);
   uint first = uint(plane / 2) * row * uint(fan.rayCount.y) + uint(low.x) - 1 + (uint(low.y) - 1) * row;
   RayDepths depths = RayDepths(fan.depths);

@@ -14,7 +14,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer De
 int sideA, sideB, strideA, strideB, strideAxis;
 
 float extinctionAt(int plane, ivec2 side) {
-  const bool inside = side.x >= 0 && side.y >= 0 && side.x < push.dimensions[sideA] && side.y < push.dimensions[sideB];
+  const bool inside = plane >= 0 && plane < push.dimensions[push.fan.axis] && side.x >= 0 && side.y >= 0 && side.x < push.dimensions[sideA] && side.y < push.dimensions[sideB];
   return inside ? extinction[plane * strideAxis + side.x * strideA + side.y * strideB] : 0.0;
 }
 
@@ -41,6 +41,17 @@ ivec2 planesWithin(vec2 atFirst, vec2 perPlane) {
   return ivec2(floor(min(enter, float(push.fan.planeCount))), ceil(max(leave, -1.0)));
 }
 
+// What a ray that starts within the volume has in front of its first layer, in layers: the extinction along it
+// is linear between the planes on either side of the source. Less than 0 where the source is in that layer.
+float sourceCut(vec2 atFirst, vec2 perPlane) {
+  const RayFan fan = push.fan;
+  if (fan.convergence == 0.0) return 0.0;
+  const float distance = min(abs(float(fan.firstPlane) - fan.farthest + 1.0 / fan.convergence), 1.0);
+  const float first = interpolated(fan.firstPlane, atFirst);
+  const float before = interpolated(fan.firstPlane - fan.direction, atFirst - perPlane);
+  return 0.5 * (distance * (mix(first, before, distance) + first) - first);
+}
+
 void main() {
   const uint ray = gl_LocalInvocationID.x + kRaySweepThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
   const RayFan fan = push.fan;
@@ -65,7 +76,7 @@ void main() {
 
   const ivec2 planes = planesWithin(atFirst, perPlane);
   Depths depths = Depths(fan.depths);
-  float depth = 0.0;
+  float depth = planes.x == 0 ? layer * sourceCut(atFirst, perPlane) : 0.0;
   for (int pair = planes.x / 2; pair <= planes.y / 2; ++pair) {
     vec2 planeDepths;
     [[unroll]] for (int i = 0; i < 2; ++i) {
@@ -74,6 +85,6 @@ void main() {
       if (plane < fan.planeCount)
         depth += layer * interpolated(fan.firstPlane + fan.direction * plane, atFirst + perPlane * float(plane));
     }
-    depths.pairs[uint(pair) * rays + ray] = packUnorm2x16(sqrt(min(planeDepths, kOpaqueDepth) / kOpaqueDepth));
+    depths.pairs[uint(pair) * rays + ray] = packUnorm2x16(sqrt(clamp(planeDepths / kOpaqueDepth, 0.0, 1.0)));
   }
 }

@@ -5,22 +5,25 @@
 #include "interface.h"
 #include "splat_weight.glsl"
 
-layout(location = 3) flat in vec3 depthToEye;
-
 layout(location = 0) out vec4 colorEnergySum;
 layout(location = 1) out float opticalDepthSum;
 #ifdef WITH_DISTANCE
 layout(location = 2) out float distanceSum;
 #endif
 
-void main() {
-  const float weight = splatWeight(rayLength2());
-  // The optical depth on the pixel's own ray, to first order: what is half in the shadow of something shows
-  // its lit half.
+// The optical depth on the pixel's own ray, to first order: what is half in the shadow of something shows its
+// lit half. Around the eye it grows along every ray by the voxel's own.
+float depthOnRay(float length2) {
+  if (isCut()) return max(depthToEye.x + depthToEye.y * worldPerIndex(length2) * cutAhead(length2), 0.0);
   const vec2 d = gl_FragCoord.xy - centerDistance.xy;
-  const float depth = max(depthToEye.x + dot(depthToEye.yz, d), 0.0);
-  colorEnergySum = weight * exp(-depth) * colorEnergy;
-  opticalDepthSum = weight * conicDepth.w;
+  return max(depthToEye.x + dot(depthToEye.yz, d), 0.0);
+}
+
+void main() {
+  const float length2 = rayLength2();
+  const float weight = splatWeight(length2);
+  colorEnergySum = weight * exp(-depthOnRay(length2)) * colorEnergy;
+  opticalDepthSum = weight * abs(conicDepth.w);
 #ifdef WITH_DISTANCE
   distanceSum = colorEnergySum.a * centerDistance.z;
 #endif

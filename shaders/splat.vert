@@ -25,7 +25,8 @@ void main() {
   vec2 position = splat.center;
   if (kQuads) {
     const vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 2.0 - 1.0;
-    position += corner * splat.halfExtent;
+    // One near to the eye may reach far beyond the image.
+    position = clamp(position + corner * splat.halfExtent, push.viewportOrigin, push.viewportOrigin + push.viewportSize);
   }
   gl_Position = vec4((position - push.viewportOrigin) / push.viewportSize * 2.0 - 1.0, 0.0, 1.0);
   if (size == 0.0) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside the clip volume

@@ -1,4 +1,11 @@
-// A block's footprint on the image. Include after interface.h; `frame` is the SetupFrame.
+// A block's footprint on the image. Include after interface.h and part_ahead.glsl; `frame` is the SetupFrame.
+
+const float kBeyondImage = 1e6;  // pixels
+const float kBoundsSlack = 2.0;  // pixels: for rounding, and for what a footprint is widened by
+
+bool besideImage(vec2 low, vec2 high) {
+  return any(lessThan(high, vec2(-kBoundsSlack))) || any(greaterThan(low, frame.imageSize + kBoundsSlack));
+}
 
 struct Footprint {
   vec2 center, halfExtent;
@@ -6,6 +13,8 @@ struct Footprint {
   float amplitude;  // 1, less where the footprint is widened
   float edge2;      // square of the edge in pixels where it is shortest
   float distance;
+  float ahead;      // orthographic: the part of the kernel in front of the eye plane, about
+  bool cut;         // by a perspective camera's eye plane
 };
 
 // A footprint narrower than the pixel lattice can sample is widened to it, with its integral kept: `shape`
@@ -23,9 +32,40 @@ void widenToPixel(inout Footprint footprint, vec3 shape, float scale) {
   footprint.halfExtent *= sqrt(widened.xz / shape.xz);
 }
 
+// Where along an axis of the image rays can pass a kernel that the eye plane cuts: at x with
+// (k - x z)² <= R² |row - x rowZ|², k and z its centre's place along `row` and `rowZ`. That is not between two
+// roots, but on one side of them; on the other side is what lies behind the eye.
+vec2 cutBounds(float k, float z, vec3 row, vec3 rowZ) {
+  const float radius2 = kSplatRadius * kSplatRadius;
+  const float a = z * z - radius2 * dot(rowZ, rowZ);
+  const float b = k * z - radius2 * dot(row, rowZ);
+  const float c = k * k - radius2 * dot(row, row);
+  const float discriminant = b * b - a * c;
+  if (!(discriminant > 0.0)) return vec2(-kBeyondImage, kBeyondImage);
+  const float larger = b + (b < 0.0 ? -1.0 : 1.0) * sqrt(discriminant);
+  const float near = c / larger;
+  const float far = clamp(larger / min(a, -1e-30), -kBeyondImage, kBeyondImage);
+  return k > near * z ? vec2(max(near, far) - kBoundsSlack, kBeyondImage)
+                      : vec2(-kBeyondImage, min(near, far) + kBoundsSlack);
+}
+
+// Its footprint is integrated along each pixel's ray from the eye on: `conic` is how far along the ray of the
+// pixel (0, 0), and more per pixel, the kernel's centre is, times |D|.
+bool projectCut(vec3 q, vec3 pixel, inout Footprint footprint) {
+  const mat3 rows = transpose(frame.indexToPixel);
+  const vec2 x = cutBounds(pixel.x, pixel.z, rows[0], rows[2]);
+  const vec2 y = cutBounds(pixel.y, pixel.z, rows[1], rows[2]);
+  footprint.center = 0.5 * vec2(x.x + x.y, y.x + y.y);
+  footprint.halfExtent = 0.5 * vec2(x.y - x.x, y.y - y.x);
+  footprint.conic = vec3(dot(q, frame.ray), dot(q, frame.pixelX), dot(q, frame.pixelY));
+  footprint.cut = true;
+  return !besideImage(vec2(x.x, y.x), vec2(x.y, y.y));
+}
+
 // The kernel's sphere of radius R, times the edge of a block, around the index position `offset` (from the
 // volume's middle) seen from the eye: all rays D with |q x D|² <= R² |D|². Returns false behind the eye, and in
-// perspective also where it reaches the eye plane.
+// perspective beside the image: just ahead of the eye plane footprints there have bounds that reach far over it.
+// The eye plane may cut voxels' kernels, but none of a coarser block.
 bool project(vec3 offset, float edge, out Footprint footprint) {
   const vec3 q = offset + frame.eyeToMiddle;
   const vec3 pixel = frame.indexToPixel * offset + frame.middleInPixels;
@@ -39,23 +79,29 @@ bool project(vec3 offset, float edge, out Footprint footprint) {
       vec3(quadric.z, -quadric.y, quadric.x) * (radius2 * scale / (quadric.x * quadric.z - quadric.y * quadric.y));
   footprint.conic = quadric / radius2;
   footprint.amplitude = 1.0;
-  footprint.distance = pixel.z;
-  if (pixel.z <= 0.0) return false;
+  footprint.distance = max(pixel.z, 0.0);
+  footprint.ahead = 1.0;
+  footprint.cut = false;
+  const mat3 rows = transpose(frame.indexToPixel);
+  const float reach = kSplatRadius * edge * length(rows[2]);
+  if (pixel.z <= -reach) return false;
 
   if (frame.orthographic != 0) {
     footprint.center = pixel.xy;
     footprint.halfExtent = sqrt(shape.xz);
+    footprint.ahead = partAhead(pixel.z / reach);
   } else {
     // The bounds of the projected sphere, from its dual conic R² K Kᵀ - k kᵀ in pixels around the centre.
-    const mat3 rows = transpose(frame.indexToPixel);
     const float nearest = pixel.z * pixel.z - radius2 * dot(rows[2], rows[2]);
-    if (nearest <= 0.0) return false;
+    if (pixel.z <= 0.0 || nearest <= 0.0) return projectCut(q, pixel, footprint);
     footprint.center = pixel.xy / pixel.z;
     const vec3 rowX = rows[0] - footprint.center.x * rows[2];
     const vec3 rowY = rows[1] - footprint.center.y * rows[2];
     const vec2 shift = radius2 * vec2(dot(rowX, rows[2]), dot(rowY, rows[2]));
-    const vec2 reach = sqrt(shift * shift + radius2 * vec2(dot(rowX, rowX), dot(rowY, rowY)) * nearest);
-    footprint.halfExtent = (abs(shift) + reach) / nearest;
+    const vec2 spread = sqrt(shift * shift + radius2 * vec2(dot(rowX, rowX), dot(rowY, rowY)) * nearest);
+    if (besideImage(footprint.center - (shift + spread) / nearest, footprint.center - (shift - spread) / nearest))
+      return false;
+    footprint.halfExtent = (abs(shift) + spread) / nearest;
   }
   widenToPixel(footprint, shape, scale);
   return true;

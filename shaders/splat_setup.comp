@@ -24,6 +24,7 @@ layout(scalar, binding = 8) readonly buffer BlockColors { uvec2 blockColors[]; }
 #include "ray_lookup.glsl"
 #include "block_at.glsl"
 #include "depth_to_eye.glsl"
+#include "part_ahead.glsl"
 #include "splat_projection.glsl"
 
 // (1 - exp(-x)) / x, also right for small x.
@@ -55,7 +56,7 @@ void main() {
   const float depth = sigma * layerLength(direction) * float(layersOf(block, direction));
   // The kernel of a block is as much wider as its edge is longer, and integrates to the voxels it has.
   const vec3 part = vec3(block.extent) / float(block.edge);
-  const float peak = kSplatPeak * footprint.amplitude * float(block.edge) * (part.x * part.y * part.z);
+  const float peak = kSplatPeak * footprint.amplitude * footprint.ahead * float(block.edge) * (part.x * part.y * part.z);
   const float energy = sigma * selfAttenuation(depth) * peak;
   splat.colorEnergy = vec4(energy * colorOf(block, address), energy);
   splat.center = footprint.center;
@@ -71,5 +72,11 @@ void main() {
   const float perPixel = fade * (frame.orthographic != 0 ? 1.0 : footprint.distance);
   splat.depthToEye =
       vec3(toEye.depth, perPixel * vec2(dot(toEye.gradient, frame.pixelX), dot(toEye.gradient, frame.pixelY)));
+  if (footprint.cut) {
+    const vec3 fromEye = block.center - frame.middle + frame.eyeToMiddle;
+    splat.opticalDepth = -splat.opticalDepth;
+    splat.depthToEye = vec3(toEye.depth, 0.0, dot(fromEye, fromEye));
+    if (frame.gradient != 0) splat.depthToEye.xy += sigma * vec2(-length(frame.indexToWorld * fromEye), 1.0);
+  }
   splats[local] = splat;
 }

@@ -1,11 +1,16 @@
 // The footprint on the pixel's own ray, which is exact for perspective and for any voxel shape. Included by
 // the splats' fragment shaders, after interface.h.
 
+#include "part_ahead.glsl"
+
+layout(constant_id = 0) const bool kQuads = false;  // only they can be cut
+
 layout(scalar, push_constant) uniform Push { SplatPush push; };
 
 layout(location = 0) flat in vec4 colorEnergy;
 layout(location = 1) flat in vec4 conicDepth;
 layout(location = 2) flat in vec3 centerDistance;
+layout(location = 3) flat in vec3 depthToEye;
 
 // |D|² at p from the middle of the image: linear . (1, x, y) + squares . (x², xy, y²).
 float rayLength2At(vec2 p, vec3 linear, vec3 squares) {
@@ -22,8 +27,23 @@ float worldPerIndex(float length2) {
   return sqrt(rayLength2At(p, push.worldLength2, push.worldLength2Squares) / length2);
 }
 
+bool isCut() { return kQuads && conicDepth.w < 0.0; }
+
+// Index length from the eye to where the ray is nearest to the centre of a kernel that is cut.
+float cutAhead(float length2) { return dot(conicDepth.xyz, vec3(1.0, gl_FragCoord.xy)) * inversesqrt(length2); }
+
+// f(r) without its peak, r from the centre's distance |q| to the eye; from the eye on.
+float cutWeight(float length2) {
+  const float ahead = cutAhead(length2);
+  const float halfChord2 = kSplatRadius * kSplatRadius - depthToEye.z + ahead * ahead;
+  if (halfChord2 <= 0.0) return 0.0;
+  const float w = halfChord2 / (kSplatRadius * kSplatRadius);
+  return (w * w) * (w * w) * partAhead(ahead * inversesqrt(halfChord2));
+}
+
 // f(r) without its peak.
 float splatWeight(float length2) {
+  if (isCut()) return cutWeight(length2);
   const vec2 d = gl_FragCoord.xy - centerDistance.xy;
   const vec3 conic = conicDepth.xyz;
   const float r2 = (d.x * (conic.x * d.x + 2.0 * conic.y * d.y) + conic.z * d.y * d.y) / length2;

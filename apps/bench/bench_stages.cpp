@@ -7,6 +7,7 @@
 
 #include "engine/hierarchy/level_passes.h"
 #include "engine/renderer.h"
+#include "engine/splatting/fly_through.h"
 #include "engine/splatting/splat_pass.h"
 #include "engine/volume/procedural.h"
 
@@ -171,6 +172,33 @@ Result wholeRender(const Device& device, const InputOptions& input, int runs) {
           .milliseconds = time,
           .copyMilliseconds = copyTime(27 * volume.voxelCount()),
           .perSecond = 0.0};
+}
+
+std::vector<Result> flight(const Device& device, int resolution, int runs) {
+  constexpr int kFrames = 12;
+  const Volume volume = makeProcedural("cloud", resolution);
+  Renderer renderer(device, volume, {.densityScale = automaticDensityScale(volume)}, {});
+  const FrameSettings settings{.size = {512, 512}};
+  double sum[2] = {0.0, 0.0};
+  int frames[2] = {0, 0};
+  for (const Camera& camera : flyThrough(volume, kFrames)) {
+    const bool inside = eyeIsInside(camera, volume.dimensions, volume.indexToWorld);
+    renderer.render(camera, settings);  // makes what is made once
+    sum[inside] += least(runs, [&] {
+      const auto start = std::chrono::steady_clock::now();
+      renderer.render(camera, settings);
+      return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    });
+    ++frames[inside];
+  }
+  std::vector<Result> results;
+  for (const bool inside : {false, true})
+    results.push_back({.name = fmt::format("flight through {}, eye {}, 512x512", volume.source,
+                                           inside ? "inside" : "outside"),
+                       .milliseconds = sum[inside] / frames[inside],
+                       .copyMilliseconds = 0.0,
+                       .perSecond = 0.0});
+  return results;
 }
 
 }  // namespace freevoxels::bench

@@ -30,4 +30,8 @@ Result splats(const Device& device, double pixels, int runs);
 /// Everything from a volume in memory to the picture in memory, at 1024 x 1024 pixels.
 Result wholeRender(const Device& device, const InputOptions& input, int runs);
 
+/// A frame of a flight through procedural:cloud at `resolution`³ at 512 x 512 pixels: the mean of those with
+/// the eye outside the box, and of those with the eye inside. The table is made before.
+std::vector<Result> flight(const Device& device, int resolution, int runs);
+
 }  // namespace freevoxels::bench

@@ -29,6 +29,8 @@ std::vector<Result> measureAll(const Device& device, const std::vector<std::stri
   for (Result& result : bench::zoom(device, 128, runs)) results.push_back(std::move(result));
   results.push_back(bench::compaction(device, quick ? 128 : 256, runs));
   for (double pixels : {3.0, 5.0, 9.0}) results.push_back(bench::splats(device, pixels, runs));
+  for (const Result& result : bench::flight(device, quick ? 64 : 128, quick ? 1 : 2))
+    results.push_back(result);
   for (const std::string& input : inputs) {
     InputOptions options;
     options.input = input;

@@ -9,7 +9,7 @@ namespace {
 
 // In the order of the enumerators.
 const std::vector<std::string> kComposites{"normalised", "additive", "sorted"};
-const std::vector<std::string> kAttenuations{"bilinear", "nearest", "exact"};
+const std::vector<std::string> kAttenuations{"bilinear", "nearest", "exact", "auto"};
 const std::vector<std::string> kCodes{"depth8", "linear8"};
 const std::vector<std::string> kHierarchyFilters{"geometric", "arithmetic"};
 // In ascending order of DirectionSet's values, from 1.
@@ -23,9 +23,11 @@ void MethodOptions::add(CLI::App& app) {
           "How the splats become the picture; sorted is back-to-front alpha blending, to compare with "
           "[normalised]")
       ->group(group);
-  addWord(app, "--attenuation", kAttenuations, attenuation,
-          "How the table is looked up between its directions; exact does not read it, but "
-          "sweeps from the eye for every frame [bilinear]")
+  addWord(
+      app, "--attenuation", kAttenuations, attenuation,
+      "How the table is looked up between its directions; exact does not read it, but "
+      "sweeps from the eye for every frame; auto: exact where the eye is inside the volume, else bilinear "
+      "[auto]")
       ->group(group);
   addWord(app, "--directions", kDirections, directions,
           "How many directions the table holds; 98 are more exact and take more memory and time [26]")
@@ -67,7 +69,7 @@ TableSettings MethodOptions::table() const {
 void MethodOptions::apply(FrameSettings& frame) const {
   frame.composite = Composite(composite.value_or(int(paper ? Composite::Additive : Composite::Normalised)));
   frame.attenuation = AttenuationLookup(
-      attenuation.value_or(int(paper ? AttenuationLookup::Nearest : AttenuationLookup::Bilinear)));
+      attenuation.value_or(int(paper ? AttenuationLookup::Nearest : AttenuationLookup::Auto)));
   frame.gradient = gradient.value_or(!paper);
   frame.lod = float(lod.value_or(paper ? 0.0 : 1.0));
 }

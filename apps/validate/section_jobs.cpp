@@ -9,6 +9,7 @@
 #include "engine/renderer.h"
 #include "engine/validation/closed_forms.h"
 #include "engine/validation/detail_quality.h"
+#include "engine/validation/fly_through_quality.h"
 #include "engine/validation/invariances.h"
 #include "engine/validation/leakage.h"
 #include "engine/validation/level_checks.h"
@@ -31,6 +32,8 @@ constexpr int kQuickQualityPicture = 96, kWholeQualityPicture = 160, kLargeQuali
 constexpr int kLeastResolutionWithGoals = kMedium;
 constexpr int kDetailResolution = kMedium;
 constexpr int kTurntableResolution = kMedium, kTurntableFrames = 72, kTurntablePicture = 64;
+constexpr int kQuickFlightFrames = 8, kWholeFlightFrames = 60, kFlightPicture = 64;
+constexpr int kFlightSubject = 2;  ///< of kQualitySubjects: the cloud
 
 /// Of the large ones a full one, which is drawn in several chunks, and a sparse one say what size can change.
 struct ProceduralScene {
@@ -116,6 +119,17 @@ void addDetail(std::vector<SectionJob>& jobs, const Device& device, bool quick) 
   }
 }
 
+void addFlight(std::vector<SectionJob>& jobs, const Device& device, const Extent& extent) {
+  const int resolution = extent.quick ? kQuickQuality : kLeastResolutionWithGoals;
+  const int frames = extent.quick ? kQuickFlightFrames : kWholeFlightFrames;
+  jobs.push_back({"picture quality within the cloud", [=, &device] {
+                    return flyThroughQuality(
+                        deviceStages(device),
+                        openQualityScene(device, kQualitySubjects[kFlightSubject], resolution), frames,
+                        kFlightPicture);
+                  }});
+}
+
 void addPaperFigures(std::vector<SectionJob>& jobs, const Device& device) {
   jobs.push_back({"figure 2 of the paper", [&device] { return paperFigure2(deviceStages(device)); }});
   jobs.push_back({"figure 6 of the paper", [&device] { return paperFigure6(deviceStages(device)); }});
@@ -154,6 +168,7 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
   addDetail(jobs, device, extent.quick);
   addQuality(jobs, device, extent);
   if (!extent.quick && !extent.resolution) addTurntable(jobs, device);
+  if (!extent.resolution) addFlight(jobs, device, extent);
   for (const std::string& file : extent.files) {
     const auto scene = std::make_shared<ValidationScene>(
         makeValidationScene(readVdb(file, "", maximumVoxels(device, DirectionSet::Directions98)),

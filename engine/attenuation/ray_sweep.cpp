@@ -41,9 +41,8 @@ void checkFits(const Device& device, const std::array<RayFan, 6>& fans) {
       std::min(std::uint64_t(device.maximumAllocation()), device.description().memoryBytes);
   if (bytes > fits || largest > most)
     fail(ExitCode::OutOfMemory,
-         "--attenuation exact needs {} MiB for its rays from here and {} has {} MiB in one piece: use "
-         "--attenuation "
-         "bilinear, or a smaller volume",
+         "exact transmittance needs {} MiB for its rays from here and {} has {} MiB in one piece: use "
+         "--attenuation bilinear, or a smaller volume",
          bytes >> 20, device.description().name, std::min(fits, most) >> 20);
 }
 

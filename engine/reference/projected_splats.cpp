@@ -12,13 +12,19 @@
 // Where the smaller semi-axis is below R pixels (a voxel smaller than a pixel), S grows to S' = S + (R² - l)
 // I, l its smaller eigenvalue, and the footprint's peak shrinks by sqrt(det S / det S'), which keeps its
 // energy.
+//
+// A kernel that a perspective camera's eye plane cuts has no such ellipse. There r² and the distance along
+// the ray to its nearest point are taken from q and D directly, and the kernel is integrated from the eye on:
+// no voxel appears or goes at once, however near it comes.
 
 #include "engine/reference/projected_splats.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
+#include "engine/core/error.h"
 #include "engine/splatting/footprint.h"
 
 namespace freevoxels {
@@ -26,11 +32,25 @@ namespace freevoxels {
 namespace {
 
 constexpr double kR2 = kFootprintRadius * kFootprintRadius;
+/// Voxels: nearer to the eye than this a position has no direction.
+constexpr double kAtEye = 1e-3;
 
 /// First and last pixel of a range; empty where last < first.
 struct PixelBox {
   glm::ivec2 first{0}, last{-1};
 };
+
+/// The part of the kernel's line integral that is ahead of a point at -x, in half chords from the chord's
+/// middle: the integral of (1 - t²)^(7/2) from -x to 1, over that from -1 to 1.
+double partAhead(double x) {
+  if (x >= 1.0) return 1.0;
+  if (x <= -1.0) return 0.0;
+  const double y = 1.0 - x * x, root = std::sqrt(y);
+  double integral = std::asin(x);
+  double power = root;  // y^(n - 1/2)
+  for (int n = 1; n <= 4; ++n, power *= y) integral = (x * power + (2 * n - 1) * integral) / (2 * n);
+  return 0.5 + integral / (35.0 / 128.0 * std::numbers::pi);
+}
 
 double smallerEigenvalue(const glm::dmat2& symmetric) {
   const double mean = (symmetric[0][0] + symmetric[1][1]) / 2.0;
@@ -90,19 +110,27 @@ std::optional<ProjectedSplat> SplatProjector::project(const Block& block, glm::d
   const glm::dvec3 q = place - rays_.origin;
   const glm::dvec3 k = toPixel_ * q;
   ProjectedSplat splat;
-  splat.distance = k.z;
+  splat.distance = std::max(k.z, 0.0);
   splat.toEye = toEye(box(block).centre());
   splat.pixelX = rays_.orthographic ? rays_.originX : k.z * rays_.directionX;
   splat.pixelY = rays_.orthographic ? rays_.originY : k.z * rays_.directionY;
-  if (!(k.z > 0.0)) return std::nullopt;
+  const glm::dvec3 rowZ(toPixel_[0][2], toPixel_[1][2], toPixel_[2][2]);
+  const double reach =
+      kFootprintRadius * block.edge() * glm::length(rowZ);  // of the kernel, along the viewing axis
+  if (k.z <= -reach) return std::nullopt;
   glm::dvec3 u, v;
   if (rays_.orthographic) {
+    splat.ahead = partAhead(k.z / reach);
     splat.centre = {k.x, k.y};
     u = glm::cross(rays_.originX, rays_.direction);
     v = glm::cross(rays_.originY, rays_.direction);
   } else {
-    const glm::dvec3 rowZ(toPixel_[0][2], toPixel_[1][2], toPixel_[2][2]);
-    if (!(k.z * k.z - radius2 * glm::dot(rowZ, rowZ) > 0.0)) return std::nullopt;
+    if (k.z <= reach) {
+      FV_CHECK_EQ(block.level, 0);
+      splat.cut = true;
+      splat.fromEye = q;
+      return splat;
+    }
     splat.centre = {k.x / k.z, k.y / k.z};
     u = glm::cross(q, rays_.directionX);
     v = glm::cross(q, rays_.directionY);
@@ -125,7 +153,8 @@ std::optional<ProjectedSplat> SplatProjector::project(const Block& block, glm::d
 }
 
 glm::dvec3 SplatProjector::toEye(glm::dvec3 position) const {
-  return rays_.orthographic ? -rays_.direction : rays_.origin - position;
+  const glm::dvec3 toEye = rays_.origin - position;
+  return rays_.orthographic || glm::length(toEye) < kAtEye ? -rays_.direction : toEye;
 }
 
 double SplatProjector::layerLength(const ProjectedSplat& splat) const {
@@ -138,26 +167,37 @@ double SplatProjector::opacity(const ProjectedSplat& splat, double extinction, i
   return -std::expm1(-extinction * length) / length;
 }
 
-double SplatProjector::footprint(const ProjectedSplat& splat, glm::dvec2 pixel) const {
-  const glm::dvec3 direction = rayDirection(pixel);
+CoveredPixel SplatProjector::cover(const ProjectedSplat& splat, glm::ivec2 pixel) const {
+  const glm::dvec2 centre = glm::dvec2(pixel) + 0.5;
+  const glm::dvec3 direction = rayDirection(centre);
   const double direction2 = glm::dot(direction, direction);
-  const glm::dvec2 d = pixel - splat.centre;
-  const double inside = 1.0 - glm::dot(d, splat.shape * d) / direction2;
-  if (!(inside > 0.0)) return 0.0;
   const double worldPerIndex = glm::length(indexToWorld_ * direction) / std::sqrt(direction2);
+  CoveredPixel covered{.index = std::size_t(pixel.y) * std::size_t(imageSize_.x) + std::size_t(pixel.x),
+                       .offset = centre - splat.centre,
+                       .omega = 0.0,
+                       .ahead = 0.0};
+  double inside = 0.0, part = splat.ahead;
+  if (splat.cut) {
+    const double ahead = glm::dot(splat.fromEye, direction) / std::sqrt(direction2);
+    const glm::dvec3 across = glm::cross(splat.fromEye, direction);
+    inside = 1.0 - glm::dot(across, across) / (direction2 * kR2);
+    covered.ahead = ahead * worldPerIndex;
+    if (inside > 0.0) part = partAhead(ahead / (kFootprintRadius * std::sqrt(inside)));
+  } else {
+    inside = 1.0 - glm::dot(covered.offset, splat.shape * covered.offset) / direction2;
+  }
   const double squared = inside * inside;
-  return kFootprintPeak * splat.amplitude * squared * squared * worldPerIndex;
+  if (inside > 0.0)
+    covered.omega = kFootprintPeak * splat.amplitude * part * squared * squared * worldPerIndex;
+  return covered;
 }
 
 void SplatProjector::forEachPixel(const ProjectedSplat& splat,
-                                  const std::function<void(std::size_t, glm::dvec2, double)>& visit) const {
-  const PixelBox box = boundingPixels(rays_, rayDirection(splat.centre), splat, imageSize_);
+                                  const std::function<void(const CoveredPixel&)>& visit) const {
+  const PixelBox box = splat.cut ? PixelBox{{0, 0}, imageSize_ - 1}
+                                 : boundingPixels(rays_, rayDirection(splat.centre), splat, imageSize_);
   for (int y = box.first.y; y <= box.last.y; ++y)
-    for (int x = box.first.x; x <= box.last.x; ++x) {
-      const glm::dvec2 pixel(x + 0.5, y + 0.5);
-      visit(std::size_t(y) * std::size_t(imageSize_.x) + std::size_t(x), pixel - splat.centre,
-            footprint(splat, pixel));
-    }
+    for (int x = box.first.x; x <= box.last.x; ++x) visit(cover(splat, {x, y}));
 }
 
 }  // namespace freevoxels

@@ -21,15 +21,18 @@ glm::dvec3 acrossLayer(glm::dvec3 direction) {
 
 class TableDepth : public ReferenceDepth {
  public:
-  TableDepth(const Volume& volume, const std::vector<std::vector<std::uint8_t>>& table,
-             std::span<const LevelData> coarser, const TableSettings& settings, AttenuationLookup lookup,
-             ToEye toEye)
+  TableDepth(const Volume& volume, std::span<const double> extinction,
+             const std::vector<std::vector<std::uint8_t>>& table, std::span<const LevelData> coarser,
+             const TableSettings& settings, AttenuationLookup lookup, ToEye toEye,
+             std::optional<glm::dvec3> eyeInside)
       : volume_(volume),
+        extinction_(extinction),
         table_(table),
         coarser_(coarser),
         settings_(settings),
         lookup_(lookup),
-        toEye_(std::move(toEye)) {
+        toEye_(std::move(toEye)),
+        eyeInside_(eyeInside) {
     FV_CHECK_EQ(table.size(), std::size_t(directionCount(settings.directions)));
     for (int i = 0; i < int(table.size()); ++i)
       layerLengths_.push_back(stepLength(volume.indexToWorld, directionAt(settings.directions, i), true));
@@ -49,15 +52,42 @@ class TableDepth : public ReferenceDepth {
 
  private:
   glm::dvec3 centre(const Block& block) const { return boxOf(block, volume_.dimensions).centre(); }
+  /// A byte of the table, as long as if its line's layers had this world length.
+  double stored(int direction, int byte, double layer) const;
+  double beyondEye(int direction, double layer) const;
 
   const Volume& volume_;
+  const std::span<const double> extinction_;
   const std::vector<std::vector<std::uint8_t>>& table_;
   const std::span<const LevelData> coarser_;
   const TableSettings settings_;
   const AttenuationLookup lookup_;
   const ToEye toEye_;
+  const std::optional<glm::dvec3> eyeInside_;
   std::vector<double> layerLengths_;  ///< by direction, world length
 };
+
+double TableDepth::stored(int direction, int byte, double layer) const {
+  const double depth = decodeOpticalDepth(settings_.code, byte);
+  if (!settings_.pathLengthCorrection) return depth;
+  return depth * layer / layerLengths_[std::size_t(direction)];
+}
+
+double TableDepth::beyondEye(int direction, double layer) const {
+  if (!eyeInside_) return 0.0;
+  const glm::dvec3 place = glm::clamp(*eyeInside_, glm::dvec3(0.0), glm::dvec3(volume_.dimensions - 1));
+  double sum = 0.0;
+  for (int z = int(place.z); z <= std::min(int(place.z) + 1, volume_.dimensions.z - 1); ++z)
+    for (int y = int(place.y); y <= std::min(int(place.y) + 1, volume_.dimensions.y - 1); ++y)
+      for (int x = int(place.x); x <= std::min(int(place.x) + 1, volume_.dimensions.x - 1); ++x) {
+        const glm::dvec3 share = 1.0 - glm::abs(place - glm::dvec3(x, y, z));
+        const std::size_t voxel = volume_.at(x, y, z);
+        sum += share.x * share.y * share.z *
+               (stored(direction, table_[std::size_t(direction)][voxel], layer) +
+                layer * extinction_[voxel] / 2.0);
+      }
+  return sum;
+}
 
 double TableDepth::at(const Block& block) const {
   const glm::dvec3 toEye = toEye_(centre(block));
@@ -68,16 +98,15 @@ double TableDepth::at(const Block& block) const {
   const std::size_t index =
       level == nullptr ? volume_.at(block.cell.x, block.cell.y, block.cell.z) : level->at(block.cell);
   const DirectionSet set = settings_.directions;
-  const auto stored = [&](int direction) {
-    const double depth = decodeOpticalDepth(settings_.code, table[std::size_t(direction)][index]);
-    if (!settings_.pathLengthCorrection) return depth;
-    return depth * layer / layerLengths_[std::size_t(direction)];
+  const auto depth = [&](int direction) {
+    return std::max(
+        stored(direction, table[std::size_t(direction)][index], layer) - beyondEye(direction, layer), 0.0);
   };
-  if (lookup_ == AttenuationLookup::Nearest) return stored(nearestDirection(set, toEye));
+  if (lookup_ == AttenuationLookup::Nearest) return depth(nearestDirection(set, toEye));
   const DirectionBlend blend = bilinearDirections(set, toEye);
   double transmittance = 0.0;
   for (std::size_t i = 0; i < 4; ++i)
-    transmittance += blend.weights[i] * std::exp(-stored(blend.directions[i]));
+    transmittance += blend.weights[i] * std::exp(-depth(blend.directions[i]));
   return -std::log(transmittance);
 }
 
@@ -90,7 +119,7 @@ std::pair<double, double> spline(const std::array<double, 4>& p, double x) {
 
 /// As ray_sweep.comp keeps it: the square root of its part of kOpaqueDepth, in 16 bits.
 double storedRayDepth(double depth) {
-  const double code = std::round(65535.0 * std::sqrt(std::min(depth, kOpaqueDepth) / kOpaqueDepth));
+  const double code = std::round(65535.0 * std::sqrt(std::clamp(depth / kOpaqueDepth, 0.0, 1.0)));
   return kOpaqueDepth * (code / 65535.0) * (code / 65535.0);
 }
 
@@ -113,6 +142,7 @@ class RayDepth : public ReferenceDepth {
   }
   double extinctionAt(int axis, int plane, glm::ivec2 side) const;
   double interpolated(int axis, int plane, glm::dvec2 side) const;
+  double sourceCut(const RayFan& fan, glm::dvec2 offset, glm::dvec2 slope) const;
   void march(std::size_t fan, int i, int j);
   glm::dvec3 lookUp(const Block& block) const;
   glm::dvec3 lookUp(const RayFan& fan, glm::dvec3 onPlane) const;
@@ -157,6 +187,20 @@ double RayDepth::interpolated(int axis, int plane, glm::dvec2 side) const {
   return sum;
 }
 
+/// What a ray that starts within the volume has in front of its first layer, in layers: the extinction along
+/// it is linear between the planes on either side of the source. Less than 0 where the source is in that
+/// layer.
+double RayDepth::sourceCut(const RayFan& fan, glm::dvec2 offset, glm::dvec2 slope) const {
+  if (source_.atInfinity) return 0.0;
+  const double distance = std::min(std::abs(fan.firstPlane - source_.place[fan.axis]), 1.0);
+  const auto at = [&](int plane) {
+    return interpolated(fan.axis, plane, fan.origin + offset + slope * (plane - fan.farthest));
+  };
+  const double first = at(fan.firstPlane), before = at(fan.firstPlane - fan.direction);
+  const double source = distance * before + (1.0 - distance) * first;
+  return distance * (source + first) / 2.0 - first / 2.0;
+}
+
 void RayDepth::march(std::size_t f, int i, int j) {
   const RayFan& fan = fans_[f];
   const glm::dvec2 offset = fan.spacing * glm::dvec2(i, j);
@@ -166,7 +210,7 @@ void RayDepth::march(std::size_t f, int i, int j) {
   step[(fan.axis + 1) % 3] = slope.x;
   step[(fan.axis + 2) % 3] = slope.y;
   const double layer = glm::length(glm::dmat3(volume_.indexToWorld) * step);
-  double depth = 0.0;
+  double depth = layer * sourceCut(fan, offset, slope);
   for (int k = 0; k < fan.planeCount; ++k) {
     const int plane = fan.firstPlane + fan.direction * k;
     depths_[f][std::size_t(i) + std::size_t(fan.rayCount.x) *
@@ -187,15 +231,17 @@ glm::dvec3 RayDepth::lookUp(const Block& block) const {
 }
 
 glm::dvec3 RayDepth::lookUp(const RayFan& fan, glm::dvec3 onPlane) const {
+  if (fan.planeCount == 0) return glm::dvec3(0.0);  // only of a voxel at the source
   const std::vector<double>& depths = depths_[std::size_t(&fan - fans_.data())];
-  const double up = onPlane[fan.axis] - fan.farthest;
+  // At the source: the first.
+  const int plane = std::clamp((int(std::lround(onPlane[fan.axis])) - fan.firstPlane) * fan.direction, 0,
+                               fan.planeCount - 1);
+  const double up = fan.firstPlane + fan.direction * plane - fan.farthest;
   const double apart = fan.spacing * (1.0 + fan.convergence * up);
   const glm::dvec2 side(onPlane[(fan.axis + 1) % 3], onPlane[(fan.axis + 2) % 3]);
   const glm::dvec2 place = (side - fan.origin - fan.slope * up) / apart;
   const glm::ivec2 low = glm::clamp(glm::ivec2(glm::floor(place)), glm::ivec2(1), fan.rayCount - 3);
   const glm::dvec2 x = glm::clamp(place - glm::dvec2(low), 0.0, 1.0);
-  const int plane = std::clamp((int(std::lround(onPlane[fan.axis])) - fan.firstPlane) * fan.direction, 0,
-                               fan.planeCount - 1);
   std::array<double, 4> values, slopes;
   for (int j = 0; j < 4; ++j) {
     std::array<double, 4> line;
@@ -222,11 +268,13 @@ glm::dvec3 ReferenceDepth::gradient(const Block& block, glm::dvec3 toEye, double
   return gradient;
 }
 
-std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume,
+std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume, std::span<const double> extinction,
                                            const std::vector<std::vector<std::uint8_t>>& table,
                                            std::span<const LevelData> coarser, const TableSettings& settings,
-                                           AttenuationLookup lookup, ToEye toEye) {
-  return std::make_unique<TableDepth>(volume, table, coarser, settings, lookup, std::move(toEye));
+                                           AttenuationLookup lookup, ToEye toEye,
+                                           std::optional<glm::dvec3> eyeInside) {
+  return std::make_unique<TableDepth>(volume, extinction, table, coarser, settings, lookup, std::move(toEye),
+                                      eyeInside);
 }
 
 std::unique_ptr<ReferenceDepth> rayDepth(const Volume& volume, std::span<const double> extinction,

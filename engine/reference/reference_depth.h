@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -44,10 +45,14 @@ using ToEye = std::function<glm::dvec3(glm::dvec3 position)>;
 /// direction over that in the stored one. Slopes are differences between neighbours, one-sided at the
 /// volume's faces. `table` holds bytes [direction][voxel], `coarser` the levels above the voxels; keeps
 /// references.
-std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume,
+///
+/// With an eye inside the volume (index space), what a stored depth has beyond the eye is taken off: that of
+/// the voxels around the eye, interpolated, each with half of its own layer.
+std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume, std::span<const double> extinction,
                                            const std::vector<std::vector<std::uint8_t>>& table,
                                            std::span<const LevelData> coarser, const TableSettings& settings,
-                                           AttenuationLookup lookup, ToEye toEye);
+                                           AttenuationLookup lookup, ToEye toEye,
+                                           std::optional<glm::dvec3> eyeInside);
 
 /// Sums along every ray of the source's fans (ray_fans.h), between which depths and slopes are those of
 /// Catmull and Rom's spline. A block whose centre lies between two planes has the mean of what its line of

@@ -50,9 +50,9 @@ Image referenceSortedPicture(const Volume& volume, const Classification& classif
     if (!splat) continue;
     const ClassifiedVoxel material = classify(classification, volume.values[voxel]);
     const double opacity = projector.opacity(*splat, material.extinction);
-    projector.forEachPixel(*splat, [&](std::size_t pixel, glm::dvec2, double omega) {
-      const double alpha = std::min(opacity * omega, 1.0);
-      BlendedPixel& behind = blended[pixel];
+    projector.forEachPixel(*splat, [&](const CoveredPixel& pixel) {
+      const double alpha = std::min(opacity * pixel.omega, 1.0);
+      BlendedPixel& behind = blended[pixel.index];
       behind.color = alpha * glm::dvec4(material.color, 1.0) + (1.0 - alpha) * behind.color;
       behind.distance = alpha * splat->distance + (1.0 - alpha) * behind.distance;
     });

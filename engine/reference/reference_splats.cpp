@@ -24,10 +24,17 @@ namespace {
 /// The list is added up in about as many, each with a picture of its own, whatever the number of cores.
 constexpr std::size_t kParts = 16;
 
-/// Optical depth to the eye at a voxel's centre, and its change per pixel.
+/// Optical depth to the eye at a voxel's centre, and its change per pixel; for a kernel that is cut, its
+/// change per world length along the ray, from the centre's distance on.
 struct DepthToEye {
   double centre = 0.0;
   glm::dvec2 perPixel{0.0};
+  double perLength = 0.0, distance = 0.0;
+
+  double at(const CoveredPixel& pixel) const {
+    const double along = perLength * (pixel.ahead - distance);
+    return std::max(centre + glm::dot(perPixel, pixel.offset) + along, 0.0);
+  }
 };
 
 class SplatSummer {
@@ -41,10 +48,7 @@ class SplatSummer {
         coarser_(coarser),
         settings_(settings),
         projector_(volume, camera, settings.size),
-        depth_(settings.attenuation == AttenuationLookup::Exact
-                   ? rayDepth(volume, extinction, eyeSource(camera, volume.indexToWorld))
-                   : tableDepth(volume, table, coarser, tableSettings, settings.attenuation,
-                                [this](glm::dvec3 position) { return projector_.toEye(position); })) {}
+        depth_(depthFor(table, tableSettings, camera)) {}
 
   /// Over a list of what `blockOf` makes blocks of.
   template <typename Item, typename BlockOf>
@@ -52,6 +56,8 @@ class SplatSummer {
   Block voxel(std::uint32_t index) const { return projector_.voxel(index); }
 
  private:
+  std::unique_ptr<ReferenceDepth> depthFor(const std::vector<std::vector<std::uint8_t>>& table,
+                                           const TableSettings& tableSettings, const Camera& camera) const;
   void add(const Block& block, std::vector<SplatSums>& picture) const;
   double extinctionOf(const Block& block) const;
   ClassifiedVoxel materialOf(const Block& block) const;
@@ -66,6 +72,19 @@ class SplatSummer {
   const SplatProjector projector_;
   const std::unique_ptr<ReferenceDepth> depth_;
 };
+
+std::unique_ptr<ReferenceDepth> SplatSummer::depthFor(const std::vector<std::vector<std::uint8_t>>& table,
+                                                      const TableSettings& tableSettings,
+                                                      const Camera& camera) const {
+  const RaySource eye = eyeSource(camera, volume_.indexToWorld);
+  const bool inside = eyeIsInside(camera, volume_.dimensions, volume_.indexToWorld);
+  const AttenuationLookup lookup = resolveAttenuation(settings_.attenuation, inside);
+  if (lookup == AttenuationLookup::Exact) return rayDepth(volume_, extinction_, eye);
+  return tableDepth(
+      volume_, extinction_, table, coarser_, tableSettings, lookup,
+      [this](glm::dvec3 position) { return projector_.toEye(position); },
+      inside ? std::optional(eye.place) : std::nullopt);
+}
 
 double SplatSummer::extinctionOf(const Block& block) const {
   if (block.level == 0) return extinction_[volume_.at(block.cell.x, block.cell.y, block.cell.z)];
@@ -107,6 +126,11 @@ DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& spl
   const double before = 0.5 * (layers - 1) * extinction * depth_->countedLength(layer);
   DepthToEye depth{.centre = std::max(depth_->at(block) - before, 0.0)};
   if (!settings_.gradient) return depth;
+  if (splat.cut) {
+    depth.perLength = extinction;
+    depth.distance = projector_.distanceFromEye(splat);
+    return depth;
+  }
   const glm::dvec3 gradient = depth_->gradient(block, splat.toEye, extinction * layer);
   // It fades with the widening: a widened footprint stands for a pixel in which the depth changes often.
   // The children of a block that is not widened may have been.
@@ -123,14 +147,12 @@ void SplatSummer::add(const Block& block, std::vector<SplatSums>& picture) const
   const int layers = projector_.box(block).extent[majorAxis(splat->toEye)];
   const DepthToEye depth = depthToEye(block, *splat, sigma, layers);
   const double opacity = projector_.opacity(*splat, sigma, layers);
-  const auto addTo = [&, color = albedo, extinction = sigma](std::size_t pixel, glm::dvec2 offset,
-                                                             double omega) {
-    SplatSums& sums = picture[pixel];
-    const double inFront = std::max(depth.centre + glm::dot(depth.perPixel, offset), 0.0);
-    const double energy = opacity * std::exp(-inFront) * omega;
+  const auto addTo = [&, color = albedo, extinction = sigma](const CoveredPixel& pixel) {
+    SplatSums& sums = picture[pixel.index];
+    const double energy = opacity * std::exp(-depth.at(pixel)) * pixel.omega;
     sums.color += energy * color;
     sums.energy += energy;
-    sums.depth += extinction * omega;
+    sums.depth += extinction * pixel.omega;
     sums.distance += energy * splat->distance;
   };
   projector_.forEachPixel(*splat, addTo);

@@ -141,6 +141,18 @@ RaySource eyeSource(const Camera& camera, const glm::dmat4& indexToWorld) {
   return {.place = glm::dvec3(worldToIndex * glm::dvec4(camera.position, 1.0))};
 }
 
+bool eyeIsInside(const Camera& camera, glm::ivec3 dimensions, const glm::dmat4& indexToWorld) {
+  if (camera.orthographic) return false;
+  const glm::dvec3 eye = eyeSource(camera, indexToWorld).place + 0.5;
+  return glm::all(glm::greaterThanEqual(eye, glm::dvec3(0.0))) &&
+         glm::all(glm::lessThanEqual(eye, glm::dvec3(dimensions)));
+}
+
+AttenuationLookup resolveAttenuation(AttenuationLookup lookup, bool eyeInside) {
+  if (lookup != AttenuationLookup::Auto) return lookup;
+  return eyeInside ? AttenuationLookup::Exact : AttenuationLookup::Bilinear;
+}
+
 PixelRays pixelRays(const Camera& camera, glm::ivec2 imageSize, const glm::dmat4& indexToWorld) {
   const glm::dmat4 worldToIndex = glm::inverse(indexToWorld);
   const glm::dmat3 linear(worldToIndex);

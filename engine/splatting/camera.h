@@ -4,6 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "engine/attenuation/ray_fans.h"
+#include "engine/splatting/render_settings.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -49,6 +50,13 @@ struct PixelRays {
 
 /// Where the lines of sight start: the eye, or an orthographic camera's direction towards it.
 RaySource eyeSource(const Camera& camera, const glm::dmat4& indexToWorld);
+
+/// Whether the eye is within the volume's box, faces included. Never of an orthographic camera.
+bool eyeIsInside(const Camera& camera, glm::ivec3 dimensions, const glm::dmat4& indexToWorld);
+
+/// What Auto stands for, and everything else for itself. The table tells how much of a voxel's light leaves
+/// the volume, and around an eye within it nothing of that: see README.md.
+AttenuationLookup resolveAttenuation(AttenuationLookup lookup, bool eyeInside);
 
 PixelRays pixelRays(const Camera& camera, glm::ivec2 imageSize, const glm::dmat4& indexToWorld);
 

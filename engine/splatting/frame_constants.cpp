@@ -84,8 +84,10 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
   const glm::dvec3 eyeToMiddle = middle - rays.origin;
 
-  const int lookup =
-      settings.composite == Composite::Sorted ? shader::kLookupNone : int(settings.attenuation);
+  const bool inside = eyeIsInside(camera, volume.layout.dimensions, volume.indexToWorld);
+  const int lookup = settings.composite == Composite::Sorted
+                         ? shader::kLookupNone
+                         : int(resolveAttenuation(settings.attenuation, inside));
   FrameConstants frame{};
   frame.setup = {.indexToWorld = linear,
                  .indexToPixel = toPixel,
@@ -95,11 +97,13 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                  .pixelX = pixelX,
                  .pixelY = pixelY,
                  .ray = rays.direction,
+                 .imageSize = settings.size,
                  .orthographic = rays.orthographic ? 1 : 0,
                  .dimensions = volume.layout.dimensions,
                  .levelCount = int(volume.hierarchy.levels.size()),
                  .voxelSize = float(volume.voxelSize),
                  .lookup = lookup,
+                 .eyeInside = inside ? 1 : 0,
                  .pathLengthCorrection = table.pathLengthCorrection ? 1 : 0,
                  .gradient = settings.gradient && lookup != shader::kLookupNone ? 1 : 0,
                  .code = int(table.code),

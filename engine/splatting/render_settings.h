@@ -17,12 +17,13 @@ enum class AttenuationLookup : int {
   Bilinear = 0,  ///< of the four directions of the table around the viewing direction
   Nearest = 1,   ///< the paper's
   Exact = 2,     ///< not from the table: along rays from the eye (ray_fans.h), once a frame
+  Auto = 3,      ///< Exact where the eye is inside the volume, else Bilinear: resolveAttenuation
 };
 
 struct FrameSettings {
   glm::ivec2 size{1024, 1024};
   Composite composite = Composite::Normalised;
-  AttenuationLookup attenuation = AttenuationLookup::Bilinear;
+  AttenuationLookup attenuation = AttenuationLookup::Auto;
   /// Whether the optical depth to the eye varies across a footprint, to first order, or is the voxel
   /// centre's, as in the paper.
   bool gradient = true;
@@ -30,10 +31,6 @@ struct FrameSettings {
   /// pictures are of voxels, whatever this is.
   float lod = 1.0f;
   bool depth = false;  ///< also make Image::depth
-
-  bool readsTable() const {
-    return composite != Composite::Sorted && attenuation != AttenuationLookup::Exact;
-  }
 };
 
 }  // namespace freevoxels

@@ -37,6 +37,10 @@ struct FrameConstants {
   bool quads = false;  ///< some splat may be larger than the device's largest point
   float viewportMargin =
       0.0f;  ///< pixels around the image, so that points centred outside it are not clipped
+
+  bool readsTable() const {
+    return setup.lookup == shader::kLookupBilinear || setup.lookup == shader::kLookupNearest;
+  }
 };
 
 FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volume,
@@ -52,7 +56,7 @@ class SplatPass {
 
   struct Inputs {
     const DeviceVolume& volume;
-    const AttenuationTable* table;  ///< null where FrameSettings::readsTable says no
+    const AttenuationTable* table;  ///< null where FrameConstants::readsTable says no
     const VisibleVoxels& visible;   ///< the blocks to draw, by FrameConstants::detail
     const Buffer* order = nullptr;  ///< the visible voxels as they are to be drawn; null: as they are listed
   };

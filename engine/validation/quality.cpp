@@ -8,8 +8,8 @@
 #include "engine/core/error.h"
 #include "engine/image/flip.h"
 #include "engine/image/metrics.h"
-#include "engine/reference/oracle.h"
 #include "engine/splatting/orbit.h"
+#include "engine/validation/quality_pictures.h"
 #include "engine/validation/worst.h"
 
 namespace freevoxels {
@@ -20,27 +20,6 @@ constexpr double kTurntableElevation = 10.0;
 constexpr double kLargestJump = 1.0;  ///< dB
 /// Differences below 1/8 can be told apart.
 constexpr float kDifferenceGain = 8.0f;
-
-std::vector<Image> oraclePictures(const QualityScene& scene, const std::vector<Camera>& cameras,
-                                  glm::ivec2 size) {
-  std::vector<Image> pictures;
-  for (const Camera& camera : cameras)
-    pictures.push_back(renderOracle(scene.volume, scene.classification, camera,
-                                    {.size = size, .tolerance = kQualityTolerance})
-                           .image);
-  return pictures;
-}
-
-std::vector<Image> methodPictures(const StageMaker& make, const QualityScene& scene,
-                                  const QualityMethod& method, const std::vector<Camera>& cameras,
-                                  glm::ivec2 size) {
-  FrameSettings settings = method.frame;
-  settings.size = size;
-  const auto outputs = make(scene.volume, scene.classification, method.table);
-  std::vector<Image> pictures;
-  for (const Camera& camera : cameras) pictures.push_back(outputs->picture(camera, settings));
-  return pictures;
-}
 
 std::vector<PictureFigures> figuresOf(const std::vector<Image>& pictures, const std::vector<Image>& oracle) {
   std::vector<PictureFigures> figures;

@@ -11,10 +11,6 @@
 
 namespace freevoxels {
 
-/// How much doubling the oracle's rays may still change a pixel: its pictures are then 80 dB from those of a
-/// quarter of this, for a third of the time, and what is measured with them is below 65 dB.
-inline constexpr double kQualityTolerance = 4e-3;
-
 struct QualityRun {
   std::span<const QualityView> views;
   int pictureEdge = 128;  ///< pixels, of square pictures

@@ -54,10 +54,12 @@ struct Method {
   Composite composite;
   AttenuationLookup attenuation;
   bool gradient, depth;
+  bool inside = false;  ///< the eye is in the middle of the volume
 };
-constexpr std::array<Method, 4> kMethods{
+constexpr std::array<Method, 5> kMethods{
     {{"default", 0, false, Composite::Normalised, AttenuationLookup::Bilinear, true, true},
      {"exact", 0, false, Composite::Normalised, AttenuationLookup::Exact, true, false},
+     {"eye inside", 0, false, Composite::Normalised, AttenuationLookup::Auto, true, true, true},
      {"the paper's", 3, true, Composite::Additive, AttenuationLookup::Nearest, false, false},
      {"98 directions", 4, false, Composite::Normalised, AttenuationLookup::Bilinear, true, false}}};
 
@@ -201,6 +203,16 @@ ReportPictures showPictures(const Image& picture, const Image& reference, const 
           .background = glm::vec3(0.01f)};
 }
 
+/// Looks the way that `outside` does, from the middle of the box, where no voxel's centre is.
+Camera cameraInside(const Volume& volume, const Camera& outside) {
+  const glm::dvec3 middle = 0.5 * glm::dvec3(volume.dimensions - 1) + glm::dvec3(0.1, 0.2, 0.3);
+  Camera camera = outside;
+  camera.position = glm::dvec3(volume.indexToWorld * glm::dvec4(middle, 1.0));
+  camera.lookAt = camera.position + (outside.lookAt - outside.position);
+  camera.verticalFov = 60.0;
+  return camera;
+}
+
 void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, ReportSection& section) {
   const ValidationScene& scene = outcome.scene;
   const FrameSettings settings{.size = size,
@@ -209,8 +221,9 @@ void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, R
                                .gradient = method.gradient,
                                .lod = 0.0f,
                                .depth = method.depth};
-  const Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation,
-                                      double(size.x) / size.y, {.orthographic = method.orthographic});
+  Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, double(size.x) / size.y,
+                                {.orthographic = method.orthographic});
+  if (method.inside) camera = cameraInside(scene.volume, camera);
   const std::vector<SplatSums> sums = outcome.device.sums(camera, settings);
   const std::vector<SplatSums> reference =
       referenceSplatSums(scene.volume, scene.classification, outcome.extinction, outcome.table,

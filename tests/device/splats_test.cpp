@@ -1,60 +1,10 @@
 // Splat sums on the device against the double-precision reference: perspective and orthographic, any voxel
 // shape, both kinds of primitive.
 
-#include <cmath>
-#include <numeric>
-
-#include "engine/reference/reference_splats.h"
-#include "engine/reference/reference_table.h"
-#include "engine/renderer.h"
-#include "tests/device/device_fixture.h"
-#include "tests/device/test_volumes.h"
+#include "tests/device/splat_fixture.h"
 
 namespace freevoxels {
 namespace {
-
-class SplatTest : public DeviceTest {
- protected:
-  static Image reference(const Volume& volume, const Classification& classification,
-                         const TableSettings& table, const Camera& camera, const FrameSettings& settings) {
-    const auto extinction = referenceExtinction(volume, classification);
-    const auto bytes = referenceTable(volume, extinction, table);
-    const auto sums = referenceSplatSums(volume, classification, bytes, table, camera, settings,
-                                         referenceVisibleVoxels(extinction));
-    return referenceResolve(sums, settings);
-  }
-
-  /// The table may be one code off here and there (its own test), which moves a colour by up to 1e-2 where
-  /// few voxels mix; alpha does not use the table.
-  void expectSamePicture(const Volume& volume, const Camera& camera, FrameSettings settings,
-                         const TableSettings& table = {}) {
-    Classification classification;
-    classification.transferFunction = TransferFunction{
-        .opacity = {{0.0f, 0.0f}, {1.0f, 0.5f}},
-        .color = {{0.0f, {1.0f, 0.2f, 0.1f}}, {0.5f, {0.2f, 1.0f, 0.3f}}, {1.0f, {0.1f, 0.3f, 1.0f}}},
-        .unitDistance = volume.voxelSize()};
-    settings.depth = true;
-    Renderer renderer(device(), volume, classification, table);
-    const Image picture = renderer.render(camera, settings);
-    const Image expected = reference(volume, classification, table, camera, settings);
-    double worstColor = 0.0, worstAlpha = 0.0;
-    for (std::size_t i = 0; i < expected.pixels.size(); ++i) {
-      const glm::dvec4 difference = glm::abs(glm::dvec4(picture.pixels[i]) - glm::dvec4(expected.pixels[i]));
-      worstColor = std::max({worstColor, difference.x, difference.y, difference.z});
-      worstAlpha = std::max(worstAlpha, difference.w);
-    }
-    const bool normalised = settings.composite == Composite::Normalised;
-    EXPECT_LE(worstColor, 5e-3);
-    EXPECT_LE(worstAlpha, normalised ? 1e-4 : 5e-3);
-    EXPECT_LE(worstRelativeDepth(picture, expected), 2e-3);
-    EXPECT_GE(psnr(picture, expected), 65.0);
-  }
-
-  static constexpr glm::ivec3 kSize{11, 14, 9};
-  static Volume volume(bool sheared) {
-    return randomVolume(kSize, sheared ? shearedTransform(kSize) : cubeTransform(kSize), 0.6, 1.0);
-  }
-};
 
 TEST_F(SplatTest, PerspectiveMatchesTheReference) {
   const Volume v = volume(false);
@@ -149,15 +99,6 @@ TEST_F(SplatTest, SplatsCentredOutsideTheImageStillReachIntoIt) {
   camera.verticalFov /= 6.0;
   camera.lookAt += glm::dvec3(0.2, 0.1, 0.0);
   expectSamePicture(v, camera, {.size = {80, 80}});
-}
-
-TEST_F(SplatTest, TheEyeInsideTheVolumeDrawsWhatIsInFront) {
-  const Volume v = volume(false);
-  Camera camera;
-  camera.position = {0.03, 0.02, 0.01};
-  camera.lookAt = {0.3, 0.1, -0.4};
-  camera.verticalFov = 70.0;
-  expectSamePicture(v, camera, {.size = {64, 64}});
 }
 
 }  // namespace

@@ -227,17 +227,44 @@ TEST(ReferenceSplats, PerspectiveFootprintIsExactOnEveryRay) {
   EXPECT_LT(covered, size.x * size.y);
 }
 
-TEST(ReferenceSplats, VoxelsWhoseKernelReachesTheEyePlaneAreNotDrawn) {
+/// Through the voxel's middle: the integral of (1 - rho²/R²)^(7/2) over what is in front of the eye.
+TEST(ReferenceSplats, AKernelThatTheEyePlaneCutsCountsFromTheEyeOn) {
   const Scene scene(makeVolume({1, 1, 1}, glm::dmat4(1.0), [](int, int, int) { return 1.0; }), physical(1.0));
-  const auto energyFrom = [&](double z) {
+  const auto depthFrom = [&](double z) {
     Camera camera;
     camera.position = {0.0, 0.0, z};
     camera.lookAt = {0.0, 0.0, -100.0};
-    return scene.sums(camera, frameOf({1, 1})).at(0).energy;
+    return scene.sums(camera, frameOf({1, 1})).at(0).depth;
   };
-  EXPECT_GT(energyFrom(kFootprintRadius + 1e-6), 0.0);
-  EXPECT_EQ(energyFrom(kFootprintRadius - 1e-6), 0.0);
-  EXPECT_EQ(energyFrom(-3.0), 0.0);
+  const auto expected = [](double z) {
+    constexpr int kSteps = 20000;
+    double ahead = 0.0, all = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+      const double t = (i + 0.5) / kSteps * 2.0 - 1.0, kernel = std::pow(1.0 - t * t, 3.5);
+      all += kernel;
+      if (t * kFootprintRadius < z) ahead += kernel;
+    }
+    return footprint(0.0) * ahead / all;
+  };
+  for (const double z : {1.39, 1.0, 0.5, 0.2, 0.0, -0.3, -0.9})
+    EXPECT_NEAR(depthFrom(z), expected(z), 1e-4) << z;
+  EXPECT_NEAR(depthFrom(kFootprintRadius - 1e-6), depthFrom(kFootprintRadius + 1e-6), 1e-9);
+  EXPECT_EQ(depthFrom(-kFootprintRadius - 1e-6), 0.0);
+}
+
+/// Its whole kernel at once, by about the same part.
+TEST(ReferenceSplats, AnOrthographicEyePlaneFadesKernels) {
+  const Scene scene(makeVolume({1, 1, 1}, glm::dmat4(1.0), [](int, int, int) { return 1.0; }), physical(1.0));
+  const auto depthFrom = [&](double z) {
+    Camera camera = lookingDown(0.0, 0.0, 1e-3);
+    camera.position.z = z;
+    camera.lookAt.z = -100.0;
+    return scene.sums(camera, frameOf({1, 1})).at(0).depth / footprint(0.0);
+  };
+  EXPECT_NEAR(depthFrom(2.0), 1.0, 1e-6);
+  EXPECT_NEAR(depthFrom(0.0), 0.5, 1e-6);
+  EXPECT_NEAR(depthFrom(0.4) + depthFrom(-0.4), 1.0, 1e-6);
+  EXPECT_EQ(depthFrom(-1.5), 0.0);
 }
 
 /// A cloud-like volume of 12 x 9 x 10 sheared voxels, a third of them empty.

@@ -1,6 +1,7 @@
 // Picture quality: what is read off the figures, and that stages broken on purpose are noticed.
 
 #include "engine/validation/quality.h"
+#include "engine/validation/quality_pictures.h"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,23 @@
+#pragma once
+// Square pictures of a scene from many cameras, to be compared.
+
+#include <vector>
+
+#include "engine/validation/quality_methods.h"
+#include "engine/validation/quality_scenes.h"
+#include "engine/validation/stage_outputs.h"
+
+namespace freevoxels {
+
+/// How much doubling the oracle's rays may still change a pixel: its pictures are then 80 dB from those of a
+/// quarter of this, for a third of the time, and what is measured with them is below 65 dB.
+inline constexpr double kQualityTolerance = 4e-3;
+
+std::vector<Image> oraclePictures(const QualityScene& scene, const std::vector<Camera>& cameras,
+                                  glm::ivec2 size);
+
+std::vector<Image> methodPictures(const StageMaker& make, const QualityScene& scene,
+                                  const QualityMethod& method, const std::vector<Camera>& cameras,
+                                  glm::ivec2 size);
+
+}  // namespace freevoxels
