@@ -47,9 +47,8 @@ class Renderer {
 
   Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
 
-  /// One a pixel, row 0 is the top: what render() resolves. They do not depend on `settings.composite`,
-  /// which must not be Sorted, but on the attenuation and the gradient. Sums of the parts of a volume add up
-  /// to those of the whole.
+  /// One a pixel, row 0 is the top: what render() resolves. `settings.composite` must not be Sorted. Sums of
+  /// the parts of a volume add up to those of the whole.
   std::vector<SplatSums> renderSums(const Camera& camera, const FrameSettings& settings);
 
   /// Of the constructor and of the last frame, in order.

@@ -238,6 +238,7 @@ struct SetupFrame {
   int lookup;              // kLookup...
   int eyeInside;           // the volume's box
   int pathLengthCorrection;  // 0: every lattice step counts as long as any other
+  int kernelMean;          // 1: a voxel has the mean of the transmittance over its kernel, along the line of sight
   int gradient;            // 0: the transmittance to the eye is the same all over a footprint
   int code;                // kCode...
   int cells;               // that the table's directions divide the cube's half edge into

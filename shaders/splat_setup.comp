@@ -26,11 +26,7 @@ layout(scalar, binding = 8) readonly buffer BlockColors { uvec2 blockColors[]; }
 #include "depth_to_eye.glsl"
 #include "part_ahead.glsl"
 #include "splat_projection.glsl"
-
-// (1 - exp(-x)) / x, also right for small x.
-float selfAttenuation(float x) {
-  return x < 0.02 ? 1.0 - x * (1.0 / 2.0 - x * (1.0 / 6.0 - x * (1.0 / 24.0))) : (1.0 - exp(-x)) / x;
-}
+#include "self_attenuation.glsl"
 
 vec3 colorOf(Block block, uint address) {
   if (frame.opacityPoints == 0) return frame.albedo;
@@ -52,19 +48,21 @@ void main() {
     return;
   }
   const float sigma = extinction[address];
+  const DepthToEye toEye = depthToEye(block, sigma);
   const vec3 direction = directionToEye(block.center);
   const float depth = sigma * layerLength(direction) * float(layersOf(block, direction));
   // The kernel of a block is as much wider as its edge is longer, and integrates to the voxels it has.
   const vec3 part = vec3(block.extent) / float(block.edge);
   const float peak = kSplatPeak * footprint.amplitude * footprint.ahead * float(block.edge) * (part.x * part.y * part.z);
-  const float energy = sigma * selfAttenuation(depth) * peak;
+  const bool ofKernel = frame.kernelMean != 0 && block.level == 0;
+  const float leaving = ofKernel ? kernelMean(block.center, direction, depth, toEye.depth) : selfAttenuation(depth);
+  const float energy = sigma * leaving * peak;
   splat.colorEnergy = vec4(energy * colorOf(block, address), energy);
   splat.center = footprint.center;
   splat.halfExtent = footprint.halfExtent;
   splat.conic = footprint.conic;
   splat.opticalDepth = sigma * peak;
   splat.distance = footprint.distance;
-  const DepthToEye toEye = depthToEye(block, sigma);
   // Per pixel. In a pixel that a footprint had to be widened to, the depth changes from voxel to voxel, and the
   // voxel's own gradient soon says nothing: it fades with the widening; a block's with that of its children.
   const float kept = footprint.amplitude * (block.level == 0 ? 1.0 : min(0.25 * footprint.edge2, 1.0));

@@ -37,6 +37,13 @@ struct DepthToEye {
   }
 };
 
+/// The integral of (a + b v) exp(-x v) over v from 0 to 1/2.
+double halfLayer(double a, double b, double x) {
+  if (std::abs(x) < 1e-4) return a * (0.5 - x / 8.0) + b * (1.0 / 8.0 - x / 24.0);
+  const double end = std::exp(-0.5 * x);
+  return a * (1.0 - end) / x + b * (1.0 - end * (1.0 + 0.5 * x)) / (x * x);
+}
+
 class SplatSummer {
  public:
   SplatSummer(const Volume& volume, const Classification& classification, std::span<const double> extinction,
@@ -63,6 +70,8 @@ class SplatSummer {
   ClassifiedVoxel materialOf(const Block& block) const;
   glm::dvec3 centreOfMass(const Block& block) const;
   DepthToEye depthToEye(const Block& block, const ProjectedSplat& splat, double extinction, int layers) const;
+  double extinctionAt(glm::dvec3 position, int axis) const;
+  double opacity(const Block& block, const ProjectedSplat& splat, double extinction, double inFront) const;
 
   const Volume& volume_;
   const Classification& classification_;
@@ -140,13 +149,46 @@ DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& spl
   return depth;
 }
 
+/// Between the four voxels around a position in a plane of voxels; 0 outside.
+double SplatSummer::extinctionAt(glm::dvec3 position, int axis) const {
+  position[axis] = std::round(position[axis]);
+  const glm::ivec3 low(glm::floor(position)), n = volume_.dimensions;
+  double sum = 0.0;
+  for (int z = low.z; z <= low.z + 1; ++z)
+    for (int y = low.y; y <= low.y + 1; ++y)
+      for (int x = low.x; x <= low.x + 1; ++x) {
+        if (x < 0 || y < 0 || z < 0 || x >= n.x || y >= n.y || z >= n.z) continue;
+        const glm::dvec3 share = 1.0 - glm::abs(position - glm::dvec3(x, y, z));
+        sum += share.x * share.y * share.z * extinction_[volume_.at(x, y, z)];
+      }
+  return sum;
+}
+
+/// Of a voxel, per world length, as far as its kernel, a tent along the line of sight, sees the eye better or
+/// worse than the front of its layer.
+double SplatSummer::opacity(const Block& block, const ProjectedSplat& splat, double extinction,
+                            double inFront) const {
+  const int axis = majorAxis(splat.toEye);
+  const double layer = projector_.layerLength(splat), own = layer * extinction;
+  const glm::dvec3 voxel(block.cell), ahead = splat.toEye / std::abs(splat.toEye[axis]);
+  const double before = std::min(layer * extinctionAt(voxel + ahead, axis), inFront);
+  const double behind = layer * extinctionAt(voxel - ahead, axis);
+  // From the middle of the layer in front to the middle of the layer behind.
+  return extinction *
+         (halfLayer(0.5, -1.0, -before) + halfLayer(0.5, 1.0, own) +
+          std::exp(-0.5 * own) * halfLayer(1.0, -1.0, own) + std::exp(-own) * halfLayer(0.5, -1.0, behind));
+}
+
 void SplatSummer::add(const Block& block, std::vector<SplatSums>& picture) const {
   const std::optional<ProjectedSplat> splat = projector_.project(block, centreOfMass(block));
   if (!splat) return;
   const auto [sigma, albedo] = materialOf(block);
   const int layers = projector_.box(block).extent[majorAxis(splat->toEye)];
   const DepthToEye depth = depthToEye(block, *splat, sigma, layers);
-  const double opacity = projector_.opacity(*splat, sigma, layers);
+  const bool ofKernel =
+      settings_.gradient && settings_.composite == Composite::Normalised && block.level == 0;
+  const double opacity = ofKernel ? this->opacity(block, *splat, sigma, depth.centre)
+                                  : projector_.opacity(*splat, sigma, layers);
   const auto addTo = [&, color = albedo, extinction = sigma](const CoveredPixel& pixel) {
     SplatSums& sums = picture[pixel.index];
     const double energy = opacity * std::exp(-depth.at(pixel)) * pixel.omega;

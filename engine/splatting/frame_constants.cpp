@@ -105,6 +105,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                  .lookup = lookup,
                  .eyeInside = inside ? 1 : 0,
                  .pathLengthCorrection = table.pathLengthCorrection ? 1 : 0,
+                 .kernelMean = settings.gradient && settings.composite == Composite::Normalised ? 1 : 0,
                  .gradient = settings.gradient && lookup != shader::kLookupNone ? 1 : 0,
                  .code = int(table.code),
                  .cells = int(table.directions),

@@ -24,8 +24,8 @@ struct FrameSettings {
   glm::ivec2 size{1024, 1024};
   Composite composite = Composite::Normalised;
   AttenuationLookup attenuation = AttenuationLookup::Auto;
-  /// Whether the optical depth to the eye varies across a footprint, to first order, or is the voxel
-  /// centre's, as in the paper.
+  /// Whether the optical depth to the eye varies across a footprint, to first order, and normalised along the
+  /// kernel's depth as well, or is that in front of the voxel's centre, as in the paper.
   bool gradient = true;
   /// Pixels that the edge of a block of voxels may be long to be drawn as one splat; 0: voxels only. Sorted
   /// pictures are of voxels, whatever this is.
