@@ -80,6 +80,7 @@ QualityResult pictureQuality(const StageMaker& make, const QualityScene& scene,
   const std::vector<Image> oracle = oraclePictures(scene, cameras, size);
   QualityFigures figures{.scene = scene.name,
                          .thin = scene.thin,
+                         .resolution = scene.resolution,
                          .hasGoals = run.hasGoals,
                          .views = {run.views.begin(), run.views.end()},
                          .figures = {}};

@@ -130,7 +130,8 @@ std::vector<Check> sceneChecks(const QualityFigures& scene, const std::vector<Qu
   if (!scene.hasGoals) return checks;
   for (std::size_t method = 0; method < methods.size(); ++method) {
     const auto& [name, table, frame, goals] = methods[method];
-    if (const auto least = scene.thin ? goals.leastThin : goals.least)
+    const auto least = scene.thin ? goals.leastThin : goals.least;
+    if (least && !(scene.thin && scene.resolution > goals.thinResolution))
       checks.push_back(leastPsnr(scene, method, name, *least));
     if (goals.notBelowSorted) checks.push_back(againstSorted(scene, method, name, sortedMethod(methods)));
   }

@@ -25,6 +25,7 @@ PictureFigures compareToOracle(const Image& picture, const Image& oracle);
 struct QualityFigures {
   std::string scene;
   bool thin = false;
+  int resolution = 0;  ///< voxels along an edge of the volume, before it was cropped
   bool hasGoals = false;
   std::vector<QualityView> views;
   std::vector<std::vector<PictureFigures>> figures;  ///< [method][view]

@@ -11,7 +11,7 @@ const std::vector<QualityMethod>& qualityMethods() {
       {.name = "default",
        .table = {},
        .frame = {},
-       .goals = {.mean = 38.0, .least = 31.0, .leastThin = 25.0}},
+       .goals = {.mean = 38.0, .least = 31.0, .leastThin = 25.0, .thinResolution = 64}},
       {.name = "98 directions",
        .table = {.directions = DirectionSet::Directions98},
        .frame = {},

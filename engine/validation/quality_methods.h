@@ -2,6 +2,7 @@
 // The ways to draw that are compared with the oracle, and what their pictures have to reach.
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +17,10 @@ struct QualityGoals {
   std::optional<double> mean;       ///< over all views of all volumes
   std::optional<double> least;      ///< of any view of a volume that is not thin
   std::optional<double> leastThin;  ///< of any view of a thin one
-  bool notBelowSorted = false;      ///< at least as good as sorted blending in every view
+  /// `leastThin` is no goal for volumes of more voxels along an edge: what is one voxel thick in a coarse
+  /// volume is several thick in a fine one, and shades by angles between which 26 directions cannot tell.
+  int thinResolution = std::numeric_limits<int>::max();
+  bool notBelowSorted = false;  ///< at least as good as sorted blending in every view
 };
 
 struct QualityMethod {

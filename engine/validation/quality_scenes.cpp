@@ -78,7 +78,8 @@ QualityScene makeQualityScene(const QualitySubject& subject, int resolution, Vol
   QualityScene scene{.name = fmt::format("{} at {}^3", subject.procedural, resolution),
                      .volume = std::move(volume),
                      .classification = {},
-                     .thin = subject.thin};
+                     .thin = subject.thin,
+                     .resolution = resolution};
   cropToActive(scene.volume);
   TransferFunction function = qualityTransferFunction(subject.color, scene.volume);
   function.unitDistance *= resolution / kUnitResolution;

@@ -32,6 +32,7 @@ struct QualityScene {
   Volume volume;
   Classification classification;
   bool thin = false;
+  int resolution = 0;  ///< voxels along an edge of the volume, before it was cropped
 };
 
 /// `volume`, made of `resolution`³ voxels, is cropped to its active voxels. Its medium is the same at every

@@ -51,7 +51,7 @@ TEST(QualityFigures, MeanLeastAndWhere) {
 
 TEST(QualityFigures, GoalsOfAScene) {
   QualityFigures scene = madeUpFigures();
-  const auto methods = madeUpMethods();
+  auto methods = madeUpMethods();
   std::vector<Check> checks = sceneChecks(scene, methods);
   ASSERT_EQ(checks.size(), 2u);
   EXPECT_DOUBLE_EQ(checks[0].figure, 30.0);
@@ -65,6 +65,9 @@ TEST(QualityFigures, GoalsOfAScene) {
   checks = sceneChecks(scene, methods);
   EXPECT_DOUBLE_EQ(checks[0].tolerance, 25.0);
   EXPECT_TRUE(checks[0].passed());
+  scene.resolution = 65;
+  methods[0].goals.thinResolution = 64;
+  EXPECT_EQ(sceneChecks(scene, methods).size(), 1u);
   scene.hasGoals = false;
   EXPECT_TRUE(sceneChecks(scene, methods).empty());
 }
