@@ -28,7 +28,7 @@ double footprint(double r) {
 
 /// A single pixel, far smaller than a voxel, whose centre looks along -z through (x, y).
 SplatSums sumsAt(const Scene& scene, double x, double y, bool gradient = true) {
-  FrameSettings settings = frameOf({1, 1});
+  FrameSettings settings = frameOf({1, 1}, Composite::Additive);
   settings.gradient = gradient;
   return scene.sums(lookingDown(x, y, 1e-3), settings).at(0);
 }
@@ -77,6 +77,26 @@ TEST(ReferenceSplats, TransmittanceFollowsARampOfDepthAcrossTheFootprint) {
     EXPECT_NEAR(sumsAt(scene, 1.0 + x, 0.0).energy, layer * std::exp(-depth), 1e-6) << x;
     EXPECT_NEAR(sumsAt(scene, 1.0 + x, 0.0, false).energy, layer * std::exp(-depthOf(60)), 1e-6) << x;
   }
+}
+
+TEST(ReferenceSplats, NormalisedWeighsAVoxelOverItsKernelsDepth) {
+  const std::array<double, 3> sigma{2.5, 0.8, 1.7};
+  Scene scene(makeVolume({1, 1, 3}, glm::dmat4(1.0), [&](int, int, int z) { return sigma[std::size_t(z)]; }),
+              physical(1.0));
+  scene.voxels = {1};
+  const int towardsEye = directionIndex(DirectionSet::Directions26, {0, 0, 1});
+  const double inFront = decodeOpticalDepth(AttenuationCode::Depth8, scene.table[std::size_t(towardsEye)][1]);
+  constexpr int kSteps = 4000;
+  double seen = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double z = 2.0 * (i + 0.5) / kSteps - 1.0;  // away from the eye
+    const double before = std::min(z + 0.5, 0.0) * std::min(sigma[2], inFront);
+    const double within = std::clamp(z + 0.5, 0.0, 1.0) * sigma[1];
+    const double behind = std::max(z - 0.5, 0.0) * sigma[0];
+    seen += (1.0 - std::abs(z)) * std::exp(-(inFront + before + within + behind)) * 2.0 / kSteps;
+  }
+  const double energy = scene.sums(lookingDown(0.0, 0.0, 1e-3), frameOf({1, 1})).at(0).energy;
+  EXPECT_NEAR(energy, sigma[1] * seen * footprint(0.0), 1e-6);
 }
 
 TEST(ReferenceSplats, ASingleVoxelInFrontOfAnotherAttenuatesItByOneMinusAlpha) {
@@ -355,7 +375,7 @@ TEST(ReferenceSplats, LooksTheTableUpInTheDirectionOfTheEye) {
     Camera camera = lookingDown(0, 0, 1e-3);
     camera.position = 9.0 * toEye;
     camera.lookAt = glm::dvec3(0.0);
-    FrameSettings settings = frameOf({1, 1});
+    FrameSettings settings = frameOf({1, 1}, Composite::Additive);
     settings.attenuation = lookup;
     return scene.sums(camera, settings).at(0).energy;
   };
