@@ -25,9 +25,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kExtinctionTolerance = 1e-4;
 constexpr double kCodeTolerance = 1.0;
 constexpr double kSumsTolerance = 1e-4;
-/// Depths along rays are not the device's own but swept again: one may round to the next of its 16-bit codes
-/// (ray_fans.h), which are 3.5e-4 apart at an optical depth of 4.
-constexpr double kRaySumsTolerance = 4e-4;
 constexpr double kPictureTolerance = 1e-5, kDistanceTolerance = 1e-5;
 
 /// An error in a pixel's sum counts relative to the pixel, but to no less than this part of the picture's
