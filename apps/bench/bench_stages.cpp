@@ -43,11 +43,16 @@ DeviceVolume classified(const Device& device, const Volume& volume) {
   return result;
 }
 
+/// Densities that differ from voxel to voxel.
+Volume stripes(int resolution) {
+  return unitVoxels(glm::ivec3(resolution),
+                    [](int x, int y, int z) { return float((x + 2 * y + 3 * z) % 7); });
+}
+
 }  // namespace
 
 Result sweeps(const Device& device, DirectionSet directions, int resolution, int runs) {
-  const Volume volume =
-      unitVoxels(glm::ivec3(resolution), [](int x, int y, int z) { return float((x + 2 * y + 3 * z) % 7); });
+  const Volume volume = stripes(resolution);
   const DeviceVolume onDevice = classified(device, volume);
   const AttenuationTable table = makeTable(device, onDevice.hierarchy, {.directions = directions});
   const AttenuationSweep sweep(device, table.settings);
@@ -65,8 +70,7 @@ Result sweeps(const Device& device, DirectionSet directions, int resolution, int
 }
 
 Result octree(const Device& device, AttenuationCode code, int resolution, int runs) {
-  const Volume volume =
-      unitVoxels(glm::ivec3(resolution), [](int x, int y, int z) { return float((x + 2 * y + 3 * z) % 7); });
+  const Volume volume = stripes(resolution);
   const DeviceVolume onDevice = classified(device, volume);
   const AttenuationTable table = makeTable(device, onDevice.hierarchy, {.code = code});
   const AttenuationSweep sweep(device, table.settings);

@@ -71,6 +71,44 @@ double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::
   return std::max(voxels, blocks) + widened;
 }
 
+shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& table, const Camera& camera,
+                              const FrameSettings& settings, const PixelRays& rays,
+                              const glm::dmat3& toPixel) {
+  const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
+  const glm::dvec3 eyeToMiddle = middle - rays.origin;
+  const bool inside = eyeIsInside(camera, volume.layout.dimensions, volume.indexToWorld);
+  const int lookup = settings.composite == Composite::Sorted
+                         ? shader::kLookupNone
+                         : int(resolveAttenuation(settings.attenuation, inside));
+  shader::SetupFrame setup{
+      .indexToWorld = glm::dmat3(volume.indexToWorld),
+      .indexToPixel = toPixel,
+      .middle = middle,
+      .eyeToMiddle = eyeToMiddle,
+      .middleInPixels = toPixel * eyeToMiddle,
+      .pixelX = rays.orthographic ? rays.originX : rays.directionX,
+      .pixelY = rays.orthographic ? rays.originY : rays.directionY,
+      .ray = rays.direction,
+      .imageSize = settings.size,
+      .orthographic = rays.orthographic ? 1 : 0,
+      .dimensions = volume.layout.dimensions,
+      .levelCount = int(volume.hierarchy.levels.size()),
+      .voxelSize = float(volume.voxelSize),
+      .lookup = lookup,
+      .eyeInside = inside ? 1 : 0,
+      .pathLengthCorrection = table.pathLengthCorrection ? 1 : 0,
+      .kernelMean = settings.gradient && settings.composite == Composite::Normalised ? 1 : 0,
+      .gradient = settings.gradient && lookup != shader::kLookupNone ? 1 : 0,
+      .code = int(table.code),
+      .cells = int(table.directions),
+      .opacityPoints = volume.opacityPointCount,
+      .colorPoints = volume.colorPointCount,
+      .albedo = volume.albedo};
+  for (int level = 0; level < setup.levelCount; ++level)
+    setup.levels[level] = volume.hierarchy.onDevice(level);
+  return setup;
+}
+
 }  // namespace
 
 FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volume,
@@ -81,39 +119,8 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   const glm::dvec3 pixelY = rays.orthographic ? rays.originY : rays.directionY;
   const glm::dmat3 toPixel = glm::inverse(glm::dmat3(pixelX, pixelY, rays.direction));
   const glm::dmat3 linear(volume.indexToWorld);
-  const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
-  const glm::dvec3 eyeToMiddle = middle - rays.origin;
-
-  const bool inside = eyeIsInside(camera, volume.layout.dimensions, volume.indexToWorld);
-  const int lookup = settings.composite == Composite::Sorted
-                         ? shader::kLookupNone
-                         : int(resolveAttenuation(settings.attenuation, inside));
   FrameConstants frame{};
-  frame.setup = {.indexToWorld = linear,
-                 .indexToPixel = toPixel,
-                 .middle = middle,
-                 .eyeToMiddle = eyeToMiddle,
-                 .middleInPixels = toPixel * eyeToMiddle,
-                 .pixelX = pixelX,
-                 .pixelY = pixelY,
-                 .ray = rays.direction,
-                 .imageSize = settings.size,
-                 .orthographic = rays.orthographic ? 1 : 0,
-                 .dimensions = volume.layout.dimensions,
-                 .levelCount = int(volume.hierarchy.levels.size()),
-                 .voxelSize = float(volume.voxelSize),
-                 .lookup = lookup,
-                 .eyeInside = inside ? 1 : 0,
-                 .pathLengthCorrection = table.pathLengthCorrection ? 1 : 0,
-                 .kernelMean = settings.gradient && settings.composite == Composite::Normalised ? 1 : 0,
-                 .gradient = settings.gradient && lookup != shader::kLookupNone ? 1 : 0,
-                 .code = int(table.code),
-                 .cells = int(table.directions),
-                 .opacityPoints = volume.opacityPointCount,
-                 .colorPoints = volume.colorPointCount,
-                 .albedo = volume.albedo};
-  for (int level = 0; level < frame.setup.levelCount; ++level)
-    frame.setup.levels[level] = volume.hierarchy.onDevice(level);
+  frame.setup = setupFrame(volume, table, camera, settings, rays, toPixel);
   frame.detail = detailRule(volume.hierarchy, rays, settings.size,
                             settings.composite == Composite::Sorted ? 0.0 : double(settings.lod));
   frame.resolve = {.ray = rays.direction,

@@ -18,15 +18,6 @@ namespace {
 
 constexpr glm::ivec3 kOdd{37, 22, 51};
 
-Classification colored(const Volume& volume) {
-  Classification classification;
-  classification.transferFunction = TransferFunction{
-      .opacity = {{0.0f, 0.0f}, {1.0f, 0.9f}},
-      .color = {{0.0f, {1.0f, 0.2f, 0.1f}}, {0.5f, {0.2f, 1.0f, 0.3f}}, {1.0f, {0.1f, 0.3f, 1.0f}}},
-      .unitDistance = volume.voxelSize()};
-  return classification;
-}
-
 LevelData voxelLevel(Renderer& renderer, const Volume& volume, const Classification& classification) {
   const std::vector<float> extinction = renderer.downloadExtinction();
   return referenceVoxelLevel(volume, classification, {extinction.begin(), extinction.end()},
@@ -69,7 +60,7 @@ TEST_F(HierarchyTest, LevelsMatchTheReferenceAtOddDimensions) {
   const Volume volume = randomVolume(kOdd, shearedTransform(kOdd), 0.7, 1.0);
   for (const AttenuationCode code : {AttenuationCode::Depth8, AttenuationCode::Linear8})
     for (const HierarchyFilter filter : {HierarchyFilter::Geometric, HierarchyFilter::Arithmetic})
-      expectReferenceLevels(volume, colored(volume), {.code = code, .filter = filter});
+      expectReferenceLevels(volume, coloured(volume), {.code = code, .filter = filter});
   expectReferenceLevels(volume, {.densityScale = 9.0}, {.directions = DirectionSet::Directions98});
 }
 
@@ -181,7 +172,7 @@ TEST_F(HierarchyTest, CutsMatchTheReference) {
   Camera near = framingCamera(volume, 35.0, 25.0, 1.2, {});
   near.position = near.lookAt + 0.7 * (near.position - near.lookAt);
   for (const AttenuationLookup attenuation : {AttenuationLookup::Bilinear, AttenuationLookup::Exact})
-    expectReferencePicture(volume, colored(volume), near,
+    expectReferencePicture(volume, coloured(volume), near,
                            {.size = {60, 50}, .attenuation = attenuation, .lod = 4.0f});
   expectReferencePicture(volume, {.densityScale = 9.0}, near,
                          {.size = {60, 50}, .composite = Composite::Additive, .gradient = false, .lod = 3.0f},
@@ -221,7 +212,7 @@ TEST_F(HierarchyTest, VoxelsAreDrawnWhereTheyAreLargeOrSorted) {
 
 TEST_F(HierarchyTest, TheChecksNoticeWhatIsWrong) {
   const Volume volume = randomVolume({9, 8, 11}, cubeTransform({9, 8, 11}), 0.6, 1.0);
-  const Classification classification = colored(volume);
+  const Classification classification = coloured(volume);
   Renderer renderer(device(), volume, classification, {});
   const LevelData voxels = voxelLevel(renderer, volume, classification);
   const std::vector<LevelData> levels = renderer.downloadLevels();

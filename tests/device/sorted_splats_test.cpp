@@ -15,15 +15,6 @@ namespace {
 
 class SortedSplatsTest : public DeviceTest {
  protected:
-  static Classification coloured(const Volume& volume) {
-    Classification classification;
-    classification.transferFunction = TransferFunction{
-        .opacity = {{0.0f, 0.0f}, {1.0f, 0.9f}},
-        .color = {{0.0f, {1.0f, 0.2f, 0.1f}}, {0.5f, {0.2f, 1.0f, 0.3f}}, {1.0f, {0.1f, 0.3f, 1.0f}}},
-        .unitDistance = volume.voxelSize()};
-    return classification;
-  }
-
   static void expectSamePicture(const Volume& volume, const Camera& camera, glm::ivec2 size) {
     const Classification classification = coloured(volume);
     const FrameSettings settings{.size = size, .composite = Composite::Sorted, .depth = true};

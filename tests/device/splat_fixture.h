@@ -27,11 +27,7 @@ class SplatTest : public DeviceTest {
   /// few voxels mix; alpha does not use the table.
   void expectSamePicture(const Volume& volume, const Camera& camera, FrameSettings settings,
                          const TableSettings& table = {}) {
-    Classification classification;
-    classification.transferFunction = TransferFunction{
-        .opacity = {{0.0f, 0.0f}, {1.0f, 0.5f}},
-        .color = {{0.0f, {1.0f, 0.2f, 0.1f}}, {0.5f, {0.2f, 1.0f, 0.3f}}, {1.0f, {0.1f, 0.3f, 1.0f}}},
-        .unitDistance = volume.voxelSize()};
+    const Classification classification = coloured(volume, 0.5f);
     settings.depth = true;
     Renderer renderer(device(), volume, classification, table);
     const Image picture = renderer.render(camera, settings);

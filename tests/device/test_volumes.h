@@ -22,4 +22,14 @@ inline Volume randomVolume(glm::ivec3 dimensions, const glm::dmat4& transform, d
   });
 }
 
+/// Red, green and blue over the scalars 0 to 1, opacity from 0 to `opacity` a voxel.
+inline Classification coloured(const Volume& volume, float opacity = 0.9f) {
+  Classification classification;
+  classification.transferFunction = TransferFunction{
+      .opacity = {{0.0f, 0.0f}, {1.0f, opacity}},
+      .color = {{0.0f, {1.0f, 0.2f, 0.1f}}, {0.5f, {0.2f, 1.0f, 0.3f}}, {1.0f, {0.1f, 0.3f, 1.0f}}},
+      .unitDistance = volume.voxelSize()};
+  return classification;
+}
+
 }  // namespace freevoxels
