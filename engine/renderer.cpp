@@ -237,6 +237,11 @@ std::vector<std::vector<std::uint8_t>> Renderer::downloadTable() const {
   return freevoxels::downloadTable(state_->device, state_->volume.hierarchy, state_->sweptTable());
 }
 
+RayCodes Renderer::downloadRays(const Camera& camera) const {
+  RaySweep sweep(state_->device);
+  return sweep.sweep(state_->volume, eyeSource(camera, state_->volume.indexToWorld));
+}
+
 std::vector<std::uint64_t> Renderer::drawnCounts() const {
   if (state_->lastDrawn == nullptr) return {};
   if (!state_->lastRule.isOneLevel()) return state_->cutter->countDrawn();

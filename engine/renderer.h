@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/attenuation/ray_fans.h"
 #include "engine/core/stages.h"
 #include "engine/hierarchy/hierarchy_layout.h"
 #include "engine/hierarchy/level_data.h"
@@ -39,8 +40,7 @@ class Renderer {
  public:
   /// Uploads the volume and makes what every frame needs: extinction and the list of visible voxels. The
   /// attenuation table is made for the first frame that reads it, the octree for the first that may draw its
-  /// blocks. Fails with ExitCode::OutOfMemory, before
-  /// allocating, where the device's limits are too small.
+  /// blocks. Fails with ExitCode::OutOfMemory, before allocating, where the device's limits are too small.
   Renderer(const Device& device, const Volume& volume, const Classification& classification,
            const TableSettings& table, const Progress& progress = {});
   ~Renderer();
@@ -57,10 +57,12 @@ class Renderer {
   std::uint64_t visibleVoxelCount() const;
   /// How many blocks of each level the last frame drew, voxels first.
   std::vector<std::uint64_t> drawnCounts() const;
-  /// Per world unit, voxels x fastest without padding: for tests and validation, as the next two.
+  /// Per world unit, voxels x fastest without padding: for tests and validation, as all that follow.
   std::vector<float> downloadExtinction() const;
   /// Bytes [direction][voxel], voxels x fastest without padding.
   std::vector<std::vector<std::uint8_t>> downloadTable() const;
+  /// From the camera's eye. Fails with ExitCode::OutOfMemory.
+  RayCodes downloadRays(const Camera& camera) const;
   /// Indices of the visible voxels, into Volume::values, in the order they are drawn.
   std::vector<std::uint32_t> downloadVisibleVoxels() const;
   /// What the last frame drew, in that order, if it was not sorted.

@@ -11,6 +11,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <vector>
 
 namespace freevoxels {
 
@@ -41,6 +42,10 @@ struct RayFan {
 /// A fan has at most about six rays for every line of voxels along its axis: where that is not enough, as for
 /// a source near to the volume, they are further apart.
 std::array<RayFan, 6> rayFans(glm::ivec3 dimensions, const RaySource& source);
+
+/// Of the depths along the rays, by fan: [plane][j][i], planes counted from the first. A code is the square
+/// root of a depth's part of kOpaqueDepth, in 16 bits. Parallel rays have one fan, the others are empty.
+using RayCodes = std::array<std::vector<std::uint16_t>, 6>;
 
 /// The axis of the largest component, the first of several.
 int majorAxis(glm::dvec3 direction);

@@ -85,4 +85,26 @@ void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RayS
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
+RayCodes RaySweep::sweep(const DeviceVolume& volume, const RaySource& source) {
+  Commands commands(device_);
+  record(commands, volume, source);
+  commands.submitAndWait();
+  const std::array<RayFan, 6> fans = rayFans(volume.layout.dimensions, source);
+  RayCodes codes;
+  std::uint64_t first = 0;
+  for (std::size_t f = 0; f < fans.size(); ++f) {
+    const std::uint64_t rays = fans[f].rays();
+    std::vector<std::uint32_t> pairs(depthBytes(fans[f]) / sizeof(std::uint32_t));
+    if (pairs.empty()) continue;
+    download(device_, depths_, std::as_writable_bytes(std::span(pairs)), first);
+    first += depthBytes(fans[f]);
+    codes[f].resize(rays * std::uint64_t(fans[f].planeCount));
+    for (std::uint64_t i = 0; i < codes[f].size(); ++i) {
+      const std::uint64_t plane = i / rays;
+      codes[f][i] = std::uint16_t(pairs[plane / 2 * rays + i % rays] >> (plane % 2 * 16));
+    }
+  }
+  return codes;
+}
+
 }  // namespace freevoxels

@@ -18,6 +18,8 @@ class RaySweep {
   /// Of the last source, for look-ups: index 2 axis + (direction > 0). Parallel rays have one fan, which is
   /// in all six places, so that no look-up has to choose it with the same rounding.
   const std::array<shader::RayFan, 6>& fans() const { return fans_; }
+  /// Sweeps, waits and copies to the host: for validation.
+  RayCodes sweep(const DeviceVolume& volume, const RaySource& source);
 
  private:
   const Device& device_;

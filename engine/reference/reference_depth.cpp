@@ -1,7 +1,5 @@
 #include "engine/reference/reference_depth.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/reference/reference_rays.h"
 
 namespace freevoxels {
 
@@ -117,15 +116,16 @@ std::pair<double, double> spline(const std::array<double, 4>& p, double x) {
   return {p[1] + x * (m1 + x * (b + x * a)), m1 + x * (2.0 * b + x * 3.0 * a)};
 }
 
-/// As ray_sweep.comp keeps it: the square root of its part of kOpaqueDepth, in 16 bits.
-double storedRayDepth(double depth) {
-  const double code = std::round(65535.0 * std::sqrt(std::clamp(depth / kOpaqueDepth, 0.0, 1.0)));
-  return kOpaqueDepth * (code / 65535.0) * (code / 65535.0);
-}
-
 class RayDepth : public ReferenceDepth {
  public:
-  RayDepth(const Volume& volume, std::span<const double> extinction, const RaySource& source);
+  RayDepth(const Volume& volume, const RaySource& source, RayCodes codes)
+      : volume_(volume),
+        source_(source),
+        fans_(rayFans(volume.dimensions, source)),
+        codes_(std::move(codes)) {
+    for (std::size_t f = 0; f < fans_.size(); ++f)
+      FV_CHECK_EQ(codes_[f].size(), fans_[f].rays() * std::size_t(fans_[f].planeCount));
+  }
 
   double at(const Block& block) const override { return lookUp(block).x; }
   double slope(const Block& block, int axis) const override {
@@ -140,85 +140,14 @@ class RayDepth : public ReferenceDepth {
   const RayFan& fanOf(glm::dvec3 position) const {
     return fans_[std::size_t(fanIndex(fromSource(position)))];
   }
-  double extinctionAt(int axis, int plane, glm::ivec2 side) const;
-  double interpolated(int axis, int plane, glm::dvec2 side) const;
-  double sourceCut(const RayFan& fan, glm::dvec2 offset, glm::dvec2 slope) const;
-  void march(std::size_t fan, int i, int j);
   glm::dvec3 lookUp(const Block& block) const;
   glm::dvec3 lookUp(const RayFan& fan, glm::dvec3 onPlane) const;
 
   const Volume& volume_;
-  const std::span<const double> extinction_;
   const RaySource source_;
   const std::array<RayFan, 6> fans_;
-  std::array<std::vector<double>, 6> depths_;  ///< by fan: [plane][j][i]
+  const RayCodes codes_;
 };
-
-RayDepth::RayDepth(const Volume& volume, std::span<const double> extinction, const RaySource& source)
-    : volume_(volume), extinction_(extinction), source_(source), fans_(rayFans(volume.dimensions, source)) {
-  for (std::size_t f = 0; f < fans_.size(); ++f) {
-    depths_[f].resize(fans_[f].rays() * std::size_t(fans_[f].planeCount));
-    if (depths_[f].empty()) continue;
-    tbb::parallel_for(0, fans_[f].rayCount.y, [&](int j) {
-      for (int i = 0; i < fans_[f].rayCount.x; ++i) march(f, i, j);
-    });
-  }
-}
-
-double RayDepth::extinctionAt(int axis, int plane, glm::ivec2 side) const {
-  glm::ivec3 v;
-  v[axis] = plane;
-  v[(axis + 1) % 3] = side.x;
-  v[(axis + 2) % 3] = side.y;
-  const glm::ivec3 n = volume_.dimensions;
-  if (v.x < 0 || v.y < 0 || v.z < 0 || v.x >= n.x || v.y >= n.y || v.z >= n.z) return 0.0;
-  return extinction_[volume_.at(v.x, v.y, v.z)];
-}
-
-double RayDepth::interpolated(int axis, int plane, glm::dvec2 side) const {
-  const glm::ivec2 low(glm::floor(side));
-  double sum = 0.0;
-  for (int b = 0; b < 2; ++b)
-    for (int a = 0; a < 2; ++a) {
-      const glm::ivec2 corner = low + glm::ivec2(a, b);
-      const glm::dvec2 share = 1.0 - glm::abs(side - glm::dvec2(corner));
-      sum += share.x * share.y * extinctionAt(axis, plane, corner);
-    }
-  return sum;
-}
-
-/// What a ray that starts within the volume has in front of its first layer, in layers: the extinction along
-/// it is linear between the planes on either side of the source. Less than 0 where the source is in that
-/// layer.
-double RayDepth::sourceCut(const RayFan& fan, glm::dvec2 offset, glm::dvec2 slope) const {
-  if (source_.atInfinity) return 0.0;
-  const double distance = std::min(std::abs(fan.firstPlane - source_.place[fan.axis]), 1.0);
-  const auto at = [&](int plane) {
-    return interpolated(fan.axis, plane, fan.origin + offset + slope * (plane - fan.farthest));
-  };
-  const double first = at(fan.firstPlane), before = at(fan.firstPlane - fan.direction);
-  const double source = distance * before + (1.0 - distance) * first;
-  return distance * (source + first) / 2.0 - first / 2.0;
-}
-
-void RayDepth::march(std::size_t f, int i, int j) {
-  const RayFan& fan = fans_[f];
-  const glm::dvec2 offset = fan.spacing * glm::dvec2(i, j);
-  const glm::dvec2 slope = fan.slope + offset * fan.convergence;
-  glm::dvec3 step;
-  step[fan.axis] = 1.0;
-  step[(fan.axis + 1) % 3] = slope.x;
-  step[(fan.axis + 2) % 3] = slope.y;
-  const double layer = glm::length(glm::dmat3(volume_.indexToWorld) * step);
-  double depth = layer * sourceCut(fan, offset, slope);
-  for (int k = 0; k < fan.planeCount; ++k) {
-    const int plane = fan.firstPlane + fan.direction * k;
-    depths_[f][std::size_t(i) + std::size_t(fan.rayCount.x) *
-                                    (std::size_t(j) + std::size_t(fan.rayCount.y) * std::size_t(k))] =
-        storedRayDepth(depth);
-    depth += layer * interpolated(fan.axis, plane, fan.origin + offset + slope * (plane - fan.farthest));
-  }
-}
 
 /// The depth, and its slopes along the fan's two sides.
 glm::dvec3 RayDepth::lookUp(const Block& block) const {
@@ -232,7 +161,7 @@ glm::dvec3 RayDepth::lookUp(const Block& block) const {
 
 glm::dvec3 RayDepth::lookUp(const RayFan& fan, glm::dvec3 onPlane) const {
   if (fan.planeCount == 0) return glm::dvec3(0.0);  // only of a voxel at the source
-  const std::vector<double>& depths = depths_[std::size_t(&fan - fans_.data())];
+  const std::vector<std::uint16_t>& codes = codes_[std::size_t(&fan - fans_.data())];
   // At the source: the first.
   const int plane = std::clamp((int(std::lround(onPlane[fan.axis])) - fan.firstPlane) * fan.direction, 0,
                                fan.planeCount - 1);
@@ -246,10 +175,10 @@ glm::dvec3 RayDepth::lookUp(const RayFan& fan, glm::dvec3 onPlane) const {
   for (int j = 0; j < 4; ++j) {
     std::array<double, 4> line;
     for (int i = 0; i < 4; ++i)
-      line[std::size_t(i)] =
-          depths[std::size_t(low.x - 1 + i) +
-                 std::size_t(fan.rayCount.x) *
-                     (std::size_t(low.y - 1 + j) + std::size_t(fan.rayCount.y) * std::size_t(plane))];
+      line[std::size_t(i)] = decodeRayDepth(
+          codes[std::size_t(low.x - 1 + i) +
+                std::size_t(fan.rayCount.x) *
+                    (std::size_t(low.y - 1 + j) + std::size_t(fan.rayCount.y) * std::size_t(plane))]);
     std::tie(values[std::size_t(j)], slopes[std::size_t(j)]) = spline(line, x.x);
   }
   const auto [value, alongY] = spline(values, x.y);
@@ -277,9 +206,8 @@ std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume, std::span<const
                                       eyeInside);
 }
 
-std::unique_ptr<ReferenceDepth> rayDepth(const Volume& volume, std::span<const double> extinction,
-                                         const RaySource& source) {
-  return std::make_unique<RayDepth>(volume, extinction, source);
+std::unique_ptr<ReferenceDepth> rayDepth(const Volume& volume, const RaySource& source, RayCodes codes) {
+  return std::make_unique<RayDepth>(volume, source, std::move(codes));
 }
 
 }  // namespace freevoxels

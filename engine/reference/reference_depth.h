@@ -54,10 +54,9 @@ std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume, std::span<const
                                            AttenuationLookup lookup, ToEye toEye,
                                            std::optional<glm::dvec3> eyeInside);
 
-/// Sums along every ray of the source's fans (ray_fans.h), between which depths and slopes are those of
-/// Catmull and Rom's spline. A block whose centre lies between two planes has the mean of what its line of
-/// sight has there. `extinction` has a value a voxel.
-std::unique_ptr<ReferenceDepth> rayDepth(const Volume& volume, std::span<const double> extinction,
-                                         const RaySource& source);
+/// Along the rays of the source's fans (ray_fans.h), between which depths and slopes are those of Catmull and
+/// Rom's spline. A block whose centre lies between two planes has the mean of what its line of sight has
+/// there. Keeps a reference to the volume.
+std::unique_ptr<ReferenceDepth> rayDepth(const Volume& volume, const RaySource& source, RayCodes codes);
 
 }  // namespace freevoxels

@@ -15,7 +15,7 @@
 #include "engine/core/error.h"
 #include "engine/reference/projected_splats.h"
 #include "engine/reference/reference_depth.h"
-#include "engine/reference/reference_table.h"
+#include "engine/reference/reference_rays.h"
 
 namespace freevoxels {
 
@@ -46,16 +46,16 @@ double halfLayer(double a, double b, double x) {
 
 class SplatSummer {
  public:
-  SplatSummer(const Volume& volume, const Classification& classification, std::span<const double> extinction,
-              const std::vector<std::vector<std::uint8_t>>& table, std::span<const LevelData> coarser,
-              const TableSettings& tableSettings, const Camera& camera, const FrameSettings& settings)
+  SplatSummer(const Volume& volume, const Classification& classification, const SplatInputs& inputs,
+              const Camera& camera, const FrameSettings& settings)
       : volume_(volume),
         classification_(classification),
-        extinction_(extinction),
-        coarser_(coarser),
+        inputs_(inputs),
         settings_(settings),
         projector_(volume, camera, settings.size),
-        depth_(depthFor(table, tableSettings, camera)) {}
+        depth_(depthFor(camera)) {
+    FV_CHECK_EQ(inputs.extinction.size(), volume.voxelCount());
+  }
 
   /// Over a list of what `blockOf` makes blocks of.
   template <typename Item, typename BlockOf>
@@ -63,8 +63,7 @@ class SplatSummer {
   Block voxel(std::uint32_t index) const { return projector_.voxel(index); }
 
  private:
-  std::unique_ptr<ReferenceDepth> depthFor(const std::vector<std::vector<std::uint8_t>>& table,
-                                           const TableSettings& tableSettings, const Camera& camera) const;
+  std::unique_ptr<ReferenceDepth> depthFor(const Camera& camera) const;
   void add(const Block& block, std::vector<SplatSums>& picture) const;
   double extinctionOf(const Block& block) const;
   ClassifiedVoxel materialOf(const Block& block) const;
@@ -75,29 +74,29 @@ class SplatSummer {
 
   const Volume& volume_;
   const Classification& classification_;
-  const std::span<const double> extinction_;
-  const std::span<const LevelData> coarser_;
+  const SplatInputs& inputs_;
   const FrameSettings& settings_;
   const SplatProjector projector_;
   const std::unique_ptr<ReferenceDepth> depth_;
 };
 
-std::unique_ptr<ReferenceDepth> SplatSummer::depthFor(const std::vector<std::vector<std::uint8_t>>& table,
-                                                      const TableSettings& tableSettings,
-                                                      const Camera& camera) const {
+std::unique_ptr<ReferenceDepth> SplatSummer::depthFor(const Camera& camera) const {
   const RaySource eye = eyeSource(camera, volume_.indexToWorld);
   const bool inside = eyeIsInside(camera, volume_.dimensions, volume_.indexToWorld);
   const AttenuationLookup lookup = resolveAttenuation(settings_.attenuation, inside);
-  if (lookup == AttenuationLookup::Exact) return rayDepth(volume_, extinction_, eye);
+  if (lookup == AttenuationLookup::Exact)
+    return rayDepth(
+        volume_, eye,
+        inputs_.rays != nullptr ? *inputs_.rays : referenceRays(volume_, inputs_.extinction, eye));
   return tableDepth(
-      volume_, extinction_, table, coarser_, tableSettings, lookup,
+      volume_, inputs_.extinction, inputs_.table, inputs_.coarser, inputs_.tableSettings, lookup,
       [this](glm::dvec3 position) { return projector_.toEye(position); },
       inside ? std::optional(eye.place) : std::nullopt);
 }
 
 double SplatSummer::extinctionOf(const Block& block) const {
-  if (block.level == 0) return extinction_[volume_.at(block.cell.x, block.cell.y, block.cell.z)];
-  const LevelData& level = coarser_[std::size_t(block.level) - 1];
+  if (block.level == 0) return inputs_.extinction[volume_.at(block.cell.x, block.cell.y, block.cell.z)];
+  const LevelData& level = inputs_.coarser[std::size_t(block.level) - 1];
   return level.extinction[level.at(block.cell)];
 }
 
@@ -107,7 +106,7 @@ ClassifiedVoxel SplatSummer::materialOf(const Block& block) const {
     const std::size_t voxel = volume_.at(block.cell.x, block.cell.y, block.cell.z);
     return {extinction, classify(classification_, volume_.values[voxel]).color};
   }
-  const LevelData& level = coarser_[std::size_t(block.level) - 1];
+  const LevelData& level = inputs_.coarser[std::size_t(block.level) - 1];
   return {extinction,
           level.colors.empty() ? glm::dvec3(classification_.albedo) : level.colors[level.at(block.cell)]};
 }
@@ -159,7 +158,7 @@ double SplatSummer::extinctionAt(glm::dvec3 position, int axis) const {
       for (int x = low.x; x <= low.x + 1; ++x) {
         if (x < 0 || y < 0 || z < 0 || x >= n.x || y >= n.y || z >= n.z) continue;
         const glm::dvec3 share = 1.0 - glm::abs(position - glm::dvec3(x, y, z));
-        sum += share.x * share.y * share.z * extinction_[volume_.at(x, y, z)];
+        sum += share.x * share.y * share.z * inputs_.extinction[volume_.at(x, y, z)];
       }
   return sum;
 }
@@ -220,22 +219,10 @@ std::vector<SplatSums> SplatSummer::sum(std::span<const Item> list, const BlockO
 }  // namespace
 
 std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classification& classification,
-                                          const std::vector<std::vector<std::uint8_t>>& table,
-                                          const TableSettings& tableSettings, const Camera& camera,
+                                          const SplatInputs& inputs, const Camera& camera,
                                           const FrameSettings& settings,
                                           std::span<const std::uint32_t> voxels) {
-  return referenceSplatSums(volume, classification, referenceExtinction(volume, classification), table,
-                            tableSettings, camera, settings, voxels);
-}
-
-std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classification& classification,
-                                          std::span<const double> extinction,
-                                          const std::vector<std::vector<std::uint8_t>>& table,
-                                          const TableSettings& tableSettings, const Camera& camera,
-                                          const FrameSettings& settings,
-                                          std::span<const std::uint32_t> voxels) {
-  FV_CHECK_EQ(extinction.size(), volume.voxelCount());
-  const SplatSummer summer(volume, classification, extinction, table, {}, tableSettings, camera, settings);
+  const SplatSummer summer(volume, classification, inputs, camera, settings);
   return summer.sum(voxels, [&](std::uint32_t voxel) {
     FV_CHECK_LT(voxel, volume.voxelCount());
     return summer.voxel(voxel);
@@ -243,16 +230,11 @@ std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classifica
 }
 
 std::vector<SplatSums> referenceBlockSums(const Volume& volume, const Classification& classification,
-                                          std::span<const double> extinction,
-                                          const std::vector<std::vector<std::uint8_t>>& table,
-                                          std::span<const LevelData> coarser,
-                                          const TableSettings& tableSettings, const Camera& camera,
+                                          const SplatInputs& inputs, const Camera& camera,
                                           const FrameSettings& settings, std::span<const Block> blocks) {
-  FV_CHECK_EQ(extinction.size(), volume.voxelCount());
-  const SplatSummer summer(volume, classification, extinction, table, coarser, tableSettings, camera,
-                           settings);
+  const SplatSummer summer(volume, classification, inputs, camera, settings);
   return summer.sum(blocks, [&](const Block& block) {
-    FV_CHECK_LE(std::size_t(block.level), coarser.size());
+    FV_CHECK_LE(std::size_t(block.level), inputs.coarser.size());
     return block;
   });
 }

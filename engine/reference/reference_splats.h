@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/attenuation/ray_fans.h"
 #include "engine/attenuation/table_settings.h"
 #include "engine/hierarchy/hierarchy_layout.h"
 #include "engine/hierarchy/level_data.h"
@@ -19,29 +20,24 @@
 
 namespace freevoxels {
 
-/// Sums over the voxels listed (indices into Volume::values), in that order. `table` holds bytes
-/// [direction][voxel].
+/// What the stages before the camera made.
+struct SplatInputs {
+  std::span<const double> extinction;                   ///< of every voxel: the classification only colours
+  const std::vector<std::vector<std::uint8_t>>& table;  ///< bytes [direction][voxel]
+  TableSettings tableSettings;
+  std::span<const LevelData> coarser = {};  ///< levels above the voxels, as far as blocks of them are drawn
+  const RayCodes* rays = nullptr;  ///< of the camera's eye, where they are looked up: none, made here
+};
+
+/// Sums over the voxels listed (indices into Volume::values), in that order.
 std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classification& classification,
-                                          const std::vector<std::vector<std::uint8_t>>& table,
-                                          const TableSettings& tableSettings, const Camera& camera,
+                                          const SplatInputs& inputs, const Camera& camera,
                                           const FrameSettings& settings,
                                           std::span<const std::uint32_t> voxels);
 
-/// The same with the extinction of every voxel given: the classification only colours.
-std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classification& classification,
-                                          std::span<const double> extinction,
-                                          const std::vector<std::vector<std::uint8_t>>& table,
-                                          const TableSettings& tableSettings, const Camera& camera,
-                                          const FrameSettings& settings,
-                                          std::span<const std::uint32_t> voxels);
-
-/// The same of blocks of the octree; `coarser` are its levels above the voxels, as far as blocks of them are
-/// drawn.
+/// The same of blocks of the octree.
 std::vector<SplatSums> referenceBlockSums(const Volume& volume, const Classification& classification,
-                                          std::span<const double> extinction,
-                                          const std::vector<std::vector<std::uint8_t>>& table,
-                                          std::span<const LevelData> coarser,
-                                          const TableSettings& tableSettings, const Camera& camera,
+                                          const SplatInputs& inputs, const Camera& camera,
                                           const FrameSettings& settings, std::span<const Block> blocks);
 
 /// Indices of the voxels with extinction above 0, ascending.

@@ -107,8 +107,10 @@ Check checkCutPicture(Renderer& renderer, const ValidationScene& scene, const Le
   camera.position = camera.lookAt + 0.6 * (camera.position - camera.lookAt);
   const FrameSettings settings{.size = size, .lod = 6.0f};
   const Image picture = renderer.render(camera, settings);
-  const auto sums = referenceBlockSums(scene.volume, scene.classification, voxels.extinction, voxels.table,
-                                       levels, table, camera, settings, renderer.downloadDrawnBlocks());
+  const SplatInputs inputs{
+      .extinction = voxels.extinction, .table = voxels.table, .tableSettings = table, .coarser = levels};
+  const auto sums = referenceBlockSums(scene.volume, scene.classification, inputs, camera, settings,
+                                       renderer.downloadDrawnBlocks());
   return largestDifference(picture, referenceResolve(sums, settings))
       .atMost(kPictureTolerance, "cut: picture of several levels");
 }

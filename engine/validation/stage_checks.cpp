@@ -9,6 +9,7 @@
 
 #include "engine/core/error.h"
 #include "engine/image/metrics.h"
+#include "engine/reference/reference_rays.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/reference/reference_table.h"
 #include "engine/validation/lattice_steps.h"
@@ -203,6 +204,30 @@ ReportPictures showPictures(const Image& picture, const Image& reference, const 
           .background = glm::vec3(0.01f)};
 }
 
+/// From the camera's eye.
+Check checkRays(const Outcome& outcome, const Camera& camera, const RayCodes& codes, const char* method) {
+  const Volume& volume = outcome.scene.volume;
+  const RaySource source = eyeSource(camera, volume.indexToWorld);
+  const RayCodes reference = referenceRays(volume, outcome.extinction, source);
+  const std::array<RayFan, 6> fans = rayFans(volume.dimensions, source);
+  Worst worst;
+  for (std::size_t f = 0; f < fans.size(); ++f) {
+    const RayFan& fan = fans[f];
+    FV_CHECK_EQ(codes[f].size(), reference[f].size());
+    for (std::size_t i = 0; i < codes[f].size(); ++i) {
+      const int difference = std::abs(int(codes[f][i]) - int(reference[f][i]));
+      if (difference <= worst.figure()) continue;
+      const std::size_t inPlane = i % fan.rays(), row = std::size_t(fan.rayCount.x);
+      const glm::ivec2 ray(inPlane % row, inPlane / row);
+      const int plane = int(i / fan.rays());
+      if (!isReadAt(fan, volume.dimensions, ray, plane)) continue;
+      worst.take(difference,
+                 [&] { return fmt::format("fan {}, ray ({}, {}), plane {}", f, ray.x, ray.y, plane); });
+    }
+  }
+  return worst.atMost(kCodeTolerance, fmt::format("rays: {}", method), "codes");
+}
+
 /// Looks the way that `outside` does, from the middle of the box, where no voxel's centre is.
 Camera cameraInside(const Volume& volume, const Camera& outside) {
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.dimensions - 1) + glm::dvec3(0.1, 0.2, 0.3);
@@ -225,9 +250,16 @@ void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, R
                                 {.orthographic = method.orthographic});
   if (method.inside) camera = cameraInside(scene.volume, camera);
   const std::vector<SplatSums> sums = outcome.device.sums(camera, settings);
+  SplatInputs inputs{
+      .extinction = outcome.extinction, .table = outcome.table, .tableSettings = outcome.settings};
+  RayCodes rays;
+  if (resolveAttenuation(method.attenuation, method.inside) == AttenuationLookup::Exact) {
+    rays = outcome.device.rays(camera);
+    section.checks.push_back(checkRays(outcome, camera, rays, method.name));
+    inputs.rays = &rays;
+  }
   const std::vector<SplatSums> reference =
-      referenceSplatSums(scene.volume, scene.classification, outcome.extinction, outcome.table,
-                         outcome.settings, camera, settings, outcome.visible);
+      referenceSplatSums(scene.volume, scene.classification, inputs, camera, settings, outcome.visible);
   for (const Channel& channel : std::span(kChannels).first(method.depth ? 4 : 3))
     section.checks.push_back(checkSums(sums, reference, channel, size, method.name));
 

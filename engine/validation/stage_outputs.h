@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/attenuation/ray_fans.h"
 #include "engine/image/image.h"
 #include "engine/splatting/camera.h"
 #include "engine/splatting/render_settings.h"
@@ -27,6 +28,8 @@ class StageOutputs {
   virtual std::vector<float> extinction() = 0;
   virtual TableBytes table() = 0;
   virtual std::vector<std::uint32_t> visibleVoxels() = 0;
+  /// From the camera's eye.
+  virtual RayCodes rays(const Camera& camera) = 0;
   /// Before the resolve, one a pixel.
   virtual std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) = 0;
   virtual Image picture(const Camera& camera, const FrameSettings& settings) = 0;

@@ -9,6 +9,7 @@
 
 #include "engine/attenuation/directions.h"
 #include "engine/reference/reference_depth.h"
+#include "engine/reference/reference_rays.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels {
@@ -127,7 +128,7 @@ TEST(RayFans, DepthsAreThoseOfEachVoxelsOwnLineOfSight) {
   });
   const std::vector<double> extinction(volume.values.begin(), volume.values.end());
   for (const RaySource& source : sources()) {
-    const auto depth = rayDepth(volume, extinction, source);
+    const auto depth = rayDepth(volume, source, referenceRays(volume, extinction, source));
     double worst = 0.0, deepest = 0.0;
     forEachVoxel([&](glm::ivec3 voxel) {
       if ((voxel.x + 2 * voxel.y + 3 * voxel.z) % 11 != 0 || fromSource(source, voxel) == glm::dvec3(0.0))
@@ -146,7 +147,7 @@ TEST(RayFans, SlopesAreTheChangeOfDepth) {
       makeVolume(kSize, glm::dmat4(1.0), [](int x, int y, int) { return 0.02 * x + 0.01 * y; });
   const std::vector<double> extinction(volume.values.begin(), volume.values.end());
   const RaySource above{.place = {0.0, 0.0, 1.0}, .atInfinity = true};
-  const auto depth = rayDepth(volume, extinction, above);
+  const auto depth = rayDepth(volume, above, referenceRays(volume, extinction, above));
   const glm::ivec3 voxel(9, 6, 7);
   const int layers = kSize.z - 1 - voxel.z;
   const double expected = layers * (0.02 * 9 + 0.01 * 6);

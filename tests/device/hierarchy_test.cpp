@@ -47,8 +47,11 @@ class HierarchyTest : public DeviceTest {
     const std::vector<Block> drawn = renderer.downloadDrawnBlocks();
     EXPECT_GT(drawn.back().level, 0);
     const LevelData voxels = voxelLevel(renderer, volume, classification);
-    const auto sums = referenceBlockSums(volume, classification, voxels.extinction, voxels.table,
-                                         renderer.downloadLevels(), table, camera, settings, drawn);
+    const std::vector<LevelData> levels = renderer.downloadLevels();
+    const auto sums = referenceBlockSums(
+        volume, classification,
+        {.extinction = voxels.extinction, .table = voxels.table, .tableSettings = table, .coarser = levels},
+        camera, settings, drawn);
     const Image expected = referenceResolve(sums, settings);
     EXPECT_LE(largestDifference(picture, expected), 1e-4);
     EXPECT_LE(worstRelativeDepth(picture, expected), 1e-3);

@@ -18,8 +18,9 @@ class SplatTest : public DeviceTest {
                          const TableSettings& table, const Camera& camera, const FrameSettings& settings) {
     const auto extinction = referenceExtinction(volume, classification);
     const auto bytes = referenceTable(volume, extinction, table);
-    const auto sums = referenceSplatSums(volume, classification, bytes, table, camera, settings,
-                                         referenceVisibleVoxels(extinction));
+    const auto sums = referenceSplatSums(volume, classification,
+                                         {.extinction = extinction, .table = bytes, .tableSettings = table},
+                                         camera, settings, referenceVisibleVoxels(extinction));
     return referenceResolve(sums, settings);
   }
 

@@ -16,18 +16,21 @@ struct Scene {
   Volume volume;
   Classification classification;
   AttenuationCode code = AttenuationCode::Depth8;
+  std::vector<double> extinction;
   std::vector<std::uint32_t> voxels;
   std::vector<std::vector<std::uint8_t>> table;
 
   Scene(Volume v, const Classification& c, AttenuationCode attenuationCode = AttenuationCode::Depth8)
       : volume(std::move(v)), classification(c), code(attenuationCode) {
-    const std::vector<double> extinction = referenceExtinction(volume, classification);
+    extinction = referenceExtinction(volume, classification);
     voxels = referenceVisibleVoxels(extinction);
     table = referenceTable(volume, extinction, {.code = code});
   }
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings,
                               const std::vector<std::uint32_t>& list) const {
-    return referenceSplatSums(volume, classification, table, {.code = code}, camera, settings, list);
+    return referenceSplatSums(volume, classification,
+                              {.extinction = extinction, .table = table, .tableSettings = {.code = code}},
+                              camera, settings, list);
   }
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) const {
     return sums(camera, settings, voxels);

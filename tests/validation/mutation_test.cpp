@@ -57,6 +57,14 @@ void changeOneByte(SteppedStages& stages) {
   stages.replacePlane(direction, plane);
 }
 
+/// As a march that writes its planes in another order.
+void rotateThePlanes(SteppedStages& stages) {
+  stages.alterRays = [](RayCodes& codes) {
+    for (std::vector<std::uint16_t>& fan : codes)
+      if (!fan.empty()) std::ranges::rotate(fan, fan.begin() + std::ptrdiff_t(fan.size() / 2));
+  };
+}
+
 void readTheOtherCode(SteppedStages& stages) {
   AttenuationCode& code = stages.steps.table.settings.code;
   code = code == AttenuationCode::Depth8 ? AttenuationCode::Linear8 : AttenuationCode::Depth8;
@@ -90,6 +98,7 @@ struct Defect {
   const char* stage;  ///< with which the names of the checks begin that must notice
   void (*apply)(SteppedStages&) = nullptr;
   Classification (*classification)(Classification) = nullptr;
+  const char* stageAfter = stage;  ///< which did not see it, and so does not agree with the reference
 };
 
 void PrintTo(const Defect& defect, std::ostream* stream) {
@@ -101,6 +110,7 @@ constexpr Defect kDefects[] = {
     {"TwoDirectionsSwapped", "table", swapTwoPlanes},
     {"ProductInclusive", "table", includeTheVoxelItself},
     {"OneByteOfTheTable", "table", changeOneByte},
+    {"RaysOfOtherPlanes", "rays", rotateThePlanes, nullptr, "splat sums"},
     {"AVisibleVoxelForgotten", "visible voxels", forgetOneVisibleVoxel},
     {"TheOtherCodeRead", "splat sums", readTheOtherCode},
     {"ASplatDropped", "splat sums", dropOneSplat},
@@ -135,9 +145,11 @@ class Mutation : public DeviceTest, public testing::WithParamInterface<Defect> {
 TEST_P(Mutation, IsNoticedByTheChecksOfItsStageAndNoOthers) {
   const auto failed =
       failedChecks(stageChecks(stages(GetParam()), scene(SceneColor::TransferFunction), kFrame));
-  EXPECT_FALSE(failed.empty());
+  EXPECT_TRUE(std::ranges::any_of(
+      failed, [](const Check& check) { return check.name.starts_with(GetParam().stage); }));
   for (const Check& check : failed) {
-    EXPECT_TRUE(check.name.starts_with(GetParam().stage)) << check.name << " failed at " << check.where;
+    EXPECT_TRUE(check.name.starts_with(GetParam().stage) || check.name.starts_with(GetParam().stageAfter))
+        << check.name << " failed at " << check.where;
     EXPECT_NE(check.where, "") << check.name;
   }
 }

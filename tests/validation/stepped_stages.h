@@ -15,8 +15,9 @@ struct SteppedStages : StageOutputs {
   const Device& device;
   Volume source;
   SteppedVolume steps;
-  std::vector<std::uint32_t> listed;  ///< what the list of visible voxels says, padded
-  std::vector<std::uint32_t> drawn;   ///< what is drawn, padded
+  std::vector<std::uint32_t> listed;         ///< what the list of visible voxels says, padded
+  std::vector<std::uint32_t> drawn;          ///< what is drawn, padded
+  std::function<void(RayCodes&)> alterRays;  ///< of what the checks see: a frame sweeps its own
   std::function<Image(const std::vector<SplatSums>&, const FrameSettings&)> resolve = referenceResolve;
 
   SteppedStages(const Device& on, Volume volume, const Classification& classification,
@@ -37,6 +38,12 @@ struct SteppedStages : StageOutputs {
     std::vector<std::uint32_t> voxels;
     for (const std::uint32_t voxel : listed) voxels.push_back(steps.volume.layout.unpaddedIndex(voxel));
     return voxels;
+  }
+  RayCodes rays(const Camera& camera) override {
+    RaySweep sweep(device);
+    RayCodes codes = sweep.sweep(steps.volume, eyeSource(camera, source.indexToWorld));
+    if (alterRays) alterRays(codes);
+    return codes;
   }
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
     return drawVoxels(device, steps, drawn, camera, settings);

@@ -1,0 +1,22 @@
+#pragma once
+// Optical depth along the rays of a source, exclusive of the layer: Subr et al. 2007, Eq. 4, summed in double
+// precision.
+
+#include <cstdint>
+#include <span>
+
+#include "engine/attenuation/ray_fans.h"
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+/// `extinction` has a value a voxel.
+RayCodes referenceRays(const Volume& volume, std::span<const double> extinction, const RaySource& source);
+
+double decodeRayDepth(std::uint16_t code);
+
+/// Whether the ray is near enough to the volume at a plane (counted from the first) for a voxel to look it
+/// up: only there have codes a meaning.
+bool isReadAt(const RayFan& fan, glm::ivec3 dimensions, glm::ivec2 ray, int plane);
+
+}  // namespace freevoxels
