@@ -30,6 +30,7 @@ class Popping : public StageOutputs {
   std::vector<float> extinction() override { return whole_->extinction(); }
   TableBytes table() override { return whole_->table(); }
   std::vector<std::uint32_t> visibleVoxels() override { return whole_->visibleVoxels(); }
+  RayCodes rays(const Camera& camera) override { return whole_->rays(camera); }
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
     return whole_->sums(camera, settings);
   }

@@ -24,6 +24,7 @@ struct WrongStages : StageOutputs {
     return bytes;
   }
   std::vector<std::uint32_t> visibleVoxels() override { return right->visibleVoxels(); }
+  RayCodes rays(const Camera& camera) override { return right->rays(camera); }
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
     std::vector<SplatSums> sums = right->sums(camera, settings);
     for (SplatSums& s : sums) s.depth *= 0.99f;

@@ -155,6 +155,7 @@ struct OracleStages : StageOutputs {
   std::vector<float> extinction() override { return {}; }
   TableBytes table() override { return {}; }
   std::vector<std::uint32_t> visibleVoxels() override { return {}; }
+  RayCodes rays(const Camera&) override { return {}; }
   std::vector<SplatSums> sums(const Camera&, const FrameSettings&) override { return {}; }
   Image picture(const Camera& camera, const FrameSettings& settings) override {
     Image image =

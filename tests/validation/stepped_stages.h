@@ -5,6 +5,7 @@
 #include <functional>
 #include <utility>
 
+#include "engine/attenuation/ray_sweep.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/validation/stage_outputs.h"
 #include "engine/validation/stepped_renderer.h"
