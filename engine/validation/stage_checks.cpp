@@ -25,6 +25,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// in the last place of alpha, of 8.3 that are left.
 constexpr double kExtinctionTolerance = 1e-4;
 constexpr double kCodeTolerance = 1.0;
+/// Codes of depths along rays that are less than this are finer than 32-bit floats can add up.
+constexpr double kShallowDepth = 1e-3;
 constexpr double kSumsTolerance = 1e-4;
 constexpr double kPictureTolerance = 1e-5, kDistanceTolerance = 1e-5;
 
@@ -204,6 +206,14 @@ ReportPictures showPictures(const Image& picture, const Image& reference, const 
           .background = glm::vec3(0.01f)};
 }
 
+/// The codes' difference; where they are shallower than kShallowDepth, in codes of that.
+double rayDifference(std::uint16_t a, std::uint16_t b) {
+  const std::uint16_t deeper = std::max(a, b);
+  double code = decodeRayDepth(deeper) - decodeRayDepth(std::uint16_t(deeper - 1));
+  if (decodeRayDepth(deeper) < kShallowDepth) code = 2.0 * std::sqrt(kOpaqueDepth * kShallowDepth) / 65535.0;
+  return std::abs(decodeRayDepth(a) - decodeRayDepth(b)) / code;
+}
+
 /// From the camera's eye.
 Check checkRays(const Outcome& outcome, const Camera& camera, const RayCodes& codes, const char* method) {
   const Volume& volume = outcome.scene.volume;
@@ -215,7 +225,8 @@ Check checkRays(const Outcome& outcome, const Camera& camera, const RayCodes& co
     const RayFan& fan = fans[f];
     FV_CHECK_EQ(codes[f].size(), reference[f].size());
     for (std::size_t i = 0; i < codes[f].size(); ++i) {
-      const int difference = std::abs(int(codes[f][i]) - int(reference[f][i]));
+      if (codes[f][i] == reference[f][i]) continue;
+      const double difference = rayDifference(codes[f][i], reference[f][i]);
       if (difference <= worst.figure()) continue;
       const std::size_t inPlane = i % fan.rays(), row = std::size_t(fan.rayCount.x);
       const glm::ivec2 ray(inPlane % row, inPlane / row);
