@@ -35,12 +35,12 @@ float depthBeyond(Towards towards, ivec3 cell) {
   return sum;
 }
 
-// The mean over the block's voxels.
-float tableDepth(Block block) {
+// The mean over the block's voxels; `falling` as depthTowards has it.
+float tableDepth(Block block, out float falling) {
   const vec3 direction = directionToEye(block.center);
   const Towards towards = Towards(direction, layerLength(direction), frame.indexToWorld, frame.cells, frame.code, frame.lookup,
                                   frame.pathLengthCorrection != 0);
-  return depthTowards(towards, blockAddress(frame.levels[block.level], block.cell));
+  return depthTowards(towards, blockAddress(frame.levels[block.level], block.cell), falling);
 }
 
 // Between the neighbours, each with its own line of sight; one-sided at the volume's faces.
@@ -49,7 +49,8 @@ float tableSlope(Block block, int axis) {
   low[axis] = max(block.cell[axis] - 1, 0);
   high[axis] = min(block.cell[axis] + 1, frame.levels[block.level].dimensions[axis] - 1);
   const Block before = blockOf(block.level, low), after = blockOf(block.level, high);
-  return (tableDepth(after) - tableDepth(before)) / max(after.center[axis] - before.center[axis], 1.0);
+  float unused;
+  return (tableDepth(after, unused) - tableDepth(before, unused)) / max(after.center[axis] - before.center[axis], 1.0);
 }
 
 // At the block's centre, which may lie between two planes: then the mean of what the line of sight has there.
@@ -68,7 +69,7 @@ DepthToEye depthToEye(Block block, float sigma) {
   DepthToEye result = DepthToEye(0.0, vec3(0.0));
   if (frame.lookup == kLookupNone) return result;
   const vec3 direction = directionToEye(block.center);
-  const float layerDepth = sigma * layerLength(direction);
+  float falling = 1.0;
   const int fan = fanIndex(-direction);
   const int axis = frame.lookup == kLookupExact ? frame.fans[fan].axis : fan / 2;
   const int sideA = (axis + 1) % 3, sideB = (axis + 2) % 3;
@@ -78,12 +79,15 @@ DepthToEye depthToEye(Block block, float sigma) {
     result.depth = ray.x;
     slope = ray.yz;
   } else {
-    result.depth = tableDepth(block);
+    result.depth = tableDepth(block, falling);
     if (frame.gradient != 0) slope = vec2(tableSlope(block, sideA), tableSlope(block, sideB));
   }
+  // Where the table ends, a depth is the same a layer before: what is deep in an opaque medium would shine at its rim
+  // if the layer were taken off.
+  const float fallingSigma = falling * sigma, layerDepth = fallingSigma * layerLength(direction);
   // A block's mean depth is that of its middle layer: what lies in front of it is less by its own layers before.
   const bool inFull = frame.lookup == kLookupExact || frame.pathLengthCorrection != 0;
-  const float before = 0.5 * float(layersOf(block, direction) - 1) * (inFull ? layerDepth : sigma * frame.voxelSize);
+  const float before = 0.5 * float(layersOf(block, direction) - 1) * (inFull ? layerDepth : fallingSigma * frame.voxelSize);
   result.depth = max(result.depth - before, 0.0);
   if (frame.gradient == 0) return result;
   result.gradient[sideA] = slope.x;

@@ -22,11 +22,15 @@ int cellNumber(int cells, ivec3 cell) {
   return cell.x + cells + edge * (cell.y + cells + edge * (cell.z + cells));
 }
 
+uint storedCode(Towards towards, ivec3 cell, uint voxel) {
+  const uint word = CodePlane(PLANE_ADDRESS(cellNumber(towards.cells, cell))).words[voxel / 4];
+  return bitfieldExtract(word, int(voxel & 3) * 8, 8);
+}
+
 // As if the line along the stored direction were as long as the one that is asked for: a homogeneous medium
 // is exact in every direction.
 float storedDepth(Towards towards, ivec3 cell, uint voxel) {
-  const uint word = CodePlane(PLANE_ADDRESS(cellNumber(towards.cells, cell))).words[voxel / 4];
-  const float depth = decodeDepth(towards.code, bitfieldExtract(word, int(voxel & 3) * 8, 8));
+  const float depth = decodeDepth(towards.code, storedCode(towards, cell, voxel));
   if (!towards.pathLengthCorrection) return depth;
   return depth * towards.layer * float(towards.cells) / length(towards.indexToWorld * vec3(cell));
 }
@@ -38,12 +42,20 @@ float depthUpTo(Towards towards, ivec3 cell, uint voxel) {
   return max(storedDepth(towards, cell, voxel) - depthBeyond(towards, cell), 0.0);
 }
 
+// Whether a stored depth is the largest there is: the depth itself may be any larger one, and is the same a layer before.
+bool isAtEnd(Towards towards, ivec3 cell, uint voxel) {
+  return storedCode(towards, cell, voxel) == (towards.code == kCodeLinear8 ? 0 : 255);
+}
+
 // Between four directions of the table. Transmittances are interpolated, not depths: one dark direction would
-// darken all.
-float depthTowards(Towards towards, uint voxel) {
+// darken all. `falling`: what part of the transmittance grows towards the eye by what a layer takes from it.
+float depthTowards(Towards towards, uint voxel, out float falling) {
   // A division may round to just beyond 1.
   const vec3 point = clamp(towards.direction, -1.0, 1.0) * towards.cells;
-  if (towards.lookup == kLookupNearest) return depthUpTo(towards, ivec3(round(point)), voxel);
+  if (towards.lookup == kLookupNearest) {
+    falling = isAtEnd(towards, ivec3(round(point)), voxel) ? 0.0 : 1.0;
+    return depthUpTo(towards, ivec3(round(point)), voxel);
+  }
   const vec3 low = floor(min(point, 0.999999 * towards.cells));
   const vec3 weight = point - low;
   // The major axis has weight 0 or 1: both of its neighbours are the same face.
@@ -52,14 +64,17 @@ float depthTowards(Towards towards, uint voxel) {
   const int b = (major + 2) % 3;
   ivec3 cell;
   cell[major] = point[major] > 0.0 ? towards.cells : -towards.cells;
-  float sum = 0.0;
+  float sum = 0.0, ofFalling = 0.0;
   [[unroll]] for (int j = 0; j < 2; ++j) {
     [[unroll]] for (int i = 0; i < 2; ++i) {
       cell[a] = int(low[a]) + i;
       cell[b] = int(low[b]) + j;
       const float share = (i == 0 ? 1.0 - weight[a] : weight[a]) * (j == 0 ? 1.0 - weight[b] : weight[b]);
-      sum += share * exp(-depthUpTo(towards, cell, voxel));
+      const float transmittance = share * exp(-depthUpTo(towards, cell, voxel));
+      sum += transmittance;
+      if (!isAtEnd(towards, cell, voxel)) ofFalling += transmittance;
     }
   }
+  falling = ofFalling / sum;
   return -log(sum);
 }

@@ -37,7 +37,11 @@ class TableDepth : public ReferenceDepth {
       layerLengths_.push_back(stepLength(volume.indexToWorld, directionAt(settings.directions, i), true));
   }
 
-  double at(const Block& block) const override;
+  double at(const Block& block) const override { return -std::log(transmittance(block).all); }
+  double falling(const Block& block) const override {
+    const Transmittance found = transmittance(block);
+    return found.falling / found.all;
+  }
   double slope(const Block& block, int axis) const override {
     Block before = block, after = block;
     before.cell[axis] = std::max(block.cell[axis] - 1, 0);
@@ -50,6 +54,10 @@ class TableDepth : public ReferenceDepth {
   }
 
  private:
+  struct Transmittance {
+    double all = 0.0, falling = 0.0;
+  };
+  Transmittance transmittance(const Block& block) const;
   glm::dvec3 centre(const Block& block) const { return boxOf(block, volume_.dimensions).centre(); }
   /// A byte of the table, as long as if its line's layers had this world length.
   double stored(int direction, int byte, double layer) const;
@@ -88,7 +96,7 @@ double TableDepth::beyondEye(int direction, double layer) const {
   return sum;
 }
 
-double TableDepth::at(const Block& block) const {
+TableDepth::Transmittance TableDepth::transmittance(const Block& block) const {
   const glm::dvec3 toEye = toEye_(centre(block));
   const glm::dmat3 toWorld(volume_.indexToWorld);
   const double layer = glm::length(toWorld * acrossLayer(toEye));
@@ -97,16 +105,21 @@ double TableDepth::at(const Block& block) const {
   const std::size_t index =
       level == nullptr ? volume_.at(block.cell.x, block.cell.y, block.cell.z) : level->at(block.cell);
   const DirectionSet set = settings_.directions;
-  const auto depth = [&](int direction) {
-    return std::max(
-        stored(direction, table[std::size_t(direction)][index], layer) - beyondEye(direction, layer), 0.0);
+  const int end = settings_.code == AttenuationCode::Linear8 ? 0 : 255;
+  Transmittance result;
+  const auto add = [&](double weight, int direction) {
+    const int byte = table[std::size_t(direction)][index];
+    const double depth = std::max(stored(direction, byte, layer) - beyondEye(direction, layer), 0.0);
+    result.all += weight * std::exp(-depth);
+    if (byte != end) result.falling += weight * std::exp(-depth);
   };
-  if (lookup_ == AttenuationLookup::Nearest) return depth(nearestDirection(set, toEye));
+  if (lookup_ == AttenuationLookup::Nearest) {
+    add(1.0, nearestDirection(set, toEye));
+    return result;
+  }
   const DirectionBlend blend = bilinearDirections(set, toEye);
-  double transmittance = 0.0;
-  for (std::size_t i = 0; i < 4; ++i)
-    transmittance += blend.weights[i] * std::exp(-depth(blend.directions[i]));
-  return -std::log(transmittance);
+  for (std::size_t i = 0; i < 4; ++i) add(blend.weights[i], blend.directions[i]);
+  return result;
 }
 
 /// Catmull-Rom as a Hermite spline: value and derivative at x between p[1] and p[2].

@@ -130,8 +130,8 @@ glm::dvec3 SplatSummer::centreOfMass(const Block& block) const {
 DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& splat, double extinction,
                                    int layers) const {
   // The mean over a block is the depth of its middle layer: what lies in front of it has none of its own.
-  const double layer = projector_.layerLength(splat);
-  const double before = 0.5 * (layers - 1) * extinction * depth_->countedLength(layer);
+  const double layer = projector_.layerLength(splat), falling = depth_->falling(block) * extinction;
+  const double before = 0.5 * (layers - 1) * falling * depth_->countedLength(layer);
   DepthToEye depth{.centre = std::max(depth_->at(block) - before, 0.0)};
   if (!settings_.gradient) return depth;
   if (splat.cut) {
@@ -139,7 +139,7 @@ DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& spl
     depth.distance = projector_.distanceFromEye(splat);
     return depth;
   }
-  const glm::dvec3 gradient = depth_->gradient(block, splat.toEye, extinction * layer);
+  const glm::dvec3 gradient = depth_->gradient(block, splat.toEye, falling * layer);
   // It fades with the widening: a widened footprint stands for a pixel in which the depth changes often.
   // The children of a block that is not widened may have been.
   const double ofChildren = block.level == 0 ? 1.0 : std::min(splat.edge2 / 4.0, 1.0);

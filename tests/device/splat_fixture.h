@@ -27,8 +27,8 @@ class SplatTest : public DeviceTest {
   /// The table may be one code off here and there (its own test), which moves a colour by up to 1e-2 where
   /// few voxels mix; alpha does not use the table.
   void expectSamePicture(const Volume& volume, const Camera& camera, FrameSettings settings,
-                         const TableSettings& table = {}) {
-    const Classification classification = coloured(volume, 0.5f);
+                         const TableSettings& table = {}, float opacity = 0.5f) {
+    const Classification classification = coloured(volume, opacity);
     settings.depth = true;
     Renderer renderer(device(), volume, classification, table);
     const Image picture = renderer.render(camera, settings);

@@ -101,5 +101,34 @@ TEST_F(SplatTest, SplatsCentredOutsideTheImageStillReachIntoIt) {
   expectSamePicture(v, camera, {.size = {80, 80}});
 }
 
+TEST_F(SplatTest, OpaqueVolumesMatchTheReference) {
+  const Volume v = randomVolume(kSize, shearedTransform(kSize), 1.0, 1.0);
+  for (const AttenuationCode code : {AttenuationCode::Depth8, AttenuationCode::Linear8})
+    expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {90, 90}}, {.code = code}, 1.0f);
+}
+
+/// The table's depths end at 16, and a voxel of this medium has almost as much by itself: what is deep in it
+/// is as dark at the rims of its splats as in their middles, as voxels and as blocks.
+TEST_F(SplatTest, WhatIsDeepInAnOpaqueMediumDoesNotShine) {
+  const glm::ivec3 dimensions(40);
+  const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [&](int x, int y, int z) {
+    const glm::ivec3 p(x, y, z), toFace = glm::min(p, dimensions - 1 - p);
+    return std::min({toFace.x, toFace.y, toFace.z}) < 8 ? 1.0 : 2.0;
+  });
+  Classification classification;
+  classification.transferFunction = TransferFunction{
+      .opacity = {{0.0f, 1.0f}},
+      .color = {{1.0f, {0.0f, 0.0f, 1.0f}}, {1.001f, {1.0f, 0.0f, 0.0f}}, {2.0f, {1.0f, 0.0f, 0.0f}}},
+      .unitDistance = 0.7 * volume.voxelSize()};
+  Renderer renderer(device(), volume, classification, {});
+  for (const float lod : {0.0f, 9.0f}) {
+    const Image picture =
+        renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {96, 96}, .lod = lod});
+    float brightest = 0.0f;
+    for (const glm::vec4& pixel : picture.pixels) brightest = std::max(brightest, pixel.r);
+    EXPECT_LT(brightest, 4e-3f) << "lod " << lod;
+  }
+}
+
 }  // namespace
 }  // namespace freevoxels
