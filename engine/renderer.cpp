@@ -51,11 +51,13 @@ void checkFits(const Device& device, glm::ivec3 dimensions, DirectionSet directi
 VolumeMemory volumeMemory(glm::ivec3 dimensions, DirectionSet directions) {
   const HierarchyLayout hierarchy(dimensions);
   const std::uint64_t voxels = hierarchy.levels.front().paddedVoxels(), blocks = hierarchy.paddedBlocks();
-  // A list of all blocks and one of those of a frame, with a bit for each that could be one.
-  const std::uint64_t lists = (blocks + voxels) * sizeof(std::uint32_t) + blocks / 8;
+  // A list of all blocks and one of those of a frame, with a bit for each that could be one and two bytes for
+  // each that has children.
+  const std::uint64_t lists =
+      (blocks + voxels) * sizeof(std::uint32_t) + blocks / 8 + 2 * hierarchy.paddedCoarseBlocks();
   return {.scalars = voxels * sizeof(float),
           .extinction = blocks * sizeof(float),
-          .table = blocks * std::uint64_t(directionCount(directions)),
+          .table = hierarchy.planeBytes() * std::uint64_t(directionCount(directions)),
           .blockColors = hierarchy.paddedCoarseBlocks() * sizeof(glm::uvec2),
           .lists = lists};
 }
@@ -74,12 +76,13 @@ struct Renderer::State {
   TableSettings tableSettings;
   DeviceVolume volume;
   std::optional<AttenuationTable> table;
-  bool tableHasLevels = false;
+  std::vector<double> largestDepths;  ///< of the table, by direction; empty: it has no levels yet
   VisibleVoxels visible;
   std::optional<LevelLists> levels;
   std::optional<CutPass> cutter;
-  DetailRule lastRule;  ///< of the last frame
   const VisibleVoxels* lastDrawn = nullptr;
+  bool lastWasCut = false;  ///< lastDrawn is `cutter`'s
+  int lastLevel = 0;        ///< otherwise: of all that was drawn
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
   std::unique_ptr<DepthSort> sort;
@@ -92,7 +95,8 @@ struct Renderer::State {
   const AttenuationTable& sweptTable(const Progress& progress = {});
   const AttenuationTable& tableWithLevels(const Progress& progress = {});
   const LevelLists& blockLists();
-  const VisibleVoxels& recordCut(Commands& commands, const DetailRule& rule);
+  void recordDrawing(Commands& commands, const Frame& frame, const AttenuationTable* read,
+                     const Buffer* order);
   Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
                      const Progress& progress = {});
 };
@@ -112,13 +116,13 @@ const AttenuationTable& Renderer::State::sweptTable(const Progress& progress) {
 /// Its levels are made when a frame first may draw a block.
 const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progress) {
   const AttenuationTable& swept = sweptTable(progress);
-  if (tableHasLevels) return swept;
+  if (!largestDepths.empty()) return swept;
   const TableLevels pass(device, tableSettings);
   Commands commands(device);
   pass.record(commands, volume, swept);
   commands.submitAndWait(progress);
   std::ranges::copy(commands.times(), std::back_inserter(frameTimes));
-  tableHasLevels = true;
+  largestDepths = downloadLargestDepths(device, swept);
   return swept;
 }
 
@@ -127,12 +131,38 @@ const LevelLists& Renderer::State::blockLists() {
   return *levels;
 }
 
-/// The list of what a frame draws.
-const VisibleVoxels& Renderer::State::recordCut(Commands& commands, const DetailRule& rule) {
-  if (rule.coarsest == 0) return visible;
-  if (rule.isOneLevel()) return blockLists().of(rule.finest, visible);
-  if (!cutter) cutter.emplace(device);
-  return cutter->record(commands, volume, visible, blockLists(), rule);
+/// The splats of a frame. What the table calls hidden comes after the rest, where it is not covered.
+void Renderer::State::recordDrawing(Commands& commands, const Frame& frame, const AttenuationTable* read,
+                                    const Buffer* order) {
+  const FrameConstants& constants = frame.constants;
+  lastWasCut = !constants.detail.isOneLevel() || !constants.cull.leavesNothingOut();
+  lastLevel = constants.detail.finest;
+  SplatPass::Inputs drawing{.volume = volume, .table = read, .order = order};
+  if (!lastWasCut) {
+    lastDrawn = lastLevel == 0 ? &visible : &blockLists().of(lastLevel, visible);
+    drawing.visible = lastDrawn;
+    drawing.chunkCount = lastDrawn->chunkCount;
+    splats->record(commands, drawing, constants, frame.targets);
+    return;
+  }
+  if (!cutter) cutter.emplace(device, tableSettings.code);
+  const CutInputs inputs{.volume = volume,
+                         .voxels = visible,
+                         .lists = blockLists(),
+                         .table = read,
+                         .setup = constants.setup,
+                         .rays = constants.resolve,
+                         .detail = constants.detail,
+                         .cull = constants.cull};
+  cutter->record(commands, inputs);
+  lastDrawn = drawing.visible = &cutter->blocks();
+  drawing.chunkCount = lastDrawn->chunkCount / 2;
+  splats->record(commands, drawing, constants, frame.targets);
+  if (constants.cull.hiddenDepth == 0.0) return;
+  cutter->recordDeferred(commands, inputs, frame.targets.colorEnergy, frame.targets.opticalDepth);
+  drawing.firstChunk = drawing.chunkCount;
+  drawing.continued = true;
+  splats->record(commands, drawing, constants, frame.targets);
 }
 
 /// Up to the sums in the targets; the sorted picture is made there, and has none.
@@ -151,13 +181,12 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
   if (sorted) sort->record(commands, volume, visible, camera);
   const AttenuationTable* read = nullptr;
   if (frame.constants.readsTable())
-    read = frame.constants.detail.coarsest > 0 ? &tableWithLevels(progress) : &sweptTable(progress);
-  lastRule = frame.constants.detail;
-  lastDrawn = &recordCut(commands, lastRule);
-  splats->record(
-      commands,
-      {.volume = volume, .table = read, .visible = *lastDrawn, .order = sorted ? &sort->voxels() : nullptr},
-      frame.constants, frame.targets);
+    read = frame.constants.readsLevels() ? &tableWithLevels(progress) : &sweptTable(progress);
+  CullRule& cull = frame.constants.cull;
+  if (cull.hiddenDepth > 0.0 &&
+      !canHide(tableSettings, largestDepths, glm::dmat3(volume.indexToWorld), cull.hiddenDepth))
+    cull.hiddenDepth = 0.0;
+  recordDrawing(commands, frame, read, sorted ? &sort->voxels() : nullptr);
   return frame;
 }
 
@@ -208,7 +237,9 @@ std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSet
   checkFrameFits(state_->device, settings);
   State& state = *state_;
   Commands commands(state.device);
-  const State::Frame frame = state.recordSplats(commands, camera, settings);
+  FrameSettings whole = settings;
+  whole.cullThreshold = 0.0f;
+  const State::Frame frame = state.recordSplats(commands, camera, whole);
   commands.beginPass("read back");
   const SumsReadback sums(state.device, commands, frame.targets);
   commands.submitAndWait();
@@ -242,11 +273,12 @@ RayCodes Renderer::downloadRays(const Camera& camera) const {
   return sweep.sweep(state_->volume, eyeSource(camera, state_->volume.indexToWorld));
 }
 
-std::vector<std::uint64_t> Renderer::drawnCounts() const {
+CutCounts Renderer::cutCounts() const {
   if (state_->lastDrawn == nullptr) return {};
-  if (!state_->lastRule.isOneLevel()) return state_->cutter->countDrawn();
-  std::vector<std::uint64_t> counts(std::size_t(state_->lastRule.finest), 0);
-  counts.push_back(downloadVisibleCount(state_->device, *state_->lastDrawn));
+  if (state_->lastWasCut) return state_->cutter->counts();
+  CutCounts counts{.drawn = std::vector<std::uint64_t>(std::size_t(state_->lastLevel), 0)};
+  counts.drawn.push_back(downloadVisibleCount(state_->device, *state_->lastDrawn));
+  counts.considered = counts.drawn.back();
   return counts;
 }
 
@@ -265,6 +297,7 @@ std::vector<LevelData> Renderer::downloadLevels() const {
   for (int level = 1; level <= state_->volume.hierarchy.top(); ++level) {
     LevelData data = downloadMedium(state_->device, state_->volume, level);
     data.table = freevoxels::downloadTable(state_->device, state_->volume.hierarchy, table, level);
+    data.bounds = downloadBounds(state_->device, state_->volume.hierarchy, table, level);
     levels.push_back(std::move(data));
   }
   return levels;

@@ -7,6 +7,7 @@
 
 #include "engine/attenuation/ray_fans.h"
 #include "engine/core/stages.h"
+#include "engine/hierarchy/cut_pass.h"
 #include "engine/hierarchy/hierarchy_layout.h"
 #include "engine/hierarchy/level_data.h"
 #include "engine/image/image.h"
@@ -48,15 +49,15 @@ class Renderer {
   Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
 
   /// One a pixel, row 0 is the top: what render() resolves. `settings.composite` must not be Sorted. Sums of
-  /// the parts of a volume add up to those of the whole.
+  /// the parts of a volume add up to those of the whole; so nothing is left out as hidden.
   std::vector<SplatSums> renderSums(const Camera& camera, const FrameSettings& settings);
 
   /// Of the constructor and of the last frame, in order.
   std::vector<StageTime> timings() const;
   /// How many voxels hold anything.
   std::uint64_t visibleVoxelCount() const;
-  /// How many blocks of each level the last frame drew, voxels first.
-  std::vector<std::uint64_t> drawnCounts() const;
+  /// Of the last frame.
+  CutCounts cutCounts() const;
   /// Per world unit, voxels x fastest without padding: for tests and validation, as all that follow.
   std::vector<float> downloadExtinction() const;
   /// Bytes [direction][voxel], voxels x fastest without padding.

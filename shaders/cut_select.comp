@@ -1,48 +1,163 @@
 #version 460
-// First pass of the cut through the octree, one dispatch a level: which of the level's blocks are drawn, a bit a
-// block, and how many of each workgroup's. Subr et al. 2007, Section 3.3: the level is chosen by the size on the
-// image. A block is drawn where it is small and its parent is not; a parent is twice as large as its children and
-// as near to the eye as the nearest of them, so of the blocks around a voxel exactly one is drawn.
+// First pass of the cut through the octree, one dispatch a level, from the coarsest: which of the level's blocks are
+// drawn, a bit a slot (cut_slot.glsl), and how many of each workgroup's. Subr et al. 2007, Section 3.3: the level is
+// chosen by the size on the image. What is outside of the image or hidden is left out with all that is below it.
+//
+// A parent is twice as large as its children and as near to the eye as the nearest of them, so of the blocks around a
+// voxel that is not left out exactly one is drawn.
+//
+// What the table calls hidden is deferred. When the rest is drawn, the cut goes on below the deferred blocks, and of
+// these those are hidden at last that only reach pixels which are covered.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "blocks.glsl"
+#include "attenuation_code.glsl"
+#include "major_axis.glsl"
+
+layout(constant_id = 0) const int kCode = kCodeDepth8;
+layout(constant_id = 1) const bool kDeferred = false;  // whether the cut goes on below the deferred blocks
 
 layout(local_size_x = kCutThreads) in;
 layout(scalar, push_constant) uniform Push { CutPush push; };
-layout(scalar, binding = 0) readonly buffer Blocks { uint blocks[]; };
-layout(scalar, binding = 1) writeonly buffer Masks { uint masks[]; };
-layout(scalar, binding = 2) buffer GroupCounts { uint groupCounts[]; };
+layout(scalar, binding = 0) readonly buffer Frame { CutFrame frame; };
+layout(scalar, binding = 1) readonly buffer Parents { uint parents[]; };
+layout(scalar, binding = 2) readonly buffer Extinction { float extinction[]; };
+// Of each block above the voxels a byte, four a word: which children to look at. And which of them are deferred.
+layout(scalar, binding = 3) buffer Children { uint children[]; };
+layout(scalar, binding = 4) buffer Deferred { uint deferred[]; };
+layout(scalar, binding = 5) writeonly buffer Masks { uint masks[]; };
+layout(scalar, binding = 6) buffer GroupCounts { uint groupCounts[]; };
+layout(scalar, binding = 7) buffer Counts { CutCounts counts; };
+layout(scalar, binding = 8) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
+layout(scalar, binding = 9) readonly buffer Tiles { uint tiles[]; };
+#define PLANE_ADDRESS(cell) planeAddresses[cell]
+#include "direction_lookup.glsl"
+// Of an eye outside of the volume: nothing.
+float depthBeyond(Towards towards, ivec3 cell) { return 0.0; }
+#include "cut_slot.glsl"
+#include "dark_block.glsl"
+#include "covered_block.glsl"
 
-shared uint total;
+shared CutCounts sums;
+shared uint asked[kCutSlotsPerGroup];  // the slots to look at, in any order
+shared uint askedCount;
+shared uint mask[kCutThreads];
+shared uint drawn;
 
-// `precise`: the block itself and its children ask this, and must get the same answer.
-bool isSmall(ivec3 cell, int edge) {
-  precise vec3 toCenter = (vec3(cell) + 0.5) * float(edge) - 0.5 - push.middle;
-  precise float center = push.viewAxis.x * toCenter.x + push.viewAxis.y * toCenter.y + push.viewAxis.z * toCenter.z;
-  precise float reach = 0.5 * float(edge) * (abs(push.viewAxis.x) + abs(push.viewAxis.y) + abs(push.viewAxis.z));
-  precise float nearest = center + push.middleDistance - reach;
-  return float(edge) <= push.edgePerDistance * nearest;
+// Of a block's voxels: as many as an edge has, around the centre.
+vec3 centerOf(ivec3 cell, int edge) { return (vec3(cell) + 0.5) * float(edge) - 0.5 - frame.middle; }
+
+bool isSmall(vec3 center, int edge) {
+  const float reach = 0.5 * float(edge) * dot(abs(frame.viewAxis), vec3(1.0));
+  return float(edge) <= frame.edgePerDistance * (dot(frame.viewAxis, center) + frame.middleDistance - reach);
 }
 
-bool isDrawn(ivec3 cell, int level) {
-  return (level == push.finest || isSmall(cell, push.edge)) && (level == push.coarsest || !isSmall(cell / 2, 2 * push.edge));
+bool isOutside(vec3 center, int edge) {
+  if (frame.outside == 0) return false;
+  const float reach = 0.5 * float(edge) + kSplatRadius * float(edge);
+  for (int i = 0; i < 5; ++i) {
+    const vec4 plane = frame.planes[i];
+    if (dot(plane.xyz, center) + plane.w + reach * dot(abs(plane.xyz), vec3(1.0)) < 0.0) return true;
+  }
+  return false;
+}
+
+// Which of a thread's slots to look at, a bit each.
+uint askedSlots(uint first) {
+  if (push.level == frame.top) return !kDeferred && first == 0 ? 1 : 0;
+  if (kDeferred && counts.deferred == 0) return 0;
+  uint bits = 0;
+  for (uint i = 0; i < kCutSlotsPerThread / 8; ++i) {
+    if (first + 8 * i >= push.slotCount) break;
+    const uint parent = parents[first / 8 + i] - frame.coarseFirst;
+    const uint word = kDeferred ? deferred[parent / 4] : children[parent / 4];
+    bits |= (word >> (8 * (parent & 3)) & 255) << (8 * i);
+  }
+  return bits;
+}
+
+// Lists them for the whole workgroup: as many turns as there are slots to look at, shared evenly.
+void listAsked(uint bits, uint firstInGroup) {
+  uint place = atomicAdd(askedCount, uint(bitCount(bits)));
+  for (; bits != 0; bits &= bits - 1) asked[place++] = firstInGroup + uint(findLSB(bits));
+}
+
+void defer(uint slot) {
+  const uint parent = parents[slot / 8] - frame.coarseFirst;
+  atomicOr(deferred[parent / 4], 1u << (8 * (parent & 3) + (slot & 7)));
+}
+
+void open(uint block) {
+  const uint allOfThem = 255u << (8 * (block & 3));
+  if (kDeferred)
+    atomicOr(deferred[block / 4], allOfThem);
+  else
+    atomicOr(children[block / 4], allOfThem);
+}
+
+// Whether the block of a slot is drawn; opens it where its children may be.
+bool isDrawn(uint slot, inout CutCounts found) {
+  const ivec3 cell = cellOfSlot(slot);
+  if (any(greaterThanEqual(cell, frame.levels[push.level].dimensions))) return false;
+  const uint address = blockAddress(frame.levels[push.level], cell);
+  const int edge = 1 << push.level;
+  const vec3 center = centerOf(cell, edge);
+  if (extinction[address] <= 0.0) {
+    ++found.empty;
+    return false;
+  }
+  if (isOutside(center, edge)) {
+    ++found.outside;
+    return false;
+  }
+  // Of a voxel it costs about as much to ask as to draw it.
+  if (push.level > 0 && push.level < frame.top && frame.hides != 0) {
+    if (kDeferred && isCovered(center, edge)) {
+      ++found.hidden;
+      return false;
+    }
+    if (!kDeferred && isHidden(cell, push.level)) {
+      ++found.deferred;
+      defer(slot);
+      return false;
+    }
+  }
+  if (push.level == frame.finest || push.level <= frame.coarsest && isSmall(center, edge)) return true;
+  ++found.opened;
+  open(address - frame.coarseFirst);
+  return false;
 }
 
 void main() {
   const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-  const uint thread = group * kCutThreads + gl_LocalInvocationIndex;
-  const uint first = thread * kCutBlocksPerThread;
-  const int level = findMSB(push.edge);
-  if (gl_LocalInvocationIndex == 0) total = 0;
-  barrier();
-  if (first < push.blockCount) {
-    const uint count = min(push.blockCount - first, uint(kCutBlocksPerThread));
-    uint mask = 0;
-    for (uint i = 0; i < count; ++i)
-      if (isDrawn(cellAt(push.level, blocks[first + i]), level)) mask |= 1u << i;
-    masks[push.firstGroup * kCutThreads + thread] = mask;
-    atomicAdd(total, bitCount(mask));
+  const uint thread = gl_LocalInvocationIndex;
+  const uint first = group * kCutSlotsPerGroup;
+  if (first >= push.slotCount) return;
+  mask[thread] = 0;
+  if (thread == 0) {
+    drawn = askedCount = 0;
+    sums = CutCounts(0, 0, 0, 0, 0);
   }
   barrier();
-  if (gl_LocalInvocationIndex == 0 && first < push.blockCount) groupCounts[push.firstGroup + group] = total;
+  CutCounts found = CutCounts(0, 0, 0, 0, 0);
+  listAsked(askedSlots(first + thread * kCutSlotsPerThread), thread * kCutSlotsPerThread);
+  barrier();
+  for (uint i = thread; i < askedCount; i += kCutThreads)
+    if (isDrawn(first + asked[i], found)) atomicOr(mask[asked[i] / 32], 1u << (asked[i] % 32));
+  barrier();
+  if (push.level <= frame.coarsest) masks[(push.firstGroup + group) * kCutThreads + thread] = mask[thread];
+  atomicAdd(drawn, bitCount(mask[thread]));
+  atomicAdd(sums.empty, found.empty);
+  atomicAdd(sums.outside, found.outside);
+  atomicAdd(sums.hidden, found.hidden);
+  atomicAdd(sums.opened, found.opened);
+  atomicAdd(sums.deferred, found.deferred);
+  barrier();
+  if (thread != 0) return;
+  if (push.level <= frame.coarsest) groupCounts[push.firstOffset + group] = drawn;
+  atomicAdd(counts.empty, sums.empty);
+  atomicAdd(counts.outside, sums.outside);
+  atomicAdd(counts.hidden, sums.hidden);
+  atomicAdd(counts.opened, sums.opened);
+  atomicAdd(counts.deferred, sums.deferred);
 }

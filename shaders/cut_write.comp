@@ -1,28 +1,32 @@
 #version 460
-// Last pass of the cut, one dispatch a level, after visible_scan.comp: the blocks that are drawn, at their places,
-// in ascending order.
+// Last pass of the cut, one dispatch a level, after visible_scan.comp: the blocks that are drawn, at their places, in
+// the order of their slots.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
+#include "blocks.glsl"
 
 layout(local_size_x = kCutThreads) in;
 layout(scalar, push_constant) uniform Push { CutPush push; };
-layout(scalar, binding = 0) readonly buffer Blocks { uint blocks[]; };
-layout(scalar, binding = 1) readonly buffer Masks { uint masks[]; };
-layout(scalar, binding = 2) readonly buffer GroupOffsets { uint groupOffsets[]; };
-layout(scalar, binding = 3) writeonly buffer Drawn { uint drawn[]; };
+layout(scalar, binding = 0) readonly buffer Frame { CutFrame frame; };
+layout(scalar, binding = 1) readonly buffer Parents { uint parents[]; };
+layout(scalar, binding = 2) readonly buffer Masks { uint masks[]; };
+layout(scalar, binding = 3) readonly buffer GroupOffsets { uint groupOffsets[]; };
+layout(scalar, binding = 4) writeonly buffer Drawn { uint drawn[]; };
+#include "cut_slot.glsl"
 
 shared uint counts[kCutThreads];
 
 void main() {
   const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
   const uint thread = gl_LocalInvocationIndex;
-  const uint first = (group * kCutThreads + thread) * kCutBlocksPerThread;
-  uint mask = first < push.blockCount ? masks[(push.firstGroup + group) * kCutThreads + thread] : 0;
+  const uint first = (group * kCutThreads + thread) * kCutSlotsPerThread;
+  uint mask = first < push.slotCount ? masks[(push.firstGroup + group) * kCutThreads + thread] : 0;
   counts[thread] = bitCount(mask);
   barrier();
 
   if (mask == 0) return;
-  uint offset = groupOffsets[push.firstGroup + group];
+  uint offset = groupOffsets[push.firstOffset + group];
   for (uint i = 0; i < thread; ++i) offset += counts[i];
-  for (; mask != 0; mask &= mask - 1) drawn[offset++] = blocks[first + uint(findLSB(mask))];
+  for (; mask != 0; mask &= mask - 1)
+    drawn[offset++] = blockAddress(frame.levels[push.level], cellOfSlot(first + uint(findLSB(mask))));
 }

@@ -37,10 +37,14 @@ FV_CONSTANT int kLevelBlocksPerThread = 8;  // of the table: their children's co
 // Levels of the octree: more than any volume has whose voxels 32 bits can number.
 FV_CONSTANT int kMaximumLevels = 32;
 
-// Blocks that one invocation and one workgroup of the cut look at: a bit each of a word.
-FV_CONSTANT int kCutBlocksPerThread = 32;
+// Slots that one invocation and one workgroup of the cut look at: a bit each of a word.
+FV_CONSTANT int kCutSlotsPerThread = 32;
 FV_CONSTANT int kCutThreads = 64;
-FV_CONSTANT int kCutBlocksPerGroup = kCutBlocksPerThread * kCutThreads;
+FV_CONSTANT int kCutSlotsPerGroup = kCutSlotsPerThread * kCutThreads;
+// Pixels along the edge of a tile that is covered or not, and the cells that directions of the table can have.
+FV_CONSTANT int kCoverTile = 8;
+FV_CONSTANT int kCoverThreads = 64;
+FV_CONSTANT int kMaximumCells = 125;
 
 // The sort takes its keys digit by digit. As many threads a workgroup as digits, so that each owns one; a
 // fixed number of workgroups, whatever the count, so that one of them can add up what all of them found.
@@ -156,34 +160,67 @@ struct TableLevelPush {
   ivec3 voxels;
   int childEdge;
   uint threadCount;    // kLevelBlocksPerThread blocks of the parent level each
+  uint boundsOffset;   // the bound of a block follows its code by this many blocks
+  uint direction;      // in the order of directions.h
+};
+
+// cut_select.comp, what is the same for all levels of a frame. Positions are relative to the volume's middle.
+struct CutFrame {
+  BlockLevel levels[kMaximumLevels];
+  uint coarseFirst;       // index of the first block above the voxels
+  int top;                // the coarsest level there is
+  int finest;             // no level below is drawn
+  int coarsest;           // no level above is drawn
+  vec3 middle;            // of the volume, index space
+  vec3 viewAxis;          // distance from the eye plane: viewAxis . position + middleDistance
+  float middleDistance;
+  float edgePerDistance;  // a block is small where its edge, in voxels, is at most this times its distance
+  vec4 planes[5];         // a box is seen where planes.xyz . centre + planes.w + |planes.xyz| . half edges >= 0
+  int outside;            // whether to leave out what is outside of the image
+  int hides;              // whether to leave out what is behind others
+  float darkDepths[kMaximumCells];  // by cell number: what the table has to hold for a line of sight of length 1
+  uint boundsOffset;      // the bound of a block follows its code by this many blocks
+  ivec2 tiles;            // of the image
+  // As in SetupFrame.
+  mat3 indexToWorld, indexToPixel;
+  vec3 eyeToMiddle, middleInPixels;
+  vec3 ray;
+  int orthographic;
+  int pathLengthCorrection, cells;
+  vec3 axisLengths;       // world lengths of the index axes
 };
 
 // cut_select.comp and cut_write.comp, one level of the cut
 struct CutPush {
-  BlockLevel level;
-  int edge;            // voxels along a block's edge
-  uint blockCount;     // of the list of this level's blocks that hold anything
-  uint firstGroup;     // of this level among the workgroups of all levels
-  int finest;          // no level below is drawn
-  int coarsest;        // no level above is drawn
-  vec3 viewAxis;       // distance from the eye plane: viewAxis . (index - middle) + middleDistance
-  vec3 middle;         // of the volume, index space
-  float middleDistance;
-  float edgePerDistance;  // a block is small where its edge, in voxels, is at most this times its distance
+  int level;
+  uint slotCount;      // eight a block of the list of the level above
+  uint firstGroup;     // of this level among the workgroups of all drawn levels
+  uint firstOffset;    // the same among the counts of all workgroups
+};
+
+// What cut_select.comp counts: blocks whose parent was opened.
+struct CutCounts {
+  uint empty;          // hold nothing
+  uint outside;        // of the rest, left out as no part of the image
+  uint hidden;         // of the rest, left out behind others
+  uint opened;         // of the rest, neither left out nor drawn: their children were looked at
+  uint deferred;       // left to the second part of the cut, which counts them again
 };
 
 // visible_count.comp, visible_scan.comp, visible_write.comp
 struct VisiblePush {
   uint first;        // index of the first voxel, or of a level's first block
   uint voxelCount;   // of the padded grid
+  uint firstCount;   // visible_scan.comp: where the counts begin; behind them comes their sum
   uint groupCount;   // workgroups of the count and write passes
-  uint chunkCount;   // draw chunks whose arguments visible_scan.comp writes
+  uint firstChunk;   // visible_scan.comp writes the arguments of chunkCount draw chunks from here on
+  uint chunkCount;
 };
 
 // Arguments of one chunk, in the order that vkCmdDispatchIndirect and vkCmdDrawIndirect want them.
 struct ChunkArguments {
   uint groupsX, groupsY, groupsZ;
-  uint splatCount;
+  uint splatCount, firstSplat;  // of the list
   uint vertexCount, instanceCount, firstVertex, firstInstance;              // points: one vertex a splat
   uint quadVertexCount, quadInstanceCount, quadFirstVertex, quadFirstInstance;  // quads: one instance a splat
 };
@@ -271,17 +308,25 @@ struct ResolvePush {
   int composite;                         // kComposite...
 };
 
+// tile_cover.comp
+struct TilePush {
+  ResolvePush rays;
+  float hiddenDepth;   // optical depth of a covered pixel, at least
+  uvec2 tiles;         // of the image
+};
+
 #ifdef __cplusplus
 static_assert(sizeof(BlockLevel) == 20);
-static_assert(sizeof(ChunkArguments) == 48);
-static_assert(sizeof(CutPush) == 72);
+static_assert(sizeof(ChunkArguments) == 52);
+static_assert(sizeof(CutPush) == 16);
 static_assert(sizeof(DepthKeyPush) == 80);
 static_assert(sizeof(HalfSweepPush) == 64);
 static_assert(sizeof(MediumLevelPush) == 76);
 static_assert(sizeof(Splat) == 64);
 static_assert(sizeof(RaySweepPush) == 112);
 static_assert(sizeof(ResolvePush) == 84);
-static_assert(sizeof(TableLevelPush) == 60);
+static_assert(sizeof(TilePush) == 96);
+static_assert(sizeof(TableLevelPush) == 68);
 }  // namespace freevoxels::shader
 #endif
 #endif

@@ -37,7 +37,7 @@ vec3 colorOf(Block block, uint address) {
 void main() {
   const uint local = gl_GlobalInvocationID.x;
   if (local >= chunks[push.chunk].splatCount) return;
-  const uint address = visibleVoxels[push.chunk * kSplatsPerChunk + local];
+  const uint address = visibleVoxels[chunks[push.chunk].firstSplat + local];
   const Block block = blockAt(address);
 
   Splat splat;

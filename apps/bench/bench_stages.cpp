@@ -1,9 +1,11 @@
 #include "apps/bench/bench_stages.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 #include "engine/hierarchy/level_passes.h"
 #include "engine/renderer.h"
@@ -31,6 +33,22 @@ double passTime(const std::vector<StageTime>& times, std::string_view name) {
   for (const StageTime& time : times)
     if (time.name == name) sum += time.milliseconds;
   return sum;
+}
+
+/// Milliseconds of the last frame's passes.
+struct Frame {
+  double cut = 1e30, draw = 1e30;
+  double total() const { return cut + draw; }
+};
+Frame frameTime(const Renderer& renderer) {
+  const std::vector<StageTime> times = renderer.timings();
+  return {.cut = passTime(times, "level of detail and culling"),
+          .draw = passTime(times, "splat set-up") + passTime(times, "splat draw")};
+}
+
+std::uint64_t drawnSplats(const Renderer& renderer) {
+  const std::vector<std::uint64_t> drawn = renderer.cutCounts().drawn;
+  return std::accumulate(drawn.begin(), drawn.end(), std::uint64_t(0));
 }
 
 DeviceVolume classified(const Device& device, const Volume& volume) {
@@ -108,16 +126,36 @@ std::vector<Result> zoom(const Device& device, int resolution, int runs) {
       renderer.render(camera, {.size = size, .lod = lod});  // what is made once
       const double time = least(runs, [&] {
         renderer.render(camera, {.size = size, .lod = lod});
-        const std::vector<StageTime> times = renderer.timings();
-        return passTime(times, "level of detail") + passTime(times, "splat set-up") +
-               passTime(times, "splat draw");
+        return frameTime(renderer).total();
       });
-      std::uint64_t splats = 0;
-      for (const std::uint64_t count : renderer.drawnCounts()) splats += count;
       results.push_back({.name = fmt::format("cloud {}^3, {:g} pixels a voxel, --lod {:g}: {} splats",
-                                             resolution, pixels, lod, splats),
+                                             resolution, pixels, lod, drawnSplats(renderer)),
                          .milliseconds = time});
     }
+  return results;
+}
+
+std::vector<Result> culling(const Device& device, QualityColor color, int resolution, int runs) {
+  const QualityScene scene =
+      makeQualityScene({"head", color, false}, resolution, makeProcedural("head", resolution));
+  Renderer renderer(device, scene.volume, scene.classification, {});
+  const Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
+  std::vector<Result> results;
+  for (const bool culled : {false, true}) {
+    const FrameSettings settings{.size = glm::ivec2(1024), .culling = culled};
+    renderer.render(camera, settings);  // what is made once
+    Frame best;
+    for (int run = 0; run < runs; ++run) {
+      renderer.render(camera, settings);
+      best = std::min(best, frameTime(renderer),
+                      [](const Frame& a, const Frame& b) { return a.total() < b.total(); });
+    }
+    results.push_back(
+        {.name = fmt::format("{} head {}^3{}: {} splats, {:.3f} of it choosing them",
+                             color == QualityColor::Skin ? "opaque" : "bone", resolution,
+                             culled ? ", culled" : "", drawnSplats(renderer), best.cut / best.total()),
+         .milliseconds = best.total()});
+  }
   return results;
 }
 

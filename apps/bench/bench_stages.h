@@ -6,6 +6,7 @@
 #include "apps/bench/measure.h"
 #include "apps/freevoxels/input_options.h"
 #include "engine/attenuation/directions.h"
+#include "engine/validation/quality_scenes.h"
 #include "engine/vulkan/device.h"
 
 namespace freevoxels::bench {
@@ -20,6 +21,9 @@ Result octree(const Device& device, AttenuationCode code, int resolution, int ru
 /// Choosing, setting up and drawing the blocks of a cloud of N³ voxels from near to far, without and with
 /// level of detail.
 std::vector<Result> zoom(const Device& device, int resolution, int runs);
+
+/// Choosing, setting up and drawing the voxels of a head of N³ voxels, all of them and culled.
+std::vector<Result> culling(const Device& device, QualityColor color, int resolution, int runs);
 
 /// The list of visible voxels of an N³ volume of which a thirtieth is visible, beside a copy of 4 N³ bytes.
 Result compaction(const Device& device, int resolution, int runs);

@@ -48,13 +48,20 @@ void MethodOptions::add(CLI::App& app) {
       "is whatever this is [1]",
       {0.0, 1e6})
       ->group(group);
+  app.add_flag_function(
+         "--culling,!--no-culling", [this](std::int64_t count) { culling = count > 0; },
+         "Whether blocks outside of the image or behind others are left out; sorted draws all [yes]")
+      ->group(group);
+  addNumber(app, "--cull-threshold", "TRANSMITTANCE", cullThreshold,
+            "Transmittance to the eye below which a block is behind others; 0: none is [1/512]",
+            {.minimum = 0.0, .maximum = 1.0})
+      ->group(group);
   addWord(app, "--hierarchy-filter", kHierarchyFilters, hierarchyFilter,
           "Which mean of its voxels' transmittances a block has [geometric]")
       ->group(group);
   app.add_flag("--paper", paper,
                "As the paper: additive, nearest, 26 directions, linear8, no path-length correction, no "
-               "gradient, lod "
-               "0; any of the seven that is given wins")
+               "gradient, lod 0, no culling; any of the eight that is given wins")
       ->group(group);
 }
 
@@ -72,6 +79,8 @@ void MethodOptions::apply(FrameSettings& frame) const {
       attenuation.value_or(int(paper ? AttenuationLookup::Nearest : AttenuationLookup::Auto)));
   frame.gradient = gradient.value_or(!paper);
   frame.lod = float(lod.value_or(paper ? 0.0 : 1.0));
+  frame.culling = culling.value_or(!paper);
+  frame.cullThreshold = float(cullThreshold.value_or(double(frame.cullThreshold)));
 }
 
 void MethodOptions::describe(OptionList& options) const {
@@ -85,6 +94,8 @@ void MethodOptions::describe(OptionList& options) const {
       table().pathLengthCorrection ? "--path-length-correction" : "--no-path-length-correction", "");
   options.emplace_back(frame.gradient ? "--gradient" : "--no-gradient", "");
   options.emplace_back("--lod", numberText(lod.value_or(double(frame.lod))));
+  options.emplace_back(frame.culling ? "--culling" : "--no-culling", "");
+  options.emplace_back("--cull-threshold", numberText(double(frame.cullThreshold)));
   options.emplace_back("--hierarchy-filter", kHierarchyFilters[std::size_t(table().filter)]);
 }
 

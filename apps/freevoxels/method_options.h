@@ -1,6 +1,6 @@
 #pragma once
 // How the picture is computed, where the paper and FreeVoxels differ. `--paper` takes the paper's side in all
-// seven, but an option that is given explicitly wins over it.
+// eight, but an option that is given explicitly wins over it.
 
 #include <optional>
 
@@ -12,8 +12,8 @@ namespace freevoxels {
 struct MethodOptions {
   bool paper = false;
   std::optional<int> composite, attenuation, directions, code, hierarchyFilter;
-  std::optional<bool> pathLengthCorrection, gradient;
-  std::optional<double> lod;
+  std::optional<bool> pathLengthCorrection, gradient, culling;
+  std::optional<double> lod, cullThreshold;
 
   void add(CLI::App& app);
   TableSettings table() const;

@@ -122,7 +122,8 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
     addTimes(report.stages, writing);
   }
   report.visibleVoxels = renderer.visibleVoxelCount();
-  report.drawnBlocks = renderer.drawnCounts();
+  report.voxels = view.volume.voxelCount();
+  report.cut = renderer.cutCounts();
 }
 
 }  // namespace freevoxels

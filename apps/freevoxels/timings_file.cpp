@@ -27,6 +27,20 @@ void logOptions(const OptionList& options) {
   for (const std::string& line : table.lines()) spdlog::debug("{}", line);
 }
 
+namespace {
+
+void logCounts(const RunReport& report) {
+  spdlog::debug("{} voxels, {} of them empty", report.voxels, report.voxels - report.visibleVoxels);
+  spdlog::debug(
+      "{} blocks considered for the last frame, {} of them empty, {} outside of the image, {} hidden",
+      report.cut.considered, report.cut.empty, report.cut.outside, report.cut.hidden);
+  for (std::size_t level = 0; level < report.cut.drawn.size(); ++level)
+    if (report.cut.drawn[level] > 0)
+      spdlog::debug("{} blocks of {}³ voxels drawn", report.cut.drawn[level], 1 << level);
+}
+
+}  // namespace
+
 void logStages(const RunReport& report) {
   using enum TextTable::Align;
   TextTable table{.columns = {Left, Right, Right}, .rows = {{"stage", "ms", "device ms"}}};
@@ -36,10 +50,7 @@ void logStages(const RunReport& report) {
   }
   table.rows.push_back({"total", fmt::format("{:.2f}", report.totalMilliseconds), ""});
   for (const std::string& line : table.lines()) spdlog::debug("{}", line);
-  spdlog::debug("{} visible voxels", report.visibleVoxels);
-  for (std::size_t level = 0; level < report.drawnBlocks.size(); ++level)
-    if (report.drawnBlocks[level] > 0)
-      spdlog::debug("{} blocks of {}³ voxels drawn in the last frame", report.drawnBlocks[level], 1 << level);
+  logCounts(report);
 }
 
 void writeTimings(const std::filesystem::path& file, const RunReport& report) {
@@ -55,8 +66,11 @@ void writeTimings(const std::filesystem::path& file, const RunReport& report) {
   for (const StageTime& stage : report.stages)
     json["stages"].push_back(
         {{"name", stage.name}, {"milliseconds", stage.milliseconds}, {"on_device", stage.onDevice}});
+  json["voxels"] = report.voxels;
   json["visible_voxels"] = report.visibleVoxels;
-  json["drawn_blocks"] = report.drawnBlocks;
+  json["blocks"] = {{"considered", report.cut.considered}, {"empty", report.cut.empty},
+                    {"outside", report.cut.outside},       {"hidden", report.cut.hidden},
+                    {"opened", report.cut.opened},         {"drawn", report.cut.drawn}};
   json["total_milliseconds"] = report.totalMilliseconds;
 
   const std::string text = json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

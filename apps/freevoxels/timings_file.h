@@ -8,6 +8,7 @@
 
 #include "apps/freevoxels/option_values.h"
 #include "engine/core/stages.h"
+#include "engine/hierarchy/cut_pass.h"
 #include "engine/vulkan/device.h"
 
 namespace freevoxels {
@@ -18,7 +19,8 @@ struct RunReport {
   std::vector<StageTime> stages;
   double totalMilliseconds = 0.0;
   std::uint64_t visibleVoxels = 0;
-  std::vector<std::uint64_t> drawnBlocks;  ///< of the last frame by level, voxels first
+  std::uint64_t voxels = 0;  ///< of the volume's box
+  CutCounts cut;             ///< of the last frame
 };
 
 /// Adds each time to the one of its name, or appends it.
@@ -29,8 +31,8 @@ void logOptions(const OptionList& options);
 void logStages(const RunReport& report);
 
 /// {"version", "device": {"name", "type", "uuid", "driver"}, "options": {NAME: VALUE},
-///  "stages": [{"name", "milliseconds", "on_device"}], "visible_voxels", "drawn_blocks",
-///  "total_milliseconds"}.
+///  "stages": [{"name", "milliseconds", "on_device"}], "voxels", "visible_voxels",
+///  "blocks": {"considered", "empty", "outside", "hidden", "opened", "drawn": [by level, voxels first]}, "total_milliseconds"}.
 /// Atomic.
 void writeTimings(const std::filesystem::path& file, const RunReport& report);
 

@@ -8,6 +8,7 @@
 #include "apps/freevoxels/input_options.h"
 #include "engine/renderer.h"
 #include "engine/validation/closed_forms.h"
+#include "engine/validation/culling_checks.h"
 #include "engine/validation/detail_quality.h"
 #include "engine/validation/fly_through_quality.h"
 #include "engine/validation/invariances.h"
@@ -34,6 +35,10 @@ constexpr int kDetailResolution = kMedium;
 constexpr int kTurntableResolution = kMedium, kTurntableFrames = 72, kTurntablePicture = 64;
 constexpr int kQuickFlightFrames = 8, kWholeFlightFrames = 60, kFlightPicture = 64;
 constexpr int kFlightSubject = 2;  ///< of kQualitySubjects: the cloud
+
+constexpr std::array<QualitySubject, 3> kCullingSubjects{{{"head", QualityColor::Skin, false},
+                                                          {"head", QualityColor::Bone, false},
+                                                          {"shells", QualityColor::Cloud, false}}};
 
 /// Of the large ones a full one, which is drawn in several chunks, and a sparse one say what size can change.
 struct ProceduralScene {
@@ -130,6 +135,18 @@ void addFlight(std::vector<SectionJob>& jobs, const Device& device, const Extent
                   }});
 }
 
+/// The opaque head, of which most is hidden, and the volumes as pictures of them are judged.
+void addCulling(std::vector<SectionJob>& jobs, const Device& device, const Extent& extent) {
+  const int resolution = extent.quick ? kQuickQuality : kDetailResolution;
+  const int edge = extent.quick ? kQuickQualityPicture : kLargeQualityPicture;
+  for (const QualitySubject& subject : kCullingSubjects) {
+    if (extent.quick && &subject != &kCullingSubjects.front()) continue;
+    jobs.push_back({fmt::format("culling of {}", subject.procedural), [=, &device, &subject] {
+                      return cullingChecks(device, openQualityScene(device, subject, resolution), edge);
+                    }});
+  }
+}
+
 void addPaperFigures(std::vector<SectionJob>& jobs, const Device& device) {
   jobs.push_back({"figure 2 of the paper", [&device] { return paperFigure2(deviceStages(device)); }});
   jobs.push_back({"figure 6 of the paper", [&device] { return paperFigure6(deviceStages(device)); }});
@@ -166,6 +183,7 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
     }
   addPaperFigures(jobs, device);
   addDetail(jobs, device, extent.quick);
+  addCulling(jobs, device, extent);
   addQuality(jobs, device, extent);
   if (!extent.quick && !extent.resolution) addTurntable(jobs, device);
   if (!extent.resolution) addFlight(jobs, device, extent);

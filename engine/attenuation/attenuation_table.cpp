@@ -76,7 +76,7 @@ AttenuationTable makeTable(const Device& device, const HierarchyLayout& hierarch
   for (int i = 0; i < directionCount(set); ++i) {
     const glm::dvec3 d = directionAt(set, i);
     const std::string name = fmt::format("attenuation {},{},{}", d.x, d.y, d.z);
-    table.planes.emplace_back(device, hierarchy.paddedBlocks(), MemoryUse::Device, name.c_str(),
+    table.planes.emplace_back(device, hierarchy.planeBytes(), MemoryUse::Device, name.c_str(),
                               VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     table.planeTexels.emplace_back(device, table.planes.back(), VK_FORMAT_R32G32B32A32_UINT);
     addresses[std::size_t(cellNumber(set, directionCell(set, i)))] = table.planes.back().address();
@@ -84,6 +84,8 @@ AttenuationTable makeTable(const Device& device, const HierarchyLayout& hierarch
   const std::span<const std::byte> bytes = std::as_bytes(std::span(addresses));
   table.planeAddresses = Buffer(device, bytes.size(), MemoryUse::Device, "attenuation addresses");
   upload(device, table.planeAddresses, bytes);
+  table.darkest =
+      Buffer(device, table.planes.size() * sizeof(std::uint32_t), MemoryUse::Device, "darkest codes");
   return table;
 }
 
@@ -141,16 +143,43 @@ void AttenuationSweep::recordBundles(Commands& commands, const DeviceVolume& vol
     }
 }
 
-std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const HierarchyLayout& hierarchy,
-                                                     const AttenuationTable& table, int level) {
-  const GridLayout& layout = hierarchy.levels[std::size_t(level)];
+namespace {
+
+/// Of every plane, the codes of a level's blocks that begin at a byte, without padding.
+std::vector<std::vector<std::uint8_t>> downloadPlanes(const Device& device, const GridLayout& layout,
+                                                      const AttenuationTable& table, VkDeviceSize first) {
   std::vector<std::uint8_t> padded(layout.paddedVoxels());
   std::vector<std::vector<std::uint8_t>> result;
   for (const Buffer& plane : table.planes) {
-    download(device, plane, std::as_writable_bytes(std::span(padded)), hierarchy.first[std::size_t(level)]);
+    download(device, plane, std::as_writable_bytes(std::span(padded)), first);
     result.push_back(layout.withoutPadding(padded));
   }
   return result;
+}
+
+}  // namespace
+
+std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const HierarchyLayout& hierarchy,
+                                                     const AttenuationTable& table, int level) {
+  const auto i = std::size_t(level);
+  return downloadPlanes(device, hierarchy.levels[i], table, hierarchy.first[i]);
+}
+
+std::vector<std::vector<std::uint8_t>> downloadBounds(const Device& device, const HierarchyLayout& hierarchy,
+                                                      const AttenuationTable& table, int level) {
+  const auto i = std::size_t(level);
+  return downloadPlanes(device, hierarchy.levels[i], table, hierarchy.first[i] + hierarchy.boundsOffset());
+}
+
+std::vector<double> downloadLargestDepths(const Device& device, const AttenuationTable& table) {
+  std::vector<std::uint32_t> codes(table.planes.size());
+  download(device, table.darkest, std::as_writable_bytes(std::span(codes)));
+  const AttenuationCode code = table.settings.code;
+  std::vector<double> depths;
+  for (const std::uint32_t darkest : codes)
+    depths.push_back(
+        decodeOpticalDepth(code, code == AttenuationCode::Linear8 ? 255 - int(darkest) : int(darkest)));
+  return depths;
 }
 
 }  // namespace freevoxels

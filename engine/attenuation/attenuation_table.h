@@ -15,10 +15,12 @@ namespace freevoxels {
 
 struct AttenuationTable {
   /// One byte a block and direction, of all levels (hierarchy_layout.h), of which AttenuationSweep fills the
-  /// voxels'; directions in the order of directions.h.
+  /// voxels'; then the blocks' bounds. Directions in the order of directions.h.
   std::vector<Buffer> planes;
   std::vector<QuadView> planeTexels;  ///< sixteen bytes of a plane a texel
   Buffer planeAddresses;  ///< the planes' device addresses by cellNumber, 0 where a cell is no direction
+  /// uint by direction, once the levels are made: the code of the most opaque voxel; of Linear8 255 minus it.
+  Buffer darkest;
   TableSettings settings;
 };
 
@@ -48,5 +50,12 @@ class AttenuationSweep {
 /// Bytes [direction][block] of one level, without padding.
 std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const HierarchyLayout& hierarchy,
                                                      const AttenuationTable& table, int level = 0);
+
+/// The same of the bounds of a level above the voxels: the codes of the most transparent voxel of each block.
+std::vector<std::vector<std::uint8_t>> downloadBounds(const Device& device, const HierarchyLayout& hierarchy,
+                                                      const AttenuationTable& table, int level);
+
+/// By direction, the optical depth of the voxel that has most before it. Of a table that has its levels.
+std::vector<double> downloadLargestDepths(const Device& device, const AttenuationTable& table);
 
 }  // namespace freevoxels

@@ -43,6 +43,11 @@ struct HierarchyLayout {
   std::uint64_t paddedBlocks() const;
   /// Of the levels above the voxels.
   std::uint64_t paddedCoarseBlocks() const { return paddedBlocks() - levels.front().paddedVoxels(); }
+  /// Bytes of a direction of the table: a code a block, then a bound a block above the voxels, which is that
+  /// of the block's most transparent voxel.
+  std::uint64_t planeBytes() const { return paddedBlocks() + paddedCoarseBlocks(); }
+  /// The bound of a block follows its code by this many blocks.
+  std::uint32_t boundsOffset() const { return std::uint32_t(paddedCoarseBlocks()); }
 
   /// Where a block is, here and in shaders/blocks.glsl and nowhere else.
   std::uint32_t indexOf(const Block& block) const;

@@ -13,6 +13,8 @@ struct LevelData {
   std::vector<double> extinction;                ///< per world unit
   std::vector<glm::dvec3> colors;                ///< empty where all are the albedo
   std::vector<std::vector<std::uint8_t>> table;  ///< bytes [direction][block]
+  /// The same of each block's most transparent voxel; empty for level 0.
+  std::vector<std::vector<std::uint8_t>> bounds;
 
   std::size_t at(glm::ivec3 cell) const {
     return std::size_t(cell.x) + std::size_t(dimensions.x) *

@@ -56,27 +56,35 @@ void MediumLevels::record(Commands& commands, const DeviceVolume& volume) const 
   }
 }
 
-TableLevels::TableLevels(const Device& device, const TableSettings& settings)
-    : pipeline_(makeComputePipeline(
-          device, {table_level_spv, "table level"},
-          {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-           .pushConstantBytes = sizeof(shader::TableLevelPush)},
-          {shader::kLevelThreads, 1, 1}, {std::uint32_t(settings.code), std::uint32_t(settings.filter)})) {}
+TableLevels::TableLevels(const Device& device, const TableSettings& settings) {
+  for (const std::uint32_t fromVoxels : {0u, 1u})
+    pipelines_[fromVoxels] = makeComputePipeline(
+        device, {table_level_spv, "table level"},
+        {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+         .pushConstantBytes = sizeof(shader::TableLevelPush)},
+        {shader::kLevelThreads, 1, 1},
+        {std::uint32_t(settings.code), std::uint32_t(settings.filter), fromVoxels});
+}
 
 void TableLevels::record(Commands& commands, const DeviceVolume& volume,
                          const AttenuationTable& table) const {
   const HierarchyLayout& hierarchy = volume.hierarchy;
   commands.beginPass(kPassName);
+  commands.clear(table.darkest);
   for (int level = 1; level <= hierarchy.top(); ++level) {
     const std::uint64_t blocks = hierarchy.levels[std::size_t(level)].paddedVoxels();
-    const shader::TableLevelPush push{.child = hierarchy.onDevice(level - 1),
-                                      .parent = hierarchy.onDevice(level),
-                                      .voxels = volume.layout.dimensions,
-                                      .childEdge = Block{.level = level - 1}.edge(),
-                                      .threadCount = std::uint32_t(blocks / shader::kLevelBlocksPerThread)};
+    shader::TableLevelPush push{.child = hierarchy.onDevice(level - 1),
+                                .parent = hierarchy.onDevice(level),
+                                .voxels = volume.layout.dimensions,
+                                .childEdge = Block{.level = level - 1}.edge(),
+                                .threadCount = std::uint32_t(blocks / shader::kLevelBlocksPerThread),
+                                .boundsOffset = hierarchy.boundsOffset()};
     for (std::size_t direction = 0; direction < table.planes.size(); ++direction) {
-      const std::array<Binding, 2> bindings{&table.planeTexels[direction], &table.planes[direction]};
-      commands.dispatchLinear(pipeline_, bindings, push, push.threadCount);
+      const std::array<Binding, 3> bindings{&table.planeTexels[direction], &table.planes[direction],
+                                            &table.darkest};
+      push.direction = std::uint32_t(direction);
+      commands.dispatchLinear(pipelines_[level == 1 ? 1 : 0], bindings, push, push.threadCount);
     }
     commands.barrier(kCompute, kCompute);
   }

@@ -32,14 +32,14 @@ class MediumLevels {
   std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
 };
 
-/// COMPUTE table_level.comp: the attenuation table; a dispatch a level and direction.
+/// COMPUTE table_level.comp: the attenuation table and its bounds; a dispatch a level and direction.
 class TableLevels {
  public:
   TableLevels(const Device& device, const TableSettings& settings);
   void record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const;
 
  private:
-  Pipeline pipeline_;
+  std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
 };
 
 /// Runs MediumLevels and lists the blocks; waits. The times are added to `times`.

@@ -123,6 +123,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   frame.setup = setupFrame(volume, table, camera, settings, rays, toPixel);
   frame.detail = detailRule(volume.hierarchy, rays, settings.size,
                             settings.composite == Composite::Sorted ? 0.0 : double(settings.lod));
+  frame.cull = cullRule(volume.layout.dimensions, rays, settings);
   frame.resolve = {.ray = rays.direction,
                    .rayX = rays.directionX,
                    .rayY = rays.directionY,

@@ -30,6 +30,11 @@ struct FrameSettings {
   /// Pixels that the edge of a block of voxels may be long to be drawn as one splat; 0: voxels only. Sorted
   /// pictures are of voxels, whatever this is.
   float lod = 1.0f;
+  /// Whether what is outside of the image, and what is hidden, is left out. Sorted pictures are of all
+  /// voxels, whatever this is.
+  bool culling = true;
+  float cullThreshold =
+      1.0f / 512.0f;   ///< transmittance to the eye below which a voxel is hidden; 0: none is
   bool depth = false;  ///< also make Image::depth
 };
 

@@ -129,32 +129,34 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
   const std::array<Binding, 9> setup{&frame_,
                                      &inputs.volume.transferPoints,
                                      inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
-                                     inputs.order ? inputs.order : &inputs.visible.indices,
+                                     inputs.order ? inputs.order : &inputs.visible->indices,
                                      &inputs.volume.scalars,
                                      &inputs.volume.extinction,
-                                     &inputs.visible.chunks,
+                                     &inputs.visible->chunks,
                                      &splats_,
                                      colors.bytes() > 0 ? &colors : &anyBuffer};
   const std::array<Binding, 1> draw{&splats_};
   const Pipeline& pipeline = frame.quads ? quads_ : points_;
   for (const RenderTarget* target : targets.all())
-    commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kOutput,
-                        kOutput);
+    commands.transition(*target, inputs.continued ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED,
+                        VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kOutput | kCompute, kOutput);
 
-  recordFrame(commands, inputs.volume, frame);
-  for (std::uint32_t chunk = 0; chunk < inputs.visible.chunkCount; ++chunk) {
+  if (!inputs.continued) recordFrame(commands, inputs.volume, frame);
+  const std::uint32_t endChunk = inputs.firstChunk + inputs.chunkCount;
+  for (std::uint32_t chunk = inputs.firstChunk; chunk < endChunk; ++chunk) {
     const VkDeviceSize arguments = chunk * sizeof(shader::ChunkArguments);
     commands.beginPass("splat set-up");
     commands.barrier(kDraw, kCompute);
-    commands.dispatchIndirect(setup_, setup, shader::SetupPush{chunk}, inputs.visible.chunks, arguments);
+    commands.dispatchIndirect(setup_, setup, shader::SetupPush{chunk}, inputs.visible->chunks, arguments);
     commands.beginPass("splat draw");
     commands.barrier(kCompute, kDraw);
-    beginRendering(commands, targets, frame,
-                   chunk == 0 ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD);
+    beginRendering(
+        commands, targets, frame,
+        chunk == 0 && !inputs.continued ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD);
     commands.bind(pipeline, draw, &frame.splat, sizeof(frame.splat));
     const std::size_t offset = frame.quads ? offsetof(shader::ChunkArguments, quadVertexCount)
                                            : offsetof(shader::ChunkArguments, vertexCount);
-    vkCmdDrawIndirect(commands.handle(), inputs.visible.chunks.handle(), arguments + offset, 1, 0);
+    vkCmdDrawIndirect(commands.handle(), inputs.visible->chunks.handle(), arguments + offset, 1, 0);
     vkCmdEndRendering(commands.handle());
     commands.barrier(kOutput, kOutput);
   }

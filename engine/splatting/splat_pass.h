@@ -7,6 +7,7 @@
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/attenuation/ray_sweep.h"
+#include "engine/hierarchy/cull_rule.h"
 #include "engine/hierarchy/detail_rule.h"
 #include "engine/splatting/camera.h"
 #include "engine/splatting/render_settings.h"
@@ -34,6 +35,9 @@ struct FrameConstants {
   shader::ResolvePush resolve;
   RaySource eye;
   DetailRule detail;
+  CullRule cull;
+  /// Whether the levels of the table above the voxels are looked up.
+  bool readsLevels() const { return detail.coarsest > 0 || cull.hiddenDepth > 0.0; }
   bool quads = false;  ///< some splat may be larger than the device's largest point
   float viewportMargin =
       0.0f;  ///< pixels around the image, so that points centred outside it are not clipped
@@ -56,8 +60,10 @@ class SplatPass {
 
   struct Inputs {
     const DeviceVolume& volume;
-    const AttenuationTable* table;  ///< null where FrameConstants::readsTable says no
-    const VisibleVoxels& visible;   ///< the blocks to draw, by FrameConstants::detail
+    const AttenuationTable* table;                 ///< null where FrameConstants::readsTable says no
+    const VisibleVoxels* visible;                  ///< the blocks to draw, by FrameConstants::detail
+    std::uint32_t firstChunk = 0, chunkCount = 0;  ///< of their chunks, these
+    bool continued = false;  ///< the targets, in layout GENERAL, have the sums of what was drawn before
     const Buffer* order = nullptr;  ///< the visible voxels as they are to be drawn; null: as they are listed
   };
   void record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,

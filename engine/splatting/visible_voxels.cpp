@@ -36,7 +36,7 @@ VisibleVoxels makeVisibleVoxels(const Device& device, const DeviceVolume& volume
   const std::uint64_t most = std::clamp<std::uint64_t>(volume.activeVoxels, 1, layout.voxels());
   result.chunkCount = std::uint32_t((most + shader::kSplatsPerChunk - 1) / shader::kSplatsPerChunk);
   result.groupOffsets =
-      Buffer(device, groupsFor(layout) * sizeof(std::uint32_t), MemoryUse::Device, "visible group offsets");
+      Buffer(device, (groupsFor(layout) + 1) * sizeof(std::uint32_t), MemoryUse::Device, "visible group offsets");
   result.indices = Buffer(device, most * sizeof(std::uint32_t), MemoryUse::Device, "visible voxels");
   result.chunks = Buffer(device, result.chunkCount * sizeof(shader::ChunkArguments), MemoryUse::Device,
                          "chunk arguments", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);

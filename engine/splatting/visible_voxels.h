@@ -10,7 +10,7 @@
 namespace freevoxels {
 
 struct VisibleVoxels {
-  Buffer groupOffsets;  ///< uint: counts, then offsets, of each workgroup's stretch of voxels
+  Buffer groupOffsets;  ///< uint: counts, then offsets, of each workgroup's stretch of voxels, and the total
   Buffer indices;       ///< uint: as of HierarchyLayout::indexOf, ascending
   Buffer chunks;        ///< shader::ChunkArguments of each draw chunk
   std::uint32_t chunkCount = 0;

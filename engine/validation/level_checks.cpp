@@ -89,7 +89,7 @@ Check checkCoverage(Renderer& renderer, const Volume& volume, std::span<const do
   std::mt19937 generator(5);
   Worst worst;
   for (int i = 0; i < kCameras; ++i) {
-    FrameSettings settings{.size = size, .attenuation = AttenuationLookup::Nearest};
+    FrameSettings settings{.size = size, .attenuation = AttenuationLookup::Nearest, .culling = false};
     const Camera camera = randomCamera(volume, generator);
     settings.lod = float(std::uniform_real_distribution<double>(0.5, 40.0)(generator));
     renderer.render(camera, settings);
@@ -115,18 +115,42 @@ Check checkCutPicture(Renderer& renderer, const ValidationScene& scene, const Le
       .atMost(kPictureTolerance, "cut: picture of several levels");
 }
 
+/// A bound is exactly the code of the most transparent child.
+void compareBounds(const LevelData& level, const LevelData& children, int number,
+                   const TableSettings& settings, Worst& worst) {
+  const bool largest = settings.code == AttenuationCode::Linear8;
+  const auto& codes = children.bounds.empty() ? children.table : children.bounds;
+  for (std::size_t direction = 0; direction < codes.size(); ++direction) {
+    std::vector<int> expected(level.bounds[direction].size(), largest ? 0 : 255);
+    const glm::ivec3 n = children.dimensions;
+    for (int z = 0; z < n.z; ++z)
+      for (int y = 0; y < n.y; ++y)
+        for (int x = 0; x < n.x; ++x) {
+          int& bound = expected[level.at(glm::ivec3(x, y, z) / 2)];
+          const int code = codes[direction][children.at({x, y, z})];
+          bound = largest ? std::max(bound, code) : std::min(bound, code);
+        }
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      worst.take(std::abs(level.bounds[direction][i] - expected[i]), [&] {
+        return fmt::format("level {}, block {}, {}", number, i,
+                           directionText(settings.directions, int(direction)));
+      });
+  }
+}
+
 }  // namespace
 
 std::vector<Check> compareLevels(const Volume& volume, const LevelData& voxels,
                                  std::span<const LevelData> levels, const TableSettings& settings,
                                  const char* name) {
-  Worst extinction, color, depth, table;
+  Worst extinction, color, depth, table, bounds;
   const double whole = opticalDepthOf(voxels, 0, volume.dimensions);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const int level = int(i) + 1;
     const LevelData reference = referenceParents(i == 0 ? voxels : levels[i - 1], level, volume, settings);
     compareMedium(levels[i], reference, level, extinction, color);
     compareTables(levels[i], reference, level, settings.directions, table);
+    compareBounds(levels[i], i == 0 ? voxels : levels[i - 1], level, settings, bounds);
     const double kept = opticalDepthOf(levels[i], level, volume.dimensions);
     depth.take(kept == whole ? 0.0 : std::abs(kept / whole - 1.0),
                [&] { return fmt::format("level {}", level); });
@@ -135,7 +159,8 @@ std::vector<Check> compareLevels(const Volume& volume, const LevelData& voxels,
           color.atMost(kColorTolerance, fmt::format("octree: colour, {}", name)),
           depth.atMost(kExtinctionTolerance, fmt::format("octree: optical depth of the whole, {}", name),
                        "relative"),
-          table.atMost(kCodeTolerance, fmt::format("octree: table, {}", name), "codes")};
+          table.atMost(kCodeTolerance, fmt::format("octree: table, {}", name), "codes"),
+          bounds.atMost(0.0, fmt::format("octree: bounds, {}", name), "codes")};
 }
 
 std::size_t coverageErrors(const Volume& volume, std::span<const double> extinction,

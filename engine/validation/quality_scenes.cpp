@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/error.h"
+
 namespace freevoxels {
 
 namespace {
@@ -60,6 +62,25 @@ TransferFunction cloud() {
                           {1.0f, {1.0f, 0.95f, 0.7f}}}};
 }
 
+/// Over the scalars 0 to 1.
+TransferFunction skin() {
+  TransferFunction function = bone();
+  function.opacity = Opacities{{0.0f, 0.0f}, {0.1f, 0.0f}, {0.12f, 1.0f}};
+  return function;
+}
+
+TransferFunction colored(QualityColor color) {
+  switch (color) {
+    case QualityColor::Bone:
+      return bone();
+    case QualityColor::Cloud:
+      return cloud();
+    case QualityColor::Skin:
+      return skin();
+  }
+  throw InternalError("no such colour");
+}
+
 void stretch(TransferFunction& function, float low, float high) {
   for (auto& point : function.opacity) point.scalar = low + point.scalar * (high - low);
   for (auto& point : function.color) point.scalar = low + point.scalar * (high - low);
@@ -68,7 +89,7 @@ void stretch(TransferFunction& function, float low, float high) {
 }  // namespace
 
 TransferFunction qualityTransferFunction(QualityColor color, const Volume& volume) {
-  TransferFunction function = color == QualityColor::Bone ? bone() : cloud();
+  TransferFunction function = colored(color);
   if (color == QualityColor::Cloud) stretch(function, volume.minimum, volume.maximum);
   function.unitDistance = volume.voxelSize();
   return function;

@@ -14,6 +14,7 @@ namespace freevoxels {
 enum class QualityColor {
   Bone,   ///< apps/transfer_functions/bone.json
   Cloud,  ///< apps/transfer_functions/cloud.json
+  Skin,   ///< opaque within one or two voxels, from the head's skin inwards
 };
 TransferFunction qualityTransferFunction(QualityColor color, const Volume& volume);
 

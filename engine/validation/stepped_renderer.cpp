@@ -19,6 +19,7 @@ std::vector<shader::ChunkArguments> chunkArguments(std::size_t count, std::uint3
                          .groupsY = 1,
                          .groupsZ = 1,
                          .splatCount = splats,
+                         .firstSplat = chunk * shader::kSplatsPerChunk,
                          .vertexCount = splats,
                          .instanceCount = 1,
                          .quadVertexCount = 4,
@@ -59,7 +60,12 @@ std::vector<SplatSums> drawVoxels(const Device& device, const SteppedVolume& ste
   const SplatTargets targets = makeTargets(device, settings);
   SplatPass splats(device, settings.depth);
   Commands commands(device);
-  splats.record(commands, {steps.volume, &steps.table, steps.visible}, frame, targets);
+  splats.record(commands,
+                {.volume = steps.volume,
+                 .table = &steps.table,
+                 .visible = &steps.visible,
+                 .chunkCount = steps.visible.chunkCount},
+                frame, targets);
   const SumsReadback sums(device, commands, targets);
   commands.submitAndWait();
   return sums.read(frame);

@@ -59,6 +59,11 @@ class Commands {
     vkCmdUpdateBuffer(buffer_, buffer.handle(), 0, sizeof(Value), &value);
     barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   }
+  /// The whole buffer, of 4-byte words, before what is recorded next.
+  void clear(const Buffer& buffer) {
+    vkCmdFillBuffer(buffer_, buffer.handle(), 0, VK_WHOLE_SIZE, 0);
+    barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+  }
   void copy(const Buffer& from, const Buffer& to, VkBufferCopy region);
   /// From layout GENERAL; leaves the target in TRANSFER_SRC_OPTIMAL.
   void copy(const RenderTarget& from, const Buffer& to);

@@ -120,13 +120,14 @@ TEST_F(RenderCommand, DefaultsAreWhatTheHelpSays) {
   EXPECT_NE(standard, render("--no-path-length-correction"));
 }
 
-TEST_F(RenderCommand, PaperIsSevenOptionsAndYieldsToEach) {
-  const std::string seven =
+TEST_F(RenderCommand, PaperIsEightOptionsAndYieldsToEach) {
+  const std::string eight =
       "--composite additive --attenuation nearest --directions 26 --code linear8 --no-path-length-correction "
-      "--no-gradient --lod 0";
-  EXPECT_EQ(render("--paper"), render(seven));
-  EXPECT_EQ(render("--paper --composite normalised"), render(seven.substr(seven.find("--attenuation"))));
+      "--no-gradient --lod 0 --no-culling";
+  EXPECT_EQ(render("--paper"), render(eight));
+  EXPECT_EQ(render("--paper --composite normalised"), render(eight.substr(eight.find("--attenuation"))));
   EXPECT_EQ(exrAttribute(render("--paper --lod 2.5"), "freevoxels:lod"), "2.5");
+  EXPECT_EQ(exrAttribute(render("--paper --culling"), "freevoxels:culling"), "yes");
   EXPECT_EQ(exrAttribute(render("--paper --directions 98"), "freevoxels:directions"), "98");
   EXPECT_EQ(exrAttribute(render("--paper --path-length-correction"), "freevoxels:path-length-correction"),
             "yes");
@@ -152,7 +153,7 @@ TEST_F(RenderCommand, LevelOfDetailDrawsFewerBlocks) {
   const auto drawn = [&](const std::string& options) {
     render(options + " --timings " + (folder / "t.json").string());
     std::ifstream file(folder / "t.json");
-    return nlohmann::json::parse(file).at("drawn_blocks").get<std::vector<std::uint64_t>>();
+    return nlohmann::json::parse(file).at("blocks").at("drawn").get<std::vector<std::uint64_t>>();
   };
   const auto voxels = drawn("--lod 0"), blocks = drawn("--lod 64");
   EXPECT_EQ(voxels.size(), 1u);

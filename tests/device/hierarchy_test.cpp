@@ -42,6 +42,7 @@ class HierarchyTest : public DeviceTest {
   void expectReferencePicture(const Volume& volume, const Classification& classification,
                               const Camera& camera, FrameSettings settings, const TableSettings& table = {}) {
     settings.depth = true;
+    settings.culling = false;
     Renderer renderer(device(), volume, classification, table);
     const Image picture = renderer.render(camera, settings);
     const std::vector<Block> drawn = renderer.downloadDrawnBlocks();
@@ -72,7 +73,7 @@ TEST_F(HierarchyTest, AVolumeOfOneVoxelHasNoLevels) {
   Renderer renderer(device(), volume, {}, {});
   EXPECT_TRUE(renderer.downloadLevels().empty());
   renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {1, 1}, .lod = 100.0f});
-  EXPECT_EQ(renderer.drawnCounts(), std::vector<std::uint64_t>{1});
+  EXPECT_EQ(renderer.cutCounts().drawn, std::vector<std::uint64_t>{1});
 }
 
 /// The mean of the depths of a block's voxels in a homogeneous box, which the codes hold to rounding.
@@ -126,7 +127,7 @@ TEST_F(HierarchyTest, BlocksSendWhatTheirVoxelsDo) {
         for (const SplatSums& pixel : renderer.renderSums(camera, settings))
           sums += glm::dvec2(pixel.depth, pixel.energy);
         if (level == 0) finest = sums;
-        EXPECT_EQ(renderer.drawnCounts().size(), std::size_t(level) + 1);
+        EXPECT_EQ(renderer.cutCounts().drawn.size(), std::size_t(level) + 1);
         EXPECT_NEAR(sums.x / finest.x, 1.0, 1e-3) << "level " << level;
         if (volume == &uniform) {
           EXPECT_NEAR(sums.y / finest.y, 1.0, tolerance)
@@ -148,7 +149,8 @@ TEST_F(HierarchyTest, EveryVoxelIsDrawnOnceFromAnywhere) {
                   .lookAt = {0.2, -0.1, 0.3},
                   .verticalFov = 60.0 + 50.0 * uniform(generator)};
     camera.orthographic = i % 10 == 9;
-    const FrameSettings settings{.size = {24, 16}, .lod = float(std::exp(3.0 * uniform(generator)))};
+    const FrameSettings settings{
+        .size = {24, 16}, .lod = float(std::exp(3.0 * uniform(generator))), .culling = false};
     renderer.render(camera, settings);
     const std::vector<Block> drawn = renderer.downloadDrawnBlocks();
     ASSERT_EQ(coverageErrors(volume, extinction, drawn), 0u) << "camera " << i;
@@ -204,11 +206,12 @@ TEST_F(HierarchyTest, VoxelsAreDrawnWhereTheyAreLargeOrSorted) {
   const Volume volume = randomVolume(kOdd, cubeTransform(kOdd), 0.6, 9.0);
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
   Renderer renderer(device(), volume, {}, {});
-  for (const FrameSettings& settings :
+  for (FrameSettings settings :
        {FrameSettings{.size = {16, 16}, .lod = 0.0f}, FrameSettings{.size = {200, 200}},
         FrameSettings{.size = {16, 16}, .composite = Composite::Sorted, .lod = 9.0f}}) {
+    settings.culling = false;
     renderer.render(camera, settings);
-    EXPECT_EQ(renderer.drawnCounts(), std::vector{renderer.visibleVoxelCount()});
+    EXPECT_EQ(renderer.cutCounts().drawn, std::vector{renderer.visibleVoxelCount()});
     for (const StageTime& stage : renderer.timings()) EXPECT_NE(stage.name, "octree levels");
   }
 }

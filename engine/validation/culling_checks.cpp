@@ -1,0 +1,108 @@
+#include "engine/validation/culling_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <vector>
+
+#include "engine/image/metrics.h"
+#include "engine/renderer.h"
+#include "engine/validation/worst.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr float kAmplification = 20.0f;
+
+struct View {
+  std::string name;
+  Camera camera;
+};
+
+std::vector<View> viewsOf(const Volume& volume) {
+  std::vector<View> views;
+  for (const QualityView& view : quickQualityViews())
+    views.push_back({viewText(view), viewCamera(volume, view)});
+  views.push_back({"orthographic", framingCamera(volume, 200.0, 10.0, 1.0, {.orthographic = true})});
+  View part{"a small part", viewCamera(volume, {})};
+  part.camera.verticalFov /= 8.0;
+  views.push_back(part);
+  View inside{"from inside", viewCamera(volume, {.azimuth = 110.0, .elevation = -35.0})};
+  inside.camera.position = inside.camera.lookAt + 0.1 * (inside.camera.position - inside.camera.lookAt);
+  views.push_back(inside);
+  return views;
+}
+
+std::vector<std::string> countsRow(const std::string& name, const CutCounts& counts, std::uint64_t voxels) {
+  const std::uint64_t drawn = std::accumulate(counts.drawn.begin(), counts.drawn.end(), std::uint64_t(0));
+  std::vector<std::string> row{name};
+  for (const std::uint64_t count :
+       {counts.considered, counts.empty, counts.outside, counts.hidden, counts.opened, drawn})
+    row.push_back(fmt::format("{}", count));
+  row.push_back(fmt::format("{:.1f} %", 100.0 * double(drawn) / double(voxels)));
+  return row;
+}
+
+Image amplifiedDifference(const Image& a, const Image& b) {
+  Image difference = a;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    const glm::vec3 apart = kAmplification * glm::abs(glm::vec3(a.pixels[i] - b.pixels[i]));
+    difference.pixels[i] = glm::vec4(apart, 1.0f);
+  }
+  return difference;
+}
+
+}  // namespace
+
+ReportSection cullingChecks(const Device& device, const QualityScene& scene, int pictureEdge) {
+  ReportSection section{
+      .title = fmt::format("Culling: {}", scene.name),
+      .text = "Pictures without what is outside of them or hidden, against pictures of everything."};
+  Renderer renderer(device, scene.volume, scene.classification, {});
+  const FrameSettings culled{.size = glm::ivec2(pictureEdge), .lod = 0.0f};
+  FrameSettings whole = culled, clipped = culled;
+  whole.culling = false;
+  clipped.cullThreshold = 0.0f;
+  ReportTable table{
+      .caption = "Blocks of all levels",
+      .columns = {"view", "considered", "empty", "outside", "hidden", "opened", "drawn", "of all voxels"},
+      .rows = {}};
+  Worst worst, worstClipped;
+  double leastPsnr = 1e9;
+  std::string leastAt;
+  for (const View& view : viewsOf(scene.volume)) {
+    const Image expected = renderer.render(view.camera, whole);
+    const Image inImage = renderer.render(view.camera, clipped);
+    worstClipped.take(largestDifference(inImage, expected).figure(), [&] { return view.name; });
+    const Image picture = renderer.render(view.camera, culled);
+    table.rows.push_back(countsRow(view.name, renderer.cutCounts(), renderer.visibleVoxelCount()));
+    const double psnr = std::min(compareImages(picture, expected).psnr, 200.0);
+    if (psnr < leastPsnr) {
+      leastPsnr = psnr;
+      leastAt = view.name;
+    }
+    worst.take(largestDifference(picture, expected).figure(), [&] {
+      section.pictures = {{.caption = fmt::format("Where they differ most: {}", view.name),
+                           .pictures = {{"everything", expected},
+                                        {"culled", picture},
+                                        {fmt::format("difference times {:g}", kAmplification),
+                                         amplifiedDifference(picture, expected)}}}};
+      return view.name;
+    });
+  }
+  section.checks = {
+      worst.atMost(kCullingDifference, "culled against everything: largest difference"),
+      {.name = "culled against everything",
+       .figure = leastPsnr,
+       .bound = Check::Bound::AtLeast,
+       .tolerance = kCullingPsnr,
+       .unit = "dB",
+       .where = leastAt},
+      worstClipped.atMost(kFrustumDifference, "without what is outside of the image: largest difference")};
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,30 @@
+// Whether a block is behind what is drawn already. Include after interface.h; `frame` is the CutFrame, `tiles` are as
+// tile_cover.comp made them.
+
+const int kMostTiles = 8;  // along an axis: a larger block is looked at in parts
+
+// Whether all pixels are covered that anything in the block reaches; `center` is relative to the volume's middle.
+bool isCovered(vec3 center, int edge) {
+  // What is drawn in the block is no larger than the frame's coarsest, and centred between its voxels' centres.
+  const float reach = 0.5 * float(edge - 1) + kSplatRadius * float(min(edge, 1 << frame.coarsest));
+  const vec3 projected = frame.indexToPixel * center + frame.middleInPixels;
+  const mat3 rows = transpose(frame.indexToPixel);
+  vec2 pixel = projected.xy;
+  vec2 steepest = vec2(dot(abs(rows[0]), vec3(1.0)), dot(abs(rows[1]), vec3(1.0)));
+  if (frame.orthographic == 0) {
+    const float nearest = projected.z - reach * dot(abs(rows[2]), vec3(1.0));
+    if (nearest <= 0.0) return false;
+    pixel /= projected.z;
+    steepest = vec2(dot(abs(rows[0] - pixel.x * rows[2]), vec3(1.0)), dot(abs(rows[1] - pixel.y * rows[2]), vec3(1.0))) /
+               nearest;
+  }
+  // A widened footprint reaches this much further, and rounding less than the rest.
+  const vec2 half_ = reach * steepest + kSplatRadius + 0.5;
+  const ivec2 first = ivec2(clamp(floor((pixel - half_) / float(kCoverTile)), vec2(0.0), vec2(frame.tiles)));
+  const ivec2 end = ivec2(clamp(floor((pixel + half_) / float(kCoverTile)) + 1.0, vec2(0.0), vec2(frame.tiles)));
+  if (any(greaterThan(end - first, ivec2(kMostTiles)))) return false;
+  for (int y = first.y; y < end.y; ++y)
+    for (int x = first.x; x < end.x; ++x)
+      if (tiles[y * frame.tiles.x + x] == 0) return false;
+  return true;
+}

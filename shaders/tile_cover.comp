@@ -1,0 +1,41 @@
+#version 460
+// Between the two drawings of a frame: a thread says of its tile of pixels whether all of them are covered, so that
+// nothing behind what is drawn changes the picture by more than the threshold.
+//
+// Opacity: the optical depth of what is drawn leaves less than that. Colours are divided by E, and what the table
+// calls hidden sends less than the threshold: where E is not much less than 1 either, the mix stays as it is. Where it
+// is, every voxel on the pixel's ray is dark in the table, which has no direction through the opening that the pixel
+// looks through: all of them count.
+#extension GL_GOOGLE_include_directive : require
+#include "interface.h"
+
+const float kLeastEnergy = 0.25;
+
+layout(local_size_x = kCoverThreads) in;
+layout(scalar, push_constant) uniform Push { TilePush push; };
+layout(scalar, binding = 0) readonly buffer Counts { CutCounts counts; };
+layout(scalar, binding = 1) writeonly buffer Tiles { uint tiles[]; };
+layout(binding = 2, rgba32f) readonly uniform image2D colorEnergy;
+layout(binding = 3, r32f) readonly uniform image2D opticalDepth;
+
+bool isCoveredPixel(ivec2 pixel) {
+  const vec2 position = vec2(pixel) + 0.5;
+  const vec3 ray = push.rays.ray + position.x * push.rays.rayX + position.y * push.rays.rayY;
+  const vec3 worldRay = push.rays.worldRay + position.x * push.rays.worldRayX + position.y * push.rays.worldRayY;
+  const float worldPerIndex = length(worldRay) / length(ray);
+  return imageLoad(opticalDepth, pixel).r * worldPerIndex >= push.hiddenDepth &&
+         imageLoad(colorEnergy, pixel).a * worldPerIndex >= kLeastEnergy;
+}
+
+void main() {
+  if (counts.deferred == 0) return;
+  const uint tile = gl_GlobalInvocationID.x;
+  if (tile >= push.tiles.x * push.tiles.y) return;
+  const ivec2 first = kCoverTile * ivec2(tile % push.tiles.x, tile / push.tiles.x);
+  const ivec2 end = min(first + kCoverTile, push.rays.size);
+  // Most of the open ones are so from their first pixel on.
+  bool covered = true;
+  for (int y = first.y; y < end.y && covered; ++y)
+    for (int x = first.x; x < end.x && covered; ++x) covered = isCoveredPixel(ivec2(x, y));
+  tiles[tile] = covered ? 1 : 0;
+}
