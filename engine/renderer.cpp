@@ -18,67 +18,12 @@
 
 namespace freevoxels {
 
-namespace {
-
-/// Bytes of the largest buffer of voxels that the passes can bind.
-std::uint64_t largestBinding(const Device& device) {
-  const std::uint64_t texels = std::uint64_t(device.limits().maxTexelBufferElements) * sizeof(glm::vec4);
-  return std::min({std::uint64_t(device.limits().maxStorageBufferRange), texels,
-                   std::uint64_t(device.maximumAllocation())});
-}
-
-void checkFits(const Device& device, glm::ivec3 dimensions, DirectionSet directions) {
-  const std::uint64_t binding = volumeMemory(dimensions, directions).extinction;
-  if (binding > largestBinding(device))
-    fail(ExitCode::OutOfMemory,
-         "a volume of {}x{}x{} voxels needs a buffer of {} MiB and {} binds at most {} MiB: crop or resample "
-         "the volume",
-         dimensions.x, dimensions.y, dimensions.z, binding >> 20, device.description().name,
-         largestBinding(device) >> 20);
-  const std::uint64_t total = volumeMemory(dimensions, directions).total();
-  if (total > device.description().memoryBytes)
-    fail(ExitCode::OutOfMemory,
-         "a volume of {}x{}x{} voxels with {} directions needs {} MiB of device memory and {} has {} MiB: "
-         "crop "
-         "or resample the volume{}",
-         dimensions.x, dimensions.y, dimensions.z, directionCount(directions), total >> 20,
-         device.description().name, device.description().memoryBytes >> 20,
-         directions == DirectionSet::Directions26 ? "" : ", or take 26 directions");
-}
-
-}  // namespace
-
-VolumeMemory volumeMemory(glm::ivec3 dimensions, DirectionSet directions) {
-  const HierarchyLayout hierarchy(dimensions);
-  const std::uint64_t voxels = hierarchy.levels.front().paddedVoxels(), blocks = hierarchy.paddedBlocks();
-  // A list of all blocks and one of those of a frame, with a bit for each that could be one and two bytes for
-  // each that has children.
-  const std::uint64_t lists =
-      (blocks + voxels) * sizeof(std::uint32_t) + blocks / 8 + 2 * hierarchy.paddedCoarseBlocks();
-  return {.scalars = voxels * sizeof(float),
-          .extinction = blocks * sizeof(float),
-          .table = hierarchy.planeBytes() * std::uint64_t(directionCount(directions)),
-          .blockColors = hierarchy.paddedCoarseBlocks() * sizeof(glm::uvec2),
-          .lists = lists};
-}
-
-std::uint64_t maximumVoxels(const Device& device, DirectionSet directions) {
-  const glm::ivec3 cube(1024);  // has the fewest blocks a voxel
-  const auto voxels = double(GridLayout(cube).voxels());
-  const VolumeMemory memory = volumeMemory(cube, directions);
-  return std::uint64_t(
-      std::min(double(largestBinding(device)) * (voxels / double(memory.extinction)),
-               double(device.description().memoryBytes) * (voxels / double(memory.total()))));
-}
-
 struct Renderer::State {
   const Device& device;
   TableSettings tableSettings;
-  DeviceVolume volume;
+  BuiltVolume built;
   std::optional<AttenuationTable> table;
   std::vector<double> largestDepths;  ///< of the table, by direction; empty: it has no levels yet
-  VisibleVoxels visible;
-  std::optional<LevelLists> levels;
   std::optional<CutPass> cutter;
   const VisibleVoxels* lastDrawn = nullptr;
   bool lastWasCut = false;  ///< lastDrawn is `cutter`'s
@@ -94,7 +39,6 @@ struct Renderer::State {
   };
   const AttenuationTable& sweptTable(const Progress& progress = {});
   const AttenuationTable& tableWithLevels(const Progress& progress = {});
-  const LevelLists& blockLists();
   void recordDrawing(Commands& commands, const Frame& frame, const AttenuationTable* read,
                      const Buffer* order);
   Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
@@ -104,10 +48,10 @@ struct Renderer::State {
 /// Made when a frame reads it first; its time is that frame's.
 const AttenuationTable& Renderer::State::sweptTable(const Progress& progress) {
   if (table) return *table;
-  AttenuationTable made = makeTable(device, volume.hierarchy, tableSettings);
-  const AttenuationSweep sweep(device, tableSettings);
+  AttenuationTable made = makeTable(device, built.volume, tableSettings);
+  AttenuationSweep sweep(device, tableSettings);
   Commands commands(device);
-  sweep.record(commands, volume, made);
+  sweep.record(commands, built.volume, made);
   commands.submitAndWait(progress);
   std::ranges::copy(commands.times(), std::back_inserter(frameTimes));
   return table.emplace(std::move(made));
@@ -119,16 +63,11 @@ const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progres
   if (!largestDepths.empty()) return swept;
   const TableLevels pass(device, tableSettings);
   Commands commands(device);
-  pass.record(commands, volume, swept);
+  pass.record(commands, built.volume, built.lists.coarse, swept);
   commands.submitAndWait(progress);
   std::ranges::copy(commands.times(), std::back_inserter(frameTimes));
   largestDepths = downloadLargestDepths(device, swept);
   return swept;
-}
-
-const LevelLists& Renderer::State::blockLists() {
-  if (!levels) levels = makeMediumLevels(device, volume, visible, frameTimes);
-  return *levels;
 }
 
 /// The splats of a frame. What the table calls hidden comes after the rest, where it is not covered.
@@ -137,18 +76,18 @@ void Renderer::State::recordDrawing(Commands& commands, const Frame& frame, cons
   const FrameConstants& constants = frame.constants;
   lastWasCut = !constants.detail.isOneLevel() || !constants.cull.leavesNothingOut();
   lastLevel = constants.detail.finest;
-  SplatPass::Inputs drawing{.volume = volume, .table = read, .order = order};
+  SplatPass::Inputs drawing{.volume = built.volume, .table = read, .order = order};
   if (!lastWasCut) {
-    lastDrawn = lastLevel == 0 ? &visible : &blockLists().of(lastLevel, visible);
+    lastDrawn = &built.lists.of(lastLevel, built.visible);
     drawing.visible = lastDrawn;
     drawing.chunkCount = lastDrawn->chunkCount;
     splats->record(commands, drawing, constants, frame.targets);
     return;
   }
   if (!cutter) cutter.emplace(device, tableSettings.code);
-  const CutInputs inputs{.volume = volume,
-                         .voxels = visible,
-                         .lists = blockLists(),
+  const CutInputs inputs{.volume = built.volume,
+                         .voxels = built.visible,
+                         .lists = built.lists,
                          .table = read,
                          .setup = constants.setup,
                          .rays = constants.resolve,
@@ -175,16 +114,16 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
     splats = std::make_unique<SplatPass>(device, settings.depth, sorted);
     resolve = std::make_unique<ResolvePass>(device, settings.depth);
   }
-  if (sorted && !sort) sort = std::make_unique<DepthSort>(device, volume);
-  Frame frame{.constants = makeFrameConstants(device, volume, tableSettings, camera, settings),
+  if (sorted && !sort) sort = std::make_unique<DepthSort>(device, built.volume);
+  Frame frame{.constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings),
               .targets = makeTargets(device, settings)};
-  if (sorted) sort->record(commands, volume, visible, camera);
+  if (sorted) sort->record(commands, built.volume, built.visible, camera);
   const AttenuationTable* read = nullptr;
   if (frame.constants.readsTable())
     read = frame.constants.readsLevels() ? &tableWithLevels(progress) : &sweptTable(progress);
   CullRule& cull = frame.constants.cull;
   if (cull.hiddenDepth > 0.0 &&
-      !canHide(tableSettings, largestDepths, glm::dmat3(volume.indexToWorld), cull.hiddenDepth))
+      !canHide(tableSettings, largestDepths, glm::dmat3(built.volume.indexToWorld), cull.hiddenDepth))
     cull.hiddenDepth = 0.0;
   recordDrawing(commands, frame, read, sorted ? &sort->voxels() : nullptr);
   return frame;
@@ -192,20 +131,8 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
 
 Renderer::Renderer(const Device& device, const Volume& volume, const Classification& classification,
                    const TableSettings& table, const Progress& progress) {
-  checkFits(device, volume.dimensions, table.directions);
   state_ = std::make_unique<State>(State{.device = device, .tableSettings = table});
-  {
-    const StageTimer timer(state_->buildTimes, "upload");
-    state_->volume = uploadVolume(device, volume, classification);
-    state_->visible = makeVisibleVoxels(device, state_->volume);
-  }
-  const ClassifyPass classify(device);
-  const CompactionPass compaction(device);
-  Commands commands(device);
-  classify.record(commands, state_->volume, classification);
-  compaction.record(commands, state_->volume, state_->visible);
-  commands.submitAndWait(progress);
-  std::ranges::copy(commands.times(), std::back_inserter(state_->buildTimes));
+  state_->built = buildVolume(device, volume, classification, state_->buildTimes, progress);
 }
 
 Renderer::~Renderer() = default;
@@ -247,6 +174,11 @@ std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSet
   return sums.read(frame.constants);
 }
 
+VolumeMemory Renderer::memory() const {
+  const DeviceVolume& volume = state_->built.volume;
+  return volumeMemory(volume.hierarchy, volume.stored, state_->tableSettings.directions, volume.hasColors());
+}
+
 std::vector<StageTime> Renderer::timings() const {
   std::vector<StageTime> times = state_->buildTimes;
   std::ranges::copy(state_->frameTimes, std::back_inserter(times));
@@ -254,23 +186,21 @@ std::vector<StageTime> Renderer::timings() const {
 }
 
 std::uint64_t Renderer::visibleVoxelCount() const {
-  return downloadVisibleCount(state_->device, state_->visible);
+  return state_->built.volume.stored.front();
 }
 
 std::vector<float> Renderer::downloadExtinction() const {
-  const GridLayout& layout = state_->volume.layout;
-  std::vector<float> padded(layout.paddedVoxels());
-  download(state_->device, state_->volume.extinction, std::as_writable_bytes(std::span(padded)));
-  return layout.withoutPadding(padded);
+  const LevelData voxels = downloadMedium(state_->device, state_->built.volume, 0);
+  return {voxels.extinction.begin(), voxels.extinction.end()};
 }
 
 std::vector<std::vector<std::uint8_t>> Renderer::downloadTable() const {
-  return freevoxels::downloadTable(state_->device, state_->volume.hierarchy, state_->sweptTable());
+  return freevoxels::downloadTable(state_->device, state_->built.volume, state_->sweptTable());
 }
 
 RayCodes Renderer::downloadRays(const Camera& camera) const {
   RaySweep sweep(state_->device);
-  return sweep.sweep(state_->volume, eyeSource(camera, state_->volume.indexToWorld));
+  return sweep.sweep(state_->built.volume, eyeSource(camera, state_->built.volume.indexToWorld));
 }
 
 CutCounts Renderer::cutCounts() const {
@@ -286,26 +216,26 @@ std::vector<Block> Renderer::downloadDrawnBlocks() const {
   std::vector<Block> blocks;
   if (state_->lastDrawn == nullptr) return blocks;
   for (const std::uint32_t index : freevoxels::downloadVisibleVoxels(state_->device, *state_->lastDrawn))
-    blocks.push_back(state_->volume.hierarchy.blockAt(index));
+    blocks.push_back(state_->built.volume.hierarchy.blockAt(index));
   return blocks;
 }
 
 std::vector<LevelData> Renderer::downloadLevels() const {
   const AttenuationTable& table = state_->tableWithLevels();
-  state_->blockLists();
   std::vector<LevelData> levels;
-  for (int level = 1; level <= state_->volume.hierarchy.top(); ++level) {
-    LevelData data = downloadMedium(state_->device, state_->volume, level);
-    data.table = freevoxels::downloadTable(state_->device, state_->volume.hierarchy, table, level);
-    data.bounds = downloadBounds(state_->device, state_->volume.hierarchy, table, level);
+  for (int level = 1; level <= state_->built.volume.hierarchy.top(); ++level) {
+    LevelData data = downloadMedium(state_->device, state_->built.volume, level);
+    data.table = freevoxels::downloadTable(state_->device, state_->built.volume, table, level);
+    data.bounds = downloadBounds(state_->device, state_->built.volume, table, level);
     levels.push_back(std::move(data));
   }
   return levels;
 }
 
 std::vector<std::uint32_t> Renderer::downloadVisibleVoxels() const {
-  std::vector<std::uint32_t> voxels = freevoxels::downloadVisibleVoxels(state_->device, state_->visible);
-  for (std::uint32_t& voxel : voxels) voxel = state_->volume.layout.unpaddedIndex(voxel);
+  std::vector<std::uint32_t> voxels =
+      freevoxels::downloadVisibleVoxels(state_->device, state_->built.visible);
+  for (std::uint32_t& voxel : voxels) voxel = state_->built.volume.layout.unpaddedIndex(voxel);
   return voxels;
 }
 

@@ -10,6 +10,7 @@
 #include "engine/hierarchy/cut_pass.h"
 #include "engine/hierarchy/hierarchy_layout.h"
 #include "engine/hierarchy/level_data.h"
+#include "engine/hierarchy/volume_memory.h"
 #include "engine/image/image.h"
 #include "engine/splatting/camera.h"
 #include "engine/splatting/render_settings.h"
@@ -20,28 +21,15 @@
 
 namespace freevoxels {
 
-/// Device memory for a volume of these dimensions with a table of these directions, in bytes: of all levels
-/// of the octree, with as many blocks to draw as there can be.
-struct VolumeMemory {
-  std::uint64_t scalars = 0, extinction = 0, table = 0;
-  std::uint64_t blockColors = 0;  ///< only with a transfer function
-  std::uint64_t lists = 0;        ///< of visible voxels and blocks, and of those of a frame
-  std::uint64_t total() const { return scalars + extinction + table + blockColors + lists; }
-};
-VolumeMemory volumeMemory(glm::ivec3 dimensions, DirectionSet directions);
-
-/// How many voxels a volume may have to be rendered on this device at all with a table of these directions
-/// (rows are padded: see volumeMemory).
-std::uint64_t maximumVoxels(const Device& device, DirectionSet directions);
-
 /// Fails with ExitCode::OutOfMemory where this device cannot hold such a frame: before any other work.
 void checkFrameFits(const Device& device, const FrameSettings& settings);
 
 class Renderer {
  public:
   /// Uploads the volume and makes what every frame needs: extinction and the list of visible voxels. The
-  /// attenuation table is made for the first frame that reads it, the octree for the first that may draw its
-  /// blocks. Fails with ExitCode::OutOfMemory, before allocating, where the device's limits are too small.
+  /// attenuation table is made for the first frame that reads it, its levels for the first that may draw
+  /// blocks or leave some out. Fails with ExitCode::OutOfMemory, before allocating, where the device's limits
+  /// are too small.
   Renderer(const Device& device, const Volume& volume, const Classification& classification,
            const TableSettings& table, const Progress& progress = {});
   ~Renderer();
@@ -52,6 +40,8 @@ class Renderer {
   /// the parts of a volume add up to those of the whole; so nothing is left out as hidden.
   std::vector<SplatSums> renderSums(const Camera& camera, const FrameSettings& settings);
 
+  /// With the table, whether or not a frame has read it.
+  VolumeMemory memory() const;
   /// Of the constructor and of the last frame, in order.
   std::vector<StageTime> timings() const;
   /// How many voxels hold anything.

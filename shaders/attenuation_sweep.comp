@@ -19,7 +19,7 @@ void main() {
   if (side >= push.lastLine) return;
 
   restartLines();
-  int window = thread % bundles * kWords;  // first quad of voxels that this thread writes
+  int window = thread % bundles * kWindowQuads;  // first quad of voxels that this thread writes
 
   for (int plane = 0; plane < push.marchCount; plane += kPhases) {
     [[unroll]] for (int phase = 0; phase < kPhases; ++phase) {

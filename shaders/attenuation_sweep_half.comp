@@ -54,7 +54,7 @@ void main() {
   if (family >= abs(push.marchStep)) return;
 
   restartLines();
-  int window = thread % bundles * kWords;  // first quad of voxels that this thread writes
+  int window = thread % bundles * kWindowQuads;  // first quad of voxels that this thread writes
   int side = line - family * push.sideCount;
   int plane = push.marchStep > 0 ? family : push.marchCount - 1 - family;
 

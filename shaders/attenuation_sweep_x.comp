@@ -10,7 +10,7 @@ layout(constant_id = 1) const int kStepX = 1;  // of the march: 1 or -1
 layout(local_size_x = kSweepThreads) in;
 layout(scalar, push_constant) uniform Push { SweepPush push; };
 layout(binding = 0) uniform textureBuffer extinction;
-layout(scalar, binding = 1) writeonly buffer Plane { uint words[]; };
+#include "stored_codes.glsl"
 
 void main() {
   const int row = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kSweepThreads);
@@ -20,12 +20,12 @@ void main() {
   for (int i = 0; i < quads; ++i) {
     const int quad = row * quads + (kStepX > 0 ? i : quads - 1 - i);
     const vec4 sigma = texelFetch(extinction, quad);
-    uint word = 0;
+    vec4 depths;
     [[unroll]] for (int i4 = 0; i4 < 4; ++i4) {
       const int c = kStepX > 0 ? i4 : 3 - i4;
-      word |= encodeDepth(kCode, depth) << (8 * c);
+      depths[c] = depth;
       depth += sigma[c] * push.stepLength;
     }
-    words[quad] = word;
+    storeCodes(quad, depths);
   }
 }

@@ -1,4 +1,4 @@
-// A drawn block. Include after blocks.glsl; `frame` is the SetupFrame, `extinction` that of all blocks.
+// A drawn block. Include after stored_block.glsl; `frame` is the SetupFrame.
 
 struct Block {
   int level;
@@ -28,7 +28,7 @@ Block blockAt(uint address) {
 vec3 centerOfMass(Block block) {
   if (block.level == 0) return block.center;
   const BlockLevel children = frame.levels[block.level - 1];
-  const float sigma = extinction[blockAddress(frame.levels[block.level], block.cell)];
+  const float sigma = extinctionOf(frame.levels[block.level], block.cell);
   vec3 sum = vec3(0.0);
   float mass = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -36,7 +36,7 @@ vec3 centerOfMass(Block block) {
     if (any(greaterThanEqual(cell, children.dimensions))) continue;
     const Block child = blockOf(block.level - 1, cell);
     const vec3 part = vec3(child.extent) / vec3(block.extent);
-    const float share = extinction[blockAddress(children, cell)] / sigma * part.x * part.y * part.z;
+    const float share = extinctionOf(children, cell) / sigma * part.x * part.y * part.z;
     sum += share * (child.center - block.center);
     mass += share;
   }

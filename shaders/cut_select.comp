@@ -21,7 +21,7 @@ layout(local_size_x = kCutThreads) in;
 layout(scalar, push_constant) uniform Push { CutPush push; };
 layout(scalar, binding = 0) readonly buffer Frame { CutFrame frame; };
 layout(scalar, binding = 1) readonly buffer Parents { uint parents[]; };
-layout(scalar, binding = 2) readonly buffer Extinction { float extinction[]; };
+layout(scalar, binding = 2) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 // Of each block above the voxels a byte, four a word: which children to look at. And which of them are deferred.
 layout(scalar, binding = 3) buffer Children { uint children[]; };
 layout(scalar, binding = 4) buffer Deferred { uint deferred[]; };
@@ -34,6 +34,8 @@ layout(scalar, binding = 9) readonly buffer Tiles { uint tiles[]; };
 #include "direction_lookup.glsl"
 // Of an eye outside of the volume: nothing.
 float depthBeyond(Towards towards, ivec3 cell) { return 0.0; }
+#include "rank.glsl"
+#include "occupancy.glsl"
 #include "cut_slot.glsl"
 #include "dark_block.glsl"
 #include "covered_block.glsl"
@@ -62,6 +64,9 @@ bool isOutside(vec3 center, int edge) {
   return false;
 }
 
+// Of a slot's parent among the blocks above the voxels: it is the rank that the list is in the order of.
+uint parentPlace(uint slot) { return frame.levels[push.level + 1].firstRank - frame.coarseFirst + slot / 8; }
+
 // Which of a thread's slots to look at, a bit each.
 uint askedSlots(uint first) {
   if (push.level == frame.top) return !kDeferred && first == 0 ? 1 : 0;
@@ -69,7 +74,7 @@ uint askedSlots(uint first) {
   uint bits = 0;
   for (uint i = 0; i < kCutSlotsPerThread / 8; ++i) {
     if (first + 8 * i >= push.slotCount) break;
-    const uint parent = parents[first / 8 + i] - frame.coarseFirst;
+    const uint parent = parentPlace(first + 8 * i);
     const uint word = kDeferred ? deferred[parent / 4] : children[parent / 4];
     bits |= (word >> (8 * (parent & 3)) & 255) << (8 * i);
   }
@@ -83,7 +88,7 @@ void listAsked(uint bits, uint firstInGroup) {
 }
 
 void defer(uint slot) {
-  const uint parent = parents[slot / 8] - frame.coarseFirst;
+  const uint parent = parentPlace(slot);
   atomicOr(deferred[parent / 4], 1u << (8 * (parent & 3) + (slot & 7)));
 }
 
@@ -102,7 +107,7 @@ bool isDrawn(uint slot, inout CutCounts found) {
   const uint address = blockAddress(frame.levels[push.level], cell);
   const int edge = 1 << push.level;
   const vec3 center = centerOf(cell, edge);
-  if (extinction[address] <= 0.0) {
+  if (!holdsAnything(address)) {
     ++found.empty;
     return false;
   }
@@ -124,7 +129,7 @@ bool isDrawn(uint slot, inout CutCounts found) {
   }
   if (push.level == frame.finest || push.level <= frame.coarsest && isSmall(center, edge)) return true;
   ++found.opened;
-  open(address - frame.coarseFirst);
+  open(rankAt(frame.levels[push.level], address) - frame.coarseFirst);
   return false;
 }
 

@@ -1,5 +1,5 @@
 // Whether a block is hidden as far as the table knows, which is a plenoptic opacity function (Gao, Huang, Johnson, Moorhead
-// 2003, "Visibility culling using plenoptic opacity functions"). Include after blocks.glsl, attenuation_code.glsl,
+// 2003, "Visibility culling using plenoptic opacity functions"). Include after occupancy.glsl, attenuation_code.glsl,
 // major_axis.glsl and direction_lookup.glsl; `frame` is the CutFrame, kCode the table's.
 
 vec3 toEyeFrom(ivec3 cell, int level) {
@@ -7,8 +7,8 @@ vec3 toEyeFrom(ivec3 cell, int level) {
   return -((vec3(cell) + 0.5) * float(1 << level) - 0.5 - frame.middle + frame.eyeToMiddle);
 }
 
-// Whether all voxels of the block are dark in the four directions around the line of sight to each of them. No where
-// they have not the same four.
+// Whether all voxels of a block that holds anything are dark in the four directions around the line of sight to each of
+// them. No where they have not the same four.
 bool isDark(ivec3 cell, int level) {
   const vec3 toEye = toEyeFrom(cell, level);
   const float spread = frame.orthographic == 0 ? 0.5 * float((1 << level) - 1) : 0.0;
@@ -29,15 +29,16 @@ bool isDark(ivec3 cell, int level) {
   const float layer = frame.pathLengthCorrection == 0 ? 1.0
                                                       : length(frame.indexToWorld * (first + around)) -
                                                             dot(around, frame.axisLengths);
-  const uint address = blockAddress(frame.levels[level], cell) + (level > 0 ? frame.boundsOffset : 0);
+  const uint rank = rankAt(frame.levels[level], blockAddress(frame.levels[level], cell));
+  const uint bound = rank + (level > 0 ? frame.boundsOffset : 0);
   const int a = (major + 1) % 3, b = (major + 2) % 3;
   ivec3 corner = from;
   for (int i = 0; i < 4; ++i) {
     corner[a] = (i & 1) == 0 ? from[a] : to[a];
     corner[b] = (i & 2) == 0 ? from[b] : to[b];
     const int number = cellNumber(frame.cells, corner);
-    const uint word = CodePlane(PLANE_ADDRESS(number)).words[address / 4];
-    const uint code = bitfieldExtract(word, int(address & 3) * 8, 8);
+    const uint word = CodePlane(PLANE_ADDRESS(number)).words[bound / 4];
+    const uint code = bitfieldExtract(word, int(bound & 3) * 8, 8);
     if (decodeDepth(kCode, code) * layer < frame.darkDepths[number]) return false;
     // Between 0 and 1 depths jump so much that a splat next to both may shine at its rim.
     if (kCode == kCodeLinear8 && code != 0) return false;
@@ -49,12 +50,12 @@ bool isDark(ivec3 cell, int level) {
 // bright some of it is: they have to be dark as well.
 bool isHidden(ivec3 cell, int level) {
   const int major = majorAxis(toEyeFrom(cell, level));
-  const ivec3 last = frame.levels[level].dimensions - 1;
   bool dark = true;
   [[dont_unroll]] for (int i = 0; i < 5 && dark; ++i) {
     ivec3 neighbour = cell;
     if (i > 0) neighbour[(major + 1 + (i & 1)) % 3] += i < 3 ? 1 : -1;
-    if (neighbour == clamp(neighbour, ivec3(0), last)) dark = isDark(neighbour, level);
+    if (isInside(frame.levels[level], neighbour) && holdsAnything(blockAddress(frame.levels[level], neighbour)))
+      dark = isDark(neighbour, level);
   }
   return dark;
 }

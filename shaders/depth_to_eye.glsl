@@ -1,5 +1,6 @@
 // Optical depth between a block and the eye, exclusive of the block, and its gradient across the lines of
-// sight. Include after direction_lookup.glsl, ray_lookup.glsl and block_at.glsl; `frame` is the SetupFrame.
+// sight. Include after direction_lookup.glsl, ray_lookup.glsl and block_at.glsl; `frame` is the SetupFrame and
+// `eyeDepths` what eye_depths.comp made.
 
 const float kAtEye = 1e-3;  // voxels; nearer to the eye a position has no direction
 
@@ -17,38 +18,32 @@ float layerLength(vec3 direction) { return length(frame.indexToWorld * direction
 // How many layers of voxels the line of sight crosses in a block.
 int layersOf(Block block, vec3 direction) { return block.extent[majorAxis(direction)]; }
 
-// Of an eye inside the volume: A_B / A_V of Subr et al. 2007, Section 3.3. Between the voxels around the eye, half
-// of each included.
+// Of an eye inside the volume: A_B / A_V of Subr et al. 2007, Section 3.3.
 float depthBeyond(Towards towards, ivec3 cell) {
   if (frame.eyeInside == 0) return 0.0;
-  const vec3 place = clamp(frame.middle - frame.eyeToMiddle, vec3(0.0), vec3(frame.dimensions - 1));
-  const ivec3 low = ivec3(place);
-  const vec3 w = place - vec3(low);
-  float sum = 0.0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const ivec3 side = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
-    const vec3 share = mix(1.0 - w, w, vec3(side));
-    const ivec3 v = min(low + side, frame.dimensions - 1);
-    const uint index = blockAddress(frame.levels[0], v);
-    sum += share.x * share.y * share.z * (storedDepth(towards, cell, index) + 0.5 * towards.layer * extinction[index]);
-  }
-  return sum;
+  return eyeDepths[cellNumber(towards.cells, cell)] * (towards.pathLengthCorrection ? towards.layer : frame.voxelSize);
 }
 
-// The mean over the block's voxels; `falling` as depthTowards has it.
+// The mean over the voxels of a block that holds anything; `falling` as depthTowards has it.
 float tableDepth(Block block, out float falling) {
   const vec3 direction = directionToEye(block.center);
   const Towards towards = Towards(direction, layerLength(direction), frame.indexToWorld, frame.cells, frame.code, frame.lookup,
                                   frame.pathLengthCorrection != 0);
-  return depthTowards(towards, blockAddress(frame.levels[block.level], block.cell), falling);
+  const BlockLevel level = frame.levels[block.level];
+  return depthTowards(towards, rankAt(level, blockAddress(level, block.cell)), falling);
 }
 
-// Between the neighbours, each with its own line of sight; one-sided at the volume's faces.
+// Of the block, or of itself where that holds nothing: the table does not know it.
+Block neighbour(Block block, int axis, int steps) {
+  ivec3 cell = block.cell;
+  cell[axis] += steps;
+  const BlockLevel level = frame.levels[block.level];
+  return isInside(level, cell) && holdsAnything(blockAddress(level, cell)) ? blockOf(block.level, cell) : block;
+}
+
+// Between the neighbours, each with its own line of sight; one-sided where one of them holds nothing.
 float tableSlope(Block block, int axis) {
-  ivec3 low = block.cell, high = block.cell;
-  low[axis] = max(block.cell[axis] - 1, 0);
-  high[axis] = min(block.cell[axis] + 1, frame.levels[block.level].dimensions[axis] - 1);
-  const Block before = blockOf(block.level, low), after = blockOf(block.level, high);
+  const Block before = neighbour(block, axis, -1), after = neighbour(block, axis, 1);
   float unused;
   return (tableDepth(after, unused) - tableDepth(before, unused)) / max(after.center[axis] - before.center[axis], 1.0);
 }

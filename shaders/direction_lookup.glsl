@@ -1,4 +1,4 @@
-// Optical depth from a voxel towards a general direction, from the directions of the table: Subr et al. 2007,
+// Optical depth from a block towards a general direction, from the directions of the table: Subr et al. 2007,
 // Section 3.3, there with the nearest one. Include after interface.h, major_axis.glsl and attenuation_code.glsl, and define
 // PLANE_ADDRESS(cell) as the device address of the codes of the direction with that cell number.
 #extension GL_EXT_buffer_reference : require
@@ -22,15 +22,15 @@ int cellNumber(int cells, ivec3 cell) {
   return cell.x + cells + edge * (cell.y + cells + edge * (cell.z + cells));
 }
 
-uint storedCode(Towards towards, ivec3 cell, uint voxel) {
-  const uint word = CodePlane(PLANE_ADDRESS(cellNumber(towards.cells, cell))).words[voxel / 4];
-  return bitfieldExtract(word, int(voxel & 3) * 8, 8);
+uint storedCode(Towards towards, ivec3 cell, uint rank) {
+  const uint word = CodePlane(PLANE_ADDRESS(cellNumber(towards.cells, cell))).words[rank / 4];
+  return bitfieldExtract(word, int(rank & 3) * 8, 8);
 }
 
 // As if the line along the stored direction were as long as the one that is asked for: a homogeneous medium
 // is exact in every direction.
-float storedDepth(Towards towards, ivec3 cell, uint voxel) {
-  const float depth = decodeDepth(towards.code, storedCode(towards, cell, voxel));
+float storedDepth(Towards towards, ivec3 cell, uint rank) {
+  const float depth = decodeDepth(towards.code, storedCode(towards, cell, rank));
   if (!towards.pathLengthCorrection) return depth;
   return depth * towards.layer * float(towards.cells) / length(towards.indexToWorld * vec3(cell));
 }
@@ -38,23 +38,23 @@ float storedDepth(Towards towards, ivec3 cell, uint voxel) {
 // What of a stored depth lies beyond where the voxel is looked at from, for the includer to define.
 float depthBeyond(Towards towards, ivec3 cell);
 
-float depthUpTo(Towards towards, ivec3 cell, uint voxel) {
-  return max(storedDepth(towards, cell, voxel) - depthBeyond(towards, cell), 0.0);
+float depthUpTo(Towards towards, ivec3 cell, uint rank) {
+  return max(storedDepth(towards, cell, rank) - depthBeyond(towards, cell), 0.0);
 }
 
 // Whether a stored depth is the largest there is: the depth itself may be any larger one, and is the same a layer before.
-bool isAtEnd(Towards towards, ivec3 cell, uint voxel) {
-  return storedCode(towards, cell, voxel) == (towards.code == kCodeLinear8 ? 0 : 255);
+bool isAtEnd(Towards towards, ivec3 cell, uint rank) {
+  return storedCode(towards, cell, rank) == (towards.code == kCodeLinear8 ? 0 : 255);
 }
 
 // Between four directions of the table. Transmittances are interpolated, not depths: one dark direction would
 // darken all. `falling`: what part of the transmittance grows towards the eye by what a layer takes from it.
-float depthTowards(Towards towards, uint voxel, out float falling) {
+float depthTowards(Towards towards, uint rank, out float falling) {
   // A division may round to just beyond 1.
   const vec3 point = clamp(towards.direction, -1.0, 1.0) * towards.cells;
   if (towards.lookup == kLookupNearest) {
-    falling = isAtEnd(towards, ivec3(round(point)), voxel) ? 0.0 : 1.0;
-    return depthUpTo(towards, ivec3(round(point)), voxel);
+    falling = isAtEnd(towards, ivec3(round(point)), rank) ? 0.0 : 1.0;
+    return depthUpTo(towards, ivec3(round(point)), rank);
   }
   const vec3 low = floor(min(point, 0.999999 * towards.cells));
   const vec3 weight = point - low;
@@ -70,9 +70,9 @@ float depthTowards(Towards towards, uint voxel, out float falling) {
       cell[a] = int(low[a]) + i;
       cell[b] = int(low[b]) + j;
       const float share = (i == 0 ? 1.0 - weight[a] : weight[a]) * (j == 0 ? 1.0 - weight[b] : weight[b]);
-      const float transmittance = share * exp(-depthUpTo(towards, cell, voxel));
+      const float transmittance = share * exp(-depthUpTo(towards, cell, rank));
       sum += transmittance;
-      if (!isAtEnd(towards, cell, voxel)) ofFalling += transmittance;
+      if (!isAtEnd(towards, cell, rank)) ofFalling += transmittance;
     }
   }
   falling = ofFalling / sum;

@@ -16,23 +16,24 @@ using uint = std::uint32_t;
 #define FV_CONSTANT const
 #endif
 
-// Rows of voxels are padded to a multiple of this with voxels that hold nothing, so that a thread of the
-// sweeps owns whole words: 16 voxels a thread are fastest on lavapipe, 4 (one 32-bit word of codes) on GPUs.
+// Rows of voxels are padded to a multiple of this with voxels that hold nothing, so that a thread of the sweeps
+// has whole texels of four voxels: 16 voxels a thread are fastest on lavapipe, 4 on GPUs.
 FV_CONSTANT int kRowAlignment = 16;
 
-// Voxels that one invocation and one workgroup of the visible-voxel passes look at.
-FV_CONSTANT int kCountVoxelsPerThread = 16;
-FV_CONSTANT int kCountThreads = 64;
-FV_CONSTANT int kCountVoxelsPerGroup = kCountVoxelsPerThread * kCountThreads;
+// Blocks that one word says of whether they hold anything, and that one invocation of the passes over all blocks
+// looks at.
+FV_CONSTANT int kBlocksPerWord = 32;
+FV_CONSTANT int kOccupancyThreads = 64;
 FV_CONSTANT int kScanThreads = 256;
 
 FV_CONSTANT int kClassifyThreads = 64;
 FV_CONSTANT int kSweepThreads = 32;
 FV_CONSTANT int kRaySweepThreads = 64;
+FV_CONSTANT int kEyeThreads = 64;
 FV_CONSTANT int kSplatThreads = 64;
 FV_CONSTANT int kResolveTile = 8;
 FV_CONSTANT int kLevelThreads = 64;
-FV_CONSTANT int kLevelBlocksPerThread = 8;  // of the table: their children's codes are one texel a row
+FV_CONSTANT int kDirectionsPerLevelPass = 7;  // share what they ask of the children's occupancy
 
 // Levels of the octree: more than any volume has whose voxels 32 bits can number.
 FV_CONSTANT int kMaximumLevels = 32;
@@ -68,6 +69,8 @@ FV_CONSTANT float kOpaqueDepth = 32.0f;   // what the code linear8 means by a tr
 FV_CONSTANT float kInactiveScalar = -3.402823466e38f;
 // Must be engine/volume/classification.h's kMaximumOpacity.
 FV_CONSTANT float kMaximumOpacity = 1.0f - 1.0f / 4096.0f;
+// Of a block that holds anything: one that is mostly empty may have less than 32-bit floats can say.
+FV_CONSTANT float kLeastExtinction = 1e-37f;
 // Must be engine/volume/classification.h's kMaximumExtinction.
 FV_CONSTANT float kMaximumExtinction = 1e30f;
 
@@ -128,19 +131,26 @@ struct RayFan {
   uvec2 depths;  // device address: by k and ray, sqrt(depth / kOpaqueDepth) of planes 2k and 2k + 1, 16 bits each
 };
 
-// ray_sweep.comp
-struct RaySweepPush {
-  RayFan fan;
-  mat3 indexToWorld;
-  ivec3 dimensions;
-  int rowPitch;
+// Which blocks hold anything, a bit each, and how many of their level that are before them do. What is kept of
+// blocks is kept of those alone, at their ranks: in the order of the blocks, level by level.
+struct OccupancyWord {
+  uint mask;
+  uint before;
 };
 
 // One level of the octree: engine/hierarchy/hierarchy_layout.h.
 struct BlockLevel {
   uint first;       // index of its first block
+  uint firstRank;   // of its blocks that hold anything
   int rowPitch;
   ivec3 dimensions;
+};
+
+// ray_sweep.comp
+struct RaySweepPush {
+  RayFan fan;
+  mat3 indexToWorld;
+  BlockLevel voxels;
 };
 
 // medium_level.comp
@@ -148,9 +158,9 @@ struct MediumLevelPush {
   BlockLevel child, parent;
   ivec3 voxels;        // the volume's dimensions
   int childEdge;       // voxels along a child's edge
-  uint parentCount;    // blocks of the parent level with the padding
+  uint parentCount;    // blocks of the parent level that hold anything
   float childLength;   // world length of a child's edge
-  uint firstColor;     // index of the first block that has a colour: of level 1
+  uint firstColor;     // rank of the first block that has a colour: of level 1
   uint opacityPoints, colorPoints;
 };
 
@@ -159,15 +169,15 @@ struct TableLevelPush {
   BlockLevel child, parent;
   ivec3 voxels;
   int childEdge;
-  uint threadCount;    // kLevelBlocksPerThread blocks of the parent level each
+  uint parentCount;    // blocks of the parent level that hold anything
   uint boundsOffset;   // the bound of a block follows its code by this many blocks
-  uint direction;      // in the order of directions.h
+  uint firstDirection, directionCount;  // in the order of directions.h
 };
 
 // cut_select.comp, what is the same for all levels of a frame. Positions are relative to the volume's middle.
 struct CutFrame {
   BlockLevel levels[kMaximumLevels];
-  uint coarseFirst;       // index of the first block above the voxels
+  uint coarseFirst;       // rank of the first block above the voxels
   int top;                // the coarsest level there is
   int finest;             // no level below is drawn
   int coarsest;           // no level above is drawn
@@ -207,10 +217,21 @@ struct CutCounts {
   uint deferred;       // left to the second part of the cut, which counts them again
 };
 
+// occupied_voxels.comp, pack_voxels.comp and expand_voxels.comp
+struct VoxelsPush {
+  uint count;        // words of voxels, or voxels that hold anything
+};
+
+// occupied_blocks.comp
+struct OccupiedBlocksPush {
+  BlockLevel child, parent;
+  uint wordCount;    // of the parent level
+};
+
 // visible_count.comp, visible_scan.comp, visible_write.comp
 struct VisiblePush {
-  uint first;        // index of the first voxel, or of a level's first block
-  uint voxelCount;   // of the padded grid
+  uint firstWord;    // of the level's occupancy
+  uint wordCount;
   uint firstCount;   // visible_scan.comp: where the counts begin; behind them comes their sum
   uint groupCount;   // workgroups of the count and write passes
   uint firstChunk;   // visible_scan.comp writes the arguments of chunkCount draw chunks from here on
@@ -289,6 +310,13 @@ struct SetupPush {
   uint chunk;
 };
 
+// eye_depths.comp
+struct EyeDepthsPush {
+  BlockLevel voxels;
+  vec3 place;        // of the eye, index space, in the box of the voxels' centres
+  int cells;         // that the table's directions divide the cube's half edge into
+};
+
 // splat.vert and splat.frag
 struct SplatPush {
   vec2 imageMiddle;        // pixels
@@ -316,17 +344,17 @@ struct TilePush {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(BlockLevel) == 20);
+static_assert(sizeof(BlockLevel) == 24);
 static_assert(sizeof(ChunkArguments) == 52);
 static_assert(sizeof(CutPush) == 16);
 static_assert(sizeof(DepthKeyPush) == 80);
 static_assert(sizeof(HalfSweepPush) == 64);
-static_assert(sizeof(MediumLevelPush) == 76);
+static_assert(sizeof(MediumLevelPush) == 84);
 static_assert(sizeof(Splat) == 64);
-static_assert(sizeof(RaySweepPush) == 112);
+static_assert(sizeof(RaySweepPush) == 120);
 static_assert(sizeof(ResolvePush) == 84);
 static_assert(sizeof(TilePush) == 96);
-static_assert(sizeof(TableLevelPush) == 68);
+static_assert(sizeof(TableLevelPush) == 80);
 }  // namespace freevoxels::shader
 #endif
 #endif

@@ -4,9 +4,9 @@
 // Lines that leave the box sideways enter again on the other side with an optical depth of 0: as many lines as
 // the entry plane has voxels cover every voxel exactly once, and no face needs a case of its own.
 //
-// With a step in x the bundle moves along the rows plane by plane while the words it writes do not. So a thread
-// writes the aligned words of a window that moves by four voxels every kPhases planes, and carries kExtraLines
-// more than it writes.
+// With a step in x the bundle moves along the rows plane by plane while the quads of voxels it writes do not. So a
+// thread writes the aligned quads of a window that moves by one every kPhases planes, and carries kExtraLines more
+// than it writes.
 
 layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const int kVoxels = 16;  // a multiple of 4
@@ -14,14 +14,14 @@ layout(constant_id = 2) const int kStepX = 0;    // of the march, -2 to 2
 
 layout(local_size_x = kSweepThreads) in;
 layout(binding = 0) uniform textureBuffer extinction;
-layout(scalar, binding = 1) writeonly buffer Plane { uint words[]; };
+#include "stored_codes.glsl"
 
 const int kSize = kStepX < 0 ? -kStepX : kStepX;
 const int kPhases = kSize == 0 ? 1 : kSize == 1 ? 4 : 2;
 const int kExtraLines = kSize * (kPhases - 1);
-const int kWords = kVoxels / 4;
+const int kWindowQuads = kVoxels / 4;
 const int kMargin = kSize == 0 ? 0 : 1;         // quads looked at on either side of the window
-const int kQuads = kWords + 2 * kMargin;
+const int kQuads = kWindowQuads + 2 * kMargin;
 const int kWindowStep = kStepX < 0 ? -1 : kStepX > 0 ? 1 : 0;  // quads, every kPhases planes
 
 float depths[kVoxels + kExtraLines];  // of the lines, up to the current plane
@@ -44,7 +44,7 @@ void restartLines() {
 // Lines that have just come around the end of the row start again at the boundary of the volume.
 void restartWrappedLines(int window, int quads, int phase) {
   if (kSize == 0) return;
-  [[unroll]] for (int q = -1; q <= kWords; ++q)
+  [[unroll]] for (int q = -1; q <= kWindowQuads; ++q)
     [[unroll]] for (int i = 0; i < kSize; ++i) {
       const int line = 4 * q + (kStepX > 0 ? i : 3 - i) + lineOffset(phase);
       if (isLine(line) && isEntry(q, window, quads)) depths[line] = 0.0;
@@ -68,10 +68,8 @@ void addRow(int phase, float stepLength) {
 }
 
 void writeWindow(int row, int window, int quads, int phase) {
-  [[unroll]] for (int w = 0; w < kWords; ++w) {
-    uint word = 0;
-    [[unroll]] for (int c = 0; c < 4; ++c)
-      word |= encodeDepth(kCode, depths[4 * w + c + lineOffset(phase)]) << (8 * c);
-    words[row + wrapped(window + w, quads)] = word;
+  [[unroll]] for (int w = 0; w < kWindowQuads; ++w) {
+    const int line = 4 * w + lineOffset(phase);
+    storeCodes(row + wrapped(window + w, quads), vec4(depths[line], depths[line + 1], depths[line + 2], depths[line + 3]));
   }
 }

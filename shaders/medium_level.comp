@@ -1,7 +1,7 @@
 #version 460
-// A level of the octree from the one below, a thread a block: extinction, the mean over the voxels inside of the
-// volume, which conserves optical depth, and colour, the mean weighted by the children's opacities. Subr et al.
-// 2007, Section 3.2.
+// A level of the octree from the one below, a thread a block that holds anything: extinction, the mean over the voxels
+// inside of the volume, which conserves optical depth, and colour, the mean weighted by the children's opacities.
+// Subr et al. 2007, Section 3.2.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "blocks.glsl"
@@ -17,17 +17,19 @@ layout(scalar, push_constant) uniform Push { MediumLevelPush push; };
 layout(scalar, binding = 0) buffer Extinction { float extinction[]; };
 layout(scalar, binding = 2) readonly buffer Scalars { float scalars[]; };
 layout(scalar, binding = 3) buffer BlockColors { uvec2 blockColors[]; };
+layout(scalar, binding = 4) readonly buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 5) readonly buffer Parents { uint parents[]; };
+#include "stored_block.glsl"
 
-vec3 childColor(uint address) {
-  if (kFromVoxels) return evaluatePoints(push.opacityPoints, push.colorPoints, scalars[address]);
-  return unpackColor(blockColors[address - push.firstColor]);
+vec3 childColor(uint rank) {
+  if (kFromVoxels) return evaluatePoints(push.opacityPoints, push.colorPoints, scalars[rank]);
+  return unpackColor(blockColors[rank - push.firstColor]);
 }
 
 void main() {
   const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kLevelThreads;
   if (i >= push.parentCount) return;
-  const uint address = push.parent.first + i;
-  const ivec3 cell = cellAt(push.parent, address);
+  const ivec3 cell = cellAt(push.parent, parents[i]);
   const vec3 inside = vec3(extentInside(cell, 2 * push.childEdge, push.voxels));
   float mean = 0.0, opacity = 0.0;
   vec3 color = vec3(0.0);
@@ -36,15 +38,18 @@ void main() {
     if (any(greaterThanEqual(child, push.child.dimensions))) continue;
     const vec3 part = vec3(extentInside(child, push.childEdge, push.voxels)) / inside;
     const float share = part.x * part.y * part.z;
-    const uint childAddress = blockAddress(push.child, child);
-    const float sigma = extinction[childAddress];
+    const uint address = blockAddress(push.child, child);
+    if (!holdsAnything(address)) continue;
+    const uint rank = rankAt(push.child, address);
+    const float sigma = extinction[rank];
     mean += share * sigma;
-    if (kColors && sigma > 0.0) {
+    if (kColors) {
       const float weight = share * opacityOf(sigma * push.childLength);
       opacity += weight;
-      color += weight * childColor(childAddress);
+      color += weight * childColor(rank);
     }
   }
-  extinction[address] = mean;  // padding has no children: 0
-  if (kColors) blockColors[address - push.firstColor] = packColor(opacity > 0.0 ? color / opacity : vec3(0.0));
+  const uint rank = push.parent.firstRank + i;
+  extinction[rank] = max(mean, kLeastExtinction);
+  if (kColors) blockColors[rank - push.firstColor] = packColor(opacity > 0.0 ? color / opacity : vec3(0.0));
 }

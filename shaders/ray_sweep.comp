@@ -8,14 +8,21 @@
 
 layout(local_size_x = kRaySweepThreads) in;
 layout(scalar, push_constant) uniform Push { RaySweepPush push; };
-layout(scalar, binding = 0) readonly buffer Extinction { float extinction[]; };
+layout(scalar, binding = 0) readonly buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 1) readonly buffer Extinction { float extinction[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Depths { uint pairs[]; };
 
-int sideA, sideB, strideA, strideB, strideAxis;
+#include "blocks.glsl"
+#include "stored_block.glsl"
+
+int sideA, sideB;
 
 float extinctionAt(int plane, ivec2 side) {
-  const bool inside = plane >= 0 && plane < push.dimensions[push.fan.axis] && side.x >= 0 && side.y >= 0 && side.x < push.dimensions[sideA] && side.y < push.dimensions[sideB];
-  return inside ? extinction[plane * strideAxis + side.x * strideA + side.y * strideB] : 0.0;
+  ivec3 voxel;
+  voxel[push.fan.axis] = plane;
+  voxel[sideA] = side.x;
+  voxel[sideB] = side.y;
+  return extinctionOf(push.voxels, voxel);
 }
 
 float interpolated(int plane, vec2 position) {
@@ -30,7 +37,7 @@ float interpolated(int plane, vec2 position) {
 // to y.
 ivec2 planesWithin(vec2 atFirst, vec2 perPlane) {
   float enter = 0.0, leave = float(push.fan.planeCount - 1);
-  const vec2 high = vec2(push.dimensions[sideA], push.dimensions[sideB]) + 1.0;
+  const vec2 high = vec2(push.voxels.dimensions[sideA], push.voxels.dimensions[sideB]) + 1.0;
   [[unroll]] for (int side = 0; side < 2; ++side) {
     const float reach = 2.0 + 2.0 * push.fan.spacing;
     const float slope = abs(perPlane[side]) < 1e-7 ? 1e-7 : perPlane[side];
@@ -59,10 +66,6 @@ void main() {
   if (ray >= rays) return;
   sideA = (fan.axis + 1) % 3;
   sideB = (fan.axis + 2) % 3;
-  const ivec3 strides = ivec3(1, push.rowPitch, push.rowPitch * push.dimensions.y);
-  strideA = strides[sideA];
-  strideB = strides[sideB];
-  strideAxis = strides[fan.axis];
 
   const vec2 offset = fan.spacing * vec2(ray % fan.rayCount.x, ray / fan.rayCount.x);
   const vec2 slope = fan.slope + offset * fan.convergence;  // along the axis upwards

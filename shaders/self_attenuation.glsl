@@ -22,9 +22,8 @@ float extinctionAt(vec3 position, int axis) {
     voxel[axis] = round(position[axis]);
     voxel[sideA] += float(corner & 1);
     voxel[sideB] += float(corner >> 1);
-    if (any(lessThan(voxel, vec3(0.0))) || any(greaterThanEqual(voxel, vec3(frame.dimensions)))) continue;
     const float share = (1.0 - abs(position[sideA] - voxel[sideA])) * (1.0 - abs(position[sideB] - voxel[sideB]));
-    sum += share * extinction[blockAddress(frame.levels[0], ivec3(voxel))];
+    sum += share * extinctionOf(frame.levels[0], ivec3(voxel));
   }
   return sum;
 }

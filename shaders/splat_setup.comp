@@ -18,20 +18,23 @@ layout(scalar, binding = 5) readonly buffer Extinction { float extinction[]; };
 layout(scalar, binding = 6) readonly buffer Chunks { ChunkArguments chunks[]; };
 layout(scalar, binding = 7) writeonly buffer Splats { Splat splats[]; };
 layout(scalar, binding = 8) readonly buffer BlockColors { uvec2 blockColors[]; };
+layout(scalar, binding = 9) readonly buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 10) readonly buffer EyeDepths { float eyeDepths[]; };
 #define PLANE_ADDRESS(cell) planeAddresses[cell]
 #include "major_axis.glsl"
 #include "direction_lookup.glsl"
 #include "ray_lookup.glsl"
+#include "stored_block.glsl"
 #include "block_at.glsl"
 #include "depth_to_eye.glsl"
 #include "part_ahead.glsl"
 #include "splat_projection.glsl"
 #include "self_attenuation.glsl"
 
-vec3 colorOf(Block block, uint address) {
+vec3 colorOf(Block block, uint rank) {
   if (frame.opacityPoints == 0) return frame.albedo;
-  if (block.level > 0) return unpackColor(blockColors[address - frame.levels[1].first]);
-  return evaluatePoints(frame.opacityPoints, frame.colorPoints, scalars[address]);
+  if (block.level > 0) return unpackColor(blockColors[rank - frame.levels[1].firstRank]);
+  return evaluatePoints(frame.opacityPoints, frame.colorPoints, scalars[rank]);
 }
 
 void main() {
@@ -47,7 +50,8 @@ void main() {
     splats[local] = splat;
     return;
   }
-  const float sigma = extinction[address];
+  const uint rank = rankAt(frame.levels[block.level], address);
+  const float sigma = extinction[rank];
   const DepthToEye toEye = depthToEye(block, sigma);
   const vec3 direction = directionToEye(block.center);
   const float depth = sigma * layerLength(direction) * float(layersOf(block, direction));
@@ -57,7 +61,7 @@ void main() {
   const bool ofKernel = frame.kernelMean != 0 && block.level == 0;
   const float leaving = ofKernel ? kernelMean(block.center, direction, depth, toEye.depth) : selfAttenuation(depth);
   const float energy = sigma * leaving * peak;
-  splat.colorEnergy = vec4(energy * colorOf(block, address), energy);
+  splat.colorEnergy = vec4(energy * colorOf(block, rank), energy);
   splat.center = footprint.center;
   splat.halfExtent = footprint.halfExtent;
   splat.conic = footprint.conic;

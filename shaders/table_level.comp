@@ -1,13 +1,15 @@
 #version 460
-// A level of the octree's attenuation table from the one below, for one direction, a thread eight blocks: Subr et
-// al. 2007, Section 3.2, Eq. 7. The geometric mean of transmittances is the mean of optical depths. Children
-// outside of the volume do not count, the others as much as they have voxels.
+// A level of the octree's attenuation table from the one below, for a few directions, a thread a block that holds
+// anything: Subr et al. 2007, Section 3.2, Eq. 7. The geometric mean of transmittances is the mean of optical depths.
+// Children that hold nothing or are outside of the volume do not count, the others as much as they have voxels.
 //
 // And its bounds: the code of the most transparent voxel of each block, which says what can be left out behind others.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_shader_8bit_storage : require
 #include "interface.h"
 #include "attenuation_code.glsl"
 #include "blocks.glsl"
+#include "rank.glsl"
 
 layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const int kFilter = kFilterGeometric;
@@ -15,10 +17,15 @@ layout(constant_id = 2) const bool kFromVoxels = false;  // whose codes are thei
 
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { TableLevelPush push; };
-layout(binding = 0) uniform utextureBuffer codes;  // sixteen a texel
-layout(scalar, binding = 1) writeonly buffer Plane { uint words[]; };
 // By direction, of all voxels: the code of the most opaque, of linear8 255 minus it.
-layout(scalar, binding = 2) buffer Darkest { uint darkest[]; };
+layout(scalar, binding = 0) buffer Darkest { uint darkest[]; };
+layout(binding = 1) uniform utextureBuffer occupancy;  // an OccupancyWord a texel
+layout(scalar, binding = 2) readonly buffer Parents { uint parents[]; };
+// A direction's codes, read and written.
+#define PLANE(i)                                                \
+  layout(binding = 3 + i) uniform utextureBuffer read##i;      \
+  layout(scalar, binding = 3 + kDirectionsPerLevelPass + i) writeonly buffer Plane##i { uint8_t codes[]; } plane##i;
+PLANE(0) PLANE(1) PLANE(2) PLANE(3) PLANE(4) PLANE(5) PLANE(6)
 
 const bool kSquares = kCode == kCodeDepth8 && kFilter == kFilterGeometric;  // depths are as the squares of codes
 
@@ -38,62 +45,66 @@ uint clearer(uint a, uint b) { return kCode == kCodeLinear8 ? max(a, b) : min(a,
 uint darkness(uint code) { return kCode == kCodeLinear8 ? 255 - code : code; }
 const uint kDarkest = kCode == kCodeLinear8 ? 0 : 255;
 
-void main() {
-  const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kLevelThreads;
-  if (i >= push.threadCount) return;
-  const uint address = push.parent.first + kLevelBlocksPerThread * i;
-  const ivec3 cell = cellAt(push.parent, address);
+// The children: their ranks, and how many voxels they have; none of those that hold nothing.
+uint ranks[8];
+float voxels[8];
 
-  // The part of its block that a column of children has; and of a row, in voxels.
-  float columns[2 * kLevelBlocksPerThread];
-  [[unroll]] for (int c = 0; c < 2 * kLevelBlocksPerThread; ++c)
-    columns[c] = float(clamp(push.voxels.x - (2 * cell.x + c) * push.childEdge, 0, push.childEdge));
-  const ivec3 inside = extentInside(cell, 2 * push.childEdge, push.voxels);
-  float sums[kLevelBlocksPerThread];
-  uint used[kLevelBlocksPerThread], clearest[kLevelBlocksPerThread];
-  [[unroll]] for (int block = 0; block < kLevelBlocksPerThread; ++block) {
-    sums[block] = 0.0;
-    used[block] = 0;
-    clearest[block] = kDarkest;
-  }
-  uint darkestHere = 0;
+void findChildren(ivec3 cell) {
   [[unroll]] for (int row = 0; row < 4; ++row) {
     const ivec3 child = 2 * cell + ivec3(0, row & 1, row >> 1);
-    const ivec2 rows = max(extentInside(child, push.childEdge, push.voxels).yz, 0);
-    const float share = float(rows.x) / float(inside.y) * (float(rows.y) / float(inside.z));
-    // Where there is no child any other is read instead, for nothing.
-    const ivec3 read = ivec3(child.x < push.child.rowPitch ? child.x : 0, min(child.yz, push.child.dimensions.yz - 1));
-    const uvec4 texel = texelFetch(codes, int(blockAddress(push.child, read) / 16));
-    const uvec4 bounds =
-        kFromVoxels ? texel : texelFetch(codes, int((blockAddress(push.child, read) + push.boundsOffset) / 16));
-    [[unroll]] for (int block = 0; block < kLevelBlocksPerThread; ++block) {
-      const uint two = texel[block / 2] >> (16 * (block % 2));
-      const uint low = two & 255, high = two >> 8 & 255;
-      sums[block] += share * (columns[2 * block] * filtered(low) + columns[2 * block + 1] * filtered(high));
-      if (!kSquares && share > 0.0) used[block] |= low | (columns[2 * block + 1] > 0.0 ? high : 0);
-      if (share <= 0.0) continue;
-      const uint twoBounds = bounds[block / 2] >> (16 * (block % 2));
-      if (columns[2 * block] > 0.0) {
-        clearest[block] = clearer(clearest[block], twoBounds & 255);
-        darkestHere = max(darkestHere, darkness(low));
-      }
-      if (columns[2 * block + 1] > 0.0) {
-        clearest[block] = clearer(clearest[block], twoBounds >> 8 & 255);
-        darkestHere = max(darkestHere, darkness(high));
-      }
+    const bool exists = all(lessThan(child, push.child.dimensions));
+    const ivec3 inside = extentInside(child, push.childEdge, push.voxels);
+    // Two that are neighbours in x are in one word.
+    const uint address = exists ? blockAddress(push.child, child) : 0;
+    const uvec2 word = texelFetch(occupancy, int(address / kBlocksPerWord)).xy;
+    const int bit = int(address % kBlocksPerWord);
+    uint rank = push.child.firstRank + rankIn(word, bit);
+    [[unroll]] for (int x = 0; x < 2; ++x) {
+      const bool holds = exists && (word.x >> (bit + x) & 1u) != 0;
+      const int width = min(push.voxels.x - (child.x + x) * push.childEdge, push.childEdge);
+      ranks[2 * row + x] = holds ? rank : 0;
+      voxels[2 * row + x] = holds ? float(width) * float(inside.y) * float(inside.z) : 0.0;
+      rank += holds ? 1 : 0;
     }
   }
-  [[unroll]] for (int w = 0; w < kLevelBlocksPerThread / 4; ++w) {
-    uint word = 0, bounds = 0;
-    [[unroll]] for (int b = 0; b < 4; ++b) {
-      const int block = 4 * w + b;
-      const float mean = sums[block] / max(columns[2 * block] + columns[2 * block + 1], 1.0);
-      if (kSquares || used[block] != 0) word |= codeOf(mean) << (8 * b);  // what all children store as 0 is 0
-      bounds |= clearest[block] << (8 * b);
-    }
-    words[address / 4 + w] = word;
-    words[(address + push.boundsOffset) / 4 + w] = bounds;
+}
+
+struct Parent {
+  uint code, bound, darkest;
+};
+
+Parent parentOf(utextureBuffer codes) {
+  float sum = 0.0, all = 0.0;
+  uint used = 0;
+  Parent parent = Parent(0, kDarkest, 0);
+  [[unroll]] for (int child = 0; child < 8; ++child) {
+    const bool holds = voxels[child] > 0.0;
+    const uint code = texelFetch(codes, int(ranks[child])).x;
+    const uint bound = kFromVoxels ? code : texelFetch(codes, int(ranks[child] + push.boundsOffset)).x;
+    sum += voxels[child] * filtered(code);
+    all += voxels[child];
+    used |= holds ? code : 0;
+    parent.bound = holds ? clearer(parent.bound, bound) : parent.bound;
+    parent.darkest = holds ? max(parent.darkest, darkness(code)) : parent.darkest;
   }
-  // Few are darker than all before them.
-  if (kFromVoxels && darkestHere > darkest[push.direction]) atomicMax(darkest[push.direction], darkestHere);
+  if (used != 0) parent.code = codeOf(sum / all);  // what all children store as 0 is 0
+  return parent;
+}
+
+#define MAKE(i)                                                                                   \
+  if (i < push.directionCount) {                                                                  \
+    const Parent parent = parentOf(read##i);                                                      \
+    plane##i.codes[rank] = uint8_t(parent.code);                                                  \
+    plane##i.codes[rank + push.boundsOffset] = uint8_t(parent.bound);                             \
+    /* Few are darker than all before them. */                                                    \
+    if (kFromVoxels && parent.darkest > darkest[push.firstDirection + i])                         \
+      atomicMax(darkest[push.firstDirection + i], parent.darkest);                                \
+  }
+
+void main() {
+  const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kLevelThreads;
+  if (i >= push.parentCount) return;
+  findChildren(cellAt(push.parent, parents[i]));
+  const uint rank = push.parent.firstRank + i;
+  MAKE(0) MAKE(1) MAKE(2) MAKE(3) MAKE(4) MAKE(5) MAKE(6)
 }

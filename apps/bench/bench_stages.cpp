@@ -7,7 +7,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "engine/hierarchy/level_passes.h"
+#include "engine/hierarchy/volume_builder.h"
 #include "engine/renderer.h"
 #include "engine/splatting/fly_through.h"
 #include "engine/splatting/splat_pass.h"
@@ -51,14 +51,9 @@ std::uint64_t drawnSplats(const Renderer& renderer) {
   return std::accumulate(drawn.begin(), drawn.end(), std::uint64_t(0));
 }
 
-DeviceVolume classified(const Device& device, const Volume& volume) {
-  const Classification classification{.densityScale = 0.01};
-  DeviceVolume result = uploadVolume(device, volume, classification);
-  const ClassifyPass classify(device);
-  Commands commands(device);
-  classify.record(commands, result, classification);
-  commands.submitAndWait();
-  return result;
+BuiltVolume built(const Device& device, const Volume& volume) {
+  std::vector<StageTime> times;
+  return buildVolume(device, volume, {.densityScale = 0.01}, times);
 }
 
 /// Densities that differ from voxel to voxel.
@@ -71,12 +66,12 @@ Volume stripes(int resolution) {
 
 Result sweeps(const Device& device, DirectionSet directions, int resolution, int runs) {
   const Volume volume = stripes(resolution);
-  const DeviceVolume onDevice = classified(device, volume);
-  const AttenuationTable table = makeTable(device, onDevice.hierarchy, {.directions = directions});
-  const AttenuationSweep sweep(device, table.settings);
+  const BuiltVolume onDevice = built(device, volume);
+  const AttenuationTable table = makeTable(device, onDevice.volume, {.directions = directions});
+  AttenuationSweep sweep(device, table.settings);
   const double time = least(runs, [&] {
     Commands commands(device);
-    sweep.record(commands, onDevice, table);
+    sweep.record(commands, onDevice.volume, table);
     commands.submitAndWait();
     return total(commands);
   });
@@ -89,19 +84,19 @@ Result sweeps(const Device& device, DirectionSet directions, int resolution, int
 
 Result octree(const Device& device, AttenuationCode code, int resolution, int runs) {
   const Volume volume = stripes(resolution);
-  const DeviceVolume onDevice = classified(device, volume);
-  const AttenuationTable table = makeTable(device, onDevice.hierarchy, {.code = code});
-  const AttenuationSweep sweep(device, table.settings);
-  const MediumLevels medium(device, onDevice);
+  const BuiltVolume onDevice = built(device, volume);
+  const AttenuationTable table = makeTable(device, onDevice.volume, {.code = code});
+  AttenuationSweep sweep(device, table.settings);
+  const MediumLevels medium(device, onDevice.volume);
   const TableLevels levels(device, table.settings);
   double sweeps = std::numeric_limits<double>::max();
   const double time = least(runs, [&] {
     Commands before(device), commands(device);
-    sweep.record(before, onDevice, table);
+    sweep.record(before, onDevice.volume, table);
     before.submitAndWait();
     sweeps = std::min(sweeps, total(before));
-    medium.record(commands, onDevice);
-    levels.record(commands, onDevice, table);
+    medium.record(commands, onDevice.volume, onDevice.lists.coarse);
+    levels.record(commands, onDevice.volume, onDevice.lists.coarse, table);
     commands.submitAndWait();
     return total(commands);
   });
@@ -163,19 +158,19 @@ Result compaction(const Device& device, int resolution, int runs) {
   const Volume volume = unitVoxels(glm::ivec3(resolution), [](int x, int y, int z) {
     return ((x / 8) * 7 + (y / 8) * 13 + (z / 8) * 29) % 32 == 0 ? 1.0f : 0.0f;
   });
-  const DeviceVolume onDevice = classified(device, volume);
-  const VisibleVoxels visible = makeVisibleVoxels(device, onDevice);
+  const BuiltVolume onDevice = built(device, volume);
+  const VisibleVoxels& visible = onDevice.visible;
   const CompactionPass pass(device);
   const double time = least(runs, [&] {
     Commands commands(device);
-    pass.record(commands, onDevice, visible);
+    pass.record(commands, onDevice.volume, visible);
     commands.submitAndWait();
     return total(commands);
   });
   return {
       .name = fmt::format("visible voxels, {} of {}^3", downloadVisibleCount(device, visible), resolution),
       .milliseconds = time,
-      .copyMilliseconds = copyTime(4 * volume.voxelCount()),
+      .copyMilliseconds = copyTime(volume.voxelCount() / 4 + 4 * onDevice.volume.stored.front()),
       .perSecond = double(volume.voxelCount()) / time * 1e3};
 }
 
@@ -201,7 +196,7 @@ Result splats(const Device& device, double pixels, int runs) {
 }
 
 Result wholeRender(const Device& device, const InputOptions& input, int runs) {
-  const Volume volume = input.open(maximumVoxels(device, DirectionSet::Directions26));
+  const Volume volume = input.open(maximumVoxels(device));
   const Classification classification{.densityScale = automaticDensityScale(volume)};
   const FrameSettings settings{.size = {1024, 1024}};
   const double time = least(runs, [&] {

@@ -1,6 +1,7 @@
 #include "apps/freevoxels/info_command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 
@@ -29,7 +30,26 @@ GridInfo describeVolume(const Volume& volume) {
   grid.minimum = volume.minimum;
   grid.maximum = volume.maximum;
   grid.memoryBytes = volume.values.size() * sizeof(float);
+  std::vector<bool> holding;
+  for (const float value : volume.values) holding.push_back(value > 0.0f);
+  grid.storedBlocks = countStored(HierarchyLayout(volume.dimensions), std::move(holding));
   return grid;
+}
+
+/// With one colour; of the whole box where nobody counted.
+VolumeMemory memoryOf(const GridInfo& grid, DirectionSet directions) {
+  const HierarchyLayout hierarchy(grid.renderDimensions);
+  std::vector<std::uint64_t> stored = grid.storedBlocks;
+  if (stored.empty())
+    for (const GridLayout& level : hierarchy.levels) stored.push_back(level.voxels());
+  return volumeMemory(hierarchy, stored, directions, false);
+}
+
+/// Stored with 26 directions, of a voxel that holds anything.
+double bytesPerVoxel(const GridInfo& grid) {
+  const std::uint64_t voxels = grid.storedBlocks.front();
+  return double(memoryOf(grid, DirectionSet::Directions26).stored()) /
+         double(std::max<std::uint64_t>(voxels, 1));
 }
 
 std::vector<GridInfo> describeInput(const InputOptions& input) {
@@ -42,9 +62,10 @@ std::vector<GridInfo> describeInput(const InputOptions& input) {
 void printTable(const std::vector<GridInfo>& grids) {
   using enum TextTable::Align;
   TextTable table{
-      .columns = {Left, Left, Left, Right, Right, Left, Left, Left, Right, Right, Right, Right, Right, Left},
+      .columns = {Left, Left, Left, Right, Right, Left, Left, Left, Right, Right, Right, Right, Right, Right,
+                  Left},
       .rows = {{"GRID", "TYPE", "CLASS", "ACTIVE VOXELS", "DIMENSIONS", "BOUNDING BOX", "VOXEL SIZE",
-                "VALUES", "MEMORY", "TABLE 26", "ON DEVICE", "TABLE 98", "ON DEVICE", ""}}};
+                "VALUES", "MEMORY", "TABLE 26", "ON DEVICE", "TABLE 98", "ON DEVICE", "BYTES/VOXEL", ""}}};
   for (const GridInfo& grid : grids) {
     const bool empty = grid.activeVoxels == 0;
     const glm::ivec3 low = grid.boundsMinimum, high = grid.boundsMaximum, size = grid.dimensions;
@@ -57,10 +78,11 @@ void printTable(const std::vector<GridInfo>& grids) {
          bytesText(grid.memoryBytes)});
     std::vector<std::string>& row = table.rows.back();
     for (const DirectionSet directions : {DirectionSet::Directions26, DirectionSet::Directions98}) {
-      const VolumeMemory memory = volumeMemory(grid.renderDimensions, directions);
+      const VolumeMemory memory = memoryOf(grid, directions);
       row.push_back(grid.unusable.empty() ? bytesText(memory.table) : "-");
-      row.push_back(grid.unusable.empty() ? bytesText(memory.total()) : "-");
+      row.push_back(grid.unusable.empty() ? bytesText(memory.peak()) : "-");
     }
+    row.push_back(grid.storedBlocks.empty() ? "-" : fmt::format("{:.1f}", bytesPerVoxel(grid)));
     row.push_back(grid.unusable.empty() ? "" : "not drawable: " + grid.unusable);
   }
   for (const std::string& line : table.lines()) fmt::print("{}\n", line);
@@ -82,12 +104,17 @@ nlohmann::ordered_json toJson(const GridInfo& grid) {
     json["not_drawable"] = grid.unusable;
     return json;
   }
-  const VolumeMemory memory = volumeMemory(grid.renderDimensions, DirectionSet::Directions26);
+  const VolumeMemory memory = memoryOf(grid, DirectionSet::Directions26);
   json["table_bytes"] = memory.table;
-  json["device_bytes"] = memory.total();
-  const VolumeMemory memory98 = volumeMemory(grid.renderDimensions, DirectionSet::Directions98);
+  json["stored_bytes"] = memory.stored();
+  if (!grid.storedBlocks.empty()) json["stored_bytes_per_voxel"] = bytesPerVoxel(grid);
+  json["stored_bytes_per_box_voxel"] =
+      double(memory.stored()) / double(HierarchyLayout(grid.renderDimensions).levels.front().voxels());
+  json["device_bytes"] = memory.peak();
+  json["host_bytes"] = HierarchyLayout(grid.renderDimensions).levels.front().voxels() * sizeof(float);
+  const VolumeMemory memory98 = memoryOf(grid, DirectionSet::Directions98);
   json["table_98_bytes"] = memory98.table;
-  json["device_98_bytes"] = memory98.total();
+  json["device_98_bytes"] = memory98.peak();
   return json;
 }
 
@@ -99,7 +126,8 @@ void InfoCommand::add(CLI::App& app) {
   command->add_flag("--json", json_, "Print JSON for programs");
   command->footer(
       "TABLE 26 and TABLE 98 are the FreeVoxel table of the grid with so many directions, ON DEVICE all\n"
-      "device memory of the volume with it.\n"
+      "device memory of the volume with it at most. BYTES/VOXEL is what is kept for each voxel that holds\n"
+      "anything, with 26 directions and all levels of the octree (the paper: 27, without levels).\n"
       "Examples:\n"
       "  freevoxels info cloud.vdb\n"
       "  freevoxels info procedural:cloud --resolution 256 --json\n");

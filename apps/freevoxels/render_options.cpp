@@ -70,7 +70,7 @@ void RenderOptions::run(const FrameFiles& outputs) const {
 Scene RenderOptions::open(const Device& opened, ProgressLine& line, RunReport& report) const {
   line.begin("reading " + scene.input.input);
   const StageTimer timer(report.stages, "read volume");
-  return scene.open(maximumVoxels(opened, method.table().directions));
+  return scene.open(maximumVoxels(opened));
 }
 
 OptionList RenderOptions::describe(const Scene& view) const {
@@ -123,6 +123,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
   }
   report.visibleVoxels = renderer.visibleVoxelCount();
   report.voxels = view.volume.voxelCount();
+  report.memory = renderer.memory();
   report.cut = renderer.cutCounts();
 }
 

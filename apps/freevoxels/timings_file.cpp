@@ -31,6 +31,12 @@ namespace {
 
 void logCounts(const RunReport& report) {
   spdlog::debug("{} voxels, {} of them empty", report.voxels, report.voxels - report.visibleVoxels);
+  const auto stored = double(report.memory.stored());
+  spdlog::debug(
+      "{:.1f} MiB kept of the volume: {:.1f} bytes a voxel that holds anything, {:.1f} a voxel of the box; "
+      "at most {:.1f} MiB on the device",
+      stored / 0x1p20, stored / double(std::max<std::uint64_t>(report.visibleVoxels, 1)),
+      stored / double(report.voxels), double(report.memory.peak()) / 0x1p20);
   spdlog::debug(
       "{} blocks considered for the last frame, {} of them empty, {} outside of the image, {} hidden",
       report.cut.considered, report.cut.empty, report.cut.outside, report.cut.hidden);
@@ -68,6 +74,7 @@ void writeTimings(const std::filesystem::path& file, const RunReport& report) {
         {{"name", stage.name}, {"milliseconds", stage.milliseconds}, {"on_device", stage.onDevice}});
   json["voxels"] = report.voxels;
   json["visible_voxels"] = report.visibleVoxels;
+  json["memory_bytes"] = {{"stored", report.memory.stored()}, {"peak", report.memory.peak()}};
   json["blocks"] = {{"considered", report.cut.considered}, {"empty", report.cut.empty},
                     {"outside", report.cut.outside},       {"hidden", report.cut.hidden},
                     {"opened", report.cut.opened},         {"drawn", report.cut.drawn}};

@@ -9,6 +9,7 @@
 #include "apps/freevoxels/option_values.h"
 #include "engine/core/stages.h"
 #include "engine/hierarchy/cut_pass.h"
+#include "engine/renderer.h"
 #include "engine/vulkan/device.h"
 
 namespace freevoxels {
@@ -20,7 +21,8 @@ struct RunReport {
   double totalMilliseconds = 0.0;
   std::uint64_t visibleVoxels = 0;
   std::uint64_t voxels = 0;  ///< of the volume's box
-  CutCounts cut;             ///< of the last frame
+  VolumeMemory memory;
+  CutCounts cut;  ///< of the last frame
 };
 
 /// Adds each time to the one of its name, or appends it.
@@ -32,7 +34,9 @@ void logStages(const RunReport& report);
 
 /// {"version", "device": {"name", "type", "uuid", "driver"}, "options": {NAME: VALUE},
 ///  "stages": [{"name", "milliseconds", "on_device"}], "voxels", "visible_voxels",
-///  "blocks": {"considered", "empty", "outside", "hidden", "opened", "drawn": [by level, voxels first]}, "total_milliseconds"}.
+///  "memory_bytes": {"stored", "peak"},
+///  "blocks": {"considered", "empty", "outside", "hidden", "opened", "drawn": [by level, voxels first]},
+///  "total_milliseconds"}.
 /// Atomic.
 void writeTimings(const std::filesystem::path& file, const RunReport& report);
 

@@ -71,9 +71,8 @@ std::vector<int> resolutions(const Extent& extent, int quick) {
 }
 
 QualityScene openQualityScene(const Device& device, const QualitySubject& subject, int resolution) {
-  return makeQualityScene(
-      subject, resolution,
-      openProcedural(subject.procedural, resolution, maximumVoxels(device, DirectionSet::Directions98)));
+  return makeQualityScene(subject, resolution,
+                          openProcedural(subject.procedural, resolution, maximumVoxels(device)));
 }
 
 /// Pictures have more than a pixel a voxel: with less, no method shows what it can.
@@ -176,8 +175,7 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
       if (resolution == kLarge && !extent.resolution && !scene.alsoLarge) continue;
       addScene(jobs, device, fmt::format("{} at {}^3", scene.name, resolution), picture,
                [resolution, &scene, &device] {
-                 return makeValidationScene(openProcedural(scene.name, resolution,
-                                                           maximumVoxels(device, DirectionSet::Directions98)),
+                 return makeValidationScene(openProcedural(scene.name, resolution, maximumVoxels(device)),
                                             scene.color, resolution);
                });
     }
@@ -189,8 +187,8 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
   if (!extent.resolution) addFlight(jobs, device, extent);
   for (const std::string& file : extent.files) {
     const auto scene = std::make_shared<ValidationScene>(
-        makeValidationScene(readVdb(file, "", maximumVoxels(device, DirectionSet::Directions98)),
-                            SceneColor::Density, extent.quick ? kQuickFileEdge : kWholeFileEdge));
+        makeValidationScene(readVdb(file, "", maximumVoxels(device)), SceneColor::Density,
+                            extent.quick ? kQuickFileEdge : kWholeFileEdge));
     addScene(jobs, device, file, picture, [scene] { return *scene; });
     const int edge = extent.quick ? kQuickQualityPicture : kWholeQualityPicture;
     jobs.push_back({fmt::format("picture quality of {}", file),

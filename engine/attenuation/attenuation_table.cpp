@@ -7,6 +7,7 @@
 #include "embedded/attenuation_sweep.h"
 #include "embedded/attenuation_sweep_x.h"
 #include "engine/core/error.h"
+#include "engine/hierarchy/volume_memory.h"
 #include "shaders/interface.h"
 
 namespace freevoxels {
@@ -60,15 +61,18 @@ const Buffer& planeOf(const AttenuationTable& table, glm::ivec3 direction) {
 Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Specialisation& constants) {
   return makeComputePipeline(
       device, code,
-      {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+      {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
        .pushConstantBytes = sizeof(shader::SweepPush)},
       {shader::kSweepThreads, 1, 1}, constants);
 }
 
 }  // namespace
 
-AttenuationTable makeTable(const Device& device, const HierarchyLayout& hierarchy,
-                           const TableSettings& settings) {
+AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, const TableSettings& settings) {
+  checkTableFits(device, volume, settings.directions);
+  // Look-ups read whole words.
+  const std::uint64_t bytes = std::max<std::uint64_t>((volume.planeBytes() + 3) / 4 * 4, 4);
   AttenuationTable table{.settings = settings};
   const DirectionSet set = settings.directions;
   const int edge = 2 * int(set) + 1;
@@ -76,22 +80,24 @@ AttenuationTable makeTable(const Device& device, const HierarchyLayout& hierarch
   for (int i = 0; i < directionCount(set); ++i) {
     const glm::dvec3 d = directionAt(set, i);
     const std::string name = fmt::format("attenuation {},{},{}", d.x, d.y, d.z);
-    table.planes.emplace_back(device, hierarchy.planeBytes(), MemoryUse::Device, name.c_str(),
+    table.planes.emplace_back(device, bytes, MemoryUse::Device, name.c_str(),
                               VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
-    table.planeTexels.emplace_back(device, table.planes.back(), VK_FORMAT_R32G32B32A32_UINT);
+    table.planeTexels.emplace_back(device, table.planes.back(), VK_FORMAT_R8_UINT);
     addresses[std::size_t(cellNumber(set, directionCell(set, i)))] = table.planes.back().address();
   }
-  const std::span<const std::byte> bytes = std::as_bytes(std::span(addresses));
-  table.planeAddresses = Buffer(device, bytes.size(), MemoryUse::Device, "attenuation addresses");
-  upload(device, table.planeAddresses, bytes);
+  const std::span<const std::byte> list = std::as_bytes(std::span(addresses));
+  table.planeAddresses = Buffer(device, list.size(), MemoryUse::Device, "attenuation addresses");
+  upload(device, table.planeAddresses, list);
   table.darkest =
       Buffer(device, table.planes.size() * sizeof(std::uint32_t), MemoryUse::Device, "darkest codes");
   return table;
 }
 
 AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings)
-    : voxelsPerThread_(device.isCpu() ? 16 : 4),
-      blockBytes_(device.isCpu() ? kCpuBlockBytes : std::numeric_limits<std::uint64_t>::max()) {
+    : device_(device),
+      voxelsPerThread_(device.isCpu() ? 16 : 4),
+      blockBytes_(device.isCpu() ? kCpuBlockBytes : std::numeric_limits<std::uint64_t>::max()),
+      expand_(device) {
   const auto code = std::uint32_t(settings.code);
   for (int step = -1; step <= 1; ++step)
     bundles_[std::size_t(step + 1)] =
@@ -104,8 +110,17 @@ AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& se
     halves_.emplace(device, settings.code, voxelsPerThread_);
 }
 
-void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume,
-                              const AttenuationTable& table) const {
+void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) {
+  const std::uint64_t bytes = volume.hierarchy.denseVoxels() * sizeof(float);
+  if (extinction_.bytes() != bytes) {
+    extinctionQuads_ = {};
+    extinction_ = {};  // not both at once
+    extinction_ = Buffer(device_, bytes, MemoryUse::Device, "extinction of all voxels",
+                         VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+    extinctionQuads_ = TexelView(device_, extinction_);
+  }
+  commands.beginPass("expand voxels");
+  expand_.record(commands, volume, extinction_);
   commands.beginPass("attenuation sweeps");
   for (int z = -1; z <= 1; ++z)
     for (int y = -1; y <= 1; ++y)
@@ -113,7 +128,7 @@ void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume,
         recordRows(commands, volume, table);
       else
         recordBundles(commands, volume, table, {y, z});
-  if (halves_) halves_->record(commands, volume, table);
+  if (halves_) halves_->record(commands, volume, extinctionQuads_, table);
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
@@ -121,7 +136,8 @@ void AttenuationSweep::recordRows(Commands& commands, const DeviceVolume& volume
                                   const AttenuationTable& table) const {
   for (int x : {-1, 1}) {
     const shader::SweepPush push = sweepPush(volume, {x, 0, 0}, table.settings.pathLengthCorrection);
-    const std::array<Binding, 2> bindings{&volume.extinctionQuads, &planeOf(table, {x, 0, 0})};
+    const std::array<Binding, 3> bindings{&extinctionQuads_, &planeOf(table, {x, 0, 0}),
+                                          &volume.occupancyTexels};
     commands.dispatchLinear(rows_[x > 0 ? 0 : 1], bindings, push, std::uint64_t(push.lineCount));
   }
 }
@@ -137,7 +153,8 @@ void AttenuationSweep::recordBundles(Commands& commands, const DeviceVolume& vol
       shader::SweepPush push = sweepPush(volume, {x, yz}, table.settings.pathLengthCorrection);
       push.firstLine = first;
       push.lastLine = std::min(first + block, push.lineCount);
-      const std::array<Binding, 2> bindings{&volume.extinctionQuads, &planeOf(table, {x, yz})};
+      const std::array<Binding, 3> bindings{&extinctionQuads_, &planeOf(table, {x, yz}),
+                                            &volume.occupancyTexels};
       commands.dispatchLinear(bundles_[std::size_t(1 - x)], bindings, push,
                               std::uint64_t(push.lastLine - first) * std::uint64_t(bundles));
     }
@@ -145,30 +162,31 @@ void AttenuationSweep::recordBundles(Commands& commands, const DeviceVolume& vol
 
 namespace {
 
-/// Of every plane, the codes of a level's blocks that begin at a byte, without padding.
-std::vector<std::vector<std::uint8_t>> downloadPlanes(const Device& device, const GridLayout& layout,
-                                                      const AttenuationTable& table, VkDeviceSize first) {
-  std::vector<std::uint8_t> padded(layout.paddedVoxels());
+/// Of every plane, the codes from a byte on of what is stored of a level.
+std::vector<std::vector<std::uint8_t>> downloadPlanes(const Device& device, const DeviceVolume& volume,
+                                                      const AttenuationTable& table, int level,
+                                                      VkDeviceSize first) {
+  const std::vector<std::uint32_t> blocks = downloadStored(device, volume, level);
+  const std::uint64_t count = volume.hierarchy.levels[std::size_t(level)].voxels();
+  std::vector<std::uint8_t> stored(blocks.size());
   std::vector<std::vector<std::uint8_t>> result;
   for (const Buffer& plane : table.planes) {
-    download(device, plane, std::as_writable_bytes(std::span(padded)), first);
-    result.push_back(layout.withoutPadding(padded));
+    download(device, plane, std::as_writable_bytes(std::span(stored)), first);
+    result.push_back(spreadOut(stored, blocks, count));
   }
   return result;
 }
 
 }  // namespace
 
-std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const HierarchyLayout& hierarchy,
+std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const DeviceVolume& volume,
                                                      const AttenuationTable& table, int level) {
-  const auto i = std::size_t(level);
-  return downloadPlanes(device, hierarchy.levels[i], table, hierarchy.first[i]);
+  return downloadPlanes(device, volume, table, level, volume.firstRank(level));
 }
 
-std::vector<std::vector<std::uint8_t>> downloadBounds(const Device& device, const HierarchyLayout& hierarchy,
+std::vector<std::vector<std::uint8_t>> downloadBounds(const Device& device, const DeviceVolume& volume,
                                                       const AttenuationTable& table, int level) {
-  const auto i = std::size_t(level);
-  return downloadPlanes(device, hierarchy.levels[i], table, hierarchy.first[i] + hierarchy.boundsOffset());
+  return downloadPlanes(device, volume, table, level, volume.firstRank(level) + volume.boundsOffset());
 }
 
 std::vector<double> downloadLargestDepths(const Device& device, const AttenuationTable& table) {

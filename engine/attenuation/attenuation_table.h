@@ -9,23 +9,24 @@
 #include "engine/attenuation/directions.h"
 #include "engine/attenuation/half_sweep.h"
 #include "engine/attenuation/table_settings.h"
+#include "engine/hierarchy/occupancy.h"
 #include "engine/volume/device_volume.h"
 
 namespace freevoxels {
 
 struct AttenuationTable {
-  /// One byte a block and direction, of all levels (hierarchy_layout.h), of which AttenuationSweep fills the
-  /// voxels'; then the blocks' bounds. Directions in the order of directions.h.
+  /// One byte a direction and block that holds anything, of all levels, by rank (device_volume.h), of which
+  /// AttenuationSweep fills the voxels'; then the blocks' bounds. Directions in the order of directions.h.
   std::vector<Buffer> planes;
-  std::vector<QuadView> planeTexels;  ///< sixteen bytes of a plane a texel
+  std::vector<TexelView> planeTexels;  ///< a byte of a plane a texel
   Buffer planeAddresses;  ///< the planes' device addresses by cellNumber, 0 where a cell is no direction
   /// uint by direction, once the levels are made: the code of the most opaque voxel; of Linear8 255 minus it.
   Buffer darkest;
   TableSettings settings;
 };
 
-AttenuationTable makeTable(const Device& device, const HierarchyLayout& hierarchy,
-                           const TableSettings& settings);
+/// Fails with ExitCode::OutOfMemory, before allocating.
+AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, const TableSettings& settings);
 
 /// COMPUTE attenuation_sweep.comp, attenuation_sweep_x.comp and, for 98 directions,
 /// attenuation_sweep_half.comp: a dispatch a direction (of the 26 more, over blocks of lines, on a CPU
@@ -33,26 +34,31 @@ AttenuationTable makeTable(const Device& device, const HierarchyLayout& hierarch
 class AttenuationSweep {
  public:
   AttenuationSweep(const Device& device, const TableSettings& settings);
-  void record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const;
+  /// One volume after the other: the sweeps have one copy of all its voxels.
+  void record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table);
 
  private:
   void recordRows(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const;
   void recordBundles(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table,
                      glm::ivec2 yz) const;
 
+  const Device& device_;
   int voxelsPerThread_;
   std::uint64_t blockBytes_;
   std::array<Pipeline, 3> bundles_;  ///< by the march's step in x, -1, 0, 1
   std::array<Pipeline, 2> rows_;     ///< directions +x and -x
   std::optional<HalfSweep> halves_;  ///< of 98 directions
+  ExpandPass expand_;
+  Buffer extinction_;  ///< float, of all voxels
+  TexelView extinctionQuads_;
 };
 
-/// Bytes [direction][block] of one level, without padding.
-std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const HierarchyLayout& hierarchy,
+/// Bytes [direction][block] of one level, without padding, 0 of blocks that hold nothing.
+std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const DeviceVolume& volume,
                                                      const AttenuationTable& table, int level = 0);
 
 /// The same of the bounds of a level above the voxels: the codes of the most transparent voxel of each block.
-std::vector<std::vector<std::uint8_t>> downloadBounds(const Device& device, const HierarchyLayout& hierarchy,
+std::vector<std::vector<std::uint8_t>> downloadBounds(const Device& device, const DeviceVolume& volume,
                                                       const AttenuationTable& table, int level);
 
 /// By direction, the optical depth of the voxel that has most before it. Of a table that has its levels.

@@ -72,7 +72,8 @@ HalfSweep::HalfSweep(const Device& device, AttenuationCode code, int voxelsPerTh
     if (pipelines_.contains(key)) continue;
     pipelines_[key] = makeComputePipeline(
         device, {attenuation_sweep_half_spv, "attenuation sweep half"},
-        {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+        {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
+                      VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
          .pushConstantBytes = sizeof(shader::HalfSweepPush)},
         {shader::kSweepThreads, 1, 1},
         {std::uint32_t(code), std::uint32_t(voxelsPerThread), std::uint32_t(key.first),
@@ -80,11 +81,12 @@ HalfSweep::HalfSweep(const Device& device, AttenuationCode code, int voxelsPerTh
   }
 }
 
-void HalfSweep::record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const {
+void HalfSweep::record(Commands& commands, const DeviceVolume& volume, const TexelView& extinction,
+                       const AttenuationTable& table) const {
   for (const glm::ivec3 cell : halfCells()) {
     const shader::HalfSweepPush push = sweepPush(volume, cell, table.settings.pathLengthCorrection);
-    const std::array<Binding, 2> bindings{&volume.extinctionQuads,
-                                          &table.planes[std::size_t(directionIndex(kSet, cell))]};
+    const std::array<Binding, 3> bindings{&extinction, &table.planes[std::size_t(directionIndex(kSet, cell))],
+                                          &volume.occupancyTexels};
     const std::uint64_t lines = std::uint64_t(push.sideCount) * std::uint64_t(std::abs(push.marchStep));
     commands.dispatchLinear(pipelines_.at(pipelineKey(cell)), bindings, push,
                             lines * std::uint64_t(push.rowPitch / voxelsPerThread_));

@@ -15,8 +15,9 @@ struct AttenuationTable;
 class HalfSweep {
  public:
   HalfSweep(const Device& device, AttenuationCode code, int voxelsPerThread);
-  /// Of a table with 98 directions.
-  void record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const;
+  /// Of a table with 98 directions, from the extinction of all voxels.
+  void record(Commands& commands, const DeviceVolume& volume, const TexelView& extinction,
+              const AttenuationTable& table) const;
 
  private:
   int voxelsPerThread_;

@@ -51,7 +51,7 @@ void checkFits(const Device& device, const std::array<RayFan, 6>& fans) {
 RaySweep::RaySweep(const Device& device)
     : device_(device),
       pipeline_(makeComputePipeline(device, {ray_sweep_spv, "ray sweep"},
-                                    {.bindings = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+                                    {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
                                      .pushConstantBytes = sizeof(shader::RaySweepPush)},
                                     {shader::kRaySweepThreads, 1, 1})) {}
 
@@ -70,11 +70,9 @@ void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RayS
   for (std::size_t i = 0; i < fans.size(); ++i) {
     fans_[i] = deviceFan(fans[i], address);
     if (fans[i].planeCount == 0) continue;
-    const shader::RaySweepPush push{.fan = fans_[i],
-                                    .indexToWorld = glm::dmat3(volume.indexToWorld),
-                                    .dimensions = volume.layout.dimensions,
-                                    .rowPitch = volume.layout.rowPitch};
-    const std::array<Binding, 1> bindings{&volume.extinction};
+    const shader::RaySweepPush push{
+        .fan = fans_[i], .indexToWorld = glm::dmat3(volume.indexToWorld), .voxels = volume.onDevice(0)};
+    const std::array<Binding, 2> bindings{&volume.occupancy, &volume.extinction};
     commands.dispatchLinear(pipeline_, bindings, push, fans[i].rays());
     address += depthBytes(fans[i]);
     if (source.atInfinity) {

@@ -60,7 +60,7 @@ shader::CutFrame cutFrame(const CutInputs& inputs) {
   const shader::SetupFrame& setup = inputs.setup;
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
   shader::CutFrame frame{
-      .coarseFirst = std::uint32_t(volume.hierarchy.levels.front().paddedVoxels()),
+      .coarseFirst = std::uint32_t(volume.stored.front()),
       .top = volume.hierarchy.top(),
       .finest = inputs.detail.finest,
       .coarsest = inputs.detail.coarsest,
@@ -70,7 +70,7 @@ shader::CutFrame cutFrame(const CutInputs& inputs) {
       .edgePerDistance = float(inputs.detail.edgePerDistance),
       .outside = inputs.cull.outside ? 1 : 0,
       .hides = inputs.cull.hiddenDepth > 0.0 ? 1 : 0,
-      .boundsOffset = volume.hierarchy.boundsOffset(),
+      .boundsOffset = volume.boundsOffset(),
       .tiles = coverTiles(inputs.rays.size),
       .indexToWorld = setup.indexToWorld,
       .indexToPixel = setup.indexToPixel,
@@ -104,7 +104,7 @@ CutPass::CutPass(const Device& device, AttenuationCode code)
 void CutPass::makeRoom(const CutInputs& inputs) {
   const std::uint64_t most = mostDrawn(inputs);
   const std::uint64_t groups = std::max<std::uint64_t>(groupCount_, 1);
-  const std::uint64_t coarse = std::max<std::uint64_t>(inputs.volume.hierarchy.paddedCoarseBlocks(), 4);
+  const std::uint64_t coarse = std::max<std::uint64_t>((inputs.volume.boundsOffset() + 3) / 4 * 4, 4);
   cut_.chunkCount = 2 * std::uint32_t((most + shader::kSplatsPerChunk - 1) / shader::kSplatsPerChunk);
   makeLarger(device_, children_, coarse, "blocks to look at");
   makeLarger(device_, deferred_, coarse, "deferred blocks");
@@ -173,7 +173,7 @@ void CutPass::recordSelect(Commands& commands, const CutInputs& inputs, std::spa
   for (const Level& level : levels | std::views::reverse) {
     const std::array<Binding, 10> bindings{&frame_,
                                            level.parents,
-                                           &inputs.volume.extinction,
+                                           &inputs.volume.occupancy,
                                            &children_,
                                            &deferred_,
                                            &masks_,

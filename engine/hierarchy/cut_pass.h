@@ -10,7 +10,7 @@
 #include "engine/hierarchy/cover_pass.h"
 #include "engine/hierarchy/cull_rule.h"
 #include "engine/hierarchy/detail_rule.h"
-#include "engine/hierarchy/level_passes.h"
+#include "engine/hierarchy/volume_builder.h"
 
 namespace freevoxels {
 

@@ -1,6 +1,7 @@
 #include "engine/hierarchy/hierarchy_layout.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/core/error.h"
 
@@ -16,16 +17,16 @@ HierarchyLayout::HierarchyLayout(glm::ivec3 dimensions) {
   for (glm::ivec3 size = dimensions;; size = (size + 1) / 2) {
     levels.emplace_back(size);
     first.push_back(std::uint32_t(blocks));
-    blocks += levels.back().paddedVoxels();
+    blocks += words(int(levels.size()) - 1) * shader::kBlocksPerWord;
     if (glm::all(glm::lessThanEqual(size, glm::ivec3(1)))) break;
   }
   FV_CHECK_LE(levels.size(), std::size_t(shader::kMaximumLevels));
 }
 
 std::uint64_t HierarchyLayout::paddedBlocks() const {
-  std::uint64_t blocks = 0;
-  for (const GridLayout& level : levels) blocks += level.paddedVoxels();
-  return blocks;
+  std::uint64_t sum = 0;
+  for (int level = 0; level <= top(); ++level) sum += words(level);
+  return sum * shader::kBlocksPerWord;
 }
 
 std::uint32_t HierarchyLayout::indexOf(const Block& block) const {
@@ -45,9 +46,27 @@ Block HierarchyLayout::blockAt(std::uint32_t index) const {
                      row / std::uint32_t(grid.dimensions.y))};
 }
 
-shader::BlockLevel HierarchyLayout::onDevice(int level) const {
-  const GridLayout& grid = levels[std::size_t(level)];
-  return {.first = first[std::size_t(level)], .rowPitch = grid.rowPitch, .dimensions = grid.dimensions};
+std::vector<std::uint64_t> countStored(const HierarchyLayout& hierarchy, std::vector<bool> holding) {
+  std::vector<std::uint64_t> counts;
+  for (std::size_t level = 0;; ++level) {
+    counts.push_back(std::uint64_t(std::ranges::count(holding, true)));
+    if (level + 1 == hierarchy.levels.size()) return counts;
+    const glm::ivec3 n = hierarchy.levels[level].dimensions, parents = hierarchy.levels[level + 1].dimensions;
+    const auto index = [](glm::ivec3 cell, glm::ivec3 size) {
+      return std::size_t(cell.x) +
+             std::size_t(size.x) * (std::size_t(cell.y) + std::size_t(size.y) * std::size_t(cell.z));
+    };
+    std::vector<bool> above(std::size_t(hierarchy.levels[level + 1].voxels()), false);
+    for (int z = 0; z < n.z; ++z)
+      for (int y = 0; y < n.y; ++y)
+        for (int x = 0; x < n.x; ++x)
+          if (holding[index({x, y, z}, n)]) above[index(glm::ivec3(x, y, z) / 2, parents)] = true;
+    holding = std::move(above);
+  }
+}
+
+std::uint64_t HierarchyLayout::words(int level) const {
+  return (levels[std::size_t(level)].paddedVoxels() + shader::kBlocksPerWord - 1) / shader::kBlocksPerWord;
 }
 
 }  // namespace freevoxels

@@ -1,6 +1,6 @@
 #pragma once
 // The octree over the voxels and its place in memory: Subr et al. 2007, Section 3.2. All levels live in one
-// index space, so that whatever is kept of a voxel is kept of a block in the same buffer.
+// index space: a block's index is the place of its bit of occupancy, and of what is kept there is a rank.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -34,26 +34,25 @@ BlockBox boxOf(const Block& block, glm::ivec3 dimensions);
 struct HierarchyLayout {
   /// Level 0 first; each level has half the dimensions of the one below, rounded up, and the last is 1x1x1.
   std::vector<GridLayout> levels;
-  std::vector<std::uint32_t> first;  ///< index of each level's first block
+  std::vector<std::uint32_t> first;  ///< index of each level's first block, a multiple of kBlocksPerWord
 
   explicit HierarchyLayout(glm::ivec3 dimensions);
   HierarchyLayout() = default;
   int top() const { return int(levels.size()) - 1; }
   /// Of all levels, with the padding.
   std::uint64_t paddedBlocks() const;
-  /// Of the levels above the voxels.
-  std::uint64_t paddedCoarseBlocks() const { return paddedBlocks() - levels.front().paddedVoxels(); }
-  /// Bytes of a direction of the table: a code a block, then a bound a block above the voxels, which is that
-  /// of the block's most transparent voxel.
-  std::uint64_t planeBytes() const { return paddedBlocks() + paddedCoarseBlocks(); }
-  /// The bound of a block follows its code by this many blocks.
-  std::uint32_t boundsOffset() const { return std::uint32_t(paddedCoarseBlocks()); }
+  /// Of occupancy, that a level has.
+  std::uint64_t words(int level) const;
+  /// Voxels of whole words.
+  std::uint64_t denseVoxels() const { return words(0) * shader::kBlocksPerWord; }
 
   /// Where a block is, here and in shaders/blocks.glsl and nowhere else.
   std::uint32_t indexOf(const Block& block) const;
   /// The block at an index that is no padding.
   Block blockAt(std::uint32_t index) const;
-  shader::BlockLevel onDevice(int level) const;
 };
+
+/// How many blocks of each level hold one of the voxels that `holding` says so of (x fastest).
+std::vector<std::uint64_t> countStored(const HierarchyLayout& hierarchy, std::vector<bool> holding);
 
 }  // namespace freevoxels

@@ -12,7 +12,7 @@ struct LevelData {
   glm::ivec3 dimensions{0};
   std::vector<double> extinction;                ///< per world unit
   std::vector<glm::dvec3> colors;                ///< empty where all are the albedo
-  std::vector<std::vector<std::uint8_t>> table;  ///< bytes [direction][block]
+  std::vector<std::vector<std::uint8_t>> table;  ///< bytes [direction][block], any where extinction is 0
   /// The same of each block's most transparent voxel; empty for level 0.
   std::vector<std::vector<std::uint8_t>> bounds;
 

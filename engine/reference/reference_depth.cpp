@@ -43,9 +43,7 @@ class TableDepth : public ReferenceDepth {
     return found.falling / found.all;
   }
   double slope(const Block& block, int axis) const override {
-    Block before = block, after = block;
-    before.cell[axis] = std::max(block.cell[axis] - 1, 0);
-    after.cell[axis] = std::min(block.cell[axis] + 1, (volume_.dimensions[axis] - 1) / block.edge());
+    const Block before = neighbour(block, axis, -1), after = neighbour(block, axis, 1);
     const double apart = centre(after)[axis] - centre(before)[axis];
     return before == after ? 0.0 : (at(after) - at(before)) / apart;
   }
@@ -59,6 +57,14 @@ class TableDepth : public ReferenceDepth {
   };
   Transmittance transmittance(const Block& block) const;
   glm::dvec3 centre(const Block& block) const { return boxOf(block, volume_.dimensions).centre(); }
+  double extinctionOf(const Block& block) const;
+  /// Itself where that holds nothing, or is outside.
+  Block neighbour(Block block, int axis, int steps) const {
+    Block next = block;
+    next.cell[axis] += steps;
+    return extinctionOf(next) > 0.0 ? next : block;
+  }
+  double extinctionAt(glm::dvec3 place) const;
   /// A byte of the table, as long as if its line's layers had this world length.
   double stored(int direction, int byte, double layer) const;
   double beyondEye(int direction, double layer) const;
@@ -80,20 +86,39 @@ double TableDepth::stored(int direction, int byte, double layer) const {
   return depth * layer / layerLengths_[std::size_t(direction)];
 }
 
+double TableDepth::extinctionOf(const Block& block) const {
+  const glm::ivec3 n =
+      block.level == 0 ? volume_.dimensions : coarser_[std::size_t(block.level) - 1].dimensions;
+  if (glm::any(glm::lessThan(block.cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(block.cell, n)))
+    return 0.0;
+  if (block.level == 0) return extinction_[volume_.at(block.cell.x, block.cell.y, block.cell.z)];
+  const LevelData& level = coarser_[std::size_t(block.level) - 1];
+  return level.extinction[level.at(block.cell)];
+}
+
+/// Between the eight voxels around a place; 0 outside.
+double TableDepth::extinctionAt(glm::dvec3 place) const {
+  const glm::ivec3 low(glm::floor(place));
+  double sum = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 voxel = low + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+    const glm::dvec3 share = 1.0 - glm::abs(place - glm::dvec3(voxel));
+    sum += share.x * share.y * share.z * extinctionOf({0, voxel});
+  }
+  return sum;
+}
+
+/// From the eye on, with half of what is there.
 double TableDepth::beyondEye(int direction, double layer) const {
   if (!eyeInside_) return 0.0;
-  const glm::dvec3 place = glm::clamp(*eyeInside_, glm::dvec3(0.0), glm::dvec3(volume_.dimensions - 1));
-  double sum = 0.0;
-  for (int z = int(place.z); z <= std::min(int(place.z) + 1, volume_.dimensions.z - 1); ++z)
-    for (int y = int(place.y); y <= std::min(int(place.y) + 1, volume_.dimensions.y - 1); ++y)
-      for (int x = int(place.x); x <= std::min(int(place.x) + 1, volume_.dimensions.x - 1); ++x) {
-        const glm::dvec3 share = 1.0 - glm::abs(place - glm::dvec3(x, y, z));
-        const std::size_t voxel = volume_.at(x, y, z);
-        sum += share.x * share.y * share.z *
-               (stored(direction, table_[std::size_t(direction)][voxel], layer) +
-                layer * extinction_[voxel] / 2.0);
-      }
-  return sum;
+  const glm::dvec3 last(volume_.dimensions - 1), step = directionAt(settings_.directions, direction);
+  glm::dvec3 place = glm::clamp(*eyeInside_, glm::dvec3(0.0), last);
+  double sum = 0.5 * extinctionAt(place);
+  for (place += step;
+       glm::all(glm::greaterThan(place, glm::dvec3(-1.0))) && glm::all(glm::lessThan(place, last + 1.0));
+       place += step)
+    sum += extinctionAt(place);
+  return sum * countedLength(layer);
 }
 
 TableDepth::Transmittance TableDepth::transmittance(const Block& block) const {

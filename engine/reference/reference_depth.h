@@ -45,12 +45,12 @@ using ToEye = std::function<glm::dvec3(glm::dvec3 position)>;
 
 /// -log of the mean of the four transmittances around the line of sight, or the nearest one's. With
 /// path-length correction a stored depth is scaled by the world length of a lattice layer in the viewing
-/// direction over that in the stored one. Slopes are differences between neighbours, one-sided at the
-/// volume's faces. `table` holds bytes [direction][voxel], `coarser` the levels above the voxels; keeps
+/// direction over that in the stored one. Slopes are differences between neighbours, one-sided where one of
+/// them holds nothing. `table` holds bytes [direction][voxel], `coarser` the levels above the voxels; keeps
 /// references.
 ///
-/// With an eye inside the volume (index space), what a stored depth has beyond the eye is taken off: that of
-/// the voxels around the eye, interpolated, each with half of its own layer.
+/// With an eye inside the volume (index space), what a stored depth has beyond the eye is taken off: what a
+/// voxel there would have, and half of its own layer.
 std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume, std::span<const double> extinction,
                                            const std::vector<std::vector<std::uint8_t>>& table,
                                            std::span<const LevelData> coarser, const TableSettings& settings,

@@ -52,6 +52,7 @@ glm::dvec3 colorOf(const std::vector<Child>& children, const LevelData& level, d
   return weights > 0.0 ? sum / weights : sum;
 }
 
+/// Of children that hold anything; 0 of none.
 std::uint8_t codeOf(const std::vector<Child>& children, const std::vector<std::uint8_t>& codes,
                     const TableSettings& settings) {
   if (std::ranges::all_of(children, [&](const Child& child) { return codes[child.index] == 0; })) return 0;
@@ -83,11 +84,15 @@ LevelData referenceParents(const LevelData& children, int level, const Volume& v
                            const TableSettings& settings) {
   LevelData parents{.dimensions = (children.dimensions + 1) / 2, .extinction = {}, .colors = {}, .table = {}};
   const glm::ivec3 n = parents.dimensions;
-  std::vector<std::vector<Child>> family;
+  std::vector<std::vector<Child>> family, holding;
   for (int z = 0; z < n.z; ++z)
     for (int y = 0; y < n.y; ++y)
       for (int x = 0; x < n.x; ++x)
         family.push_back(childrenOf({level, {x, y, z}}, children, volume.dimensions));
+  for (std::vector<Child> block : family) {
+    std::erase_if(block, [&](const Child& child) { return children.extinction[child.index] <= 0.0; });
+    holding.push_back(std::move(block));
+  }
   const double edge = volume.voxelSize() * (1 << (level - 1));
   for (const std::vector<Child>& block : family) {
     parents.extinction.push_back(
@@ -96,7 +101,7 @@ LevelData referenceParents(const LevelData& children, int level, const Volume& v
   }
   parents.table.resize(children.table.size());
   tbb::parallel_for(std::size_t(0), children.table.size(), [&](std::size_t direction) {
-    for (const std::vector<Child>& block : family)
+    for (const std::vector<Child>& block : holding)
       parents.table[direction].push_back(codeOf(block, children.table[direction], settings));
   });
   return parents;

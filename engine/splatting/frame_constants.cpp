@@ -104,8 +104,7 @@ shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& t
       .opacityPoints = volume.opacityPointCount,
       .colorPoints = volume.colorPointCount,
       .albedo = volume.albedo};
-  for (int level = 0; level < setup.levelCount; ++level)
-    setup.levels[level] = volume.hierarchy.onDevice(level);
+  for (int level = 0; level < setup.levelCount; ++level) setup.levels[level] = volume.onDevice(level);
   return setup;
 }
 

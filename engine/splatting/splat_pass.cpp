@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "embedded/eye_depths.h"
 #include "embedded/splat_fragment.h"
 #include "embedded/splat_fragment_distance.h"
 #include "embedded/splat_setup.h"
@@ -75,12 +76,17 @@ SplatPass::SplatPass(const Device& device, bool withDistance, bool sorted)
       withDistance_(withDistance),
       sorted_(sorted),
       setup_(makeComputePipeline(device, {splat_setup_spv, "splat set-up"},
-                                 {.bindings = std::vector(9, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                                 {.bindings = std::vector(11, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
                                   .pushConstantBytes = sizeof(shader::SetupPush)},
                                  {shader::kSplatThreads, 1, 1})),
       points_(makeSplatPipeline(device, false, withDistance, sorted)),
       quads_(makeSplatPipeline(device, true, withDistance, sorted)),
-      frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "frame") {}
+      eyeDepthsPass_(makeComputePipeline(device, {eye_depths_spv, "eye depths"},
+                                         {.bindings = std::vector(3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                                          .pushConstantBytes = sizeof(shader::EyeDepthsPush)},
+                                         {shader::kEyeThreads, 1, 1})),
+      frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "frame"),
+      eyeDepths_(device, shader::kMaximumCells * sizeof(float), MemoryUse::Device, "eye depths") {}
 
 void SplatPass::beginRendering(Commands& commands, const SplatTargets& targets, const FrameConstants& frame,
                                VkAttachmentLoadOp load) const {
@@ -107,6 +113,18 @@ void SplatPass::beginRendering(Commands& commands, const SplatTargets& targets, 
   vkCmdSetScissor(commands.handle(), 0, 1, &scissor);
 }
 
+void SplatPass::recordEyeDepths(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame) {
+  const glm::dvec3 last(volume.layout.dimensions - 1);
+  const shader::EyeDepthsPush push{.voxels = volume.onDevice(0),
+                                   .place = glm::clamp(frame.eye.place, glm::dvec3(0.0), last),
+                                   .cells = frame.setup.cells};
+  const std::array<Binding, 3> bindings{&volume.occupancy, &volume.extinction, &eyeDepths_};
+  const int edge = 2 * frame.setup.cells + 1;
+  commands.beginPass("eye depths");
+  commands.dispatchLinear(eyeDepthsPass_, bindings, push, std::uint64_t(edge * edge * edge));
+  commands.barrier(kCompute, kCompute);
+}
+
 void SplatPass::recordFrame(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame) {
   shader::SetupFrame setup = frame.setup;
   if (setup.lookup == shader::kLookupExact) {
@@ -114,6 +132,7 @@ void SplatPass::recordFrame(Commands& commands, const DeviceVolume& volume, cons
     rays_->record(commands, volume, frame.eye);
     std::ranges::copy(rays_->fans(), setup.fans);
   }
+  if (frame.readsTable() && setup.eyeInside != 0) recordEyeDepths(commands, volume, frame);
   commands.beginPass("splat set-up");
   commands.update(frame_, setup);
 }
@@ -125,16 +144,18 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
   if (splats_.bytes() < count * sizeof(shader::Splat))
     splats_ = Buffer(device_, count * sizeof(shader::Splat), MemoryUse::Device, "splats");
   const Buffer& anyBuffer = frame_;
-  const Buffer& colors = inputs.volume.blockColors;
-  const std::array<Binding, 9> setup{&frame_,
-                                     &inputs.volume.transferPoints,
-                                     inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
-                                     inputs.order ? inputs.order : &inputs.visible->indices,
-                                     &inputs.volume.scalars,
-                                     &inputs.volume.extinction,
-                                     &inputs.visible->chunks,
-                                     &splats_,
-                                     colors.bytes() > 0 ? &colors : &anyBuffer};
+  const bool colors = inputs.volume.hasColors();
+  const std::array<Binding, 11> setup{&frame_,
+                                      &inputs.volume.transferPoints,
+                                      inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
+                                      inputs.order ? inputs.order : &inputs.visible->indices,
+                                      colors ? &inputs.volume.scalars : &anyBuffer,
+                                      &inputs.volume.extinction,
+                                      &inputs.visible->chunks,
+                                      &splats_,
+                                      colors ? &inputs.volume.blockColors : &anyBuffer,
+                                      &inputs.volume.occupancy,
+                                      &eyeDepths_};
   const std::array<Binding, 1> draw{&splats_};
   const Pipeline& pipeline = frame.quads ? quads_ : points_;
   for (const RenderTarget* target : targets.all())

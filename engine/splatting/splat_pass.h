@@ -51,9 +51,9 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                                   const TableSettings& table, const Camera& camera,
                                   const FrameSettings& settings);
 
-/// COMPUTE ray_sweep.comp where transmittances are exact, then COMPUTE splat_setup.comp and GRAPHICS
-/// splat.vert
-/// + splat.frag, chunk by chunk. Leaves the targets in layout GENERAL, visible to compute.
+/// COMPUTE ray_sweep.comp where transmittances are exact, or eye_depths.comp where the table is looked up
+/// from inside, then COMPUTE splat_setup.comp and GRAPHICS splat.vert + splat.frag, chunk by chunk. Leaves
+/// the targets in layout GENERAL, visible to compute.
 class SplatPass {
  public:
   SplatPass(const Device& device, bool withDistance, bool sorted = false);
@@ -75,15 +75,17 @@ class SplatPass {
 
  private:
   void recordFrame(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame);
+  void recordEyeDepths(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame);
   void beginRendering(Commands& commands, const SplatTargets& targets, const FrameConstants& frame,
                       VkAttachmentLoadOp load) const;
 
   const Device& device_;
   bool withDistance_, sorted_;
-  Pipeline setup_, points_, quads_;
+  Pipeline setup_, points_, quads_, eyeDepthsPass_;
   std::optional<RaySweep> rays_;
-  Buffer frame_;   ///< shader::SetupFrame
-  Buffer splats_;  ///< shader::Splat of one chunk
+  Buffer frame_;      ///< shader::SetupFrame
+  Buffer eyeDepths_;  ///< float, by cellNumber of the table's directions
+  Buffer splats_;     ///< shader::Splat of one chunk
 };
 
 }  // namespace freevoxels

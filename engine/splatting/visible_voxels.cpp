@@ -13,13 +13,11 @@ namespace freevoxels {
 
 namespace {
 
-std::uint32_t groupsFor(const GridLayout& layout) {
-  return std::uint32_t((layout.paddedVoxels() + shader::kCountVoxelsPerGroup - 1) /
-                       shader::kCountVoxelsPerGroup);
+std::uint32_t groupsFor(std::uint32_t words) {
+  return (words + shader::kOccupancyThreads - 1) / shader::kOccupancyThreads;
 }
 
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-constexpr VkDescriptorType kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 
 Pipeline makePass(const Device& device, ShaderCode code, std::vector<VkDescriptorType> bindings,
                   int threads) {
@@ -36,7 +34,8 @@ VisibleVoxels makeVisibleVoxels(const Device& device, const DeviceVolume& volume
   const std::uint64_t most = std::clamp<std::uint64_t>(volume.activeVoxels, 1, layout.voxels());
   result.chunkCount = std::uint32_t((most + shader::kSplatsPerChunk - 1) / shader::kSplatsPerChunk);
   result.groupOffsets =
-      Buffer(device, (groupsFor(layout) + 1) * sizeof(std::uint32_t), MemoryUse::Device, "visible group offsets");
+      Buffer(device, (groupsFor(std::uint32_t(volume.hierarchy.words(level))) + 1) * sizeof(std::uint32_t),
+             MemoryUse::Device, "visible group offsets");
   result.indices = Buffer(device, most * sizeof(std::uint32_t), MemoryUse::Device, "visible voxels");
   result.chunks = Buffer(device, result.chunkCount * sizeof(shader::ChunkArguments), MemoryUse::Device,
                          "chunk arguments", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
@@ -44,25 +43,25 @@ VisibleVoxels makeVisibleVoxels(const Device& device, const DeviceVolume& volume
 }
 
 CompactionPass::CompactionPass(const Device& device)
-    : count_(
-          makePass(device, {visible_count_spv, "visible count"}, {kTexels, kStorage}, shader::kCountThreads)),
+    : count_(makePass(device, {visible_count_spv, "visible count"}, {kStorage, kStorage},
+                      shader::kOccupancyThreads)),
       scan_(makePass(device, {visible_scan_spv, "visible scan"}, {kStorage, kStorage}, shader::kScanThreads)),
-      write_(makePass(device, {visible_write_spv, "visible write"}, {kTexels, kStorage, kStorage},
-                      shader::kCountThreads)) {}
+      write_(makePass(device, {visible_write_spv, "visible write"}, {kStorage, kStorage, kStorage},
+                      shader::kOccupancyThreads)) {}
 
 void CompactionPass::record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible,
                             int level) const {
-  const GridLayout& layout = volume.hierarchy.levels[std::size_t(level)];
-  const std::uint32_t groups = groupsFor(layout);
-  const shader::VisiblePush push{.first = volume.hierarchy.first[std::size_t(level)],
-                                 .voxelCount = std::uint32_t(layout.paddedVoxels()),
-                                 .groupCount = groups,
-                                 .chunkCount = visible.chunkCount};
-  const std::array<Binding, 2> count{&volume.extinctionQuads, &visible.groupOffsets};
+  const auto words = std::uint32_t(volume.hierarchy.words(level)), groups = groupsFor(words);
+  const shader::VisiblePush push{
+      .firstWord = volume.hierarchy.first[std::size_t(level)] / shader::kBlocksPerWord,
+      .wordCount = words,
+      .groupCount = groups,
+      .chunkCount = visible.chunkCount};
+  const std::array<Binding, 2> count{&volume.occupancy, &visible.groupOffsets};
   const std::array<Binding, 2> scan{&visible.groupOffsets, &visible.chunks};
-  const std::array<Binding, 3> write{&volume.extinctionQuads, &visible.groupOffsets, &visible.indices};
+  const std::array<Binding, 3> write{&volume.occupancy, &visible.groupOffsets, &visible.indices};
   constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-  const std::uint64_t threads = std::uint64_t(groups) * shader::kCountThreads;
+  const std::uint64_t threads = std::uint64_t(groups) * shader::kOccupancyThreads;
   commands.beginPass("visible voxels");
   commands.dispatchLinear(count_, count, push, threads);
   commands.barrier(kCompute, kCompute);

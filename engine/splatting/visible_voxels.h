@@ -1,6 +1,6 @@
 #pragma once
 // The list of voxels, or blocks of a level of the octree, that have something to draw, in ascending order,
-// made on the device and never read back for drawing.
+// made on the device.
 
 #include <cstdint>
 #include <vector>
@@ -10,7 +10,7 @@
 namespace freevoxels {
 
 struct VisibleVoxels {
-  Buffer groupOffsets;  ///< uint: counts, then offsets, of each workgroup's stretch of voxels, and the total
+  Buffer groupOffsets;  ///< uint: counts, then offsets, of each workgroup's stretch of blocks, and the total
   Buffer indices;       ///< uint: as of HierarchyLayout::indexOf, ascending
   Buffer chunks;        ///< shader::ChunkArguments of each draw chunk
   std::uint32_t chunkCount = 0;
@@ -19,7 +19,8 @@ struct VisibleVoxels {
 /// Room for all blocks of a level (hierarchy_layout.h) that can hold anything.
 VisibleVoxels makeVisibleVoxels(const Device& device, const DeviceVolume& volume, int level = 0);
 
-/// COMPUTE visible_count.comp, visible_scan.comp, visible_write.comp
+/// COMPUTE visible_count.comp, visible_scan.comp, visible_write.comp: lists what OccupancyPass found, and
+/// ranks it.
 class CompactionPass {
  public:
   explicit CompactionPass(const Device& device);

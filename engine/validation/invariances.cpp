@@ -138,6 +138,7 @@ Check checkOpposites(const Volume& volume, const std::vector<float>& extinction,
           if (glm::any(glm::lessThan(next, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(next, n)))
             continue;
           const std::size_t v = volume.at(x, y, z), w = volume.at(next.x, next.y, next.z);
+          if (!(extinction[v] > 0.0f && extinction[w] > 0.0f)) continue;  // not stored
           const std::array<int, 4> bytes{ahead[v], behind[v], ahead[w], behind[w]};
           if (std::ranges::find(bytes, 255) != bytes.end()) continue;  // 16 or more
           double allowance = 0.0;

@@ -65,8 +65,9 @@ void compareTables(const LevelData& level, const LevelData& reference, int numbe
   for (std::size_t d = 0; d < level.table.size(); ++d) {
     FV_CHECK_EQ(level.table[d].size(), reference.table[d].size());
     for (std::size_t i = 0; i < level.table[d].size(); ++i)
-      worst.take(std::abs(int(level.table[d][i]) - int(reference.table[d][i])),
-                 [&] { return fmt::format("{}, {}", directionText(set, int(d)), blockText(number, i)); });
+      if (reference.extinction[i] > 0.0)
+        worst.take(std::abs(int(level.table[d][i]) - int(reference.table[d][i])),
+                   [&] { return fmt::format("{}, {}", directionText(set, int(d)), blockText(number, i)); });
   }
 }
 
@@ -115,7 +116,7 @@ Check checkCutPicture(Renderer& renderer, const ValidationScene& scene, const Le
       .atMost(kPictureTolerance, "cut: picture of several levels");
 }
 
-/// A bound is exactly the code of the most transparent child.
+/// A bound is exactly the code of the most transparent child that holds anything.
 void compareBounds(const LevelData& level, const LevelData& children, int number,
                    const TableSettings& settings, Worst& worst) {
   const bool largest = settings.code == AttenuationCode::Linear8;
@@ -126,15 +127,17 @@ void compareBounds(const LevelData& level, const LevelData& children, int number
     for (int z = 0; z < n.z; ++z)
       for (int y = 0; y < n.y; ++y)
         for (int x = 0; x < n.x; ++x) {
+          if (children.extinction[children.at({x, y, z})] <= 0.0) continue;  // not stored
           int& bound = expected[level.at(glm::ivec3(x, y, z) / 2)];
           const int code = codes[direction][children.at({x, y, z})];
           bound = largest ? std::max(bound, code) : std::min(bound, code);
         }
     for (std::size_t i = 0; i < expected.size(); ++i)
-      worst.take(std::abs(level.bounds[direction][i] - expected[i]), [&] {
-        return fmt::format("level {}, block {}, {}", number, i,
-                           directionText(settings.directions, int(direction)));
-      });
+      if (level.extinction[i] > 0.0)
+        worst.take(std::abs(level.bounds[direction][i] - expected[i]), [&] {
+          return fmt::format("level {}, block {}, {}", number, i,
+                             directionText(settings.directions, int(direction)));
+        });
   }
 }
 

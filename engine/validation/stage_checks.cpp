@@ -113,15 +113,18 @@ struct PlaneDifference {
   std::size_t where = 0, differing = 0, bytes = 0;
 
   std::string text() const {
-    return fmt::format("{} ({:.3g} %)", largest, 100.0 * double(differing) / double(bytes));
+    return fmt::format("{} ({:.3g} %)", largest,
+                       100.0 * double(differing) / double(std::max<std::size_t>(bytes, 1)));
   }
 };
 
-PlaneDifference comparePlanes(const std::vector<std::uint8_t>& plane,
+PlaneDifference comparePlanes(std::span<const double> extinction, const std::vector<std::uint8_t>& plane,
                               const std::vector<std::uint8_t>& reference) {
   FV_CHECK_EQ(plane.size(), reference.size());
-  PlaneDifference result{.bytes = plane.size()};
+  PlaneDifference result;
   for (std::size_t i = 0; i < plane.size(); ++i) {
+    if (extinction[i] <= 0.0) continue;  // not stored
+    ++result.bytes;
     const int difference = std::abs(int(plane[i]) - int(reference[i]));
     if (difference > 0) ++result.differing;
     if (difference > result.largest) {
@@ -140,7 +143,7 @@ Check checkTable(const Outcome& outcome, const char* name, std::vector<std::vect
   Worst worst;
   for (int d = 0; d < directionCount(set); ++d) {
     const PlaneDifference difference =
-        comparePlanes(outcome.table[std::size_t(d)], reference[std::size_t(d)]);
+        comparePlanes(outcome.extinction, outcome.table[std::size_t(d)], reference[std::size_t(d)]);
     worst.take(difference.largest, [&] {
       return fmt::format("{}, {}", directionText(set, d), voxelText(outcome.scene.volume, difference.where));
     });

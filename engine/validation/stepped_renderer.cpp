@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
+#include "engine/hierarchy/volume_builder.h"
 #include "engine/splatting/sums_readback.h"
 
 namespace freevoxels {
@@ -32,16 +33,13 @@ std::vector<shader::ChunkArguments> chunkArguments(std::size_t count, std::uint3
 
 SteppedVolume prepareSteps(const Device& device, const Volume& volume, const Classification& classification,
                            const TableSettings& table) {
-  SteppedVolume steps{.volume = uploadVolume(device, volume, classification)};
-  steps.table = makeTable(device, steps.volume.hierarchy, table);
-  steps.visible = makeVisibleVoxels(device, steps.volume);
-  const ClassifyPass classify(device);
-  const AttenuationSweep sweep(device, table);
-  const CompactionPass compaction(device);
+  std::vector<StageTime> times;
+  BuiltVolume built = buildVolume(device, volume, classification, times);
+  SteppedVolume steps{.volume = std::move(built.volume), .visible = std::move(built.visible)};
+  steps.table = makeTable(device, steps.volume, table);
+  AttenuationSweep sweep(device, table);
   Commands commands(device);
-  classify.record(commands, steps.volume, classification);
   sweep.record(commands, steps.volume, steps.table);
-  compaction.record(commands, steps.volume, steps.visible);
   commands.submitAndWait();
   steps.voxels = downloadVisibleVoxels(device, steps.visible);
   return steps;

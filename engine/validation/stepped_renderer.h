@@ -18,8 +18,8 @@ namespace freevoxels {
 /// What the passes before the camera leave on the device.
 struct SteppedVolume {
   DeviceVolume volume;
-  AttenuationTable table;
   VisibleVoxels visible;
+  AttenuationTable table;
   std::vector<std::uint32_t> voxels;  ///< the visible ones, padded indices in the order of the list
 };
 

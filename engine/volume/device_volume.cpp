@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <numeric>
 
 #include "embedded/classify.h"
 #include "shaders/interface.h"
@@ -22,51 +23,76 @@ void copyPadded(const Volume& volume, const GridLayout& layout, std::span<float>
     std::copy_n(volume.values.data() + row * width, width, target.data() + row * pitch);
     std::fill_n(target.data() + row * pitch + width, pitch - width, kInactiveVoxel);
   }
+  std::ranges::fill(target.subspan(rows * pitch), kInactiveVoxel);
 }
 
-void uploadScalars(const Device& device, const Volume& volume, const DeviceVolume& target) {
-  const std::size_t count = target.layout.paddedVoxels();
-  if (target.scalars.mapped() != nullptr) {
-    copyPadded(volume, target.layout, {reinterpret_cast<float*>(target.scalars.mapped()), count});
-    return;
+void uploadTransferFunction(const Device& device, const Classification& classification,
+                            DeviceVolume& target) {
+  std::vector<glm::vec4> points;
+  if (classification.transferFunction) {
+    const TransferFunction& function = *classification.transferFunction;
+    for (const auto& point : function.opacity) points.emplace_back(point.scalar, point.opacity, 0.0f, 0.0f);
+    for (const auto& point : function.color) points.emplace_back(point.scalar, point.color);
+    target.opacityPointCount = std::uint32_t(function.opacity.size());
+    target.colorPointCount = std::uint32_t(function.color.size());
+  } else {
+    points.emplace_back(0.0f);  // a binding needs a buffer
   }
-  std::vector<float> padded(count);
-  copyPadded(volume, target.layout, padded);
-  upload(device, target.scalars, std::as_bytes(std::span(padded)));
+  target.transferPoints =
+      Buffer(device, points.size() * sizeof(glm::vec4), MemoryUse::Device, "transfer function");
+  upload(device, target.transferPoints, std::as_bytes(std::span(points)));
 }
 
 }  // namespace
 
-DeviceVolume uploadVolume(const Device& device, const Volume& volume, const Classification& classification) {
+std::uint64_t DeviceVolume::storedBlocks() const {
+  return std::accumulate(stored.begin(), stored.end(), std::uint64_t(0));
+}
+
+std::uint32_t DeviceVolume::firstRank(int level) const {
+  return std::uint32_t(std::accumulate(stored.begin(), stored.begin() + level, std::uint64_t(0)));
+}
+
+shader::BlockLevel DeviceVolume::onDevice(int level) const {
+  const GridLayout& grid = hierarchy.levels[std::size_t(level)];
+  return {.first = hierarchy.first[std::size_t(level)],
+          .firstRank = stored.empty() ? 0 : firstRank(level),
+          .rowPitch = grid.rowPitch,
+          .dimensions = grid.dimensions};
+}
+
+DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
+                              const Classification& classification) {
   DeviceVolume result{.layout = GridLayout(volume.dimensions),
                       .hierarchy = HierarchyLayout(volume.dimensions),
                       .indexToWorld = volume.indexToWorld,
                       .albedo = classification.albedo,
                       .voxelSize = volume.voxelSize(),
                       .activeVoxels = volume.activeVoxels};
-  result.scalars = Buffer(device, result.layout.paddedVoxels() * sizeof(float), MemoryUse::Device, "scalars");
-  result.extinction = Buffer(device, result.hierarchy.paddedBlocks() * sizeof(float), MemoryUse::Device,
-                             "extinction", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
-  result.extinctionQuads = QuadView(device, result.extinction);
-  uploadScalars(device, volume, result);
-
-  std::vector<glm::vec4> points;
-  if (classification.transferFunction) {
-    const TransferFunction& function = *classification.transferFunction;
-    for (const auto& point : function.opacity) points.emplace_back(point.scalar, point.opacity, 0.0f, 0.0f);
-    for (const auto& point : function.color) points.emplace_back(point.scalar, point.color);
-    result.opacityPointCount = std::uint32_t(function.opacity.size());
-    result.colorPointCount = std::uint32_t(function.color.size());
-    if (result.hierarchy.top() > 0)
-      result.blockColors = Buffer(device, result.hierarchy.paddedCoarseBlocks() * sizeof(glm::uvec2),
-                                  MemoryUse::Device, "block colours");
-  } else {
-    points.emplace_back(0.0f);  // a binding needs a buffer
-  }
-  result.transferPoints =
-      Buffer(device, points.size() * sizeof(glm::vec4), MemoryUse::Device, "transfer function");
-  upload(device, result.transferPoints, std::as_bytes(std::span(points)));
+  const std::uint64_t words = result.hierarchy.paddedBlocks() / shader::kBlocksPerWord;
+  result.occupancy = Buffer(device, words * sizeof(shader::OccupancyWord), MemoryUse::Device, "occupancy",
+                            VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  result.occupancyTexels = TexelView(device, result.occupancy, VK_FORMAT_R32G32_UINT);
+  uploadTransferFunction(device, classification, result);
   return result;
+}
+
+DenseVoxels uploadVoxels(const Device& device, const Volume& volume, const HierarchyLayout& hierarchy) {
+  const std::uint64_t count = hierarchy.denseVoxels();
+  DenseVoxels voxels;
+  voxels.scalars = Buffer(device, count * sizeof(float), MemoryUse::Device, "all scalars");
+  voxels.extinction = Buffer(device, count * sizeof(float), MemoryUse::Device, "all extinction",
+                             VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  voxels.extinctionQuads = TexelView(device, voxels.extinction);
+  const GridLayout& layout = hierarchy.levels.front();
+  if (voxels.scalars.mapped() != nullptr) {
+    copyPadded(volume, layout, {reinterpret_cast<float*>(voxels.scalars.mapped()), count});
+    return voxels;
+  }
+  std::vector<float> padded(count);
+  copyPadded(volume, layout, padded);
+  upload(device, voxels.scalars, std::as_bytes(std::span(padded)));
+  return voxels;
 }
 
 ClassifyPass::ClassifyPass(const Device& device)
@@ -75,16 +101,16 @@ ClassifyPass::ClassifyPass(const Device& device)
                                      .pushConstantBytes = sizeof(shader::ClassifyPush)},
                                     {shader::kClassifyThreads, 1, 1})) {}
 
-void ClassifyPass::record(Commands& commands, const DeviceVolume& volume,
+void ClassifyPass::record(Commands& commands, const DeviceVolume& volume, const DenseVoxels& voxels,
                           const Classification& classification) const {
-  const std::uint64_t quads = volume.layout.paddedVoxels() / 4;
+  const std::uint64_t quads = volume.hierarchy.denseVoxels() / 4;
   const shader::ClassifyPush push{
       .quadCount = std::uint32_t(quads),
       .opacityPoints = volume.opacityPointCount,
       .densityScale = float(std::min(classification.densityScale, kMaximumExtinction)),
       .unitDistance =
           classification.transferFunction ? float(classification.transferFunction->unitDistance) : 1.0f};
-  const std::array<Binding, 3> bindings{&volume.scalars, &volume.transferPoints, &volume.extinction};
+  const std::array<Binding, 3> bindings{&voxels.scalars, &volume.transferPoints, &voxels.extinction};
   commands.beginPass("classify");
   commands.dispatchLinear(pipeline_, bindings, push, quads);
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);

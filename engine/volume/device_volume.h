@@ -1,11 +1,10 @@
 #pragma once
-// A classified volume on the device: scalars, extinction and the transfer function.
+// A classified volume on the device: which blocks of its octree hold anything, and what is kept of those.
 
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "engine/core/stages.h"
 #include "engine/hierarchy/hierarchy_layout.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/grid_layout.h"
@@ -15,29 +14,57 @@
 
 namespace freevoxels {
 
+/// A block holds something where its extinction is above 0. What is kept of such blocks is kept at their
+/// ranks: in the order of HierarchyLayout, level by level.
 struct DeviceVolume {
   GridLayout layout;
   HierarchyLayout hierarchy;  ///< its level 0 is `layout`
-  Buffer scalars;             ///< float
-  Buffer extinction;  ///< float, per world unit, of all levels; ClassifyPass writes the voxels', LevelPass
-                      ///< the rest
-  QuadView extinctionQuads;
-  Buffer blockColors;     ///< four halves, of the levels above the voxels; empty where there is one colour
+  Buffer occupancy;           ///< shader::OccupancyWord, of all levels
+  TexelView occupancyTexels;
+  std::vector<std::uint64_t> stored;  ///< blocks of each level that hold anything
+  Buffer extinction;                  ///< float, per world unit, of all levels
+  Buffer scalars;                     ///< float, of the voxels; does not exist where there is one colour
+  Buffer
+      blockColors;  ///< four halves, of the levels above the voxels; does not exist where there is one colour
   Buffer transferPoints;  ///< vec4: opacity points, then colour points (transfer_function.glsl)
   std::uint32_t opacityPointCount = 0, colorPointCount = 0;  ///< 0 = physical
   glm::dmat4 indexToWorld{1.0};
   glm::vec3 albedo{0.0f};
   double voxelSize = 0.0;
   std::uint64_t activeVoxels = 0;  ///< no more than this many can be visible
+
+  bool hasColors() const { return opacityPointCount > 0; }
+  /// Of all levels that hold anything.
+  std::uint64_t storedBlocks() const;
+  /// Of a level's first block that holds anything.
+  std::uint32_t firstRank(int level) const;
+  /// Bytes of a direction of the attenuation table: a code a block, then a bound a block above the voxels,
+  /// which is that of the most transparent of the block's voxels that hold anything.
+  std::uint64_t planeBytes() const { return storedBlocks() + boundsOffset(); }
+  /// The bound of a block follows its code by this many blocks.
+  std::uint32_t boundsOffset() const { return std::uint32_t(storedBlocks() - stored.front()); }
+  shader::BlockLevel onDevice(int level) const;
 };
 
-DeviceVolume uploadVolume(const Device& device, const Volume& volume, const Classification& classification);
+/// Everything but what is kept of the blocks.
+DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
+                              const Classification& classification);
+
+/// All voxels of a volume, the empty ones as well: what the volume is built from. Padded to a multiple of
+/// kBlocksPerWord.
+struct DenseVoxels {
+  Buffer scalars, extinction;  ///< float
+  TexelView extinctionQuads;
+};
+
+DenseVoxels uploadVoxels(const Device& device, const Volume& volume, const HierarchyLayout& hierarchy);
 
 /// COMPUTE classify.comp
 class ClassifyPass {
  public:
   explicit ClassifyPass(const Device& device);
-  void record(Commands& commands, const DeviceVolume& volume, const Classification& classification) const;
+  void record(Commands& commands, const DeviceVolume& volume, const DenseVoxels& voxels,
+              const Classification& classification) const;
 
  private:
   Pipeline pipeline_;

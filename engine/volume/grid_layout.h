@@ -1,10 +1,8 @@
 #pragma once
 // How a box of values lies in device buffers.
 
-#include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <vector>
 
 #include "shaders/interface.h"
 
@@ -29,14 +27,6 @@ struct GridLayout {
   /// Of a voxel that is no padding: its index in Volume::values.
   std::uint32_t unpaddedIndex(std::uint32_t padded) const {
     return padded - padded / std::uint32_t(rowPitch) * std::uint32_t(rowPitch - dimensions.x);
-  }
-  template <typename Value>
-  std::vector<Value> withoutPadding(const std::vector<Value>& padded) const {
-    std::vector<Value> values;
-    values.reserve(padded.size() / std::size_t(rowPitch) * std::size_t(dimensions.x));
-    for (auto row = padded.begin(); row != padded.end(); row += rowPitch)
-      values.insert(values.end(), row, row + dimensions.x);
-    return values;
   }
 };
 

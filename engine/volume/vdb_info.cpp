@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
+#include "engine/hierarchy/hierarchy_layout.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/vdb_density.h"
 #include "engine/volume/vdb_grids.h"
@@ -80,17 +82,46 @@ void describeVoxels(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   info.maximum = values.maximum;
 }
 
-/// The box that readVdb would make of the grid.
+/// Of more voxels the bits take longer than the answer is worth.
+constexpr std::uint64_t kMostCounted = std::uint64_t(1) << 29;
+
+template <typename ToDensity>
+std::vector<std::uint64_t> storedBlocks(const FloatTree& tree,
+                                        const std::vector<const FloatTree::LeafNodeType*>& leaves,
+                                        const openvdb::CoordBBox& bounds, const ToDensity& toDensity) {
+  if (bounds.volume() > kMostCounted) return {};
+  const HierarchyLayout hierarchy({bounds.dim().x(), bounds.dim().y(), bounds.dim().z()});
+  std::vector<bool> holding(bounds.volume(), false);
+  const auto hold = [&](const openvdb::Coord& voxel) {
+    const openvdb::Coord place = voxel - bounds.min(), size = bounds.dim();
+    holding[std::size_t(place.x()) +
+            std::size_t(size.x()) *
+                (std::size_t(place.y()) + std::size_t(size.y()) * std::size_t(place.z()))] = true;
+  };
+  for (const FloatTree::LeafNodeType* leaf : leaves)
+    for (auto voxel = leaf->cbeginValueAll(); voxel; ++voxel)
+      if (toDensity(*voxel, voxel.isValueOn()) > 0.0f) hold(voxel.getCoord());
+  visitTiles(tree, [&](const openvdb::CoordBBox& box, float value, bool active) {
+    if (toDensity(value, active) > 0.0f)
+      for (auto voxel = box.begin(); voxel; ++voxel) hold(*voxel);
+  });
+  return countStored(hierarchy, std::move(holding));
+}
+
+/// The box that readVdb would make of the grid, and what of it holds anything.
 void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   const openvdb::FloatGrid::ConstPtr floats = asFloatGrid(grid);
   std::vector<const FloatTree::LeafNodeType*> leaves;
   floats->tree().getNodes(leaves);
-  const openvdb::CoordBBox box =
-      withDensity(*grid, [&](const auto& toDensity) { return boundsOf(floats->tree(), leaves, toDensity); });
-  if (box.empty())
-    info.unusable = kNothingInsideClause;
-  else
+  withDensity(*grid, [&](const auto& toDensity) {
+    const openvdb::CoordBBox box = boundsOf(floats->tree(), leaves, toDensity);
+    if (box.empty()) {
+      info.unusable = kNothingInsideClause;
+      return;
+    }
     info.renderDimensions = {box.dim().x(), box.dim().y(), box.dim().z()};
+    info.storedBlocks = storedBlocks(floats->tree(), leaves, box, toDensity);
+  });
 }
 
 GridInfo describe(VdbFile& file, const VdbFile::Entry& entry) {

@@ -81,7 +81,7 @@ Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const ch
   address_ = vkGetBufferDeviceAddress(device.handle(), &address);
 }
 
-QuadView::QuadView(const Device& device, const Buffer& buffer, VkFormat format) {
+TexelView::TexelView(const Device& device, const Buffer& buffer, VkFormat format) {
   const VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
                                     .buffer = buffer.handle(),
                                     .format = format,

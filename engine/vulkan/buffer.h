@@ -36,14 +36,14 @@ class Buffer {
   std::byte* mapped_ = nullptr;
 };
 
-/// A buffer seen as texels of 16 bytes, four floats or four 32-bit words each: loads through the texture
+/// A buffer seen as texels, of four floats or of another format: loads through the texture
 /// path, which lavapipe gathers for all lanes at once where storage-buffer loads go lane by lane (sweeps take
 /// two thirds of the time).
-class QuadView {
+class TexelView {
  public:
-  QuadView() = default;
+  TexelView() = default;
   /// The buffer needs VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT.
-  QuadView(const Device& device, const Buffer& buffer, VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT);
+  TexelView(const Device& device, const Buffer& buffer, VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT);
   VkBufferView handle() const { return view_.get(); }
 
  private:

@@ -76,7 +76,7 @@ void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings,
     if (const auto* buffer = std::get_if<const Buffer*>(&bindings[i])) {
       buffers[i] = {.buffer = (*buffer)->handle(), .offset = 0, .range = VK_WHOLE_SIZE};
       write.pBufferInfo = &buffers[i];
-    } else if (const auto* view = std::get_if<const QuadView*>(&bindings[i])) {
+    } else if (const auto* view = std::get_if<const TexelView*>(&bindings[i])) {
       views[i] = (*view)->handle();
       write.pTexelBufferView = &views[i];
     } else {

@@ -15,7 +15,7 @@
 namespace freevoxels {
 
 /// What a binding of set 0 points to: a whole buffer, its texels, or a storage image in layout GENERAL.
-using Binding = std::variant<const Buffer*, const QuadView*, const RenderTarget*>;
+using Binding = std::variant<const Buffer*, const TexelView*, const RenderTarget*>;
 
 class Commands {
  public:

@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::array kExtensions{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
 
-constexpr std::uint32_t kStorageBuffersPerStage = 8;  // splat_setup.comp
+constexpr std::uint32_t kStorageBuffersPerStage = 11;  // splat_setup.comp
 
 /// The features that the engine uses, linked into one chain: queried to judge a device, enabled to open it.
 struct Features {
@@ -42,11 +42,11 @@ struct RequiredFeature {
 #name, [](Features & f) -> VkBool32& { return f.part.name; } \
   }
 const std::array kRequiredFeatures{
-    FV_FEATURE(base.features, largePoints),  FV_FEATURE(base.features, independentBlend),
-    FV_FEATURE(vulkan12, scalarBlockLayout), FV_FEATURE(vulkan12, bufferDeviceAddress),
-    FV_FEATURE(vulkan12, timelineSemaphore), FV_FEATURE(vulkan12, hostQueryReset),
-    FV_FEATURE(vulkan13, synchronization2),  FV_FEATURE(vulkan13, dynamicRendering),
-    FV_FEATURE(vulkan13, maintenance4),
+    FV_FEATURE(base.features, largePoints),        FV_FEATURE(base.features, independentBlend),
+    FV_FEATURE(vulkan12, scalarBlockLayout),       FV_FEATURE(vulkan12, bufferDeviceAddress),
+    FV_FEATURE(vulkan12, timelineSemaphore),       FV_FEATURE(vulkan12, hostQueryReset),
+    FV_FEATURE(vulkan12, storageBuffer8BitAccess), FV_FEATURE(vulkan13, synchronization2),
+    FV_FEATURE(vulkan13, dynamicRendering),        FV_FEATURE(vulkan13, maintenance4),
 };
 #undef FV_FEATURE
 

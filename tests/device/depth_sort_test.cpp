@@ -8,6 +8,7 @@
 #include <random>
 #include <span>
 
+#include "engine/hierarchy/volume_builder.h"
 #include "engine/reference/reference_sorted.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/reference/reference_table.h"
@@ -54,16 +55,12 @@ class DepthSortTest : public DeviceTest {
   static std::vector<std::vector<std::uint32_t>> order(const Volume& volume,
                                                        const std::vector<Camera>& cameras) {
     const Classification classification{.densityScale = 1.0};
-    const DeviceVolume onDevice = uploadVolume(device(), volume, classification);
-    const VisibleVoxels visible = makeVisibleVoxels(device(), onDevice);
-    const ClassifyPass classify(device());
-    const CompactionPass compaction(device());
+    std::vector<StageTime> times;
+    const auto [onDevice, visible, lists] = buildVolume(device(), volume, classification, times);
     const DepthSort sort(device(), onDevice);
     std::vector<std::vector<std::uint32_t>> orders;
     for (const Camera& camera : cameras) {
       Commands commands(device());
-      classify.record(commands, onDevice, classification);
-      compaction.record(commands, onDevice, visible);
       sort.record(commands, onDevice, visible, camera);
       commands.submitAndWait();
       orders.push_back(read(sort.voxels(), downloadVisibleCount(device(), visible)));

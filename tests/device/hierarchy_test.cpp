@@ -212,7 +212,7 @@ TEST_F(HierarchyTest, VoxelsAreDrawnWhereTheyAreLargeOrSorted) {
     settings.culling = false;
     renderer.render(camera, settings);
     EXPECT_EQ(renderer.cutCounts().drawn, std::vector{renderer.visibleVoxelCount()});
-    for (const StageTime& stage : renderer.timings()) EXPECT_NE(stage.name, "octree levels");
+    for (const StageTime& stage : renderer.timings()) EXPECT_NE(stage.name, "octree table");
   }
 }
 

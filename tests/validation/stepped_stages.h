@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "engine/attenuation/ray_sweep.h"
+#include "engine/hierarchy/level_passes.h"
+#include "engine/hierarchy/occupancy.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/validation/stage_outputs.h"
 #include "engine/validation/stepped_renderer.h"
@@ -30,11 +32,10 @@ struct SteppedStages : StageOutputs {
         drawn(steps.voxels) {}
 
   std::vector<float> extinction() override {
-    std::vector<float> padded(steps.volume.layout.paddedVoxels());
-    download(device, steps.volume.extinction, std::as_writable_bytes(std::span(padded)));
-    return steps.volume.layout.withoutPadding(padded);
+    const LevelData voxels = downloadMedium(device, steps.volume, 0);
+    return {voxels.extinction.begin(), voxels.extinction.end()};
   }
-  TableBytes table() override { return downloadTable(device, steps.volume.hierarchy, steps.table); }
+  TableBytes table() override { return downloadTable(device, steps.volume, steps.table); }
   std::vector<std::uint32_t> visibleVoxels() override {
     std::vector<std::uint32_t> voxels;
     for (const std::uint32_t voxel : listed) voxels.push_back(steps.volume.layout.unpaddedIndex(voxel));
@@ -55,12 +56,9 @@ struct SteppedStages : StageOutputs {
 
   /// In the order of Volume::values.
   void replacePlane(int direction, const std::vector<std::uint8_t>& bytes) {
-    const GridLayout& layout = steps.volume.layout;
-    std::vector<std::uint8_t> padded(layout.paddedVoxels());
-    for (std::size_t i = 0; i < padded.size(); ++i)
-      if (int(i % std::size_t(layout.rowPitch)) < layout.dimensions.x)
-        padded[i] = bytes[layout.unpaddedIndex(std::uint32_t(i))];
-    upload(device, steps.table.planes[std::size_t(direction)], std::as_bytes(std::span(padded)));
+    std::vector<std::uint8_t> stored;
+    for (const std::uint32_t voxel : downloadStored(device, steps.volume, 0)) stored.push_back(bytes[voxel]);
+    upload(device, steps.table.planes[std::size_t(direction)], std::as_bytes(std::span(stored)));
   }
 };
 

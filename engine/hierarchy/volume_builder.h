@@ -1,0 +1,33 @@
+#pragma once
+// A volume to what every frame needs of it but the attenuation table: extinction and colours of all blocks of
+// the octree that hold anything, and their lists.
+
+#include <vector>
+
+#include "engine/core/stages.h"
+#include "engine/hierarchy/level_passes.h"
+
+namespace freevoxels {
+
+/// The blocks of every level that hold anything; of level 0 they are BuiltVolume::visible.
+struct LevelLists {
+  std::vector<VisibleVoxels> coarse;  ///< of levels 1, 2, ...
+  std::vector<std::uint64_t> counts;  ///< of levels 0, 1, 2, ...
+
+  const VisibleVoxels& of(int level, const VisibleVoxels& voxels) const {
+    return level == 0 ? voxels : coarse[std::size_t(level) - 1];
+  }
+};
+
+struct BuiltVolume {
+  DeviceVolume volume;
+  VisibleVoxels visible;  ///< the voxels
+  LevelLists lists;
+};
+
+/// Waits. Adds the times of its passes to `times`. Fails with ExitCode::OutOfMemory, where the box is too
+/// large before allocating.
+BuiltVolume buildVolume(const Device& device, const Volume& volume, const Classification& classification,
+                        std::vector<StageTime>& times, const Progress& progress = {});
+
+}  // namespace freevoxels

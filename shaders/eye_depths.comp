@@ -1,0 +1,43 @@
+#version 460
+// Optical depth from an eye inside the volume to the outside in the table's directions, in layers of voxels: A_V of
+// Subr et al. 2007, Section 3.3. A thread a direction marches from the eye as the sweeps do from a voxel, with half of
+// what is at the eye itself.
+#extension GL_GOOGLE_include_directive : require
+#include "interface.h"
+#include "blocks.glsl"
+
+layout(local_size_x = kEyeThreads) in;
+layout(scalar, push_constant) uniform Push { EyeDepthsPush push; };
+layout(scalar, binding = 0) readonly buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 1) readonly buffer Extinction { float extinction[]; };
+layout(scalar, binding = 2) writeonly buffer EyeDepths { float eyeDepths[]; };
+#include "stored_block.glsl"
+
+float extinctionAt(vec3 place) {
+  const vec3 low = floor(place);
+  const vec3 w = place - low;
+  float sum = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const ivec3 side = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+    const vec3 share = mix(1.0 - w, w, vec3(side));
+    sum += share.x * share.y * share.z * extinctionOf(push.voxels, ivec3(low) + side);
+  }
+  return sum;
+}
+
+void main() {
+  const int edge = 2 * push.cells + 1;
+  const int i = int(gl_GlobalInvocationID.x);
+  if (i >= edge * edge * edge) return;
+  const vec3 cell = vec3(i % edge, i / edge % edge, i / edge / edge) - float(push.cells);
+  const vec3 size = abs(cell);
+  if (max(size.x, max(size.y, size.z)) < push.cells) return;  // no direction: inside of the cube
+  const vec3 layer = cell / push.cells;
+  float sum = 0.5 * extinctionAt(push.place);
+  vec3 place = push.place + layer;
+  while (all(greaterThan(place, vec3(-1.0))) && all(lessThan(place, vec3(push.voxels.dimensions)))) {
+    sum += extinctionAt(place);
+    place += layer;
+  }
+  eyeDepths[i] = sum;
+}

@@ -1,0 +1,31 @@
+#version 460
+// Which blocks of a level of the octree hold anything, from the level below: a word of blocks a thread.
+#extension GL_GOOGLE_include_directive : require
+#include "interface.h"
+#include "blocks.glsl"
+
+layout(local_size_x = kOccupancyThreads) in;
+layout(scalar, push_constant) uniform Push { OccupiedBlocksPush push; };
+layout(scalar, binding = 0) buffer Occupancy { OccupancyWord occupancy[]; };
+
+// Two children that are neighbours in x are in one word: rows begin at even addresses.
+bool holdsAnything(ivec3 cell) {
+  for (int row = 0; row < 4; ++row) {
+    const ivec3 child = 2 * cell + ivec3(0, row & 1, row >> 1);
+    if (any(greaterThanEqual(child, push.child.dimensions))) continue;
+    const uint address = blockAddress(push.child, child);
+    if ((occupancy[address / kBlocksPerWord].mask >> (address % kBlocksPerWord) & 3u) != 0) return true;
+  }
+  return false;
+}
+
+void main() {
+  const uint word = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kOccupancyThreads;
+  if (word >= push.wordCount) return;
+  uint mask = 0;
+  for (uint i = 0; i < kBlocksPerWord; ++i) {
+    const ivec3 cell = cellAt(push.parent, push.parent.first + kBlocksPerWord * word + i);
+    if (all(lessThan(cell, push.parent.dimensions)) && holdsAnything(cell)) mask |= 1u << i;
+  }
+  occupancy[push.parent.first / kBlocksPerWord + word].mask = mask;
+}
