@@ -37,7 +37,7 @@ void makeLarger(const Device& device, Buffer& buffer, std::uint64_t bytes, const
 /// Blocks of the finest level that could be drawn: every block that is drawn holds one of them at least, and
 /// shares it with no other.
 std::uint64_t mostDrawn(const CutInputs& inputs) {
-  return std::max<std::uint64_t>(inputs.lists.counts[std::size_t(inputs.detail.finest)], 1);
+  return std::max<std::uint64_t>(inputs.volume.stored[std::size_t(inputs.detail.finest)], 1);
 }
 
 /// What the table has to hold in each of its directions for the threshold's depth along a line of length 1 a
@@ -123,7 +123,7 @@ std::vector<CutPass::Level> CutPass::planLevels(const CutInputs& inputs, Part pa
   firstGroups_.clear();
   const int top = inputs.volume.hierarchy.top();
   for (int level = finest_; level <= top; ++level) {
-    const std::uint64_t slots = level == top ? 1 : 8 * inputs.lists.counts[std::size_t(level) + 1];
+    const std::uint64_t slots = level == top ? 1 : 8 * inputs.volume.stored[std::size_t(level) + 1];
     levels.push_back(
         {.parents = &inputs.lists.of(std::min(level + 1, top), inputs.voxels).indices,
          .push = {

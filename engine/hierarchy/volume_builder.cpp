@@ -79,10 +79,9 @@ BuiltVolume buildVolume(const Device& device, const Volume& volume, const Classi
   }
   run(first, progress, times);
 
-  built.lists.counts.push_back(downloadVisibleCount(device, built.visible));
+  onDevice.stored.push_back(downloadVisibleCount(device, built.visible));
   for (const VisibleVoxels& level : built.lists.coarse)
-    built.lists.counts.push_back(downloadVisibleCount(device, level));
-  onDevice.stored = built.lists.counts;
+    onDevice.stored.push_back(downloadVisibleCount(device, level));
   checkStoresFit(device, onDevice);
   makeStores(device, onDevice);
   if (onDevice.stored.front() == 0) return built;

@@ -12,7 +12,6 @@ namespace freevoxels {
 /// The blocks of every level that hold anything; of level 0 they are BuiltVolume::visible.
 struct LevelLists {
   std::vector<VisibleVoxels> coarse;  ///< of levels 1, 2, ...
-  std::vector<std::uint64_t> counts;  ///< of levels 0, 1, 2, ...
 
   const VisibleVoxels& of(int level, const VisibleVoxels& voxels) const {
     return level == 0 ? voxels : coarse[std::size_t(level) - 1];
