@@ -57,12 +57,11 @@ class TableDepth : public ReferenceDepth {
   };
   Transmittance transmittance(const Block& block) const;
   glm::dvec3 centre(const Block& block) const { return boxOf(block, volume_.dimensions).centre(); }
-  double extinctionOf(const Block& block) const;
   /// Itself where that holds nothing, or is outside.
   Block neighbour(Block block, int axis, int steps) const {
     Block next = block;
     next.cell[axis] += steps;
-    return extinctionOf(next) > 0.0 ? next : block;
+    return extinctionOf(next, volume_, extinction_, coarser_) > 0.0 ? next : block;
   }
   double extinctionAt(glm::dvec3 place) const;
   /// A byte of the table, as long as if its line's layers had this world length.
@@ -86,16 +85,6 @@ double TableDepth::stored(int direction, int byte, double layer) const {
   return depth * layer / layerLengths_[std::size_t(direction)];
 }
 
-double TableDepth::extinctionOf(const Block& block) const {
-  const glm::ivec3 n =
-      block.level == 0 ? volume_.dimensions : coarser_[std::size_t(block.level) - 1].dimensions;
-  if (glm::any(glm::lessThan(block.cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(block.cell, n)))
-    return 0.0;
-  if (block.level == 0) return extinction_[volume_.at(block.cell.x, block.cell.y, block.cell.z)];
-  const LevelData& level = coarser_[std::size_t(block.level) - 1];
-  return level.extinction[level.at(block.cell)];
-}
-
 /// Between the eight voxels around a place; 0 outside.
 double TableDepth::extinctionAt(glm::dvec3 place) const {
   const glm::ivec3 low(glm::floor(place));
@@ -103,7 +92,7 @@ double TableDepth::extinctionAt(glm::dvec3 place) const {
   for (int corner = 0; corner < 8; ++corner) {
     const glm::ivec3 voxel = low + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
     const glm::dvec3 share = 1.0 - glm::abs(place - glm::dvec3(voxel));
-    sum += share.x * share.y * share.z * extinctionOf({0, voxel});
+    sum += share.x * share.y * share.z * extinctionOf({0, voxel}, volume_, extinction_, coarser_);
   }
   return sum;
 }
@@ -224,6 +213,16 @@ glm::dvec3 RayDepth::lookUp(const RayFan& fan, glm::dvec3 onPlane) const {
 }
 
 }  // namespace
+
+double extinctionOf(const Block& block, const Volume& volume, std::span<const double> extinction,
+                    std::span<const LevelData> coarser) {
+  const LevelData* level = block.level == 0 ? nullptr : &coarser[std::size_t(block.level) - 1];
+  const glm::ivec3 n = level == nullptr ? volume.dimensions : level->dimensions;
+  if (glm::any(glm::lessThan(block.cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(block.cell, n)))
+    return 0.0;
+  if (level == nullptr) return extinction[volume.at(block.cell.x, block.cell.y, block.cell.z)];
+  return level->extinction[level->at(block.cell)];
+}
 
 glm::dvec3 ReferenceDepth::gradient(const Block& block, glm::dvec3 toEye, double layerDepth) const {
   const glm::dvec3 direction = acrossLayer(toEye);

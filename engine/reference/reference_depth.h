@@ -40,6 +40,10 @@ class ReferenceDepth {
   glm::dvec3 gradient(const Block& block, glm::dvec3 toEye, double layerDepth) const;
 };
 
+/// Per world unit; 0 outside of the volume. `extinction` has a value a voxel, `coarser` the levels above.
+double extinctionOf(const Block& block, const Volume& volume, std::span<const double> extinction,
+                    std::span<const LevelData> coarser);
+
 /// From a position in index space towards the eye, any length.
 using ToEye = std::function<glm::dvec3(glm::dvec3 position)>;
 

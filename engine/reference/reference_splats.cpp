@@ -65,7 +65,9 @@ class SplatSummer {
  private:
   std::unique_ptr<ReferenceDepth> depthFor(const Camera& camera) const;
   void add(const Block& block, std::vector<SplatSums>& picture) const;
-  double extinctionOf(const Block& block) const;
+  double extinctionOf(const Block& block) const {
+    return freevoxels::extinctionOf(block, volume_, inputs_.extinction, inputs_.coarser);
+  }
   ClassifiedVoxel materialOf(const Block& block) const;
   glm::dvec3 centreOfMass(const Block& block) const;
   DepthToEye depthToEye(const Block& block, const ProjectedSplat& splat, double extinction, int layers) const;
@@ -92,12 +94,6 @@ std::unique_ptr<ReferenceDepth> SplatSummer::depthFor(const Camera& camera) cons
       volume_, inputs_.extinction, inputs_.table, inputs_.coarser, inputs_.tableSettings, lookup,
       [this](glm::dvec3 position) { return projector_.toEye(position); },
       inside ? std::optional(eye.place) : std::nullopt);
-}
-
-double SplatSummer::extinctionOf(const Block& block) const {
-  if (block.level == 0) return inputs_.extinction[volume_.at(block.cell.x, block.cell.y, block.cell.z)];
-  const LevelData& level = inputs_.coarser[std::size_t(block.level) - 1];
-  return level.extinction[level.at(block.cell)];
 }
 
 ClassifiedVoxel SplatSummer::materialOf(const Block& block) const {
