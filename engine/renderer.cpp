@@ -8,6 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/hierarchy/cut_pass.h"
 #include "engine/hierarchy/level_passes.h"
+#include "engine/lighting/light_pass.h"
 #include "engine/splatting/depth_sort.h"
 #include "engine/splatting/resolve_pass.h"
 #include "engine/splatting/splat_pass.h"
@@ -31,6 +32,7 @@ struct Renderer::State {
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
   std::unique_ptr<DepthSort> sort;
+  std::optional<LightPass> lights;
   std::vector<StageTime> buildTimes, frameTimes;
 
   struct Frame {
@@ -77,6 +79,7 @@ void Renderer::State::recordDrawing(Commands& commands, const Frame& frame, cons
   lastWasCut = !constants.detail.isOneLevel() || !constants.cull.leavesNothingOut();
   lastLevel = constants.detail.finest;
   SplatPass::Inputs drawing{.volume = built.volume, .table = read, .order = order};
+  if (constants.lit) drawing.lights = &lights->lights();
   if (!lastWasCut) {
     lastDrawn = &built.lists.of(lastLevel, built.visible);
     drawing.visible = lastDrawn;
@@ -121,6 +124,10 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
   const AttenuationTable* read = nullptr;
   if (frame.constants.readsTable())
     read = frame.constants.readsLevels() ? &tableWithLevels(progress) : &sweptTable(progress);
+  if (settings.lighting) {
+    if (!lights) lights.emplace(device);
+    frame.constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, frameTimes);
+  }
   CullRule& cull = frame.constants.cull;
   if (cull.hiddenDepth > 0.0 &&
       !canHide(tableSettings, largestDepths, glm::dmat3(built.volume.indexToWorld), cull.hiddenDepth))

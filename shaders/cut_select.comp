@@ -32,8 +32,6 @@ layout(scalar, binding = 8) readonly buffer PlaneAddresses { uvec2 planeAddresse
 layout(scalar, binding = 9) readonly buffer Tiles { uint tiles[]; };
 #define PLANE_ADDRESS(cell) planeAddresses[cell]
 #include "direction_lookup.glsl"
-// Of an eye outside of the volume: nothing.
-float depthBeyond(Towards towards, ivec3 cell) { return 0.0; }
 #include "rank.glsl"
 #include "occupancy.glsl"
 #include "cut_slot.glsl"

@@ -1,36 +1,14 @@
 // Optical depth between a block and the eye, exclusive of the block, and its gradient across the lines of
-// sight. Include after direction_lookup.glsl, ray_lookup.glsl and block_at.glsl; `frame` is the SetupFrame and
-// `eyeDepths` what eye_depths.comp made.
+// sight. Include after block_depth.glsl and ray_lookup.glsl.
 
-const float kAtEye = 1e-3;  // voxels; nearer to the eye a position has no direction
-
-// Divided by its largest component, so that its length is that of one lattice layer.
 vec3 directionToEye(vec3 position) {
   vec3 toEye = -(position - frame.middle + frame.eyeToMiddle);
-  if (frame.orthographic != 0 || dot(toEye, toEye) < kAtEye * kAtEye) toEye = -frame.ray;
-  const vec3 size = abs(toEye);
-  return toEye / max(size.x, max(size.y, size.z));
+  if (frame.orthographic != 0 || dot(toEye, toEye) < kAtSource * kAtSource) toEye = -frame.ray;
+  return acrossLayer(toEye);
 }
 
-// In world units.
-float layerLength(vec3 direction) { return length(frame.indexToWorld * direction); }
-
-// How many layers of voxels the line of sight crosses in a block.
-int layersOf(Block block, vec3 direction) { return block.extent[majorAxis(direction)]; }
-
-// Of an eye inside the volume: A_B / A_V of Subr et al. 2007, Section 3.3.
-float depthBeyond(Towards towards, ivec3 cell) {
-  if (frame.eyeInside == 0) return 0.0;
-  return eyeDepths[cellNumber(towards.cells, cell)] * (towards.pathLengthCorrection ? towards.layer : frame.voxelSize);
-}
-
-// The mean over the voxels of a block that holds anything; `falling` as depthTowards has it.
 float tableDepth(Block block, out float falling) {
-  const vec3 direction = directionToEye(block.center);
-  const Towards towards = Towards(direction, layerLength(direction), frame.indexToWorld, frame.cells, frame.code, frame.lookup,
-                                  frame.pathLengthCorrection != 0);
-  const BlockLevel level = frame.levels[block.level];
-  return depthTowards(towards, rankAt(level, blockAddress(level, block.cell)), falling);
+  return meanDepth(block, towardsSource(directionToEye(block.center), frame.lookup, frame.beyondEye), falling);
 }
 
 // Of the block, or of itself where that holds nothing: the table does not know it.
@@ -77,13 +55,9 @@ DepthToEye depthToEye(Block block, float sigma) {
     result.depth = tableDepth(block, falling);
     if (frame.gradient != 0) slope = vec2(tableSlope(block, sideA), tableSlope(block, sideB));
   }
-  // Where the table ends, a depth is the same a layer before: what is deep in an opaque medium would shine at its rim
-  // if the layer were taken off.
   const float fallingSigma = falling * sigma, layerDepth = fallingSigma * layerLength(direction);
-  // A block's mean depth is that of its middle layer: what lies in front of it is less by its own layers before.
   const bool inFull = frame.lookup == kLookupExact || frame.pathLengthCorrection != 0;
-  const float before = 0.5 * float(layersOf(block, direction) - 1) * (inFull ? layerDepth : fallingSigma * frame.voxelSize);
-  result.depth = max(result.depth - before, 0.0);
+  result.depth = depthInFront(block, direction, result.depth, inFull ? layerDepth : fallingSigma * frame.voxelSize);
   if (frame.gradient == 0) return result;
   result.gradient[sideA] = slope.x;
   result.gradient[sideB] = slope.y;

@@ -5,6 +5,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer CodePlane { uint words[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer DepthsBeyond { float layers[]; };
 
 struct Towards {
   vec3 direction;  // divided by its largest component: a point on the cube's face
@@ -14,6 +15,8 @@ struct Towards {
   int code;        // kCode...
   int lookup;      // kLookup...
   bool pathLengthCorrection;
+  float countedLength;  // world length that a layer counts in stored depths
+  uvec2 beyond;         // device address of what eye_depths.comp made; 0: nothing lies beyond
 };
 
 // As in engine/attenuation/directions.h.
@@ -35,8 +38,11 @@ float storedDepth(Towards towards, ivec3 cell, uint rank) {
   return depth * towards.layer * float(towards.cells) / length(towards.indexToWorld * vec3(cell));
 }
 
-// What of a stored depth lies beyond where the voxel is looked at from, for the includer to define.
-float depthBeyond(Towards towards, ivec3 cell);
+// Of an eye or a light inside the volume: A_B / A_V of Subr et al. 2007, Section 3.3.
+float depthBeyond(Towards towards, ivec3 cell) {
+  if (towards.beyond == uvec2(0)) return 0.0;
+  return DepthsBeyond(towards.beyond).layers[cellNumber(towards.cells, cell)] * towards.countedLength;
+}
 
 float depthUpTo(Towards towards, ivec3 cell, uint rank) {
   return max(storedDepth(towards, cell, rank) - depthBeyond(towards, cell), 0.0);

@@ -1,7 +1,7 @@
 #version 460
-// Optical depth from an eye inside the volume to the outside in the table's directions, in layers of voxels: A_V of
-// Subr et al. 2007, Section 3.3. A thread a direction marches from the eye as the sweeps do from a voxel, with half of
-// what is at the eye itself.
+// Optical depth from an eye or a light inside the volume to the outside in the table's directions, in layers of voxels:
+// A_V of Subr et al. 2007, Section 3.3. A thread a direction marches from the eye as the sweeps do from a voxel, with
+// half of what is at the eye itself.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "blocks.glsl"
@@ -39,5 +39,5 @@ void main() {
     sum += extinctionAt(place);
     place += layer;
   }
-  eyeDepths[i] = sum;
+  eyeDepths[push.first + i] = sum;
 }

@@ -277,6 +277,24 @@ struct Splat {
   // length along the ray, and |q|².
 };
 
+// lighting.glsl
+struct Light {
+  vec3 place;         // from the volume's middle, index space; at infinity the direction towards the light, of which
+                      // the largest component is 1
+  int atInfinity;
+  vec3 color;         // times the intensity
+  uvec2 beyond;       // device address of what eye_depths.comp made of it; 0: the light is outside of the volume
+};
+
+// What splat_setup.comp needs of a frame that is lit.
+struct FrameLighting {
+  int lightCount;
+  int lookup;                    // kLookup... of the lights' transmittances
+  vec3 ambient;
+  float phaseG;
+  float shares[kMaximumCells];   // by cell number: what part of the sphere around a voxel it stands for
+};
+
 // The frame, as splat_setup.comp needs it. Index space is relative to the middle of the volume, so that
 // 32-bit floats keep their precision far from the origin.
 struct SetupFrame {
@@ -294,7 +312,7 @@ struct SetupFrame {
   int levelCount;
   float voxelSize;         // edge of the cube with a voxel's volume, world units
   int lookup;              // kLookup...
-  int eyeInside;           // the volume's box
+  uvec2 beyondEye;         // device address of what eye_depths.comp made; 0: the eye is outside of the volume
   int pathLengthCorrection;  // 0: every lattice step counts as long as any other
   int kernelMean;          // 1: a voxel has the mean of the transmittance over its kernel, along the line of sight
   int gradient;            // 0: the transmittance to the eye is the same all over a footprint
@@ -304,6 +322,7 @@ struct SetupFrame {
   uint colorPoints;
   vec3 albedo;
   RayFan fans[6];          // kLookupExact: from the eye, by fanIndex; orthographic six times the same
+  FrameLighting lighting;
 };
 
 struct SetupPush {
@@ -315,6 +334,7 @@ struct EyeDepthsPush {
   BlockLevel voxels;
   vec3 place;        // of the eye, index space, in the box of the voxels' centres
   int cells;         // that the table's directions divide the cube's half edge into
+  int first;         // of the depths, by cell number from here on
 };
 
 // splat.vert and splat.frag

@@ -8,6 +8,8 @@
 #define TRANSFER_BINDING 1
 #include "transfer_function.glsl"
 
+layout(constant_id = 0) const bool kLit = false;  // else a voxel sends out its colour
+
 layout(local_size_x = kSplatThreads) in;
 layout(scalar, push_constant) uniform Push { SetupPush push; };
 layout(scalar, binding = 0) readonly buffer Frame { SetupFrame frame; };
@@ -19,17 +21,19 @@ layout(scalar, binding = 6) readonly buffer Chunks { ChunkArguments chunks[]; };
 layout(scalar, binding = 7) writeonly buffer Splats { Splat splats[]; };
 layout(scalar, binding = 8) readonly buffer BlockColors { uvec2 blockColors[]; };
 layout(scalar, binding = 9) readonly buffer Occupancy { OccupancyWord occupancy[]; };
-layout(scalar, binding = 10) readonly buffer EyeDepths { float eyeDepths[]; };
+layout(scalar, binding = 10) readonly buffer Lights { Light lights[]; };
 #define PLANE_ADDRESS(cell) planeAddresses[cell]
 #include "major_axis.glsl"
 #include "direction_lookup.glsl"
 #include "ray_lookup.glsl"
 #include "stored_block.glsl"
 #include "block_at.glsl"
+#include "block_depth.glsl"
 #include "depth_to_eye.glsl"
 #include "part_ahead.glsl"
 #include "splat_projection.glsl"
 #include "self_attenuation.glsl"
+#include "lighting.glsl"
 
 vec3 colorOf(Block block, uint rank) {
   if (frame.opacityPoints == 0) return frame.albedo;
@@ -61,7 +65,9 @@ void main() {
   const bool ofKernel = frame.kernelMean != 0 && block.level == 0;
   const float leaving = ofKernel ? kernelMean(block.center, direction, depth, toEye.depth) : selfAttenuation(depth);
   const float energy = sigma * leaving * peak;
-  splat.colorEnergy = vec4(energy * colorOf(block, rank), energy);
+  vec3 color = colorOf(block, rank);
+  if (kLit) color *= scatteredLight(block, sigma, rank, direction);
+  splat.colorEnergy = vec4(energy * color, energy);
   splat.center = footprint.center;
   splat.halfExtent = footprint.halfExtent;
   splat.conic = footprint.conic;

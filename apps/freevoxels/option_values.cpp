@@ -124,6 +124,11 @@ CLI::Option* addText(CLI::App& app, const std::string& name, const std::string& 
       ->type_name(form);
 }
 
+std::vector<double> readNumbers(const std::string& name, const std::string& form, std::size_t count,
+                                const std::string& text, NumberRange range) {
+  return parseNumbers(text, {.option = name, .form = form, .count = count, .range = range});
+}
+
 CLI::Option* addWord(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                      std::optional<int>& target, const std::string& description) {
   const auto read = [name, words, &target](const std::string& text) {
@@ -143,6 +148,17 @@ std::string numberText(double value) {
 
 std::string numberText(glm::dvec3 value) {
   return fmt::format("{},{},{}", value.x, value.y, value.z);
+}
+
+std::map<std::string, std::string> optionMap(const OptionList& options) {
+  std::map<std::string, std::string> map;
+  for (const auto& [name, value] : options) {
+    const std::string key = name.empty() ? "input" : name.substr(name.find_first_not_of('-'));
+    const std::string text = value.empty() ? "yes" : value;
+    const auto [place, isNew] = map.emplace(key, text);
+    if (!isNew) place->second += " " + text;
+  }
+  return map;
 }
 
 std::string commandText(const OptionList& options) {

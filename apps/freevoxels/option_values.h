@@ -7,6 +7,7 @@
 
 #include <glm/glm.hpp>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -42,6 +43,10 @@ CLI::Option* addSize(CLI::App& app, const std::string& name, glm::ivec2& target,
 CLI::Option* addText(CLI::App& app, const std::string& name, const std::string& form,
                      std::optional<std::string>& target, const std::string& description);
 
+/// As many numbers as `count`; `name` is what the sentence calls that refuses the text.
+std::vector<double> readNumbers(const std::string& name, const std::string& form, std::size_t count,
+                                const std::string& text, NumberRange range = {});
+
 /// One of a few words; `target` becomes the position of the one that was given.
 CLI::Option* addWord(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                      std::optional<int>& target, const std::string& description);
@@ -53,6 +58,10 @@ using OptionList = std::vector<std::pair<std::string, std::string>>;
 /// Shortest text that reads back as the same number.
 std::string numberText(double value);
 std::string numberText(glm::dvec3 value);
+
+/// The options by name without its dashes, the positional as "input", a flag as "yes"; values of an option
+/// that is there several times joined by spaces.
+std::map<std::string, std::string> optionMap(const OptionList& options);
 
 /// The options as words for a shell, quoted where that is needed.
 std::string commandText(const OptionList& options);

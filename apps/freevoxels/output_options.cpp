@@ -75,10 +75,7 @@ ExrOptions exrMetadata(const std::string& command, const OptionList& options,
                        const std::map<std::string, std::string>& facts, const Camera& camera, double aspect) {
   ExrOptions exr;
   for (const auto& [name, value] : facts) exr.metadata["freevoxels:" + name] = value;
-  for (const auto& [name, value] : options) {
-    const std::string key = name.empty() ? "input" : name.substr(name.find_first_not_of('-'));
-    exr.metadata["freevoxels:" + key] = value.empty() ? "yes" : value;
-  }
+  for (const auto& [name, value] : optionMap(options)) exr.metadata["freevoxels:" + name] = value;
   exr.metadata["freevoxels:command"] = "freevoxels " + command + " " + commandText(options);
   exr.metadata["freevoxels:version"] = programVersion();
   exr.matrices["worldToCamera"] = glm::mat4(worldToCamera(camera));

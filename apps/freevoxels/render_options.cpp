@@ -95,6 +95,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
   Scene view = open(opened, line, report);
   const std::vector<Camera> cameras = scene.camera.resolveOrbit(view.volume, int(outputs.size()));
   view.camera = cameras.front();
+  settings.lighting = view.lighting;
   report.device = opened.description();
   report.options = describe(view);
   if (outputs.size() > 1) report.options.emplace_back("--frames", fmt::format("{}", outputs.size()));

@@ -10,11 +10,13 @@ void SceneOptions::add(CLI::App& app) {
   output.add(app);
   classification.add(app);
   camera.add(app);
+  lighting.add(app);
 }
 
 void SceneOptions::check(const std::vector<std::string>& moreOutputs) const {
   input.check();
   camera.check();
+  lighting.check();
   output.check();
   for (const std::string& file : moreOutputs) checkOutput(file);
   std::vector<std::string> files = output.files;
@@ -34,6 +36,7 @@ Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
   scene.volume = input.open(maximumVoxels);
   scene.classification = classification.resolve(scene.volume);
   scene.camera = camera.resolve(scene.volume);
+  scene.lighting = lighting.resolve(scene.volume);
   return scene;
 }
 
@@ -46,6 +49,7 @@ OptionList SceneOptions::describe(const Scene& scene, const OptionList& method) 
   input.describe(options);
   classification.describe(options, scene.classification);
   camera.describe(options, scene.camera);
+  lighting.describe(options, scene.lighting);
   options.insert(options.end(), method.begin(), method.end());
   output.describe(options);
   return options;

@@ -5,6 +5,7 @@
 #include "apps/freevoxels/camera_options.h"
 #include "apps/freevoxels/classification_options.h"
 #include "apps/freevoxels/input_options.h"
+#include "apps/freevoxels/lighting_options.h"
 #include "apps/freevoxels/output_options.h"
 
 namespace freevoxels {
@@ -13,6 +14,7 @@ struct Scene {
   Volume volume;
   Classification classification;
   Camera camera;
+  std::optional<Lighting> lighting;
 };
 
 struct SceneOptions {
@@ -20,6 +22,7 @@ struct SceneOptions {
   OutputOptions output;
   ClassificationOptions classification;
   CameraOptions camera;
+  LightingOptions lighting;
 
   void add(CLI::App& app);
   /// Before any work; `moreOutputs` are the files that the command writes besides pictures.

@@ -66,9 +66,14 @@ void writeTimings(const std::filesystem::path& file, const RunReport& report) {
                     {"type", report.device.type},
                     {"uuid", report.device.uuid},
                     {"driver", report.device.driver}};
-  for (const auto& [name, value] : report.options)
-    json["options"][name.empty() ? "input" : name.substr(name.find_first_not_of('-'))] =
-        value.empty() ? nlohmann::ordered_json(true) : nlohmann::ordered_json(value);
+  for (const auto& [name, value] : report.options) {
+    nlohmann::ordered_json& entry =
+        json["options"][name.empty() ? "input" : name.substr(name.find_first_not_of('-'))];
+    if (entry.is_string())
+      entry = entry.get<std::string>() + " " + value;  // an option that may be repeated
+    else
+      entry = value.empty() ? nlohmann::ordered_json(true) : nlohmann::ordered_json(value);
+  }
   for (const StageTime& stage : report.stages)
     json["stages"].push_back(
         {{"name", stage.name}, {"milliseconds", stage.milliseconds}, {"on_device", stage.onDevice}});

@@ -87,6 +87,11 @@ RayFan fanFrom(glm::dvec3 source, glm::ivec3 dimensions, int axis, int direction
 
 }  // namespace
 
+bool isInside(const RaySource& source, glm::ivec3 dimensions) {
+  return !source.atInfinity && glm::all(glm::greaterThanEqual(source.place, glm::dvec3(-0.5))) &&
+         glm::all(glm::lessThanEqual(source.place, glm::dvec3(dimensions) - 0.5));
+}
+
 int majorAxis(glm::dvec3 direction) {
   const glm::dvec3 size = glm::abs(direction);
   return size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;

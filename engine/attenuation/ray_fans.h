@@ -21,6 +21,9 @@ struct RaySource {
   bool atInfinity = false;  ///< all rays are parallel
 };
 
+/// Whether it is within the volume's box, faces included. Never at infinity.
+bool isInside(const RaySource& source, glm::ivec3 dimensions);
+
 /// Ray (i, j) meets the plane at coordinate z of `axis` at
 ///   origin + spacing (i, j) + (slope + spacing (i, j) convergence) (z - farthest)
 /// of the other two axes, in the order of (axis + 1) % 3 and (axis + 2) % 3.

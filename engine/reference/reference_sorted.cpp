@@ -42,7 +42,8 @@ std::vector<std::uint32_t> referenceBackToFront(const Volume& volume, const Came
 }
 
 Image referenceSortedPicture(const Volume& volume, const Classification& classification, const Camera& camera,
-                             const FrameSettings& settings, std::span<const std::uint32_t> voxels) {
+                             const FrameSettings& settings, std::span<const std::uint32_t> voxels,
+                             const ReferenceLight* light) {
   const SplatProjector projector(volume, camera, settings.size);
   std::vector<BlendedPixel> blended(std::size_t(settings.size.x) * std::size_t(settings.size.y));
   for (const std::uint32_t voxel : referenceBackToFront(volume, camera, voxels)) {
@@ -50,10 +51,11 @@ Image referenceSortedPicture(const Volume& volume, const Classification& classif
     if (!splat) continue;
     const ClassifiedVoxel material = classify(classification, volume.values[voxel]);
     const double opacity = projector.opacity(*splat, material.extinction);
+    const glm::dvec3 lit = light ? light->scattered(projector.voxel(voxel), splat->toEye) : glm::dvec3(1.0);
     projector.forEachPixel(*splat, [&](const CoveredPixel& pixel) {
       const double alpha = std::min(opacity * pixel.omega, 1.0);
       BlendedPixel& behind = blended[pixel.index];
-      behind.color = alpha * glm::dvec4(material.color, 1.0) + (1.0 - alpha) * behind.color;
+      behind.color = alpha * glm::dvec4(lit * material.color, 1.0) + (1.0 - alpha) * behind.color;
       behind.distance = alpha * splat->distance + (1.0 - alpha) * behind.distance;
     });
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/image/image.h"
+#include "engine/reference/reference_light.h"
 #include "engine/splatting/camera.h"
 #include "engine/splatting/render_settings.h"
 #include "engine/volume/classification.h"
@@ -22,8 +23,10 @@ std::vector<std::uint32_t> referenceBackToFront(const Volume& volume, const Came
                                                 std::span<const std::uint32_t> voxels);
 
 /// Image::depth, where asked for, is the distance along the viewing axis blended like the colour, over alpha;
-/// infinite where alpha is 0. `settings` give the size; composite and attenuation do not matter.
+/// infinite where alpha is 0. `settings` give the size; composite and attenuation do not matter. Lit by
+/// `light`, or each voxel its colour.
 Image referenceSortedPicture(const Volume& volume, const Classification& classification, const Camera& camera,
-                             const FrameSettings& settings, std::span<const std::uint32_t> voxels);
+                             const FrameSettings& settings, std::span<const std::uint32_t> voxels,
+                             const ReferenceLight* light = nullptr);
 
 }  // namespace freevoxels

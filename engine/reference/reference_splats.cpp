@@ -15,6 +15,7 @@
 #include "engine/core/error.h"
 #include "engine/reference/projected_splats.h"
 #include "engine/reference/reference_depth.h"
+#include "engine/reference/reference_light.h"
 #include "engine/reference/reference_rays.h"
 
 namespace freevoxels {
@@ -53,7 +54,8 @@ class SplatSummer {
         inputs_(inputs),
         settings_(settings),
         projector_(volume, camera, settings.size),
-        depth_(depthFor(camera)) {
+        depth_(depthFor(camera)),
+        light_(lightFor()) {
     FV_CHECK_EQ(inputs.extinction.size(), volume.voxelCount());
   }
 
@@ -64,6 +66,7 @@ class SplatSummer {
 
  private:
   std::unique_ptr<ReferenceDepth> depthFor(const Camera& camera) const;
+  std::unique_ptr<ReferenceLight> lightFor() const;
   void add(const Block& block, std::vector<SplatSums>& picture) const;
   double extinctionOf(const Block& block) const {
     return freevoxels::extinctionOf(block, volume_, inputs_.extinction, inputs_.coarser);
@@ -80,6 +83,7 @@ class SplatSummer {
   const FrameSettings& settings_;
   const SplatProjector projector_;
   const std::unique_ptr<ReferenceDepth> depth_;
+  const std::unique_ptr<ReferenceLight> light_;  ///< null where nothing is lit
 };
 
 std::unique_ptr<ReferenceDepth> SplatSummer::depthFor(const Camera& camera) const {
@@ -94,6 +98,16 @@ std::unique_ptr<ReferenceDepth> SplatSummer::depthFor(const Camera& camera) cons
       volume_, inputs_.extinction, inputs_.table, inputs_.coarser, inputs_.tableSettings, lookup,
       [this](glm::dvec3 position) { return projector_.toEye(position); },
       inside ? std::optional(eye.place) : std::nullopt);
+}
+
+std::unique_ptr<ReferenceLight> SplatSummer::lightFor() const {
+  if (!settings_.lighting) return nullptr;
+  return std::make_unique<ReferenceLight>(LightInputs{.volume = volume_,
+                                                      .extinction = inputs_.extinction,
+                                                      .table = inputs_.table,
+                                                      .coarser = inputs_.coarser,
+                                                      .tableSettings = inputs_.tableSettings},
+                                          settings_);
 }
 
 ClassifiedVoxel SplatSummer::materialOf(const Block& block) const {
@@ -184,10 +198,11 @@ void SplatSummer::add(const Block& block, std::vector<SplatSums>& picture) const
       settings_.gradient && settings_.composite == Composite::Normalised && block.level == 0;
   const double opacity = ofKernel ? this->opacity(block, *splat, sigma, depth.centre)
                                   : projector_.opacity(*splat, sigma, layers);
-  const auto addTo = [&, color = albedo, extinction = sigma](const CoveredPixel& pixel) {
+  const glm::dvec3 radiance = light_ ? albedo * light_->scattered(block, splat->toEye) : albedo;
+  const auto addTo = [&, extinction = sigma](const CoveredPixel& pixel) {
     SplatSums& sums = picture[pixel.index];
     const double energy = opacity * std::exp(-depth.at(pixel)) * pixel.omega;
-    sums.color += energy * color;
+    sums.color += energy * radiance;
     sums.energy += energy;
     sums.depth += extinction * pixel.omega;
     sums.distance += energy * splat->distance;

@@ -142,10 +142,7 @@ RaySource eyeSource(const Camera& camera, const glm::dmat4& indexToWorld) {
 }
 
 bool eyeIsInside(const Camera& camera, glm::ivec3 dimensions, const glm::dmat4& indexToWorld) {
-  if (camera.orthographic) return false;
-  const glm::dvec3 eye = eyeSource(camera, indexToWorld).place + 0.5;
-  return glm::all(glm::greaterThanEqual(eye, glm::dvec3(0.0))) &&
-         glm::all(glm::lessThanEqual(eye, glm::dvec3(dimensions)));
+  return isInside(eyeSource(camera, indexToWorld), dimensions);
 }
 
 AttenuationLookup resolveAttenuation(AttenuationLookup lookup, bool eyeInside) {

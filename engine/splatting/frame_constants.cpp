@@ -95,7 +95,6 @@ shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& t
       .levelCount = int(volume.hierarchy.levels.size()),
       .voxelSize = float(volume.voxelSize),
       .lookup = lookup,
-      .eyeInside = inside ? 1 : 0,
       .pathLengthCorrection = table.pathLengthCorrection ? 1 : 0,
       .kernelMean = settings.gradient && settings.composite == Composite::Normalised ? 1 : 0,
       .gradient = settings.gradient && lookup != shader::kLookupNone ? 1 : 0,
@@ -133,6 +132,8 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                    .composite = int(settings.composite)};
 
   frame.eye = eyeSource(camera, volume.indexToWorld);
+  frame.eyeInside = isInside(frame.eye, volume.layout.dimensions);
+  frame.lit = settings.lighting.has_value();
 
   const double largestPoint = double(device.limits().pointSizeRange[1]);
   const double reach = largestHalfExtent(toPixel, rays, volume.layout.dimensions, frame.detail);

@@ -2,8 +2,10 @@
 // What a render does with a volume and a camera, apart from the classification.
 
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "engine/attenuation/table_settings.h"
+#include "engine/lighting/lighting.h"
 
 namespace freevoxels {
 
@@ -36,6 +38,9 @@ struct FrameSettings {
   float cullThreshold =
       1.0f / 512.0f;   ///< transmittance to the eye below which a voxel is hidden; 0: none is
   bool depth = false;  ///< also make Image::depth
+  /// None: every voxel sends out its colour, whatever is around it. Lights are looked up bilinearly, or as
+  /// AttenuationLookup::Nearest says.
+  std::optional<Lighting> lighting = std::nullopt;
 };
 
 }  // namespace freevoxels

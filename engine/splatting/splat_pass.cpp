@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "embedded/eye_depths.h"
 #include "embedded/splat_fragment.h"
 #include "embedded/splat_fragment_distance.h"
 #include "embedded/splat_setup.h"
@@ -28,6 +27,13 @@ ShaderCode fragmentShader(bool withDistance, bool sorted) {
                         : ShaderCode{splat_sorted_spv, "sorted splat"};
   return withDistance ? ShaderCode{splat_fragment_distance_spv, "splat with distance"}
                       : ShaderCode{splat_fragment_spv, "splat"};
+}
+
+Pipeline makeSetupPipeline(const Device& device, bool lit) {
+  return makeComputePipeline(device, {splat_setup_spv, "splat set-up"},
+                             {.bindings = std::vector(11, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                              .pushConstantBytes = sizeof(shader::SetupPush)},
+                             {shader::kSplatThreads, 1, 1}, {lit ? 1u : 0u});
 }
 
 Pipeline makeSplatPipeline(const Device& device, bool quads, bool withDistance, bool sorted) {
@@ -75,18 +81,12 @@ SplatPass::SplatPass(const Device& device, bool withDistance, bool sorted)
     : device_(device),
       withDistance_(withDistance),
       sorted_(sorted),
-      setup_(makeComputePipeline(device, {splat_setup_spv, "splat set-up"},
-                                 {.bindings = std::vector(11, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                                  .pushConstantBytes = sizeof(shader::SetupPush)},
-                                 {shader::kSplatThreads, 1, 1})),
+      setup_(makeSetupPipeline(device, false)),
       points_(makeSplatPipeline(device, false, withDistance, sorted)),
       quads_(makeSplatPipeline(device, true, withDistance, sorted)),
-      eyeDepthsPass_(makeComputePipeline(device, {eye_depths_spv, "eye depths"},
-                                         {.bindings = std::vector(3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                                          .pushConstantBytes = sizeof(shader::EyeDepthsPush)},
-                                         {shader::kEyeThreads, 1, 1})),
+      eyeDepthsPass_(device),
       frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "frame"),
-      eyeDepths_(device, shader::kMaximumCells * sizeof(float), MemoryUse::Device, "eye depths") {}
+      eyeDepths_(device, kEyeDepthsBytes, MemoryUse::Device, "eye depths") {}
 
 void SplatPass::beginRendering(Commands& commands, const SplatTargets& targets, const FrameConstants& frame,
                                VkAttachmentLoadOp load) const {
@@ -113,18 +113,6 @@ void SplatPass::beginRendering(Commands& commands, const SplatTargets& targets, 
   vkCmdSetScissor(commands.handle(), 0, 1, &scissor);
 }
 
-void SplatPass::recordEyeDepths(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame) {
-  const glm::dvec3 last(volume.layout.dimensions - 1);
-  const shader::EyeDepthsPush push{.voxels = volume.onDevice(0),
-                                   .place = glm::clamp(frame.eye.place, glm::dvec3(0.0), last),
-                                   .cells = frame.setup.cells};
-  const std::array<Binding, 3> bindings{&volume.occupancy, &volume.extinction, &eyeDepths_};
-  const int edge = 2 * frame.setup.cells + 1;
-  commands.beginPass("eye depths");
-  commands.dispatchLinear(eyeDepthsPass_, bindings, push, std::uint64_t(edge * edge * edge));
-  commands.barrier(kCompute, kCompute);
-}
-
 void SplatPass::recordFrame(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame) {
   shader::SetupFrame setup = frame.setup;
   if (setup.lookup == shader::kLookupExact) {
@@ -132,7 +120,10 @@ void SplatPass::recordFrame(Commands& commands, const DeviceVolume& volume, cons
     rays_->record(commands, volume, frame.eye);
     std::ranges::copy(rays_->fans(), setup.fans);
   }
-  if (frame.readsTable() && setup.eyeInside != 0) recordEyeDepths(commands, volume, frame);
+  if (frame.eyeReadsTable() && frame.eyeInside) {
+    eyeDepthsPass_.record(commands, volume, DirectionSet(setup.cells), frame.eye, eyeDepths_);
+    setup.beyondEye = {std::uint32_t(eyeDepths_.address()), std::uint32_t(eyeDepths_.address() >> 32)};
+  }
   commands.beginPass("splat set-up");
   commands.update(frame_, setup);
 }
@@ -155,8 +146,9 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
                                       &splats_,
                                       colors ? &inputs.volume.blockColors : &anyBuffer,
                                       &inputs.volume.occupancy,
-                                      &eyeDepths_};
+                                      frame.lit ? inputs.lights : &anyBuffer};
   const std::array<Binding, 1> draw{&splats_};
+  if (frame.lit && litSetup_.handle() == VK_NULL_HANDLE) litSetup_ = makeSetupPipeline(device_, true);
   const Pipeline& pipeline = frame.quads ? quads_ : points_;
   for (const RenderTarget* target : targets.all())
     commands.transition(*target, inputs.continued ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED,
@@ -168,7 +160,8 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
     const VkDeviceSize arguments = chunk * sizeof(shader::ChunkArguments);
     commands.beginPass("splat set-up");
     commands.barrier(kDraw, kCompute);
-    commands.dispatchIndirect(setup_, setup, shader::SetupPush{chunk}, inputs.visible->chunks, arguments);
+    commands.dispatchIndirect(frame.lit ? litSetup_ : setup_, setup, shader::SetupPush{chunk},
+                              inputs.visible->chunks, arguments);
     commands.beginPass("splat draw");
     commands.barrier(kCompute, kDraw);
     beginRendering(

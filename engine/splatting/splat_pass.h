@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/attenuation/attenuation_table.h"
+#include "engine/attenuation/eye_depths.h"
 #include "engine/attenuation/ray_sweep.h"
 #include "engine/hierarchy/cull_rule.h"
 #include "engine/hierarchy/detail_rule.h"
@@ -34,6 +35,8 @@ struct FrameConstants {
   shader::SplatPush splat;
   shader::ResolvePush resolve;
   RaySource eye;
+  bool eyeInside = false;  ///< the volume's box
+  bool lit = false;        ///< by setup.lighting, which is the caller's to fill
   DetailRule detail;
   CullRule cull;
   /// Whether the levels of the table above the voxels are looked up.
@@ -42,9 +45,11 @@ struct FrameConstants {
   float viewportMargin =
       0.0f;  ///< pixels around the image, so that points centred outside it are not clipped
 
-  bool readsTable() const {
+  /// From the eye.
+  bool eyeReadsTable() const {
     return setup.lookup == shader::kLookupBilinear || setup.lookup == shader::kLookupNearest;
   }
+  bool readsTable() const { return eyeReadsTable() || lit; }
 };
 
 FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volume,
@@ -64,7 +69,8 @@ class SplatPass {
     const VisibleVoxels* visible;                  ///< the blocks to draw, by FrameConstants::detail
     std::uint32_t firstChunk = 0, chunkCount = 0;  ///< of their chunks, these
     bool continued = false;  ///< the targets, in layout GENERAL, have the sums of what was drawn before
-    const Buffer* order = nullptr;  ///< the visible voxels as they are to be drawn; null: as they are listed
+    const Buffer* lights = nullptr;  ///< shader::Light, of a frame that is lit
+    const Buffer* order = nullptr;   ///< the visible voxels as they are to be drawn; null: as they are listed
   };
   void record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,
               const SplatTargets& targets);
@@ -75,16 +81,16 @@ class SplatPass {
 
  private:
   void recordFrame(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame);
-  void recordEyeDepths(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame);
   void beginRendering(Commands& commands, const SplatTargets& targets, const FrameConstants& frame,
                       VkAttachmentLoadOp load) const;
 
   const Device& device_;
   bool withDistance_, sorted_;
-  Pipeline setup_, points_, quads_, eyeDepthsPass_;
+  Pipeline setup_, litSetup_, points_, quads_;  ///< litSetup_ is made for the first frame that is lit
+  EyeDepthsPass eyeDepthsPass_;
   std::optional<RaySweep> rays_;
   Buffer frame_;      ///< shader::SetupFrame
-  Buffer eyeDepths_;  ///< float, by cellNumber of the table's directions
+  Buffer eyeDepths_;  ///< of EyeDepthsPass
   Buffer splats_;     ///< shader::Splat of one chunk
 };
 

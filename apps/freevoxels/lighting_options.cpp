@@ -1,0 +1,138 @@
+#include "apps/freevoxels/lighting_options.h"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <map>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr const char* kForm = "direction=X,Y,Z[,color=R,G,B][,intensity=I] or position=X,Y,Z[,...]";
+
+/// "a=1,2,b=3" as {a: "1,2", b: "3"}.
+std::map<std::string, std::string> keysOf(const std::string& text) {
+  std::map<std::string, std::string> keys;
+  std::string key;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    begin = end + 1;
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos) {
+      if (key.empty()) fail(ExitCode::Usage, "--light takes {}, not '{}'", kForm, text);
+      keys[key] += "," + word;
+      continue;
+    }
+    key = word.substr(0, equals);
+    if (!keys.emplace(key, word.substr(equals + 1)).second)
+      fail(ExitCode::Usage, "--light '{}' gives '{}' twice: give it once", text, key);
+  }
+  return keys;
+}
+
+glm::dvec3 triple(const char* name, const std::string& value, NumberRange range = {}) {
+  const std::vector<double> numbers = readNumbers(name, "X,Y,Z", 3, value, range);
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+LightingOptions::GivenLight readLight(const std::string& text) {
+  LightingOptions::GivenLight given;
+  bool placed = false;
+  for (const auto& [key, value] : keysOf(text)) {
+    if (key == "direction" || key == "position") {
+      if (placed)
+        fail(ExitCode::Usage, "--light '{}' has a direction and a position: give one of them", text);
+      placed = true;
+      given.light.atInfinity = key == "direction";
+      given.light.place = triple(given.light.atInfinity ? "--light direction" : "--light position", value);
+      if (given.light.atInfinity && given.light.place == glm::dvec3(0.0))
+        fail(ExitCode::Usage, "--light '{}' has the direction 0,0,0, which points nowhere: give another",
+             text);
+    } else if (key == "color") {
+      given.light.color = triple("--light color", value, {.minimum = 0.0});
+    } else if (key == "intensity") {
+      given.light.intensity = readNumbers("--light intensity", "I", 1, value, {.minimum = 0.0})[0];
+      given.hasIntensity = true;
+    } else {
+      fail(ExitCode::Usage, "--light knows no '{}': it takes {}", key, kForm);
+    }
+  }
+  if (!placed) fail(ExitCode::Usage, "--light '{}' has neither a direction nor a position: give one", text);
+  return given;
+}
+
+double defaultIntensity(const Light& light, const Volume& volume) {
+  if (light.atInfinity) return kDefaultIrradiance;
+  const glm::dvec3 size(volume.dimensions), middle = 0.5 * (size - 1.0);
+  const glm::dvec3 toLight = light.place - glm::dvec3(volume.indexToWorld * glm::dvec4(middle, 1.0));
+  const glm::dvec3 diagonal = 0.5 * (glm::dmat3(volume.indexToWorld) * size);
+  return kDefaultIrradiance * std::max(glm::dot(toLight, toLight), glm::dot(diagonal, diagonal));
+}
+
+std::string lightText(const Light& light) {
+  return fmt::format("{}={},color={},intensity={}", light.atInfinity ? "direction" : "position",
+                     numberText(light.place), numberText(light.color), numberText(light.intensity));
+}
+
+}  // namespace
+
+void LightingOptions::add(CLI::App& app) {
+  const char* const group = "Light";
+  app.add_option_function<std::vector<std::string>>(
+         "--light",
+         [this](const std::vector<std::string>& texts) {
+           lights.clear();
+           for (const std::string& text : texts) lights.push_back(readLight(text));
+         },
+         "A light, of which there may be any number: the direction from the volume towards it, or where it "
+         "is "
+         "in the world; its linear colour [1,1,1]; its irradiance, of a position at distance 1 "
+         "[4 pi in the middle of the volume]")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->type_name("direction|position=X,Y,Z[,color=R,G,B][,intensity=I]")
+      ->group(group);
+  app.add_option_function<std::string>(
+         "--ambient",
+         [this](const std::string& text) {
+           const bool one = text.find(',') == std::string::npos;
+           const auto numbers =
+               readNumbers("--ambient", one ? "L" : "R,G,B", one ? 1 : 3, text, {.minimum = 0.0});
+           ambient = one ? glm::dvec3(numbers[0]) : glm::dvec3(numbers[0], numbers[1], numbers[2]);
+         },
+         "Radiance that comes from everywhere, linear; one number is a grey [0 with lights]")
+      ->take_last()
+      ->type_name("R,G,B")
+      ->group(group);
+  addNumber(app, "--phase-g", "G", phaseG,
+            "How much of the lights is scattered forwards, from -1 to 1 (Henyey and Greenstein) [0]",
+            {-kMostPhaseG, kMostPhaseG})
+      ->group(group);
+}
+
+void LightingOptions::check() const {
+  if (phaseG && lights.empty())
+    fail(ExitCode::Usage, "--phase-g is how lights are scattered, and there is none: give a --light");
+}
+
+std::optional<Lighting> LightingOptions::resolve(const Volume& volume) const {
+  if (lights.empty() && !ambient) return std::nullopt;
+  Lighting lighting{.ambient = ambient.value_or(glm::dvec3(0.0)), .phaseG = phaseG.value_or(0.0)};
+  for (const GivenLight& given : lights) {
+    lighting.lights.push_back(given.light);
+    if (!given.hasIntensity) lighting.lights.back().intensity = defaultIntensity(given.light, volume);
+  }
+  return lighting;
+}
+
+void LightingOptions::describe(OptionList& options, const std::optional<Lighting>& resolved) const {
+  if (!resolved) return;
+  for (const Light& light : resolved->lights) options.emplace_back("--light", lightText(light));
+  options.emplace_back("--ambient", numberText(resolved->ambient));
+  if (!resolved->lights.empty()) options.emplace_back("--phase-g", numberText(resolved->phaseG));
+}
+
+}  // namespace freevoxels

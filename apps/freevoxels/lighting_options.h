@@ -1,0 +1,33 @@
+#pragma once
+// The lights of a picture. Without any of these options a volume is not lit: every voxel sends out its
+// colour.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/freevoxels/option_values.h"
+#include "engine/lighting/lighting.h"
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+struct LightingOptions {
+  struct GivenLight {
+    Light light;
+    bool hasIntensity = false;
+  };
+  std::vector<GivenLight> lights;
+  std::optional<glm::dvec3> ambient;
+  std::optional<double> phaseG;
+
+  void add(CLI::App& app);
+  /// Before any work: options that say nothing without others (ExitCode::Usage).
+  void check() const;
+  /// None where nothing is lit. The intensity of a position defaults to what is kDefaultIrradiance in the
+  /// middle of the volume's box, or half its diagonal away from the light, whichever is farther.
+  std::optional<Lighting> resolve(const Volume& volume) const;
+  void describe(OptionList& options, const std::optional<Lighting>& resolved) const;
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,29 @@
+#include "engine/attenuation/eye_depths.h"
+
+#include <array>
+
+#include "embedded/eye_depths.h"
+
+namespace freevoxels {
+
+EyeDepthsPass::EyeDepthsPass(const Device& device)
+    : pipeline_(makeComputePipeline(device, {eye_depths_spv, "eye depths"},
+                                    {.bindings = std::vector(3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                                     .pushConstantBytes = sizeof(shader::EyeDepthsPush)},
+                                    {shader::kEyeThreads, 1, 1})) {}
+
+void EyeDepthsPass::record(Commands& commands, const DeviceVolume& volume, DirectionSet set,
+                           const RaySource& source, const Buffer& depths, int slot) const {
+  const glm::dvec3 last(volume.layout.dimensions - 1);
+  const shader::EyeDepthsPush push{.voxels = volume.onDevice(0),
+                                   .place = glm::clamp(source.place, glm::dvec3(0.0), last),
+                                   .cells = int(set),
+                                   .first = slot * shader::kMaximumCells};
+  const std::array<Binding, 3> bindings{&volume.occupancy, &volume.extinction, &depths};
+  const int edge = 2 * int(set) + 1;
+  commands.beginPass("eye depths");
+  commands.dispatchLinear(pipeline_, bindings, push, std::uint64_t(edge * edge * edge));
+  commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,25 @@
+#pragma once
+// What the table's depths have beyond an eye or a light that is inside the volume: Subr et al. 2007,
+// Section 3.3.
+
+#include "engine/attenuation/directions.h"
+#include "engine/attenuation/ray_fans.h"
+#include "engine/volume/device_volume.h"
+
+namespace freevoxels {
+
+/// COMPUTE eye_depths.comp
+class EyeDepthsPass {
+ public:
+  explicit EyeDepthsPass(const Device& device);
+  /// Writes shader::kMaximumCells floats, by cellNumber, as the `slot`th of `depths`.
+  void record(Commands& commands, const DeviceVolume& volume, DirectionSet set, const RaySource& source,
+              const Buffer& depths, int slot = 0) const;
+
+ private:
+  Pipeline pipeline_;
+};
+
+inline constexpr VkDeviceSize kEyeDepthsBytes = shader::kMaximumCells * sizeof(float);
+
+}  // namespace freevoxels

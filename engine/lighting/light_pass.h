@@ -1,0 +1,39 @@
+#pragma once
+// The lights of a frame on the device: Subr et al. 2007, Section 4.3.
+
+#include <optional>
+#include <vector>
+
+#include "engine/attenuation/eye_depths.h"
+#include "engine/core/stages.h"
+#include "engine/lighting/lighting.h"
+#include "engine/splatting/render_settings.h"
+#include "engine/volume/device_volume.h"
+
+namespace freevoxels {
+
+/// Of one volume. What is made for a light is kept as long as the light stays as it is.
+class LightPass {
+ public:
+  explicit LightPass(const Device& device) : device_(device), beyond_(device) {}
+
+  /// Of settings that have lighting. Waits for what it has to make; no frame may be under way. Adds the times
+  /// of that to `times`.
+  shader::FrameLighting prepare(const DeviceVolume& volume, const TableSettings& table,
+                                const FrameSettings& settings, std::vector<StageTime>& times);
+  /// shader::Light, of the last frame.
+  const Buffer& lights() const { return lights_; }
+
+ private:
+  std::vector<shader::Light> place(const DeviceVolume& volume, DirectionSet set,
+                                   std::vector<StageTime>& times);
+
+  const Device& device_;
+  EyeDepthsPass beyond_;
+  std::vector<double> shares_;
+  std::optional<std::vector<Light>> placed_;  ///< the lights that the buffers are of
+  Buffer lights_;                             ///< shader::Light
+  Buffer beyondDepths_;                       ///< kEyeDepthsBytes a light that is inside of the volume
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,56 @@
+#pragma once
+// Lights, and how a volume scatters what it gets of them, once: Subr et al. 2007, Section 4.3.
+//
+// A voxel of albedo a sends the radiance a (sum over lights of E A phase + ambient) towards the eye, E the
+// light's irradiance there, A the transmittance between the two, ambient the mean of radiance times A over
+// all directions.
+
+#include <glm/glm.hpp>
+#include <numbers>
+#include <vector>
+
+#include "engine/attenuation/directions.h"
+#include "engine/attenuation/ray_fans.h"
+
+namespace freevoxels {
+
+/// Of a directional light: what nothing shadows then scatters as much as it would send out without lights.
+inline constexpr double kDefaultIrradiance = 4.0 * std::numbers::pi;
+
+/// As narrow a phase function as 32-bit floats have.
+inline constexpr double kMostPhaseG = 0.99;
+
+struct Light {
+  /// A position in the world, or at infinity the direction towards the light, of any length but 0.
+  glm::dvec3 place{0.0, 1.0, 0.0};
+  bool atInfinity = true;
+  glm::dvec3 color{1.0};  ///< linear Rec.709
+  /// Irradiance of a surface that faces the light; of a position at a distance of 1 world unit, from where it
+  /// falls with the square of the distance. Times the colour.
+  double intensity = kDefaultIrradiance;
+
+  bool operator==(const Light&) const = default;
+};
+
+struct Lighting {
+  std::vector<Light> lights;
+  glm::dvec3 ambient{0.0};  ///< radiance that comes from everywhere, linear Rec.709
+  /// Of the phase function of the lights, up to kMostPhaseG either way: 0 scatters alike in all directions,
+  /// more forwards. What comes from everywhere is scattered alike in all directions.
+  double phaseG = 0.0;
+
+  bool operator==(const Lighting&) const = default;
+};
+
+/// Henyey and Greenstein 1941, per steradian: integrates to 1 over the sphere. `cosine` is that of the angle
+/// between the ways of the light before and after.
+double phaseFunction(double g, double cosine);
+
+/// In a volume's index space.
+RaySource lightSource(const Light& light, const glm::dmat4& indexToWorld);
+
+/// What part of the sphere around a voxel each direction of a table stands for, in the world, where it is
+/// looked up bilinearly: they add up to 1. In the order of directions.h.
+std::vector<double> directionShares(DirectionSet set, const glm::dmat4& indexToWorld);
+
+}  // namespace freevoxels

@@ -1,0 +1,93 @@
+#include "engine/reference/reference_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace freevoxels {
+
+namespace {
+
+/// Index space; nearer to a light a position has no direction, and +z stands for it.
+constexpr double kAtLight = 1e-3;
+
+/// The square of a ball's radius over that of the edge of a cube of its volume, by the 3 of the mean of
+/// 1 / distance² from its middle.
+const double kNearestLight2 = std::pow(3.0 / (4.0 * std::numbers::pi), 2.0 / 3.0) / 3.0;
+
+}  // namespace
+
+ReferenceLight::ReferenceLight(const LightInputs& inputs, const FrameSettings& settings)
+    : inputs_(inputs),
+      lighting_(*settings.lighting),
+      toWorld_(inputs.volume.indexToWorld),
+      shares_(directionShares(inputs.tableSettings.directions, inputs.volume.indexToWorld)) {
+  const AttenuationLookup lookup = settings.attenuation == AttenuationLookup::Nearest
+                                       ? AttenuationLookup::Nearest
+                                       : AttenuationLookup::Bilinear;
+  for (const Light& light : lighting_.lights) {
+    const RaySource source = lightSource(light, inputs_.volume.indexToWorld);
+    sources_.push_back(source);
+    depths_.push_back(tableDepth(
+        inputs_.volume, inputs_.extinction, inputs_.table, inputs_.coarser, inputs_.tableSettings, lookup,
+        [this, source](glm::dvec3 position) { return toLight(source, position); },
+        isInside(source, inputs_.volume.dimensions) ? std::optional(source.place) : std::nullopt));
+  }
+}
+
+glm::dvec3 ReferenceLight::toLight(const RaySource& source, glm::dvec3 position) const {
+  if (source.atInfinity) return source.place;
+  const glm::dvec3 way = source.place - position;
+  return glm::length(way) < kAtLight ? glm::dvec3(0.0, 0.0, 1.0) : way;
+}
+
+double ReferenceLight::reaching(const Block& block, double depth, double falling, glm::dvec3 direction,
+                                double counted) const {
+  const int axis = majorAxis(direction);
+  const int layers = boxOf(block, inputs_.volume.dimensions).extent[axis];
+  const double layer = glm::length(toWorld_ * (direction / std::abs(direction[axis])));
+  const double sigma = extinctionOf(block, inputs_.volume, inputs_.extinction, inputs_.coarser);
+  const double inFront = std::max(depth - 0.5 * (layers - 1) * falling * sigma * counted, 0.0);
+  const double own = sigma * layer * layers;
+  return std::exp(-inFront) * (own < 1e-9 ? 1.0 : -std::expm1(-own) / own);
+}
+
+double ReferenceLight::reachingFromAll(const Block& block) const {
+  const TableSettings& settings = inputs_.tableSettings;
+  const LevelData* level = block.level == 0 ? nullptr : &inputs_.coarser[std::size_t(block.level) - 1];
+  const auto& table = level == nullptr ? inputs_.table : level->table;
+  const std::size_t index =
+      level == nullptr ? inputs_.volume.at(block.cell.x, block.cell.y, block.cell.z) : level->at(block.cell);
+  const int end = settings.code == AttenuationCode::Linear8 ? 0 : 255;
+  double sum = 0.0;
+  for (int d = 0; d < int(table.size()); ++d) {
+    const int byte = table[std::size_t(d)][index];
+    const glm::dvec3 direction = directionAt(settings.directions, d);
+    sum += shares_[std::size_t(d)] *
+           reaching(block, decodeOpticalDepth(settings.code, byte), byte == end ? 0.0 : 1.0, direction,
+                    stepLength(inputs_.volume.indexToWorld, direction, settings.pathLengthCorrection));
+  }
+  return sum;
+}
+
+glm::dvec3 ReferenceLight::scattered(const Block& block, glm::dvec3 toEye) const {
+  const glm::dvec3 centre = boxOf(block, inputs_.volume.dimensions).centre();
+  const glm::dvec3 after = glm::normalize(toWorld_ * toEye);
+  const double edge = inputs_.volume.voxelSize() * block.edge();
+  glm::dvec3 sum(0.0);
+  for (std::size_t i = 0; i < sources_.size(); ++i) {
+    const Light& light = lighting_.lights[i];
+    const glm::dvec3 way = toLight(sources_[i], centre);
+    const glm::dvec3 across = way / std::abs(way[majorAxis(way)]);
+    const ReferenceDepth& depth = *depths_[i];
+    const double counted = depth.countedLength(glm::length(toWorld_ * across));
+    const double reached = reaching(block, depth.at(block), depth.falling(block), way, counted);
+    const glm::dvec3 before = -glm::normalize(toWorld_ * way);
+    const glm::dvec3 apart = toWorld_ * (sources_[i].place - centre);
+    const double distance2 = std::max(glm::dot(apart, apart), kNearestLight2 * edge * edge);
+    const double irradiance = light.intensity / (light.atInfinity ? 1.0 : distance2);
+    sum += light.color * (irradiance * reached * phaseFunction(lighting_.phaseG, glm::dot(before, after)));
+  }
+  return sum + lighting_.ambient * reachingFromAll(block);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,46 @@
+#pragma once
+// What blocks scatter of the light that reaches them, in double precision: Subr et al. 2007, Section 4.3.
+// Shares no code with the shaders.
+
+#include <memory>
+#include <vector>
+
+#include "engine/lighting/lighting.h"
+#include "engine/reference/reference_depth.h"
+
+namespace freevoxels {
+
+/// What reference_depth.h needs of the stages before; keeps references.
+struct LightInputs {
+  const Volume& volume;
+  std::span<const double> extinction;
+  const std::vector<std::vector<std::uint8_t>>& table;
+  std::span<const LevelData> coarser;
+  TableSettings tableSettings;
+};
+
+class ReferenceLight {
+ public:
+  /// Of settings that have lighting.
+  ReferenceLight(const LightInputs& inputs, const FrameSettings& settings);
+
+  /// Radiance towards the eye per albedo; `toEye` in index space, of any length.
+  glm::dvec3 scattered(const Block& block, glm::dvec3 toEye) const;
+
+ private:
+  glm::dvec3 toLight(const RaySource& source, glm::dvec3 position) const;
+  /// The mean over a block, of which the middle layer has `depth` before it; a layer counts as `counted`
+  /// long.
+  double reaching(const Block& block, double depth, double falling, glm::dvec3 direction,
+                  double counted) const;
+  double reachingFromAll(const Block& block) const;
+
+  const LightInputs inputs_;
+  const Lighting lighting_;
+  const glm::dmat3 toWorld_;
+  std::vector<RaySource> sources_;
+  std::vector<std::unique_ptr<ReferenceDepth>> depths_;  ///< towards each light
+  const std::vector<double> shares_;
+};
+
+}  // namespace freevoxels

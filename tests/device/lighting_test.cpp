@@ -1,0 +1,180 @@
+// Lit pictures on the device: against the double-precision reference, against closed forms, and what lights
+// do to each other.
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/reference/reference_light.h"
+#include "engine/reference/reference_sorted.h"
+#include "tests/device/splat_fixture.h"
+
+namespace freevoxels {
+namespace {
+
+/// One of each kind, all of which scatter forwards.
+Lighting everything() {
+  return {.lights =
+              {{.place = {1.0, 0.7, 0.2}, .color = {1.0, 0.6, 0.3}, .intensity = 9.0},
+               {.place = {-0.9, 0.4, 1.2}, .atInfinity = false, .color = {0.2, 0.5, 1.0}, .intensity = 20.0}},
+          .ambient = {0.2, 0.25, 0.3},
+          .phaseG = 0.4};
+}
+
+class LightingTest : public SplatTest {
+ protected:
+  static std::vector<glm::dvec3> colours(Renderer& renderer, const Camera& camera, FrameSettings settings,
+                                         const Lighting& lighting) {
+    settings.lighting = lighting;
+    std::vector<glm::dvec3> result;
+    for (const SplatSums& sums : renderer.renderSums(camera, settings)) result.push_back(sums.color);
+    return result;
+  }
+  static double largest(const std::vector<glm::dvec3>& colours) {
+    double result = 0.0;
+    for (const glm::dvec3& c : colours) result = std::max({result, c.x, c.y, c.z});
+    return result;
+  }
+};
+
+TEST_F(LightingTest, EveryKindOfLightMatchesTheReference) {
+  const Volume v = volume(true);
+  for (const Composite composite : {Composite::Normalised, Composite::Additive})
+    expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.25, {}),
+                      {.size = {125, 100}, .composite = composite, .lighting = everything()});
+}
+
+TEST_F(LightingTest, EveryLookUpMatchesTheReference) {
+  const Volume v = volume(true);
+  const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
+  expectSamePicture(v, camera,
+                    {.size = {80, 80}, .attenuation = AttenuationLookup::Exact, .lighting = everything()});
+  expectSamePicture(v, camera, {.size = {80, 80}, .lighting = everything()},
+                    {.directions = DirectionSet::Directions98});
+  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {.orthographic = true}),
+                    {.size = {80, 80},
+                     .composite = Composite::Additive,
+                     .attenuation = AttenuationLookup::Nearest,
+                     .gradient = false,
+                     .lighting = everything()},
+                    {AttenuationCode::Linear8, false});
+}
+
+TEST_F(LightingTest, LightsInsideMatchTheReference) {
+  const Volume v = volume(false);
+  Lighting lighting = everything();
+  lighting.lights = {
+      {.place = {0.05, 0.12, -0.08}, .atInfinity = false, .intensity = 2.0},
+      {.place = {-0.2, 0.1, 0.1}, .atInfinity = false, .color = {1.0, 0.0, 0.0}, .intensity = 2.0}};
+  expectSamePicture(v, framingCamera(v, -110.0, -40.0, 1.0, {}), {.size = {80, 80}, .lighting = lighting});
+}
+
+TEST_F(LightingTest, SortedPicturesMatchTheReference) {
+  const Volume v = volume(true);
+  const Classification classification = coloured(v, 0.5f);
+  const auto extinction = referenceExtinction(v, classification);
+  const auto table = referenceTable(v, extinction, {});
+  const FrameSettings settings{.size = {80, 80}, .composite = Composite::Sorted, .lighting = everything()};
+  const ReferenceLight light(
+      {.volume = v, .extinction = extinction, .table = table, .coarser = {}, .tableSettings = {}}, settings);
+  const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
+  Renderer renderer(device(), v, classification, {});
+  const Image picture = renderer.render(camera, settings);
+  const Image expected =
+      referenceSortedPicture(v, classification, camera, settings, referenceVisibleVoxels(extinction), &light);
+  EXPECT_LE(largestDifference(picture, expected), 5e-3);
+  EXPECT_GE(psnr(picture, expected), 65.0);
+}
+
+TEST_F(LightingTest, BlocksMatchTheReference) {
+  const Volume v = volume(true);
+  const Classification classification = coloured(v, 0.5f);
+  const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
+  const FrameSettings settings{.size = {30, 30}, .lod = 9.0f, .culling = false, .lighting = everything()};
+  Renderer renderer(device(), v, classification, {});
+  const Image picture = renderer.render(camera, settings);
+  const std::vector<Block> blocks = renderer.downloadDrawnBlocks();
+  ASSERT_GT(blocks.front().level, 0);
+  const std::vector<LevelData> levels = renderer.downloadLevels();
+  const std::vector<float> device = renderer.downloadExtinction();
+  const std::vector<double> extinction(device.begin(), device.end());
+  const auto sums = referenceBlockSums(
+      v, classification,
+      {.extinction = extinction, .table = renderer.downloadTable(), .tableSettings = {}, .coarser = levels},
+      camera, settings, blocks);
+  EXPECT_GE(psnr(picture, referenceResolve(sums, settings)), 90.0);
+}
+
+TEST_F(LightingTest, TwoLightsAreTheSumOfEachAlone) {
+  const Volume v = volume(false);
+  Renderer renderer(device(), v, coloured(v), {});
+  const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
+  const FrameSettings settings{.size = {60, 60}};
+  const Lighting both = everything();
+  std::vector<glm::dvec3> alone;
+  for (const Lighting& one : {Lighting{.lights = {both.lights[0]}, .phaseG = both.phaseG},
+                              Lighting{.lights = {both.lights[1]}, .phaseG = both.phaseG},
+                              Lighting{.ambient = both.ambient, .phaseG = both.phaseG}}) {
+    const auto sums = colours(renderer, camera, settings, one);
+    if (alone.empty()) alone.resize(sums.size(), glm::dvec3(0.0));
+    for (std::size_t i = 0; i < sums.size(); ++i) alone[i] += sums[i];
+  }
+  const auto together = colours(renderer, camera, settings, both);
+  ASSERT_GT(largest(together), 0.0);
+  for (std::size_t i = 0; i < together.size(); ++i)
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(together[i][c], alone[i][c], 1e-5 * alone[i][c] + 1e-30);
+}
+
+TEST_F(LightingTest, ALightThatMovesAwayDimsWithTheSquareOfItsDistance) {
+  const Volume v = makeVolume({1, 1, 1}, glm::dmat4(1.0), [](int, int, int) { return 1.0; });
+  Renderer renderer(device(), v, {}, {});
+  const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
+  const glm::dvec3 place(1.0, 2.0, -0.7);
+  const auto lit = [&](double far) {
+    return largest(colours(renderer, camera, {.size = {20, 20}},
+                           {.lights = {{.place = far * place, .atInfinity = false}}, .phaseG = 0.6}));
+  };
+  const double near = lit(1.0);
+  ASSERT_GT(near, 0.0);
+  for (const double far : {2.0, 3.5, 10.0}) EXPECT_NEAR(lit(far) * far * far / near, 1.0, 1e-5);
+}
+
+/// A light from behind the eye, from the side and from beyond: along a ray through a homogeneous box what it
+/// scatters is known.
+TEST_F(LightingTest, AHomogeneousBoxScattersWhatTheClosedFormsSay) {
+  constexpr int kEdge = 32;
+  constexpr double kDepth = 2.0, kPhaseG = 0.3;
+  const glm::ivec3 n(kEdge);
+  const Volume v = makeVolume(n, cubeTransform(n), [](int, int, int) { return 1.0; });
+  const Classification classification{.densityScale = kDepth, .albedo = glm::vec3(0.5f)};
+  Renderer renderer(device(), v, classification, {});
+  const Camera camera{
+      .position = {0, 0, 3}, .lookAt = {0, 0, 0}, .orthographic = true, .orthographicHeight = 1.0};
+  const auto middle = [&](glm::dvec3 direction) {
+    const FrameSettings settings{.size = {33, 33},
+                                 .lighting = Lighting{.lights = {{.place = direction}}, .phaseG = kPhaseG}};
+    return double(renderer.render(camera, settings).pixels[33 * 16 + 16].r);
+  };
+  const auto scattered = [](double cosine) {
+    return 0.5 * kDefaultIrradiance * phaseFunction(kPhaseG, cosine);
+  };
+  EXPECT_NEAR(middle({0, 0, 1}) / (scattered(-1.0) * (1.0 - std::exp(-2.0 * kDepth)) / 2.0), 1.0, 5e-3);
+  // All of these voxels have one depth to the light, 1, of which half a code is 0.0157.
+  EXPECT_NEAR(middle({1, 0, 0}) / (scattered(0.0) * std::exp(-kDepth / 2.0) * (1.0 - std::exp(-kDepth))), 1.0,
+              0.016);
+  EXPECT_NEAR(middle({0, 0, -1}) / (scattered(1.0) * kDepth * std::exp(-kDepth)), 1.0, 5e-3);
+}
+
+/// What is nowhere shadowed looks in ambient light of radiance 1 as it does without lights.
+TEST_F(LightingTest, AThinVolumeIsAsBrightInAmbientLightAsUnlit) {
+  const Volume v = volume(true);
+  Renderer renderer(device(), v, {.densityScale = 1e-4}, {});
+  const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
+  const Image unlit = renderer.render(camera, {.size = {40, 40}});
+  const Image lit =
+      renderer.render(camera, {.size = {40, 40}, .lighting = Lighting{.ambient = glm::dvec3(1.0)}});
+  for (std::size_t i = 0; i < lit.pixels.size(); ++i)
+    EXPECT_NEAR(lit.pixels[i].r, unlit.pixels[i].r, 2e-3 * unlit.pixels[i].r);
+}
+
+}  // namespace
+}  // namespace freevoxels

@@ -1,0 +1,49 @@
+// Phase function and directions' shares: they integrate to one.
+
+#include "engine/lighting/lighting.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+namespace freevoxels {
+namespace {
+
+TEST(Lighting, PhaseFunctionIntegratesToOne) {
+  for (const double g : {-0.9, -0.3, 0.0, 0.5, 0.85, kMostPhaseG}) {
+    // Over the angle, in steps that are finest forwards and backwards.
+    constexpr int kSteps = 20000;
+    double sum = 0.0, mean = 0.0;
+    for (int i = 0; i < kSteps; ++i) {
+      const double angle = std::numbers::pi * (i + 0.5) / kSteps;
+      const double part = 2.0 * std::numbers::pi * std::sin(angle) * std::numbers::pi / kSteps *
+                          phaseFunction(g, std::cos(angle));
+      sum += part;
+      mean += part * std::cos(angle);
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-5) << g;
+    EXPECT_NEAR(mean, g, 1e-4);  // what g means
+  }
+  EXPECT_DOUBLE_EQ(phaseFunction(0.0, 0.3), 1.0 / (4.0 * std::numbers::pi));
+}
+
+TEST(Lighting, SharesOfDirectionsAddUpToOneAndFollowTheVoxelsShape) {
+  glm::dmat4 stretched(1.0);
+  stretched[2][2] = 3.0;
+  for (const DirectionSet set : {DirectionSet::Directions26, DirectionSet::Directions98})
+    for (const glm::dmat4& transform : {glm::dmat4(1.0), stretched}) {
+      const std::vector<double> shares = directionShares(set, transform);
+      EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1.0, 1e-12);
+      // The mean of |z|² over the sphere is 1/3, whatever the voxels' shape.
+      double mean = 0.0;
+      for (int i = 0; i < directionCount(set); ++i) {
+        const glm::dvec3 way = glm::normalize(glm::dmat3(transform) * directionAt(set, i));
+        mean += shares[std::size_t(i)] * way.z * way.z;
+      }
+      EXPECT_NEAR(mean, 1.0 / 3.0, set == DirectionSet::Directions98 ? 0.01 : 0.04);
+    }
+}
+
+}  // namespace
+}  // namespace freevoxels
