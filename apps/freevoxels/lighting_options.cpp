@@ -33,8 +33,8 @@ std::map<std::string, std::string> keysOf(const std::string& text) {
   return keys;
 }
 
-glm::dvec3 triple(const char* name, const std::string& value, NumberRange range = {}) {
-  const std::vector<double> numbers = readNumbers(name, "X,Y,Z", 3, value, range);
+glm::dvec3 triple(const char* name, const char* form, const std::string& value, NumberRange range = {}) {
+  const std::vector<double> numbers = readNumbers(name, form, 3, value, range);
   return {numbers[0], numbers[1], numbers[2]};
 }
 
@@ -47,12 +47,13 @@ LightingOptions::GivenLight readLight(const std::string& text) {
         fail(ExitCode::Usage, "--light '{}' has a direction and a position: give one of them", text);
       placed = true;
       given.light.atInfinity = key == "direction";
-      given.light.place = triple(given.light.atInfinity ? "--light direction" : "--light position", value);
+      given.light.place =
+          triple(given.light.atInfinity ? "--light direction" : "--light position", "X,Y,Z", value);
       if (given.light.atInfinity && given.light.place == glm::dvec3(0.0))
         fail(ExitCode::Usage, "--light '{}' has the direction 0,0,0, which points nowhere: give another",
              text);
     } else if (key == "color") {
-      given.light.color = triple("--light color", value, {.minimum = 0.0});
+      given.light.color = triple("--light color", "R,G,B", value, {.minimum = 0.0});
     } else if (key == "intensity") {
       given.light.intensity = readNumbers("--light intensity", "I", 1, value, {.minimum = 0.0})[0];
       given.hasIntensity = true;
@@ -91,7 +92,7 @@ void LightingOptions::add(CLI::App& app) {
          "is "
          "in the world; its linear colour [1,1,1]; its irradiance, of a position at distance 1 "
          "[4 pi in the middle of the volume]")
-      ->expected(1)
+      ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("direction|position=X,Y,Z[,color=R,G,B][,intensity=I]")
       ->group(group);

@@ -54,7 +54,8 @@ std::uint64_t OracleCommand::voxelsThatFit() const {
     fail(ExitCode::OutOfMemory,
          "a picture of {}x{} pixels needs {} bytes, and this machine has {}: lower --size", size.x, size.y,
          picture, machine);
-  return (machine - picture) / kOracleBytesPerVoxel;
+  const std::uint64_t ambient = scene_.lighting.ambient ? kOracleAmbientBytesPerVoxel : 0;
+  return (machine - picture) / (kOracleBytesPerVoxel + ambient);
 }
 
 void OracleCommand::draw() const {
@@ -68,7 +69,8 @@ void OracleCommand::draw() const {
   logOptions(options);
 
   const auto start = std::chrono::steady_clock::now();
-  const OracleSettings settings{.size = scene_.camera.size, .depth = scene_.output.wantsDepth()};
+  const OracleSettings settings{
+      .size = scene_.camera.size, .depth = scene_.output.wantsDepth(), .lighting = scene.lighting};
   const Oracle oracle =
       renderOracle(scene.volume, scene.classification, scene.camera, settings, line.progress());
   line.erase();

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -34,6 +35,10 @@ class Sampler {
         field_(volume, classification, progress),
         rays_(pixelRays(camera, settings.size, volume.indexToWorld)),
         indexToWorld_(volume.indexToWorld),
+        light_(settings.lighting
+                   ? std::make_unique<LightMarch>(field_, volume.indexToWorld, *settings.lighting,
+                                                  settings.ambientRays, progress)
+                   : nullptr),
         pixels_(std::size_t(settings.size.x) * std::size_t(settings.size.y)) {}
 
   Oracle run();
@@ -50,6 +55,7 @@ class Sampler {
   const ReferenceField field_;
   const PixelRays rays_;
   const glm::dmat3 indexToWorld_;
+  const std::unique_ptr<LightMarch> light_;  ///< null where nothing is lit
   std::vector<PixelMean> pixels_;
 };
 
@@ -82,9 +88,11 @@ PixelMean Sampler::sample(std::size_t pixel, int samples) const {
       MarchedRay ray;
       ray.origin = rays_.origin + at.x * rays_.originX + at.y * rays_.originY;
       ray.direction = rays_.direction + at.x * rays_.directionX + at.y * rays_.directionY;
-      ray.worldLength = glm::length(indexToWorld_ * ray.direction);
+      const glm::dvec3 inWorld = indexToWorld_ * ray.direction;
+      ray.worldLength = glm::length(inWorld);
+      ray.worldDirection = inWorld / ray.worldLength;
       ray.distance = settings_.depth;
-      const RaySum sum = marchRay(field_, ray, settings_.step);
+      const RaySum sum = marchRay(field_, ray, settings_.step, light_.get());
       mean.color += glm::dvec4(sum.color, sum.opacity);
       mean.distance += sum.distance;
     }

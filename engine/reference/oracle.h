@@ -7,9 +7,11 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "engine/core/stages.h"
 #include "engine/image/image.h"
+#include "engine/lighting/lighting.h"
 #include "engine/splatting/camera.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
@@ -22,6 +24,8 @@ struct OracleSettings {
   double step = 0.2;        ///< largest distance between quadrature points, in voxels
   double tolerance = 1e-3;  ///< how much doubling may still change any of a pixel's premultiplied RGBA
   int maximumSamples = 32;  ///< most rays along an edge of a pixel: a power of two, at least 4
+  std::optional<Lighting> lighting = std::nullopt;  ///< none: every voxel sends out its colour
+  int ambientRays = 128;                            ///< that light_march.h sends out from a point
 };
 
 struct Oracle {
@@ -35,13 +39,16 @@ struct Oracle {
 /// A pixel's N starts at 2, or where a pixel is larger than a voxel at as many voxels as there are across it,
 /// 16 at most. It is doubled at least once, and as long as that changes the pixel or one of its eight
 /// neighbours by the tolerance. Rays are regular, at the centres of N x N parts. Alpha is the mean of
-/// 1 - exp(-tau), exact on each ray; depth is as in README.md, over all of the pixel's rays, and takes no
-/// part in the test. Nothing behind the eye is drawn. All cores; the same picture whatever their number.
+/// 1 - exp(-tau), exact on each ray; lights are scattered once, with shadow rays of their own; depth is as in
+/// README.md, over all of the pixel's rays, and takes no part in the test. Nothing behind the eye is drawn.
+/// All cores; the same picture whatever their number.
 Oracle renderOracle(const Volume& volume, const Classification& classification, const Camera& camera,
                     const OracleSettings& settings, const Progress& progress = {});
 
 /// Memory that the oracle needs in bytes: for every pixel, and for every voxel, scalar included, of a volume
 /// that is full and many bricks long in all three directions.
+/// A voxel takes the more again where there is ambient light.
 inline constexpr std::uint64_t kOracleBytesPerVoxel = 28, kOracleBytesPerPixel = 96;
+inline constexpr std::uint64_t kOracleAmbientBytesPerVoxel = 40;
 
 }  // namespace freevoxels

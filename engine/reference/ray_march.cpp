@@ -19,8 +19,9 @@ namespace {
 
 constexpr double kNegligibleTransmittance = 1e-7;
 
-/// Gauss-Legendre on 0..1, three points.
+/// Gauss-Legendre on 0..1, three points and two.
 constexpr std::array<double, 3> kNodes = {0.1127016653792583, 0.5, 0.8872983346207417};
+constexpr std::array<double, 2> kTwoNodes = {0.2113248654051871, 0.7886751345948129};
 constexpr std::array<double, 3> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
 /// Largest distance between neighbouring nodes, as a part of the interval.
 constexpr double kNodeDistance = 0.3872983346207417;
@@ -66,17 +67,6 @@ struct Cubic {
   }
 };
 
-/// Whether any of the cell's corners has extinction. `corner` is the cell's first.
-bool isFilled(const glm::vec4* corner) {
-  constexpr int n = ReferenceField::kBrickCorners;
-  float sum = 0.0f;
-  for (int edge = 0; edge < 4; ++edge) {
-    const glm::vec4* const start = corner + n * ((edge & 1) + n * (edge >> 1));
-    sum += start[0].a + start[1].a;
-  }
-  return sum > 0.0f;
-}
-
 /// The field's extinction (a) and extinction times colour (rgb) from a to b, local coordinates of a cell in
 /// 0..1. `corner` is the cell's first.
 Cubic cubicAlong(const glm::vec4* corner, glm::dvec3 a, glm::dvec3 b) {
@@ -98,6 +88,17 @@ Cubic cubicAlong(const glm::vec4* corner, glm::dvec3 a, glm::dvec3 b) {
   return cubic;
 }
 
+/// Of the field, at local coordinates of a cell in 0..1; `corner` is the cell's first.
+double extinctionAt(const glm::vec4* corner, glm::dvec3 local) {
+  constexpr int n = ReferenceField::kBrickCorners;
+  std::array<double, 4> edges;
+  for (int edge = 0; edge < 4; ++edge) {
+    const glm::vec4* const start = corner + n * ((edge & 1) + n * (edge >> 1));
+    edges[std::size_t(edge)] = glm::mix(double(start[0].a), double(start[1].a), local.x);
+  }
+  return glm::mix(glm::mix(edges[0], edges[1], local.y), glm::mix(edges[2], edges[3], local.y), local.z);
+}
+
 /// The integral of a cubic's extinction from 0: sum of term[m] s^m (1 - s)^(4 - m).
 struct Depth {
   std::array<double, 5> term{};
@@ -117,15 +118,59 @@ struct Depth {
   }
 };
 
+/// Calls visit(corner, cell, t0, t1) for the cells with extinction that the ray passes up to `leave`, in
+/// order, until it returns false. `corner` is the cell's first in its brick.
+template <typename Visit>
+void walkField(const ReferenceField& field, const MarchedRay& ray, double leave, Visit&& visit) {
+  double enter = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double origin = ray.origin[axis], direction = ray.direction[axis];
+    const double low = -1.0, high = field.dimensions()[axis];
+    if (direction == 0.0) {
+      if (origin <= low || origin >= high) return;
+      continue;
+    }
+    const double t0 = (low - origin) / direction, t1 = (high - origin) / direction;
+    enter = std::max(enter, std::min(t0, t1));
+    leave = std::min(leave, std::max(t0, t1));
+  }
+  constexpr double edge = ReferenceField::kBrickCells;
+  const auto crossBrick = [&](glm::ivec3 position, double t0, double t1) {
+    const ReferenceField::Brick* const brick = field.brick(position);
+    if (!brick) return true;
+    constexpr int n = ReferenceField::kBrickCorners;
+    const glm::ivec3 first = position * ReferenceField::kBrickCells - 1;
+    bool goOn = true;
+    const auto crossCell = [&](glm::ivec3 cell, double from, double to) {
+      const glm::ivec3 local = cell - first;
+      if (!ReferenceField::isFilled(*brick, local)) return true;
+      goOn = visit(brick->data() + local.x + n * (local.y + n * local.z), cell, from, to);
+      return goOn;
+    };
+    walkCubes(ray.origin, ray.direction, first, first + ReferenceField::kBrickCells - 1, t0, t1, crossCell);
+    return goOn;
+  };
+  walkCubes((ray.origin + 1.0) / edge, ray.direction / edge, glm::ivec3(0), field.brickCount() - 1, enter,
+            leave, crossBrick);
+}
+
+/// Local coordinates in a cell, 0..1.
+glm::dvec3 localAt(const MarchedRay& ray, glm::ivec3 cell, double t) {
+  return glm::clamp(ray.origin + t * ray.direction - glm::dvec3(cell), 0.0, 1.0);
+}
+
 class March {
  public:
-  March(const ReferenceField& field, const MarchedRay& ray, double step)
-      : field_(field), ray_(ray), intervals_(glm::length(ray.direction) * kNodeDistance / step) {}
+  March(const ReferenceField& field, const MarchedRay& ray, double step, const LightMarch* light)
+      : field_(field),
+        ray_(ray),
+        light_(light),
+        toEye_(-ray.worldDirection),
+        intervals_(glm::length(ray.direction) * kNodeDistance / step) {}
 
   RaySum run();
 
  private:
-  bool crossBrick(glm::ivec3 position, double enter, double leave);
   bool crossCell(const glm::vec4* corner, glm::ivec3 cell, double enter, double leave);
   double absorb(double thickness);
   void addEvenly(double thickness);
@@ -134,57 +179,28 @@ class March {
 
   const ReferenceField& field_;
   const MarchedRay& ray_;
+  const LightMarch* const light_;
+  const glm::dvec3 toEye_;
   const double intervals_;  ///< per unit of t
   double transmittance_ = 1.0;
   RaySum sum_;
 };
 
 RaySum March::run() {
-  double enter = 0.0, leave = std::numeric_limits<double>::infinity();
-  for (int axis = 0; axis < 3; ++axis) {
-    const double origin = ray_.origin[axis], direction = ray_.direction[axis];
-    const double low = -1.0, high = field_.dimensions()[axis];
-    if (direction == 0.0) {
-      if (origin <= low || origin >= high) return sum_;
-      continue;
-    }
-    const double t0 = (low - origin) / direction, t1 = (high - origin) / direction;
-    enter = std::max(enter, std::min(t0, t1));
-    leave = std::min(leave, std::max(t0, t1));
-  }
-  constexpr double edge = ReferenceField::kBrickCells;
-  walkCubes((ray_.origin + 1.0) / edge, ray_.direction / edge, glm::ivec3(0), field_.brickCount() - 1, enter,
-            leave,
-            [this](glm::ivec3 position, double t0, double t1) { return crossBrick(position, t0, t1); });
+  walkField(field_, ray_, std::numeric_limits<double>::infinity(),
+            [this](const glm::vec4* corner, glm::ivec3 cell, double enter, double leave) {
+              return crossCell(corner, cell, enter, leave);
+            });
   return sum_;
 }
 
-bool March::crossBrick(glm::ivec3 position, double enter, double leave) {
-  const ReferenceField::Brick* const brick = field_.brick(position);
-  if (!brick) return true;
-  constexpr int n = ReferenceField::kBrickCorners;
-  const glm::ivec3 first = position * ReferenceField::kBrickCells - 1;
-  bool goOn = true;
-  walkCubes(ray_.origin, ray_.direction, first, first + ReferenceField::kBrickCells - 1, enter, leave,
-            [&](glm::ivec3 cell, double t0, double t1) {
-              const glm::ivec3 local = cell - first;
-              goOn = crossCell(brick->data() + local.x + n * (local.y + n * local.z), cell, t0, t1);
-              return goOn;
-            });
-  return goOn;
-}
-
 bool March::crossCell(const glm::vec4* corner, glm::ivec3 cell, double enter, double leave) {
-  if (!isFilled(corner)) return true;
-  const auto local = [&](double t) {
-    return glm::clamp(ray_.origin + t * ray_.direction - glm::dvec3(cell), 0.0, 1.0);
-  };
-  const Cubic cubic = cubicAlong(corner, local(enter), local(leave));
+  const Cubic cubic = cubicAlong(corner, localAt(ray_, cell, enter), localAt(ray_, cell, leave));
   const double length = (leave - enter) * ray_.worldLength;
   const Depth depth(cubic, length);
   const double total = depth.at(1.0);
   if (!(total > 0.0)) return true;
-  if (field_.evenColor() && !ray_.distance) {
+  if (field_.evenColor() && !ray_.distance && !light_) {
     addEvenly(total);
     return transmittance_ >= kNegligibleTransmittance;
   }
@@ -221,9 +237,11 @@ void March::addInterval(const Cubic& cubic, const Depth& depth, double begin, do
     const double tau = depth.at(s);
     if (i == 0) first = tau;
     const double seen = i == 0 ? 1.0 : std::exp(first - tau);
-    const glm::dvec4 emitted = kWeights[i] * seen * cubic.at(s);
+    glm::dvec4 emitted = kWeights[i] * seen * cubic.at(s);
+    const double t = enter + s * length;
+    if (light_) emitted *= glm::dvec4(light_->scattered(ray_.origin + t * ray_.direction, toEye_), 1.0);
     mean += emitted;
-    distance += emitted.a * (enter + s * length);
+    distance += emitted.a * t;
   }
   if (!(mean.a > 0.0)) return;
   const double energy = absorb(depth.at(end) - before);
@@ -233,8 +251,22 @@ void March::addInterval(const Cubic& cubic, const Depth& depth, double begin, do
 
 }  // namespace
 
-RaySum marchRay(const ReferenceField& field, const MarchedRay& ray, double step) {
-  return March(field, ray, step).run();
+RaySum marchRay(const ReferenceField& field, const MarchedRay& ray, double step, const LightMarch* light) {
+  return March(field, ray, step, light).run();
+}
+
+double marchDepth(const ReferenceField& field, const MarchedRay& ray, double end) {
+  const double most = -std::log(kNegligibleTransmittance);
+  double depth = 0.0;
+  walkField(field, ray, end, [&](const glm::vec4* corner, glm::ivec3 cell, double enter, double leave) {
+    // Two Gauss points are exact of a cubic.
+    const glm::dvec3 a = localAt(ray, cell, enter), b = localAt(ray, cell, leave);
+    double sum = 0.0;
+    for (const double s : kTwoNodes) sum += extinctionAt(corner, glm::mix(a, b, s));
+    depth += 0.5 * sum * (leave - enter) * ray.worldLength;
+    return depth < most;
+  });
+  return depth;
 }
 
 }  // namespace freevoxels

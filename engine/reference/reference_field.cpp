@@ -36,6 +36,17 @@ std::unique_ptr<Brick> makeBrick(const Volume& volume, const Classification& cla
 
 }  // namespace
 
+bool ReferenceField::isFilled(const Brick& brick, glm::ivec3 cell) {
+  constexpr int n = kBrickCorners;
+  const glm::vec4* const corner = brick.data() + cell.x + n * (cell.y + n * cell.z);
+  float sum = 0.0f;
+  for (int edge = 0; edge < 4; ++edge) {
+    const glm::vec4* const start = corner + n * ((edge & 1) + n * (edge >> 1));
+    sum += start[0].a + start[1].a;
+  }
+  return sum > 0.0f;
+}
+
 ReferenceField::ReferenceField(const Volume& volume, const Classification& classification,
                                const Progress& progress)
     : dimensions_(volume.dimensions),

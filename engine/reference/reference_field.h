@@ -27,6 +27,9 @@ class ReferenceField {
   /// fastest: classified in double precision, kept to 24 bits.
   using Brick = std::array<glm::vec4, kBrickCorners * kBrickCorners * kBrickCorners>;
 
+  /// Whether any corner of a brick's cell has extinction. `cell` counts from the brick's first.
+  static bool isFilled(const Brick& brick, glm::ivec3 cell);
+
   ReferenceField(const Volume& volume, const Classification& classification, const Progress& progress = {});
 
   glm::ivec3 dimensions() const { return dimensions_; }

@@ -116,6 +116,29 @@ TEST_F(BadInput, BadTransferFunction) {
                             "unit_distance");
 }
 
+TEST_F(BadInput, BadLights) {
+  const auto expectBadLight = [this](const std::string& options, const std::string& mention) {
+    SCOPED_TRACE(options);
+    for (const char* command : {"render", "oracle"})
+      expectCleanRefusal(
+          fmt::format("{} procedural:cube @a.png --resolution 8 {}{}", command, options, kSmall),
+          ExitCode::Usage, mention);
+  };
+  expectBadLight("--light color=1,1,1", "neither a direction nor a position");
+  expectBadLight("--light direction=1,0,0,position=1,2,3", "a direction and a position");
+  expectBadLight("--light direction=0,0,0", "points nowhere");
+  expectBadLight("--light direction=1,nan,0", "direction");
+  expectBadLight("--light direction=1,0,0,intensity=-1", "intensity");
+  expectBadLight("--light direction=1,0,0,color=1,-1,0", "color");
+  expectBadLight("--light direction=1,0,0,shine=3", "shine");
+  expectBadLight("--light direction=1,0,0,direction=0,1,0", "twice");
+  expectBadLight("--light 1,0,0", "direction=X,Y,Z");
+  expectBadLight("--ambient 1,2", "--ambient");
+  expectBadLight("--ambient -1", "--ambient");
+  expectBadLight("--phase-g 1 --light direction=1,0,0", "--phase-g");
+  expectBadLight("--phase-g 0.5", "--phase-g");
+}
+
 TEST_F(BadInput, VolumeThatNoDeviceHolds) {
   expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 2048") + kSmall,
                      ExitCode::OutOfMemory, "--resolution");
