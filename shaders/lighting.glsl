@@ -14,51 +14,74 @@ float phaseFunction(float g, vec3 before, vec3 after) {
   return (1.0 - g * g) / (4.0 * 3.14159265358979 * width * sqrt(width));
 }
 
-// What of a light reaches a block, in the mean over it. `depth` and `falling` as depthTowards has them.
-float reaching(Block block, float sigma, vec3 direction, float depth, float falling) {
-  const float layer = layerLength(direction);
-  const float counted = frame.pathLengthCorrection != 0 ? layer : frame.voxelSize;
-  const float inFront = depthInFront(block, direction, depth, falling * sigma * counted);
-  return exp(-inFront) * selfAttenuation(sigma * layer * float(layersOf(block, direction)));
+// A block as the eye sees it.
+struct SeenBlock {
+  Block block;
+  uint rank;
+  float sigma;
+  vec3 toEye;      // in the world, of length 1
+  float own;       // optical depth towards the eye
+};
+
+// The mean over a block of what it lets through towards a light, `own` its optical depth there, each part weighted by what
+// it sends to the eye. Seen from the light's side the parts that the eye sees are those in the light, from the other
+// side those in the dark; `cosine` is between the two ways.
+float meanSeen(SeenBlock seen, float own, float cosine) {
+  const float sameSide = selfAttenuation(seen.own + own);
+  const float otherSide = exp(-min(seen.own, own)) * selfAttenuation(abs(seen.own - own));
+  return mix(otherSide, sameSide, 0.5 + 0.5 * cosine) / selfAttenuation(seen.own);
 }
 
-vec3 scatteredFrom(Light light, Block block, float sigma, uint rank, vec3 toEye) {
+// What of the light from a direction reaches what is seen of the block. `depth` and `falling` as depthTowards has them.
+float reaching(SeenBlock seen, vec3 direction, vec3 way, float depth, float falling) {
+  const float layer = layerLength(direction);
+  const float counted = frame.pathLengthCorrection != 0 ? layer : frame.voxelSize;
+  const float inFront = depthInFront(seen.block, direction, depth, falling * seen.sigma * counted);
+  const float own = seen.sigma * layer * float(layersOf(seen.block, direction));
+  return exp(-inFront) * meanSeen(seen, own, dot(way, seen.toEye));
+}
+
+vec3 scatteredFrom(Light light, SeenBlock seen) {
   vec3 toLight = light.place;
   float distance2 = 1.0;
   if (light.atInfinity == 0) {
-    toLight -= block.center - frame.middle;
-    const vec3 way = frame.indexToWorld * toLight;
-    const float edge = float(block.edge) * frame.voxelSize;
-    distance2 = max(dot(way, way), kNearestLight2 * edge * edge);
+    toLight -= seen.block.center - frame.middle;
+    const vec3 apart = frame.indexToWorld * toLight;
+    const float edge = float(seen.block.edge) * frame.voxelSize;
+    distance2 = max(dot(apart, apart), kNearestLight2 * edge * edge);
     if (dot(toLight, toLight) < kAtSource * kAtSource) toLight = vec3(0.0, 0.0, 1.0);
     toLight = acrossLayer(toLight);
   }
   float falling;
-  const float depth = depthTowards(towardsSource(toLight, frame.lighting.lookup, light.beyond), rank, falling);
-  const float phase = phaseFunction(frame.lighting.phaseG, -normalize(frame.indexToWorld * toLight), toEye);
-  return light.color * (phase * reaching(block, sigma, toLight, depth, falling) / distance2);
+  const float depth = depthTowards(towardsSource(toLight, frame.lighting.lookup, light.beyond), seen.rank, falling);
+  const vec3 way = normalize(frame.indexToWorld * toLight);
+  const float phase = phaseFunction(frame.lighting.phaseG, -way, seen.toEye);
+  return light.color * (phase * reaching(seen, toLight, way, depth, falling) / distance2);
 }
 
 // The mean of what reaches the block from all directions: what is dark from everywhere is dark in ambient light.
-float reachingFromAll(Block block, float sigma, uint rank) {
+float reachingFromAll(SeenBlock seen) {
   const Towards towards = towardsSource(vec3(0.0, 0.0, 1.0), frame.lighting.lookup, uvec2(0));
   const int edge = 2 * frame.cells + 1;
   float sum = 0.0;
   for (int i = 0; i < edge * edge * edge; ++i) {
     if (frame.lighting.shares[i] == 0.0) continue;  // no direction: inside of the cube
     const ivec3 cell = ivec3(i % edge, i / edge % edge, i / edge / edge) - frame.cells;
-    const float depth = decodeDepth(frame.code, storedCode(towards, cell, rank));
-    const float falling = isAtEnd(towards, cell, rank) ? 0.0 : 1.0;
-    sum += frame.lighting.shares[i] * reaching(block, sigma, vec3(cell) / float(frame.cells), depth, falling);
+    const float depth = decodeDepth(frame.code, storedCode(towards, cell, seen.rank));
+    const float falling = isAtEnd(towards, cell, seen.rank) ? 0.0 : 1.0;
+    const vec3 direction = vec3(cell) / float(frame.cells);
+    const vec3 way = normalize(frame.indexToWorld * direction);
+    sum += frame.lighting.shares[i] * reaching(seen, direction, way, depth, falling);
   }
   return sum;
 }
 
 // Per albedo. `towardsEye` is as directionToEye has it.
 vec3 scatteredLight(Block block, float sigma, uint rank, vec3 towardsEye) {
-  const vec3 toEye = normalize(frame.indexToWorld * towardsEye);
+  const float own = sigma * layerLength(towardsEye) * float(layersOf(block, towardsEye));
+  const SeenBlock seen = SeenBlock(block, rank, sigma, normalize(frame.indexToWorld * towardsEye), own);
   vec3 sum = vec3(0.0);
-  for (int i = 0; i < frame.lighting.lightCount; ++i) sum += scatteredFrom(lights[i], block, sigma, rank, toEye);
-  if (frame.lighting.ambient != vec3(0.0)) sum += frame.lighting.ambient * reachingFromAll(block, sigma, rank);
+  for (int i = 0; i < frame.lighting.lightCount; ++i) sum += scatteredFrom(lights[i], seen);
+  if (frame.lighting.ambient != vec3(0.0)) sum += frame.lighting.ambient * reachingFromAll(seen);
   return sum;
 }

@@ -14,6 +14,11 @@ constexpr double kAtLight = 1e-3;
 /// 1 / distance² from its middle.
 const double kNearestLight2 = std::pow(3.0 / (4.0 * std::numbers::pi), 2.0 / 3.0) / 3.0;
 
+/// The integral of exp(-x t) over t from 0 to 1.
+double meanOver(double x) {
+  return std::abs(x) < 1e-9 ? 1.0 : -std::expm1(-x) / x;
+}
+
 }  // namespace
 
 ReferenceLight::ReferenceLight(const LightInputs& inputs, const FrameSettings& settings)
@@ -40,18 +45,27 @@ glm::dvec3 ReferenceLight::toLight(const RaySource& source, glm::dvec3 position)
   return glm::length(way) < kAtLight ? glm::dvec3(0.0, 0.0, 1.0) : way;
 }
 
-double ReferenceLight::reaching(const Block& block, double depth, double falling, glm::dvec3 direction,
-                                double counted) const {
-  const int axis = majorAxis(direction);
-  const int layers = boxOf(block, inputs_.volume.dimensions).extent[axis];
-  const double layer = glm::length(toWorld_ * (direction / std::abs(direction[axis])));
+double ReferenceLight::reaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth,
+                                double falling, double counted) const {
   const double sigma = extinctionOf(block, inputs_.volume, inputs_.extinction, inputs_.coarser);
-  const double inFront = std::max(depth - 0.5 * (layers - 1) * falling * sigma * counted, 0.0);
-  const double own = sigma * layer * layers;
-  return std::exp(-inFront) * (own < 1e-9 ? 1.0 : -std::expm1(-own) / own);
+  const auto layersOf = [&](glm::dvec3 way) {
+    return boxOf(block, inputs_.volume.dimensions).extent[majorAxis(way)];
+  };
+  const auto own = [&](glm::dvec3 way) {
+    return sigma * layersOf(way) * glm::length(toWorld_ * (way / std::abs(way[majorAxis(way)])));
+  };
+  const double inFront = std::max(depth - 0.5 * (layersOf(direction) - 1) * falling * sigma * counted, 0.0);
+  // The integral of exp(-e t) times exp(-l t), or where the light comes from the other side exp(-l (1 - t)),
+  // over t from 0 to 1.
+  const double e = own(toEye), l = own(direction);
+  const double sameSide = meanOver(e + l);
+  const double otherSide = std::exp(-std::min(e, l)) * meanOver(std::abs(e - l));
+  const double cosine = glm::dot(glm::normalize(toWorld_ * toEye), glm::normalize(toWorld_ * direction));
+  return std::exp(-inFront) * (0.5 * (1.0 + cosine) * sameSide + 0.5 * (1.0 - cosine) * otherSide) /
+         meanOver(e);
 }
 
-double ReferenceLight::reachingFromAll(const Block& block) const {
+double ReferenceLight::reachingFromAll(const Block& block, glm::dvec3 toEye) const {
   const TableSettings& settings = inputs_.tableSettings;
   const LevelData* level = block.level == 0 ? nullptr : &inputs_.coarser[std::size_t(block.level) - 1];
   const auto& table = level == nullptr ? inputs_.table : level->table;
@@ -63,7 +77,7 @@ double ReferenceLight::reachingFromAll(const Block& block) const {
     const int byte = table[std::size_t(d)][index];
     const glm::dvec3 direction = directionAt(settings.directions, d);
     sum += shares_[std::size_t(d)] *
-           reaching(block, decodeOpticalDepth(settings.code, byte), byte == end ? 0.0 : 1.0, direction,
+           reaching(block, toEye, direction, decodeOpticalDepth(settings.code, byte), byte == end ? 0.0 : 1.0,
                     stepLength(inputs_.volume.indexToWorld, direction, settings.pathLengthCorrection));
   }
   return sum;
@@ -80,14 +94,14 @@ glm::dvec3 ReferenceLight::scattered(const Block& block, glm::dvec3 toEye) const
     const glm::dvec3 across = way / std::abs(way[majorAxis(way)]);
     const ReferenceDepth& depth = *depths_[i];
     const double counted = depth.countedLength(glm::length(toWorld_ * across));
-    const double reached = reaching(block, depth.at(block), depth.falling(block), way, counted);
+    const double reached = reaching(block, toEye, way, depth.at(block), depth.falling(block), counted);
     const glm::dvec3 before = -glm::normalize(toWorld_ * way);
     const glm::dvec3 apart = toWorld_ * (sources_[i].place - centre);
     const double distance2 = std::max(glm::dot(apart, apart), kNearestLight2 * edge * edge);
     const double irradiance = light.intensity / (light.atInfinity ? 1.0 : distance2);
     sum += light.color * (irradiance * reached * phaseFunction(lighting_.phaseG, glm::dot(before, after)));
   }
-  return sum + lighting_.ambient * reachingFromAll(block);
+  return sum + lighting_.ambient * reachingFromAll(block, toEye);
 }
 
 }  // namespace freevoxels

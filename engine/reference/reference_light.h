@@ -29,11 +29,11 @@ class ReferenceLight {
 
  private:
   glm::dvec3 toLight(const RaySource& source, glm::dvec3 position) const;
-  /// The mean over a block, of which the middle layer has `depth` before it; a layer counts as `counted`
-  /// long.
-  double reaching(const Block& block, double depth, double falling, glm::dvec3 direction,
+  /// What a block lets through towards a light, in the mean over what the eye sees of it. The middle layer
+  /// has `depth` before it; a layer counts as `counted` long.
+  double reaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth, double falling,
                   double counted) const;
-  double reachingFromAll(const Block& block) const;
+  double reachingFromAll(const Block& block, glm::dvec3 toEye) const;
 
   const LightInputs inputs_;
   const Lighting lighting_;

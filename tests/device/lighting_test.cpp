@@ -40,18 +40,18 @@ TEST_F(LightingTest, EveryKindOfLightMatchesTheReference) {
   const Volume v = volume(true);
   for (const Composite composite : {Composite::Normalised, Composite::Additive})
     expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.25, {}),
-                      {.size = {125, 100}, .composite = composite, .lighting = everything()});
+                      {.size = {75, 60}, .composite = composite, .lighting = everything()});
 }
 
 TEST_F(LightingTest, EveryLookUpMatchesTheReference) {
   const Volume v = volume(true);
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
   expectSamePicture(v, camera,
-                    {.size = {80, 80}, .attenuation = AttenuationLookup::Exact, .lighting = everything()});
-  expectSamePicture(v, camera, {.size = {80, 80}, .lighting = everything()},
+                    {.size = {50, 50}, .attenuation = AttenuationLookup::Exact, .lighting = everything()});
+  expectSamePicture(v, camera, {.size = {50, 50}, .lighting = everything()},
                     {.directions = DirectionSet::Directions98});
   expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {.orthographic = true}),
-                    {.size = {80, 80},
+                    {.size = {50, 50},
                      .composite = Composite::Additive,
                      .attenuation = AttenuationLookup::Nearest,
                      .gradient = false,
@@ -65,7 +65,7 @@ TEST_F(LightingTest, LightsInsideMatchTheReference) {
   lighting.lights = {
       {.place = {0.05, 0.12, -0.08}, .atInfinity = false, .intensity = 2.0},
       {.place = {-0.2, 0.1, 0.1}, .atInfinity = false, .color = {1.0, 0.0, 0.0}, .intensity = 2.0}};
-  expectSamePicture(v, framingCamera(v, -110.0, -40.0, 1.0, {}), {.size = {80, 80}, .lighting = lighting});
+  expectSamePicture(v, framingCamera(v, -110.0, -40.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
 }
 
 TEST_F(LightingTest, SortedPicturesMatchTheReference) {
@@ -73,7 +73,7 @@ TEST_F(LightingTest, SortedPicturesMatchTheReference) {
   const Classification classification = coloured(v, 0.5f);
   const auto extinction = referenceExtinction(v, classification);
   const auto table = referenceTable(v, extinction, {});
-  const FrameSettings settings{.size = {80, 80}, .composite = Composite::Sorted, .lighting = everything()};
+  const FrameSettings settings{.size = {50, 50}, .composite = Composite::Sorted, .lighting = everything()};
   const ReferenceLight light(
       {.volume = v, .extinction = extinction, .table = table, .coarser = {}, .tableSettings = {}}, settings);
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
@@ -108,7 +108,7 @@ TEST_F(LightingTest, TwoLightsAreTheSumOfEachAlone) {
   const Volume v = volume(false);
   Renderer renderer(device(), v, coloured(v), {});
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
-  const FrameSettings settings{.size = {60, 60}};
+  const FrameSettings settings{.size = {40, 40}};
   const Lighting both = everything();
   std::vector<glm::dvec3> alone;
   for (const Lighting& one : {Lighting{.lights = {both.lights[0]}, .phaseG = both.phaseG},
