@@ -284,6 +284,7 @@ struct Light {
   int atInfinity;
   vec3 color;         // times the intensity
   uvec2 beyond;       // device address of what eye_depths.comp made of it; 0: the light is outside of the volume
+  RayFan fans[6];     // kLookupExact: from the light, as SetupFrame has them from the eye
 };
 
 // What splat_setup.comp needs of a frame that is lit.

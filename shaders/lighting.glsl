@@ -35,7 +35,8 @@ float meanSeen(SeenBlock seen, float own, float cosine) {
 // What of the light from a direction reaches what is seen of the block. `depth` and `falling` as depthTowards has them.
 float reaching(SeenBlock seen, vec3 direction, vec3 way, float depth, float falling) {
   const float layer = layerLength(direction);
-  const float counted = frame.pathLengthCorrection != 0 ? layer : frame.voxelSize;
+  const bool inFull = frame.lighting.lookup == kLookupExact || frame.pathLengthCorrection != 0;
+  const float counted = inFull ? layer : frame.voxelSize;
   const float inFront = depthInFront(seen.block, direction, depth, falling * seen.sigma * counted);
   const float own = seen.sigma * layer * float(layersOf(seen.block, direction));
   return exp(-inFront) * meanSeen(seen, own, dot(way, seen.toEye));
@@ -52,8 +53,11 @@ vec3 scatteredFrom(Light light, SeenBlock seen) {
     if (dot(toLight, toLight) < kAtSource * kAtSource) toLight = vec3(0.0, 0.0, 1.0);
     toLight = acrossLayer(toLight);
   }
-  float falling;
-  const float depth = depthTowards(towardsSource(toLight, frame.lighting.lookup, light.beyond), seen.rank, falling);
+  float depth, falling = 1.0;
+  if (frame.lighting.lookup == kLookupExact)
+    depth = rayDepthOf(light.fans[fanIndex(-toLight)], seen.block, toLight).x;
+  else
+    depth = depthTowards(towardsSource(toLight, frame.lighting.lookup, light.beyond), seen.rank, falling);
   const vec3 way = normalize(frame.indexToWorld * toLight);
   const float phase = phaseFunction(frame.lighting.phaseG, -way, seen.toEye);
   return light.color * (phase * reaching(seen, toLight, way, depth, falling) / distance2);
@@ -61,7 +65,7 @@ vec3 scatteredFrom(Light light, SeenBlock seen) {
 
 // The mean of what reaches the block from all directions: what is dark from everywhere is dark in ambient light.
 float reachingFromAll(SeenBlock seen) {
-  const Towards towards = towardsSource(vec3(0.0, 0.0, 1.0), frame.lighting.lookup, uvec2(0));
+  const Towards towards = towardsSource(vec3(0.0, 0.0, 1.0), kLookupBilinear, uvec2(0));
   const int edge = 2 * frame.cells + 1;
   float sum = 0.0;
   for (int i = 0; i < edge * edge * edge; ++i) {

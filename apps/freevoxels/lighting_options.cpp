@@ -10,6 +10,9 @@ namespace freevoxels {
 
 namespace {
 
+// In the order of the enumerators.
+const std::vector<std::string> kAttenuations{"table", "exact"};
+
 constexpr const char* kForm = "direction=X,Y,Z[,color=R,G,B][,intensity=I] or position=X,Y,Z[,...]";
 
 /// "a=1,2,b=3" as {a: "1,2", b: "3"}.
@@ -114,7 +117,18 @@ void LightingOptions::add(CLI::App& app) {
       ->group(group);
 }
 
+void LightingOptions::addAttenuation(CLI::App& app) {
+  addWord(
+      app, "--light-attenuation", kAttenuations, attenuation,
+      "Whether the shadows of lights are looked up in the table, or along rays that are swept once for each "
+      "light, exactly [table]")
+      ->group("Light");
+}
+
 void LightingOptions::check() const {
+  if (attenuation && lights.empty())
+    fail(ExitCode::Usage,
+         "--light-attenuation is how lights are shadowed, and there is none: give a --light");
   if (phaseG && lights.empty())
     fail(ExitCode::Usage, "--phase-g is how lights are scattered, and there is none: give a --light");
 }
@@ -122,6 +136,7 @@ void LightingOptions::check() const {
 std::optional<Lighting> LightingOptions::resolve(const Volume& volume) const {
   if (lights.empty() && !ambient) return std::nullopt;
   Lighting lighting{.ambient = ambient.value_or(glm::dvec3(0.0)), .phaseG = phaseG.value_or(0.0)};
+  lighting.attenuation = LightAttenuation(attenuation.value_or(int(LightAttenuation::Table)));
   for (const GivenLight& given : lights) {
     lighting.lights.push_back(given.light);
     if (!given.hasIntensity) lighting.lights.back().intensity = defaultIntensity(given.light, volume);
@@ -131,6 +146,7 @@ std::optional<Lighting> LightingOptions::resolve(const Volume& volume) const {
 
 void LightingOptions::describe(OptionList& options, const std::optional<Lighting>& resolved) const {
   if (!resolved) return;
+  if (attenuation) options.emplace_back("--light-attenuation", kAttenuations[std::size_t(*attenuation)]);
   for (const Light& light : resolved->lights) options.emplace_back("--light", lightText(light));
   options.emplace_back("--ambient", numberText(resolved->ambient));
   if (!resolved->lights.empty()) options.emplace_back("--phase-g", numberText(resolved->phaseG));

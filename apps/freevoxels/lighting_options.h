@@ -20,8 +20,11 @@ struct LightingOptions {
   std::vector<GivenLight> lights;
   std::optional<glm::dvec3> ambient;
   std::optional<double> phaseG;
+  std::optional<int> attenuation;
 
   void add(CLI::App& app);
+  /// Of commands that have a table.
+  void addAttenuation(CLI::App& app);
   /// Before any work: options that say nothing without others (ExitCode::Usage).
   void check() const;
   /// None where nothing is lit. The intensity of a position defaults to what is kDefaultIrradiance in the

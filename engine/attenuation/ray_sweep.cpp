@@ -48,6 +48,12 @@ void checkFits(const Device& device, const std::array<RayFan, 6>& fans) {
 
 }  // namespace
 
+std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source) {
+  std::uint64_t bytes = 0;
+  for (const RayFan& fan : rayFans(dimensions, source)) bytes += depthBytes(fan);
+  return bytes;
+}
+
 RaySweep::RaySweep(const Device& device)
     : device_(device),
       pipeline_(makeComputePipeline(device, {ray_sweep_spv, "ray sweep"},
@@ -58,8 +64,7 @@ RaySweep::RaySweep(const Device& device)
 void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RaySource& source) {
   const std::array<RayFan, 6> fans = rayFans(volume.layout.dimensions, source);
   checkFits(device_, fans);
-  std::uint64_t bytes = 0;
-  for (const RayFan& fan : fans) bytes += depthBytes(fan);
+  const std::uint64_t bytes = rayBytes(volume.layout.dimensions, source);
   if (depths_.bytes() < bytes) {
     depths_ = {};  // not both at once
     depths_ = Buffer(device_, bytes, MemoryUse::Device, "ray depths");

@@ -7,6 +7,9 @@
 
 namespace freevoxels {
 
+/// On the device, of the rays of a source.
+std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source);
+
 /// COMPUTE ray_sweep.comp
 class RaySweep {
  public:

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <span>
 
+#include "engine/core/error.h"
+
 namespace freevoxels {
 
 namespace {
@@ -20,31 +22,60 @@ shader::Light deviceLight(const Light& light, const RaySource& source, glm::dvec
       .beyond = {0, 0}};
 }
 
+/// Of all lights together.
+void checkRaysFit(const Device& device, glm::ivec3 dimensions, std::span<const RaySource> sources) {
+  std::uint64_t bytes = 0, largest = 0;
+  for (const RaySource& source : sources) {
+    bytes += rayBytes(dimensions, source);
+    largest = std::max(largest, rayBytes(dimensions, source));
+  }
+  const std::uint64_t memory = device.description().memoryBytes;
+  const std::uint64_t piece = std::min(std::uint64_t(device.maximumAllocation()), memory);
+  if (bytes > memory || largest > piece)
+    fail(ExitCode::OutOfMemory,
+         "exact shadows of these lights need {} MiB for their rays, {} MiB in one piece, and {} has {} and "
+         "{} MiB: "
+         "use --light-attenuation table, fewer lights or a smaller volume",
+         bytes >> 20, largest >> 20, device.description().name, memory >> 20, piece >> 20);
+}
+
 }  // namespace
 
-std::vector<shader::Light> LightPass::place(const DeviceVolume& volume, DirectionSet set,
-                                            std::vector<StageTime>& times) {
-  const glm::ivec3 dimensions = volume.layout.dimensions;
-  const auto isWithin = [&](const Light& light) {
-    return isInside(lightSource(light, volume.indexToWorld), dimensions);
-  };
-  const auto inside = std::size_t(std::ranges::count_if(*placed_, isWithin));
-  beyondDepths_ = {};
-  if (inside > 0)
-    beyondDepths_ = Buffer(device_, inside * kEyeDepthsBytes, MemoryUse::Device, "depths beyond lights");
-
-  Commands commands(device_);
-  std::vector<shader::Light> lights;
+void LightPass::setBeyond(Commands& commands, const DeviceVolume& volume, DirectionSet set,
+                          std::vector<shader::Light>& lights) {
   int slot = 0;
-  for (const Light& light : *placed_) {
-    const RaySource source = lightSource(light, volume.indexToWorld);
-    lights.push_back(deviceLight(light, source, 0.5 * glm::dvec3(dimensions - 1)));
-    if (!isWithin(light)) continue;
+  beyondDepths_ = Buffer(device_, std::max<VkDeviceSize>(lights.size(), 1) * kEyeDepthsBytes,
+                         MemoryUse::Device, "depths beyond lights");
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const RaySource source = lightSource(placed_->lights[i], volume.indexToWorld);
+    if (!isInside(source, volume.layout.dimensions)) continue;
     beyond_.record(commands, volume, set, source, beyondDepths_, slot);
-    lights.back().beyond = halves(beyondDepths_.address() + VkDeviceSize(slot++) * kEyeDepthsBytes);
+    lights[i].beyond = halves(beyondDepths_.address() + VkDeviceSize(slot++) * kEyeDepthsBytes);
   }
-  commands.submitAndWait();
-  std::ranges::copy(commands.times(), std::back_inserter(times));
+}
+
+void LightPass::setRays(Commands& commands, const DeviceVolume& volume, std::vector<shader::Light>& lights) {
+  std::vector<RaySource> sources;
+  for (const Light& light : placed_->lights) sources.push_back(lightSource(light, volume.indexToWorld));
+  checkRaysFit(device_, volume.layout.dimensions, sources);
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    RaySweep& sweep = rays_.emplace_back(device_);
+    sweep.record(commands, volume, sources[i]);
+    std::ranges::copy(sweep.fans(), lights[i].fans);
+  }
+}
+
+std::vector<shader::Light> LightPass::place(Commands& commands, const DeviceVolume& volume,
+                                            DirectionSet set) {
+  const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
+  std::vector<shader::Light> lights;
+  for (const Light& light : placed_->lights)
+    lights.push_back(deviceLight(light, lightSource(light, volume.indexToWorld), middle));
+  rays_.clear();
+  if (placed_->attenuation == LightAttenuation::Exact)
+    setRays(commands, volume, lights);
+  else
+    setBeyond(commands, volume, set, lights);
   return lights;
 }
 
@@ -52,20 +83,24 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
                                          const FrameSettings& settings, std::vector<StageTime>& times) {
   const Lighting& lighting = *settings.lighting;
   const DirectionSet set = table.directions;
-  if (placed_ != lighting.lights) {
-    placed_ = lighting.lights;
-    const std::vector<shader::Light> lights = place(volume, set, times);
+  if (!placed_ || placed_->lights != lighting.lights || placed_->attenuation != lighting.attenuation) {
+    placed_ = lighting;
+    Commands commands(device_);
+    const std::vector<shader::Light> lights = place(commands, volume, set);
+    commands.submitAndWait();
+    std::ranges::copy(commands.times(), std::back_inserter(times));
     const auto bytes = std::as_bytes(std::span(lights));
     lights_ = Buffer(device_, std::max<VkDeviceSize>(bytes.size(), 4), MemoryUse::Device, "lights");
     upload(device_, lights_, bytes);
   }
   if (shares_.empty()) shares_ = directionShares(set, volume.indexToWorld);
-  shader::FrameLighting frame{.lightCount = int(lighting.lights.size()),
-                              .lookup = settings.attenuation == AttenuationLookup::Nearest
-                                            ? shader::kLookupNearest
-                                            : shader::kLookupBilinear,
-                              .ambient = lighting.ambient,
-                              .phaseG = float(lighting.phaseG)};
+  const int ofTable =
+      settings.attenuation == AttenuationLookup::Nearest ? shader::kLookupNearest : shader::kLookupBilinear;
+  shader::FrameLighting frame{
+      .lightCount = int(lighting.lights.size()),
+      .lookup = lighting.attenuation == LightAttenuation::Exact ? shader::kLookupExact : ofTable,
+      .ambient = lighting.ambient,
+      .phaseG = float(lighting.phaseG)};
   for (int i = 0; i < directionCount(set); ++i)
     frame.shares[cellNumber(set, directionCell(set, i))] = float(shares_[std::size_t(i)]);
   return frame;

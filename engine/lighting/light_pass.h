@@ -1,10 +1,12 @@
 #pragma once
 // The lights of a frame on the device: Subr et al. 2007, Section 4.3.
 
+#include <deque>
 #include <optional>
 #include <vector>
 
 #include "engine/attenuation/eye_depths.h"
+#include "engine/attenuation/ray_sweep.h"
 #include "engine/core/stages.h"
 #include "engine/lighting/lighting.h"
 #include "engine/splatting/render_settings.h"
@@ -25,15 +27,18 @@ class LightPass {
   const Buffer& lights() const { return lights_; }
 
  private:
-  std::vector<shader::Light> place(const DeviceVolume& volume, DirectionSet set,
-                                   std::vector<StageTime>& times);
+  std::vector<shader::Light> place(Commands& commands, const DeviceVolume& volume, DirectionSet set);
+  void setBeyond(Commands& commands, const DeviceVolume& volume, DirectionSet set,
+                 std::vector<shader::Light>& lights);
+  void setRays(Commands& commands, const DeviceVolume& volume, std::vector<shader::Light>& lights);
 
   const Device& device_;
   EyeDepthsPass beyond_;
   std::vector<double> shares_;
-  std::optional<std::vector<Light>> placed_;  ///< the lights that the buffers are of
-  Buffer lights_;                             ///< shader::Light
-  Buffer beyondDepths_;                       ///< kEyeDepthsBytes a light that is inside of the volume
+  std::optional<Lighting> placed_;  ///< whose lights the buffers are of
+  Buffer lights_;                   ///< shader::Light
+  Buffer beyondDepths_;             ///< kEyeDepthsBytes a light that is inside of the volume
+  std::deque<RaySweep> rays_;       ///< of the lights; empty where they are looked up in the table
 };
 
 }  // namespace freevoxels

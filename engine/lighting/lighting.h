@@ -32,13 +32,22 @@ struct Light {
   bool operator==(const Light&) const = default;
 };
 
+/// How much of a light reaches a voxel.
+enum class LightAttenuation : int {
+  Table = 0,  ///< as the table says: nothing is made for a light
+  Exact = 1,  ///< along rays of its own (ray_fans.h), swept once for as long as the lights stay as they are
+};
+
 struct Lighting {
   std::vector<Light> lights;
   glm::dvec3 ambient{0.0};  ///< radiance that comes from everywhere, linear Rec.709
   /// Of the phase function of the lights, up to kMostPhaseG either way: 0 scatters alike in all directions,
   /// more forwards. What comes from everywhere is scattered alike in all directions.
   double phaseG = 0.0;
+  LightAttenuation attenuation = LightAttenuation::Table;  ///< of the lights; what is ambient is the table's
 
+  /// Whether a frame has to have the table.
+  bool readsTable() const { return attenuation == LightAttenuation::Table || ambient != glm::dvec3(0.0); }
   bool operator==(const Lighting&) const = default;
 };
 

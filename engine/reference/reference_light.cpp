@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/reference/reference_rays.h"
+
 namespace freevoxels {
 
 namespace {
@@ -32,6 +34,11 @@ ReferenceLight::ReferenceLight(const LightInputs& inputs, const FrameSettings& s
   for (const Light& light : lighting_.lights) {
     const RaySource source = lightSource(light, inputs_.volume.indexToWorld);
     sources_.push_back(source);
+    if (lighting_.attenuation == LightAttenuation::Exact) {
+      depths_.push_back(
+          rayDepth(inputs_.volume, source, referenceRays(inputs_.volume, inputs_.extinction, source)));
+      continue;
+    }
     depths_.push_back(tableDepth(
         inputs_.volume, inputs_.extinction, inputs_.table, inputs_.coarser, inputs_.tableSettings, lookup,
         [this, source](glm::dvec3 position) { return toLight(source, position); },

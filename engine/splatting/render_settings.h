@@ -38,8 +38,8 @@ struct FrameSettings {
   float cullThreshold =
       1.0f / 512.0f;   ///< transmittance to the eye below which a voxel is hidden; 0: none is
   bool depth = false;  ///< also make Image::depth
-  /// None: every voxel sends out its colour, whatever is around it. Lights are looked up bilinearly, or as
-  /// AttenuationLookup::Nearest says.
+  /// None: every voxel sends out its colour, whatever is around it. The table is looked up for lights
+  /// bilinearly, or as AttenuationLookup::Nearest says.
   std::optional<Lighting> lighting = std::nullopt;
 };
 

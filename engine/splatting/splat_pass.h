@@ -37,6 +37,7 @@ struct FrameConstants {
   RaySource eye;
   bool eyeInside = false;  ///< the volume's box
   bool lit = false;        ///< by setup.lighting, which is the caller's to fill
+  bool lightsReadTable = false;
   DetailRule detail;
   CullRule cull;
   /// Whether the levels of the table above the voxels are looked up.
@@ -49,7 +50,7 @@ struct FrameConstants {
   bool eyeReadsTable() const {
     return setup.lookup == shader::kLookupBilinear || setup.lookup == shader::kLookupNearest;
   }
-  bool readsTable() const { return eyeReadsTable() || lit; }
+  bool readsTable() const { return eyeReadsTable() || lightsReadTable; }
 };
 
 FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volume,

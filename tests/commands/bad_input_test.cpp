@@ -137,6 +137,8 @@ TEST_F(BadInput, BadLights) {
   expectBadLight("--ambient -1", "--ambient");
   expectBadLight("--phase-g 1 --light direction=1,0,0", "--phase-g");
   expectBadLight("--phase-g 0.5", "--phase-g");
+  expectCleanRefusal(std::string("render procedural:cube @a.png --light-attenuation exact") + kSmall,
+                     ExitCode::Usage, "--light-attenuation");
 }
 
 TEST_F(BadInput, VolumeThatNoDeviceHolds) {

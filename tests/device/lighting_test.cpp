@@ -68,6 +68,34 @@ TEST_F(LightingTest, LightsInsideMatchTheReference) {
   expectSamePicture(v, framingCamera(v, -110.0, -40.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
 }
 
+TEST_F(LightingTest, ExactLightsMatchTheReference) {
+  const Volume v = volume(true);
+  Lighting lighting = everything();
+  lighting.attenuation = LightAttenuation::Exact;
+  lighting.lights.push_back({.place = {0.05, 0.12, -0.08}, .atInfinity = false, .intensity = 0.2});
+  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
+}
+
+/// Turning the camera sweeps nothing again, moving a light does. Without ambient light no table is made.
+TEST_F(LightingTest, ExactLightsAreSweptOnceWhileTheyStandStill) {
+  const Volume v = volume(false);
+  Renderer renderer(device(), v, coloured(v), {});
+  FrameSettings settings{.size = {20, 20}, .attenuation = AttenuationLookup::Exact, .lighting = Lighting{}};
+  settings.lighting->lights.resize(2);
+  settings.lighting->attenuation = LightAttenuation::Exact;
+  const auto sweeps = [&](double azimuth) {
+    renderer.render(framingCamera(v, azimuth, 25.0, 1.0, {}), settings);
+    std::vector<std::string> names;
+    for (const StageTime& time : renderer.timings()) names.push_back(time.name);
+    EXPECT_EQ(std::ranges::count(names, "attenuation sweeps"), 0);
+    return std::ranges::count(names, "ray sweep");
+  };
+  EXPECT_EQ(sweeps(0.0), 2);  // the eye's and the lights'
+  EXPECT_EQ(sweeps(40.0), 1);
+  settings.lighting->lights[1].place.x += 0.1;
+  EXPECT_EQ(sweeps(40.0), 2);
+}
+
 TEST_F(LightingTest, SortedPicturesMatchTheReference) {
   const Volume v = volume(true);
   const Classification classification = coloured(v, 0.5f);
