@@ -154,6 +154,32 @@ std::vector<Result> culling(const Device& device, QualityColor color, int resolu
   return results;
 }
 
+std::vector<Result> lights(const Device& device, int resolution, int runs) {
+  const Volume volume = makeProcedural("cloud", resolution);
+  const Classification classification{.densityScale = automaticDensityScale(volume)};
+  const Camera camera = framingCamera(volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
+  std::vector<Result> results;
+  for (const int count : {1, 16}) {
+    FrameSettings settings{.size = {1024, 1024}, .lighting = Lighting{}};
+    for (int i = 0; i < count; ++i)
+      settings.lighting->lights.push_back({.place = {std::cos(0.4 * i), 0.5, std::sin(0.4 * i)}});
+    const double time = least(runs, [&] {
+      std::vector<StageTime> times;
+      {
+        const StageTimer timer(times, "whole");
+        Renderer(device, volume, classification, {}).render(camera, settings);
+      }
+      return times.front().milliseconds;
+    });
+    const std::string ratio =
+        results.empty() ? "" : fmt::format(": {:.2f} of one light", time / results.front().milliseconds);
+    results.push_back({.name = fmt::format("cloud {}^3, {} light{}, whole{}", resolution, count,
+                                           count == 1 ? "" : "s", ratio),
+                       .milliseconds = time});
+  }
+  return results;
+}
+
 Result compaction(const Device& device, int resolution, int runs) {
   const Volume volume = unitVoxels(glm::ivec3(resolution), [](int x, int y, int z) {
     return ((x / 8) * 7 + (y / 8) * 13 + (z / 8) * 29) % 32 == 0 ? 1.0f : 0.0f;

@@ -25,6 +25,10 @@ std::vector<Result> zoom(const Device& device, int resolution, int runs);
 /// Choosing, setting up and drawing the voxels of a head of N³ voxels, all of them and culled.
 std::vector<Result> culling(const Device& device, QualityColor color, int resolution, int runs);
 
+/// A cloud of N³ voxels, from memory to a lit picture of 1024 x 1024 pixels in memory: with one light, and
+/// with 16.
+std::vector<Result> lights(const Device& device, int resolution, int runs);
+
 /// The list of visible voxels of an N³ volume of which a thirtieth is visible, beside a copy of 4 N³ bytes.
 Result compaction(const Device& device, int resolution, int runs);
 

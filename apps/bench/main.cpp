@@ -30,6 +30,7 @@ std::vector<Result> measureAll(const Device& device, const std::vector<std::stri
   for (const QualityColor color : {QualityColor::Skin, QualityColor::Bone})
     for (Result& result : bench::culling(device, color, quick ? 128 : 256, runs))
       results.push_back(std::move(result));
+  for (Result& result : bench::lights(device, 128, runs)) results.push_back(std::move(result));
   results.push_back(bench::compaction(device, quick ? 128 : 256, runs));
   for (double pixels : {3.0, 5.0, 9.0}) results.push_back(bench::splats(device, pixels, runs));
   for (const Result& result : bench::flight(device, quick ? 64 : 128, quick ? 1 : 2))

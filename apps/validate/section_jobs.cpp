@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 
 #include "apps/freevoxels/input_options.h"
 #include "engine/renderer.h"
@@ -14,6 +15,7 @@
 #include "engine/validation/invariances.h"
 #include "engine/validation/leakage.h"
 #include "engine/validation/level_checks.h"
+#include "engine/validation/light_checks.h"
 #include "engine/validation/paper_figures.h"
 #include "engine/validation/quality.h"
 #include "engine/validation/stage_checks.h"
@@ -31,6 +33,7 @@ constexpr int kQuickQuality = 48;  ///< voxels along an edge where pictures meet
 constexpr int kQuickQualityPicture = 96, kWholeQualityPicture = 160, kLargeQualityPicture = 256;
 /// Where a voxel is as large as the parts of a volume, no method has to reach anything.
 constexpr int kLeastResolutionWithGoals = kMedium;
+constexpr int kQuickLightPicture = 64;
 constexpr int kDetailResolution = kMedium;
 constexpr int kTurntableResolution = kMedium, kTurntableFrames = 72, kTurntablePicture = 64;
 constexpr int kQuickFlightFrames = 8, kWholeFlightFrames = 60, kFlightPicture = 64;
@@ -146,6 +149,17 @@ void addCulling(std::vector<SectionJob>& jobs, const Device& device, const Exten
   }
 }
 
+/// Of the volumes that are smooth, and opaque nowhere: kQualitySubjects' shells and cloud.
+void addLight(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
+  const int resolution = quick ? kQuickProcedural : kDetailResolution;
+  for (const QualitySubject& subject : std::span(kQualitySubjects).subspan(1, 2))
+    jobs.push_back({fmt::format("light on {}", subject.procedural), [=, &device, &subject] {
+                      return lightQuality(device, openQualityScene(device, subject, resolution),
+                                          quick ? kQuickLightPicture : kQuickQualityPicture);
+                    }});
+  jobs.push_back({"shadows", [=, &device] { return shadowChecks(device, resolution); }});
+}
+
 void addPaperFigures(std::vector<SectionJob>& jobs, const Device& device) {
   jobs.push_back({"figure 2 of the paper", [&device] { return paperFigure2(deviceStages(device)); }});
   jobs.push_back({"figure 6 of the paper", [&device] { return paperFigure6(deviceStages(device)); }});
@@ -182,6 +196,7 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
   addPaperFigures(jobs, device);
   addDetail(jobs, device, extent.quick);
   addCulling(jobs, device, extent);
+  addLight(jobs, device, extent.quick);
   addQuality(jobs, device, extent);
   if (!extent.quick && !extent.resolution) addTurntable(jobs, device);
   if (!extent.resolution) addFlight(jobs, device, extent);

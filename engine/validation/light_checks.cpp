@@ -1,0 +1,194 @@
+#include "engine/validation/light_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/image/metrics.h"
+#include "engine/reference/oracle.h"
+#include "engine/renderer.h"
+#include "engine/validation/homogeneous_box.h"
+#include "engine/validation/worst.h"
+#include "engine/volume/procedural.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr float kDifferenceGain = 8.0f;
+constexpr double kBallRadius = 3.0;  ///< voxels
+/// Of the light that a ball takes from the fog, what may be missing beside its shadow. A shadow in voxels is
+/// wider than the ball's by the fog's footprints.
+constexpr double kMostBeside = 0.1;
+constexpr double kMostLeak = 1e-3;
+
+struct Shadows {
+  const char* name;
+  LightAttenuation attenuation;
+  double goal;
+};
+constexpr std::array<Shadows, 2> kShadows{{{"table", LightAttenuation::Table, kTableLightPsnr},
+                                           {"exact", LightAttenuation::Exact, kExactLightPsnr}}};
+
+Lighting sideLight(LightAttenuation attenuation) {
+  return {.lights = {{.place = {1.0, 1.0, 0.3}}}, .attenuation = attenuation};
+}
+
+Image amplified(const Image& a, const Image& b) {
+  Image difference = absoluteDifference(a, b);
+  for (glm::vec4& pixel : difference.pixels) pixel = glm::vec4(kDifferenceGain * glm::vec3(pixel), 1.0f);
+  return difference;
+}
+
+/// From the side, all of a box of edge 1 in the picture.
+const Camera kBoxCamera{
+    .position = {0.0, 0.0, 3.0}, .lookAt = {0.0, 0.0, 0.0}, .orthographic = true, .orthographicHeight = 1.0};
+
+/// Fog of optical depth 0.2 with or without an opaque ball in the middle.
+Volume foggyBall(int resolution, bool withBall) {
+  const glm::ivec3 n(resolution);
+  const glm::dvec3 middle = 0.5 * glm::dvec3(n - 1);
+  return makeVolume(n, cubeTransform(n), [&](int x, int y, int z) {
+    const double inside = kBallRadius + 0.5 - glm::length(glm::dvec3(x, y, z) - middle);
+    return 0.2 + (withBall ? 8.0 * resolution * std::clamp(inside, 0.0, 1.0) : 0.0);
+  });
+}
+
+/// Of the light that is missing because of the ball, the part that is not behind it. The light's way in the
+/// picture is `way`, of length 1; the ball itself does not count.
+double partBeside(const Image& fog, const Image& ball, int resolution, glm::dvec2 way) {
+  double beside = 0.0, all = 0.0;
+  for (int y = 0; y < fog.size.y; ++y)
+    for (int x = 0; x < fog.size.x; ++x) {
+      const auto pixel = std::size_t(x) + std::size_t(fog.size.x) * std::size_t(y);
+      const glm::dvec2 place =
+          double(resolution) *
+          ((glm::dvec2(x, -y) + glm::dvec2(0.5, -0.5)) / double(fog.size.x) - glm::dvec2(0.5, -0.5));
+      if (glm::length(place) < kBallRadius + 2.0) continue;
+      const double missing = std::abs(double(fog.pixels[pixel].r - ball.pixels[pixel].r));
+      all += missing;
+      const double across = std::abs(place.x * way.y - place.y * way.x);
+      if (glm::dot(place, way) > 0.0 || across > kBallRadius + 2.0) beside += missing;
+    }
+  return all > 0.0 ? beside / all : 1.0;
+}
+
+void checkBall(const Device& device, int resolution, ReportSection& section) {
+  const glm::dvec3 direction(1.0, 0.4, 0.2);
+  const glm::dvec2 way = glm::normalize(glm::dvec2(direction));
+  const Classification medium{.densityScale = 1.0};
+  Renderer fog(device, foggyBall(resolution, false), medium, {}),
+      ball(device, foggyBall(resolution, true), medium, {});
+  ReportPictures pictures{.caption = "A ball in fog", .pictures = {}};
+  for (const Shadows& shadows : kShadows) {
+    FrameSettings settings{.size = glm::ivec2(4 * resolution)};
+    settings.lighting = Lighting{.lights = {{.place = direction}}, .attenuation = shadows.attenuation};
+    const Image empty = fog.render(kBoxCamera, settings), shaded = ball.render(kBoxCamera, settings);
+    pictures.pictures.push_back({fmt::format("{}: {:g} times what is missing", shadows.name, kDifferenceGain),
+                                 amplified(empty, shaded)});
+    const double beside = partBeside(empty, shaded, resolution, way);
+    section.tables.front().rows.push_back({shadows.name, fmt::format("{:.3f}", beside)});
+    if (shadows.attenuation == LightAttenuation::Exact)
+      section.checks.push_back({.name = "a ball in fog: light that is missing beside its shadow, exact",
+                                .figure = beside,
+                                .tolerance = kMostBeside,
+                                .unit = "of all that is missing",
+                                .where = ""});
+  }
+  section.pictures.push_back(std::move(pictures));
+}
+
+/// Opaque, four voxels thick, with thin fog in and around it. A voxel has one light all over: where the same
+/// one is lit from outside and seen from inside, as in a wall of less than about three, light leaks.
+Volume hollowBall(int resolution) {
+  const glm::ivec3 n(resolution);
+  const glm::dvec3 middle = 0.5 * glm::dvec3(n - 1);
+  return makeVolume(n, cubeTransform(n), [&](int x, int y, int z) {
+    const double radius = glm::length(glm::dvec3(x, y, z) - middle);
+    return std::abs(radius - 0.35 * resolution) <= 2.0 ? 12.0 * resolution : 0.3;
+  });
+}
+
+void checkHollow(const Device& device, int resolution, ReportSection& section) {
+  Renderer renderer(device, hollowBall(resolution), {.densityScale = 1.0}, {});
+  const Camera inside{.position = {0.02, 0.01, -0.03}, .lookAt = {-1.0, -0.7, -0.4}, .verticalFov = 100.0};
+  std::vector<Light> lights{{.place = {0.6, 1.1, -0.2}, .atInfinity = false}};
+  for (const glm::dvec3 direction : {glm::dvec3(1, 0, 0), glm::dvec3(1, 1, 0), glm::dvec3(1, 1, 1),
+                                     glm::dvec3(-1, 0.3, 0.6), glm::dvec3(0.2, -1, 0.45)})
+    lights.push_back({.place = direction});
+  for (const Shadows& shadows : kShadows) {
+    Worst worst;
+    for (const Light& light : lights) {
+      FrameSettings settings{.size = {48, 48}};
+      settings.lighting = Lighting{.lights = {light}, .attenuation = shadows.attenuation};
+      for (const glm::vec4& pixel : renderer.render(inside, settings).pixels)
+        worst.take(double(pixel.r), [&] {
+          return fmt::format("light at ({:g}, {:g}, {:g})", light.place.x, light.place.y, light.place.z);
+        });
+    }
+    section.checks.push_back(worst.atMost(
+        kMostLeak, fmt::format("within an opaque hollow ball: light, {}", shadows.name), "radiance"));
+  }
+}
+
+}  // namespace
+
+ReportSection lightQuality(const Device& device, const QualityScene& scene, int pictureEdge) {
+  ReportSection section{
+      .title = fmt::format("Light: {}, {}x{} pixels", scene.name, pictureEdge, pictureEdge),
+      .text = "One light from the side. The oracle marches a shadow ray from every point of every ray."};
+  ReportTable table{.caption = "PSNR against the oracle, dB", .columns = {"view"}, .rows = {}};
+  Renderer renderer(device, scene.volume, scene.classification, {});
+  std::array<Check, kShadows.size()> checks;
+  for (const Shadows& shadows : kShadows) table.columns.push_back(shadows.name);
+  for (const QualityView& view : {QualityView{}, QualityView{.azimuth = 200.0, .elevation = -20.0}}) {
+    const Camera camera = viewCamera(scene.volume, view);
+    const OracleSettings truth{
+        .size = glm::ivec2(pictureEdge), .tolerance = 4e-3, .lighting = sideLight(LightAttenuation::Exact)};
+    const Image oracle = renderOracle(scene.volume, scene.classification, camera, truth).image;
+    ReportPictures pictures{.caption = viewText(view), .pictures = {{"oracle", oracle}}, .background = {}};
+    std::vector<std::string> row{viewText(view)};
+    for (std::size_t i = 0; i < kShadows.size(); ++i) {
+      const FrameSettings settings{.size = glm::ivec2(pictureEdge),
+                                   .lighting = sideLight(kShadows[i].attenuation)};
+      const Image picture = renderer.render(camera, settings);
+      const double psnr = compareImages(picture, oracle).psnr;
+      row.push_back(fmt::format("{:.1f}", psnr));
+      pictures.pictures.push_back({kShadows[i].name, picture});
+      pictures.pictures.push_back(
+          {fmt::format("{}: {:g} times the difference", kShadows[i].name, kDifferenceGain),
+           amplified(picture, oracle)});
+      if (table.rows.empty() || psnr < checks[i].figure)
+        checks[i] = {.name = fmt::format("lit, {} shadows", kShadows[i].name),
+                     .figure = psnr,
+                     .bound = Check::Bound::AtLeast,
+                     .tolerance = kShadows[i].goal,
+                     .unit = "dB",
+                     .where = viewText(view)};
+    }
+    table.rows.push_back(std::move(row));
+    section.pictures.push_back(std::move(pictures));
+  }
+  section.checks.assign(checks.begin(), checks.end());
+  section.tables.push_back(std::move(table));
+  return section;
+}
+
+ReportSection shadowChecks(const Device& device, int resolution) {
+  ReportSection section{
+      .title = "Light: shadows",
+      .text =
+          "A small ball in fog has one shadow. From the table it has four, along the directions around the "
+          "light's, which only exact shadows do not show: there is no bound for the table's."};
+  section.tables.push_back(
+      {.caption = "A ball in fog: the part of the missing light that is beside its shadow",
+       .columns = {"shadows", "part"},
+       .rows = {}});
+  checkBall(device, resolution, section);
+  checkHollow(device, resolution, section);
+  return section;
+}
+
+}  // namespace freevoxels
