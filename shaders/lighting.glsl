@@ -42,10 +42,11 @@ float reaching(SeenBlock seen, vec3 direction, vec3 way, float depth, float fall
   return exp(-inFront) * meanSeen(seen, own, dot(way, seen.toEye));
 }
 
-vec3 scatteredFrom(Light light, SeenBlock seen) {
-  vec3 toLight = light.place;
+// `light` is a number: a copy of a Light would be of all its rays.
+vec3 scatteredFrom(int light, SeenBlock seen) {
+  vec3 toLight = lights[light].place;
   float distance2 = 1.0;
-  if (light.atInfinity == 0) {
+  if (lights[light].atInfinity == 0) {
     toLight -= seen.block.center - frame.middle;
     const vec3 apart = frame.indexToWorld * toLight;
     const float edge = float(seen.block.edge) * frame.voxelSize;
@@ -55,12 +56,12 @@ vec3 scatteredFrom(Light light, SeenBlock seen) {
   }
   float depth, falling = 1.0;
   if (frame.lighting.lookup == kLookupExact)
-    depth = rayDepthOf(light.fans[fanIndex(-toLight)], seen.block, toLight).x;
+    depth = rayDepthOf(lights[light].fans[fanIndex(-toLight)], seen.block, toLight).x;
   else
-    depth = depthTowards(towardsSource(toLight, frame.lighting.lookup, light.beyond), seen.rank, falling);
+    depth = depthTowards(towardsSource(toLight, frame.lighting.lookup, lights[light].beyond), seen.rank, falling);
   const vec3 way = normalize(frame.indexToWorld * toLight);
   const float phase = phaseFunction(frame.lighting.phaseG, -way, seen.toEye);
-  return light.color * (phase * reaching(seen, toLight, way, depth, falling) / distance2);
+  return lights[light].color * (phase * reaching(seen, toLight, way, depth, falling) / distance2);
 }
 
 // The mean of what reaches the block from all directions: what is dark from everywhere is dark in ambient light.
@@ -85,7 +86,7 @@ vec3 scatteredLight(Block block, float sigma, uint rank, vec3 towardsEye) {
   const float own = sigma * layerLength(towardsEye) * float(layersOf(block, towardsEye));
   const SeenBlock seen = SeenBlock(block, rank, sigma, normalize(frame.indexToWorld * towardsEye), own);
   vec3 sum = vec3(0.0);
-  for (int i = 0; i < frame.lighting.lightCount; ++i) sum += scatteredFrom(lights[i], seen);
+  for (int i = 0; i < frame.lighting.lightCount; ++i) sum += scatteredFrom(i, seen);
   if (frame.lighting.ambient != vec3(0.0)) sum += frame.lighting.ambient * reachingFromAll(seen);
   return sum;
 }
