@@ -74,6 +74,10 @@ FV_CONSTANT float kLeastExtinction = 1e-37f;
 // Must be engine/volume/classification.h's kMaximumExtinction.
 FV_CONSTANT float kMaximumExtinction = 1e30f;
 
+// Must be engine/lighting/lighting.h's.
+FV_CONSTANT float kHighlight = 0.2f;
+FV_CONSTANT float kHighlightExponent = 40.0f;
+
 FV_CONSTANT int kCodeDepth8 = 0;
 FV_CONSTANT int kCodeLinear8 = 1;
 FV_CONSTANT int kFilterGeometric = 0;
@@ -293,6 +297,8 @@ struct FrameLighting {
   int lookup;                    // kLookup... of the lights' transmittances
   vec3 ambient;
   float phaseG;
+  float surface;                 // how much of the lights is scattered as by surfaces
+  mat3 gradientToWorld;
   float shares[kMaximumCells];   // by cell number: what part of the sphere around a voxel it stands for
 };
 

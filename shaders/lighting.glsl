@@ -5,13 +5,14 @@
 // The mean over a ball of a block's volume of 1 / distance² from its middle is 1 over this much of the edge's square: no
 // block has more light from a source that is in it.
 const float kNearestLight2 = 0.1283;
+const float kPi = 3.14159265358979;
 
 // Of Henyey and Greenstein, per steradian, from `before` to `after`, both of length 1. 1 + g² - 2 g cos without the
 // difference of large terms.
 float phaseFunction(float g, vec3 before, vec3 after) {
   const vec3 apart = after - sign(g) * before;
   const float width = (1.0 - abs(g)) * (1.0 - abs(g)) + abs(g) * dot(apart, apart);
-  return (1.0 - g * g) / (4.0 * 3.14159265358979 * width * sqrt(width));
+  return (1.0 - g * g) / (4.0 * kPi * width * sqrt(width));
 }
 
 // A block as the eye sees it.
@@ -21,7 +22,30 @@ struct SeenBlock {
   float sigma;
   vec3 toEye;      // in the world, of length 1
   float own;       // optical depth towards the eye
+  vec3 normal;     // of a surface, in the world, of length 1
+  float surface;   // how much of one it is
 };
+
+// Of the extinction, by central differences, per block of its size, index space; 0 outside.
+vec3 extinctionGradient(Block block) {
+  const BlockLevel level = frame.levels[block.level];
+  vec3 gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    ivec3 before = block.cell, after = block.cell;
+    --before[axis];
+    ++after[axis];
+    gradient[axis] = 0.5 * (extinctionOf(level, after) - extinctionOf(level, before));
+  }
+  return gradient;
+}
+
+// In the place of the phase function, after Blinn; both sides are alike.
+float surfaceScattering(vec3 normal, vec3 toLight, vec3 toEye) {
+  const vec3 between = toLight + toEye;
+  const float facing = min(abs(dot(normal, between)) / max(length(between), 1e-6), 1.0);
+  const float highlight = (kHighlightExponent + 1.0) / (8.0 * kPi) * pow(facing, kHighlightExponent);
+  return (1.0 - kHighlight) * abs(dot(normal, toLight)) / (2.0 * kPi) + kHighlight * highlight;
+}
 
 // The mean over a block of what it lets through towards a light, `own` its optical depth there, each part weighted by what
 // it sends to the eye. Seen from the light's side the parts that the eye sees are those in the light, from the other
@@ -60,7 +84,8 @@ vec3 scatteredFrom(int light, SeenBlock seen) {
   else
     depth = depthTowards(towardsSource(toLight, frame.lighting.lookup, lights[light].beyond), seen.rank, falling);
   const vec3 way = normalize(frame.indexToWorld * toLight);
-  const float phase = phaseFunction(frame.lighting.phaseG, -way, seen.toEye);
+  float phase = phaseFunction(frame.lighting.phaseG, -way, seen.toEye);
+  if (seen.surface > 0.0) phase = mix(phase, surfaceScattering(seen.normal, way, seen.toEye), seen.surface);
   return lights[light].color * (phase * reaching(seen, toLight, way, depth, falling) / distance2);
 }
 
@@ -84,7 +109,16 @@ float reachingFromAll(SeenBlock seen) {
 // Per albedo. `towardsEye` is as directionToEye has it.
 vec3 scatteredLight(Block block, float sigma, uint rank, vec3 towardsEye) {
   const float own = sigma * layerLength(towardsEye) * float(layersOf(block, towardsEye));
-  const SeenBlock seen = SeenBlock(block, rank, sigma, normalize(frame.indexToWorld * towardsEye), own);
+  SeenBlock seen = SeenBlock(block, rank, sigma, normalize(frame.indexToWorld * towardsEye), own, vec3(0.0), 0.0);
+  if (frame.lighting.surface > 0.0) {
+    const vec3 gradient = extinctionGradient(block);
+    const vec3 normal = frame.lighting.gradientToWorld * gradient;
+    // Where the extinction hardly changes there is no surface, and its normal is noise.
+    if (dot(gradient, gradient) > 0.0) {
+      seen.normal = normalize(normal);
+      seen.surface = frame.lighting.surface * min(2.0 * length(gradient) / sigma, 1.0);
+    }
+  }
   vec3 sum = vec3(0.0);
   for (int i = 0; i < frame.lighting.lightCount; ++i) sum += scatteredFrom(i, seen);
   if (frame.lighting.ambient != vec3(0.0)) sum += frame.lighting.ambient * reachingFromAll(seen);

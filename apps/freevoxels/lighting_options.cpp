@@ -12,6 +12,8 @@ namespace {
 
 // In the order of the enumerators.
 const std::vector<std::string> kAttenuations{"table", "exact"};
+const std::vector<std::string> kShadings{"none", "scatter", "gradient"};
+constexpr int kNoShading = 0, kGradientShading = 2;
 
 constexpr const char* kForm = "direction=X,Y,Z[,color=R,G,B][,intensity=I] or position=X,Y,Z[,...]";
 
@@ -117,11 +119,20 @@ void LightingOptions::add(CLI::App& app) {
       ->group(group);
 }
 
-void LightingOptions::addAttenuation(CLI::App& app) {
+void LightingOptions::addMethod(CLI::App& app) {
   addWord(
       app, "--light-attenuation", kAttenuations, attenuation,
       "Whether the shadows of lights are looked up in the table, or along rays that are swept once for each "
       "light, exactly [table]")
+      ->group("Light");
+  addWord(app, "--shading", kShadings, shading,
+          "What a voxel does with lights: scatters them as fog does, or as a surface across the change of "
+          "its extinction, "
+          "or nothing: it sends out its colour [scatter]")
+      ->group("Light");
+  addNumber(app, "--surface-share", "S", surface,
+            "Of --shading gradient, how much is that of a surface, from 0 to 1; the rest is as scatter [1]",
+            {.minimum = 0.0, .maximum = 1.0})
       ->group("Light");
 }
 
@@ -129,13 +140,19 @@ void LightingOptions::check() const {
   if (attenuation && lights.empty())
     fail(ExitCode::Usage,
          "--light-attenuation is how lights are shadowed, and there is none: give a --light");
+  if (shading == kGradientShading && lights.empty())
+    fail(ExitCode::Usage,
+         "--shading gradient is how lights are scattered, and there is none: give a --light");
+  if (surface && shading != kGradientShading)
+    fail(ExitCode::Usage, "--surface-share is of --shading gradient: give that as well");
   if (phaseG && lights.empty())
     fail(ExitCode::Usage, "--phase-g is how lights are scattered, and there is none: give a --light");
 }
 
 std::optional<Lighting> LightingOptions::resolve(const Volume& volume) const {
-  if (lights.empty() && !ambient) return std::nullopt;
+  if ((lights.empty() && !ambient) || shading == kNoShading) return std::nullopt;
   Lighting lighting{.ambient = ambient.value_or(glm::dvec3(0.0)), .phaseG = phaseG.value_or(0.0)};
+  if (shading == kGradientShading) lighting.surface = surface.value_or(1.0);
   lighting.attenuation = LightAttenuation(attenuation.value_or(int(LightAttenuation::Table)));
   for (const GivenLight& given : lights) {
     lighting.lights.push_back(given.light);
@@ -147,6 +164,10 @@ std::optional<Lighting> LightingOptions::resolve(const Volume& volume) const {
 void LightingOptions::describe(OptionList& options, const std::optional<Lighting>& resolved) const {
   if (!resolved) return;
   if (attenuation) options.emplace_back("--light-attenuation", kAttenuations[std::size_t(*attenuation)]);
+  if (shading == kGradientShading) {
+    options.emplace_back("--shading", kShadings[std::size_t(*shading)]);
+    options.emplace_back("--surface-share", numberText(resolved->surface));
+  }
   for (const Light& light : resolved->lights) options.emplace_back("--light", lightText(light));
   options.emplace_back("--ambient", numberText(resolved->ambient));
   if (!resolved->lights.empty()) options.emplace_back("--phase-g", numberText(resolved->phaseG));

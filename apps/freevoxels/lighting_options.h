@@ -20,11 +20,12 @@ struct LightingOptions {
   std::vector<GivenLight> lights;
   std::optional<glm::dvec3> ambient;
   std::optional<double> phaseG;
-  std::optional<int> attenuation;
+  std::optional<int> attenuation, shading;
+  std::optional<double> surface;
 
   void add(CLI::App& app);
-  /// Of commands that have a table.
-  void addAttenuation(CLI::App& app);
+  /// What the oracle does not know: how a table is used, and surfaces.
+  void addMethod(CLI::App& app);
   /// Before any work: options that say nothing without others (ExitCode::Usage).
   void check() const;
   /// None where nothing is lit. The intensity of a position defaults to what is kDefaultIrradiance in the

@@ -33,7 +33,7 @@ Progress prefixed(const Progress& progress, const std::string& prefix) {
 
 void RenderOptions::add(CLI::App& app) {
   scene.add(app);
-  scene.lighting.addAttenuation(app);
+  scene.lighting.addMethod(app);
   method.add(app);
   device.add(app);
   messages.add(app);

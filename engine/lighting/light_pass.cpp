@@ -9,6 +9,9 @@ namespace freevoxels {
 
 namespace {
 
+static_assert(shader::kHighlight == float(kHighlight));
+static_assert(shader::kHighlightExponent == float(kHighlightExponent));
+
 glm::uvec2 halves(VkDeviceAddress address) {
   return {std::uint32_t(address), std::uint32_t(address >> 32)};
 }
@@ -100,7 +103,9 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
       .lightCount = int(lighting.lights.size()),
       .lookup = lighting.attenuation == LightAttenuation::Exact ? shader::kLookupExact : ofTable,
       .ambient = lighting.ambient,
-      .phaseG = float(lighting.phaseG)};
+      .phaseG = float(lighting.phaseG),
+      .surface = float(lighting.surface),
+      .gradientToWorld = glm::transpose(glm::inverse(glm::dmat3(volume.indexToWorld)))};
   for (int i = 0; i < directionCount(set); ++i)
     frame.shares[cellNumber(set, directionCell(set, i))] = float(shares_[std::size_t(i)]);
   return frame;

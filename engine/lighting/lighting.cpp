@@ -1,5 +1,6 @@
 #include "engine/lighting/lighting.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace freevoxels {
@@ -14,6 +15,20 @@ constexpr int kQuadParts = 32;
 double phaseFunction(double g, double cosine) {
   const double width = 1.0 + g * g - 2.0 * g * cosine;
   return (1.0 - g * g) / (4.0 * std::numbers::pi * width * std::sqrt(width));
+}
+
+double surfaceScattering(glm::dvec3 normal, glm::dvec3 toLight, glm::dvec3 toEye) {
+  const double diffuse = std::abs(glm::dot(normal, toLight)) / (2.0 * std::numbers::pi);
+  const glm::dvec3 between = toLight + toEye;
+  const double length = glm::length(between);
+  const double facing = length > 1e-6 ? std::abs(glm::dot(normal, between)) / length : 0.0;
+  const double highlight =
+      (kHighlightExponent + 1.0) / (8.0 * std::numbers::pi) * std::pow(facing, kHighlightExponent);
+  return (1.0 - kHighlight) * diffuse + kHighlight * highlight;
+}
+
+double surfaceShare(double relativeChange) {
+  return std::min(2.0 * relativeChange, 1.0);
 }
 
 RaySource lightSource(const Light& light, const glm::dmat4& indexToWorld) {

@@ -17,6 +17,9 @@ namespace freevoxels {
 /// Of a directional light: what nothing shadows then scatters as much as it would send out without lights.
 inline constexpr double kDefaultIrradiance = 4.0 * std::numbers::pi;
 
+/// Of the light that surfaces scatter, what goes into the highlight; and its exponent.
+inline constexpr double kHighlight = 0.2, kHighlightExponent = 40.0;
+
 /// As narrow a phase function as 32-bit floats have.
 inline constexpr double kMostPhaseG = 0.99;
 
@@ -44,6 +47,9 @@ struct Lighting {
   /// Of the phase function of the lights, up to kMostPhaseG either way: 0 scatters alike in all directions,
   /// more forwards. What comes from everywhere is scattered alike in all directions.
   double phaseG = 0.0;
+  /// How much of what a voxel does to the lights it does as a piece of surface (surfaceScattering), in 0..1,
+  /// where the extinction changes most; the rest as fog.
+  double surface = 0.0;
   LightAttenuation attenuation = LightAttenuation::Table;  ///< of the lights; what is ambient is the table's
 
   /// Whether a frame has to have the table.
@@ -54,6 +60,15 @@ struct Lighting {
 /// Henyey and Greenstein 1941, per steradian: integrates to 1 over the sphere. `cosine` is that of the angle
 /// between the ways of the light before and after.
 double phaseFunction(double g, double cosine);
+
+/// What takes the phase function's place at a surface, after Blinn 1977: diffuse, and a highlight of the same
+/// colour. Both sides are alike. Integrates to about 1 over the lights' directions. All of length 1; `normal`
+/// may be either.
+double surfaceScattering(glm::dvec3 normal, glm::dvec3 toLight, glm::dvec3 toEye);
+
+/// How much of a surface a voxel is whose extinction changes by this part of itself from one voxel to the
+/// next.
+double surfaceShare(double relativeChange);
 
 /// In a volume's index space.
 RaySource lightSource(const Light& light, const glm::dmat4& indexToWorld);

@@ -90,11 +90,31 @@ double ReferenceLight::reachingFromAll(const Block& block, glm::dvec3 toEye) con
   return sum;
 }
 
+glm::dvec3 ReferenceLight::extinctionGradient(const Block& block) const {
+  glm::dvec3 gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    Block before = block, after = block;
+    before.cell[axis] -= 1;
+    after.cell[axis] += 1;
+    gradient[axis] = (extinctionOf(after, inputs_.volume, inputs_.extinction, inputs_.coarser) -
+                      extinctionOf(before, inputs_.volume, inputs_.extinction, inputs_.coarser)) /
+                     2.0;
+  }
+  return gradient;
+}
+
 glm::dvec3 ReferenceLight::scattered(const Block& block, glm::dvec3 toEye) const {
   const glm::dvec3 centre = boxOf(block, inputs_.volume.dimensions).centre();
   const glm::dvec3 after = glm::normalize(toWorld_ * toEye);
   const double edge = inputs_.volume.voxelSize() * block.edge();
-  glm::dvec3 sum(0.0);
+  const glm::dvec3 gradient = lighting_.surface > 0.0 ? extinctionGradient(block) : glm::dvec3(0.0);
+  glm::dvec3 normal(0.0), sum(0.0);
+  double surface = 0.0;
+  if (gradient != glm::dvec3(0.0)) {
+    const double sigma = extinctionOf(block, inputs_.volume, inputs_.extinction, inputs_.coarser);
+    normal = glm::normalize(glm::inverse(glm::transpose(toWorld_)) * gradient);
+    surface = lighting_.surface * surfaceShare(glm::length(gradient) / sigma);
+  }
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Light& light = lighting_.lights[i];
     const glm::dvec3 way = toLight(sources_[i], centre);
@@ -105,8 +125,10 @@ glm::dvec3 ReferenceLight::scattered(const Block& block, glm::dvec3 toEye) const
     const glm::dvec3 before = -glm::normalize(toWorld_ * way);
     const glm::dvec3 apart = toWorld_ * (sources_[i].place - centre);
     const double distance2 = std::max(glm::dot(apart, apart), kNearestLight2 * edge * edge);
+    double phase = phaseFunction(lighting_.phaseG, glm::dot(before, after));
+    if (surface > 0.0) phase += surface * (surfaceScattering(normal, -before, after) - phase);
     const double irradiance = light.intensity / (light.atInfinity ? 1.0 : distance2);
-    sum += light.color * (irradiance * reached * phaseFunction(lighting_.phaseG, glm::dot(before, after)));
+    sum += light.color * (irradiance * reached * phase);
   }
   return sum + lighting_.ambient * reachingFromAll(block, toEye);
 }

@@ -35,6 +35,9 @@ class ReferenceLight {
                   double counted) const;
   double reachingFromAll(const Block& block, glm::dvec3 toEye) const;
 
+  /// Central differences, index space, per block of its size.
+  glm::dvec3 extinctionGradient(const Block& block) const;
+
   const LightInputs inputs_;
   const Lighting lighting_;
   const glm::dmat3 toWorld_;

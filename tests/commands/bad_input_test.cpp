@@ -137,8 +137,9 @@ TEST_F(BadInput, BadLights) {
   expectBadLight("--ambient -1", "--ambient");
   expectBadLight("--phase-g 1 --light direction=1,0,0", "--phase-g");
   expectBadLight("--phase-g 0.5", "--phase-g");
-  expectCleanRefusal(std::string("render procedural:cube @a.png --light-attenuation exact") + kSmall,
-                     ExitCode::Usage, "--light-attenuation");
+  for (const char* option : {"--light-attenuation exact", "--shading gradient", "--surface-share 0.5"})
+    expectCleanRefusal(fmt::format("render procedural:cube @a.png {}{}", option, kSmall), ExitCode::Usage,
+                       std::string(option).substr(0, std::string(option).find(' ')));
 }
 
 TEST_F(BadInput, VolumeThatNoDeviceHolds) {

@@ -59,6 +59,13 @@ TEST_F(LightingTest, EveryLookUpMatchesTheReference) {
                     {AttenuationCode::Linear8, false});
 }
 
+TEST_F(LightingTest, SurfacesMatchTheReference) {
+  const Volume v = volume(true);
+  Lighting lighting = everything();
+  lighting.surface = 0.8;
+  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
+}
+
 TEST_F(LightingTest, LightsInsideMatchTheReference) {
   const Volume v = volume(false);
   Lighting lighting = everything();

@@ -28,6 +28,21 @@ TEST(Lighting, PhaseFunctionIntegratesToOne) {
   EXPECT_DOUBLE_EQ(phaseFunction(0.0, 0.3), 1.0 / (4.0 * std::numbers::pi));
 }
 
+TEST(Lighting, SurfacesAreTwoSidedAndScatterAsMuchAsTheyGet) {
+  const glm::dvec3 normal(0.0, 0.0, 1.0), toEye = glm::normalize(glm::dvec3(0.2, -0.1, 1.0));
+  constexpr int kCount = 40000;
+  double sum = 0.0;
+  for (int i = 0; i < kCount; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / kCount, across = std::sqrt(1.0 - z * z);
+    const glm::dvec3 way(across * std::cos(2.399963 * i), across * std::sin(2.399963 * i), z);
+    sum += surfaceScattering(normal, way, toEye) * 4.0 * std::numbers::pi / kCount;
+    EXPECT_DOUBLE_EQ(surfaceScattering(normal, way, toEye), surfaceScattering(-normal, way, toEye));
+  }
+  EXPECT_NEAR(sum, 1.0, 0.03);
+  EXPECT_EQ(surfaceShare(0.0), 0.0);
+  EXPECT_EQ(surfaceShare(0.5), 1.0);
+}
+
 TEST(Lighting, SharesOfDirectionsAddUpToOneAndFollowTheVoxelsShape) {
   glm::dmat4 stretched(1.0);
   stretched[2][2] = 3.0;
