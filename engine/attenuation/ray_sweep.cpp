@@ -38,7 +38,7 @@ void checkFits(const Device& device, const std::array<RayFan, 6>& fans) {
   // Shaders index the depths of a fan with 31 bits.
   const std::uint64_t most = std::uint64_t(std::numeric_limits<std::int32_t>::max()) * sizeof(std::uint32_t);
   const std::uint64_t fits =
-      std::min(std::uint64_t(device.maximumAllocation()), device.description().memoryBytes);
+      std::min(std::uint64_t(device.maximumAllocation()), device.memoryBytes());
   if (bytes > fits || largest > most)
     fail(ExitCode::OutOfMemory,
          "exact transmittance needs {} MiB for its rays from here and {} has {} MiB in one piece: use "

@@ -54,11 +54,11 @@ void checkFrameFits(const Device& device, const FrameSettings& settings) {
   const std::uint64_t perPixel =
       bytesPerPixel(kColorFormat) + bytesPerPixel(kScalarFormat) * (settings.depth ? 2 : 1);
   const std::uint64_t bytes = std::uint64_t(settings.size.x) * std::uint64_t(settings.size.y) * perPixel;
-  if (bytes > device.description().memoryBytes)
+  if (bytes > device.memoryBytes())
     fail(ExitCode::OutOfMemory,
-         "an image of {}x{} pixels needs {} MiB of device memory and {} has {} MiB: use a smaller --size",
+         "an image of {}x{} pixels needs {} MiB of device memory and {} may use {} MiB of it: use a smaller --size",
          settings.size.x, settings.size.y, bytes >> 20, device.description().name,
-         device.description().memoryBytes >> 20);
+         device.memoryBytes() >> 20);
 }
 
 SplatTargets makeTargets(const Device& device, const FrameSettings& settings) {
