@@ -53,7 +53,7 @@ const AttenuationTable& Renderer::State::sweptTable(const Progress& progress) {
   Commands commands(device);
   sweep.record(commands, built.volume, made);
   commands.submitAndWait(progress);
-  std::ranges::copy(commands.times(), std::back_inserter(frameTimes));
+  addTimes(frameTimes, commands.times());
   return table.emplace(std::move(made));
 }
 
@@ -65,7 +65,7 @@ const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progres
   Commands commands(device);
   pass.record(commands, built.volume, built.lists.coarse, swept);
   commands.submitAndWait(progress);
-  std::ranges::copy(commands.times(), std::back_inserter(frameTimes));
+  addTimes(frameTimes, commands.times());
   largestDepths = downloadLargestDepths(device, swept);
   return swept;
 }
@@ -150,7 +150,7 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   std::optional<TargetReadback> depth;
   if (settings.depth) depth.emplace(state.device, commands, frame.targets.distance);
   commands.submitAndWait(progress);
-  std::ranges::copy(commands.times(), std::back_inserter(state.frameTimes));
+  addTimes(state.frameTimes, commands.times());
 
   const StageTimer timer(state.frameTimes, "copy to host");
   return {.size = settings.size,
@@ -170,13 +170,14 @@ std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSet
   commands.beginPass("read back");
   const SumsReadback sums(state.device, commands, frame.targets);
   commands.submitAndWait();
-  std::ranges::copy(commands.times(), std::back_inserter(state.frameTimes));
+  addTimes(state.frameTimes, commands.times());
   return sums.read(frame.constants);
 }
 
 VolumeMemory Renderer::memory() const {
   const DeviceVolume& volume = state_->built.volume;
-  return volumeMemory(volume.hierarchy, volume.stored, state_->tableSettings.directions, volume.hasColors());
+  return volumeMemory(volume.hierarchy, volume.stored, state_->tableSettings.directions, volume.hasColors(),
+                      sweepStyle(state_->device));
 }
 
 std::vector<StageTime> Renderer::timings() const {

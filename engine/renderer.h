@@ -54,7 +54,7 @@ class Renderer {
   std::vector<std::vector<std::uint8_t>> downloadTable() const;
   /// From the camera's eye. Fails with ExitCode::OutOfMemory.
   RayCodes downloadRays(const Camera& camera) const;
-  /// Indices of the visible voxels, into Volume::values, in the order they are drawn.
+  /// Indices of the visible voxels, among all of the volume (Volume::at), in the order they are drawn.
   std::vector<std::uint32_t> downloadVisibleVoxels() const;
   /// What the last frame drew, in that order, if it was not sorted.
   std::vector<Block> downloadDrawnBlocks() const;

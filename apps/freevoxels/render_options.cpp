@@ -124,6 +124,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
   report.visibleVoxels = renderer.visibleVoxelCount();
   report.voxels = view.volume.voxelCount();
   report.memory = renderer.memory();
+  report.devicePeak = opened.peakBytes();
   report.cut = renderer.cutCounts();
 }
 

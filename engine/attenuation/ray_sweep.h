@@ -3,6 +3,7 @@
 
 #include "engine/attenuation/ray_fans.h"
 #include "engine/volume/device_volume.h"
+#include "engine/vulkan/commands.h"
 #include "shaders/interface.h"
 
 namespace freevoxels {

@@ -45,10 +45,11 @@ Image referenceSortedPicture(const Volume& volume, const Classification& classif
                              const FrameSettings& settings, std::span<const std::uint32_t> voxels) {
   const SplatProjector projector(volume, camera, settings.size);
   std::vector<BlendedPixel> blended(std::size_t(settings.size.x) * std::size_t(settings.size.y));
+  const std::vector<float> scalars = denseScalars(volume);
   for (const std::uint32_t voxel : referenceBackToFront(volume, camera, voxels)) {
     const std::optional<ProjectedSplat> splat = projector.project(projector.voxel(voxel));
     if (!splat) continue;
-    const ClassifiedVoxel material = classify(classification, volume.values[voxel]);
+    const ClassifiedVoxel material = classify(classification, scalars[voxel]);
     const double opacity = projector.opacity(*splat, material.extinction);
     projector.forEachPixel(*splat, [&](const CoveredPixel& pixel) {
       const double alpha = std::min(opacity * pixel.omega, 1.0);

@@ -99,8 +99,7 @@ std::unique_ptr<ReferenceDepth> SplatSummer::depthFor(const Camera& camera) cons
 ClassifiedVoxel SplatSummer::materialOf(const Block& block) const {
   const double extinction = extinctionOf(block);
   if (block.level == 0) {
-    const std::size_t voxel = volume_.at(block.cell.x, block.cell.y, block.cell.z);
-    return {extinction, classify(classification_, volume_.values[voxel]).color};
+    return {extinction, classify(classification_, volume_.scalars.at(block.cell)).color};
   }
   const LevelData& level = inputs_.coarser[std::size_t(block.level) - 1];
   return {extinction,
