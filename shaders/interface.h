@@ -346,6 +346,7 @@ struct TilePush {
 #ifdef __cplusplus
 static_assert(sizeof(BlockLevel) == 24);
 static_assert(sizeof(ChunkArguments) == 52);
+static_assert(sizeof(CutFrame) <= 16384);  // a uniform buffer, which every device takes up to here
 static_assert(sizeof(CutPush) == 16);
 static_assert(sizeof(DepthKeyPush) == 80);
 static_assert(sizeof(HalfSweepPush) == 64);
