@@ -28,6 +28,7 @@ struct Renderer::State {
   const VisibleVoxels* lastDrawn = nullptr;
   bool lastWasCut = false;  ///< lastDrawn is `cutter`'s
   int lastLevel = 0;        ///< otherwise: of all that was drawn
+  bool lastLackedRays = false;
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
   std::unique_ptr<DepthSort> sort;
@@ -41,6 +42,7 @@ struct Renderer::State {
   const AttenuationTable& tableWithLevels(const Progress& progress = {});
   void recordDrawing(Commands& commands, const Frame& frame, const AttenuationTable* read,
                      const Buffer* order);
+  FrameConstants constantsOf(const Camera& camera, const FrameSettings& settings, const Progress& progress);
   Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
                      const Progress& progress = {});
 };
@@ -104,6 +106,25 @@ void Renderer::State::recordDrawing(Commands& commands, const Frame& frame, cons
   splats->record(commands, drawing, constants, frame.targets);
 }
 
+/// Auto takes the table alone where rays from the eye find no room.
+FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSettings& settings,
+                                            const Progress& progress) {
+  lastLackedRays = false;
+  const FrameConstants constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
+  if (!constants.readsRays()) return constants;
+  if (constants.readsTable()) sweptTable(progress);  // of the two it needs room first
+  try {
+    splats->makeRoomForRays(built.volume, constants.eye, settings.mostRayBytes);
+    return constants;
+  } catch (const Error& error) {
+    if (settings.attenuation != AttenuationLookup::Auto || error.code() != ExitCode::OutOfMemory) throw;
+  }
+  lastLackedRays = true;
+  FrameSettings tableAlone = settings;
+  tableAlone.attenuation = AttenuationLookup::Bilinear;
+  return makeFrameConstants(device, built.volume, tableSettings, camera, tableAlone);
+}
+
 /// Up to the sums in the targets; the sorted picture is made there, and has none.
 Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const Camera& camera,
                                                      const FrameSettings& settings,
@@ -115,8 +136,7 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
     resolve = std::make_unique<ResolvePass>(device, settings.depth);
   }
   if (sorted && !sort) sort = std::make_unique<DepthSort>(device, built.volume);
-  Frame frame{.constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings),
-              .targets = makeTargets(device, settings)};
+  Frame frame{.constants = constantsOf(camera, settings, progress), .targets = makeTargets(device, settings)};
   if (sorted) sort->record(commands, built.volume, built.visible, camera);
   const AttenuationTable* read = nullptr;
   if (frame.constants.readsTable())
@@ -187,6 +207,10 @@ std::vector<StageTime> Renderer::timings() const {
 
 std::uint64_t Renderer::visibleVoxelCount() const {
   return state_->built.volume.stored.front();
+}
+
+bool Renderer::lackedRoomForRays() const {
+  return state_->lastLackedRays;
 }
 
 std::vector<float> Renderer::downloadExtinction() const {

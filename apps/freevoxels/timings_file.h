@@ -22,7 +22,8 @@ struct RunReport {
   std::uint64_t visibleVoxels = 0;
   std::uint64_t voxels = 0;  ///< of the volume's box
   VolumeMemory memory;
-  CutCounts cut;  ///< of the last frame
+  CutCounts cut;                   ///< of the last frame
+  bool lackedRoomForRays = false;  ///< some frame
 };
 
 /// Adds each time to the one of its name, or appends it.

@@ -113,6 +113,11 @@ void SplatPass::beginRendering(Commands& commands, const SplatTargets& targets, 
   vkCmdSetScissor(commands.handle(), 0, 1, &scissor);
 }
 
+void SplatPass::makeRoomForRays(const DeviceVolume& volume, const RaySource& eye, std::uint64_t mostBytes) {
+  if (!rays_) rays_.emplace(device_);
+  rays_->makeRoom(volume.layout.dimensions, eye, mostBytes);
+}
+
 void SplatPass::recordEyeDepths(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame) {
   const glm::dvec3 last(volume.layout.dimensions - 1);
   const shader::EyeDepthsPush push{.voxels = volume.onDevice(0),
@@ -127,7 +132,7 @@ void SplatPass::recordEyeDepths(Commands& commands, const DeviceVolume& volume, 
 
 void SplatPass::recordFrame(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame) {
   shader::SetupFrame setup = frame.setup;
-  if (setup.lookup == shader::kLookupExact) {
+  if (frame.readsRays()) {
     if (!rays_) rays_.emplace(device_);
     rays_->record(commands, volume, frame.eye);
     std::ranges::copy(rays_->fans(), setup.fans);
