@@ -48,6 +48,9 @@ class Renderer {
   std::uint64_t visibleVoxelCount() const;
   /// Of the last frame.
   CutCounts cutCounts() const;
+  /// Whether the last frame would have had rays from the eye, but for the device's memory: Auto is Bilinear
+  /// then.
+  bool lackedRoomForRays() const;
   /// Per world unit, voxels x fastest without padding: for tests and validation, as all that follow.
   std::vector<float> downloadExtinction() const;
   /// Bytes [direction][voxel], voxels x fastest without padding.

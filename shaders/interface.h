@@ -305,6 +305,7 @@ struct SetupFrame {
   int levelCount;
   float voxelSize;         // edge of the cube with a voxel's volume, world units
   int lookup;              // kLookup...
+  float rayShare;          // of the depth to the eye that is along rays; the rest is the table's. kLookupExact: 1
   int eyeInside;           // the volume's box
   int pathLengthCorrection;  // 0: every lattice step counts as long as any other
   int kernelMean;          // 1: a voxel has the mean of the transmittance over its kernel, along the line of sight
@@ -357,6 +358,7 @@ struct TilePush {
 #ifdef __cplusplus
 static_assert(sizeof(BlockLevel) == 24);
 static_assert(sizeof(ChunkArguments) == 52);
+static_assert(sizeof(CutFrame) <= 16384);  // a uniform buffer, which every device takes up to here
 static_assert(sizeof(CutPush) == 16);
 static_assert(sizeof(DepthKeyPush) == 80);
 static_assert(sizeof(HalfSweepPush) == 84);

@@ -112,6 +112,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
     const Image image = renderer.render(view.camera, settings, prefixed(line.progress(), prefix));
     const std::vector<StageTime> times = renderer.timings();
     addTimes(report.stages, std::span(times).subspan(built.size()));
+    report.lackedRoomForRays |= renderer.lackedRoomForRays();
 
     line.begin(prefix + "writing pictures");
     std::vector<StageTime> writing;

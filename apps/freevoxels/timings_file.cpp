@@ -20,6 +20,9 @@ void logOptions(const OptionList& options) {
 namespace {
 
 void logCounts(const RunReport& report) {
+  if (report.lackedRoomForRays)
+    spdlog::debug(
+        "exact transmittance needs more memory than the device has: looked up in the table instead");
   spdlog::debug("{} voxels, {} of them empty", report.voxels, report.voxels - report.visibleVoxels);
   const auto stored = double(report.memory.stored());
   spdlog::debug(

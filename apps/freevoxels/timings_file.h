@@ -21,8 +21,9 @@ struct RunReport {
   std::uint64_t visibleVoxels = 0;
   std::uint64_t voxels = 0;  ///< of the volume's box
   VolumeMemory memory;
-  std::uint64_t devicePeak = 0;  ///< bytes: the most that was ever allocated there
-  CutCounts cut;  ///< of the last frame
+  std::uint64_t devicePeak = 0;    ///< bytes: the most that was ever allocated there
+  CutCounts cut;                   ///< of the last frame
+  bool lackedRoomForRays = false;  ///< some frame
 };
 
 /// As messages of --verbose.
