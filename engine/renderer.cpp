@@ -29,6 +29,7 @@ struct Renderer::State {
   const VisibleVoxels* lastDrawn = nullptr;
   bool lastWasCut = false;  ///< lastDrawn is `cutter`'s
   int lastLevel = 0;        ///< otherwise: of all that was drawn
+  bool lastLackedRays = false;
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
   std::unique_ptr<DepthSort> sort;
@@ -39,13 +40,21 @@ struct Renderer::State {
     FrameConstants constants;
     SplatTargets targets;
   };
+  VolumeMemory memoryOfVolume() const;
   const AttenuationTable& sweptTable(const Progress& progress = {});
   const AttenuationTable& tableWithLevels(const Progress& progress = {});
   void recordDrawing(Commands& commands, const Frame& frame, const AttenuationTable* read,
                      const Buffer* order);
+  FrameConstants constantsOf(const Camera& camera, const FrameSettings& settings, const Progress& progress);
   Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
                      const Progress& progress = {});
 };
+
+VolumeMemory Renderer::State::memoryOfVolume() const {
+  const DeviceVolume& volume = built.volume;
+  return volumeMemory(volume.hierarchy, volume.stored, tableSettings.directions, volume.hasColors(),
+                      sweepStyle(device));
+}
 
 /// Made when a frame reads it first; its time is that frame's.
 const AttenuationTable& Renderer::State::sweptTable(const Progress& progress) {
@@ -55,7 +64,7 @@ const AttenuationTable& Renderer::State::sweptTable(const Progress& progress) {
   Commands commands(device);
   sweep.record(commands, built.volume, made);
   commands.submitAndWait(progress);
-  std::ranges::copy(commands.times(), std::back_inserter(frameTimes));
+  addTimes(frameTimes, commands.times());
   return table.emplace(std::move(made));
 }
 
@@ -67,7 +76,7 @@ const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progres
   Commands commands(device);
   pass.record(commands, built.volume, built.lists.coarse, swept);
   commands.submitAndWait(progress);
-  std::ranges::copy(commands.times(), std::back_inserter(frameTimes));
+  addTimes(frameTimes, commands.times());
   largestDepths = downloadLargestDepths(device, swept);
   return swept;
 }
@@ -107,6 +116,33 @@ void Renderer::State::recordDrawing(Commands& commands, const Frame& frame, cons
   splats->record(commands, drawing, constants, frame.targets);
 }
 
+/// Auto takes the table alone where rays from the eye find no room.
+FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSettings& settings,
+                                            const Progress& progress) {
+  lastLackedRays = false;
+  const FrameConstants constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
+  if (!constants.readsRays()) return constants;
+  if (constants.readsTable()) sweptTable(progress);  // of the two it needs room first
+  std::uint64_t mostRayBytes = settings.mostRayBytes;
+  if (settings.attenuation == AttenuationLookup::Auto) {
+    // Without rays there is a picture, and without the rest of the frame there is none.
+    const VolumeMemory memory = memoryOfVolume();
+    const std::uint64_t others = memory.lists + memory.splats + 2 * targetBytes(settings);
+    mostRayBytes =
+        std::min(mostRayBytes, device.availableBytes() - std::min(device.availableBytes(), others));
+  }
+  try {
+    splats->makeRoomForRays(built.volume, constants.eye, mostRayBytes);
+    return constants;
+  } catch (const Error& error) {
+    if (settings.attenuation != AttenuationLookup::Auto || error.code() != ExitCode::OutOfMemory) throw;
+  }
+  lastLackedRays = true;
+  FrameSettings tableAlone = settings;
+  tableAlone.attenuation = AttenuationLookup::Bilinear;
+  return makeFrameConstants(device, built.volume, tableSettings, camera, tableAlone);
+}
+
 /// Up to the sums in the targets; the sorted picture is made there, and has none.
 Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const Camera& camera,
                                                      const FrameSettings& settings,
@@ -118,8 +154,7 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
     resolve = std::make_unique<ResolvePass>(device, settings.depth);
   }
   if (sorted && !sort) sort = std::make_unique<DepthSort>(device, built.volume);
-  Frame frame{.constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings),
-              .targets = makeTargets(device, settings)};
+  Frame frame{.constants = constantsOf(camera, settings, progress), .targets = makeTargets(device, settings)};
   if (sorted) sort->record(commands, built.volume, built.visible, camera);
   const AttenuationTable* read = nullptr;
   if (frame.constants.readsTable())
@@ -157,7 +192,7 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   std::optional<TargetReadback> depth;
   if (settings.depth) depth.emplace(state.device, commands, frame.targets.distance);
   commands.submitAndWait(progress);
-  std::ranges::copy(commands.times(), std::back_inserter(state.frameTimes));
+  addTimes(state.frameTimes, commands.times());
 
   const StageTimer timer(state.frameTimes, "copy to host");
   return {.size = settings.size,
@@ -177,13 +212,12 @@ std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSet
   commands.beginPass("read back");
   const SumsReadback sums(state.device, commands, frame.targets);
   commands.submitAndWait();
-  std::ranges::copy(commands.times(), std::back_inserter(state.frameTimes));
+  addTimes(state.frameTimes, commands.times());
   return sums.read(frame.constants);
 }
 
 VolumeMemory Renderer::memory() const {
-  const DeviceVolume& volume = state_->built.volume;
-  return volumeMemory(volume.hierarchy, volume.stored, state_->tableSettings.directions, volume.hasColors());
+  return state_->memoryOfVolume();
 }
 
 std::vector<StageTime> Renderer::timings() const {
@@ -194,6 +228,10 @@ std::vector<StageTime> Renderer::timings() const {
 
 std::uint64_t Renderer::visibleVoxelCount() const {
   return state_->built.volume.stored.front();
+}
+
+bool Renderer::lackedRoomForRays() const {
+  return state_->lastLackedRays;
 }
 
 std::vector<float> Renderer::downloadExtinction() const {

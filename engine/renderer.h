@@ -48,13 +48,16 @@ class Renderer {
   std::uint64_t visibleVoxelCount() const;
   /// Of the last frame.
   CutCounts cutCounts() const;
+  /// Whether the last frame would have had rays from the eye, but for the device's memory: Auto is Bilinear
+  /// then.
+  bool lackedRoomForRays() const;
   /// Per world unit, voxels x fastest without padding: for tests and validation, as all that follow.
   std::vector<float> downloadExtinction() const;
   /// Bytes [direction][voxel], voxels x fastest without padding.
   std::vector<std::vector<std::uint8_t>> downloadTable() const;
   /// From the camera's eye. Fails with ExitCode::OutOfMemory.
   RayCodes downloadRays(const Camera& camera) const;
-  /// Indices of the visible voxels, into Volume::values, in the order they are drawn.
+  /// Indices of the visible voxels, among all of the volume (Volume::at), in the order they are drawn.
   std::vector<std::uint32_t> downloadVisibleVoxels() const;
   /// What the last frame drew, in that order, if it was not sorted.
   std::vector<Block> downloadDrawnBlocks() const;

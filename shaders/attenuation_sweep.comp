@@ -14,18 +14,23 @@ layout(scalar, push_constant) uniform Push { SweepPush push; };
 void main() {
   const int quads = push.rowPitch / 4;
   const int bundles = push.rowPitch / kVoxels;
+  const int threads = push.lineCount * bundles;
   const int thread = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kSweepThreads);
-  int side = push.firstLine + thread / bundles;
-  if (side >= push.lastLine) return;
+  if (thread >= threads) return;
+  const SweepSlab slab = push.slab;
+  int side = movedBy(thread / bundles, slab.firstPlane * push.sideStep, push.lineCount);
+  // First quad of voxels that this thread writes.
+  int window = movedBy(thread % bundles * kWindowQuads, slab.firstPlane / kPhases * kWindowStep, quads);
+  if (slab.firstPlane == 0)
+    restartLines();
+  else
+    resumeLines(slab.firstDepth, thread, threads);
 
-  restartLines();
-  int window = thread % bundles * kWindowQuads;  // first quad of voxels that this thread writes
-
-  for (int plane = 0; plane < push.marchCount; plane += kPhases) {
+  for (int plane = slab.firstPlane; plane < slab.endPlane; plane += kPhases) {
     [[unroll]] for (int phase = 0; phase < kPhases; ++phase) {
-      if (plane + phase >= push.marchCount) break;
+      if (plane + phase >= slab.endPlane) break;
       const int row = (push.marchStart + (plane + phase) * push.marchStride + side * push.sideStride) / 4;
-      loadRow(row, window, quads);
+      loadRow(row - slab.firstQuad, window, quads);
       restartWrappedLines(window, quads, phase);
       writeWindow(row, window, quads, phase);
       addRow(phase, push.stepLength);
@@ -36,4 +41,5 @@ void main() {
     }
     window = wrapped(window + kWindowStep, quads);
   }
+  if (slab.endPlane < push.marchCount) keepLines(slab.firstDepth, thread, threads);
 }

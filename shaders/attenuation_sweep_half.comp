@@ -16,7 +16,7 @@ layout(scalar, push_constant) uniform Push { HalfSweepPush push; };
 
 bool outside(int index, int count) { return index < 0 || index >= count; }
 
-int rowOf(int plane, int side) { return (plane * push.marchStride + side * push.sideStride) / 4; }
+int rowOf(int plane, int side) { return (push.start + plane * push.marchStride + side * push.sideStride) / 4; }
 
 // The mean of the rows around the middle of the step; nothing beyond the volume.
 void loadHalfwayRows(int plane, int side, int window, int quads) {
@@ -26,7 +26,7 @@ void loadHalfwayRows(int plane, int side, int window, int quads) {
     const ivec2 inside = clamp(place, ivec2(0), ivec2(push.marchCount, push.sideCount) - 1);
     const float share = place == inside ? 1.0 / kHalfwayRows : 0.0;
     [[unroll]] for (int q = 0; q < kQuads; ++q) {
-      const vec4 quad = share * loadQuad(rowOf(inside.x, inside.y), q, window, quads);
+      const vec4 quad = share * loadQuad(rowOf(inside.x, inside.y) - push.slab.firstQuad, q, window, quads);
       [[unroll]] for (int c = 0; c < 4; ++c) sigma[4 * q + c] += quad[c];
     }
   }
@@ -48,27 +48,35 @@ void addHalfwayRows(int window, int quads, int phase, float stepLength) {
 void main() {
   const int quads = push.rowPitch / 4;
   const int bundles = push.rowPitch / kVoxels;
+  const int families = abs(push.marchStep);
+  const int threads = push.sideCount * families * bundles;
   const int thread = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kSweepThreads);
+  if (thread >= threads) return;
+  const SweepSlab slab = push.slab;
   const int line = thread / bundles;
-  const int family = line / push.sideCount;
-  if (family >= abs(push.marchStep)) return;
+  const int family = line / push.sideCount, steps = slab.firstPlane / families;
+  int side = movedBy(line - family * push.sideCount, steps * push.sideStep, push.sideCount);
+  // First quad of voxels that this thread writes.
+  int window = movedBy(thread % bundles * kWindowQuads, steps / kPhases * kWindowStep, quads);
+  if (slab.firstPlane == 0)
+    restartLines();
+  else
+    resumeLines(slab.firstDepth, thread, threads);
 
-  restartLines();
-  int window = thread % bundles * kWindowQuads;  // first quad of voxels that this thread writes
-  int side = line - family * push.sideCount;
-  int plane = push.marchStep > 0 ? family : push.marchCount - 1 - family;
-
-  while (!outside(plane, push.marchCount)) {
+  // In the order of the march, in which the plane of the volume is the one from its other end where the step is downwards.
+  for (int ahead = slab.firstPlane + family; ahead < slab.endPlane;) {
     [[unroll]] for (int phase = 0; phase < kPhases; ++phase) {
-      if (outside(plane, push.marchCount)) break;
+      if (ahead >= slab.endPlane) break;
+      const int plane = push.marchStep > 0 ? ahead : push.marchCount - 1 - ahead;
+      const int row = rowOf(plane, side);
       restartWrappedLines(window, quads, phase);
       loadHalfwayRows(plane, side, window, quads);
       addHalfwayRows(window, quads, phase, push.stepLength);
-      writeWindow(rowOf(plane, side), window, quads, phase);
-      loadRow(rowOf(plane, side), window, quads);
+      writeWindow(row, window, quads, phase);
+      loadRow(row - slab.firstQuad, window, quads);
       addRow(phase, push.stepLength);
 
-      plane += push.marchStep;
+      ahead += families;
       side += push.sideStep;
       if (outside(side, push.sideCount)) {
         restartLines();
@@ -77,4 +85,5 @@ void main() {
     }
     window = wrapped(window + kWindowStep, quads);
   }
+  if (slab.endPlane < push.marchCount) keepLines(slab.firstDepth, thread, threads);
 }

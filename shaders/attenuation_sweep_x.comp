@@ -14,12 +14,13 @@ layout(binding = 0) uniform textureBuffer extinction;
 
 void main() {
   const int row = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kSweepThreads);
-  if (row >= push.lastLine) return;
+  if (row >= push.lineCount) return;
   const int quads = push.rowPitch / 4;
+  const int first = push.marchStart / 4 + row * quads;
   float depth = 0.0;
   for (int i = 0; i < quads; ++i) {
-    const int quad = row * quads + (kStepX > 0 ? i : quads - 1 - i);
-    const vec4 sigma = texelFetch(extinction, quad);
+    const int quad = first + (kStepX > 0 ? i : quads - 1 - i);
+    const vec4 sigma = texelFetch(extinction, quad - push.slab.firstQuad);
     vec4 depths;
     [[unroll]] for (int i4 = 0; i4 < 4; ++i4) {
       const int c = kStepX > 0 ? i4 : 3 - i4;

@@ -16,10 +16,12 @@
 
 layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const bool kDeferred = false;  // whether the cut goes on below the deferred blocks
+// Whether the level is that of the voxels. By itself, as lavapipe goes through branches that no thread takes.
+layout(constant_id = 2) const bool kVoxels = false;
 
 layout(local_size_x = kCutThreads) in;
 layout(scalar, push_constant) uniform Push { CutPush push; };
-layout(scalar, binding = 0) readonly buffer Frame { CutFrame frame; };
+layout(scalar, binding = 0) uniform Frame { CutFrame frame; };
 layout(scalar, binding = 1) readonly buffer Parents { uint parents[]; };
 layout(scalar, binding = 2) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 // Of each block above the voxels a byte, four a word: which children to look at. And which of them are deferred.
@@ -114,7 +116,7 @@ bool isDrawn(uint slot, inout CutCounts found) {
     return false;
   }
   // Of a voxel it costs about as much to ask as to draw it.
-  if (push.level > 0 && push.level < frame.top && frame.hides != 0) {
+  if (!kVoxels && push.level < frame.top && frame.hides != 0) {
     if (kDeferred && isCovered(center, edge)) {
       ++found.hidden;
       return false;

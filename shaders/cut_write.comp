@@ -7,7 +7,7 @@
 
 layout(local_size_x = kCutThreads) in;
 layout(scalar, push_constant) uniform Push { CutPush push; };
-layout(scalar, binding = 0) readonly buffer Frame { CutFrame frame; };
+layout(scalar, binding = 0) uniform Frame { CutFrame frame; };
 layout(scalar, binding = 1) readonly buffer Parents { uint parents[]; };
 layout(scalar, binding = 2) readonly buffer Masks { uint masks[]; };
 layout(scalar, binding = 3) readonly buffer GroupOffsets { uint groupOffsets[]; };

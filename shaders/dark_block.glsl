@@ -7,13 +7,20 @@ vec3 toEyeFrom(ivec3 cell, int level) {
   return -((vec3(cell) + 0.5) * float(1 << level) - 0.5 - frame.middle + frame.eyeToMiddle);
 }
 
-// Whether all voxels of a block that holds anything are dark in the four directions around the line of sight to each of
-// them. No where they have not the same four.
-bool isDark(ivec3 cell, int level) {
-  const vec3 toEye = toEyeFrom(cell, level);
-  const float spread = frame.orthographic == 0 ? 0.5 * float((1 << level) - 1) : 0.0;
-  const int major = majorAxis(toEye);
-  const float least = abs(toEye[major]) - spread, largest = abs(toEye[major]) + spread;
+// The four directions of the table around a line of sight: their codes, and the depth that hides behind each.
+struct Around {
+  uvec2 planes[4];
+  float depths[4];
+};
+
+// Around all lines of sight to the voxels of a block and of those beside it. False where they have not the same four.
+bool findAround(vec3 toEye, int major, int level, out Around around) {
+  vec3 spread = vec3(0.0);
+  if (frame.orthographic == 0) {
+    spread = vec3(0.5 * float((3 << level) - 1));
+    spread[major] = 0.5 * float((1 << level) - 1);
+  }
+  const float least = abs(toEye[major]) - spread[major], largest = abs(toEye[major]) + spread[major];
   if (least <= 0.0) return false;
   // Points on the face of the cube of directions.
   const vec3 low = toEye - spread, high = toEye + spread;
@@ -25,37 +32,47 @@ bool isDark(ivec3 cell, int level) {
   if (any(greaterThan(to - from, ivec3(1)))) return false;
 
   // No layer in these directions is shorter.
-  const vec3 around = 0.5 * (last - first);
-  const float layer = frame.pathLengthCorrection == 0 ? 1.0
-                                                      : length(frame.indexToWorld * (first + around)) -
-                                                            dot(around, frame.axisLengths);
-  const uint rank = rankAt(frame.levels[level], blockAddress(frame.levels[level], cell));
-  const uint bound = rank + (level > 0 ? frame.boundsOffset : 0);
-  const int a = (major + 1) % 3, b = (major + 2) % 3;
-  ivec3 corner = from;
-  for (int i = 0; i < 4; ++i) {
-    corner[a] = (i & 1) == 0 ? from[a] : to[a];
-    corner[b] = (i & 2) == 0 ? from[b] : to[b];
+  const vec3 half_ = 0.5 * (last - first);
+  const float layer = frame.pathLengthCorrection == 0
+                          ? 1.0
+                          : length(frame.indexToWorld * (first + half_)) - dot(half_, frame.axisLengths);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    ivec3 corner = from;
+    corner[(major + 1) % 3] = ((i & 1) == 0 ? from : to)[(major + 1) % 3];
+    corner[(major + 2) % 3] = ((i & 2) == 0 ? from : to)[(major + 2) % 3];
     const int number = cellNumber(frame.cells, corner);
-    const uint word = CodePlane(PLANE_ADDRESS(number)).words[bound / 4];
-    const uint code = bitfieldExtract(word, int(bound & 3) * 8, 8);
-    if (decodeDepth(kCode, code) * layer < frame.darkDepths[number]) return false;
-    // Between 0 and 1 depths jump so much that a splat next to both may shine at its rim.
-    if (kCode == kCodeLinear8 && code != 0) return false;
+    around.planes[i] = PLANE_ADDRESS(number);
+    around.depths[i] = layer > 0.0 ? frame.darkDepths[number] / layer : uintBitsToFloat(0x7f800000u);
   }
   return true;
 }
 
+// Whether no voxel of a block that holds anything sends more than the threshold towards these directions.
+bool isDark(uint bound, Around around) {
+  bool dark = true;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    const uint code = bitfieldExtract(CodePlane(around.planes[i]).words[bound / 4], int(bound & 3) * 8, 8);
+    if (decodeDepth(kCode, code) < around.depths[i]) dark = false;
+    // Between 0 and 1 depths jump so much that a splat next to both may shine at its rim.
+    if (kCode == kCodeLinear8 && code != 0) dark = false;
+  }
+  return dark;
+}
+
 // A splat's depth changes across it as those of its neighbours beside the line of sight differ, and where one of them is
-// bright some of it is: they have to be dark as well.
+// bright some of it is: they have to be dark as well. They share what is asked, which costs more than to ask.
 bool isHidden(ivec3 cell, int level) {
-  const int major = majorAxis(toEyeFrom(cell, level));
+  const vec3 toEye = toEyeFrom(cell, level);
+  const int major = majorAxis(toEye);
+  Around around;
+  if (!findAround(toEye, major, level, around)) return false;
   bool dark = true;
   [[dont_unroll]] for (int i = 0; i < 5 && dark; ++i) {
-    ivec3 neighbour = cell;
-    if (i > 0) neighbour[(major + 1 + (i & 1)) % 3] += i < 3 ? 1 : -1;
-    if (isInside(frame.levels[level], neighbour) && holdsAnything(blockAddress(frame.levels[level], neighbour)))
-      dark = isDark(neighbour, level);
+    ivec3 block = cell;
+    if (i > 0) block[(major + 1 + (i & 1)) % 3] += i < 3 ? 1 : -1;
+    const uint address = blockAddress(frame.levels[level], block);
+    if (isInside(frame.levels[level], block) && holdsAnything(address))
+      dark = isDark(rankAt(frame.levels[level], address) + frame.boundsOffset, around);
   }
   return dark;
 }

@@ -37,31 +37,43 @@ struct DepthToEye {
   vec3 gradient;  // per voxel, index space
 };
 
-// `sigma` is the block's extinction.
-DepthToEye depthToEye(Block block, float sigma) {
+// From the depth of a block's middle layer and its slopes beside `axis`. A layer takes `layerDepth` from the light, and
+// counts `countedDepth` in the depth.
+DepthToEye inFrontOf(Block block, vec3 direction, int axis, vec3 middle, float layerDepth, float countedDepth) {
   DepthToEye result = DepthToEye(0.0, vec3(0.0));
-  if (frame.lookup == kLookupNone) return result;
-  const vec3 direction = directionToEye(block.center);
-  float falling = 1.0;
-  const int fan = fanIndex(-direction);
-  const int axis = frame.lookup == kLookupExact ? frame.fans[fan].axis : fan / 2;
-  const int sideA = (axis + 1) % 3, sideB = (axis + 2) % 3;
-  vec2 slope = vec2(0.0);
-  if (frame.lookup == kLookupExact) {
-    const vec3 ray = rayDepthOf(frame.fans[fan], block, direction);
-    result.depth = ray.x;
-    slope = ray.yz;
-  } else {
-    result.depth = tableDepth(block, falling);
-    if (frame.gradient != 0) slope = vec2(tableSlope(block, sideA), tableSlope(block, sideB));
-  }
-  const float fallingSigma = falling * sigma, layerDepth = fallingSigma * layerLength(direction);
-  const bool inFull = frame.lookup == kLookupExact || frame.pathLengthCorrection != 0;
-  result.depth = depthInFront(block, direction, result.depth, inFull ? layerDepth : fallingSigma * frame.voxelSize);
+  result.depth = depthInFront(block, direction, middle.x, countedDepth);
   if (frame.gradient == 0) return result;
-  result.gradient[sideA] = slope.x;
-  result.gradient[sideB] = slope.y;
+  result.gradient[(axis + 1) % 3] = middle.y;
+  result.gradient[(axis + 2) % 3] = middle.z;
   // Along the line of sight the depth falls by that of a layer.
   result.gradient[axis] = -(layerDepth + dot(result.gradient, direction)) / direction[axis];
   return result;
+}
+
+DepthToEye alongRays(Block block, float sigma, vec3 direction) {
+  const RayFan fan = frame.fans[fanIndex(-direction)];
+  const float layerDepth = sigma * layerLength(direction);
+  return inFrontOf(block, direction, fan.axis, rayDepthOf(fan, block, direction), layerDepth, layerDepth);
+}
+
+DepthToEye fromTable(Block block, float sigma, vec3 direction) {
+  const int axis = majorAxis(direction);
+  float falling;
+  vec3 middle = vec3(tableDepth(block, falling), 0.0, 0.0);
+  if (frame.gradient != 0) middle.yz = vec2(tableSlope(block, (axis + 1) % 3), tableSlope(block, (axis + 2) % 3));
+  const float fallingSigma = falling * sigma, layerDepth = fallingSigma * layerLength(direction);
+  return inFrontOf(block, direction, axis, middle, layerDepth,
+                   frame.pathLengthCorrection != 0 ? layerDepth : fallingSigma * frame.voxelSize);
+}
+
+// `sigma` is the block's extinction.
+DepthToEye depthToEye(Block block, float sigma) {
+  if (frame.lookup == kLookupNone) return DepthToEye(0.0, vec3(0.0));
+  const vec3 direction = directionToEye(block.center);
+  if (frame.lookup == kLookupExact) return alongRays(block, sigma, direction);
+  const DepthToEye table = fromTable(block, sigma, direction);
+  if (frame.rayShare == 0.0) return table;
+  // Depths are mixed, not transmittances: what is dark in one of them alone is not to shine as soon as the other counts.
+  const DepthToEye rays = alongRays(block, sigma, direction);
+  return DepthToEye(mix(table.depth, rays.depth, frame.rayShare), mix(table.gradient, rays.gradient, frame.rayShare));
 }

@@ -20,13 +20,16 @@ using uint = std::uint32_t;
 // has whole texels of four voxels: 16 voxels a thread are fastest on lavapipe, 4 on GPUs.
 FV_CONSTANT int kRowAlignment = 16;
 
+// Voxels along the edge of a brick, in which the host keeps and hands over scalars.
+FV_CONSTANT int kBrickEdge = 8;
+
 // Blocks that one word says of whether they hold anything, and that one invocation of the passes over all blocks
 // looks at.
 FV_CONSTANT int kBlocksPerWord = 32;
 FV_CONSTANT int kOccupancyThreads = 64;
 FV_CONSTANT int kScanThreads = 256;
 
-FV_CONSTANT int kClassifyThreads = 64;
+FV_CONSTANT int kBrickThreads = kBrickEdge * kBrickEdge;  // a row of a brick each
 FV_CONSTANT int kSweepThreads = 32;
 FV_CONSTANT int kRaySweepThreads = 64;
 FV_CONSTANT int kEyeThreads = 64;
@@ -90,20 +93,35 @@ FV_CONSTANT int kCompositeNormalised = 0;
 FV_CONSTANT int kCompositeAdditive = 1;
 FV_CONSTANT int kCompositeSorted = 2;
 
-// classify.comp
-struct ClassifyPush {
-  uint quadCount;        // voxels / 4
+// One level of the octree: engine/hierarchy/hierarchy_layout.h.
+struct BlockLevel {
+  uint first;       // index of its first block
+  uint firstRank;   // of its blocks that hold anything
+  int rowPitch;
+  ivec3 dimensions;
+};
+
+// occupied_voxels.comp and pack_voxels.comp
+struct BricksPush {
+  BlockLevel voxels;
+  uint brickCount;
   uint opacityPoints;    // of the transfer function; 0 = physical
   float densityScale;    // physical: extinction per world unit at density 1
   float unitDistance;    // transfer function: world length that opacities refer to
 };
 
+// The planes that a dispatch of a sweep marches through: engine/attenuation/slabs.h. In the order of the march.
+struct SweepSlab {
+  int firstPlane, endPlane;
+  int firstQuad;     // of all quads of voxels, the first whose extinction is there
+  uint firstDepth;   // of the depths that lines have between slabs, this direction's first
+};
+
 // attenuation_sweep.comp and attenuation_sweep_x.comp. Offsets and strides are in voxels of the padded grid.
 struct SweepPush {
+  SweepSlab slab;
   int rowPitch;
   int lineCount;     // extent of the side axis: the axis that is neither x nor the march axis
-  int firstLine;     // this dispatch sweeps lines firstLine to lastLine - 1
-  int lastLine;
   int sideStep;      // step along the side axis, wraps around
   int sideStride;
   int marchCount;    // extent of the march axis
@@ -112,9 +130,10 @@ struct SweepPush {
   float stepLength;  // world length of a lattice step
 };
 
-// attenuation_sweep_half.comp. Strides are in voxels of the padded grid.
+// attenuation_sweep_half.comp. Offsets and strides are in voxels of the padded grid.
 struct HalfSweepPush {
-  int rowPitch;
+  SweepSlab slab;
+  int rowPitch, start;                     // start: offset of the row at plane 0, side 0
   int marchCount, marchStride, marchStep;  // extent, stride and step of the march axis; step -2, -1, 1 or 2
   int sideCount, sideStride, sideStep;     // the same of the axis that is neither x nor the march axis
   float stepLength;                        // world length of half a step: of one layer
@@ -140,14 +159,6 @@ struct RayFan {
 struct OccupancyWord {
   uint mask;
   uint before;
-};
-
-// One level of the octree: engine/hierarchy/hierarchy_layout.h.
-struct BlockLevel {
-  uint first;       // index of its first block
-  uint firstRank;   // of its blocks that hold anything
-  int rowPitch;
-  ivec3 dimensions;
 };
 
 // ray_sweep.comp
@@ -221,9 +232,9 @@ struct CutCounts {
   uint deferred;       // left to the second part of the cut, which counts them again
 };
 
-// occupied_voxels.comp, pack_voxels.comp and expand_voxels.comp
-struct VoxelsPush {
-  uint count;        // words of voxels, or voxels that hold anything
+// expand_voxels.comp
+struct ExpandPush {
+  uint firstWord, wordCount;  // of voxels
 };
 
 // occupied_blocks.comp
@@ -319,6 +330,7 @@ struct SetupFrame {
   int levelCount;
   float voxelSize;         // edge of the cube with a voxel's volume, world units
   int lookup;              // kLookup...
+  float rayShare;          // of the depth to the eye that is along rays; the rest is the table's. kLookupExact: 1
   uvec2 beyondEye;         // device address of what eye_depths.comp made; 0: the eye is outside of the volume
   int pathLengthCorrection;  // 0: every lattice step counts as long as any other
   int kernelMean;          // 1: a voxel has the mean of the transmittance over its kernel, along the line of sight
@@ -373,9 +385,10 @@ struct TilePush {
 #ifdef __cplusplus
 static_assert(sizeof(BlockLevel) == 24);
 static_assert(sizeof(ChunkArguments) == 52);
+static_assert(sizeof(CutFrame) <= 16384);  // a uniform buffer, which every device takes up to here
 static_assert(sizeof(CutPush) == 16);
 static_assert(sizeof(DepthKeyPush) == 80);
-static_assert(sizeof(HalfSweepPush) == 64);
+static_assert(sizeof(HalfSweepPush) == 84);
 static_assert(sizeof(MediumLevelPush) == 84);
 static_assert(sizeof(Splat) == 64);
 static_assert(sizeof(RaySweepPush) == 120);

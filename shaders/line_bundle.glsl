@@ -7,6 +7,8 @@
 // With a step in x the bundle moves along the rows plane by plane while the quads of voxels it writes do not. So a
 // thread writes the aligned quads of a window that moves by one every kPhases planes, and carries kExtraLines more
 // than it writes.
+//
+// A volume that is swept slab by slab keeps the lines' depths between slabs: a thread those of all lines that it carries.
 
 layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const int kVoxels = 16;  // a multiple of 4
@@ -15,6 +17,7 @@ layout(constant_id = 2) const int kStepX = 0;    // of the march, -2 to 2
 layout(local_size_x = kSweepThreads) in;
 layout(binding = 0) uniform textureBuffer extinction;
 #include "stored_codes.glsl"
+layout(scalar, binding = 3) buffer KeptDepths { float keptDepths[]; };
 
 const int kSize = kStepX < 0 ? -kStepX : kStepX;
 const int kPhases = kSize == 0 ? 1 : kSize == 1 ? 4 : 2;
@@ -41,6 +44,19 @@ void restartLines() {
   [[unroll]] for (int line = 0; line < kVoxels + kExtraLines; ++line) depths[line] = 0.0;
 }
 
+void keepLines(uint first, uint thread, uint threads) {
+  [[unroll]] for (int line = 0; line < kVoxels + kExtraLines; ++line)
+    keptDepths[first + uint(line) * threads + thread] = depths[line];
+}
+
+void resumeLines(uint first, uint thread, uint threads) {
+  [[unroll]] for (int line = 0; line < kVoxels + kExtraLines; ++line)
+    depths[line] = keptDepths[first + uint(line) * threads + thread];
+}
+
+// Where an index has come to that makes a number of steps and wraps around.
+int movedBy(int index, int steps, int count) { return ((index + steps) % count + count) % count; }
+
 // Lines that have just come around the end of the row start again at the boundary of the volume.
 void restartWrappedLines(int window, int quads, int phase) {
   if (kSize == 0) return;
@@ -51,6 +67,7 @@ void restartWrappedLines(int window, int quads, int phase) {
     }
 }
 
+// `row` is its first quad, counted from the slab's first.
 vec4 loadQuad(int row, int q, int window, int quads) {
   return texelFetch(extinction, row + wrapped(window + q - kMargin, quads));
 }

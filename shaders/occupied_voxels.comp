@@ -1,20 +1,24 @@
 #version 460
-// Which voxels hold anything: a word of voxels a thread.
+// Which voxels hold anything, brick by brick.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
+#include "blocks.glsl"
+#include "brick_row.glsl"
 
-layout(local_size_x = kOccupancyThreads) in;
-layout(scalar, push_constant) uniform Push { VoxelsPush push; };
-layout(binding = 0) uniform textureBuffer extinction;
-layout(scalar, binding = 1) buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 3) buffer Occupancy { OccupancyWord occupancy[]; };
 
 void main() {
-  const uint word = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kOccupancyThreads;
-  if (word >= push.count) return;
-  uint mask = 0;
-  [[unroll]] for (uint q = 0; q < kBlocksPerWord / 4; ++q) {
-    const bvec4 visible = greaterThan(texelFetch(extinction, int(kBlocksPerWord / 4 * word + q)), vec4(0.0));
-    [[unroll]] for (uint c = 0; c < 4; ++c) mask |= uint(visible[c]) << (4 * q + c);
+  const uint brick = brickOfThread();
+  if (brick >= push.brickCount) return;
+  const Row row = loadRow(brick);
+  if (row.holding == 0) return;
+  const int start = findLSB(row.holding);  // in the box, which the row may begin before
+  const uint address = blockAddress(push.voxels, row.first + ivec3(start, 0, 0));
+  const uint bits = row.holding >> start, place = address % kBlocksPerWord;
+  // Rows of bricks share words with others.
+  atomicOr(occupancy[address / kBlocksPerWord].mask, bits << place);
+  if (place > kBlocksPerWord - kBrickEdge) {
+    const uint rest = bits >> (kBlocksPerWord - place);
+    if (rest != 0) atomicOr(occupancy[address / kBlocksPerWord + 1].mask, rest);
   }
-  occupancy[word].mask = mask;
 }

@@ -1,22 +1,29 @@
 #version 460
-// The extinction and the scalars of the voxels that hold anything, each at its rank, a thread a voxel.
+// The extinction and the scalars of the voxels that hold anything, each at its rank, brick by brick.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
+#include "blocks.glsl"
+#include "rank.glsl"
+#include "brick_row.glsl"
 
 layout(constant_id = 0) const bool kScalars = false;  // are kept, for their colours
 
-layout(local_size_x = kOccupancyThreads) in;
-layout(scalar, push_constant) uniform Push { VoxelsPush push; };
-layout(scalar, binding = 0) readonly buffer VisibleVoxels { uint visibleVoxels[]; };
-layout(scalar, binding = 1) readonly buffer AllExtinction { float allExtinction[]; };
-layout(scalar, binding = 2) readonly buffer AllScalars { float allScalars[]; };
-layout(scalar, binding = 3) writeonly buffer Extinction { float extinction[]; };
-layout(scalar, binding = 4) writeonly buffer Scalars { float scalars[]; };
+layout(scalar, binding = 3) readonly buffer Occupancy { OccupancyWord occupancy[]; };
+#include "occupancy.glsl"
+layout(scalar, binding = 4) writeonly buffer Extinction { float extinction[]; };
+layout(scalar, binding = 5) writeonly buffer AllScalars { float keptScalars[]; };
 
 void main() {
-  const uint rank = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kOccupancyThreads;
-  if (rank >= push.count) return;
-  const uint voxel = visibleVoxels[rank];
-  extinction[rank] = allExtinction[voxel];
-  if (kScalars) scalars[rank] = allScalars[voxel];
+  const uint brick = brickOfThread();
+  if (brick >= push.brickCount) return;
+  const Row row = loadRow(brick);
+  if (row.holding == 0) return;
+  // Voxels of a row follow one another: so do the ranks of those that hold anything.
+  uint rank = rankAt(push.voxels, blockAddress(push.voxels, row.first + ivec3(findLSB(row.holding), 0, 0)));
+  [[unroll]] for (int i = 0; i < kBrickEdge; ++i) {
+    if ((row.holding >> i & 1u) == 0) continue;
+    extinction[rank] = row.extinction[i];
+    if (kScalars) keptScalars[rank] = row.scalars[i];
+    ++rank;
+  }
 }

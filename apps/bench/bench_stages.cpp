@@ -231,9 +231,10 @@ Result wholeRender(const Device& device, const InputOptions& input, int runs) {
     renderer.render(framingCamera(volume, kDefaultAzimuth, kDefaultElevation, 1.0, {}), settings);
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   });
-  return {.name = fmt::format("render {}, 1024x1024", volume.source),
+  const glm::ivec3 box = volume.dimensions;
+  return {.name = fmt::format("render {}, {}x{}x{}, 1024x1024", volume.source, box.x, box.y, box.z),
           .milliseconds = time,
-          .copyMilliseconds = copyTime(27 * volume.voxelCount()),
+          .copyMilliseconds = copyTime(27 * volume.activeVoxels),
           .perSecond = 0.0};
 }
 

@@ -35,11 +35,12 @@ std::vector<Result> measureAll(const Device& device, const std::vector<std::stri
   for (double pixels : {3.0, 5.0, 9.0}) results.push_back(bench::splats(device, pixels, runs));
   for (const Result& result : bench::flight(device, quick ? 64 : 128, quick ? 1 : 2))
     results.push_back(result);
-  for (const std::string& input : inputs) {
-    InputOptions options;
-    options.input = input;
-    results.push_back(bench::wholeRender(device, options, runs));
-  }
+  if (!quick)  // a twentieth of more than 512³ voxels
+    results.push_back(
+        bench::wholeRender(device, {.input = "procedural:plume", .grid = {}, .resolution = 640}, 1));
+  for (const std::string& input : inputs)
+    results.push_back(
+        bench::wholeRender(device, {.input = input, .grid = {}, .resolution = {}}, runs));
   return results;
 }
 

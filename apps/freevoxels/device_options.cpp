@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <limits>
 
 #include "engine/core/error.h"
 
@@ -11,6 +12,10 @@ namespace freevoxels {
 void DeviceOptions::add(CLI::App& app) {
   addText(app, "--device", "INDEX|NAME|UUID", selector,
           "Of 'freevoxels devices', or part of a name [a discrete GPU, then any GPU, then a CPU]")
+      ->group("Device");
+  addWholeNumber(app, "--memory-limit", "MIB", memoryLimit,
+                 "Device memory to use at most; a volume is then swept in thinner slabs [what the device has]",
+                 {1.0, double(std::numeric_limits<int>::max())})
       ->group("Device");
 }
 
@@ -23,7 +28,9 @@ void withInstance(const std::function<void(const Instance&)>& work) {
 
 void DeviceOptions::withDevice(const std::function<void(const Device&)>& work) const {
   withInstance([&](const Instance& instance) {
-    const Device device(instance, selector.value_or(""));
+    const std::uint64_t limit = memoryLimit ? std::uint64_t(*memoryLimit) << 20
+                                            : std::numeric_limits<std::uint64_t>::max();
+    const Device device(instance, selector.value_or(""), limit);
     work(device);
   });
 }

@@ -11,6 +11,7 @@ namespace freevoxels {
 
 struct DeviceOptions {
   std::optional<std::string> selector;
+  std::optional<int> memoryLimit;  ///< MiB
 
   void add(CLI::App& app);
   /// Opens the device and calls `work` with it. With FREEVOXELS_VALIDATION=1 any message of the validation

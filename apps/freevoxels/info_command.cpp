@@ -29,9 +29,9 @@ GridInfo describeVolume(const Volume& volume) {
   grid.hasRange = volume.activeVoxels > 0;
   grid.minimum = volume.minimum;
   grid.maximum = volume.maximum;
-  grid.memoryBytes = volume.values.size() * sizeof(float);
+  grid.memoryBytes = grid.hostBytes = volume.scalars.bytes();
   std::vector<bool> holding;
-  for (const float value : volume.values) holding.push_back(value > 0.0f);
+  for (const float value : denseScalars(volume)) holding.push_back(value > 0.0f);
   grid.storedBlocks = countStored(HierarchyLayout(volume.dimensions), std::move(holding));
   return grid;
 }
@@ -42,7 +42,7 @@ VolumeMemory memoryOf(const GridInfo& grid, DirectionSet directions) {
   std::vector<std::uint64_t> stored = grid.storedBlocks;
   if (stored.empty())
     for (const GridLayout& level : hierarchy.levels) stored.push_back(level.voxels());
-  return volumeMemory(hierarchy, stored, directions, false);
+  return volumeMemory(hierarchy, stored, directions, false, sweepStyleOf(true));
 }
 
 /// Stored with 26 directions, of a voxel that holds anything.
@@ -111,7 +111,7 @@ nlohmann::ordered_json toJson(const GridInfo& grid) {
   json["stored_bytes_per_box_voxel"] =
       double(memory.stored()) / double(HierarchyLayout(grid.renderDimensions).levels.front().voxels());
   json["device_bytes"] = memory.peak();
-  json["host_bytes"] = HierarchyLayout(grid.renderDimensions).levels.front().voxels() * sizeof(float);
+  json["host_bytes"] = grid.hostBytes;
   const VolumeMemory memory98 = memoryOf(grid, DirectionSet::Directions98);
   json["table_98_bytes"] = memory98.table;
   json["device_98_bytes"] = memory98.peak();

@@ -23,11 +23,11 @@ void MethodOptions::add(CLI::App& app) {
           "How the splats become the picture; sorted is back-to-front alpha blending, to compare with "
           "[normalised]")
       ->group(group);
-  addWord(
-      app, "--attenuation", kAttenuations, attenuation,
-      "How the table is looked up between its directions; exact does not read it, but "
-      "sweeps from the eye for every frame; auto: exact where the eye is inside the volume, else bilinear "
-      "[auto]")
+  addWord(app, "--attenuation", kAttenuations, attenuation,
+          "How the table is looked up between its directions; exact does not read it, but "
+          "sweeps from the eye for every frame; auto: exact where the eye is inside the volume, bilinear "
+          "where it "
+          "is far away, and a mix of both between [auto]")
       ->group(group);
   addWord(app, "--directions", kDirections, directions,
           "How many directions the table holds; 98 are more exact and take more memory and time [26]")

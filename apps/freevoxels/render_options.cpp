@@ -114,6 +114,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
     const Image image = renderer.render(view.camera, settings, prefixed(line.progress(), prefix));
     const std::vector<StageTime> times = renderer.timings();
     addTimes(report.stages, std::span(times).subspan(built.size()));
+    report.lackedRoomForRays |= renderer.lackedRoomForRays();
 
     line.begin(prefix + "writing pictures");
     std::vector<StageTime> writing;
@@ -126,6 +127,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
   report.visibleVoxels = renderer.visibleVoxelCount();
   report.voxels = view.volume.voxelCount();
   report.memory = renderer.memory();
+  report.devicePeak = opened.peakBytes();
   report.cut = renderer.cutCounts();
 }
 

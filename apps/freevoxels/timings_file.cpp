@@ -11,16 +11,6 @@
 
 namespace freevoxels {
 
-void addTimes(std::vector<StageTime>& sums, std::span<const StageTime> times) {
-  for (const StageTime& time : times) {
-    const auto sum = std::ranges::find(sums, time.name, &StageTime::name);
-    if (sum != sums.end())
-      sum->milliseconds += time.milliseconds;
-    else
-      sums.push_back(time);
-  }
-}
-
 void logOptions(const OptionList& options) {
   TextTable table{.columns = {TextTable::Align::Left, TextTable::Align::Left}, .rows = {}};
   for (const auto& [name, value] : options) table.rows.push_back({name.empty() ? "IN" : name, value});
@@ -30,13 +20,16 @@ void logOptions(const OptionList& options) {
 namespace {
 
 void logCounts(const RunReport& report) {
+  if (report.lackedRoomForRays)
+    spdlog::debug(
+        "exact transmittance needs more memory than the device has: looked up in the table instead");
   spdlog::debug("{} voxels, {} of them empty", report.voxels, report.voxels - report.visibleVoxels);
   const auto stored = double(report.memory.stored());
   spdlog::debug(
       "{:.1f} MiB kept of the volume: {:.1f} bytes a voxel that holds anything, {:.1f} a voxel of the box; "
       "at most {:.1f} MiB on the device",
       stored / 0x1p20, stored / double(std::max<std::uint64_t>(report.visibleVoxels, 1)),
-      stored / double(report.voxels), double(report.memory.peak()) / 0x1p20);
+      stored / double(report.voxels), double(report.devicePeak) / 0x1p20);
   spdlog::debug(
       "{} blocks considered for the last frame, {} of them empty, {} outside of the image, {} hidden",
       report.cut.considered, report.cut.empty, report.cut.outside, report.cut.hidden);
@@ -79,7 +72,7 @@ void writeTimings(const std::filesystem::path& file, const RunReport& report) {
         {{"name", stage.name}, {"milliseconds", stage.milliseconds}, {"on_device", stage.onDevice}});
   json["voxels"] = report.voxels;
   json["visible_voxels"] = report.visibleVoxels;
-  json["memory_bytes"] = {{"stored", report.memory.stored()}, {"peak", report.memory.peak()}};
+  json["memory_bytes"] = {{"stored", report.memory.stored()}, {"peak", report.devicePeak}};
   json["blocks"] = {{"considered", report.cut.considered}, {"empty", report.cut.empty},
                     {"outside", report.cut.outside},       {"hidden", report.cut.hidden},
                     {"opened", report.cut.opened},         {"drawn", report.cut.drawn}};

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <span>
 #include <vector>
 
 #include "apps/freevoxels/option_values.h"
@@ -22,11 +21,10 @@ struct RunReport {
   std::uint64_t visibleVoxels = 0;
   std::uint64_t voxels = 0;  ///< of the volume's box
   VolumeMemory memory;
-  CutCounts cut;  ///< of the last frame
+  std::uint64_t devicePeak = 0;    ///< bytes: the most that was ever allocated there
+  CutCounts cut;                   ///< of the last frame
+  bool lackedRoomForRays = false;  ///< some frame
 };
-
-/// Adds each time to the one of its name, or appends it.
-void addTimes(std::vector<StageTime>& sums, std::span<const StageTime> times);
 
 /// As messages of --verbose.
 void logOptions(const OptionList& options);

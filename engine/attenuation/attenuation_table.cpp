@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 
 #include "embedded/attenuation_sweep.h"
 #include "embedded/attenuation_sweep_x.h"
@@ -19,18 +18,15 @@ static_assert(shader::kOpaqueDepth == float(kOpaqueDepth));
 static_assert(shader::kCodeDepth8 == int(AttenuationCode::Depth8));
 static_assert(shader::kCodeLinear8 == int(AttenuationCode::Linear8));
 
-/// A CPU device sweeps the three directions that share their y and z in blocks of lines of this much
-/// extinction, so that two of the three find it in the cache.
-constexpr std::uint64_t kCpuBlockBytes = std::uint64_t(4) << 20;
-
 /// The sweep for `direction` marches the other way: from where its lines leave the volume, against the
-/// direction.
-shader::SweepPush sweepPush(const DeviceVolume& volume, glm::ivec3 direction, bool pathLengthCorrection) {
+/// direction. Without the slab.
+shader::SweepPush sweepPush(const SlabSweep& sweep, glm::ivec3 direction) {
+  const DeviceVolume& volume = sweep.volume;
   const glm::ivec3 extent = volume.layout.dimensions;
   const int row = volume.layout.rowPitch, plane = row * extent.y;
-  shader::SweepPush push{
-      .rowPitch = row,
-      .stepLength = float(freevoxels::stepLength(volume.indexToWorld, direction, pathLengthCorrection))};
+  shader::SweepPush push{.rowPitch = row,
+                         .stepLength = float(stepLength(volume.indexToWorld, direction,
+                                                        sweep.table.settings.pathLengthCorrection))};
   const auto march = [&](int count, int stride, int towardsEye) {
     push.marchCount = count;
     push.marchStart = towardsEye > 0 ? (count - 1) * stride : 0;
@@ -41,14 +37,16 @@ shader::SweepPush sweepPush(const DeviceVolume& volume, glm::ivec3 direction, bo
     push.lineCount = extent.y;
     push.sideStep = -direction.y;
     push.sideStride = row;
-  } else if (direction.y != 0) {
+    return push;
+  }
+  if (direction.y != 0) {
     march(extent.y, row, direction.y);
-    push.lineCount = extent.z;
+    push.lineCount = sweep.slab.count();
     push.sideStride = plane;
   } else {
-    push.lineCount = extent.y * extent.z;
+    push.lineCount = extent.y * sweep.slab.count();
   }
-  push.lastLine = push.lineCount;
+  push.marchStart += sweep.firstVoxel();
   return push;
 }
 
@@ -62,7 +60,7 @@ Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Speciali
   return makeComputePipeline(
       device, code,
       {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
+                    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
        .pushConstantBytes = sizeof(shader::SweepPush)},
       {shader::kSweepThreads, 1, 1}, constants);
 }
@@ -94,70 +92,89 @@ AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, con
 }
 
 AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings)
-    : device_(device),
-      voxelsPerThread_(device.isCpu() ? 16 : 4),
-      blockBytes_(device.isCpu() ? kCpuBlockBytes : std::numeric_limits<std::uint64_t>::max()),
-      expand_(device) {
+    : AttenuationSweep(device, settings, sweepStyle(device)) {}
+
+AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings,
+                                   const SweepStyle& style)
+    : device_(device), settings_(settings), style_(style), expand_(device) {
   const auto code = std::uint32_t(settings.code);
   for (int step = -1; step <= 1; ++step)
     bundles_[std::size_t(step + 1)] =
         makeSweepPipeline(device, {attenuation_sweep_spv, "attenuation sweep"},
-                          {code, std::uint32_t(voxelsPerThread_), std::uint32_t(step)});
+                          {code, std::uint32_t(style.voxelsPerThread), std::uint32_t(step)});
   for (int step : {-1, 1})
     rows_[step > 0 ? 1 : 0] = makeSweepPipeline(device, {attenuation_sweep_x_spv, "attenuation sweep x"},
                                                 {code, std::uint32_t(step)});
   if (settings.directions == DirectionSet::Directions98)
-    halves_.emplace(device, settings.code, voxelsPerThread_);
+    halves_.emplace(device, settings.code, style.voxelsPerThread);
 }
 
-void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) {
-  const std::uint64_t bytes = volume.hierarchy.denseVoxels() * sizeof(float);
-  if (extinction_.bytes() != bytes) {
+void AttenuationSweep::makeRoom(const SweepPlan& plan) {
+  plan_ = plan;
+  if (extinction_.bytes() != plan.slabBytes) {
     extinctionQuads_ = {};
     extinction_ = {};  // not both at once
-    extinction_ = Buffer(device_, bytes, MemoryUse::Device, "extinction of all voxels",
+    extinction_ = Buffer(device_, plan.slabBytes, MemoryUse::Device, "extinction of a slab",
                          VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     extinctionQuads_ = TexelView(device_, extinction_);
   }
-  commands.beginPass("expand voxels");
-  expand_.record(commands, volume, extinction_);
-  commands.beginPass("attenuation sweeps");
-  for (int z = -1; z <= 1; ++z)
-    for (int y = -1; y <= 1; ++y)
-      if (y == 0 && z == 0)
-        recordRows(commands, volume, table);
-      else
-        recordBundles(commands, volume, table, {y, z});
-  if (halves_) halves_->record(commands, volume, extinctionQuads_, table);
-  commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+  const std::uint64_t keptBytes = std::max<std::uint64_t>(plan.keptBytes, sizeof(float));
+  if (keptDepths_.bytes() == keptBytes) return;
+  keptDepths_ = {};
+  keptDepths_ = Buffer(device_, keptBytes, MemoryUse::Device, "depths between slabs");
 }
 
-void AttenuationSweep::recordRows(Commands& commands, const DeviceVolume& volume,
-                                  const AttenuationTable& table) const {
-  for (int x : {-1, 1}) {
-    const shader::SweepPush push = sweepPush(volume, {x, 0, 0}, table.settings.pathLengthCorrection);
-    const std::array<Binding, 3> bindings{&extinctionQuads_, &planeOf(table, {x, 0, 0}),
-                                          &volume.occupancyTexels};
-    commands.dispatchLinear(rows_[x > 0 ? 0 : 1], bindings, push, std::uint64_t(push.lineCount));
+void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) {
+  const std::uint64_t own = extinction_.bytes() + keptDepths_.bytes();
+  makeRoom(planSweep(volume.layout, settings_.directions, style_, device_.availableBytes() + own));
+  constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  const int planes = volume.layout.dimensions.z, halo = halves_ ? 1 : 0;
+  SlabSweep sweep{.commands = commands,
+                  .volume = volume,
+                  .table = table,
+                  .slab = {},
+                  .extinction = extinctionQuads_,
+                  .keptDepths = keptDepths_};
+  for (const Slab& slab : plan_.slabs(planes)) {
+    sweep.slab = slab;
+    sweep.kept = 0;
+    if (slab.upwards || slab.count() < planes) {
+      const int low = std::max(slab.lowest(planes) - halo, 0);
+      const int high = std::min(slab.lowest(planes) + slab.count() + halo, planes);
+      commands.beginPass("expand voxels");
+      sweep.firstQuad = int(expand_.record(commands, volume, low, high - low, extinction_) / 4);
+    }
+    commands.beginPass("attenuation sweeps");
+    for (int y = -1; y <= 1; ++y) recordBundles(sweep, {y, slab.upwards ? -1 : 1});
+    if (slab.upwards) {
+      for (int y : {-1, 1}) recordBundles(sweep, {y, 0});
+      recordRows(sweep);
+    }
+    if (halves_) halves_->record(sweep);
+    commands.barrier(kCompute, kCompute);
   }
 }
 
-void AttenuationSweep::recordBundles(Commands& commands, const DeviceVolume& volume,
-                                     const AttenuationTable& table, glm::ivec2 yz) const {
-  const shader::SweepPush any = sweepPush(volume, {0, yz}, table.settings.pathLengthCorrection);
-  const int bundles = any.rowPitch / voxelsPerThread_;
-  const std::uint64_t lineBytes = std::uint64_t(any.rowPitch) * std::uint64_t(any.marchCount) * sizeof(float);
-  const int block = int(std::clamp<std::uint64_t>(blockBytes_ / lineBytes, 1, std::uint64_t(any.lineCount)));
-  for (int first = 0; first < any.lineCount; first += block)
-    for (int x = -1; x <= 1; ++x) {
-      shader::SweepPush push = sweepPush(volume, {x, yz}, table.settings.pathLengthCorrection);
-      push.firstLine = first;
-      push.lastLine = std::min(first + block, push.lineCount);
-      const std::array<Binding, 3> bindings{&extinctionQuads_, &planeOf(table, {x, yz}),
-                                            &volume.occupancyTexels};
-      commands.dispatchLinear(bundles_[std::size_t(1 - x)], bindings, push,
-                              std::uint64_t(push.lastLine - first) * std::uint64_t(bundles));
-    }
+void AttenuationSweep::recordRows(SlabSweep& sweep) const {
+  for (int x : {-1, 1}) {
+    shader::SweepPush push = sweepPush(sweep, {x, 0, 0});
+    push.slab = sweep.marchWithinPlanes(0);
+    sweep.commands.dispatchLinear(rows_[x > 0 ? 0 : 1], sweep.bindings(planeOf(sweep.table, {x, 0, 0})), push,
+                                  std::uint64_t(push.lineCount));
+  }
+}
+
+void AttenuationSweep::recordBundles(SlabSweep& sweep, glm::ivec2 yz) const {
+  for (int x = -1; x <= 1; ++x) {
+    shader::SweepPush push = sweepPush(sweep, {x, yz});
+    const std::uint64_t threads =
+        std::uint64_t(push.lineCount) * std::uint64_t(push.rowPitch / style_.voxelsPerThread);
+    push.slab = yz.y != 0
+                    ? sweep.marchAlongZ(threads * std::uint64_t(linesPerThread(style_.voxelsPerThread, x)))
+                    : sweep.marchWithinPlanes(push.marchCount);
+    sweep.commands.dispatchLinear(bundles_[std::size_t(1 - x)], sweep.bindings(planeOf(sweep.table, {x, yz})),
+                                  push, threads);
+  }
 }
 
 namespace {

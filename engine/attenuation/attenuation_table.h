@@ -8,6 +8,7 @@
 
 #include "engine/attenuation/directions.h"
 #include "engine/attenuation/half_sweep.h"
+#include "engine/attenuation/slabs.h"
 #include "engine/attenuation/table_settings.h"
 #include "engine/hierarchy/occupancy.h"
 #include "engine/volume/device_volume.h"
@@ -29,28 +30,32 @@ struct AttenuationTable {
 AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, const TableSettings& settings);
 
 /// COMPUTE attenuation_sweep.comp, attenuation_sweep_x.comp and, for 98 directions,
-/// attenuation_sweep_half.comp: a dispatch a direction (of the 26 more, over blocks of lines, on a CPU
-/// device), none of which waits for another.
+/// attenuation_sweep_half.comp: a dispatch a direction and slab (slabs.h), of which those of a slab do not
+/// wait for each other.
 class AttenuationSweep {
  public:
   AttenuationSweep(const Device& device, const TableSettings& settings);
-  /// One volume after the other: the sweeps have one copy of all its voxels.
+  AttenuationSweep(const Device& device, const TableSettings& settings, const SweepStyle& style);
+  /// One volume after the other: the sweeps have one slab.
   void record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table);
 
  private:
-  void recordRows(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) const;
-  void recordBundles(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table,
-                     glm::ivec2 yz) const;
+  void recordRows(SlabSweep& sweep) const;
+  void recordBundles(SlabSweep& sweep, glm::ivec2 yz) const;
+
+  void makeRoom(const SweepPlan& plan);
 
   const Device& device_;
-  int voxelsPerThread_;
-  std::uint64_t blockBytes_;
+  TableSettings settings_;
+  SweepStyle style_;
+  SweepPlan plan_;
   std::array<Pipeline, 3> bundles_;  ///< by the march's step in x, -1, 0, 1
   std::array<Pipeline, 2> rows_;     ///< directions +x and -x
   std::optional<HalfSweep> halves_;  ///< of 98 directions
   ExpandPass expand_;
-  Buffer extinction_;  ///< float, of all voxels
+  Buffer extinction_;  ///< float, of all voxels of a slab
   TexelView extinctionQuads_;
+  Buffer keptDepths_;  ///< float: of lines between slabs
 };
 
 /// Bytes [direction][block] of one level, without padding, 0 of blocks that hold nothing.

@@ -5,6 +5,7 @@
 #include "engine/attenuation/directions.h"
 #include "engine/attenuation/ray_fans.h"
 #include "engine/volume/device_volume.h"
+#include "engine/vulkan/commands.h"
 
 namespace freevoxels {
 

@@ -44,17 +44,26 @@ std::pair<int, int> pipelineKey(glm::ivec3 cell) {
   return {-cell.x, int(halfwayOffsets(marchAndSide(cell)).size())};
 }
 
-shader::HalfSweepPush sweepPush(const DeviceVolume& volume, glm::ivec3 cell, bool pathLengthCorrection) {
+std::uint64_t threadsOf(const shader::HalfSweepPush& push, int voxelsPerThread) {
+  return std::uint64_t(push.sideCount) * std::uint64_t(std::abs(push.marchStep)) *
+         std::uint64_t(push.rowPitch / voxelsPerThread);
+}
+
+/// Without the slab.
+shader::HalfSweepPush sweepPush(const SlabSweep& sweep, glm::ivec3 cell) {
+  const DeviceVolume& volume = sweep.volume;
+  const bool pathLengthCorrection = sweep.table.settings.pathLengthCorrection;
   const glm::ivec3 extent = volume.layout.dimensions;
   const int row = volume.layout.rowPitch, plane = row * extent.y;
   const bool alongZ = cell.z != 0;
   const glm::ivec2 step = marchAndSide(cell);
   shader::HalfSweepPush push{
       .rowPitch = row,
+      .start = alongZ ? 0 : sweep.firstVoxel(),
       .marchCount = alongZ ? extent.z : extent.y,
       .marchStride = alongZ ? plane : row,
       .marchStep = -step.x,
-      .sideCount = alongZ ? extent.y : extent.z,
+      .sideCount = alongZ ? extent.y : sweep.slab.count(),
       .sideStride = alongZ ? row : plane,
       .sideStep = -step.y,
       .stepLength = float(stepLength(volume.indexToWorld, 0.5 * glm::dvec3(cell), pathLengthCorrection))};
@@ -73,7 +82,7 @@ HalfSweep::HalfSweep(const Device& device, AttenuationCode code, int voxelsPerTh
     pipelines_[key] = makeComputePipeline(
         device, {attenuation_sweep_half_spv, "attenuation sweep half"},
         {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                      VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER},
+                      VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
          .pushConstantBytes = sizeof(shader::HalfSweepPush)},
         {shader::kSweepThreads, 1, 1},
         {std::uint32_t(code), std::uint32_t(voxelsPerThread), std::uint32_t(key.first),
@@ -81,15 +90,18 @@ HalfSweep::HalfSweep(const Device& device, AttenuationCode code, int voxelsPerTh
   }
 }
 
-void HalfSweep::record(Commands& commands, const DeviceVolume& volume, const TexelView& extinction,
-                       const AttenuationTable& table) const {
+void HalfSweep::record(SlabSweep& sweep) const {
   for (const glm::ivec3 cell : halfCells()) {
-    const shader::HalfSweepPush push = sweepPush(volume, cell, table.settings.pathLengthCorrection);
-    const std::array<Binding, 3> bindings{&extinction, &table.planes[std::size_t(directionIndex(kSet, cell))],
-                                          &volume.occupancyTexels};
-    const std::uint64_t lines = std::uint64_t(push.sideCount) * std::uint64_t(std::abs(push.marchStep));
-    commands.dispatchLinear(pipelines_.at(pipelineKey(cell)), bindings, push,
-                            lines * std::uint64_t(push.rowPitch / voxelsPerThread_));
+    // The march is against the direction.
+    if (sweep.slab.upwards ? cell.z > 0 : cell.z <= 0) continue;
+    shader::HalfSweepPush push = sweepPush(sweep, cell);
+    const std::uint64_t threads = threadsOf(push, voxelsPerThread_);
+    push.slab = cell.z != 0
+                    ? sweep.marchAlongZ(threads * std::uint64_t(linesPerThread(voxelsPerThread_, cell.x)))
+                    : sweep.marchWithinPlanes(push.marchCount);
+    sweep.commands.dispatchLinear(pipelines_.at(pipelineKey(cell)),
+                                  sweep.bindings(sweep.table.planes[std::size_t(directionIndex(kSet, cell))]),
+                                  push, threads);
   }
 }
 

@@ -5,19 +5,16 @@
 #include <utility>
 
 #include "engine/attenuation/directions.h"
-#include "engine/volume/device_volume.h"
+#include "engine/attenuation/slab_sweep.h"
 
 namespace freevoxels {
 
-struct AttenuationTable;
-
-/// COMPUTE attenuation_sweep_half.comp: a dispatch a direction, none of which waits for another.
+/// COMPUTE attenuation_sweep_half.comp: a dispatch a direction and slab.
 class HalfSweep {
  public:
   HalfSweep(const Device& device, AttenuationCode code, int voxelsPerThread);
-  /// Of a table with 98 directions, from the extinction of all voxels.
-  void record(Commands& commands, const DeviceVolume& volume, const TexelView& extinction,
-              const AttenuationTable& table) const;
+  /// Of a table with 98 directions, those that march the slab's way; within planes where it is upwards.
+  void record(SlabSweep& sweep) const;
 
  private:
   int voxelsPerThread_;

@@ -29,16 +29,19 @@ shader::RayFan deviceFan(const RayFan& fan, VkDeviceAddress depths) {
           .depths = {std::uint32_t(depths), std::uint32_t(depths >> 32)}};
 }
 
-void checkFits(const Device& device, const std::array<RayFan, 6>& fans) {
-  std::uint64_t bytes = 0, largest = 0;
-  for (const RayFan& fan : fans) {
-    bytes += depthBytes(fan);
-    largest = std::max(largest, depthBytes(fan));
-  }
+std::uint64_t depthBytes(const std::array<RayFan, 6>& fans) {
+  std::uint64_t bytes = 0;
+  for (const RayFan& fan : fans) bytes += depthBytes(fan);
+  return bytes;
+}
+
+void checkFits(const Device& device, const std::array<RayFan, 6>& fans, std::uint64_t mostBytes) {
+  const std::uint64_t bytes = depthBytes(fans);
+  std::uint64_t largest = 0;
+  for (const RayFan& fan : fans) largest = std::max(largest, depthBytes(fan));
   // Shaders index the depths of a fan with 31 bits.
   const std::uint64_t most = std::uint64_t(std::numeric_limits<std::int32_t>::max()) * sizeof(std::uint32_t);
-  const std::uint64_t fits =
-      std::min(std::uint64_t(device.maximumAllocation()), device.description().memoryBytes);
+  const std::uint64_t fits = std::min(std::uint64_t(device.maximumAllocation()), mostBytes);
   if (bytes > fits || largest > most)
     fail(ExitCode::OutOfMemory,
          "exact transmittance needs {} MiB for its rays from here and {} has {} MiB in one piece: use "
@@ -61,14 +64,18 @@ RaySweep::RaySweep(const Device& device)
                                      .pushConstantBytes = sizeof(shader::RaySweepPush)},
                                     {shader::kRaySweepThreads, 1, 1})) {}
 
+void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source, std::uint64_t mostBytes) {
+  const std::array<RayFan, 6> fans = rayFans(dimensions, source);
+  checkFits(device_, fans, std::min(mostBytes, device_.availableBytes() + depths_.bytes()));
+  const std::uint64_t bytes = depthBytes(fans);
+  if (depths_.bytes() >= bytes) return;
+  depths_ = {};  // not both at once
+  depths_ = Buffer(device_, bytes, MemoryUse::Device, "ray depths");
+}
+
 void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RaySource& source) {
   const std::array<RayFan, 6> fans = rayFans(volume.layout.dimensions, source);
-  checkFits(device_, fans);
-  const std::uint64_t bytes = rayBytes(volume.layout.dimensions, source);
-  if (depths_.bytes() < bytes) {
-    depths_ = {};  // not both at once
-    depths_ = Buffer(device_, bytes, MemoryUse::Device, "ray depths");
-  }
+  makeRoom(volume.layout.dimensions, source);
 
   commands.beginPass("ray sweep");
   VkDeviceAddress address = depths_.address();

@@ -1,8 +1,12 @@
 #pragma once
 // Optical depths along the ray fans of a source, on the device: one dispatch a fan, a thread a ray.
 
+#include <cstdint>
+#include <limits>
+
 #include "engine/attenuation/ray_fans.h"
 #include "engine/volume/device_volume.h"
+#include "engine/vulkan/commands.h"
 #include "shaders/interface.h"
 
 namespace freevoxels {
@@ -15,8 +19,11 @@ class RaySweep {
  public:
   explicit RaySweep(const Device& device);
 
-  /// Sweeps the volume for this source; the depths replace those of the last one, on which no work may be
-  /// under way. Fails with ExitCode::OutOfMemory.
+  /// For the depths of this source, which may take no more than `mostBytes`: fails with
+  /// ExitCode::OutOfMemory where there is none. No work may be under way on those of the last source.
+  void makeRoom(glm::ivec3 dimensions, const RaySource& source,
+                std::uint64_t mostBytes = std::numeric_limits<std::uint64_t>::max());
+  /// Sweeps the volume for this source; the depths replace those of the last one. Makes room if need be.
   void record(Commands& commands, const DeviceVolume& volume, const RaySource& source);
   /// Of the last source, for look-ups: index 2 axis + (direction > 0). Parallel rays have one fan, which is
   /// in all six places, so that no look-up has to choose it with the same rounding.

@@ -1,8 +1,10 @@
 #pragma once
 // What long work tells its caller: how far it is, and afterwards how long each stage took.
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,11 +20,24 @@ struct StageTime {
   bool onDevice = false;  ///< measured by the device's own clock
 };
 
-/// Appends the wall time of its scope to a list.
+/// Stages of one name are one.
+inline void addTime(std::vector<StageTime>& times, const StageTime& time) {
+  const auto same = std::ranges::find(times, time.name, &StageTime::name);
+  if (same == times.end())
+    times.push_back(time);
+  else
+    same->milliseconds += time.milliseconds;
+}
+
+inline void addTimes(std::vector<StageTime>& sums, std::span<const StageTime> times) {
+  for (const StageTime& time : times) addTime(sums, time);
+}
+
+/// Adds the wall time of its scope to a list.
 class StageTimer {
  public:
   StageTimer(std::vector<StageTime>& times, std::string name) : times_(times), name_(std::move(name)) {}
-  ~StageTimer() { times_.push_back({name_, elapsedMilliseconds(), false}); }
+  ~StageTimer() { addTime(times_, {name_, elapsedMilliseconds(), false}); }
   StageTimer(const StageTimer&) = delete;
   StageTimer& operator=(const StageTimer&) = delete;
 

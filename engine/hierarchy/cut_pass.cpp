@@ -19,12 +19,15 @@ std::uint64_t groupsFor(std::uint64_t slots) {
   return (slots + shader::kCutSlotsPerGroup - 1) / shader::kCutSlotsPerGroup;
 }
 
-Pipeline makePass(const Device& device, ShaderCode code, std::size_t bindings, std::uint32_t pushBytes,
-                  int threads, const Specialisation& constants = {}) {
-  return makeComputePipeline(
-      device, code,
-      {.bindings = std::vector(bindings, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER), .pushConstantBytes = pushBytes},
-      {threads, 1, 1}, constants);
+/// The frame's constants, then `buffers` others. Uniform, as lavapipe loads from storage thread by thread
+/// what is the same for all of them.
+Pipeline makePass(const Device& device, ShaderCode code, std::size_t buffers,
+                  const Specialisation& constants = {}) {
+  std::vector<VkDescriptorType> bindings{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER};
+  bindings.insert(bindings.end(), buffers, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
+  return makeComputePipeline(device, code,
+                             {.bindings = bindings, .pushConstantBytes = sizeof(shader::CutPush)},
+                             {shader::kCutThreads, 1, 1}, constants);
 }
 
 void makeLarger(const Device& device, Buffer& buffer, std::uint64_t bytes, const char* name,
@@ -90,15 +93,19 @@ shader::CutFrame cutFrame(const CutInputs& inputs) {
 
 CutPass::CutPass(const Device& device, AttenuationCode code)
     : device_(device),
-      scan_(makePass(device, {visible_scan_spv, "cut scan"}, 2, sizeof(shader::VisiblePush),
-                     shader::kScanThreads)),
-      write_(makePass(device, {cut_write_spv, "cut write"}, 5, sizeof(shader::CutPush), shader::kCutThreads)),
+      scan_(makeComputePipeline(device, {visible_scan_spv, "cut scan"},
+                                {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                                 .pushConstantBytes = sizeof(shader::VisiblePush)},
+                                {shader::kScanThreads, 1, 1})),
+      write_(makePass(device, {cut_write_spv, "cut write"}, 4)),
       cover_(device),
-      frame_(device, sizeof(shader::CutFrame), MemoryUse::Device, "cut frame"),
+      frame_(device, sizeof(shader::CutFrame), MemoryUse::Device, "cut frame",
+             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       counts_(device, sizeof(shader::CutCounts), MemoryUse::Device, "cut counts") {
   for (const Part part : {Part::First, Part::Deferred})
-    select_[std::size_t(part)] = makePass(device, {cut_select_spv, "cut select"}, 10, sizeof(shader::CutPush),
-                                          shader::kCutThreads, {std::uint32_t(code), std::uint32_t(part)});
+    for (const std::uint32_t voxels : {0u, 1u})
+      select_[std::size_t(part)][voxels] = makePass(device, {cut_select_spv, "cut select"}, 9,
+                                                    {std::uint32_t(code), std::uint32_t(part), voxels});
 }
 
 void CutPass::makeRoom(const CutInputs& inputs) {
@@ -182,7 +189,7 @@ void CutPass::recordSelect(Commands& commands, const CutInputs& inputs, std::spa
                                            inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
                                            part == Part::Deferred ? &cover_.tiles() : &anyBuffer};
     if (level.push.slotCount > 0)
-      commands.dispatchLinear(select_[std::size_t(part)], bindings, level.push,
+      commands.dispatchLinear(select_[std::size_t(part)][level.push.level == 0 ? 1 : 0], bindings, level.push,
                               groupsFor(level.push.slotCount) * shader::kCutThreads);
     commands.barrier(kCompute, kCompute);
   }

@@ -66,7 +66,7 @@ class CutPass {
   std::vector<std::uint64_t> drawnByLevel() const;
 
   const Device& device_;
-  std::array<Pipeline, 2> select_;  ///< by Part
+  std::array<std::array<Pipeline, 2>, 2> select_;  ///< by Part, and whether of the voxels
   Pipeline scan_, write_;
   CoverPass cover_;
   Buffer frame_;                ///< shader::CutFrame

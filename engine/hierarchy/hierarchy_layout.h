@@ -43,8 +43,6 @@ struct HierarchyLayout {
   std::uint64_t paddedBlocks() const;
   /// Of occupancy, that a level has.
   std::uint64_t words(int level) const;
-  /// Voxels of whole words.
-  std::uint64_t denseVoxels() const { return words(0) * shader::kBlocksPerWord; }
 
   /// Where a block is, here and in shaders/blocks.glsl and nowhere else.
   std::uint32_t indexOf(const Block& block) const;

@@ -10,6 +10,7 @@
 #include "engine/hierarchy/level_data.h"
 #include "engine/splatting/visible_voxels.h"
 #include "engine/volume/device_volume.h"
+#include "engine/vulkan/commands.h"
 
 namespace freevoxels {
 

@@ -6,6 +6,7 @@
 #include "embedded/expand_voxels.h"
 #include "embedded/occupied_blocks.h"
 #include "embedded/occupied_voxels.h"
+#include "engine/core/error.h"
 
 namespace freevoxels {
 
@@ -13,47 +14,61 @@ namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-constexpr VkDescriptorType kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 
 }  // namespace
 
 OccupancyPass::OccupancyPass(const Device& device)
     : voxels_(makeComputePipeline(
           device, {occupied_voxels_spv, "occupied voxels"},
-          {.bindings = {kTexels, kStorage}, .pushConstantBytes = sizeof(shader::VoxelsPush)},
-          {shader::kOccupancyThreads, 1, 1})),
+          {.bindings = std::vector(4, kStorage), .pushConstantBytes = sizeof(shader::BricksPush)},
+          {shader::kBrickThreads, 1, 1})),
       blocks_(makeComputePipeline(
           device, {occupied_blocks_spv, "occupied blocks"},
           {.bindings = {kStorage}, .pushConstantBytes = sizeof(shader::OccupiedBlocksPush)},
           {shader::kOccupancyThreads, 1, 1})) {}
 
-void OccupancyPass::record(Commands& commands, const DeviceVolume& volume, const DenseVoxels& voxels) const {
-  const std::array<Binding, 2> bindings{&voxels.extinctionQuads, &volume.occupancy};
-  const shader::VoxelsPush words{.count = std::uint32_t(volume.hierarchy.words(0))};
+void OccupancyPass::recordVoxels(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks,
+                                 const Classification& classification, bool first) const {
   commands.beginPass("occupancy");
-  commands.dispatchLinear(voxels_, bindings, words, words.count);
+  if (first) commands.clear(volume.occupancy);
+  const std::array<Binding, 4> bindings{&bricks.scalars(), &bricks.firstVoxels(), &volume.transferPoints,
+                                        &volume.occupancy};
+  const shader::BricksPush push = bricks.push(volume, classification);
+  commands.dispatchLinear(voxels_, bindings, push, std::uint64_t(push.brickCount) * shader::kBrickThreads);
+  commands.barrier(kCompute, kCompute);
+}
+
+void OccupancyPass::recordBlocks(Commands& commands, const DeviceVolume& volume) const {
+  commands.beginPass("occupancy");
   for (int level = 1; level <= volume.hierarchy.top(); ++level) {
-    commands.barrier(kCompute, kCompute);
     const shader::OccupiedBlocksPush push{.child = volume.onDevice(level - 1),
                                           .parent = volume.onDevice(level),
                                           .wordCount = std::uint32_t(volume.hierarchy.words(level))};
     const std::array<Binding, 1> occupancy{&volume.occupancy};
     commands.dispatchLinear(blocks_, occupancy, push, push.wordCount);
+    commands.barrier(kCompute, kCompute);
   }
-  commands.barrier(kCompute, kCompute);
 }
 
 ExpandPass::ExpandPass(const Device& device)
     : pipeline_(makeComputePipeline(
           device, {expand_voxels_spv, "expand voxels"},
-          {.bindings = {kStorage, kStorage, kStorage}, .pushConstantBytes = sizeof(shader::VoxelsPush)},
+          {.bindings = {kStorage, kStorage, kStorage}, .pushConstantBytes = sizeof(shader::ExpandPush)},
           {shader::kOccupancyThreads, 1, 1})) {}
 
-void ExpandPass::record(Commands& commands, const DeviceVolume& volume, const Buffer& extinction) const {
+std::uint32_t ExpandPass::record(Commands& commands, const DeviceVolume& volume, int first, int planes,
+                                 const Buffer& extinction) const {
+  const std::uint64_t plane =
+      std::uint64_t(volume.layout.rowPitch) * std::uint64_t(volume.layout.dimensions.y);
+  const std::uint64_t begin = plane * std::uint64_t(first) / shader::kBlocksPerWord;
+  const std::uint64_t end =
+      (plane * std::uint64_t(first + planes) + shader::kBlocksPerWord - 1) / shader::kBlocksPerWord;
+  FV_CHECK_LE((end - begin) * shader::kBlocksPerWord * sizeof(float), extinction.bytes());
+  const shader::ExpandPush push{.firstWord = std::uint32_t(begin), .wordCount = std::uint32_t(end - begin)};
   const std::array<Binding, 3> bindings{&volume.occupancy, &volume.extinction, &extinction};
-  const shader::VoxelsPush words{.count = std::uint32_t(volume.hierarchy.words(0))};
-  commands.dispatchLinear(pipeline_, bindings, words, words.count);
+  commands.dispatchLinear(pipeline_, bindings, push, push.wordCount);
   commands.barrier(kCompute, kCompute);
+  return push.firstWord * shader::kBlocksPerWord;
 }
 
 std::vector<std::uint32_t> downloadStored(const Device& device, const DeviceVolume& volume, int level) {

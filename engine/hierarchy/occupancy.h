@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/volume/device_bricks.h"
 #include "engine/volume/device_volume.h"
+#include "engine/vulkan/commands.h"
 
 namespace freevoxels {
 
@@ -13,18 +15,24 @@ namespace freevoxels {
 class OccupancyPass {
  public:
   explicit OccupancyPass(const Device& device);
-  void record(Commands& commands, const DeviceVolume& volume, const DenseVoxels& voxels) const;
+  /// The voxels of a batch of bricks, of which the first begins with none.
+  void recordVoxels(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks,
+                    const Classification& classification, bool first) const;
+  /// After those of all batches.
+  void recordBlocks(Commands& commands, const DeviceVolume& volume) const;
 
  private:
   Pipeline voxels_, blocks_;
 };
 
-/// COMPUTE expand_voxels.comp: the extinction of all voxels again, for the sweeps.
+/// COMPUTE expand_voxels.comp: the extinction of all voxels of a slab again, for the sweeps.
 class ExpandPass {
  public:
   explicit ExpandPass(const Device& device);
-  /// Into `extinction`, which has room for a multiple of kBlocksPerWord voxels.
-  void record(Commands& commands, const DeviceVolume& volume, const Buffer& extinction) const;
+  /// Of `planes` planes from `first` on, with what else is in their words of occupancy: into `extinction`,
+  /// which begins with the voxel whose index is returned.
+  std::uint32_t record(Commands& commands, const DeviceVolume& volume, int first, int planes,
+                       const Buffer& extinction) const;
 
  private:
   Pipeline pipeline_;

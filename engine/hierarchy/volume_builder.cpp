@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 
 #include "embedded/pack_voxels.h"
 #include "engine/hierarchy/occupancy.h"
 #include "engine/hierarchy/volume_memory.h"
+#include "engine/volume/device_bricks.h"
 
 namespace freevoxels {
 
@@ -17,28 +17,24 @@ class PackPass {
  public:
   PackPass(const Device& device, bool scalars)
       : pipeline_(makeComputePipeline(device, {pack_voxels_spv, "pack voxels"},
-                                      {.bindings = std::vector(5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                                       .pushConstantBytes = sizeof(shader::VoxelsPush)},
-                                      {shader::kOccupancyThreads, 1, 1}, {scalars ? 1u : 0u})) {}
-  void record(Commands& commands, const BuiltVolume& built, const DenseVoxels& voxels) const {
-    const DeviceVolume& volume = built.volume;
-    const shader::VoxelsPush push{.count = std::uint32_t(volume.stored.front())};
-    const std::array<Binding, 5> bindings{&built.visible.indices, &voxels.extinction, &voxels.scalars,
-                                          &volume.extinction,
-                                          volume.hasColors() ? &volume.scalars : &volume.extinction};
+                                      {.bindings = std::vector(6, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                                       .pushConstantBytes = sizeof(shader::BricksPush)},
+                                      {shader::kBrickThreads, 1, 1}, {scalars ? 1u : 0u})) {}
+  void record(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks,
+              const Classification& classification) const {
+    const std::array<Binding, 6> bindings{
+        &bricks.scalars(), &bricks.firstVoxels(), &volume.transferPoints,
+        &volume.occupancy, &volume.extinction,    volume.hasColors() ? &volume.scalars : &volume.extinction};
+    const shader::BricksPush push = bricks.push(volume, classification);
     commands.beginPass("pack");
-    commands.dispatchLinear(pipeline_, bindings, push, push.count);
+    commands.dispatchLinear(pipeline_, bindings, push,
+                            std::uint64_t(push.brickCount) * shader::kBrickThreads);
     commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
   }
 
  private:
   Pipeline pipeline_;
 };
-
-void run(Commands& commands, const Progress& progress, std::vector<StageTime>& times) {
-  commands.submitAndWait(progress);
-  std::ranges::copy(commands.times(), std::back_inserter(times));
-}
 
 /// A buffer is bound whether or not anything is stored in it.
 Buffer makeStore(const Device& device, std::uint64_t values, std::uint64_t bytes, const char* name) {
@@ -53,45 +49,91 @@ void makeStores(const Device& device, DeviceVolume& volume) {
   volume.blockColors = makeStore(device, blocks - voxels, sizeof(glm::uvec2), "block colours");
 }
 
+class Builder {
+ public:
+  Builder(const Device& device, const Volume& volume, const Classification& classification,
+          std::vector<StageTime>& times, const Progress& progress)
+      : device_(device),
+        classification_(classification),
+        times_(times),
+        progress_(progress),
+        built_{.volume = makeDeviceVolume(device, volume, classification)},
+        bricks_(device, volume.scalars) {}
+
+  BuiltVolume run() && {
+    findOccupancy();
+    checkStoresFit(device_, built_.volume);
+    makeStores(device_, built_.volume);
+    if (built_.volume.stored.front() > 0) store();
+    return std::move(built_);
+  }
+
+ private:
+  /// Of all levels, with the lists and the ranks.
+  void findOccupancy() {
+    const OccupancyPass occupancy(device_);
+    const CompactionPass compaction(device_);
+    const DeviceVolume& volume = built_.volume;
+    forEachBatch([&](Commands& commands, std::size_t batch) {
+      occupancy.recordVoxels(commands, volume, bricks_, classification_, batch == 0);
+    });
+    Commands commands(device_);
+    occupancy.recordBlocks(commands, volume);
+    built_.visible = makeVisibleVoxels(device_, volume);
+    compaction.record(commands, volume, built_.visible);
+    for (int level = 1; level <= volume.hierarchy.top(); ++level) {
+      built_.lists.coarse.push_back(makeVisibleVoxels(device_, volume, level));
+      compaction.record(commands, volume, built_.lists.coarse.back(), level);
+    }
+    submit(commands);
+    for (int level = 0; level <= volume.hierarchy.top(); ++level)
+      built_.volume.stored.push_back(downloadVisibleCount(device_, built_.lists.of(level, built_.visible)));
+  }
+
+  /// What is kept of every block that holds anything.
+  void store() {
+    const DeviceVolume& volume = built_.volume;
+    const PackPass pack(device_, volume.hasColors());
+    const MediumLevels levels(device_, volume);
+    forEachBatch(
+        [&](Commands& commands, std::size_t) { pack.record(commands, volume, bricks_, classification_); });
+    Commands commands(device_);
+    levels.record(commands, volume, built_.lists.coarse);
+    submit(commands);
+  }
+
+  template <typename Record>
+  void forEachBatch(const Record& record) {
+    for (std::size_t batch = 0; batch < bricks_.batches(); ++batch) {
+      {
+        const StageTimer timer(times_, "upload");
+        bricks_.upload(batch);
+      }
+      Commands commands(device_);
+      record(commands, batch);
+      submit(commands);
+    }
+  }
+
+  void submit(Commands& commands) {
+    commands.submitAndWait(progress_);
+    addTimes(times_, commands.times());
+  }
+
+  const Device& device_;
+  const Classification& classification_;
+  std::vector<StageTime>& times_;
+  const Progress& progress_;
+  BuiltVolume built_;
+  DeviceBricks bricks_;
+};
+
 }  // namespace
 
 BuiltVolume buildVolume(const Device& device, const Volume& volume, const Classification& classification,
                         std::vector<StageTime>& times, const Progress& progress) {
   checkBoxFits(device, HierarchyLayout(volume.dimensions));
-  BuiltVolume built{.volume = makeDeviceVolume(device, volume, classification)};
-  DeviceVolume& onDevice = built.volume;
-  DenseVoxels voxels;
-  {
-    const StageTimer timer(times, "upload");
-    voxels = uploadVoxels(device, volume, onDevice.hierarchy);
-  }
-  const ClassifyPass classify(device);
-  const OccupancyPass occupancy(device);
-  const CompactionPass compaction(device);
-  Commands first(device);
-  classify.record(first, onDevice, voxels, classification);
-  occupancy.record(first, onDevice, voxels);
-  built.visible = makeVisibleVoxels(device, onDevice);
-  compaction.record(first, onDevice, built.visible);
-  for (int level = 1; level <= onDevice.hierarchy.top(); ++level) {
-    built.lists.coarse.push_back(makeVisibleVoxels(device, onDevice, level));
-    compaction.record(first, onDevice, built.lists.coarse.back(), level);
-  }
-  run(first, progress, times);
-
-  onDevice.stored.push_back(downloadVisibleCount(device, built.visible));
-  for (const VisibleVoxels& level : built.lists.coarse)
-    onDevice.stored.push_back(downloadVisibleCount(device, level));
-  checkStoresFit(device, onDevice);
-  makeStores(device, onDevice);
-  if (onDevice.stored.front() == 0) return built;
-  const PackPass pack(device, onDevice.hasColors());
-  const MediumLevels levels(device, onDevice);
-  Commands second(device);
-  pack.record(second, built, voxels);
-  levels.record(second, onDevice, built.lists.coarse);
-  run(second, progress, times);
-  return built;
+  return Builder(device, volume, classification, times, progress).run();
 }
 
 }  // namespace freevoxels

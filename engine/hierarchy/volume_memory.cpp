@@ -1,9 +1,11 @@
 #include "engine/hierarchy/volume_memory.h"
 
+#include <limits>
 #include <numeric>
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/volume/device_bricks.h"
 
 namespace freevoxels {
 
@@ -25,50 +27,81 @@ void checkBinds(const Device& device, glm::ivec3 box, std::uint64_t bytes, std::
          box.x, box.y, box.z, bytes >> 20, device.description().name, most >> 20);
 }
 
-void checkHolds(const Device& device, glm::ivec3 box, const VolumeMemory& memory, const char* mend) {
-  if (memory.peak() > device.description().memoryBytes)
-    fail(ExitCode::OutOfMemory,
-         "a volume of {}x{}x{} voxels needs {} MiB of device memory and {} has {} MiB: crop or resample it{}",
-         box.x, box.y, box.z, memory.peak() >> 20, device.description().name,
-         device.description().memoryBytes >> 20, mend);
+/// Of the sweeps the least that they need: they make do with what there is.
+void checkHolds(const Device& device, const HierarchyLayout& hierarchy, VolumeMemory memory,
+                DirectionSet directions, const char* mend) {
+  memory.sweep = planSweep(hierarchy.levels.front(), directions, sweepStyle(device), 0).bytes();
+  if (memory.peak() <= device.memoryBytes()) return;
+  const glm::ivec3 box = hierarchy.levels.front().dimensions;
+  const bool limited = device.memoryBytes() < device.description().memoryBytes;
+  fail(ExitCode::OutOfMemory,
+       "a volume of {}x{}x{} voxels needs {} MiB of device memory and {} {} MiB: {}crop or resample it{}",
+       box.x, box.y, box.z, (memory.peak() + 0xfffff) >> 20,
+       limited ? "--memory-limit is" : device.description().name + " has", device.memoryBytes() >> 20,
+       limited ? "raise that, or " : "", mend);
 }
 
 /// Of a box that holds nothing.
-VolumeMemory emptyMemory(const HierarchyLayout& hierarchy) {
+VolumeMemory emptyMemory(const Device& device, const HierarchyLayout& hierarchy) {
   return volumeMemory(hierarchy, std::vector<std::uint64_t>(hierarchy.levels.size(), 0),
-                      DirectionSet::Directions26, false);
+                      DirectionSet::Directions26, false, sweepStyle(device));
+}
+
+/// Of a batch, were all bricks there.
+std::uint64_t brickBytes(glm::ivec3 box) {
+  const glm::u64vec3 cells((box + 2 * (ScalarBricks::kEdge - 1)) / ScalarBricks::kEdge);
+  return std::min<std::uint64_t>(cells.x * cells.y * cells.z * sizeof(ScalarBricks::Brick), kBatchBytes);
+}
+
+/// Of all levels: the shaders see them as one buffer of words, and as one of texels.
+std::uint64_t occupancyBytes(const HierarchyLayout& hierarchy) {
+  return hierarchy.paddedBlocks() / shader::kBlocksPerWord * sizeof(shader::OccupancyWord);
 }
 
 }  // namespace
 
 VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std::uint64_t> stored,
-                          DirectionSet directions, bool colors) {
+                          DirectionSet directions, bool colors, const SweepStyle& style) {
   const std::uint64_t blocks = std::accumulate(stored.begin(), stored.end(), std::uint64_t(0));
   const std::uint64_t voxels = stored.front(), coarse = blocks - voxels;
-  return {.occupancy = hierarchy.paddedBlocks() / shader::kBlocksPerWord * sizeof(shader::OccupancyWord),
+  return {.occupancy = occupancyBytes(hierarchy),
           .extinction = blocks * sizeof(float),
           .table = (blocks + coarse) * std::uint64_t(directionCount(directions)),
           .colors = colors ? voxels * sizeof(float) + coarse * sizeof(glm::uvec2) : 0,
           // Of all blocks and of those of a frame, with a bit for each that could be one and two bytes for
           // each that has children.
           .lists = (blocks + voxels) * sizeof(std::uint32_t) + blocks + 2 * coarse,
-          .dense = hierarchy.denseVoxels() * 2 * sizeof(float)};
+          .bricks = brickBytes(hierarchy.levels.front().dimensions),
+          .sweep = planSweep(hierarchy.levels.front(), directions, style,
+                             std::numeric_limits<std::uint64_t>::max())
+                       .bytes(),
+          .splats = std::min<std::uint64_t>(voxels, shader::kSplatsPerChunk) * sizeof(shader::Splat)};
+}
+
+SweepStyle sweepStyle(const Device& device) {
+  SweepStyle style = sweepStyleOf(device.isCpu());
+  style.mostSlabBytes = largestBinding(device, sizeof(glm::vec4));
+  return style;
 }
 
 std::uint64_t maximumVoxels(const Device& device) {
   const HierarchyLayout cube(glm::ivec3(1024));
-  const VolumeMemory memory = emptyMemory(cube);
   const auto voxels = double(cube.levels.front().voxels());
-  return std::uint64_t(
-      std::min(double(largestBinding(device, sizeof(glm::vec4))) * (voxels / double(memory.dense / 2)),
-               double(device.description().memoryBytes) * (voxels / double(memory.peak()))));
+  const auto bytes = double(occupancyBytes(cube));
+  const double most =
+      double(std::min(largestBinding(device, sizeof(shader::OccupancyWord)), device.memoryBytes()));
+  // Shaders number voxels by signed integers.
+  return std::uint64_t(std::min(most * (voxels / bytes), double(std::numeric_limits<std::int32_t>::max())));
 }
 
 void checkBoxFits(const Device& device, const HierarchyLayout& hierarchy) {
-  const VolumeMemory memory = emptyMemory(hierarchy);
   const glm::ivec3 box = hierarchy.levels.front().dimensions;
-  checkBinds(device, box, memory.dense / 2, sizeof(glm::vec4));
-  checkHolds(device, box, memory, "");
+  const SweepPlan least =
+      planSweep(hierarchy.levels.front(), DirectionSet::Directions26, sweepStyle(device), 0);
+  checkBinds(device, box, occupancyBytes(hierarchy), sizeof(shader::OccupancyWord));
+  checkBinds(device, box, least.slabBytes, sizeof(glm::vec4));
+  checkBinds(device, box, least.keptBytes, sizeof(glm::vec4));
+  checkHolds(device, hierarchy, emptyMemory(device, hierarchy), DirectionSet::Directions26, "");
 }
 
 void checkStoresFit(const Device& device, const DeviceVolume& volume) {
@@ -76,10 +109,11 @@ void checkStoresFit(const Device& device, const DeviceVolume& volume) {
 }
 
 void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions) {
-  const glm::ivec3 box = volume.layout.dimensions;
-  checkBinds(device, box, volume.planeBytes(), 1);
-  checkHolds(device, box, volumeMemory(volume.hierarchy, volume.stored, directions, volume.hasColors()),
-             directions == DirectionSet::Directions26 ? "" : ", or take 26 directions");
+  checkBinds(device, volume.layout.dimensions, volume.planeBytes(), 1);
+  checkHolds(
+      device, volume.hierarchy,
+      volumeMemory(volume.hierarchy, volume.stored, directions, volume.hasColors(), sweepStyle(device)),
+      directions, directions == DirectionSet::Directions26 ? "" : ", or take 26 directions");
 }
 
 }  // namespace freevoxels

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "engine/attenuation/directions.h"
+#include "engine/attenuation/slabs.h"
 #include "engine/volume/device_volume.h"
 
 namespace freevoxels {
@@ -17,25 +18,30 @@ struct VolumeMemory {
   std::uint64_t table = 0;
   std::uint64_t colors = 0;  ///< only with a transfer function
   std::uint64_t lists = 0;   ///< and of what a frame draws
-  std::uint64_t dense = 0;   ///< of all voxels, while the volume is built; half of it for the sweeps
+  std::uint64_t bricks = 0;  ///< of a batch, while the volume is built
+  std::uint64_t sweep = 0;   ///< of a slab, while the table is made
+  std::uint64_t splats = 0;  ///< of a chunk, while a frame is drawn
 
   /// What is kept of the volume, whatever is drawn of it.
   std::uint64_t stored() const { return occupancy + extinction + table + colors; }
-  /// The most at any time, without the images, the splats and the sort of a frame.
+  /// The most at any time, without the images and the sort of a frame.
   std::uint64_t peak() const {
-    return occupancy + extinction + colors + lists + std::max(dense, dense / 2 + table);
+    return occupancy + extinction + colors + lists + std::max(bricks, table + std::max(sweep, splats));
   }
 };
 
 /// `stored` counts the blocks of each level that hold anything (DeviceVolume::stored).
 VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std::uint64_t> stored,
-                          DirectionSet directions, bool colors);
+                          DirectionSet directions, bool colors, const SweepStyle& style);
+
+/// What suits the device, as far as it can bind it.
+SweepStyle sweepStyle(const Device& device);
 
 /// How many voxels the box of a volume may have to be built on this device, were it empty.
 std::uint64_t maximumVoxels(const Device& device);
 
-/// Fail with ExitCode::OutOfMemory where the device cannot hold the box; what of it holds anything; its
-/// table.
+/// Fail with ExitCode::OutOfMemory where the device, or what is set of it, cannot hold the box; what of it
+/// holds anything; its table.
 void checkBoxFits(const Device& device, const HierarchyLayout& hierarchy);
 void checkStoresFit(const Device& device, const DeviceVolume& volume);
 void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions);

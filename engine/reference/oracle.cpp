@@ -173,7 +173,6 @@ Oracle renderOracle(const Volume& volume, const Classification& classification, 
   FV_CHECK_LT(0, settings.size.y);
   FV_CHECK_LT(0.0, settings.step);
   FV_CHECK_LE(2 * kFewestSamples, settings.maximumSamples);
-  FV_CHECK_EQ(volume.values.size(), volume.voxelCount());
   return Sampler(volume, classification, camera, settings, progress).run();
 }
 

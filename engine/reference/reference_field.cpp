@@ -25,8 +25,7 @@ std::unique_ptr<Brick> makeBrick(const Volume& volume, const Classification& cla
       for (int x = 0; x < n; ++x, ++corner) {
         const glm::ivec3 voxel = first + glm::ivec3(x, y, z);
         if (!isInside(voxel, volume.dimensions)) continue;
-        const ClassifiedVoxel material =
-            classify(classification, volume.values[volume.at(voxel.x, voxel.y, voxel.z)]);
+        const ClassifiedVoxel material = classify(classification, volume.scalars.at(voxel));
         if (!(material.extinction > 0.0)) continue;
         brick[corner] = glm::vec4(material.extinction * material.color, material.extinction);
         anything = true;

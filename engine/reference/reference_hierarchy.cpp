@@ -76,7 +76,8 @@ LevelData referenceVoxelLevel(const Volume& volume, const Classification& classi
                   .colors = {},
                   .table = std::move(table)};
   if (classification.transferFunction)
-    for (const float value : volume.values) level.colors.push_back(classify(classification, value).color);
+    for (const float value : denseScalars(volume))
+      level.colors.push_back(classify(classification, value).color);
   return level;
 }
 

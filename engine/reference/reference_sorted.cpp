@@ -46,10 +46,11 @@ Image referenceSortedPicture(const Volume& volume, const Classification& classif
                              const ReferenceLight* light) {
   const SplatProjector projector(volume, camera, settings.size);
   std::vector<BlendedPixel> blended(std::size_t(settings.size.x) * std::size_t(settings.size.y));
+  const std::vector<float> scalars = denseScalars(volume);
   for (const std::uint32_t voxel : referenceBackToFront(volume, camera, voxels)) {
     const std::optional<ProjectedSplat> splat = projector.project(projector.voxel(voxel));
     if (!splat) continue;
-    const ClassifiedVoxel material = classify(classification, volume.values[voxel]);
+    const ClassifiedVoxel material = classify(classification, scalars[voxel]);
     const double opacity = projector.opacity(*splat, material.extinction);
     const glm::dvec3 lit = light ? light->scattered(projector.voxel(voxel), splat->toEye) : glm::dvec3(1.0);
     projector.forEachPixel(*splat, [&](const CoveredPixel& pixel) {

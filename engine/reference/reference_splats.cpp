@@ -54,7 +54,9 @@ class SplatSummer {
         inputs_(inputs),
         settings_(settings),
         projector_(volume, camera, settings.size),
-        depth_(depthFor(camera)),
+        rayShare_(rayShare(settings.attenuation, camera, volume.dimensions, volume.indexToWorld)),
+        rays_(rayShare_ > 0.0 ? raysFor(camera) : nullptr),
+        table_(rayShare_ < 1.0 ? tableFor(camera) : nullptr),
         light_(lightFor()) {
     FV_CHECK_EQ(inputs.extinction.size(), volume.voxelCount());
   }
@@ -65,7 +67,8 @@ class SplatSummer {
   Block voxel(std::uint32_t index) const { return projector_.voxel(index); }
 
  private:
-  std::unique_ptr<ReferenceDepth> depthFor(const Camera& camera) const;
+  std::unique_ptr<ReferenceDepth> raysFor(const Camera& camera) const;
+  std::unique_ptr<ReferenceDepth> tableFor(const Camera& camera) const;
   std::unique_ptr<ReferenceLight> lightFor() const;
   void add(const Block& block, std::vector<SplatSums>& picture) const;
   double extinctionOf(const Block& block) const {
@@ -74,6 +77,8 @@ class SplatSummer {
   ClassifiedVoxel materialOf(const Block& block) const;
   glm::dvec3 centreOfMass(const Block& block) const;
   DepthToEye depthToEye(const Block& block, const ProjectedSplat& splat, double extinction, int layers) const;
+  DepthToEye depthBy(const ReferenceDepth& depths, const Block& block, const ProjectedSplat& splat,
+                     double extinction, int layers) const;
   double extinctionAt(glm::dvec3 position, int axis) const;
   double opacity(const Block& block, const ProjectedSplat& splat, double extinction, double inFront) const;
 
@@ -82,22 +87,24 @@ class SplatSummer {
   const SplatInputs& inputs_;
   const FrameSettings& settings_;
   const SplatProjector projector_;
-  const std::unique_ptr<ReferenceDepth> depth_;
-  const std::unique_ptr<ReferenceLight> light_;  ///< null where nothing is lit
+  const double rayShare_;
+  const std::unique_ptr<ReferenceDepth> rays_, table_;  ///< null where they have no share
+  const std::unique_ptr<ReferenceLight> light_;         ///< null where nothing is lit
 };
 
-std::unique_ptr<ReferenceDepth> SplatSummer::depthFor(const Camera& camera) const {
+std::unique_ptr<ReferenceDepth> SplatSummer::raysFor(const Camera& camera) const {
   const RaySource eye = eyeSource(camera, volume_.indexToWorld);
+  return rayDepth(volume_, eye,
+                  inputs_.rays != nullptr ? *inputs_.rays : referenceRays(volume_, inputs_.extinction, eye));
+}
+
+std::unique_ptr<ReferenceDepth> SplatSummer::tableFor(const Camera& camera) const {
   const bool inside = eyeIsInside(camera, volume_.dimensions, volume_.indexToWorld);
-  const AttenuationLookup lookup = resolveAttenuation(settings_.attenuation, inside);
-  if (lookup == AttenuationLookup::Exact)
-    return rayDepth(
-        volume_, eye,
-        inputs_.rays != nullptr ? *inputs_.rays : referenceRays(volume_, inputs_.extinction, eye));
   return tableDepth(
-      volume_, inputs_.extinction, inputs_.table, inputs_.coarser, inputs_.tableSettings, lookup,
+      volume_, inputs_.extinction, inputs_.table, inputs_.coarser, inputs_.tableSettings,
+      settings_.attenuation == AttenuationLookup::Auto ? AttenuationLookup::Bilinear : settings_.attenuation,
       [this](glm::dvec3 position) { return projector_.toEye(position); },
-      inside ? std::optional(eye.place) : std::nullopt);
+      inside ? std::optional(eyeSource(camera, volume_.indexToWorld).place) : std::nullopt);
 }
 
 std::unique_ptr<ReferenceLight> SplatSummer::lightFor() const {
@@ -113,8 +120,7 @@ std::unique_ptr<ReferenceLight> SplatSummer::lightFor() const {
 ClassifiedVoxel SplatSummer::materialOf(const Block& block) const {
   const double extinction = extinctionOf(block);
   if (block.level == 0) {
-    const std::size_t voxel = volume_.at(block.cell.x, block.cell.y, block.cell.z);
-    return {extinction, classify(classification_, volume_.values[voxel]).color};
+    return {extinction, classify(classification_, volume_.scalars.at(block.cell)).color};
   }
   const LevelData& level = inputs_.coarser[std::size_t(block.level) - 1];
   return {extinction,
@@ -137,19 +143,31 @@ glm::dvec3 SplatSummer::centreOfMass(const Block& block) const {
   return sum / masses;
 }
 
+/// Of rays and of the table, as far as each has a share.
 DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& splat, double extinction,
                                    int layers) const {
+  if (!table_) return depthBy(*rays_, block, splat, extinction, layers);
+  DepthToEye depth = depthBy(*table_, block, splat, extinction, layers);
+  if (!rays_) return depth;
+  const DepthToEye ofRays = depthBy(*rays_, block, splat, extinction, layers);
+  depth.centre = glm::mix(depth.centre, ofRays.centre, rayShare_);
+  depth.perPixel = glm::mix(depth.perPixel, ofRays.perPixel, rayShare_);
+  return depth;
+}
+
+DepthToEye SplatSummer::depthBy(const ReferenceDepth& depths, const Block& block, const ProjectedSplat& splat,
+                                double extinction, int layers) const {
   // The mean over a block is the depth of its middle layer: what lies in front of it has none of its own.
-  const double layer = projector_.layerLength(splat), falling = depth_->falling(block) * extinction;
-  const double before = 0.5 * (layers - 1) * falling * depth_->countedLength(layer);
-  DepthToEye depth{.centre = std::max(depth_->at(block) - before, 0.0)};
+  const double layer = projector_.layerLength(splat), falling = depths.falling(block) * extinction;
+  const double before = 0.5 * (layers - 1) * falling * depths.countedLength(layer);
+  DepthToEye depth{.centre = std::max(depths.at(block) - before, 0.0)};
   if (!settings_.gradient) return depth;
   if (splat.cut) {
     depth.perLength = extinction;
     depth.distance = projector_.distanceFromEye(splat);
     return depth;
   }
-  const glm::dvec3 gradient = depth_->gradient(block, splat.toEye, falling * layer);
+  const glm::dvec3 gradient = depths.gradient(block, splat.toEye, falling * layer);
   // It fades with the widening: a widened footprint stands for a pixel in which the depth changes often.
   // The children of a block that is not widened may have been.
   const double ofChildren = block.level == 0 ? 1.0 : std::min(splat.edge2 / 4.0, 1.0);

@@ -49,8 +49,9 @@ class Field {
 
 std::vector<double> referenceExtinction(const Volume& volume, const Classification& classification) {
   std::vector<double> extinction;
-  extinction.reserve(volume.values.size());
-  for (const float value : volume.values) extinction.push_back(classify(classification, value).extinction);
+  extinction.reserve(volume.voxelCount());
+  for (const float value : denseScalars(volume))
+    extinction.push_back(classify(classification, value).extinction);
   return extinction;
 }
 

@@ -145,9 +145,21 @@ bool eyeIsInside(const Camera& camera, glm::ivec3 dimensions, const glm::dmat4& 
   return isInside(eyeSource(camera, indexToWorld), dimensions);
 }
 
-AttenuationLookup resolveAttenuation(AttenuationLookup lookup, bool eyeInside) {
-  if (lookup != AttenuationLookup::Auto) return lookup;
-  return eyeInside ? AttenuationLookup::Exact : AttenuationLookup::Bilinear;
+double rayShare(AttenuationLookup lookup, const Camera& camera, glm::ivec3 dimensions,
+                const glm::dmat4& indexToWorld) {
+  if (lookup == AttenuationLookup::Exact) return 1.0;
+  if (lookup != AttenuationLookup::Auto || camera.orthographic) return 0.0;
+  if (eyeIsInside(camera, dimensions, indexToWorld)) return 1.0;
+  // Along the box's axes, as if they were at right angles.
+  const glm::dvec3 extent(dimensions), eye = eyeSource(camera, indexToWorld).place + 0.5;
+  glm::dvec3 beyond = glm::max(glm::max(-eye, eye - extent), 0.0);
+  double longest = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = glm::length(glm::dvec3(indexToWorld[axis]));
+    beyond[axis] *= length;
+    longest = std::max(longest, extent[axis] * length);
+  }
+  return std::max(1.0 - glm::length(beyond) / (kNearBox * longest), 0.0);
 }
 
 PixelRays pixelRays(const Camera& camera, glm::ivec2 imageSize, const glm::dmat4& indexToWorld) {

@@ -54,9 +54,15 @@ RaySource eyeSource(const Camera& camera, const glm::dmat4& indexToWorld);
 /// Whether the eye is within the volume's box, faces included. Never of an orthographic camera.
 bool eyeIsInside(const Camera& camera, glm::ivec3 dimensions, const glm::dmat4& indexToWorld);
 
-/// What Auto stands for, and everything else for itself. The table tells how much of a voxel's light leaves
-/// the volume, and around an eye within it nothing of that: see README.md.
-AttenuationLookup resolveAttenuation(AttenuationLookup lookup, bool eyeInside);
+/// An eye is near to the volume's box within this part of the box's longest edge.
+inline constexpr double kNearBox = 0.5;
+
+/// What share of a voxel's optical depth to the eye is that along rays from it, the rest being the table's: 1
+/// of Exact, 0 of the table's own look-ups. Of Auto 1 for an eye inside, as the table tells how much light
+/// leaves the volume; outside less the farther the eye is from the box, down to 0 where it is no longer near,
+/// so that no step shows.
+double rayShare(AttenuationLookup lookup, const Camera& camera, glm::ivec3 dimensions,
+                const glm::dmat4& indexToWorld);
 
 PixelRays pixelRays(const Camera& camera, glm::ivec2 imageSize, const glm::dmat4& indexToWorld);
 

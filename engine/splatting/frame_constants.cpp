@@ -13,6 +13,7 @@ namespace freevoxels {
 namespace {
 
 static_assert(shader::kSplatRadius == float(kFootprintRadius));
+static_assert(shader::kLookupBilinear == int(AttenuationLookup::Bilinear));
 static_assert(shader::kLookupNearest == int(AttenuationLookup::Nearest));
 static_assert(shader::kLookupExact == int(AttenuationLookup::Exact));
 static_assert(shader::kCompositeAdditive == int(Composite::Additive));
@@ -76,10 +77,13 @@ shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& t
                               const glm::dmat3& toPixel) {
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
   const glm::dvec3 eyeToMiddle = middle - rays.origin;
-  const bool inside = eyeIsInside(camera, volume.layout.dimensions, volume.indexToWorld);
-  const int lookup = settings.composite == Composite::Sorted
-                         ? shader::kLookupNone
-                         : int(resolveAttenuation(settings.attenuation, inside));
+  const bool sorted = settings.composite == Composite::Sorted;
+  const double share =
+      sorted ? 0.0 : rayShare(settings.attenuation, camera, volume.layout.dimensions, volume.indexToWorld);
+  const int lookup = sorted                                            ? shader::kLookupNone
+                     : share == 1.0                                    ? shader::kLookupExact
+                     : settings.attenuation == AttenuationLookup::Auto ? shader::kLookupBilinear
+                                                                       : int(settings.attenuation);
   shader::SetupFrame setup{
       .indexToWorld = glm::dmat3(volume.indexToWorld),
       .indexToPixel = toPixel,
@@ -95,6 +99,7 @@ shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& t
       .levelCount = int(volume.hierarchy.levels.size()),
       .voxelSize = float(volume.voxelSize),
       .lookup = lookup,
+      .rayShare = float(share),
       .pathLengthCorrection = table.pathLengthCorrection ? 1 : 0,
       .kernelMean = settings.gradient && settings.composite == Composite::Normalised ? 1 : 0,
       .gradient = settings.gradient && lookup != shader::kLookupNone ? 1 : 0,
@@ -122,6 +127,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   frame.detail = detailRule(volume.hierarchy, rays, settings.size,
                             settings.composite == Composite::Sorted ? 0.0 : double(settings.lod));
   frame.cull = cullRule(volume.layout.dimensions, rays, settings);
+  if (!frame.eyeReadsTable()) frame.cull.hiddenDepth = 0.0;
   frame.resolve = {.ray = rays.direction,
                    .rayX = rays.directionX,
                    .rayY = rays.directionY,

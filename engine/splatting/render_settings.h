@@ -1,7 +1,9 @@
 #pragma once
 // What a render does with a volume and a camera, apart from the classification.
 
+#include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <optional>
 
 #include "engine/attenuation/table_settings.h"
@@ -19,7 +21,7 @@ enum class AttenuationLookup : int {
   Bilinear = 0,  ///< of the four directions of the table around the viewing direction
   Nearest = 1,   ///< the paper's
   Exact = 2,     ///< not from the table: along rays from the eye (ray_fans.h), once a frame
-  Auto = 3,      ///< Exact where the eye is inside the volume, else Bilinear: resolveAttenuation
+  Auto = 3,      ///< Exact of an eye inside the volume, Bilinear far away, a mix between: rayShare
 };
 
 struct FrameSettings {
@@ -36,7 +38,9 @@ struct FrameSettings {
   /// voxels, whatever this is.
   bool culling = true;
   float cullThreshold =
-      1.0f / 512.0f;   ///< transmittance to the eye below which a voxel is hidden; 0: none is
+      1.0f / 512.0f;  ///< transmittance to the eye below which a voxel is hidden; 0: none is
+  /// Of the device's memory that rays may take. Where they need more, Exact fails, and Auto is Bilinear.
+  std::uint64_t mostRayBytes = std::numeric_limits<std::uint64_t>::max();
   bool depth = false;  ///< also make Image::depth
   /// None: every voxel sends out its colour, whatever is around it. The table is looked up for lights
   /// bilinearly, or as AttenuationLookup::Nearest says.

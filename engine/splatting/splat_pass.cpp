@@ -55,16 +55,21 @@ std::vector<const RenderTarget*> SplatTargets::all() const {
   return targets;
 }
 
-void checkFrameFits(const Device& device, const FrameSettings& settings) {
-  checkTargetFits(device, settings.size, kColorFormat);
+std::uint64_t targetBytes(const FrameSettings& settings) {
   const std::uint64_t perPixel =
       bytesPerPixel(kColorFormat) + bytesPerPixel(kScalarFormat) * (settings.depth ? 2 : 1);
-  const std::uint64_t bytes = std::uint64_t(settings.size.x) * std::uint64_t(settings.size.y) * perPixel;
-  if (bytes > device.description().memoryBytes)
+  return std::uint64_t(settings.size.x) * std::uint64_t(settings.size.y) * perPixel;
+}
+
+void checkFrameFits(const Device& device, const FrameSettings& settings) {
+  checkTargetFits(device, settings.size, kColorFormat);
+  const std::uint64_t bytes = targetBytes(settings);
+  if (bytes > device.memoryBytes())
     fail(ExitCode::OutOfMemory,
-         "an image of {}x{} pixels needs {} MiB of device memory and {} has {} MiB: use a smaller --size",
+         "an image of {}x{} pixels needs {} MiB of device memory and {} may use {} MiB of it: use a smaller "
+         "--size",
          settings.size.x, settings.size.y, bytes >> 20, device.description().name,
-         device.description().memoryBytes >> 20);
+         device.memoryBytes() >> 20);
 }
 
 SplatTargets makeTargets(const Device& device, const FrameSettings& settings) {
@@ -113,9 +118,14 @@ void SplatPass::beginRendering(Commands& commands, const SplatTargets& targets, 
   vkCmdSetScissor(commands.handle(), 0, 1, &scissor);
 }
 
+void SplatPass::makeRoomForRays(const DeviceVolume& volume, const RaySource& eye, std::uint64_t mostBytes) {
+  if (!rays_) rays_.emplace(device_);
+  rays_->makeRoom(volume.layout.dimensions, eye, mostBytes);
+}
+
 void SplatPass::recordFrame(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame) {
   shader::SetupFrame setup = frame.setup;
-  if (setup.lookup == shader::kLookupExact) {
+  if (frame.readsRays()) {
     if (!rays_) rays_.emplace(device_);
     rays_->record(commands, volume, frame.eye);
     std::ranges::copy(rays_->fans(), setup.fans);

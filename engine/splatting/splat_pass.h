@@ -28,6 +28,7 @@ struct SplatTargets {
 };
 
 SplatTargets makeTargets(const Device& device, const FrameSettings& settings);
+std::uint64_t targetBytes(const FrameSettings& settings);
 
 /// The frame's constants, computed in double precision on the host.
 struct FrameConstants {
@@ -51,15 +52,16 @@ struct FrameConstants {
     return setup.lookup == shader::kLookupBilinear || setup.lookup == shader::kLookupNearest;
   }
   bool readsTable() const { return eyeReadsTable() || lightsReadTable; }
+  bool readsRays() const { return setup.rayShare > 0.0f; }
 };
 
 FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volume,
                                   const TableSettings& table, const Camera& camera,
                                   const FrameSettings& settings);
 
-/// COMPUTE ray_sweep.comp where transmittances are exact, or eye_depths.comp where the table is looked up
-/// from inside, then COMPUTE splat_setup.comp and GRAPHICS splat.vert + splat.frag, chunk by chunk. Leaves
-/// the targets in layout GENERAL, visible to compute.
+/// COMPUTE ray_sweep.comp where rays have a share in the depths to the eye, or eye_depths.comp where the
+/// table is looked up from inside, then COMPUTE splat_setup.comp and GRAPHICS splat.vert + splat.frag, chunk
+/// by chunk. Leaves the targets in layout GENERAL, visible to compute.
 class SplatPass {
  public:
   SplatPass(const Device& device, bool withDistance, bool sorted = false);
@@ -75,6 +77,8 @@ class SplatPass {
   };
   void record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,
               const SplatTargets& targets);
+  /// Before anything is recorded, for frames that read rays: as RaySweep::makeRoom.
+  void makeRoomForRays(const DeviceVolume& volume, const RaySource& eye, std::uint64_t mostBytes);
   /// Whether it was made for such frames.
   bool draws(const FrameSettings& settings) const {
     return withDistance_ == settings.depth && sorted_ == (settings.composite == Composite::Sorted);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/volume/device_volume.h"
+#include "engine/vulkan/commands.h"
 
 namespace freevoxels {
 

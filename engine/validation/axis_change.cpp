@@ -25,12 +25,11 @@ Volume AxisChange::apply(const Volume& volume) const {
     if (mirrored[i]) origin += double(volume.dimensions[old] - 1) * volume.indexToWorld[old];
   }
   changed.indexToWorld[3] = origin;
+  changed.scalars = ScalarBricks(changed.dimensions);
   for (int z = 0; z < volume.dimensions.z; ++z)
     for (int y = 0; y < volume.dimensions.y; ++y)
-      for (int x = 0; x < volume.dimensions.x; ++x) {
-        const glm::ivec3 v = voxel({x, y, z}, volume.dimensions);
-        changed.values[changed.at(v.x, v.y, v.z)] = volume.values[volume.at(x, y, z)];
-      }
+      for (int x = 0; x < volume.dimensions.x; ++x)
+        changed.scalars.set(voxel({x, y, z}, volume.dimensions), volume.scalar(x, y, z));
   return changed;
 }
 

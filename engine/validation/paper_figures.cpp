@@ -63,9 +63,8 @@ Check checkTransmittances(const Volume& shown, int direction) {
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x) {
         const double depth = kTableCubeExtinction * voxelsAhead({x, y, z}, d, size) * step;
-        const std::size_t voxel = shown.at(x, y, z);
-        worst.take(std::abs(double(shown.values[voxel]) - std::exp(-depth)),
-                   [&] { return voxelText(shown, voxel); });
+        worst.take(std::abs(double(shown.scalar(x, y, z)) - std::exp(-depth)),
+                   [&] { return voxelText(shown, shown.at(x, y, z)); });
       }
   return worst.atMost(kHalfCodeTransmittance, fmt::format("figure 2: transmittance is exp(-sigma n |d|), {}",
                                                           directionText(kLatticeSteps, direction)));

@@ -267,7 +267,7 @@ void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, R
   SplatInputs inputs{
       .extinction = outcome.extinction, .table = outcome.table, .tableSettings = outcome.settings};
   RayCodes rays;
-  if (resolveAttenuation(method.attenuation, method.inside) == AttenuationLookup::Exact) {
+  if (rayShare(method.attenuation, camera, scene.volume.dimensions, scene.volume.indexToWorld) > 0.0) {
     rays = outcome.device.rays(camera);
     section.checks.push_back(checkRays(outcome, camera, rays, method.name));
     inputs.rays = &rays;

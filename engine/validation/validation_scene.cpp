@@ -18,7 +18,7 @@ glm::dvec3 centreOfActive(const Volume& volume) {
   for (int z = 0; z < volume.dimensions.z; ++z)
     for (int y = 0; y < volume.dimensions.y; ++y)
       for (int x = 0; x < volume.dimensions.x; ++x)
-        if (volume.values[volume.at(x, y, z)] != kInactiveVoxel) sum += glm::dvec3(x, y, z);
+        if (volume.scalar(x, y, z) != kInactiveVoxel) sum += glm::dvec3(x, y, z);
   return sum / double(std::max<std::uint64_t>(volume.activeVoxels, 1));
 }
 
@@ -29,12 +29,7 @@ Volume cut(const Volume& volume, glm::ivec3 first, glm::ivec3 size) {
   part.dimensions = size;
   part.indexOrigin = volume.indexOrigin + first;
   part.indexToWorld = glm::translate(volume.indexToWorld, glm::dvec3(first));
-  part.values.reserve(part.voxelCount());
-  for (int z = 0; z < size.z; ++z)
-    for (int y = 0; y < size.y; ++y) {
-      const auto row = volume.values.begin() + std::ptrdiff_t(volume.at(first.x, first.y + y, first.z + z));
-      part.values.insert(part.values.end(), row, row + size.x);
-    }
+  part.scalars = ScalarBricks::make(size, [&](glm::ivec3 v) { return volume.scalars.at(first + v); });
   summariseValues(part);
   return part;
 }

@@ -41,11 +41,13 @@ ClassifiedVoxel classifyByTransfer(const TransferFunction& transfer, float scala
 /// Of max(0, density) over the active voxels, summed in a fixed order: the same number in every run.
 double totalDensity(const Volume& volume) {
   using Range = tbb::blocked_range<std::size_t>;
-  constexpr std::size_t kGrain = 1 << 14;
+  constexpr std::size_t kGrain = 32;
+  const std::span<const ScalarBricks::Brick> bricks = volume.scalars.bricks();
   return tbb::parallel_deterministic_reduce(
-      Range(0, volume.values.size(), kGrain), 0.0,
+      Range(0, bricks.size(), kGrain), 0.0,
       [&](const Range& range, double sum) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i) sum += std::max(volume.values[i], 0.0f);
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+          for (const float scalar : bricks[i]) sum += std::max(scalar, 0.0f);
         return sum;
       },
       std::plus<>());

@@ -10,7 +10,6 @@
 #include "engine/volume/grid_layout.h"
 #include "engine/volume/volume.h"
 #include "engine/vulkan/buffer.h"
-#include "engine/vulkan/commands.h"
 
 namespace freevoxels {
 
@@ -49,25 +48,5 @@ struct DeviceVolume {
 /// Everything but what is kept of the blocks.
 DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
                               const Classification& classification);
-
-/// All voxels of a volume, the empty ones as well: what the volume is built from. Padded to a multiple of
-/// kBlocksPerWord.
-struct DenseVoxels {
-  Buffer scalars, extinction;  ///< float
-  TexelView extinctionQuads;
-};
-
-DenseVoxels uploadVoxels(const Device& device, const Volume& volume, const HierarchyLayout& hierarchy);
-
-/// COMPUTE classify.comp
-class ClassifyPass {
- public:
-  explicit ClassifyPass(const Device& device);
-  void record(Commands& commands, const DeviceVolume& volume, const DenseVoxels& voxels,
-              const Classification& classification) const;
-
- private:
-  Pipeline pipeline_;
-};
 
 }  // namespace freevoxels

@@ -24,7 +24,7 @@ struct GridLayout {
   std::uint64_t paddedVoxels() const {
     return std::uint64_t(rowPitch) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z);
   }
-  /// Of a voxel that is no padding: its index in Volume::values.
+  /// Of a voxel that is no padding: its index among all of them (Volume::at).
   std::uint32_t unpaddedIndex(std::uint32_t padded) const {
     return padded - padded / std::uint32_t(rowPitch) * std::uint32_t(rowPitch - dimensions.x);
   }

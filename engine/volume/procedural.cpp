@@ -70,11 +70,16 @@ float rodsDensity(vec3 position, float voxelSize) {
 struct Field {
   ProceduralKind kind;
   float (*density)(vec3 position, float voxelSize);
+  /// A distance within which it is 0, or null: boxes that are nearly empty are filled faster.
+  float (*clearance)(vec3 position) = nullptr;
 };
 
-constexpr std::array<Field, 6> kFields{{
+constexpr std::array<Field, 7> kFields{{
     {{"cube", "a uniform cube of density 1"}, cubeDensity},
     {{"cloud", "a fractal cumulus cloud"}, [](vec3 position, float) { return cloudDensity(position); }},
+    {{"plume", "a spiral of smoke in a box that is nearly empty"},
+     [](vec3 position, float) { return plumeDensity(position); },
+     plumeClearance},
     {{"marschner-lobb", "the reconstruction test signal of Marschner and Lobb"}, marschnerLobb},
     {{"shells", "nested translucent spherical shells"}, shellsDensity},
     {{"rods", "a lattice of thin rods"}, rodsDensity},
@@ -114,15 +119,18 @@ Volume makeProcedural(std::string_view name, int resolution) {
   const double firstCenter = 0.5 * voxelSize - 0.5;
   volume.indexToWorld = glm::dmat4(voxelSize);
   volume.indexToWorld[3] = glm::dvec4(glm::dvec3(firstCenter), 1.0);
-  volume.values.resize(volume.voxelCount());
   const auto center = [&](int index) { return float(firstCenter + voxelSize * index); };
-  tbb::parallel_for(0, resolution, [&](int z) {
-    for (int y = 0; y < resolution; ++y)
-      for (int x = 0; x < resolution; ++x) {
-        const float density = field.density({center(x), center(y), center(z)}, float(voxelSize));
-        volume.values[volume.at(x, y, z)] = density == 0.0f ? kInactiveVoxel : density;
-      }
-  });
+  const auto scalarAt = [&](glm::ivec3 v) {
+    const float density = field.density({center(v.x), center(v.y), center(v.z)}, float(voxelSize));
+    return density == 0.0f ? kInactiveVoxel : density;
+  };
+  const auto mayHoldData = [&](glm::ivec3 first) {
+    if (field.clearance == nullptr) return true;
+    const double half = 0.5 * (ScalarBricks::kEdge - 1);
+    const vec3 middle(firstCenter + voxelSize * (glm::dvec3(first) + half));
+    return double(field.clearance(middle)) <= std::sqrt(3.0) * half * voxelSize;
+  };
+  volume.scalars = ScalarBricks::make(volume.dimensions, scalarAt, mayHoldData);
   summariseValues(volume);
   return volume;
 }

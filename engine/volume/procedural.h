@@ -10,7 +10,7 @@
 namespace freevoxels {
 
 struct ProceduralKind {
-  std::string_view name;         ///< "cube", "cloud", "marschner-lobb", "shells", "rods", "head"
+  std::string_view name;         ///< "cube", "cloud", "plume", "marschner-lobb", "shells", "rods", "head"
   std::string_view description;  ///< one clause
 };
 
@@ -21,17 +21,20 @@ const std::vector<ProceduralKind>& proceduralKinds();
 Volume makeProcedural(std::string_view name, int resolution);
 
 /// A volume from a function of the continuous index position: tests fill it from a lambda that also predicts
-/// the answer. Zero values are active too.
+/// the answer, and which is called x fastest by one thread. Zero values are active too.
 template <typename Function>
 Volume makeVolume(glm::ivec3 dimensions, const glm::dmat4& indexToWorld, Function&& valueAt) {
   Volume volume;
   volume.source = "procedural";
   volume.dimensions = dimensions;
   volume.indexToWorld = indexToWorld;
-  volume.values.resize(volume.voxelCount());
+  std::vector<float> values;
+  values.reserve(volume.voxelCount());
   for (int z = 0; z < dimensions.z; ++z)
     for (int y = 0; y < dimensions.y; ++y)
-      for (int x = 0; x < dimensions.x; ++x) volume.values[volume.at(x, y, z)] = float(valueAt(x, y, z));
+      for (int x = 0; x < dimensions.x; ++x) values.push_back(float(valueAt(x, y, z)));
+  volume.scalars =
+      ScalarBricks::make(dimensions, [&](glm::ivec3 v) { return values[volume.at(v.x, v.y, v.z)]; });
   summariseValues(volume);
   return volume;
 }

@@ -10,6 +10,11 @@ namespace freevoxels {
 /// A cumulus: billows over a flattish base, soft at the edge, thinner where it frays into wisps.
 float cloudDensity(glm::vec3 position);
 
+/// A spiral of smoke from the bottom to the top, in about a twentieth of its box.
+float plumeDensity(glm::vec3 position);
+/// A distance within which there is none of it.
+float plumeClearance(glm::vec3 position);
+
 /// A head in front view along -z, with nested tissues of different density: skin 0.1 to 0.2, brain 0.3 to
 /// 0.4, bone 1. Surfaces are smoothed over `voxelSize`.
 float headDensity(glm::vec3 position, float voxelSize);

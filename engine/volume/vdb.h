@@ -26,7 +26,8 @@ struct GridInfo {
   /// Blocks of each level of that box's octree in which a voxel's density is above 0; empty where it cannot
   /// be rendered, or is too large to count.
   std::vector<std::uint64_t> storedBlocks;
-  std::string unusable;  ///< empty, or why it cannot be rendered, in one clause
+  std::uint64_t hostBytes = 0;  ///< of the volume that readVdb makes of it; 0 where it cannot be rendered
+  std::string unusable;         ///< empty, or why it cannot be rendered, in one clause
 };
 
 /// Every grid of the file in file order. Fails with ExitCode::Input on a missing, truncated or foreign file.

@@ -39,6 +39,14 @@ void visitTiles(const openvdb::FloatTree& tree, const Visit& visit) {
   for (; tile; ++tile) visit(tile.getBoundingBox(), tile.getValue(), tile.isValueOn());
 }
 
+/// Whether `toDensity` keeps a voxel of the leaf.
+template <typename ToDensity>
+bool holdsData(const openvdb::FloatTree::LeafNodeType& leaf, const ToDensity& toDensity) {
+  for (auto voxel = leaf.cbeginValueAll(); voxel; ++voxel)
+    if (toDensity(*voxel, voxel.isValueOn()) != kInactiveVoxel) return true;
+  return false;
+}
+
 /// The smallest box around the voxels that `toDensity` keeps.
 template <typename ToDensity>
 openvdb::CoordBBox boundsOf(const openvdb::FloatTree& tree,

@@ -108,6 +108,18 @@ std::vector<std::uint64_t> storedBlocks(const FloatTree& tree,
   return countStored(hierarchy, std::move(holding));
 }
 
+template <typename ToDensity>
+std::uint64_t hostBytes(const FloatTree& tree, const std::vector<const FloatTree::LeafNodeType*>& leaves,
+                        glm::ivec3 dimensions, const ToDensity& toDensity) {
+  auto bricks = std::uint64_t(
+      std::ranges::count_if(leaves, [&](const auto* leaf) { return holdsData(*leaf, toDensity); }));
+  visitTiles(tree, [&](const openvdb::CoordBBox& box, float value, bool active) {
+    if (toDensity(value, active) != kInactiveVoxel)
+      bricks += box.volume() / std::tuple_size_v<ScalarBricks::Brick>;
+  });
+  return ScalarBricks::bytesOf(bricks, dimensions);
+}
+
 /// The box that readVdb would make of the grid, and what of it holds anything.
 void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   const openvdb::FloatGrid::ConstPtr floats = asFloatGrid(grid);
@@ -121,6 +133,7 @@ void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
     }
     info.renderDimensions = {box.dim().x(), box.dim().y(), box.dim().z()};
     info.storedBlocks = storedBlocks(floats->tree(), leaves, box, toDensity);
+    info.hostBytes = hostBytes(floats->tree(), leaves, info.renderDimensions, toDensity);
   });
 }
 

@@ -18,26 +18,40 @@ using openvdb::CoordBBox;
 using openvdb::FloatGrid;
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-void fillBox(Volume& volume, const CoordBBox& box, float value) {
-  const Coord size = box.dim();
-  const int x = box.min().x() - volume.indexOrigin.x;
-  const int y = box.min().y() - volume.indexOrigin.y;
-  const int z = box.min().z() - volume.indexOrigin.z;
-  tbb::parallel_for(z, z + size.z(), [&, x, y](int slice) {
-    for (int row = y; row < y + size.y(); ++row)
-      std::fill_n(&volume.values[volume.at(x, row, slice)], size.x(), value);
-  });
+/// The bricks lie on the lattice of the leaves: a leaf is a brick, and a tile is several.
+static_assert(ScalarBricks::kEdge == int(Leaf::DIM));
+
+ScalarBricks::Brick& makeBrickAt(Volume& volume, const Coord& corner) {
+  constexpr int shift = Leaf::LOG2DIM;
+  return volume.scalars.makeBrick((glm::ivec3(corner.x(), corner.y(), corner.z()) >> shift) -
+                                  (volume.indexOrigin >> shift));
+}
+
+void fillTile(Volume& volume, const CoordBBox& tile, float value) {
+  for (int z = tile.min().z(); z <= tile.max().z(); z += int(Leaf::DIM))
+    for (int y = tile.min().y(); y <= tile.max().y(); y += int(Leaf::DIM))
+      for (int x = tile.min().x(); x <= tile.max().x(); x += int(Leaf::DIM))
+        makeBrickAt(volume, Coord(x, y, z)).fill(value);
 }
 
 template <typename ToDensity>
-void fillLeaf(Volume& volume, const Leaf& leaf, const ToDensity& toDensity) {
+void fillBrick(ScalarBricks::Brick& brick, const Leaf& leaf, const ToDensity& toDensity) {
   for (auto voxel = leaf.cbeginValueAll(); voxel; ++voxel) {
-    const float density = toDensity(*voxel, voxel.isValueOn());
-    if (density == kInactiveVoxel) continue;
-    const Coord at = voxel.getCoord();
-    volume.values[volume.at(at.x() - volume.indexOrigin.x, at.y() - volume.indexOrigin.y,
-                            at.z() - volume.indexOrigin.z)] = density;
+    const Coord place = Leaf::offsetToLocalCoord(voxel.pos());
+    brick[ScalarBricks::indexInBrick({place.x(), place.y(), place.z()})] =
+        toDensity(*voxel, voxel.isValueOn());
   }
+}
+
+/// Leaves that hold nothing make no brick.
+template <typename ToDensity>
+void fillLeaves(Volume& volume, std::vector<const Leaf*> leaves, const ToDensity& toDensity) {
+  std::erase_if(leaves, [&](const Leaf* leaf) { return !holdsData(*leaf, toDensity); });
+  volume.scalars.reserve(volume.scalars.bricks().size() + leaves.size());
+  std::vector<ScalarBricks::Brick*> bricks;
+  for (const Leaf* leaf : leaves) bricks.push_back(&makeBrickAt(volume, leaf->origin()));
+  tbb::parallel_for(std::size_t(0), leaves.size(),
+                    [&](std::size_t i) { fillBrick(*bricks[i], *leaves[i], toDensity); });
 }
 
 void checkSize(const CoordBBox& bounds, std::uint64_t maximumVoxels, const std::string& source) {
@@ -75,13 +89,12 @@ Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::st
   volume.dimensions = {bounds.dim().x(), bounds.dim().y(), bounds.dim().z()};
   volume.indexOrigin = {bounds.min().x(), bounds.min().y(), bounds.min().z()};
   volume.indexToWorld = indexToWorldOf(grid, volume.indexOrigin);
-  volume.values.assign(volume.voxelCount(), kInactiveVoxel);
+  volume.scalars = ScalarBricks(volume.dimensions, volume.indexOrigin & (ScalarBricks::kEdge - 1));
   visitTiles(grid.tree(), [&](const CoordBBox& box, float value, bool active) {
     const float density = toDensity(value, active);
-    if (density != kInactiveVoxel) fillBox(volume, box, density);
+    if (density != kInactiveVoxel) fillTile(volume, box, density);
   });
-  tbb::parallel_for(std::size_t(0), leaves.size(),
-                    [&](std::size_t i) { fillLeaf(volume, *leaves[i], toDensity); });
+  fillLeaves(volume, std::move(leaves), toDensity);
   summariseValues(volume);
   return volume;
 }

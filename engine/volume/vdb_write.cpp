@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <memory>
+#include <set>
 #include <stdexcept>
 
 #include "engine/core/atomic_file.h"
@@ -25,7 +26,7 @@ std::unique_ptr<Leaf> makeLeaf(const Volume& volume, const Coord& corner) {
   for (int z = begin.z; z < end.z; ++z)
     for (int y = begin.y; y < end.y; ++y)
       for (int x = begin.x; x < end.x; ++x) {
-        const float value = volume.values[volume.at(x, y, z)];
+        const float value = volume.scalar(x, y, z);
         if (value == kInactiveVoxel) continue;
         if (!leaf) leaf = std::make_unique<Leaf>(corner, 0.0f);
         leaf->setValueOn(corner + Coord(x - first.x, y - first.y, z - first.z), value);
@@ -33,14 +34,24 @@ std::unique_ptr<Leaf> makeLeaf(const Volume& volume, const Coord& corner) {
   return leaf;
 }
 
-void fillTree(openvdb::FloatTree& tree, const Volume& volume) {
+/// Of the leaves that a brick reaches into.
+std::set<Coord> leafCorners(const Volume& volume) {
   const int mask = ~(int(Leaf::DIM) - 1);
-  const glm::ivec3 origin = volume.indexOrigin;
-  const glm::ivec3 end = origin + volume.dimensions;
-  for (int z = origin.z & mask; z < end.z; z += int(Leaf::DIM))
-    for (int y = origin.y & mask; y < end.y; y += int(Leaf::DIM))
-      for (int x = origin.x & mask; x < end.x; x += int(Leaf::DIM))
-        if (auto leaf = makeLeaf(volume, Coord(x, y, z))) tree.addLeaf(leaf.release());
+  std::set<Coord> corners;
+  for (std::size_t brick = 0; brick < volume.scalars.bricks().size(); ++brick) {
+    const glm::ivec3 first = volume.scalars.firstVoxel(brick) + volume.indexOrigin;
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::ivec3 end =
+          first + (ScalarBricks::kEdge - 1) * glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
+      corners.insert(Coord(end.x & mask, end.y & mask, end.z & mask));
+    }
+  }
+  return corners;
+}
+
+void fillTree(openvdb::FloatTree& tree, const Volume& volume) {
+  for (const Coord& corner : leafCorners(volume))
+    if (auto leaf = makeLeaf(volume, corner)) tree.addLeaf(leaf.release());
   tree.prune();  // uniform leaves become tiles
 }
 

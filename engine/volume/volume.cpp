@@ -40,36 +40,44 @@ double Volume::voxelSize() const {
   return std::cbrt(std::abs(glm::determinant(glm::dmat3(indexToWorld))));
 }
 
-void cropToActive(Volume& volume) {
-  glm::ivec3 low = volume.dimensions, high(-1);
+std::vector<float> denseScalars(const Volume& volume) {
+  std::vector<float> dense;
+  dense.reserve(volume.voxelCount());
   for (int z = 0; z < volume.dimensions.z; ++z)
     for (int y = 0; y < volume.dimensions.y; ++y)
-      for (int x = 0; x < volume.dimensions.x; ++x)
-        if (volume.values[volume.at(x, y, z)] != kInactiveVoxel) {
-          low = glm::min(low, glm::ivec3(x, y, z));
-          high = glm::max(high, glm::ivec3(x, y, z));
-        }
+      for (int x = 0; x < volume.dimensions.x; ++x) dense.push_back(volume.scalar(x, y, z));
+  return dense;
+}
+
+void cropToActive(Volume& volume) {
+  constexpr int n = ScalarBricks::kEdge;
+  glm::ivec3 low = volume.dimensions, high(-1);
+  for (std::size_t i = 0; i < volume.scalars.bricks().size(); ++i) {
+    const ScalarBricks::Brick& brick = volume.scalars.bricks()[i];
+    for (glm::ivec3 v(0); v.z < n; ++v.z)
+      for (v.y = 0; v.y < n; ++v.y)
+        for (v.x = 0; v.x < n; ++v.x)
+          if (brick[ScalarBricks::indexInBrick(v)] != kInactiveVoxel) {
+            low = glm::min(low, volume.scalars.firstVoxel(i) + v);
+            high = glm::max(high, volume.scalars.firstVoxel(i) + v);
+          }
+  }
   if (high.x < 0) return;
-  const std::vector<float> values = std::move(volume.values);
-  Volume cropped = volume;
-  cropped.dimensions = high - low + 1;
-  cropped.indexOrigin += low;
-  cropped.indexToWorld[3] = volume.indexToWorld * glm::dvec4(glm::dvec3(low), 1.0);
-  cropped.values.resize(cropped.voxelCount());
-  for (int z = 0; z < cropped.dimensions.z; ++z)
-    for (int y = 0; y < cropped.dimensions.y; ++y)
-      std::copy_n(&values[volume.at(low.x, low.y + y, low.z + z)], cropped.dimensions.x,
-                  &cropped.values[cropped.at(0, y, z)]);
-  volume = std::move(cropped);
+  volume.scalars = volume.scalars.cropped(low, high);
+  volume.dimensions = high - low + 1;
+  volume.indexOrigin += low;
+  volume.indexToWorld[3] = volume.indexToWorld * glm::dvec4(glm::dvec3(low), 1.0);
 }
 
 void summariseValues(Volume& volume) {
   using Range = tbb::blocked_range<std::size_t>;
-  constexpr std::size_t kGrain = 1 << 16;
+  constexpr std::size_t kGrain = 64;
+  const std::span<ScalarBricks::Brick> bricks = volume.scalars.bricks();
   const Summary summary = tbb::parallel_reduce(
-      Range(0, volume.values.size(), kGrain), Summary{},
+      Range(0, bricks.size(), kGrain), Summary{},
       [&](const Range& range, Summary partial) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) add(partial, volume.values[i]);
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+          for (float& scalar : bricks[i]) add(partial, scalar);
         return partial;
       },
       join);

@@ -1,16 +1,14 @@
 #pragma once
-// A volume as the engine sees it: a dense box of scalars and where it stands in the world.
+// A volume as the engine sees it: a box of scalars and where it stands in the world.
 
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <limits>
 #include <string>
 #include <vector>
 
-namespace freevoxels {
+#include "engine/volume/scalar_bricks.h"
 
-/// Marks voxels of the box that hold no data (inactive in OpenVDB): never drawn, whatever the classification.
-inline constexpr float kInactiveVoxel = -std::numeric_limits<float>::max();
+namespace freevoxels {
 
 struct Volume {
   std::string source;  ///< file and grid, for messages and metadata: "cloud.vdb density[1]"
@@ -18,8 +16,7 @@ struct Volume {
   glm::ivec3 indexOrigin{0};  ///< of voxel (0,0,0) in the file's own index space
   /// Affine. Maps (i,j,k) of this box, 0 <= i < dimensions.x, to the world position of that voxel's centre.
   glm::dmat4 indexToWorld{1.0};
-  /// dimensions.x * y * z scalars, x fastest. Finite, or kInactiveVoxel.
-  std::vector<float> values;
+  ScalarBricks scalars;  ///< of the same dimensions. Finite, or kInactiveVoxel
 
   std::uint64_t activeVoxels = 0;
   std::uint64_t nanVoxels = 0;  ///< active voxels that were NaN or infinite; their value is 0 here
@@ -30,6 +27,8 @@ struct Volume {
   std::size_t voxelCount() const {
     return std::size_t(dimensions.x) * std::size_t(dimensions.y) * std::size_t(dimensions.z);
   }
+  float scalar(int x, int y, int z) const { return scalars.at({x, y, z}); }
+  /// Of a voxel among all of them, x fastest.
   std::size_t at(int x, int y, int z) const {
     return std::size_t(x) +
            std::size_t(dimensions.x) * (std::size_t(y) + std::size_t(dimensions.y) * std::size_t(z));
@@ -37,6 +36,9 @@ struct Volume {
   /// Edge of the cube that has a voxel's world volume: the Δ of design and paper.
   double voxelSize() const;
 };
+
+/// Of all voxels, x fastest: for references and tests, which look at every one.
+std::vector<float> denseScalars(const Volume& volume);
 
 /// Fills activeVoxels, nanVoxels, negativeVoxels, minimum and maximum, and replaces NaN and infinities by 0.
 void summariseValues(Volume& volume);

@@ -38,8 +38,8 @@ std::uint32_t findMemoryType(const Device& device, std::uint32_t allowedTypes, M
 
 }  // namespace
 
-Allocation allocate(const Device& device, const VkMemoryRequirements& needs, MemoryUse use,
-                    bool deviceAddress) {
+DeviceMemory::DeviceMemory(const Device& device, const VkMemoryRequirements& needs, MemoryUse use,
+                           bool deviceAddress) {
   const std::uint32_t type = findMemoryType(device, needs.memoryTypeBits, use);
   const VkMemoryAllocateFlagsInfo flags{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
                                         .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
@@ -47,10 +47,25 @@ Allocation allocate(const Device& device, const VkMemoryRequirements& needs, Mem
                                   .pNext = deviceAddress ? &flags : nullptr,
                                   .allocationSize = needs.size,
                                   .memoryTypeIndex = type};
+  device.claim(needs.size);
+  device_ = &device;
+  bytes_ = needs.size;
   VkDeviceMemory memory = VK_NULL_HANDLE;
   VK_CHECK(vkAllocateMemory(device.handle(), &info, nullptr, &memory));
-  return {OwnedMemory(device.handle(), memory),
-          (device.memory().memoryTypes[type].propertyFlags & kVisible) == kVisible};
+  memory_ = OwnedMemory(device.handle(), memory);
+  hostCoherent_ = (device.memory().memoryTypes[type].propertyFlags & kVisible) == kVisible;
+}
+
+DeviceMemory& DeviceMemory::operator=(DeviceMemory&& other) noexcept {
+  std::swap(device_, other.device_);
+  std::swap(bytes_, other.bytes_);
+  std::swap(hostCoherent_, other.hostCoherent_);
+  memory_ = std::move(other.memory_);
+  return *this;
+}
+
+DeviceMemory::~DeviceMemory() {
+  if (device_ != nullptr) device_->release(bytes_);
 }
 
 Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const char* name,
@@ -68,10 +83,9 @@ Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const ch
 
   VkMemoryRequirements needs;
   vkGetBufferMemoryRequirements(device.handle(), buffer, &needs);
-  Allocation allocation = allocate(device, needs, use, true);
-  memory_ = std::move(allocation.memory);
+  memory_ = DeviceMemory(device, needs, use, true);
   VK_CHECK(vkBindBufferMemory(device.handle(), buffer, memory_.get(), 0));
-  if (allocation.hostCoherent) {
+  if (memory_.hostCoherent()) {
     void* mapped = nullptr;
     VK_CHECK(vkMapMemory(device.handle(), memory_.get(), 0, VK_WHOLE_SIZE, 0, &mapped));
     mapped_ = static_cast<std::byte*>(mapped);

@@ -15,6 +15,27 @@ enum class MemoryUse {
   Readback,  ///< written by the device, read by the host
 };
 
+/// An allocation, which its device counts.
+class DeviceMemory {
+ public:
+  DeviceMemory() = default;
+  /// Of the memory type that suits `use` best; with a device address if asked for.
+  DeviceMemory(const Device& device, const VkMemoryRequirements& needs, MemoryUse use, bool deviceAddress);
+  DeviceMemory(DeviceMemory&& other) noexcept { *this = std::move(other); }
+  DeviceMemory& operator=(DeviceMemory&& other) noexcept;
+  ~DeviceMemory();
+
+  VkDeviceMemory get() const { return memory_.get(); }
+  /// Can be mapped, and needs no flushing.
+  bool hostCoherent() const { return hostCoherent_; }
+
+ private:
+  const Device* device_ = nullptr;
+  std::uint64_t bytes_ = 0;
+  bool hostCoherent_ = false;
+  OwnedMemory memory_;
+};
+
 class Buffer {
  public:
   Buffer() = default;
@@ -29,7 +50,7 @@ class Buffer {
   std::byte* mapped() const { return mapped_; }
 
  private:
-  OwnedMemory memory_;
+  DeviceMemory memory_;
   OwnedBuffer buffer_;
   VkDeviceSize bytes_ = 0;
   VkDeviceAddress address_ = 0;
@@ -49,16 +70,6 @@ class TexelView {
  private:
   OwnedBufferView view_;
 };
-
-struct Allocation {
-  OwnedMemory memory;
-  bool hostCoherent = false;  ///< can be mapped, and needs no flushing
-};
-
-/// One allocation that meets `needs`, of the memory type that suits `use` best; with a device address if
-/// asked for.
-Allocation allocate(const Device& device, const VkMemoryRequirements& needs, MemoryUse use,
-                    bool deviceAddress);
 
 /// Copies host data into `buffer`: directly where it is mapped, else in pieces through one staging buffer.
 /// Waits.

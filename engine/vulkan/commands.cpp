@@ -57,6 +57,8 @@ void Commands::writeTimestamp() {
 void Commands::beginPass(const std::string& name) {
   FV_CHECK_LT(passes_.size() + 1, std::size_t(kMaximumTimestamps));
   writeTimestamp();
+  // Lavapipe takes the time when it comes to a barrier, which may be behind work that was recorded later.
+  barrier(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   passes_.push_back(name);
 }
 

@@ -206,7 +206,8 @@ std::vector<DeviceDescription> listDevices(const Instance& instance) {
   return descriptions;
 }
 
-Device::Device(const Instance& instance, std::string_view selector) {
+Device::Device(const Instance& instance, std::string_view selector, std::uint64_t memoryLimit)
+    : memoryLimit_(memoryLimit) {
   description_ = choose(listDevices(instance), selector);
   physical_ = physicalDevices(instance)[std::size_t(description_.index)];
 
@@ -241,6 +242,20 @@ Device::Device(const Instance& instance, std::string_view selector) {
 Device::~Device() {
   vkDeviceWaitIdle(device_);
   vkDestroyDevice(device_, nullptr);
+}
+
+void Device::claim(std::uint64_t bytes) const {
+  const std::uint64_t allocated = allocated_ += bytes;
+  if (allocated > memoryLimit_) {
+    release(bytes);
+    fail(ExitCode::OutOfMemory,
+         "{} MiB of device memory are needed and the limit is {} MiB: raise --memory-limit, or use a smaller "
+         "volume or --size",
+         (allocated + 0xfffff) >> 20, memoryLimit_ >> 20);
+  }
+  std::uint64_t peak = peak_;
+  while (peak < allocated && !peak_.compare_exchange_weak(peak, allocated)) {
+  }
 }
 
 void Device::setName(VkObjectType type, std::uint64_t handle, const char* name) const {

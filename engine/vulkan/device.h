@@ -3,7 +3,10 @@
 
 #include <volk.h>
 
+#include <algorithm>
+#include <atomic>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,8 +31,10 @@ std::vector<DeviceDescription> listDevices(const Instance& instance);
 class Device {
  public:
   /// `selector`: an index, UUID or (part of a) name; empty prefers a discrete GPU, then any GPU, then a CPU
-  /// device. Fails with ExitCode::Device and the reason why each device was rejected.
-  Device(const Instance& instance, std::string_view selector);
+  /// device. Fails with ExitCode::Device and the reason why each device was rejected. Of more than
+  /// `memoryLimit` bytes nothing is allocated.
+  Device(const Instance& instance, std::string_view selector,
+         std::uint64_t memoryLimit = std::numeric_limits<std::uint64_t>::max());
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -41,8 +46,17 @@ class Device {
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
   VkDeviceSize maximumAllocation() const { return maximumAllocation_; }
+  /// Bytes that may be allocated in all: the device's, or fewer where a limit is set.
+  std::uint64_t memoryBytes() const { return std::min(description_.memoryBytes, memoryLimit_); }
+  /// Of these, what is not allocated now, and the most that ever was.
+  std::uint64_t availableBytes() const { return memoryBytes() - std::min(memoryBytes(), allocated_.load()); }
+  std::uint64_t peakBytes() const { return peak_; }
   const DeviceDescription& description() const { return description_; }
   bool isCpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+
+  /// Counts an allocation. Fails with ExitCode::OutOfMemory beyond the limit.
+  void claim(std::uint64_t bytes) const;
+  void release(std::uint64_t bytes) const { allocated_ -= bytes; }
 
   /// Shows `name` in validation messages and debuggers.
   void setName(VkObjectType type, std::uint64_t handle, const char* name) const;
@@ -53,6 +67,8 @@ class Device {
   VkPhysicalDeviceProperties properties_{};
   VkPhysicalDeviceMemoryProperties memory_{};
   VkDeviceSize maximumAllocation_ = 0;
+  std::uint64_t memoryLimit_;
+  mutable std::atomic<std::uint64_t> allocated_ = 0, peak_ = 0;
   std::uint32_t queueFamily_ = 0;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;

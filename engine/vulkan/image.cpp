@@ -63,7 +63,7 @@ RenderTarget::RenderTarget(const Device& device, glm::ivec2 size, VkFormat forma
 
   VkMemoryRequirements needs;
   vkGetImageMemoryRequirements(device.handle(), image, &needs);
-  memory_ = allocate(device, needs, MemoryUse::Device, false).memory;
+  memory_ = DeviceMemory(device, needs, MemoryUse::Device, false);
   VK_CHECK(vkBindImageMemory(device.handle(), image, memory_.get(), 0));
 
   const VkImageViewCreateInfo viewInfo{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,

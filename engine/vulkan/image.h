@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 
+#include "engine/vulkan/buffer.h"
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/owned.h"
 
@@ -26,7 +27,7 @@ class RenderTarget {
   bool exists() const { return image_.get() != VK_NULL_HANDLE; }
 
  private:
-  OwnedMemory memory_;
+  DeviceMemory memory_;
   OwnedImage image_;
   OwnedImageView view_;
   VkFormat format_ = VK_FORMAT_UNDEFINED;

@@ -99,7 +99,7 @@ double marchedDepth(const Volume& volume, const RaySource& source, glm::ivec3 vo
       const glm::ivec3 v = low + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
       const glm::dvec3 share = glm::max(1.0 - glm::abs(p - glm::dvec3(v)), 0.0);
       if (glm::any(glm::lessThan(v, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(v, kSize))) continue;
-      sum += share.x * share.y * share.z * volume.values[volume.at(v.x, v.y, v.z)];
+      sum += share.x * share.y * share.z * volume.scalar(v.x, v.y, v.z);
     }
     return sum;
   };
@@ -126,7 +126,8 @@ TEST(RayFans, DepthsAreThoseOfEachVoxelsOwnLineOfSight) {
     const double inside = window(x, kSize.x) * window(y, kSize.y) * window(z, kSize.z);
     return inside * inside * (1.0 + 0.8 * std::sin(0.2 * x) * std::cos(0.25 * y) * std::sin(0.15 * z + 1.0));
   });
-  const std::vector<double> extinction(volume.values.begin(), volume.values.end());
+  const std::vector<float> scalars = denseScalars(volume);
+  const std::vector<double> extinction(scalars.begin(), scalars.end());
   for (const RaySource& source : sources()) {
     const auto depth = rayDepth(volume, source, referenceRays(volume, extinction, source));
     double worst = 0.0, deepest = 0.0;
@@ -145,7 +146,8 @@ TEST(RayFans, DepthsAreThoseOfEachVoxelsOwnLineOfSight) {
 TEST(RayFans, SlopesAreTheChangeOfDepth) {
   const Volume volume =
       makeVolume(kSize, glm::dmat4(1.0), [](int x, int y, int) { return 0.02 * x + 0.01 * y; });
-  const std::vector<double> extinction(volume.values.begin(), volume.values.end());
+  const std::vector<float> scalars = denseScalars(volume);
+  const std::vector<double> extinction(scalars.begin(), scalars.end());
   const RaySource above{.place = {0.0, 0.0, 1.0}, .atInfinity = true};
   const auto depth = rayDepth(volume, above, referenceRays(volume, extinction, above));
   const glm::ivec3 voxel(9, 6, 7);

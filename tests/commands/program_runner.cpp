@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <pty.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -44,10 +45,14 @@ pid_t start(const char* program, const Arguments& arguments, int out, int err) {
   _exit(127);
 }
 
-int waitFor(pid_t child) {
+/// Fills all but what the program printed.
+void waitFor(pid_t child, ProgramResult& result) {
   int status = 0;
-  if (child < 0 || waitpid(child, &status, 0) != child) return 127;
-  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  rusage usage{};
+  result.exitCode = 127;
+  if (child < 0 || wait4(child, &status, 0, &usage) != child) return;
+  result.exitCode = WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+  result.peakBytes = std::uint64_t(usage.ru_maxrss) * 1024;
 }
 
 }  // namespace
@@ -55,7 +60,7 @@ int waitFor(pid_t child) {
 ProgramResult runProgramFile(const char* program, const Arguments& arguments) {
   const File out(std::tmpfile()), err(std::tmpfile());
   ProgramResult result;
-  result.exitCode = waitFor(start(program, arguments, fileno(out.get()), fileno(err.get())));
+  waitFor(start(program, arguments, fileno(out.get()), fileno(err.get())), result);
   result.out = contents(out.get());
   result.err = contents(err.get());
   return result;
@@ -77,7 +82,7 @@ ProgramResult runFreevoxelsOnTerminal(const Arguments& arguments) {
   const File out(std::tmpfile());
   int terminal = -1, program = -1;
   if (openpty(&terminal, &program, nullptr, nullptr, nullptr) != 0)
-    return {.exitCode = 127, .out = "", .err = ""};
+    return {.exitCode = 127, .out = "", .err = "", .peakBytes = 0};
   const pid_t child = start(FREEVOXELS_PROGRAM, arguments, fileno(out.get()), program);
   close(program);
 
@@ -87,7 +92,7 @@ ProgramResult runFreevoxelsOnTerminal(const Arguments& arguments) {
   for (ssize_t count; (count = read(terminal, part.data(), part.size())) > 0;)
     result.err.append(part.data(), std::size_t(count));
   close(terminal);
-  result.exitCode = waitFor(child);
+  waitFor(child, result);
   result.out = contents(out.get());
   return result;
 }
@@ -98,7 +103,7 @@ ProgramResult runAndInterrupt(const Arguments& arguments, int signal, int millis
   std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
   if (child > 0) kill(child, signal);
   ProgramResult result;
-  result.exitCode = waitFor(child);
+  waitFor(child, result);
   result.out = contents(out.get());
   result.err = contents(err.get());
   return result;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace freevoxels::test {
 struct ProgramResult {
   int exitCode = 0;  ///< minus the signal's number where a signal ended it
   std::string out, err;
+  std::uint64_t peakBytes = 0;  ///< of memory that was resident
 };
 
 using Arguments = std::vector<std::string>;

@@ -4,9 +4,12 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/image/metrics.h"
 #include "engine/reference/oracle.h"
 #include "engine/splatting/footprint.h"
+#include "engine/validation/fly_through_quality.h"
 #include "tests/device/splat_fixture.h"
+#include "tests/refusal.h"
 
 namespace freevoxels {
 namespace {
@@ -32,6 +35,61 @@ TEST_F(EyeInsideTest, MatchesTheReferenceWhereverItIs) {
   for (const glm::dvec3 direction : directions) {
     expectSamePicture(v, at(v, {5.31, 6.63, 4.17}, direction), {.size = {48, 40}});
     expectSamePicture(v, at(v, {-1.17, 5.93, 3.36}, direction), {.size = {48, 40}});  // kernels reach it
+  }
+}
+
+/// In front of the box, where rays and the table have a share each.
+TEST_F(EyeInsideTest, MatchesTheReferenceNearTheBox) {
+  const Volume v = volume(true);
+  for (const glm::dvec3 place : {glm::dvec3(-2.1, 6.0, 4.0), {5.0, 15.5, 10.0}, {4.0, 6.0, -4.0}}) {
+    const Camera camera =
+        at(v, place, glm::dvec3(v.indexToWorld * glm::dvec4(glm::dvec3(5.0, 6.5, 4.0) - place, 0.0)));
+    const double share = rayShare(AttenuationLookup::Auto, camera, v.dimensions, v.indexToWorld);
+    EXPECT_GT(share, 0.1);
+    EXPECT_LT(share, 0.9);
+    expectSamePicture(v, camera, {.size = {40, 32}});
+    expectSamePicture(v, camera, {.size = {40, 32}, .composite = Composite::Additive, .gradient = false});
+  }
+}
+
+/// Through the face, and in front of it: the picture changes as that of rays alone does, and by no step from
+/// the table's.
+TEST_F(EyeInsideTest, NoStepShowsOnTheWayIntoTheBox) {
+  const QualityScene scene =
+      makeQualityScene({"head", QualityColor::Bone, false}, 32, makeProcedural("head", 32));
+  Renderer renderer(device(), scene.volume, scene.classification, {});
+  std::vector<Image> pictures, exact, table;
+  for (const double out : {1e-3, -1e-3, 0.1, 0.102}) {  // of the box's edge
+    const glm::dvec3 eye(15.1, 16.3, 31.5 + 32.0 * out);
+    const Camera camera = at(scene.volume, eye, {0.05, -0.1, -1.0});
+    pictures.push_back(renderer.render(camera, {.size = {64, 64}}));
+    exact.push_back(renderer.render(camera, {.size = {64, 64}, .attenuation = AttenuationLookup::Exact}));
+    table.push_back(renderer.render(camera, {.size = {64, 64}, .attenuation = AttenuationLookup::Bilinear}));
+  }
+  const auto wrong = [&](std::size_t a, std::size_t b) {
+    return wrongChange(pictures[a], pictures[b], exact[a], exact[b]);
+  };
+  for (const std::size_t i : {0u, 2u})
+    EXPECT_LT(wrong(i, i + 1), 0.1 * compareImages(table[i], exact[i]).rmse) << i;
+}
+
+/// Auto takes the table then, and says so; what was asked for fails.
+TEST_F(EyeInsideTest, WithoutRoomForRaysAutoIsTheTable) {
+  const Volume v = volume(false);
+  Renderer renderer(device(), v, physical(20.0), {});
+  for (const glm::dvec3 place : {glm::dvec3(5.31, 6.63, 4.17), {5.0, 6.0, -2.0}}) {
+    const Camera camera = at(v, place, {0.1, 0.2, 1.0});
+    const FrameSettings table{.size = {32, 32}, .attenuation = AttenuationLookup::Bilinear};
+    const FrameSettings narrow{.size = {32, 32}, .mostRayBytes = 1000};
+    EXPECT_EQ(renderer.render(camera, narrow).pixels, renderer.render(camera, table).pixels);
+    renderer.render(camera, narrow);
+    EXPECT_TRUE(renderer.lackedRoomForRays());
+    EXPECT_NE(renderer.render(camera, {.size = {32, 32}}).pixels, renderer.render(camera, table).pixels);
+    EXPECT_FALSE(renderer.lackedRoomForRays());
+    FrameSettings exact = narrow;
+    exact.attenuation = AttenuationLookup::Exact;
+    test::expectRefusal([&] { renderer.render(camera, exact); }, ExitCode::OutOfMemory,
+                        {"--attenuation bilinear"});
   }
 }
 

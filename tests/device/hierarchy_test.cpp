@@ -139,7 +139,8 @@ TEST_F(HierarchyTest, BlocksSendWhatTheirVoxelsDo) {
 
 TEST_F(HierarchyTest, EveryVoxelIsDrawnOnceFromAnywhere) {
   const Volume volume = randomVolume(kOdd, shearedTransform(kOdd), 0.3, 1.0);
-  const std::vector<double> extinction(volume.values.begin(), volume.values.end());
+  const std::vector<float> scalars = denseScalars(volume);
+  const std::vector<double> extinction(scalars.begin(), scalars.end());
   Renderer renderer(device(), volume, {.densityScale = 1.0}, {});
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

@@ -81,7 +81,7 @@ TEST(LitOracle, MatchesTinySteps) {
       const glm::ivec3 v = low + glm::ivec3(c & 1, c >> 1 & 1, c >> 2);
       if (glm::any(glm::lessThan(v, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(v, n))) continue;
       const glm::dvec3 share = 1.0 - glm::abs(p - glm::dvec3(v));
-      sum += share.x * share.y * share.z * 6.0 * double(volume.values[volume.at(v.x, v.y, v.z)]);
+      sum += share.x * share.y * share.z * 6.0 * double(volume.scalar(v.x, v.y, v.z));
     }
     return sum;
   };

@@ -69,8 +69,7 @@ RaySum tinySteps(const Volume& volume, const Classification& classification, con
       if (glm::any(glm::lessThan(voxel, glm::ivec3(0)))) continue;
       if (glm::any(glm::greaterThanEqual(voxel, volume.dimensions))) continue;
       const double weight = (1.0 - away.x) * (1.0 - away.y) * (1.0 - away.z);
-      const ClassifiedVoxel material =
-          classify(classification, volume.values[volume.at(voxel.x, voxel.y, voxel.z)]);
+      const ClassifiedVoxel material = classify(classification, volume.scalars.at(voxel));
       extinction += weight * material.extinction;
       emitted += weight * material.extinction * material.color;
     }

@@ -147,7 +147,7 @@ TEST(ReferenceTable, ExtinctionFollowsTheClassification) {
   Classification classification;
   classification.densityScale = 2.5;
   EXPECT_EQ(referenceExtinction(volume, classification), (std::vector<double>{0.0, 0.0, 2.5}));
-  volume.values[2] = kInactiveVoxel;
+  volume.scalars.set({2, 0, 0}, kInactiveVoxel);
   EXPECT_EQ(referenceExtinction(volume, classification), (std::vector<double>{0.0, 0.0, 0.0}));
 }
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "engine/core/error.h"
+#include "engine/volume/procedural_fields.h"
 
 namespace freevoxels {
 namespace {
@@ -13,14 +14,14 @@ namespace {
 float valueAt(const Volume& volume, glm::dvec3 world) {
   const glm::dvec3 index = glm::inverse(volume.indexToWorld) * glm::dvec4(world, 1.0);
   const glm::ivec3 voxel = glm::ivec3(glm::round(index));
-  const float value = volume.values[volume.at(voxel.x, voxel.y, voxel.z)];
+  const float value = volume.scalar(voxel.x, voxel.y, voxel.z);
   return value == kInactiveVoxel ? 0.0f : value;
 }
 
 /// ∫ density dV.
 double mass(const Volume& volume) {
   double sum = 0.0;
-  for (const float value : volume.values)
+  for (const float value : denseScalars(volume))
     if (value != kInactiveVoxel) sum += value;
   return sum * std::pow(volume.voxelSize(), 3);
 }
@@ -36,28 +37,25 @@ TEST(Volume, CroppingKeepsEveryActiveVoxelInItsPlace) {
   EXPECT_EQ(volume.dimensions, glm::ivec3(4, 3, 1));
   EXPECT_EQ(volume.indexOrigin, glm::ivec3(2, 1, 4));
   EXPECT_EQ(volume.activeVoxels, before.activeVoxels);
-  EXPECT_EQ(volume.values[volume.at(1, 1, 0)], before.values[before.at(3, 2, 4)]);
+  EXPECT_EQ(volume.scalar(1, 1, 0), before.scalar(3, 2, 4));
   EXPECT_EQ(volume.indexToWorld * glm::dvec4(1, 1, 0, 1), before.indexToWorld * glm::dvec4(3, 2, 4, 1));
 }
 
 TEST(Volume, SummaryCountsActiveVoxelsOnly) {
-  Volume volume;
-  volume.dimensions = {6, 1, 1};
-  volume.values = {kInactiveVoxel, 3.0f, -2.0f, std::nanf(""), std::numeric_limits<float>::infinity(), 0.0f};
-  summariseValues(volume);
+  const std::array<float, 6> values{
+      kInactiveVoxel, 3.0f, -2.0f, std::nanf(""), std::numeric_limits<float>::infinity(), 0.0f};
+  const Volume volume =
+      makeVolume({6, 1, 1}, glm::dmat4(1.0), [&](int x, int, int) { return values[std::size_t(x)]; });
   EXPECT_EQ(volume.activeVoxels, 5u);
   EXPECT_EQ(volume.nanVoxels, 2u);
   EXPECT_EQ(volume.negativeVoxels, 1u);
   EXPECT_EQ(volume.minimum, -2.0f);
   EXPECT_EQ(volume.maximum, 3.0f);
-  EXPECT_EQ(volume.values, (std::vector<float>{kInactiveVoxel, 3, -2, 0, 0, 0}));
+  EXPECT_EQ(denseScalars(volume), (std::vector<float>{kInactiveVoxel, 3, -2, 0, 0, 0}));
 }
 
 TEST(Volume, SummaryOfNothingIsZero) {
-  Volume volume;
-  volume.dimensions = {2, 1, 1};
-  volume.values = {kInactiveVoxel, kInactiveVoxel};
-  summariseValues(volume);
+  const Volume volume = makeVolume({2, 1, 1}, glm::dmat4(1.0), [](int, int, int) { return kInactiveVoxel; });
   EXPECT_EQ(volume.activeVoxels, 0u);
   EXPECT_EQ(volume.minimum, 0.0f);
   EXPECT_EQ(volume.maximum, 0.0f);
@@ -88,19 +86,34 @@ TEST(Procedural, EveryKindFillsTheUnitCubeWithFiniteDensities) {
         EXPECT_NEAR(lastCorner[axis], 0.5, 1e-12);
       }
       EXPECT_TRUE(resolution == 1 || volume.activeVoxels > 0);
-      for (const float value : volume.values) ASSERT_NE(value, 0.0f) << "empty voxels are inactive";
+      for (const float value : denseScalars(volume)) ASSERT_NE(value, 0.0f) << "empty voxels are inactive";
     }
 }
 
 TEST(Procedural, KindsAreTheDocumentedOnes) {
   std::vector<std::string> names;
   for (const ProceduralKind& kind : proceduralKinds()) names.emplace_back(kind.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"cube", "cloud", "marschner-lobb", "shells", "rods", "head"}));
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"cube", "cloud", "plume", "marschner-lobb", "shells", "rods", "head"}));
 }
 
 TEST(Procedural, TheSameCommandMakesTheSameVolume) {
   for (const ProceduralKind& kind : proceduralKinds())
-    EXPECT_EQ(makeProcedural(kind.name, 33).values, makeProcedural(kind.name, 33).values) << kind.name;
+    EXPECT_EQ(denseScalars(makeProcedural(kind.name, 33)), denseScalars(makeProcedural(kind.name, 33)))
+        << kind.name;
+}
+
+/// Boxes that are nearly empty are filled only where something may be.
+TEST(Procedural, ThePlumeLosesNothingToTheBricksThatAreLeftOut) {
+  const int n = 72;
+  const Volume plume = makeProcedural("plume", n);
+  EXPECT_LT(plume.activeVoxels, std::uint64_t(n * n * n) / 15);
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        const float density = plumeDensity((glm::vec3(x, y, z) + 0.5f) / float(n) - 0.5f);
+        EXPECT_NEAR(std::max(plume.scalar(x, y, z), 0.0f), density, 1e-3) << x << "," << y << "," << z;
+      }
 }
 
 TEST(Procedural, TheCubeIsUniform) {
@@ -119,7 +132,7 @@ TEST(Procedural, MarschnerLobbFollowsItsFormula) {
     const double pi = std::numbers::pi;
     const double ripple = std::cos(2.0 * pi * 6.0 * std::cos(pi * radius / 2.0));
     const double expected = (1.0 - std::sin(pi * p.z / 2.0) + 0.25 * (1.0 + ripple)) / 2.5;
-    EXPECT_NEAR(volume.values[volume.at(voxel.x, voxel.y, voxel.z)], expected, 1e-5);
+    EXPECT_NEAR(volume.scalar(voxel.x, voxel.y, voxel.z), expected, 1e-5);
   }
 }
 
@@ -144,7 +157,7 @@ TEST(Procedural, RodsAreAFewVoxelsThick) {
   double thickness = 0.0;
   for (int x = 60; x < 68; ++x)
     for (int dy = -4; dy < 4; ++dy) {
-      const float value = rods.values[rods.at(x, y + dy, z)];
+      const float value = rods.scalar(x, y + dy, z);
       if (value != kInactiveVoxel) thickness += value;
     }
   EXPECT_NEAR(std::sqrt(thickness * 4.0 / std::numbers::pi), 1.8,
@@ -173,14 +186,13 @@ TEST(Procedural, TheCloudIsSoftAndFreeOfTheBoundary) {
   for (int z = 0; z < 64; ++z)
     for (int y = 0; y < 64; ++y) {
       for (const int x : {0, 63}) {
-        EXPECT_EQ(cloud.values[cloud.at(x, y, z)], kInactiveVoxel);
-        EXPECT_EQ(cloud.values[cloud.at(y, x, z)], kInactiveVoxel);
-        EXPECT_EQ(cloud.values[cloud.at(y, z, x)], kInactiveVoxel);
+        EXPECT_EQ(cloud.scalar(x, y, z), kInactiveVoxel);
+        EXPECT_EQ(cloud.scalar(y, x, z), kInactiveVoxel);
+        EXPECT_EQ(cloud.scalar(y, z, x), kInactiveVoxel);
       }
       for (int x = 1; x < 64; ++x)
-        largestStep =
-            std::max<double>(largestStep, std::abs(std::max(cloud.values[cloud.at(x, y, z)], 0.0f) -
-                                                   std::max(cloud.values[cloud.at(x - 1, y, z)], 0.0f)));
+        largestStep = std::max<double>(largestStep, std::abs(std::max(cloud.scalar(x, y, z), 0.0f) -
+                                                             std::max(cloud.scalar(x - 1, y, z), 0.0f)));
     }
   EXPECT_LT(largestStep, 0.9);
 }

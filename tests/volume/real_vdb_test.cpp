@@ -56,7 +56,7 @@ TEST(RealVdb, TheLevelSetSphereHasItsVolume) {
   if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
   const Volume volume = readVdb(file, "", kPlenty);
   double sum = 0.0;
-  for (const float value : volume.values)
+  for (const float value : denseScalars(volume))
     if (value != kInactiveVoxel) sum += value;
   // 125 voxels with a narrow band of 3 outside: the radius is 60 voxels up to the rounding of the box.
   EXPECT_NEAR(std::cbrt(sum * 3.0 / (4.0 * std::numbers::pi)), 60.0, 0.5);

@@ -53,8 +53,9 @@ inline Volume patchyVolume(glm::ivec3 dimensions, const glm::dmat4& indexToWorld
     const int number = (x * 7 + y * 13 + z * 29) % 11;
     return number == 0 ? kInactiveVoxel : 0.25f * float(number - 3);
   });
-  volume.values.front() = volume.values.back() =
-      1.0f;  // so that the box of the active voxels is the whole box
+  // So that the box of the active voxels is the whole box.
+  volume.scalars.set(glm::ivec3(0), 1.0f);
+  volume.scalars.set(dimensions - 1, 1.0f);
   summariseValues(volume);
   return volume;
 }

@@ -1,0 +1,38 @@
+#include "engine/volume/scalar_bricks.h"
+
+namespace freevoxels {
+
+ScalarBricks::ScalarBricks(glm::ivec3 dimensions, glm::ivec3 corner)
+    : dimensions_(dimensions),
+      corner_(corner),
+      cells3_((dimensions + corner + kEdge - 1) / kEdge),
+      numbers_(std::size_t(cells3_.x) * std::size_t(cells3_.y) * std::size_t(cells3_.z), -1) {}
+
+void ScalarBricks::reserve(std::size_t bricks) {
+  cells_.reserve(bricks);
+  bricks_.reserve(bricks);
+}
+
+ScalarBricks::Brick& ScalarBricks::makeBrick(glm::ivec3 cell) {
+  std::int32_t& number = numbers_[cellIndex(cell)];
+  if (number < 0) {
+    number = std::int32_t(bricks_.size());
+    cells_.push_back(cell);
+    bricks_.emplace_back().fill(kInactiveVoxel);
+  }
+  return bricks_[std::size_t(number)];
+}
+
+ScalarBricks ScalarBricks::cropped(glm::ivec3 low, glm::ivec3 high) const {
+  const glm::ivec3 place = low + corner_;
+  ScalarBricks result(high - low + 1, place % kEdge);
+  result.reserve(bricks_.size());
+  for (std::size_t i = 0; i < bricks_.size(); ++i) {
+    const glm::ivec3 cell = cells_[i] - place / kEdge;
+    if (glm::all(glm::greaterThanEqual(cell, glm::ivec3(0))) && glm::all(glm::lessThan(cell, result.cells3_)))
+      result.makeBrick(cell) = bricks_[i];
+  }
+  return result;
+}
+
+}  // namespace freevoxels

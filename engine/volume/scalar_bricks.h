@@ -1,0 +1,111 @@
+#pragma once
+// The scalars of a box of voxels, in bricks, of which only those take memory that hold data.
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "shaders/interface.h"
+
+namespace freevoxels {
+
+/// Marks voxels of the box that hold no data (inactive in OpenVDB): never drawn, whatever the classification.
+inline constexpr float kInactiveVoxel = -std::numeric_limits<float>::max();
+
+class ScalarBricks {
+ public:
+  static constexpr int kEdge = shader::kBrickEdge;
+  using Brick = std::array<float, std::size_t(kEdge) * kEdge * kEdge>;  ///< x fastest
+
+  ScalarBricks() = default;
+  /// Without data. The box's voxel (0,0,0) is voxel `corner` of its brick, 0 to kEdge - 1.
+  explicit ScalarBricks(glm::ivec3 dimensions, glm::ivec3 corner = glm::ivec3(0));
+  /// `scalarAt(voxel)` is called once for each voxel of the box, by several threads; but for those of bricks
+  /// of which `mayHoldData(its first voxel)` is false.
+  template <typename Function, typename Predicate>
+  static ScalarBricks make(glm::ivec3 dimensions, const Function& scalarAt, const Predicate& mayHoldData);
+  template <typename Function>
+  static ScalarBricks make(glm::ivec3 dimensions, const Function& scalarAt) {
+    return make(dimensions, scalarAt, [](glm::ivec3) { return true; });
+  }
+
+  const glm::ivec3& dimensions() const { return dimensions_; }
+  float at(glm::ivec3 voxel) const {
+    const glm::ivec3 place = voxel + corner_;
+    const std::int32_t number = numbers_[cellIndex(place / kEdge)];
+    return number < 0 ? kInactiveVoxel : bricks_[std::size_t(number)][indexInBrick(place % kEdge)];
+  }
+  /// Makes the voxel's brick, if it is not there.
+  void set(glm::ivec3 voxel, float scalar) {
+    const glm::ivec3 place = voxel + corner_;
+    makeBrick(place / kEdge)[indexInBrick(place % kEdge)] = scalar;
+  }
+  /// Brick `cell` of the box, made if it is not there; good until the next is made, or for as many bricks as
+  /// were reserved. Its voxels beyond the box must stay inactive.
+  Brick& makeBrick(glm::ivec3 cell);
+  void reserve(std::size_t bricks);
+
+  /// Those that are there, in the order in which they were made.
+  std::span<Brick> bricks() { return bricks_; }
+  std::span<const Brick> bricks() const { return bricks_; }
+  /// The place in the box of a brick's first voxel; less than 0 where the brick begins before the box.
+  glm::ivec3 firstVoxel(std::size_t brick) const { return cells_[brick] * kEdge - corner_; }
+  /// The same voxels in the box from `low` to `high`, beyond which there is no data.
+  ScalarBricks cropped(glm::ivec3 low, glm::ivec3 high) const;
+  /// On the host.
+  std::uint64_t bytes() const { return bytesOf(bricks_.size(), dimensions_); }
+  static std::uint64_t bytesOf(std::uint64_t bricks, glm::ivec3 dimensions) {
+    const glm::u64vec3 cells((dimensions + kEdge - 1) / kEdge);
+    return bricks * sizeof(Brick) + cells.x * cells.y * cells.z * sizeof(std::int32_t);
+  }
+
+  static std::size_t indexInBrick(glm::ivec3 place) {
+    return std::size_t(place.x + kEdge * (place.y + kEdge * place.z));
+  }
+
+ private:
+  std::size_t cellIndex(glm::ivec3 cell) const {
+    return std::size_t(cell.x) +
+           std::size_t(cells3_.x) * (std::size_t(cell.y) + std::size_t(cells3_.y) * std::size_t(cell.z));
+  }
+
+  glm::ivec3 dimensions_{0}, corner_{0}, cells3_{0};
+  std::vector<std::int32_t> numbers_;  ///< of the bricks by cell, -1 where there is none
+  std::vector<glm::ivec3> cells_;      ///< of the bricks
+  std::vector<Brick> bricks_;
+};
+
+template <typename Function, typename Predicate>
+ScalarBricks ScalarBricks::make(glm::ivec3 dimensions, const Function& scalarAt,
+                                const Predicate& mayHoldData) {
+  ScalarBricks result(dimensions);
+  const glm::ivec3 cells = result.cells3_;
+  // A layer at a time, so that the bricks are in the same order in every run.
+  std::vector<std::optional<Brick>> layer(std::size_t(cells.x) * std::size_t(cells.y));
+  for (int z = 0; z < cells.z; ++z) {
+    tbb::parallel_for(std::size_t(0), layer.size(), [&](std::size_t i) {
+      const glm::ivec3 first = glm::ivec3(int(i) % cells.x, int(i) / cells.x, z) * kEdge;
+      layer[i].reset();
+      if (!mayHoldData(first)) return;
+      const glm::ivec3 end = glm::min(dimensions - first, glm::ivec3(kEdge));
+      Brick& brick = layer[i].emplace();
+      brick.fill(kInactiveVoxel);
+      for (glm::ivec3 v(0); v.z < end.z; ++v.z)
+        for (v.y = 0; v.y < end.y; ++v.y)
+          for (v.x = 0; v.x < end.x; ++v.x) brick[indexInBrick(v)] = scalarAt(first + v);
+      if (std::ranges::all_of(brick, [](float scalar) { return scalar == kInactiveVoxel; })) layer[i].reset();
+    });
+    for (std::size_t i = 0; i < layer.size(); ++i)
+      if (layer[i]) result.makeBrick({int(i) % cells.x, int(i) / cells.x, z}) = *layer[i];
+  }
+  return result;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,68 @@
+// How much memory a picture takes, and --memory-limit.
+
+#include <nlohmann/json.hpp>
+
+#include "tests/commands/program_runner.h"
+
+namespace freevoxels::test {
+
+namespace {
+
+constexpr std::uint64_t kMiB = std::uint64_t(1) << 20;
+
+class MemoryLimit : public CommandTest {
+ protected:
+  /// Bytes on the device, at most, that a run said it had.
+  std::uint64_t devicePeak() const {
+    return nlohmann::json::parse(readBytes(folder / "t.json"))["memory_bytes"]["peak"];
+  }
+};
+
+}  // namespace
+
+TEST_F(MemoryLimit, IsKeptOrTheRunSaysWhatItNeeds) {
+  const std::string command = "render procedural:cloud --resolution 72 --size 200x150 --timings @t.json @";
+  expectSuccess(run(command + "free.exr"));
+  const std::uint64_t free = devicePeak();
+  int refused = 0, drawn = 0;
+  for (const std::uint64_t limit :
+       {std::uint64_t(1), free / kMiB / 2, free / kMiB, free / kMiB + 1, free / kMiB + 9}) {
+    SCOPED_TRACE(limit);
+    const ProgramResult result = run(command + fmt::format("limited.exr --memory-limit {}", limit));
+    if (result.exitCode == 0) {
+      ++drawn;
+      EXPECT_LE(devicePeak(), limit * kMiB);
+      EXPECT_EQ(readBytes(folder / "limited.exr"), readBytes(folder / "free.exr"));
+    } else {
+      ++refused;
+      expectRefusal(result, ExitCode::OutOfMemory, "--memory-limit");
+      EXPECT_NE(result.err.find("MiB of device memory"), std::string::npos) << result.err;
+    }
+  }
+  EXPECT_GE(refused, 2);
+  EXPECT_GE(drawn, 2);
+}
+
+TEST_F(MemoryLimit, BadValuesAreRefused) {
+  for (const char* value : {"0", "-1", "1.5", "much", "99999999999"})
+    expectCleanRefusal(std::string("render procedural:cube @a.png --memory-limit ") + value, ExitCode::Usage,
+                       "--memory-limit");
+}
+
+/// A box of which a twentieth is smoke.
+TEST_F(MemoryLimit, SparseSmokeIn512CubedTakesLessThanAGibibyteOfHostAndDevice) {
+  const ProgramResult result =
+      run("render procedural:plume --resolution 640 --size 160x160 --timings @t.json @a.exr");
+  expectSuccess(result);
+  const auto report = nlohmann::json::parse(readBytes(folder / "t.json"));
+  const double voxels = report["voxels"], visible = report["visible_voxels"];
+  EXPECT_GT(voxels, 512.0 * 512 * 512);
+  EXPECT_NEAR(visible / voxels, 0.05, 0.005);
+  if (report["device"]["type"] != "CPU") {
+    EXPECT_LT(devicePeak() + result.peakBytes, 1024 * kMiB);
+  } else {
+    EXPECT_LT(result.peakBytes, 1024 * kMiB);  // the device's memory is the host's
+  }
+}
+
+}  // namespace freevoxels::test

@@ -1,0 +1,69 @@
+#include "engine/volume/scalar_bricks.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace freevoxels {
+namespace {
+
+/// Data in a few voxels, far apart.
+float scalarOf(glm::ivec3 v) {
+  return (v.x * 31 + v.y * 17 + v.z * 7) % 97 == 0 ? float(v.x + 100 * v.y + 10000 * v.z) : kInactiveVoxel;
+}
+
+template <typename Visit>
+void forEachVoxel(glm::ivec3 size, const Visit& visit) {
+  for (glm::ivec3 v(0); v.z < size.z; ++v.z)
+    for (v.y = 0; v.y < size.y; ++v.y)
+      for (v.x = 0; v.x < size.x; ++v.x) visit(v);
+}
+
+TEST(ScalarBricks, KeepsEveryScalarWhereverTheBoxBeginsInItsFirstBrick) {
+  const glm::ivec3 size(19, 8, 33);
+  for (const glm::ivec3 corner : {glm::ivec3(0), glm::ivec3(7, 0, 3), glm::ivec3(7)}) {
+    ScalarBricks bricks(size, corner);
+    forEachVoxel(size, [&](glm::ivec3 v) {
+      EXPECT_EQ(bricks.at(v), kInactiveVoxel);
+      if (scalarOf(v) != kInactiveVoxel) bricks.set(v, scalarOf(v));
+    });
+    forEachVoxel(size, [&](glm::ivec3 v) { EXPECT_EQ(bricks.at(v), scalarOf(v)); });
+    for (std::size_t i = 0; i < bricks.bricks().size(); ++i)
+      EXPECT_EQ((bricks.firstVoxel(i) + corner) % ScalarBricks::kEdge, glm::ivec3(0));
+  }
+}
+
+TEST(ScalarBricks, OnlyBricksWithDataTakeMemory) {
+  const glm::ivec3 size(64);
+  const ScalarBricks bricks = ScalarBricks::make(
+      size, [](glm::ivec3 v) { return v.x < 8 && v.y >= 56 && v.z / 8 == 3 ? 1.0f : kInactiveVoxel; });
+  EXPECT_EQ(bricks.bricks().size(), 1u);
+  EXPECT_EQ(bricks.firstVoxel(0), glm::ivec3(0, 56, 24));
+  EXPECT_LT(bricks.bytes(), 64u * 64 * 64 * sizeof(float) / 100);
+}
+
+TEST(ScalarBricks, AFunctionFillsTheSameBricksInEveryRun) {
+  const glm::ivec3 size(35, 41, 20);
+  const ScalarBricks bricks = ScalarBricks::make(size, scalarOf);
+  forEachVoxel(size, [&](glm::ivec3 v) { ASSERT_EQ(bricks.at(v), scalarOf(v)); });
+  const ScalarBricks again = ScalarBricks::make(size, scalarOf);
+  ASSERT_EQ(again.bricks().size(), bricks.bricks().size());
+  for (std::size_t i = 0; i < bricks.bricks().size(); ++i) {
+    EXPECT_EQ(again.firstVoxel(i), bricks.firstVoxel(i));
+    EXPECT_EQ(again.bricks()[i], bricks.bricks()[i]);
+  }
+}
+
+TEST(ScalarBricks, CroppingKeepsTheScalarsOfTheRest) {
+  const glm::ivec3 size(30, 21, 26), low(5, 8, 9), high(28, 15, 17);
+  const ScalarBricks bricks = ScalarBricks::make(size, [&](glm::ivec3 v) {
+    return glm::all(glm::greaterThanEqual(v, low)) && glm::all(glm::lessThanEqual(v, high)) ? scalarOf(v)
+                                                                                            : kInactiveVoxel;
+  });
+  const ScalarBricks cropped = bricks.cropped(low, high);
+  EXPECT_EQ(cropped.dimensions(), high - low + 1);
+  forEachVoxel(cropped.dimensions(), [&](glm::ivec3 v) { EXPECT_EQ(cropped.at(v), scalarOf(low + v)); });
+}
+
+}  // namespace
+}  // namespace freevoxels
