@@ -57,8 +57,9 @@ std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source) {
   return bytes;
 }
 
-RaySweep::RaySweep(const Device& device)
+RaySweep::RaySweep(const Device& device, const char* name)
     : device_(device),
+      name_(name),
       pipeline_(makeComputePipeline(device, {ray_sweep_spv, "ray sweep"},
                                     {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
                                      .pushConstantBytes = sizeof(shader::RaySweepPush)},
@@ -77,7 +78,7 @@ void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RayS
   const std::array<RayFan, 6> fans = rayFans(volume.layout.dimensions, source);
   makeRoom(volume.layout.dimensions, source);
 
-  commands.beginPass("ray sweep");
+  commands.beginPass(name_);
   VkDeviceAddress address = depths_.address();
   for (std::size_t i = 0; i < fans.size(); ++i) {
     fans_[i] = deviceFan(fans[i], address);

@@ -17,7 +17,8 @@ std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source);
 /// COMPUTE ray_sweep.comp
 class RaySweep {
  public:
-  explicit RaySweep(const Device& device);
+  /// Its time is that of the pass `name`.
+  explicit RaySweep(const Device& device, const char* name = "ray sweep");
 
   /// For the depths of this source, which may take no more than `mostBytes`: fails with
   /// ExitCode::OutOfMemory where there is none. No work may be under way on those of the last source.
@@ -33,6 +34,7 @@ class RaySweep {
 
  private:
   const Device& device_;
+  const char* name_;
   Pipeline pipeline_;
   Buffer depths_;  ///< uint: codes of planes 2k and 2k + 1; by fan, k and ray
   std::array<shader::RayFan, 6> fans_{};

@@ -62,7 +62,7 @@ void LightPass::setRays(Commands& commands, const DeviceVolume& volume, std::vec
   for (const Light& light : placed_->lights) sources.push_back(lightSource(light, volume.indexToWorld));
   checkRaysFit(device_, volume.layout.dimensions, sources);
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    RaySweep& sweep = rays_.emplace_back(device_);
+    RaySweep& sweep = rays_.emplace_back(device_, "light sweep");
     sweep.record(commands, volume, sources[i]);
     std::ranges::copy(sweep.fans(), lights[i].fans);
   }
@@ -91,7 +91,7 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
     Commands commands(device_);
     const std::vector<shader::Light> lights = place(commands, volume, set);
     commands.submitAndWait();
-    std::ranges::copy(commands.times(), std::back_inserter(times));
+    addTimes(times, commands.times());
     const auto bytes = std::as_bytes(std::span(lights));
     lights_ = Buffer(device_, std::max<VkDeviceSize>(bytes.size(), 4), MemoryUse::Device, "lights");
     upload(device_, lights_, bytes);

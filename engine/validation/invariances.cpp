@@ -111,6 +111,15 @@ Check checkRunToRun(const Frame& frame, StageOutputs& first, const TableBytes& t
   return worst.atMost(0.0, "run to run: the same bits");
 }
 
+Check checkSlabs(const TableBytes& table, const TableBytes& ofSlabs) {
+  FV_CHECK_EQ(table.size(), ofSlabs.size());
+  Worst worst;
+  for (int d = 0; d < kLatticeStepCount; ++d)
+    worst.take(table[std::size_t(d)] == ofSlabs[std::size_t(d)] ? 0.0 : 1.0,
+               [&] { return directionText(kLatticeSteps, d); });
+  return worst.atMost(0.0, "slabs of eight planes: the same table, bit for bit");
+}
+
 /// Optical depths that a depth8 byte stands for are this far from the byte's own: half a code, and rounding.
 double codeWidth(int byte) {
   const double next = byte + 0.501;
@@ -198,11 +207,12 @@ void checkAxes(const Frame& frame, const TableBytes& table, const Image& picture
 }  // namespace
 
 ReportSection invariances(const Device& device, const ValidationScene& scene, glm::ivec2 size) {
-  ReportSection section{.title = fmt::format("Invariances: {}", scene.name),
-                        .text =
-                            "What must change nothing but rounding: the order in which voxels are drawn, "
-                            "drawing them in groups apart, running again, and the axes that the same "
-                            "field is stored along."};
+  ReportSection section{
+      .title = fmt::format("Invariances: {}", scene.name),
+      .text =
+          "What must change nothing but rounding: the order in which voxels are drawn, "
+          "drawing them in groups apart, sweeping slab by slab, running again, and the axes that the same "
+          "field is stored along."};
   const Frame frame{
       .device = device,
       .scene = scene,
@@ -216,6 +226,7 @@ ReportSection invariances(const Device& device, const ValidationScene& scene, gl
     const SteppedVolume steps = prepareSteps(device, scene.volume, scene.classification, {});
     checkOrder(frame, steps, sums, section);
     checkGroups(frame, steps, picture, section);
+    section.checks.push_back(checkSlabs(table, sweepThinSlabs(device, steps)));
   }
   section.checks.push_back(checkRunToRun(frame, *outputs, table, picture));
   section.checks.push_back(checkOpposites(scene.volume, outputs->extinction(), table));

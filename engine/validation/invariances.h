@@ -1,6 +1,6 @@
 #pragma once
-// What must not change the outcome: the order of the voxels, how they are grouped, running again, the axes
-// that the field is stored along.
+// What must not change the outcome: the order of the voxels, how they are grouped, the slabs of the sweeps,
+// running again, the axes that the field is stored along.
 
 #include "engine/validation/report.h"
 #include "engine/validation/validation_scene.h"

@@ -4,6 +4,7 @@
 
 #include "engine/core/error.h"
 #include "engine/hierarchy/volume_builder.h"
+#include "engine/hierarchy/volume_memory.h"
 #include "engine/splatting/sums_readback.h"
 
 namespace freevoxels {
@@ -43,6 +44,18 @@ SteppedVolume prepareSteps(const Device& device, const Volume& volume, const Cla
   commands.submitAndWait();
   steps.voxels = downloadVisibleVoxels(device, steps.visible);
   return steps;
+}
+
+std::vector<std::vector<std::uint8_t>> sweepThinSlabs(const Device& device, const SteppedVolume& steps) {
+  const TableSettings& settings = steps.table.settings;
+  SweepStyle style = sweepStyle(device);
+  style.mostSlabBytes = 0;
+  AttenuationSweep sweep(device, settings, style);
+  const AttenuationTable table = makeTable(device, steps.volume, settings);
+  Commands commands(device);
+  sweep.record(commands, steps.volume, table);
+  commands.submitAndWait();
+  return downloadTable(device, steps.volume, table);
 }
 
 std::vector<SplatSums> drawVoxels(const Device& device, const SteppedVolume& steps,

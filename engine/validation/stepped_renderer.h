@@ -26,6 +26,10 @@ struct SteppedVolume {
 SteppedVolume prepareSteps(const Device& device, const Volume& volume, const Classification& classification,
                            const TableSettings& table);
 
+/// The same table again, swept in the thinnest slabs there are: bytes [direction][voxel] as downloadTable has
+/// them.
+std::vector<std::vector<std::uint8_t>> sweepThinSlabs(const Device& device, const SteppedVolume& steps);
+
 /// The sums of just these voxels (padded indices), drawn in this order. No more than are active.
 std::vector<SplatSums> drawVoxels(const Device& device, const SteppedVolume& steps,
                                   std::span<const std::uint32_t> voxels, const Camera& camera,
