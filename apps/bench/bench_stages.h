@@ -35,8 +35,7 @@ Result compaction(const Device& device, int resolution, int runs);
 /// Half a million splats of `pixels` x `pixels` into 1024 x 1024 pixels; splats a second.
 Result splats(const Device& device, double pixels, int runs);
 
-/// Everything from a volume in memory to the picture in memory, at 1024 x 1024 pixels, beside a copy of 27 bytes for
-/// each active voxel.
+/// Everything from a volume in memory to the picture in memory, at 1024 x 1024 pixels.
 Result wholeRender(const Device& device, const InputOptions& input, int runs);
 
 /// A frame of a flight through procedural:cloud at `resolution`³ at 512 x 512 pixels: the mean of those with

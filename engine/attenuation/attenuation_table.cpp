@@ -128,7 +128,7 @@ void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume, co
   const std::uint64_t own = extinction_.bytes() + keptDepths_.bytes();
   makeRoom(planSweep(volume.layout, settings_.directions, style_, device_.availableBytes() + own));
   constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-  const int planes = volume.layout.dimensions.z, halo = halves_ ? 1 : 0;
+  const int planes = volume.layout.dimensions.z;
   SlabSweep sweep{.commands = commands,
                   .volume = volume,
                   .table = table,
@@ -139,8 +139,8 @@ void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume, co
     sweep.slab = slab;
     sweep.kept = 0;
     if (slab.upwards || slab.count() < planes) {
-      const int low = std::max(slab.lowest(planes) - halo, 0);
-      const int high = std::min(slab.lowest(planes) + slab.count() + halo, planes);
+      const int low = std::max(slab.lowest(planes) - plan_.halo, 0);
+      const int high = std::min(slab.lowest(planes) + slab.count() + plan_.halo, planes);
       commands.beginPass("expand voxels");
       sweep.firstQuad = int(expand_.record(commands, volume, low, high - low, extinction_) / 4);
     }

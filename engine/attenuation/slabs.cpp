@@ -37,6 +37,7 @@ std::uint64_t keptBytesOf(const GridLayout& layout, DirectionSet set, int voxels
 
 }  // namespace
 
+// kExtraLines of line_bundle.glsl beside the voxels.
 int linesPerThread(int voxelsPerThread, int stepX) {
   const int size = std::abs(stepX), phases = size == 0 ? 1 : size == 1 ? 4 : 2;
   return voxelsPerThread + size * (phases - 1);
@@ -54,14 +55,18 @@ SweepPlan planSweep(const GridLayout& layout, DirectionSet directions, const Swe
   const std::uint64_t whole = slabBytesOf(layout, directions, planes);
   const std::uint64_t wish = std::min(
       std::max(style.slabBytes, slabBytesOf(layout, directions, kFewestPlanes)), style.mostSlabBytes);
-  if (whole <= std::min(wish, bytes)) return {.planesPerSlab = planes, .slabBytes = whole};
+  const SweepPlan oneSlab{.planesPerSlab = planes, .halo = haloOf(directions), .slabBytes = whole};
+  if (whole <= std::min(wish, bytes)) return oneSlab;
   const std::uint64_t kept = keptBytesOf(layout, directions, style.voxelsPerThread);
   const std::uint64_t most = std::min(wish, bytes - std::min(bytes, kept));
   int perSlab = kSlabAlignment;
   while (perSlab < planes && slabBytesOf(layout, directions, perSlab + kSlabAlignment) <= most)
     perSlab += kSlabAlignment;
-  if (perSlab >= planes) return {.planesPerSlab = planes, .slabBytes = whole};
-  return {.planesPerSlab = perSlab, .slabBytes = slabBytesOf(layout, directions, perSlab), .keptBytes = kept};
+  if (perSlab >= planes) return oneSlab;
+  return {.planesPerSlab = perSlab,
+          .halo = oneSlab.halo,
+          .slabBytes = slabBytesOf(layout, directions, perSlab),
+          .keptBytes = kept};
 }
 
 std::vector<Slab> SweepPlan::slabs(int planes) const {

@@ -29,6 +29,7 @@ struct Slab {
 /// How a volume is swept. Bytes are of floats.
 struct SweepPlan {
   int planesPerSlab = 0;
+  int halo = 0;                 ///< planes beyond either end of a slab that its sweeps look at
   std::uint64_t slabBytes = 0;  ///< a slab's extinction
   std::uint64_t keptBytes = 0;  ///< the depths of lines between slabs; 0 where one slab is all
 

@@ -32,7 +32,7 @@ void checkRaysFit(const Device& device, glm::ivec3 dimensions, std::span<const R
     bytes += rayBytes(dimensions, source);
     largest = std::max(largest, rayBytes(dimensions, source));
   }
-  const std::uint64_t memory = device.description().memoryBytes;
+  const std::uint64_t memory = device.availableBytes();
   const std::uint64_t piece = std::min(std::uint64_t(device.maximumAllocation()), memory);
   if (bytes > memory || largest > piece)
     fail(ExitCode::OutOfMemory,

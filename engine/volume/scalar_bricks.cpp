@@ -5,8 +5,8 @@ namespace freevoxels {
 ScalarBricks::ScalarBricks(glm::ivec3 dimensions, glm::ivec3 corner)
     : dimensions_(dimensions),
       corner_(corner),
-      cells3_((dimensions + corner + kEdge - 1) / kEdge),
-      numbers_(std::size_t(cells3_.x) * std::size_t(cells3_.y) * std::size_t(cells3_.z), -1) {}
+      cellCount_((dimensions + corner + kEdge - 1) / kEdge),
+      numbers_(std::size_t(cellCount_.x) * std::size_t(cellCount_.y) * std::size_t(cellCount_.z), -1) {}
 
 void ScalarBricks::reserve(std::size_t bricks) {
   cells_.reserve(bricks);
@@ -29,7 +29,8 @@ ScalarBricks ScalarBricks::cropped(glm::ivec3 low, glm::ivec3 high) const {
   result.reserve(bricks_.size());
   for (std::size_t i = 0; i < bricks_.size(); ++i) {
     const glm::ivec3 cell = cells_[i] - place / kEdge;
-    if (glm::all(glm::greaterThanEqual(cell, glm::ivec3(0))) && glm::all(glm::lessThan(cell, result.cells3_)))
+    if (glm::all(glm::greaterThanEqual(cell, glm::ivec3(0))) &&
+        glm::all(glm::lessThan(cell, result.cellCount_)))
       result.makeBrick(cell) = bricks_[i];
   }
   return result;

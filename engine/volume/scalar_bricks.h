@@ -72,11 +72,11 @@ class ScalarBricks {
 
  private:
   std::size_t cellIndex(glm::ivec3 cell) const {
-    return std::size_t(cell.x) +
-           std::size_t(cells3_.x) * (std::size_t(cell.y) + std::size_t(cells3_.y) * std::size_t(cell.z));
+    return std::size_t(cell.x) + std::size_t(cellCount_.x) *
+                                     (std::size_t(cell.y) + std::size_t(cellCount_.y) * std::size_t(cell.z));
   }
 
-  glm::ivec3 dimensions_{0}, corner_{0}, cells3_{0};
+  glm::ivec3 dimensions_{0}, corner_{0}, cellCount_{0};
   std::vector<std::int32_t> numbers_;  ///< of the bricks by cell, -1 where there is none
   std::vector<glm::ivec3> cells_;      ///< of the bricks
   std::vector<Brick> bricks_;
@@ -86,7 +86,7 @@ template <typename Function, typename Predicate>
 ScalarBricks ScalarBricks::make(glm::ivec3 dimensions, const Function& scalarAt,
                                 const Predicate& mayHoldData) {
   ScalarBricks result(dimensions);
-  const glm::ivec3 cells = result.cells3_;
+  const glm::ivec3 cells = result.cellCount_;
   // A layer at a time, so that the bricks are in the same order in every run.
   std::vector<std::optional<Brick>> layer(std::size_t(cells.x) * std::size_t(cells.y));
   for (int z = 0; z < cells.z; ++z) {
