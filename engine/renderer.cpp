@@ -5,6 +5,7 @@
 #include <span>
 
 #include "engine/attenuation/attenuation_table.h"
+#include "engine/attenuation/seen_runs.h"
 #include "engine/core/error.h"
 #include "engine/hierarchy/cut_pass.h"
 #include "engine/hierarchy/level_passes.h"
@@ -52,8 +53,10 @@ struct Renderer::State {
 
 VolumeMemory Renderer::State::memoryOfVolume() const {
   const DeviceVolume& volume = built.volume;
-  return volumeMemory(volume.hierarchy, volume.stored, tableSettings.directions, volume.hasColors(),
-                      sweepStyle(device));
+  VolumeMemory memory = volumeMemory(volume.hierarchy, volume.stored, tableSettings.directions,
+                                     volume.hasColors(), sweepStyle(device));
+  if (table) memory.unseen = memory.table - std::min(memory.table, table->bytes());
+  return memory;
 }
 
 /// Made when a frame reads it first; its time is that frame's.
@@ -70,15 +73,16 @@ const AttenuationTable& Renderer::State::sweptTable(const Progress& progress) {
 
 /// Its levels are made when a frame first may draw a block.
 const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progress) {
-  const AttenuationTable& swept = sweptTable(progress);
-  if (!largestDepths.empty()) return swept;
+  sweptTable(progress);
+  if (!largestDepths.empty()) return *table;
   const TableLevels pass(device, tableSettings);
   Commands commands(device);
-  pass.record(commands, built.volume, built.lists.coarse, swept);
+  pass.record(commands, built.volume, built.lists.coarse, *table);
   commands.submitAndWait(progress);
   addTimes(frameTimes, commands.times());
-  largestDepths = downloadLargestDepths(device, swept);
-  return swept;
+  leaveOutUnseen(device, *table, frameTimes);
+  largestDepths = downloadLargestDepths(device, *table);
+  return *table;
 }
 
 /// The splats of a frame. What the table calls hidden comes after the rest, where it is not covered.

@@ -33,8 +33,8 @@ layout(scalar, binding = 7) buffer Counts { CutCounts counts; };
 layout(scalar, binding = 8) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
 layout(scalar, binding = 9) readonly buffer Tiles { uint tiles[]; };
 #define PLANE_ADDRESS(cell) planeAddresses[cell]
-#include "direction_lookup.glsl"
 #include "rank.glsl"
+#include "direction_lookup.glsl"
 #include "occupancy.glsl"
 #include "cut_slot.glsl"
 #include "dark_block.glsl"

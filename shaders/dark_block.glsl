@@ -49,9 +49,10 @@ bool findAround(vec3 toEye, int major, int level, out Around around) {
 
 // Whether no voxel of a block that holds anything sends more than the threshold towards these directions.
 bool isDark(uint bound, Around around) {
+  const uint place = codePlace(frame.cells, bound);
   bool dark = true;
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    const uint code = bitfieldExtract(CodePlane(around.planes[i]).words[bound / 4], int(bound & 3) * 8, 8);
+    const uint code = codeAt(around.planes[i], place);
     if (decodeDepth(kCode, code) < around.depths[i]) dark = false;
     // Between 0 and 1 depths jump so much that a splat next to both may shine at its rim.
     if (kCode == kCodeLinear8 && code != 0) dark = false;

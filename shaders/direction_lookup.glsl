@@ -1,10 +1,12 @@
 // Optical depth from a block towards a general direction, from the directions of the table: Subr et al. 2007,
-// Section 3.3, there with the nearest one. Include after interface.h, major_axis.glsl and attenuation_code.glsl, and define
-// PLANE_ADDRESS(cell) as the device address of the codes of the direction with that cell number.
+// Section 3.3, there with the nearest one. Include after interface.h, major_axis.glsl, attenuation_code.glsl and rank.glsl,
+// and define PLANE_ADDRESS(cell) as the device address of the codes of the direction with that cell number; behind the
+// last cell that of the runs of blocks that can be seen, 0 where the codes of all are kept.
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer CodePlane { uint words[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SeenRuns { OccupancyWord words[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer DepthsBeyond { float layers[]; };
 
 struct Towards {
@@ -25,15 +27,28 @@ int cellNumber(int cells, ivec3 cell) {
   return cell.x + cells + edge * (cell.y + cells + edge * (cell.z + cells));
 }
 
-uint storedCode(Towards towards, ivec3 cell, uint rank) {
-  const uint word = CodePlane(PLANE_ADDRESS(cellNumber(towards.cells, cell))).words[rank / 4];
-  return bitfieldExtract(word, int(rank & 3) * 8, 8);
+// Where in a plane the code of a block is: those of runs that cannot be seen share the first one's.
+uint codePlace(int cells, uint rank) {
+  const uvec2 runs = PLANE_ADDRESS(cellNumber(cells, ivec3(cells)) + 1);
+  if (runs == uvec2(0)) return rank;
+  const OccupancyWord word = SeenRuns(runs).words[rank / (kRunBlocks * kBlocksPerWord)];
+  const int bit = int(rank / kRunBlocks % kBlocksPerWord);
+  const uint run = (word.mask >> bit & 1u) != 0 ? rankIn(uvec2(word.mask, word.before), bit) : 0;
+  return kRunBlocks * run + rank % kRunBlocks;
+}
+
+uint codeAt(uvec2 plane, uint place) {
+  return bitfieldExtract(CodePlane(plane).words[place / 4], int(place & 3) * 8, 8);
+}
+
+uint storedCode(Towards towards, ivec3 cell, uint place) {
+  return codeAt(PLANE_ADDRESS(cellNumber(towards.cells, cell)), place);
 }
 
 // As if the line along the stored direction were as long as the one that is asked for: a homogeneous medium
 // is exact in every direction.
-float storedDepth(Towards towards, ivec3 cell, uint rank) {
-  const float depth = decodeDepth(towards.code, storedCode(towards, cell, rank));
+float storedDepth(Towards towards, ivec3 cell, uint place) {
+  const float depth = decodeDepth(towards.code, storedCode(towards, cell, place));
   if (!towards.pathLengthCorrection) return depth;
   return depth * towards.layer * float(towards.cells) / length(towards.indexToWorld * vec3(cell));
 }
@@ -44,23 +59,24 @@ float depthBeyond(Towards towards, ivec3 cell) {
   return DepthsBeyond(towards.beyond).layers[cellNumber(towards.cells, cell)] * towards.countedLength;
 }
 
-float depthUpTo(Towards towards, ivec3 cell, uint rank) {
-  return max(storedDepth(towards, cell, rank) - depthBeyond(towards, cell), 0.0);
+float depthUpTo(Towards towards, ivec3 cell, uint place) {
+  return max(storedDepth(towards, cell, place) - depthBeyond(towards, cell), 0.0);
 }
 
 // Whether a stored depth is the largest there is: the depth itself may be any larger one, and is the same a layer before.
-bool isAtEnd(Towards towards, ivec3 cell, uint rank) {
-  return storedCode(towards, cell, rank) == (towards.code == kCodeLinear8 ? 0 : 255);
+bool isAtEnd(Towards towards, ivec3 cell, uint place) {
+  return storedCode(towards, cell, place) == (towards.code == kCodeLinear8 ? 0 : 255);
 }
 
 // Between four directions of the table. Transmittances are interpolated, not depths: one dark direction would
 // darken all. `falling`: what part of the transmittance grows towards the eye by what a layer takes from it.
 float depthTowards(Towards towards, uint rank, out float falling) {
+  const uint place = codePlace(towards.cells, rank);
   // A division may round to just beyond 1.
   const vec3 point = clamp(towards.direction, -1.0, 1.0) * towards.cells;
   if (towards.lookup == kLookupNearest) {
-    falling = isAtEnd(towards, ivec3(round(point)), rank) ? 0.0 : 1.0;
-    return depthUpTo(towards, ivec3(round(point)), rank);
+    falling = isAtEnd(towards, ivec3(round(point)), place) ? 0.0 : 1.0;
+    return depthUpTo(towards, ivec3(round(point)), place);
   }
   const vec3 low = floor(min(point, 0.999999 * towards.cells));
   const vec3 weight = point - low;
@@ -76,9 +92,9 @@ float depthTowards(Towards towards, uint rank, out float falling) {
       cell[a] = int(low[a]) + i;
       cell[b] = int(low[b]) + j;
       const float share = (i == 0 ? 1.0 - weight[a] : weight[a]) * (j == 0 ? 1.0 - weight[b] : weight[b]);
-      const float transmittance = share * exp(-depthUpTo(towards, cell, rank));
+      const float transmittance = share * exp(-depthUpTo(towards, cell, place));
       sum += transmittance;
-      if (!isAtEnd(towards, cell, rank)) ofFalling += transmittance;
+      if (!isAtEnd(towards, cell, place)) ofFalling += transmittance;
     }
   }
   falling = ofFalling / sum;

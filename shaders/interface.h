@@ -38,6 +38,10 @@ FV_CONSTANT int kResolveTile = 8;
 FV_CONSTANT int kLevelThreads = 64;
 FV_CONSTANT int kDirectionsPerLevelPass = 7;  // share what they ask of the children's occupancy
 
+// Blocks in a row of their ranks whose codes in the table are kept, or are not, together.
+FV_CONSTANT int kRunBlocks = 8;
+FV_CONSTANT int kRunThreads = 64;
+
 // Levels of the octree: more than any volume has whose voxels 32 bits can number.
 FV_CONSTANT int kMaximumLevels = 32;
 
@@ -187,6 +191,13 @@ struct TableLevelPush {
   uint parentCount;    // blocks of the parent level that hold anything
   uint boundsOffset;   // the bound of a block follows its code by this many blocks
   uint firstDirection, directionCount;  // in the order of directions.h
+};
+
+// seen_runs.comp and keep_runs.comp
+struct RunsPush {
+  uint runCount;
+  uint cellCount;  // that could be directions
+  uint darkest;    // four codes that say that no light comes through
 };
 
 // cut_select.comp, what is the same for all levels of a frame. Positions are relative to the volume's middle.

@@ -93,12 +93,13 @@ vec3 scatteredFrom(int light, SeenBlock seen) {
 float reachingFromAll(SeenBlock seen) {
   const Towards towards = towardsSource(vec3(0.0, 0.0, 1.0), kLookupBilinear, uvec2(0));
   const int edge = 2 * frame.cells + 1;
+  const uint place = codePlace(frame.cells, seen.rank);
   float sum = 0.0;
   for (int i = 0; i < edge * edge * edge; ++i) {
     if (frame.lighting.shares[i] == 0.0) continue;  // no direction: inside of the cube
     const ivec3 cell = ivec3(i % edge, i / edge % edge, i / edge / edge) - frame.cells;
-    const float depth = decodeDepth(frame.code, storedCode(towards, cell, seen.rank));
-    const float falling = isAtEnd(towards, cell, seen.rank) ? 0.0 : 1.0;
+    const float depth = decodeDepth(frame.code, storedCode(towards, cell, place));
+    const float falling = isAtEnd(towards, cell, place) ? 0.0 : 1.0;
     const vec3 direction = vec3(cell) / float(frame.cells);
     const vec3 way = normalize(frame.indexToWorld * direction);
     sum += frame.lighting.shares[i] * reaching(seen, direction, way, depth, falling);

@@ -24,9 +24,9 @@ layout(scalar, binding = 9) readonly buffer Occupancy { OccupancyWord occupancy[
 layout(scalar, binding = 10) readonly buffer Lights { Light lights[]; };
 #define PLANE_ADDRESS(cell) planeAddresses[cell]
 #include "major_axis.glsl"
+#include "stored_block.glsl"
 #include "direction_lookup.glsl"
 #include "ray_lookup.glsl"
-#include "stored_block.glsl"
 #include "block_at.glsl"
 #include "block_depth.glsl"
 #include "depth_to_eye.glsl"

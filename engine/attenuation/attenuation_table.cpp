@@ -5,6 +5,7 @@
 
 #include "embedded/attenuation_sweep.h"
 #include "embedded/attenuation_sweep_x.h"
+#include "engine/attenuation/seen_runs.h"
 #include "engine/core/error.h"
 #include "engine/hierarchy/volume_memory.h"
 #include "shaders/interface.h"
@@ -69,26 +70,40 @@ Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Speciali
 
 AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, const TableSettings& settings) {
   checkTableFits(device, volume, settings.directions);
-  // Look-ups read whole words.
-  const std::uint64_t bytes = std::max<std::uint64_t>((volume.planeBytes() + 3) / 4 * 4, 4);
+  // Whole runs.
+  const std::uint64_t bytes = std::max<std::uint64_t>(
+      (volume.planeBytes() + shader::kRunBlocks - 1) / shader::kRunBlocks * shader::kRunBlocks,
+      shader::kRunBlocks);
   AttenuationTable table{.settings = settings};
   const DirectionSet set = settings.directions;
-  const int edge = 2 * int(set) + 1;
-  std::vector<VkDeviceAddress> addresses(std::size_t(edge * edge * edge), 0);
   for (int i = 0; i < directionCount(set); ++i) {
     const glm::dvec3 d = directionAt(set, i);
     const std::string name = fmt::format("attenuation {},{},{}", d.x, d.y, d.z);
     table.planes.emplace_back(device, bytes, MemoryUse::Device, name.c_str(),
                               VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     table.planeTexels.emplace_back(device, table.planes.back(), VK_FORMAT_R8_UINT);
-    addresses[std::size_t(cellNumber(set, directionCell(set, i)))] = table.planes.back().address();
   }
-  const std::span<const std::byte> list = std::as_bytes(std::span(addresses));
-  table.planeAddresses = Buffer(device, list.size(), MemoryUse::Device, "attenuation addresses");
-  upload(device, table.planeAddresses, list);
+  table.planeAddresses = Buffer(device, (std::size_t(cellCount(set)) + 1) * sizeof(VkDeviceAddress),
+                                MemoryUse::Device, "attenuation addresses");
+  table.uploadAddresses(device);
   table.darkest =
       Buffer(device, table.planes.size() * sizeof(std::uint32_t), MemoryUse::Device, "darkest codes");
   return table;
+}
+
+void AttenuationTable::uploadAddresses(const Device& device) const {
+  const DirectionSet set = settings.directions;
+  std::vector<VkDeviceAddress> addresses(std::size_t(cellCount(set)) + 1, 0);
+  for (int i = 0; i < directionCount(set); ++i)
+    addresses[std::size_t(cellNumber(set, directionCell(set, i)))] = planes[std::size_t(i)].address();
+  addresses.back() = seenRuns.address();
+  upload(device, planeAddresses, std::as_bytes(std::span(addresses)));
+}
+
+std::uint64_t AttenuationTable::bytes() const {
+  std::uint64_t sum = seenRuns.bytes();
+  for (const Buffer& plane : planes) sum += plane.bytes();
+  return sum;
 }
 
 AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings)
@@ -185,12 +200,10 @@ std::vector<std::vector<std::uint8_t>> downloadPlanes(const Device& device, cons
                                                       VkDeviceSize first) {
   const std::vector<std::uint32_t> blocks = downloadStored(device, volume, level);
   const std::uint64_t count = volume.hierarchy.levels[std::size_t(level)].voxels();
-  std::vector<std::uint8_t> stored(blocks.size());
+  const SeenRuns runs = downloadSeenRuns(device, table);
   std::vector<std::vector<std::uint8_t>> result;
-  for (const Buffer& plane : table.planes) {
-    download(device, plane, std::as_writable_bytes(std::span(stored)), first);
-    result.push_back(spreadOut(stored, blocks, count));
-  }
+  for (const Buffer& plane : table.planes)
+    result.push_back(spreadOut(downloadCodes(device, plane, runs, first, blocks.size()), blocks, count));
   return result;
 }
 

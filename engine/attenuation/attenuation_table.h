@@ -19,11 +19,20 @@ struct AttenuationTable {
   /// One byte a direction and block that holds anything, of all levels, by rank (device_volume.h), of which
   /// AttenuationSweep fills the voxels'; then the blocks' bounds. Directions in the order of directions.h.
   std::vector<Buffer> planes;
-  std::vector<TexelView> planeTexels;  ///< a byte of a plane a texel
-  Buffer planeAddresses;  ///< the planes' device addresses by cellNumber, 0 where a cell is no direction
+  std::vector<TexelView> planeTexels;  ///< a byte of a plane a texel; while all codes are kept
+  /// shader::OccupancyWord, a bit a run of blocks: whether its codes are kept. Empty where all are
+  /// (seen_runs.h).
+  Buffer seenRuns;
+  /// The planes' device addresses by cellNumber, 0 where a cell is no direction; then that of `seenRuns`.
+  Buffer planeAddresses;
   /// uint by direction, once the levels are made: the code of the most opaque voxel; of Linear8 255 minus it.
   Buffer darkest;
   TableSettings settings;
+
+  /// Into `planeAddresses`. Waits.
+  void uploadAddresses(const Device& device) const;
+  /// What is kept of it.
+  std::uint64_t bytes() const;
 };
 
 /// Fails with ExitCode::OutOfMemory, before allocating.

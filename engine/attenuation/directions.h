@@ -31,6 +31,11 @@ constexpr int cellNumber(DirectionSet set, glm::ivec3 cell) {
   return cell.x + k + edge * (cell.y + k + edge * (cell.z + k));
 }
 
+/// Cells of the whole cube.
+constexpr int cellCount(DirectionSet set) {
+  return cellNumber(set, glm::ivec3(int(set))) + 1;
+}
+
 /// Position of a cell in the table, in ascending order of their numbers. The opposite of i is directionCount
 /// - 1 - i.
 int directionIndex(DirectionSet set, glm::ivec3 cell);
