@@ -19,7 +19,10 @@ void RenderCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("render", "Draw a volume into pictures");
   options_.add(*command);
   command->footer(kExamples);
-  command->callback([this] { options_.run({options_.scene.output.files}); });
+  command->callback([this] {
+    options_.scene.takeScene();
+    options_.run({options_.scene.output.files});
+  });
 }
 
 }  // namespace freevoxels

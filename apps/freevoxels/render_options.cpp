@@ -59,13 +59,15 @@ void RenderOptions::run(const FrameFiles& outputs) const {
     draw(opened, outputs, report);
     report.totalMilliseconds = millisecondsSince(start);
     logStages(report);
+    scene.save(report.options);
     if (timings) writeTimings(*timings, report);
   });
 
   if (messages.quiet) return;
   for (const std::vector<std::string>& files : outputs)
     for (const std::string& file : files) fmt::print("{}\n", file);
-  if (timings) fmt::print("{}\n", *timings);
+  for (const std::optional<std::string>& file : {scene.file.saved, timings})
+    if (file) fmt::print("{}\n", *file);
 }
 
 Scene RenderOptions::open(const Device& opened, ProgressLine& line, RunReport& report) const {

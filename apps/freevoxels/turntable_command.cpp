@@ -28,8 +28,10 @@ void TurntableCommand::add(CLI::App& app) {
                  {1.0, double(kMaximumFrames)})
       ->group("Camera");
   command->footer(kExamples);
-  command->callback(
-      [this] { options_.run(frameNames(options_.scene.output.files, frames_.value_or(kDefaultFrames))); });
+  command->callback([this] {
+    options_.scene.takeScene();
+    options_.run(frameNames(options_.scene.output.files, frames_.value_or(kDefaultFrames)));
+  });
 }
 
 }  // namespace freevoxels
