@@ -101,7 +101,10 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
   settings.lighting = view.lighting;
   report.device = opened.description();
   report.options = describe(view);
-  if (outputs.size() > 1) report.options.emplace_back("--frames", fmt::format("{}", outputs.size()));
+  if (outputs.size() > 1) {
+    scene.camera.describeTurn(report.options);
+    report.options.emplace_back("--frames", fmt::format("{}", outputs.size()));
+  }
   line.erase();
   scene.warn(view);
   logOptions(report.options);

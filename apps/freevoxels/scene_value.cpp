@@ -24,7 +24,7 @@ using Json = nlohmann::json;
 constexpr std::array<std::string_view, 4> kOfTheRun{"Options", "Scene", "Device", "Messages"};
 
 bool isFlag(const CLI::Option& option) {
-  return option.get_expected_max() == 0;
+  return option.get_items_expected_max() == 0;
 }
 
 bool isFile(const CLI::Option& option) {
@@ -108,7 +108,8 @@ std::string optionName(const CLI::Option& option) {
 }
 
 bool isRepeated(const CLI::Option& option) {
-  return option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll && !option.get_positional();
+  return option.get_multi_option_policy() == CLI::MultiOptionPolicy::TakeAll && !option.get_positional() &&
+         !isFlag(option);
 }
 
 std::string sceneKey(const CLI::Option& option) {
