@@ -317,11 +317,11 @@ struct Light {
 struct FrameLighting {
   int lightCount;
   int lookup;                    // kLookup... of the lights' transmittances
-  vec3 ambient;
+  int fromEverywhere;            // whether there is light in `fromAll`
   float phaseG;
   float surface;                 // how much of the lights is scattered as by surfaces
   mat3 gradientToWorld;
-  float shares[kMaximumCells];   // by cell number: what part of the sphere around a voxel it stands for
+  vec3 fromAll[kMaximumCells];   // by cell number: radiance from there times its part of the sphere
 };
 
 // The frame, as splat_setup.comp needs it. Index space is relative to the middle of the volume, so that

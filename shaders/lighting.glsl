@@ -89,20 +89,20 @@ vec3 scatteredFrom(int light, SeenBlock seen) {
   return lights[light].color * (phase * reaching(seen, toLight, way, depth, falling) / distance2);
 }
 
-// The mean of what reaches the block from all directions: what is dark from everywhere is dark in ambient light.
-float reachingFromAll(SeenBlock seen) {
+// The mean of the radiance that reaches the block from all directions: what is dark from everywhere is dark in ambient light.
+vec3 reachingFromAll(SeenBlock seen) {
   const Towards towards = towardsSource(vec3(0.0, 0.0, 1.0), kLookupBilinear, uvec2(0));
   const int edge = 2 * frame.cells + 1;
   const uint place = codePlace(frame.cells, seen.rank);
-  float sum = 0.0;
+  vec3 sum = vec3(0.0);
   for (int i = 0; i < edge * edge * edge; ++i) {
-    if (frame.lighting.shares[i] == 0.0) continue;  // no direction: inside of the cube
+    if (frame.lighting.fromAll[i] == vec3(0.0)) continue;  // dark, or no direction: inside of the cube
     const ivec3 cell = ivec3(i % edge, i / edge % edge, i / edge / edge) - frame.cells;
     const float depth = decodeDepth(frame.code, storedCode(towards, cell, place));
     const float falling = isAtEnd(towards, cell, place) ? 0.0 : 1.0;
     const vec3 direction = vec3(cell) / float(frame.cells);
     const vec3 way = normalize(frame.indexToWorld * direction);
-    sum += frame.lighting.shares[i] * reaching(seen, direction, way, depth, falling);
+    sum += frame.lighting.fromAll[i] * reaching(seen, direction, way, depth, falling);
   }
   return sum;
 }
@@ -122,6 +122,6 @@ vec3 scatteredLight(Block block, float sigma, uint rank, vec3 towardsEye) {
   }
   vec3 sum = vec3(0.0);
   for (int i = 0; i < frame.lighting.lightCount; ++i) sum += scatteredFrom(i, seen);
-  if (frame.lighting.ambient != vec3(0.0)) sum += frame.lighting.ambient * reachingFromAll(seen);
+  if (frame.lighting.fromEverywhere != 0) sum += reachingFromAll(seen);
   return sum;
 }

@@ -53,15 +53,18 @@ void CameraOptions::check() const {
   checkCamera(lens);
 }
 
+glm::dvec2 CameraOptions::angles() const {
+  return orbit.value_or(glm::dvec2(kDefaultAzimuth, kDefaultElevation));
+}
+
 Camera CameraOptions::resolve(const Volume& volume) const {
   return resolveOrbit(volume, 1).front();
 }
 
 std::vector<Camera> CameraOptions::resolveOrbit(const Volume& volume, int frames) const {
-  const glm::dvec2 angles = orbit.value_or(glm::dvec2(kDefaultAzimuth, kDefaultElevation));
   const double aspect = double(size.x) / double(size.y);
   const auto framing = [&](int count) {
-    return framingOrbit(volume, angles.x, angles.y, count, aspect, given());
+    return framingOrbit(volume, angles().x, angles().y, count, aspect, given());
   };
   if (position) {
     Camera start = given();
@@ -89,6 +92,14 @@ void CameraOptions::describe(OptionList& options, const Camera& resolved) const 
   else
     options.emplace_back("--fov", numberText(resolved.verticalFov));
   options.emplace_back("--size", fmt::format("{}x{}", size.x, size.y));
+}
+
+void CameraOptions::describeTurn(OptionList& options) const {
+  if (position) return;
+  std::erase_if(options, [this](const auto& option) {
+    return option.first == "--camera-position" || (option.first == "--look-at" && !lookAt);
+  });
+  options.emplace_back("--orbit", numberText(angles().x) + "," + numberText(angles().y));
 }
 
 }  // namespace freevoxels

@@ -29,8 +29,12 @@ struct CameraOptions {
   /// distance for all frames.
   std::vector<Camera> resolveOrbit(const Volume& volume, int frames) const;
   void describe(OptionList& options, const Camera& resolved) const;
+  /// Of what `describe` said, makes of the eye's place the orbit that it turns in, where it does: with
+  /// another up than +y that is another turn than the place's.
+  void describeTurn(OptionList& options) const;
 
  private:
+  glm::dvec2 angles() const;
   Camera given() const;
 };
 

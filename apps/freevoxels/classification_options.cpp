@@ -14,7 +14,7 @@ void ClassificationOptions::add(CLI::App& app) {
   CLI::Option* color = addTriple(app, "--albedo", "R,G,B", albedo, "Colour, linear [0.9,0.9,0.9]", {0.0, 1.0})
                            ->group("Classification");
   addText(app, "--transfer-function", "FILE.json", transferFunction,
-          "Colour and opacity over the scalar instead")
+          "Colour and opacity over the scalar instead; the JSON itself will do, where it begins with {")
       ->excludes(scale)
       ->excludes(color)
       ->group("Classification");
@@ -23,7 +23,9 @@ void ClassificationOptions::add(CLI::App& app) {
 Classification ClassificationOptions::resolve(const Volume& volume) const {
   Classification classification;
   if (transferFunction) {
-    classification.transferFunction = readTransferFunction(*transferFunction, volume);
+    classification.transferFunction = isInlineJson(*transferFunction)
+                                          ? parseTransferFunction(*transferFunction, volume)
+                                          : readTransferFunction(*transferFunction, volume);
     return classification;
   }
   classification.densityScale = densityScale ? *densityScale : automaticDensityScale(volume);

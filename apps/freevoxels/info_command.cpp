@@ -123,6 +123,7 @@ nlohmann::ordered_json toJson(const GridInfo& grid) {
 void InfoCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("info", "Show the grids of a file");
   input_.add(*command);
+  scene_.add(*command);
   command->add_flag("--json", json_, "Print JSON for programs");
   command->footer(
       "TABLE 26 and TABLE 98 are the FreeVoxel table of the grid with so many directions, ON DEVICE all\n"
@@ -135,6 +136,8 @@ void InfoCommand::add(CLI::App& app) {
 }
 
 void InfoCommand::run() const {
+  scene_.apply([](const std::string&) { return true; });
+  input_.checkGiven();
   const std::vector<GridInfo> grids = describeInput(input_);
   if (!json_) {
     printTable(grids);

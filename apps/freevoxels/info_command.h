@@ -2,6 +2,7 @@
 // freevoxels info IN
 
 #include "apps/freevoxels/input_options.h"
+#include "apps/freevoxels/scene_file.h"
 
 namespace freevoxels {
 
@@ -13,6 +14,7 @@ class InfoCommand {
   void run() const;
 
   InputOptions input_;
+  SceneFileOptions scene_;
   bool json_ = false;
 };
 

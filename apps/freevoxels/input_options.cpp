@@ -49,8 +49,11 @@ Volume openProcedural(const std::string& name, std::optional<int> resolution, st
 }
 
 void InputOptions::add(CLI::App& app) {
-  app.add_option("IN", input, "OpenVDB file, or procedural:NAME ('freevoxels generate --list' has the names)")
-      ->required();
+  app.add_option(
+         "IN", input,
+         "OpenVDB file, or procedural:NAME ('freevoxels generate --list' has the names); may be left out "
+         "where a --scene has it")
+      ->group("Input");
   addResolution(app, resolution)->group("Input");
 }
 
@@ -58,6 +61,10 @@ void InputOptions::addGrid(CLI::App& app) {
   addText(app, "--grid", "NAME", grid,
           "Grid of the file, NAME[k] where several share it [density, or the only float grid]")
       ->group("Input");
+}
+
+void InputOptions::checkGiven() const {
+  if (input.empty()) fail(ExitCode::Usage, "IN is required: name an OpenVDB file, or procedural:NAME");
 }
 
 void InputOptions::check() const {

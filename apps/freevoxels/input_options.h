@@ -33,6 +33,8 @@ struct InputOptions {
   void add(CLI::App& app);
   /// --grid, where one is wanted.
   void addGrid(CLI::App& app);
+  /// ExitCode::Usage without IN.
+  void checkGiven() const;
   /// Refuses an option that does not apply to this input: ExitCode::Usage.
   void check() const;
   Volume open(std::uint64_t maximumVoxels) const;

@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <map>
 
 #include "engine/core/error.h"
 
@@ -17,27 +16,6 @@ constexpr int kNoShading = 0, kGradientShading = 2;
 
 constexpr const char* kForm = "direction=X,Y,Z[,color=R,G,B][,intensity=I] or position=X,Y,Z[,...]";
 
-/// "a=1,2,b=3" as {a: "1,2", b: "3"}.
-std::map<std::string, std::string> keysOf(const std::string& text) {
-  std::map<std::string, std::string> keys;
-  std::string key;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    const std::string word = text.substr(begin, end - begin);
-    begin = end + 1;
-    const std::size_t equals = word.find('=');
-    if (equals == std::string::npos) {
-      if (key.empty()) fail(ExitCode::Usage, "--light takes {}, not '{}'", kForm, text);
-      keys[key] += "," + word;
-      continue;
-    }
-    key = word.substr(0, equals);
-    if (!keys.emplace(key, word.substr(equals + 1)).second)
-      fail(ExitCode::Usage, "--light '{}' gives '{}' twice: give it once", text, key);
-  }
-  return keys;
-}
-
 glm::dvec3 triple(const char* name, const char* form, const std::string& value, NumberRange range = {}) {
   const std::vector<double> numbers = readNumbers(name, form, 3, value, range);
   return {numbers[0], numbers[1], numbers[2]};
@@ -46,7 +24,7 @@ glm::dvec3 triple(const char* name, const char* form, const std::string& value, 
 LightingOptions::GivenLight readLight(const std::string& text) {
   LightingOptions::GivenLight given;
   bool placed = false;
-  for (const auto& [key, value] : keysOf(text)) {
+  for (const auto& [key, value] : readKeys("--light", kForm, text)) {
     if (key == "direction" || key == "position") {
       if (placed)
         fail(ExitCode::Usage, "--light '{}' has a direction and a position: give one of them", text);
@@ -113,6 +91,16 @@ void LightingOptions::add(CLI::App& app) {
       ->take_last()
       ->type_name("R,G,B")
       ->group(group);
+  addText(app, "--environment", "FILE.exr", environment,
+          "Radiance by where it comes from, added to what is ambient: a lat-long picture, linear, +y up, its "
+          "middle towards +z and a quarter from the left +x [none]")
+      ->group(group);
+  addNumber(app, "--environment-rotation", "DEG", environmentRotation,
+            "Turns the environment about +y, as the azimuth of --orbit [0]")
+      ->group(group);
+  addNumber(app, "--environment-intensity", "I", environmentIntensity,
+            "What the environment's radiance is multiplied by [1]", {.minimum = 0.0})
+      ->group(group);
   addNumber(app, "--phase-g", "G", phaseG,
             "How much of the lights is scattered forwards, from -1 to 1 (Henyey and Greenstein) [0]",
             {-kMostPhaseG, kMostPhaseG})
@@ -145,15 +133,24 @@ void LightingOptions::check() const {
          "--shading gradient is how lights are scattered, and there is none: give a --light");
   if (surface && shading != kGradientShading)
     fail(ExitCode::Usage, "--surface-share is of --shading gradient: give that as well");
+  if ((environmentRotation || environmentIntensity) && !environment)
+    fail(ExitCode::Usage, "{} is of an environment, and there is none: give an --environment",
+         environmentRotation ? "--environment-rotation" : "--environment-intensity");
   if (phaseG && lights.empty())
     fail(ExitCode::Usage, "--phase-g is how lights are scattered, and there is none: give a --light");
 }
 
 std::optional<Lighting> LightingOptions::resolve(const Volume& volume) const {
-  if ((lights.empty() && !ambient) || shading == kNoShading) return std::nullopt;
+  if ((lights.empty() && !ambient && !environment) || shading == kNoShading) return std::nullopt;
   Lighting lighting{.ambient = ambient.value_or(glm::dvec3(0.0)), .phaseG = phaseG.value_or(0.0)};
   if (shading == kGradientShading) lighting.surface = surface.value_or(1.0);
   lighting.attenuation = LightAttenuation(attenuation.value_or(int(LightAttenuation::Table)));
+  if (environment) {
+    auto around = std::make_shared<Environment>(readEnvironment(*environment));
+    around->rotation = environmentRotation.value_or(around->rotation);
+    around->intensity = environmentIntensity.value_or(around->intensity);
+    lighting.environment = std::move(around);
+  }
   for (const GivenLight& given : lights) {
     lighting.lights.push_back(given.light);
     if (!given.hasIntensity) lighting.lights.back().intensity = defaultIntensity(given.light, volume);
@@ -170,6 +167,11 @@ void LightingOptions::describe(OptionList& options, const std::optional<Lighting
   }
   for (const Light& light : resolved->lights) options.emplace_back("--light", lightText(light));
   options.emplace_back("--ambient", numberText(resolved->ambient));
+  if (resolved->environment) {
+    options.emplace_back("--environment", *environment);
+    options.emplace_back("--environment-rotation", numberText(resolved->environment->rotation));
+    options.emplace_back("--environment-intensity", numberText(resolved->environment->intensity));
+  }
   if (!resolved->lights.empty()) options.emplace_back("--phase-g", numberText(resolved->phaseG));
 }
 

@@ -19,6 +19,8 @@ struct LightingOptions {
   };
   std::vector<GivenLight> lights;
   std::optional<glm::dvec3> ambient;
+  std::optional<std::string> environment;
+  std::optional<double> environmentRotation, environmentIntensity;
   std::optional<double> phaseG;
   std::optional<int> attenuation, shading;
   std::optional<double> surface;
@@ -29,7 +31,8 @@ struct LightingOptions {
   /// Before any work: options that say nothing without others (ExitCode::Usage).
   void check() const;
   /// None where nothing is lit. The intensity of a position defaults to what is kDefaultIrradiance in the
-  /// middle of the volume's box, or half its diagonal away from the light, whichever is farther.
+  /// middle of the volume's box, or half its diagonal away from the light, whichever is farther. Reads the
+  /// environment.
   std::optional<Lighting> resolve(const Volume& volume) const;
   void describe(OptionList& options, const std::optional<Lighting>& resolved) const;
 };

@@ -129,6 +129,31 @@ std::vector<double> readNumbers(const std::string& name, const std::string& form
   return parseNumbers(text, {.option = name, .form = form, .count = count, .range = range});
 }
 
+std::map<std::string, std::string> readKeys(const std::string& name, const std::string& form,
+                                            const std::string& text) {
+  std::map<std::string, std::string> keys;
+  std::string key;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    begin = end + 1;
+    const std::size_t equals = word.find('=');
+    if (equals == std::string::npos) {
+      if (key.empty()) fail(ExitCode::Usage, "{} takes {}, not '{}'", name, form, text);
+      keys[key] += "," + word;
+      continue;
+    }
+    key = word.substr(0, equals);
+    if (!keys.emplace(key, word.substr(equals + 1)).second)
+      fail(ExitCode::Usage, "{} '{}' gives '{}' twice: give it once", name, text, key);
+  }
+  return keys;
+}
+
+bool isInlineJson(const std::string& text) {
+  return text.starts_with('{');
+}
+
 CLI::Option* addWord(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                      std::optional<int>& target, const std::string& description) {
   const auto read = [name, words, &target](const std::string& text) {

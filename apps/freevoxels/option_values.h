@@ -47,6 +47,13 @@ CLI::Option* addText(CLI::App& app, const std::string& name, const std::string& 
 std::vector<double> readNumbers(const std::string& name, const std::string& form, std::size_t count,
                                 const std::string& text, NumberRange range = {});
 
+/// "a=1,2,b=3" as {a: "1,2", b: "3"}; `name` and `form` as for readNumbers.
+std::map<std::string, std::string> readKeys(const std::string& name, const std::string& form,
+                                            const std::string& text);
+
+/// Whether the text of an option that names a JSON file is the JSON itself.
+bool isInlineJson(const std::string& text);
+
 /// One of a few words; `target` becomes the position of the one that was given.
 CLI::Option* addWord(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                      std::optional<int>& target, const std::string& description);

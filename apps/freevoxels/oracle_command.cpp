@@ -38,12 +38,14 @@ void OracleCommand::add(CLI::App& app) {
   command->callback([this] { run(); });
 }
 
-void OracleCommand::run() const {
+void OracleCommand::run() {
   messages_.apply();
+  scene_.takeScene();
   scene_.check();
   draw();
   if (messages_.quiet) return;
   for (const std::string& file : scene_.output.files) fmt::print("{}\n", file);
+  if (scene_.file.saved) fmt::print("{}\n", *scene_.file.saved);
 }
 
 std::uint64_t OracleCommand::voxelsThatFit() const {
@@ -54,7 +56,9 @@ std::uint64_t OracleCommand::voxelsThatFit() const {
     fail(ExitCode::OutOfMemory,
          "a picture of {}x{} pixels needs {} bytes, and this machine has {}: lower --size", size.x, size.y,
          picture, machine);
-  const std::uint64_t ambient = scene_.lighting.ambient ? kOracleAmbientBytesPerVoxel : 0;
+  const LightingOptions& lighting = scene_.lighting;
+  const std::uint64_t channels = lighting.environment ? 3 : lighting.ambient ? 1 : 0;
+  const std::uint64_t ambient = channels * kOracleAmbientBytesPerVoxel;
   return (machine - picture) / (kOracleBytesPerVoxel + ambient);
 }
 
@@ -84,6 +88,7 @@ void OracleCommand::draw() const {
   scene_.write(oracle.image, scene, "oracle", options,
                {{"samples", fmt::format("{0}x{0}", oracle.samples)},
                 {"largest-change", numberText(oracle.largestChange)}});
+  scene_.save(options);
 }
 
 }  // namespace freevoxels

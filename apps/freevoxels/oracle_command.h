@@ -11,7 +11,7 @@ class OracleCommand {
   void add(CLI::App& app);
 
  private:
-  void run() const;
+  void run();
   void draw() const;
   /// How many voxels there is memory for beside the picture; ExitCode::OutOfMemory where there is none.
   std::uint64_t voxelsThatFit() const;

@@ -30,8 +30,7 @@ bool isPng(const std::string& file) {
 void OutputOptions::add(CLI::App& app) {
   const char* const group = "Output";
   app.add_option("OUT", files,
-                 "Pictures to write: .exr (linear, premultiplied) or .png (sRGB, straight alpha)")
-      ->required();
+                 "Pictures to write: .exr (linear, premultiplied) or .png (sRGB, straight alpha)");
   addTriple(app, "--background", "R,G,B", background,
             "Colour behind the volume in a .png, linear [transparent]", {0.0, 1.0})
       ->group(group);
@@ -41,14 +40,18 @@ void OutputOptions::add(CLI::App& app) {
       ->group(group);
 }
 
+bool OutputOptions::honours(const std::string& option) const {
+  if (option == "--background") return std::ranges::any_of(files, isPng);
+  return (option != "--aov" && option != "--float") || std::ranges::any_of(files, isExr);
+}
+
 void OutputOptions::check() const {
   for (const std::string& file : files)
     if (!isExr(file) && !isPng(file))
       fail(ExitCode::Usage, "'{}' has no known picture extension; name it .exr or .png", file);
-  const bool anyExr = std::ranges::any_of(files, isExr), anyPng = std::ranges::any_of(files, isPng);
-  if (wantsDepth() && !anyExr) fail(ExitCode::Usage, "--aov depth needs an .exr output");
-  if (fullFloat && !anyExr) fail(ExitCode::Usage, "--float needs an .exr output");
-  if (background && !anyPng)
+  if (wantsDepth() && !honours("--aov")) fail(ExitCode::Usage, "--aov depth needs an .exr output");
+  if (fullFloat && !honours("--float")) fail(ExitCode::Usage, "--float needs an .exr output");
+  if (background && !honours("--background"))
     fail(ExitCode::Usage, "--background needs a .png output: an .exr keeps its alpha");
   for (const std::string& file : files) checkOutput(file);
 }

@@ -59,13 +59,15 @@ void RenderOptions::run(const FrameFiles& outputs) const {
     draw(opened, outputs, report);
     report.totalMilliseconds = millisecondsSince(start);
     logStages(report);
+    scene.save(report.options);
     if (timings) writeTimings(*timings, report);
   });
 
   if (messages.quiet) return;
   for (const std::vector<std::string>& files : outputs)
     for (const std::string& file : files) fmt::print("{}\n", file);
-  if (timings) fmt::print("{}\n", *timings);
+  for (const std::optional<std::string>& file : {scene.file.saved, timings})
+    if (file) fmt::print("{}\n", *file);
 }
 
 Scene RenderOptions::open(const Device& opened, ProgressLine& line, RunReport& report) const {
@@ -99,7 +101,10 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
   settings.lighting = view.lighting;
   report.device = opened.description();
   report.options = describe(view);
-  if (outputs.size() > 1) report.options.emplace_back("--frames", fmt::format("{}", outputs.size()));
+  if (outputs.size() > 1) {
+    scene.camera.describeTurn(report.options);
+    report.options.emplace_back("--frames", fmt::format("{}", outputs.size()));
+  }
   line.erase();
   scene.warn(view);
   logOptions(report.options);

@@ -1,6 +1,7 @@
 #include "apps/freevoxels/scene_options.h"
 
 #include "apps/freevoxels/program.h"
+#include "engine/core/error.h"
 
 namespace freevoxels {
 
@@ -11,6 +12,19 @@ void SceneOptions::add(CLI::App& app) {
   classification.add(app);
   camera.add(app);
   lighting.add(app);
+  file.add(app);
+  file.addSave(app);
+}
+
+void SceneOptions::takeScene() {
+  if ((isExr(input.input) || isPng(input.input)) && file.hasVolume()) {
+    output.files.insert(output.files.begin(), input.input);
+    input.input.clear();
+    file.leaveOut("IN");
+  }
+  file.apply([this](const std::string& option) { return output.honours(option); });
+  input.checkGiven();
+  if (output.files.empty()) fail(ExitCode::Usage, "OUT is required: name a picture to write, .exr or .png");
 }
 
 void SceneOptions::check(const std::vector<std::string>& moreOutputs) const {
@@ -18,10 +32,13 @@ void SceneOptions::check(const std::vector<std::string>& moreOutputs) const {
   camera.check();
   lighting.check();
   output.check();
-  for (const std::string& file : moreOutputs) checkOutput(file);
-  std::vector<std::string> files = output.files;
-  files.insert(files.end(), moreOutputs.begin(), moreOutputs.end());
+  std::vector<std::string> files = moreOutputs;
+  if (file.saved) files.push_back(*file.saved);
+  for (const std::string& written : files) checkOutput(written);
+  files.insert(files.end(), output.files.begin(), output.files.end());
   if (!proceduralName(input.input)) files.push_back(input.input);
+  for (const std::optional<std::string>& read : {file.file, lighting.environment})
+    if (read) files.push_back(*read);
   checkDistinct(files);
 }
 
@@ -42,6 +59,10 @@ Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
 
 void SceneOptions::warn(const Scene& scene) const {
   warnAboutValues(scene.volume, !scene.classification.transferFunction);
+}
+
+void SceneOptions::save(const OptionList& options) const {
+  if (file.saved) file.save(options);
 }
 
 OptionList SceneOptions::describe(const Scene& scene, const OptionList& method) const {

@@ -7,6 +7,7 @@
 #include "apps/freevoxels/input_options.h"
 #include "apps/freevoxels/lighting_options.h"
 #include "apps/freevoxels/output_options.h"
+#include "apps/freevoxels/scene_file.h"
 
 namespace freevoxels {
 
@@ -23,8 +24,12 @@ struct SceneOptions {
   ClassificationOptions classification;
   CameraOptions camera;
   LightingOptions lighting;
+  SceneFileOptions file;
 
   void add(CLI::App& app);
+  /// What --scene has and the command line has not. A single picture is then OUT, where the scene has the
+  /// volume. To be called before all below.
+  void takeScene();
   /// Before any work; `moreOutputs` are the files that the command writes besides pictures.
   void check(const std::vector<std::string>& moreOutputs = {}) const;
   /// The same scene with other files to write.
@@ -33,6 +38,8 @@ struct SceneOptions {
   Scene open(std::uint64_t maximumVoxels) const;
   /// One warning each for values of the scene's volume that are not drawn as they are.
   void warn(const Scene& scene) const;
+  /// Writes --save-scene, where it is wanted.
+  void save(const OptionList& options) const;
   /// Everything resolved, with the options of the command's own between those of the camera and the outputs.
   OptionList describe(const Scene& scene, const OptionList& method = {}) const;
   /// `command` and `facts` as for exrMetadata, which the volume's source joins.

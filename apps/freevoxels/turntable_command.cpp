@@ -17,7 +17,8 @@ constexpr const char* kExamples =
     "Examples:\n"
     "  freevoxels turntable cloud.vdb orbit_####.png --frames 120 --background 0.02,0.03,0.05\n"
     "  freevoxels turntable cloud.vdb orbit_###.exr orbit_###.png --orbit 0,15 --size 1920x1080\n"
-    "  freevoxels turntable scan.vdb orbit_###.png --camera-position 300,0,80 --up 0,0,1\n";
+    "  freevoxels turntable scan.vdb orbit_###.png --camera-position 300,0,80 --up 0,0,1\n"
+    "  freevoxels turntable --scene apps/scenes/cloud.json cloud_###.png\n";
 
 }  // namespace
 
@@ -28,8 +29,10 @@ void TurntableCommand::add(CLI::App& app) {
                  {1.0, double(kMaximumFrames)})
       ->group("Camera");
   command->footer(kExamples);
-  command->callback(
-      [this] { options_.run(frameNames(options_.scene.output.files, frames_.value_or(kDefaultFrames))); });
+  command->callback([this] {
+    options_.scene.takeScene();
+    options_.run(frameNames(options_.scene.output.files, frames_.value_or(kDefaultFrames)));
+  });
 }
 
 }  // namespace freevoxels

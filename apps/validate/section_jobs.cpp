@@ -158,6 +158,11 @@ void addLight(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
                       return lightQuality(device, openQualityScene(device, subject, resolution),
                                           quick ? kQuickLightPicture : kQuickQualityPicture);
                     }});
+  jobs.push_back({"light from all around", [=, &device] {
+                    return environmentQuality(device,
+                                              openQualityScene(device, kQualitySubjects[2], resolution),
+                                              quick ? kQuickLightPicture : kQuickQualityPicture);
+                  }});
   jobs.push_back({"shadows", [=, &device] { return shadowChecks(device, resolution); }});
 }
 

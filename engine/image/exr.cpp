@@ -29,7 +29,6 @@ namespace {
 
 constexpr std::array<const char*, 4> kColorChannels = {"R", "G", "B", "A"};
 constexpr float kLargestHalf = 65504.0f;
-constexpr std::int64_t kMaximumPixels = std::int64_t(1) << 30;
 
 /// OpenEXR swallows exceptions in its destructors; CheckedFile remembers them until close.
 class ExrStream : public Imf::OStream {
@@ -98,7 +97,7 @@ void encode(const std::filesystem::path& file, const Image& image, const ExrOpti
   output.close();
 }
 
-Image decode(const std::filesystem::path& file) {
+Image decode(const std::filesystem::path& file, std::int64_t maximumPixels) {
   Imf::InputFile exr(file.c_str());
   const Imf::ChannelList& channels = exr.header().channels();
   if (!channels.findChannel("R") || !channels.findChannel("G") || !channels.findChannel("B"))
@@ -107,7 +106,7 @@ Image decode(const std::filesystem::path& file) {
   const Imath::Box2i window = exr.header().dataWindow();
   const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
   const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;
-  if (width * height > kMaximumPixels)
+  if (width * height > maximumPixels)
     fail(ExitCode::Input, "cannot read '{}': {}x{} pixels are too many; choose a smaller image",
          file.string(), width, height);
 
@@ -139,12 +138,12 @@ void writeExr(const std::filesystem::path& file, const Image& image, const ExrOp
   writeAtomically(file, [&](const std::filesystem::path& temporary) { encode(temporary, image, options); });
 }
 
-Image readExr(const std::filesystem::path& file) {
+Image readExr(const std::filesystem::path& file, std::int64_t maximumPixels) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
     fail(ExitCode::Input, "cannot read '{}': there is no such file; check its name", file.string());
   try {
-    return decode(file);
+    return decode(file, maximumPixels);
   } catch (const Error&) {
     throw;
   } catch (const std::bad_alloc&) {

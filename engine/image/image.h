@@ -28,8 +28,8 @@ struct ExrOptions {
 /// RGBA (and Z where there is depth). Atomic. Fails with ExitCode::Output.
 void writeExr(const std::filesystem::path& file, const Image& image, const ExrOptions& options);
 
-/// RGBA and, where present, Z of a scanline EXR. Fails with ExitCode::Input.
-Image readExr(const std::filesystem::path& file);
+/// RGBA and, where present, Z of a scanline EXR of at most so many pixels. Fails with ExitCode::Input.
+Image readExr(const std::filesystem::path& file, std::int64_t maximumPixels = std::int64_t(1) << 30);
 
 /// Any PNG of straight alpha (grey, palette, 8 or 16 bits, interlaced), taken for sRGB whatever its chunks
 /// say. Fails with ExitCode::Input.

@@ -86,8 +86,12 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
                                          const FrameSettings& settings, std::vector<StageTime>& times) {
   const Lighting& lighting = *settings.lighting;
   const DirectionSet set = table.directions;
-  if (!placed_ || placed_->lights != lighting.lights || placed_->attenuation != lighting.attenuation) {
-    placed_ = lighting;
+  if (!placed_ || placed_->ambient != lighting.ambient || placed_->environment != lighting.environment)
+    fromAll_ = directionLight(lighting, set, volume.indexToWorld);
+  const bool stand =
+      placed_ && placed_->lights == lighting.lights && placed_->attenuation == lighting.attenuation;
+  placed_ = lighting;
+  if (!stand) {
     Commands commands(device_);
     const std::vector<shader::Light> lights = place(commands, volume, set);
     commands.submitAndWait();
@@ -96,18 +100,17 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
     lights_ = Buffer(device_, std::max<VkDeviceSize>(bytes.size(), 4), MemoryUse::Device, "lights");
     upload(device_, lights_, bytes);
   }
-  if (shares_.empty()) shares_ = directionShares(set, volume.indexToWorld);
   const int ofTable =
       settings.attenuation == AttenuationLookup::Nearest ? shader::kLookupNearest : shader::kLookupBilinear;
   shader::FrameLighting frame{
       .lightCount = int(lighting.lights.size()),
       .lookup = lighting.attenuation == LightAttenuation::Exact ? shader::kLookupExact : ofTable,
-      .ambient = lighting.ambient,
+      .fromEverywhere = lighting.comesFromEverywhere() ? 1 : 0,
       .phaseG = float(lighting.phaseG),
       .surface = float(lighting.surface),
       .gradientToWorld = glm::transpose(glm::inverse(glm::dmat3(volume.indexToWorld)))};
   for (int i = 0; i < directionCount(set); ++i)
-    frame.shares[cellNumber(set, directionCell(set, i))] = float(shares_[std::size_t(i)]);
+    frame.fromAll[cellNumber(set, directionCell(set, i))] = glm::vec3(fromAll_[std::size_t(i)]);
   return frame;
 }
 

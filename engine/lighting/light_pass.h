@@ -34,11 +34,11 @@ class LightPass {
 
   const Device& device_;
   EyeDepthsPass beyond_;
-  std::vector<double> shares_;
-  std::optional<Lighting> placed_;  ///< whose lights the buffers are of
-  Buffer lights_;                   ///< shader::Light
-  Buffer beyondDepths_;             ///< kEyeDepthsBytes a light that is inside of the volume
-  std::deque<RaySweep> rays_;       ///< of the lights; empty where they are looked up in the table
+  std::optional<Lighting> placed_;   ///< whose light the buffers and `fromAll_` are of
+  std::vector<glm::dvec3> fromAll_;  ///< directionLight
+  Buffer lights_;                    ///< shader::Light
+  Buffer beyondDepths_;              ///< kEyeDepthsBytes a light that is inside of the volume
+  std::deque<RaySweep> rays_;        ///< of the lights; empty where they are looked up in the table
 };
 
 }  // namespace freevoxels

@@ -59,4 +59,16 @@ std::vector<double> directionShares(DirectionSet set, const glm::dmat4& indexToW
   return shares;
 }
 
+std::vector<glm::dvec3> directionLight(const Lighting& lighting, DirectionSet set,
+                                       const glm::dmat4& indexToWorld) {
+  const std::vector<double> shares = directionShares(set, indexToWorld);
+  std::vector<glm::dvec3> light(shares.size(), lighting.ambient);
+  if (lighting.environment) {
+    const std::vector<glm::dvec3> around = directionRadiances(*lighting.environment, set, indexToWorld);
+    for (std::size_t d = 0; d < light.size(); ++d) light[d] += around[d];
+  }
+  for (std::size_t d = 0; d < light.size(); ++d) light[d] *= shares[d];
+  return light;
+}
+
 }  // namespace freevoxels

@@ -3,14 +3,16 @@
 //
 // A voxel of albedo a sends the radiance a (sum over lights of E A phase + ambient) towards the eye, E the
 // light's irradiance there, A the transmittance between the two, ambient the mean of radiance times A over
-// all directions.
+// all directions, that of the environment included.
 
 #include <glm/glm.hpp>
+#include <memory>
 #include <numbers>
 #include <vector>
 
 #include "engine/attenuation/directions.h"
 #include "engine/attenuation/ray_fans.h"
+#include "engine/lighting/environment.h"
 
 namespace freevoxels {
 
@@ -44,6 +46,8 @@ enum class LightAttenuation : int {
 struct Lighting {
   std::vector<Light> lights;
   glm::dvec3 ambient{0.0};  ///< radiance that comes from everywhere, linear Rec.709
+  /// Radiance that depends on where it comes from, added to `ambient`; may be null.
+  std::shared_ptr<const Environment> environment;
   /// Of the phase function of the lights, up to kMostPhaseG either way: 0 scatters alike in all directions,
   /// more forwards. What comes from everywhere is scattered alike in all directions.
   double phaseG = 0.0;
@@ -52,8 +56,9 @@ struct Lighting {
   double surface = 0.0;
   LightAttenuation attenuation = LightAttenuation::Table;  ///< of the lights; what is ambient is the table's
 
+  bool comesFromEverywhere() const { return ambient != glm::dvec3(0.0) || environment; }
   /// Whether a frame has to have the table.
-  bool readsTable() const { return attenuation == LightAttenuation::Table || ambient != glm::dvec3(0.0); }
+  bool readsTable() const { return attenuation == LightAttenuation::Table || comesFromEverywhere(); }
   bool operator==(const Lighting&) const = default;
 };
 
@@ -76,5 +81,10 @@ RaySource lightSource(const Light& light, const glm::dmat4& indexToWorld);
 /// What part of the sphere around a voxel each direction of a table stands for, in the world, where it is
 /// looked up bilinearly: they add up to 1. In the order of directions.h.
 std::vector<double> directionShares(DirectionSet set, const glm::dmat4& indexToWorld);
+
+/// What comes from everywhere, by the directions of a table: radiance times the direction's share. They add
+/// up to the mean radiance over the sphere.
+std::vector<glm::dvec3> directionLight(const Lighting& lighting, DirectionSet set,
+                                       const glm::dmat4& indexToWorld);
 
 }  // namespace freevoxels

@@ -12,24 +12,53 @@ namespace freevoxels {
 
 namespace {
 
-/// Of a sphere: a spiral from pole to pole, each with the same share (Fibonacci's lattice).
-std::vector<glm::dvec3> evenDirections(int count) {
-  const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
-  std::vector<glm::dvec3> directions;
-  for (int i = 0; i < count; ++i) {
-    const double z = 1.0 - (2.0 * i + 1.0) / count, across = std::sqrt(1.0 - z * z);
-    directions.emplace_back(across * std::cos(turn * i), across * std::sin(turn * i), z);
-  }
-  return directions;
+/// Of an n x n x 6 grid on the faces of a cube.
+std::size_t partOfCube(glm::dvec3 direction, int n) {
+  const glm::dvec3 size = glm::abs(direction);
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const auto along = [&](int other) {
+    const double across = direction[(axis + other) % 3] / size[axis];
+    return std::min(int(0.5 * n * (across + 1.0)), n - 1);
+  };
+  return std::size_t(along(1) + n * (along(2) + n * (2 * axis + (direction[axis] > 0.0 ? 1 : 0))));
 }
 
 }  // namespace
 
+/// A spiral from pole to pole, each with the same share (Fibonacci's lattice).
+std::vector<LightMarch::Ray> LightMarch::evenRays(int count) {
+  const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  std::vector<Ray> rays;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / count, across = std::sqrt(1.0 - z * z);
+    rays.push_back({{across * std::cos(turn * i), across * std::sin(turn * i), z}, glm::dvec3(1.0 / count)});
+  }
+  return rays;
+}
+
+std::vector<LightMarch::Ray> LightMarch::environmentRays(const Lighting& lighting, int count) {
+  const int n = int(std::ceil(std::sqrt(count / 6.0)));
+  std::vector<Ray> rays(std::size_t(6 * n * n), {glm::dvec3(0.0), glm::dvec3(0.0)});
+  for (int row = 0; row < environmentRows(*lighting.environment); ++row)
+    for (const EnvironmentPart& part : environmentRow(*lighting.environment, row)) {
+      Ray& ray = rays[partOfCube(part.direction, n)];
+      const glm::dvec3 light =
+          part.solidAngle / (4.0 * std::numbers::pi) * (part.radiance + lighting.ambient);
+      ray.light += light;
+      ray.direction += (light.r + light.g + light.b) * part.direction;
+    }
+  std::erase_if(rays, [](const Ray& ray) { return ray.light == glm::dvec3(0.0); });
+  for (Ray& ray : rays) ray.direction = glm::normalize(ray.direction);
+  return rays;
+}
+
 LightMarch::LightMarch(const ReferenceField& field, const glm::dmat4& indexToWorld, const Lighting& lighting,
                        int ambientRays, const Progress& progress)
-    : field_(field), toWorld_(indexToWorld), lighting_(lighting) {
+    : field_(field), toWorld_(indexToWorld), lighting_(lighting), channels_(lighting.environment ? 3 : 1) {
   for (const Light& light : lighting.lights) sources_.push_back(lightSource(light, indexToWorld));
-  if (lighting.ambient != glm::dvec3(0.0)) marchAmbient(ambientRays, progress);
+  if (!lighting.comesFromEverywhere()) return;
+  marchAmbient(lighting.environment ? environmentRays(lighting, ambientRays) : evenRays(ambientRays),
+               progress);
 }
 
 double LightMarch::transmittance(glm::dvec3 position, glm::dvec3 direction, double end) const {
@@ -51,22 +80,21 @@ glm::dvec3 LightMarch::scatteredFrom(std::size_t i, glm::dvec3 position, glm::dv
   return light.color * (irradiance * phase * transmittance(position, way, end));
 }
 
-std::unique_ptr<LightMarch::Reaching> LightMarch::marchBrick(
-    glm::ivec3 position, const std::vector<glm::dvec3>& directions) const {
+std::unique_ptr<LightMarch::Reaching> LightMarch::marchBrick(glm::ivec3 position,
+                                                             const std::vector<Ray>& rays) const {
   const ReferenceField::Brick* const brick = field_.brick(position);
   if (!brick) return nullptr;
   constexpr int cells = ReferenceField::kBrickCells, n = kBrickPoints;
   const glm::dvec3 first = position * cells - 1;
-  auto reaching = std::make_unique<Reaching>();
-  reaching->fill(-1.0f);
+  auto reaching = std::make_unique<Reaching>(std::size_t(n * n * n * channels_), -1.0f);
   const auto march = [&](glm::ivec3 point) {
-    float& part = (*reaching)[std::size_t(point.x + n * (point.y + n * point.z))];
-    if (part >= 0.0f) return;
+    float* const parts = &(*reaching)[std::size_t((point.x + n * (point.y + n * point.z)) * channels_)];
+    if (parts[0] >= 0.0f) return;
     const glm::dvec3 at = first + glm::dvec3(point) / double(kPointsPerVoxel);
-    double sum = 0.0;
-    for (const glm::dvec3& direction : directions)
-      sum += transmittance(at, direction, std::numeric_limits<double>::infinity());
-    part = float(sum / double(directions.size()));
+    glm::dvec3 sum(0.0);
+    for (const Ray& ray : rays)
+      sum += ray.light * transmittance(at, ray.direction, std::numeric_limits<double>::infinity());
+    for (int c = 0; c < channels_; ++c) parts[c] = float(sum[c]);
   };
   for (int cell = 0; cell < cells * cells * cells; ++cell) {
     const glm::ivec3 corner(cell % cells, cell / cells % cells, cell / cells / cells);
@@ -76,10 +104,9 @@ std::unique_ptr<LightMarch::Reaching> LightMarch::marchBrick(
   return reaching;
 }
 
-void LightMarch::marchAmbient(int rays, const Progress& progress) {
-  std::vector<glm::dvec3> directions = evenDirections(rays);
+void LightMarch::marchAmbient(std::vector<Ray> rays, const Progress& progress) {
   const glm::dmat3 toIndex = glm::inverse(toWorld_);
-  for (glm::dvec3& direction : directions) direction = toIndex * direction;
+  for (Ray& ray : rays) ray.direction = toIndex * ray.direction;
   const glm::ivec3 bricks = field_.brickCount();
   const std::size_t layer = std::size_t(bricks.x) * std::size_t(bricks.y);
   ambient_.resize(layer * std::size_t(bricks.z));
@@ -87,12 +114,12 @@ void LightMarch::marchAmbient(int rays, const Progress& progress) {
     if (progress) progress("marching for ambient light", double(z) / bricks.z);
     tbb::parallel_for(std::size_t(0), layer, [&](std::size_t i) {
       const glm::ivec3 position(int(i % std::size_t(bricks.x)), int(i / std::size_t(bricks.x)), z);
-      ambient_[std::size_t(z) * layer + i] = marchBrick(position, directions);
+      ambient_[std::size_t(z) * layer + i] = marchBrick(position, rays);
     });
   }
 }
 
-double LightMarch::reachingFromAll(glm::dvec3 position) const {
+glm::dvec3 LightMarch::reachingFromAll(glm::dvec3 position) const {
   constexpr int cells = ReferenceField::kBrickCells, n = kBrickPoints;
   const glm::ivec3 bricks = field_.brickCount();
   const glm::ivec3 brick =
@@ -100,23 +127,23 @@ double LightMarch::reachingFromAll(glm::dvec3 position) const {
   const auto& reaching =
       ambient_[std::size_t(brick.x) +
                std::size_t(bricks.x) * (std::size_t(brick.y) + std::size_t(bricks.y) * std::size_t(brick.z))];
-  if (!reaching) return 0.0;
+  if (!reaching) return glm::dvec3(0.0);
   const glm::dvec3 local = double(kPointsPerVoxel) * (position + 1.0 - glm::dvec3(brick * cells));
   const glm::ivec3 low = glm::clamp(glm::ivec3(local), glm::ivec3(0), glm::ivec3(n - 2));
-  double sum = 0.0;
+  glm::dvec3 sum(0.0);
   for (int corner = 0; corner < 8; ++corner) {
     const glm::ivec3 point = low + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
     const glm::dvec3 share = 1.0 - glm::abs(local - glm::dvec3(point));
-    sum +=
-        share.x * share.y * share.z * double((*reaching)[std::size_t(point.x + n * (point.y + n * point.z))]);
+    const float* const parts = &(*reaching)[std::size_t((point.x + n * (point.y + n * point.z)) * channels_)];
+    for (int c = 0; c < channels_; ++c) sum[c] += share.x * share.y * share.z * double(parts[c]);
   }
-  return sum;
+  return channels_ == 3 ? sum : lighting_.ambient * sum.x;
 }
 
 glm::dvec3 LightMarch::scattered(glm::dvec3 position, glm::dvec3 toEye) const {
   glm::dvec3 sum(0.0);
   for (std::size_t i = 0; i < sources_.size(); ++i) sum += scatteredFrom(i, position, toEye);
-  if (!ambient_.empty()) sum += lighting_.ambient * reachingFromAll(position);
+  if (!ambient_.empty()) sum += reachingFromAll(position);
   return sum;
 }
 

@@ -2,7 +2,6 @@
 // What a point of the reference field scatters towards the eye, once, of the light that reaches it along a
 // ray of its own: in double precision, and without a table. README.md, section "How we know it is right".
 
-#include <array>
 #include <glm/glm.hpp>
 #include <memory>
 #include <vector>
@@ -17,7 +16,8 @@ class LightMarch {
  public:
   /// Keeps a reference to the field. What reaches a point of ambient light is marched for along `ambientRays`
   /// rays, evenly over the sphere, from points half a voxel apart wherever there is extinction, and
-  /// interpolated trilinearly between them.
+  /// interpolated trilinearly between them. With an environment there are at least as many rays, each of
+  /// which brings what comes from a part of a cube's face, from the middle of that light.
   LightMarch(const ReferenceField& field, const glm::dmat4& indexToWorld, const Lighting& lighting,
              int ambientRays, const Progress& progress = {});
 
@@ -27,19 +27,26 @@ class LightMarch {
  private:
   static constexpr int kPointsPerVoxel = 2;
   static constexpr int kBrickPoints = kPointsPerVoxel * ReferenceField::kBrickCells + 1;
-  /// The part of ambient light that reaches the points of a brick, x fastest.
-  using Reaching = std::array<float, std::size_t(kBrickPoints* kBrickPoints) * kBrickPoints>;
+  /// Of what comes from everywhere: in the world, and radiance times its part of the sphere.
+  struct Ray {
+    glm::dvec3 direction, light;
+  };
+  /// What reaches the points of a brick, x fastest, of white light or by channel.
+  using Reaching = std::vector<float>;
 
   double transmittance(glm::dvec3 position, glm::dvec3 direction, double end) const;
   glm::dvec3 scatteredFrom(std::size_t light, glm::dvec3 position, glm::dvec3 toEye) const;
-  void marchAmbient(int rays, const Progress& progress);
-  std::unique_ptr<Reaching> marchBrick(glm::ivec3 position, const std::vector<glm::dvec3>& directions) const;
-  double reachingFromAll(glm::dvec3 position) const;
+  static std::vector<Ray> evenRays(int count);
+  static std::vector<Ray> environmentRays(const Lighting& lighting, int count);
+  void marchAmbient(std::vector<Ray> rays, const Progress& progress);
+  std::unique_ptr<Reaching> marchBrick(glm::ivec3 position, const std::vector<Ray>& rays) const;
+  glm::dvec3 reachingFromAll(glm::dvec3 position) const;
 
   const ReferenceField& field_;
   const glm::dmat3 toWorld_;
   const Lighting lighting_;
   std::vector<RaySource> sources_;
+  const int channels_;                              ///< that reach differently: 1 without an environment
   std::vector<std::unique_ptr<Reaching>> ambient_;  ///< by brick; null where the field is 0
 };
 

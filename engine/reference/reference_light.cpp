@@ -27,7 +27,7 @@ ReferenceLight::ReferenceLight(const LightInputs& inputs, const FrameSettings& s
     : inputs_(inputs),
       lighting_(*settings.lighting),
       toWorld_(inputs.volume.indexToWorld),
-      shares_(directionShares(inputs.tableSettings.directions, inputs.volume.indexToWorld)) {
+      fromAll_(directionLight(lighting_, inputs.tableSettings.directions, inputs.volume.indexToWorld)) {
   const AttenuationLookup lookup = settings.attenuation == AttenuationLookup::Nearest
                                        ? AttenuationLookup::Nearest
                                        : AttenuationLookup::Bilinear;
@@ -72,18 +72,18 @@ double ReferenceLight::reaching(const Block& block, glm::dvec3 toEye, glm::dvec3
          meanOver(e);
 }
 
-double ReferenceLight::reachingFromAll(const Block& block, glm::dvec3 toEye) const {
+glm::dvec3 ReferenceLight::reachingFromAll(const Block& block, glm::dvec3 toEye) const {
   const TableSettings& settings = inputs_.tableSettings;
   const LevelData* level = block.level == 0 ? nullptr : &inputs_.coarser[std::size_t(block.level) - 1];
   const auto& table = level == nullptr ? inputs_.table : level->table;
   const std::size_t index =
       level == nullptr ? inputs_.volume.at(block.cell.x, block.cell.y, block.cell.z) : level->at(block.cell);
   const int end = settings.code == AttenuationCode::Linear8 ? 0 : 255;
-  double sum = 0.0;
+  glm::dvec3 sum(0.0);
   for (int d = 0; d < int(table.size()); ++d) {
     const int byte = table[std::size_t(d)][index];
     const glm::dvec3 direction = directionAt(settings.directions, d);
-    sum += shares_[std::size_t(d)] *
+    sum += fromAll_[std::size_t(d)] *
            reaching(block, toEye, direction, decodeOpticalDepth(settings.code, byte), byte == end ? 0.0 : 1.0,
                     stepLength(inputs_.volume.indexToWorld, direction, settings.pathLengthCorrection));
   }
@@ -130,7 +130,7 @@ glm::dvec3 ReferenceLight::scattered(const Block& block, glm::dvec3 toEye) const
     const double irradiance = light.intensity / (light.atInfinity ? 1.0 : distance2);
     sum += light.color * (irradiance * reached * phase);
   }
-  return sum + lighting_.ambient * reachingFromAll(block, toEye);
+  return sum + reachingFromAll(block, toEye);
 }
 
 }  // namespace freevoxels

@@ -33,7 +33,7 @@ class ReferenceLight {
   /// has `depth` before it; a layer counts as `counted` long.
   double reaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth, double falling,
                   double counted) const;
-  double reachingFromAll(const Block& block, glm::dvec3 toEye) const;
+  glm::dvec3 reachingFromAll(const Block& block, glm::dvec3 toEye) const;
 
   /// Central differences, index space, per block of its size.
   glm::dvec3 extinctionGradient(const Block& block) const;
@@ -43,7 +43,7 @@ class ReferenceLight {
   const glm::dmat3 toWorld_;
   std::vector<RaySource> sources_;
   std::vector<std::unique_ptr<ReferenceDepth>> depths_;  ///< towards each light
-  const std::vector<double> shares_;
+  const std::vector<glm::dvec3> fromAll_;                ///< directionLight
 };
 
 }  // namespace freevoxels

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/volume/volume.h"
@@ -50,6 +51,8 @@ ClassifiedVoxel classify(const Classification& classification, float scalar);
 /// maximum, `unit_distance` to its voxel size. Unknown keys, wrong types, points that do not ascend:
 /// ExitCode::Input, by name.
 TransferFunction readTransferFunction(const std::filesystem::path& file, const Volume& volume);
+/// The same of the JSON itself.
+TransferFunction parseTransferFunction(const std::string& json, const Volume& volume);
 
 /// The density scale used when none is given: the one at which a cube that holds the volume of the active
 /// voxels at their mean density has optical depth kAutomaticOpticalDepth.

@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
 #include <string_view>
 
 #include "engine/core/error.h"
+#include "engine/core/json_file.h"
 #include "engine/volume/classification.h"
 
 namespace freevoxels {
@@ -74,48 +73,6 @@ class Field {
   const Json& value_;
 };
 
-/// The parser's message without its error code and on one line.
-std::string parseReason(const Json::parse_error& error) {
-  std::string reason = error.what();
-  if (const std::size_t end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
-  std::replace_if(
-      reason.begin(), reason.end(), [](unsigned char c) { return c < 32; }, ' ');
-  return reason;
-}
-
-/// `key` in quotes, whatever bytes are in it.
-std::string inQuotes(const Json& key) {
-  return key.dump(-1, ' ', true, Json::error_handler_t::replace);
-}
-
-/// For the parser, which by itself takes the last of equal keys.
-Json::parser_callback_t refuseRepeatedKeys(const fs::path& file) {
-  return [&file, seen = std::set<Json>()](int depth, Json::parse_event_t event, Json& parsed) mutable {
-    if (event == Json::parse_event_t::key && depth == 1 && !seen.insert(parsed).second)
-      fail(ExitCode::Input, "transfer function '{}' has the key {} more than once; keep one of them",
-           file.string(), inQuotes(parsed));
-    return true;
-  };
-}
-
-Json parseFile(const fs::path& file) {
-  std::error_code error;
-  if (!fs::exists(file, error))
-    fail(ExitCode::Input, "there is no transfer function '{}'; check the name", file.string());
-  if (!fs::is_regular_file(file, error))
-    fail(ExitCode::Input, "transfer function '{}' is not a file; name a .json file", file.string());
-  std::ifstream stream(file);
-  if (!stream)
-    fail(ExitCode::Input, "cannot open transfer function '{}'; check its permissions", file.string());
-  try {
-    return Json::parse(stream, refuseRepeatedKeys(file));
-  } catch (const Json::parse_error& e) {
-    fail(ExitCode::Input, "transfer function '{}' is not valid JSON: {}", file.string(), parseReason(e));
-  } catch (const Json::exception&) {
-    fail(ExitCode::Input, "transfer function '{}' holds a number that is too large", file.string());
-  }
-}
-
 void checkKeys(const fs::path& file, const Json& root) {
   if (!root.is_object())
     fail(ExitCode::Input, "transfer function '{}' is a JSON {}; it must be an object {{\"opacity\": ...}}",
@@ -147,10 +104,7 @@ double readUnitDistance(const fs::path& file, const Json& root, const Volume& vo
   return distance;
 }
 
-}  // namespace
-
-TransferFunction readTransferFunction(const std::filesystem::path& file, const Volume& volume) {
-  const Json root = parseFile(file);
+TransferFunction makeTransferFunction(const fs::path& file, const Json& root, const Volume& volume) {
   checkKeys(file, root);
   const std::array<double, 2> range = readRange(file, root, volume);
   const auto toScalar = [&](double x) { return float(range[0] + x * (range[1] - range[0])); };
@@ -166,6 +120,16 @@ TransferFunction readTransferFunction(const std::filesystem::path& file, const V
   for (const auto& [x, r, g, b] : Field(file, "color", root["color"]).points<4>())
     transfer.color.push_back({toScalar(x), glm::vec3(float(r), float(g), float(b))});
   return transfer;
+}
+
+}  // namespace
+
+TransferFunction readTransferFunction(const std::filesystem::path& file, const Volume& volume) {
+  return makeTransferFunction(file, readJson("transfer function", file), volume);
+}
+
+TransferFunction parseTransferFunction(const std::string& json, const Volume& volume) {
+  return makeTransferFunction("inline", parseJson("transfer function", "inline", json), volume);
 }
 
 }  // namespace freevoxels

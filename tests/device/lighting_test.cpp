@@ -6,6 +6,7 @@
 
 #include "engine/reference/reference_light.h"
 #include "engine/reference/reference_sorted.h"
+#include "engine/validation/sky_environment.h"
 #include "tests/device/splat_fixture.h"
 
 namespace freevoxels {
@@ -64,6 +65,42 @@ TEST_F(LightingTest, SurfacesMatchTheReference) {
   Lighting lighting = everything();
   lighting.surface = 0.8;
   expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
+}
+
+/// A sky whose sun is from the side; and turned.
+TEST_F(LightingTest, EnvironmentsMatchTheReference) {
+  const Volume v = volume(true);
+  Lighting lighting = everything();
+  auto sky = std::make_shared<Environment>(makeSky(64));
+  sky->rotation = 77.0;
+  lighting.environment = sky;
+  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
+  lighting.lights.clear();
+  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting},
+                    {.directions = DirectionSet::Directions98});
+}
+
+/// While the eye's transmittance is exact as well, so that light from all around alone needs a table. One
+/// renderer takes them in turn.
+TEST_F(LightingTest, AConstantEnvironmentIsAmbientLight) {
+  const Volume v = volume(true);
+  Renderer renderer(device(), v, coloured(v), {});
+  const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
+  const FrameSettings settings{.size = {40, 40}, .attenuation = AttenuationLookup::Exact};
+  const auto constant = std::make_shared<Environment>(
+      Environment{.size = {2, 1}, .radiance = {glm::vec3(0.5f), glm::vec3(0.5f)}, .intensity = 3.0});
+  const Lighting exact{.lights = {}, .attenuation = LightAttenuation::Exact};
+  Lighting ambient = exact, around = exact;
+  ambient.ambient = glm::dvec3(1.5);
+  around.environment = constant;
+  const auto dark = colours(renderer, camera, settings, exact);
+  EXPECT_EQ(largest(dark), 0.0);
+  const auto expected = colours(renderer, camera, settings, ambient);
+  const auto found = colours(renderer, camera, settings, around);
+  EXPECT_GT(largest(expected), 0.0);
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[i][c], expected[i][c], 1e-6 * expected[i][c] + 1e-30);
+  EXPECT_EQ(largest(colours(renderer, camera, settings, exact)), 0.0);
 }
 
 TEST_F(LightingTest, LightsInsideMatchTheReference) {

@@ -9,6 +9,7 @@
 #include "engine/reference/oracle.h"
 #include "engine/reference/ray_march.h"
 #include "engine/validation/homogeneous_box.h"
+#include "engine/validation/sky_environment.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels {
@@ -55,6 +56,39 @@ TEST(LitOracle, AHomogeneousBoxScattersWhatTheClosedFormsSay) {
 TEST(LitOracle, AmbientLightOfAThinBoxIsTheAlbedoTimesItsRadiance) {
   const double thin = 1e-4;
   EXPECT_NEAR(middle({.ambient = glm::dvec3(3.0)}, thin) / (3.0 * kAlbedo * thin), 1.0, 1e-3);
+}
+
+TEST(LitOracle, AnEnvironmentOfAThinBoxIsTheAlbedoTimesItsMeanRadiance) {
+  const auto sky = std::make_shared<Environment>(makeSky(64));
+  double mean = 0.1;
+  for (int row = 0; row < environmentRows(*sky); ++row)
+    for (const EnvironmentPart& part : environmentRow(*sky, row))
+      mean += part.solidAngle / (4.0 * std::numbers::pi) * part.radiance.r;
+  const double thin = 1e-4;
+  EXPECT_NEAR(middle({.ambient = glm::dvec3(0.1), .environment = sky}, thin) / (mean * kAlbedo * thin), 1.0,
+              1e-3);
+}
+
+TEST(LitOracle, AConstantEnvironmentIsAmbientLight) {
+  const auto constant = std::make_shared<Environment>(
+      Environment{.size = {2, 1}, .radiance = {glm::vec3(1.0f), glm::vec3(1.0f)}, .intensity = 3.0});
+  EXPECT_NEAR(middle({.environment = constant}, kDepth) / middle({.ambient = glm::dvec3(3.0)}, kDepth), 1.0,
+              5e-3);
+}
+
+/// Of a sun alone.
+TEST(LitOracle, ASmallPartOfAnEnvironmentIsALight) {
+  Environment sun = makeSky(256);
+  glm::dvec3 irradiance(0.0), towards(0.0);
+  for (glm::vec3& pixel : sun.radiance) pixel = pixel.r > 100.0f ? pixel : glm::vec3(0.0f);
+  for (int row = 0; row < environmentRows(sun); ++row)
+    for (const EnvironmentPart& part : environmentRow(sun, row)) {
+      irradiance += part.solidAngle * part.radiance;
+      towards += part.solidAngle * part.radiance.r * part.direction;
+    }
+  const Lighting light{.lights = {{.place = towards, .color = irradiance, .intensity = 1.0}}};
+  EXPECT_NEAR(middle({.environment = std::make_shared<Environment>(sun)}, kDepth) / middle(light, kDepth),
+              1.0, 1e-2);
 }
 
 TEST(LitOracle, APointFarAwayIsADirection) {

@@ -1,0 +1,69 @@
+#include "engine/core/json_file.h"
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <vector>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// The parser's message without its error code and on one line.
+std::string parseReason(const Json::parse_error& error) {
+  std::string reason = error.what();
+  if (const std::size_t end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
+  std::replace_if(
+      reason.begin(), reason.end(), [](unsigned char c) { return c < 32; }, ' ');
+  return reason;
+}
+
+/// For the parser, which by itself takes the last of equal keys.
+Json::parser_callback_t refuseRepeatedKeys(std::string_view kind, std::string_view name) {
+  return [kind, name, seen = std::vector<std::set<Json>>()](int depth, Json::parse_event_t event,
+                                                            Json& parsed) mutable {
+    const auto inside = std::size_t(depth) + (event == Json::parse_event_t::object_start ? 1 : 0);
+    seen.resize(std::max(seen.size(), inside + 1));
+    if (event == Json::parse_event_t::object_start) seen[inside].clear();
+    if (event == Json::parse_event_t::key && !seen[inside].insert(parsed).second)
+      fail(ExitCode::Input, "{} '{}' has the key {} more than once; keep one of them", kind, name,
+           inQuotes(parsed));
+    return true;
+  };
+}
+
+}  // namespace
+
+nlohmann::json parseJson(std::string_view kind, std::string_view name, std::string_view text) {
+  try {
+    return Json::parse(text, refuseRepeatedKeys(kind, name));
+  } catch (const Json::parse_error& e) {
+    fail(ExitCode::Input, "{} '{}' is not valid JSON: {}", kind, name, parseReason(e));
+  } catch (const Json::exception&) {
+    fail(ExitCode::Input, "{} '{}' holds a number that is too large", kind, name);
+  }
+}
+
+nlohmann::json readJson(std::string_view kind, const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error))
+    fail(ExitCode::Input, "there is no {} '{}'; check the name", kind, file.string());
+  if (!fs::is_regular_file(file, error))
+    fail(ExitCode::Input, "{} '{}' is not a file; name a .json file", kind, file.string());
+  std::ifstream stream(file);
+  if (!stream) fail(ExitCode::Input, "cannot open {} '{}'; check its permissions", kind, file.string());
+  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  return parseJson(kind, file.string(), text);
+}
+
+std::string inQuotes(const nlohmann::json& value) {
+  return value.dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
+}  // namespace freevoxels
