@@ -52,7 +52,7 @@ struct Renderer::State {
 
 VolumeMemory Renderer::State::memoryOfVolume() const {
   const DeviceVolume& volume = built.volume;
-  return volumeMemory(volume.hierarchy, volume.stored, tableSettings.directions, volume.hasColors(),
+  return volumeMemory(volume.hierarchy, volume.stored, tableSettings.directions, storedKinds(volume),
                       sweepStyle(device));
 }
 
@@ -237,6 +237,10 @@ bool Renderer::lackedRoomForRays() const {
 std::vector<float> Renderer::downloadExtinction() const {
   const LevelData voxels = downloadMedium(state_->device, state_->built.volume, 0);
   return {voxels.extinction.begin(), voxels.extinction.end()};
+}
+
+std::vector<glm::dvec3> Renderer::downloadEmission() const {
+  return downloadMedium(state_->device, state_->built.volume, 0).emission;
 }
 
 std::vector<std::vector<std::uint8_t>> Renderer::downloadTable() const {
