@@ -54,7 +54,7 @@ struct Renderer::State {
 VolumeMemory Renderer::State::memoryOfVolume() const {
   const DeviceVolume& volume = built.volume;
   VolumeMemory memory = volumeMemory(volume.hierarchy, volume.stored, tableSettings.directions,
-                                     volume.hasColors(), sweepStyle(device));
+                                     storedKinds(volume), sweepStyle(device));
   if (table) memory.unseen = memory.table - std::min(memory.table, table->bytes());
   return memory;
 }
@@ -241,6 +241,10 @@ bool Renderer::lackedRoomForRays() const {
 std::vector<float> Renderer::downloadExtinction() const {
   const LevelData voxels = downloadMedium(state_->device, state_->built.volume, 0);
   return {voxels.extinction.begin(), voxels.extinction.end()};
+}
+
+std::vector<glm::dvec3> Renderer::downloadEmission() const {
+  return downloadMedium(state_->device, state_->built.volume, 0).emission;
 }
 
 std::vector<std::vector<std::uint8_t>> Renderer::downloadTable() const {

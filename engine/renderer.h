@@ -53,6 +53,8 @@ class Renderer {
   bool lackedRoomForRays() const;
   /// Per world unit, voxels x fastest without padding: for tests and validation, as all that follow.
   std::vector<float> downloadExtinction() const;
+  /// The same of the light that voxels send out; empty where none does.
+  std::vector<glm::dvec3> downloadEmission() const;
   /// Bytes [direction][voxel], voxels x fastest without padding.
   std::vector<std::vector<std::uint8_t>> downloadTable() const;
   /// From the camera's eye. Fails with ExitCode::OutOfMemory.

@@ -1,4 +1,5 @@
-// A drawn block. Include after stored_block.glsl; `frame` is the SetupFrame.
+// A drawn block. Include after stored_block.glsl and packed_light.glsl; `frame` is the SetupFrame, `emission` the light of
+// blocks, by rank, where kEmits says that there is any.
 
 struct Block {
   int level;
@@ -24,11 +25,21 @@ Block blockAt(uint address) {
   return blockOf(level, cellAt(frame.levels[level], address));
 }
 
-// Where a block's extinction is, as its children have it: one that is half empty is drawn where the other half is.
+// The largest component; 0 of a block that holds nothing.
+float brightnessOf(BlockLevel level, ivec3 cell) {
+  const uint address = blockAddress(level, cell);
+  if (!kEmits || !holdsAnything(address)) return 0.0;
+  const vec3 light = unpackLight(emission[rankAt(level, address)]);
+  return max(light.r, max(light.g, light.b));
+}
+
+// Where a block's extinction is, as its children have it: one that is half empty is drawn where the other half is. With
+// light half-way to where that is.
 vec3 centerOfMass(Block block) {
   if (block.level == 0) return block.center;
   const BlockLevel children = frame.levels[block.level - 1];
   const float sigma = extinctionOf(frame.levels[block.level], block.cell);
+  const float light = brightnessOf(frame.levels[block.level], block.cell);
   vec3 sum = vec3(0.0);
   float mass = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -36,9 +47,13 @@ vec3 centerOfMass(Block block) {
     if (any(greaterThanEqual(cell, children.dimensions))) continue;
     const Block child = blockOf(block.level - 1, cell);
     const vec3 part = vec3(child.extent) / vec3(block.extent);
-    const float share = extinctionOf(children, cell) / sigma * part.x * part.y * part.z;
+    const float voxels = part.x * part.y * part.z;
+    float share = kEmits && sigma == 0.0 ? 0.0 : extinctionOf(children, cell) / sigma * voxels;
+    if (light > 0.0) share += brightnessOf(children, cell) / light * voxels;
     sum += share * (child.center - block.center);
     mass += share;
   }
+  // Of light that is too faint for any block, nothing may be left.
+  if (kEmits && mass == 0.0) return block.center;
   return block.center + sum / mass;
 }

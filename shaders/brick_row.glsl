@@ -1,11 +1,15 @@
 // A row of a brick of scalars, a thread a row, and their extinction. Physical: density x scale; or a transfer function
 // whose opacity is per unit distance. The CPU's classify() (engine/volume/classification.h) says the same in double
-// precision. Include after interface.h and blocks.glsl; takes the bindings 0 to 2.
+// precision. And the light that they send out, packed_light.glsl. Include after interface.h and blocks.glsl; takes the
+// bindings 0 to 3.
+
+layout(constant_id = 0) const bool kEmits = false;
 
 layout(local_size_x = kBrickThreads) in;
 layout(scalar, push_constant) uniform Push { BricksPush push; };
 layout(scalar, binding = 0) readonly buffer Scalars { vec4 scalars[]; };
 layout(scalar, binding = 1) readonly buffer FirstVoxels { ivec3 firstVoxels[]; };  // of the bricks
+layout(scalar, binding = 3) readonly buffer Emissions { uint emissions[]; };       // as the scalars
 #define TRANSFER_BINDING 2
 #include "transfer_function.glsl"
 
@@ -27,7 +31,8 @@ float extinctionOf(float scalar) {
 struct Row {
   float scalars[kBrickEdge];
   float extinction[kBrickEdge];
-  uint holding;  // a bit for each voxel with extinction; none for what is beyond the box
+  uint emission[kBrickEdge];
+  uint holding;  // a bit for each voxel with extinction or light; none for what is beyond the box
   ivec3 first;   // voxel
 };
 
@@ -44,7 +49,8 @@ Row loadRow(uint brick) {
       const int i = 4 * q + c;
       row.scalars[i] = quad[c];
       row.extinction[i] = extinctionOf(quad[c]);
-      row.holding |= uint(row.extinction[i] > 0.0) << i;
+      row.emission[i] = kEmits ? emissions[(brick * kBrickThreads + thread) * kBrickEdge + i] : 0;
+      row.holding |= uint(row.extinction[i] > 0.0 || row.emission[i] != 0) << i;
     }
   }
   return row;

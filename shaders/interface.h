@@ -351,6 +351,7 @@ struct SetupFrame {
   uint opacityPoints;      // 0 = physical
   uint colorPoints;
   vec3 albedo;
+  float emissionUnit;      // radiance per world unit that a stored 1 is
   RayFan fans[6];          // kLookupExact: from the eye, by fanIndex; orthographic six times the same
   FrameLighting lighting;
 };

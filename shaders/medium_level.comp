@@ -1,27 +1,34 @@
 #version 460
 // A level of the octree from the one below, a thread a block that holds anything: extinction, the mean over the voxels
-// inside of the volume, which conserves optical depth, and colour, the mean weighted by the children's opacities.
+// inside of the volume, which conserves optical depth, colour, the mean weighted by the children's opacities, and the
+// light that it sends out, the mean like extinction.
 // Subr et al. 2007, Section 3.2.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "blocks.glsl"
 #include "opacity.glsl"
+#include "packed_light.glsl"
 #define TRANSFER_BINDING 1
 #include "transfer_function.glsl"
 
 layout(constant_id = 0) const bool kColors = false;      // there is more than one colour
 layout(constant_id = 1) const bool kFromVoxels = false;  // the children are voxels
+layout(constant_id = 2) const bool kEmits = false;
+layout(constant_id = 3) const bool kAlbedos = false;     // are kept of voxels, and no scalars
 
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { MediumLevelPush push; };
 layout(scalar, binding = 0) buffer Extinction { float extinction[]; };
 layout(scalar, binding = 2) readonly buffer Scalars { float scalars[]; };
+layout(scalar, binding = 2) readonly buffer Albedos { uint albedos[]; };
 layout(scalar, binding = 3) buffer BlockColors { uvec2 blockColors[]; };
 layout(scalar, binding = 4) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 layout(scalar, binding = 5) readonly buffer Parents { uint parents[]; };
+layout(scalar, binding = 6) buffer Emission { uint emission[]; };
 #include "stored_block.glsl"
 
 vec3 childColor(uint rank) {
+  if (kFromVoxels && kAlbedos) return unpackLight(albedos[rank]);
   if (kFromVoxels) return evaluatePoints(push.opacityPoints, push.colorPoints, scalars[rank]);
   return unpackColor(blockColors[rank - push.firstColor]);
 }
@@ -32,7 +39,7 @@ void main() {
   const ivec3 cell = cellAt(push.parent, parents[i]);
   const vec3 inside = vec3(extentInside(cell, 2 * push.childEdge, push.voxels));
   float mean = 0.0, opacity = 0.0;
-  vec3 color = vec3(0.0);
+  vec3 color = vec3(0.0), light = vec3(0.0);
   for (int corner = 0; corner < 8; ++corner) {
     const ivec3 child = 2 * cell + ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
     if (any(greaterThanEqual(child, push.child.dimensions))) continue;
@@ -43,6 +50,7 @@ void main() {
     const uint rank = rankAt(push.child, address);
     const float sigma = extinction[rank];
     mean += share * sigma;
+    if (kEmits) light += share * unpackLight(emission[rank]);
     if (kColors) {
       const float weight = share * opacityOf(sigma * push.childLength);
       opacity += weight;
@@ -50,6 +58,7 @@ void main() {
     }
   }
   const uint rank = push.parent.firstRank + i;
-  extinction[rank] = max(mean, kLeastExtinction);
+  extinction[rank] = kEmits && mean == 0.0 ? 0.0 : max(mean, kLeastExtinction);
+  if (kEmits) emission[rank] = packLight(light);
   if (kColors) blockColors[rank - push.firstColor] = packColor(opacity > 0.0 ? color / opacity : vec3(0.0));
 }

@@ -9,6 +9,8 @@
 #include "transfer_function.glsl"
 
 layout(constant_id = 0) const bool kLit = false;  // else a voxel sends out its colour
+layout(constant_id = 1) const bool kEmits = false;
+layout(constant_id = 2) const bool kAlbedos = false;  // are kept of voxels, and no scalars
 
 layout(local_size_x = kSplatThreads) in;
 layout(scalar, push_constant) uniform Push { SetupPush push; };
@@ -16,17 +18,20 @@ layout(scalar, binding = 0) readonly buffer Frame { SetupFrame frame; };
 layout(scalar, binding = 2) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
 layout(scalar, binding = 3) readonly buffer VisibleVoxels { uint visibleVoxels[]; };
 layout(scalar, binding = 4) readonly buffer Scalars { float scalars[]; };
+layout(scalar, binding = 4) readonly buffer Albedos { uint albedos[]; };
 layout(scalar, binding = 5) readonly buffer Extinction { float extinction[]; };
 layout(scalar, binding = 6) readonly buffer Chunks { ChunkArguments chunks[]; };
 layout(scalar, binding = 7) writeonly buffer Splats { Splat splats[]; };
 layout(scalar, binding = 8) readonly buffer BlockColors { uvec2 blockColors[]; };
 layout(scalar, binding = 9) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 layout(scalar, binding = 10) readonly buffer Lights { Light lights[]; };
+layout(scalar, binding = 11) readonly buffer Emission { uint emission[]; };
 #define PLANE_ADDRESS(cell) planeAddresses[cell]
 #include "major_axis.glsl"
 #include "stored_block.glsl"
 #include "direction_lookup.glsl"
 #include "ray_lookup.glsl"
+#include "packed_light.glsl"
 #include "block_at.glsl"
 #include "block_depth.glsl"
 #include "depth_to_eye.glsl"
@@ -36,8 +41,9 @@ layout(scalar, binding = 10) readonly buffer Lights { Light lights[]; };
 #include "lighting.glsl"
 
 vec3 colorOf(Block block, uint rank) {
-  if (frame.opacityPoints == 0) return frame.albedo;
+  if (frame.opacityPoints == 0 && !kAlbedos) return frame.albedo;
   if (block.level > 0) return unpackColor(blockColors[rank - frame.levels[1].firstRank]);
+  if (kAlbedos) return unpackLight(albedos[rank]);
   return evaluatePoints(frame.opacityPoints, frame.colorPoints, scalars[rank]);
 }
 
@@ -68,6 +74,7 @@ void main() {
   vec3 color = colorOf(block, rank);
   if (kLit) color *= scatteredLight(block, sigma, rank, direction);
   splat.colorEnergy = vec4(energy * color, energy);
+  if (kEmits) splat.colorEnergy.rgb += leaving * peak * frame.emissionUnit * unpackLight(emission[rank]);
   splat.center = footprint.center;
   splat.halfExtent = footprint.halfExtent;
   splat.conic = footprint.conic;
@@ -82,7 +89,8 @@ void main() {
       vec3(toEye.depth, perPixel * vec2(dot(toEye.gradient, frame.pixelX), dot(toEye.gradient, frame.pixelY)));
   if (footprint.cut) {
     const vec3 fromEye = block.center - frame.middle + frame.eyeToMiddle;
-    splat.opticalDepth = -splat.opticalDepth;
+    // What has light alone is cut, too.
+    splat.opticalDepth = kEmits ? -max(splat.opticalDepth, kLeastExtinction) : -splat.opticalDepth;
     splat.depthToEye = vec3(toEye.depth, 0.0, dot(fromEye, fromEye));
     if (frame.gradient != 0) splat.depthToEye.xy += sigma * vec2(-length(frame.indexToWorld * fromEye), 1.0);
   }

@@ -13,10 +13,14 @@ void ClassificationOptions::add(CLI::App& app) {
           ->group("Classification");
   CLI::Option* color = addTriple(app, "--albedo", "R,G,B", albedo, "Colour, linear [0.9,0.9,0.9]", {0.0, 1.0})
                            ->group("Classification");
+  CLI::Option* grid =
+      addText(app, "--albedo-grid", "NAME", albedoGrid, "Grid of vectors of the file: colours, linear, 0..1")
+          ->group("Classification");
   addText(app, "--transfer-function", "FILE.json", transferFunction,
           "Colour and opacity over the scalar instead; the JSON itself will do, where it begins with {")
       ->excludes(scale)
       ->excludes(color)
+      ->excludes(grid)
       ->group("Classification");
 }
 
@@ -41,6 +45,7 @@ void ClassificationOptions::describe(OptionList& options, const Classification& 
   options.emplace_back("--density-scale", numberText(resolved.densityScale));
   options.emplace_back("--albedo",
                        fmt::format("{},{},{}", resolved.albedo.x, resolved.albedo.y, resolved.albedo.z));
+  if (albedoGrid) options.emplace_back("--albedo-grid", *albedoGrid);
 }
 
 }  // namespace freevoxels

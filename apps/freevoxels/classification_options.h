@@ -13,6 +13,7 @@ struct ClassificationOptions {
   std::optional<double> densityScale;
   std::optional<glm::dvec3> albedo;
   std::optional<std::string> transferFunction;
+  std::optional<std::string> albedoGrid;
 
   void add(CLI::App& app);
   /// Reads the transfer function; the density scale defaults to the automatic one.

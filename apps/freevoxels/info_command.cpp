@@ -1,6 +1,8 @@
 #include "apps/freevoxels/info_command.h"
 
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -42,7 +44,7 @@ VolumeMemory memoryOf(const GridInfo& grid, DirectionSet directions) {
   std::vector<std::uint64_t> stored = grid.storedBlocks;
   if (stored.empty())
     for (const GridLayout& level : hierarchy.levels) stored.push_back(level.voxels());
-  return volumeMemory(hierarchy, stored, directions, false, sweepStyleOf(true));
+  return volumeMemory(hierarchy, stored, directions, {}, sweepStyleOf(true));
 }
 
 /// Stored with 26 directions, of a voxel that holds anything.
@@ -50,6 +52,15 @@ double bytesPerVoxel(const GridInfo& grid) {
   const std::uint64_t voxels = grid.storedBlocks.front();
   return double(memoryOf(grid, DirectionSet::Directions26).stored()) /
          double(std::max<std::uint64_t>(voxels, 1));
+}
+
+/// What a grid can be taken for.
+std::vector<std::string> usesOf(const GridInfo& grid) {
+  std::vector<std::string> uses;
+  if (grid.unusable.empty()) uses.emplace_back("density");
+  if (grid.isTemperature && grid.activeVoxels > 0) uses.emplace_back("temperature");
+  if (grid.isAlbedo) uses.emplace_back("albedo");
+  return uses;
 }
 
 std::vector<GridInfo> describeInput(const InputOptions& input) {
@@ -65,7 +76,7 @@ void printTable(const std::vector<GridInfo>& grids) {
       .columns = {Left, Left, Left, Right, Right, Left, Left, Left, Right, Right, Right, Right, Right, Right,
                   Left},
       .rows = {{"GRID", "TYPE", "CLASS", "ACTIVE VOXELS", "DIMENSIONS", "BOUNDING BOX", "VOXEL SIZE",
-                "VALUES", "MEMORY", "TABLE 26", "ON DEVICE", "TABLE 98", "ON DEVICE", "BYTES/VOXEL", ""}}};
+                "VALUES", "MEMORY", "TABLE 26", "ON DEVICE", "TABLE 98", "ON DEVICE", "BYTES/VOXEL", "USE"}}};
   for (const GridInfo& grid : grids) {
     const bool empty = grid.activeVoxels == 0;
     const glm::ivec3 low = grid.boundsMinimum, high = grid.boundsMaximum, size = grid.dimensions;
@@ -83,7 +94,9 @@ void printTable(const std::vector<GridInfo>& grids) {
       row.push_back(grid.unusable.empty() ? bytesText(memory.peak()) : "-");
     }
     row.push_back(grid.storedBlocks.empty() ? "-" : fmt::format("{:.1f}", bytesPerVoxel(grid)));
-    row.push_back(grid.unusable.empty() ? "" : "not drawable: " + grid.unusable);
+    std::vector<std::string> uses = usesOf(grid);
+    if (!grid.unusable.empty()) uses.push_back("not drawable: " + grid.unusable);
+    row.push_back(fmt::format("{}", fmt::join(uses, ", ")));
   }
   for (const std::string& line : table.lines()) fmt::print("{}\n", line);
 }
@@ -99,6 +112,7 @@ nlohmann::ordered_json toJson(const GridInfo& grid) {
                               {"bounds_maximum", triple(grid.boundsMaximum)},
                               {"voxel_size", triple(grid.voxelSize)},
                               {"memory_bytes", grid.memoryBytes}};
+  json["uses"] = usesOf(grid);
   if (grid.hasRange) json["range"] = {grid.minimum, grid.maximum};
   if (!grid.unusable.empty()) {
     json["not_drawable"] = grid.unusable;
@@ -128,7 +142,8 @@ void InfoCommand::add(CLI::App& app) {
   command->footer(
       "TABLE 26 and TABLE 98 are the FreeVoxel table of the grid with so many directions, ON DEVICE all\n"
       "device memory of the volume with it at most. BYTES/VOXEL is what is kept for each voxel that holds\n"
-      "anything, with 26 directions and all levels of the octree (the paper: 27, without levels).\n"
+      "anything, with 26 directions and all levels of the octree (the paper: 27, without levels);\n"
+      "--emission adds 4 for each voxel and block, --albedo-grid 4 for a voxel and 8 for a block.\n"
       "Examples:\n"
       "  freevoxels info cloud.vdb\n"
       "  freevoxels info procedural:cloud --resolution 256 --json\n");

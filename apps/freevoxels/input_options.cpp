@@ -9,7 +9,6 @@
 
 #include "engine/core/error.h"
 #include "engine/volume/procedural.h"
-#include "engine/volume/vdb.h"
 
 namespace freevoxels {
 
@@ -76,10 +75,12 @@ void InputOptions::check() const {
   }
 }
 
-Volume InputOptions::open(std::uint64_t maximumVoxels) const {
-  if (const std::optional<std::string> name = proceduralName(input))
-    return openProcedural(*name, resolution, maximumVoxels);
-  return readVdb(input, grid.value_or(""), maximumVoxels);
+Volume InputOptions::open(std::uint64_t maximumVoxels, const MoreGrids& more) const {
+  const std::optional<std::string> name = proceduralName(input);
+  if (!name) return readVdb(input, grid.value_or(""), maximumVoxels, more);
+  Volume volume = openProcedural(*name, resolution, maximumVoxels);
+  if (!more.temperature) volume.temperature.reset();
+  return volume;
 }
 
 void InputOptions::describe(OptionList& options) const {
@@ -97,6 +98,9 @@ void warnAboutValues(const Volume& volume, bool scalarsAreDensities) {
                  one ? "s" : "");
   };
   warn(volume.nanVoxels, "a value that is NaN or infinite");
+  if (volume.albedo && volume.albedo->clippedVoxels > 0)
+    spdlog::warn("{} voxels of grid '{}' have components outside of 0..1, which are clipped to it",
+                 volume.albedo->clippedVoxels, volume.albedo->name);
   if (scalarsAreDensities) warn(volume.negativeVoxels, "negative density");
 }
 

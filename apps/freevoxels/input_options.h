@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/freevoxels/option_values.h"
+#include "engine/volume/vdb.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -37,7 +38,8 @@ struct InputOptions {
   void checkGiven() const;
   /// Refuses an option that does not apply to this input: ExitCode::Usage.
   void check() const;
-  Volume open(std::uint64_t maximumVoxels) const;
+  /// A procedural volume has its temperatures where any are asked for.
+  Volume open(std::uint64_t maximumVoxels, const MoreGrids& more = {}) const;
   void describe(OptionList& options) const;
 };
 

@@ -17,7 +17,7 @@ namespace {
 /// What is read: shown in the sentence that refuses a value.
 struct Expectation {
   std::string option, form;
-  std::size_t count = 1;
+  std::size_t count = 1;  ///< 0: one, which may be left out
   NumberRange range;
   bool whole = false;
   char separator = ',';
@@ -32,7 +32,7 @@ std::string rangeText(const Expectation& expected) {
 }
 
 [[noreturn]] void refuse(const Expectation& expected, const std::string& text) {
-  const bool one = expected.count == 1;
+  const bool one = expected.count <= 1;
   fail(ExitCode::Usage, "{} takes {}, {}{} number{}{}, not '{}'", expected.option, expected.form,
        one ? "a " : "", expected.whole ? "whole" : "finite", one ? "" : "s", rangeText(expected), text);
 }
@@ -50,6 +50,7 @@ std::optional<double> parseNumber(std::string_view word, const Expectation& expe
 
 std::vector<double> parseNumbers(const std::string& text, const Expectation& expected) {
   std::vector<double> values;
+  if (expected.count == 0 && text.empty()) return values;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(expected.separator, begin), text.size());
     const std::optional<double> value =
@@ -58,7 +59,7 @@ std::vector<double> parseNumbers(const std::string& text, const Expectation& exp
     values.push_back(*value);
     begin = end + 1;
   }
-  if (values.size() != expected.count) refuse(expected, text);
+  if (values.size() != std::max<std::size_t>(expected.count, 1)) refuse(expected, text);
   return values;
 }
 
@@ -79,6 +80,17 @@ CLI::Option* addNumber(CLI::App& app, const std::string& name, const std::string
                        std::optional<double>& target, const std::string& description, NumberRange range) {
   return addNumbers(app, {.option = name, .form = form, .range = range}, description,
                     [&target](const std::vector<double>& values) { target = values[0]; });
+}
+
+CLI::Option* addOptionalNumber(CLI::App& app, const std::string& name, const std::string& form, bool& given,
+                               std::optional<double>& target, const std::string& description,
+                               NumberRange range) {
+  return addNumbers(app, {.option = name, .form = form, .count = 0, .range = range}, description,
+                    [&](const std::vector<double>& values) {
+                      given = true;
+                      target = values.empty() ? std::nullopt : std::optional(values[0]);
+                    })
+      ->expected(0, 1);
 }
 
 CLI::Option* addPair(CLI::App& app, const std::string& name, const std::string& form,

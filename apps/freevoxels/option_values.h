@@ -29,6 +29,10 @@ struct NumberRange {
 /// `form` is how the help shows the value: "DEG", "X,Y,Z".
 CLI::Option* addNumber(CLI::App& app, const std::string& name, const std::string& form,
                        std::optional<double>& target, const std::string& description, NumberRange range = {});
+/// The number may be left out; `given` says that the option is there.
+CLI::Option* addOptionalNumber(CLI::App& app, const std::string& name, const std::string& form, bool& given,
+                               std::optional<double>& target, const std::string& description,
+                               NumberRange range = {});
 CLI::Option* addPair(CLI::App& app, const std::string& name, const std::string& form,
                      std::optional<glm::dvec2>& target, const std::string& description,
                      NumberRange range = {});

@@ -10,6 +10,7 @@ void SceneOptions::add(CLI::App& app) {
   input.addGrid(app);
   output.add(app);
   classification.add(app);
+  emission.add(app);
   camera.add(app);
   lighting.add(app);
   file.add(app);
@@ -29,6 +30,9 @@ void SceneOptions::takeScene() {
 
 void SceneOptions::check(const std::vector<std::string>& moreOutputs) const {
   input.check();
+  if (classification.albedoGrid && proceduralName(input.input))
+    fail(ExitCode::Usage, "--albedo-grid chooses among the grids of a file, and {} has one", input.input);
+  emission.check(input);
   camera.check();
   lighting.check();
   output.check();
@@ -50,8 +54,10 @@ SceneOptions SceneOptions::withOutputs(std::vector<std::string> files) const {
 
 Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
   Scene scene;
-  scene.volume = input.open(maximumVoxels);
+  scene.volume =
+      input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.albedoGrid});
   scene.classification = classification.resolve(scene.volume);
+  scene.classification.emission = emission.resolve(scene.volume);
   scene.camera = camera.resolve(scene.volume);
   scene.lighting = lighting.resolve(scene.volume);
   return scene;
@@ -59,6 +65,7 @@ Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
 
 void SceneOptions::warn(const Scene& scene) const {
   warnAboutValues(scene.volume, !scene.classification.transferFunction);
+  EmissionOptions::warn(scene.volume, scene.classification);
 }
 
 void SceneOptions::save(const OptionList& options) const {
@@ -69,6 +76,7 @@ OptionList SceneOptions::describe(const Scene& scene, const OptionList& method) 
   OptionList options;
   input.describe(options);
   classification.describe(options, scene.classification);
+  emission.describe(options, scene.volume, scene.classification.emission);
   camera.describe(options, scene.camera);
   lighting.describe(options, scene.lighting);
   options.insert(options.end(), method.begin(), method.end());

@@ -4,6 +4,7 @@
 
 #include "apps/freevoxels/camera_options.h"
 #include "apps/freevoxels/classification_options.h"
+#include "apps/freevoxels/emission_options.h"
 #include "apps/freevoxels/input_options.h"
 #include "apps/freevoxels/lighting_options.h"
 #include "apps/freevoxels/output_options.h"
@@ -22,6 +23,7 @@ struct SceneOptions {
   InputOptions input;
   OutputOptions output;
   ClassificationOptions classification;
+  EmissionOptions emission;
   CameraOptions camera;
   LightingOptions lighting;
   SceneFileOptions file;

@@ -11,6 +11,7 @@
 #include "engine/validation/closed_forms.h"
 #include "engine/validation/culling_checks.h"
 #include "engine/validation/detail_quality.h"
+#include "engine/validation/emission_checks.h"
 #include "engine/validation/fly_through_quality.h"
 #include "engine/validation/invariances.h"
 #include "engine/validation/leakage.h"
@@ -49,11 +50,12 @@ struct ProceduralScene {
   SceneColor color;
   bool alsoLarge = false;
 };
-constexpr std::array<ProceduralScene, 6> kProcedural{{{"cube", SceneColor::Density, true},
+constexpr std::array<ProceduralScene, 7> kProcedural{{{"cube", SceneColor::Density, true},
                                                       {"cloud", SceneColor::TransferFunction},
                                                       {"marschner-lobb", SceneColor::Density},
                                                       {"shells", SceneColor::TransferFunction},
                                                       {"rods", SceneColor::Density},
+                                                      {"fire", SceneColor::Density},
                                                       {"head", SceneColor::TransferFunction, true}}};
 
 /// `makeScene` is called when the job runs: a scene is in memory no longer than it is needed.
@@ -162,6 +164,10 @@ void addLight(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
                     return environmentQuality(device,
                                               openQualityScene(device, kQualitySubjects[2], resolution),
                                               quick ? kQuickLightPicture : kQuickQualityPicture);
+                  }});
+  jobs.push_back({"emission of fire", [=, &device] {
+                    return emissionChecks(device, resolution,
+                                          quick ? kQuickLightPicture : kQuickQualityPicture);
                   }});
   jobs.push_back({"shadows", [=, &device] { return shadowChecks(device, resolution); }});
 }

@@ -6,6 +6,7 @@
 #include "embedded/medium_level.h"
 #include "embedded/table_level.h"
 #include "engine/hierarchy/occupancy.h"
+#include "engine/volume/packed_light.h"
 
 namespace freevoxels {
 
@@ -33,13 +34,13 @@ shader::MediumLevelPush mediumPush(const DeviceVolume& volume, int level) {
 }  // namespace
 
 MediumLevels::MediumLevels(const Device& device, const DeviceVolume& volume) {
-  const auto colors = std::uint32_t(volume.hasColors());
+  const std::uint32_t colors = volume.hasColors(), emission = volume.hasEmission();
   for (const std::uint32_t fromVoxels : {0u, 1u})
     pipelines_[fromVoxels] =
         makeComputePipeline(device, {medium_level_spv, "medium level"},
-                            {.bindings = std::vector(6, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                            {.bindings = std::vector(7, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
                              .pushConstantBytes = sizeof(shader::MediumLevelPush)},
-                            {shader::kLevelThreads, 1, 1}, {colors, fromVoxels});
+                            {shader::kLevelThreads, 1, 1}, {colors, fromVoxels, emission, volume.hasAlbedos});
 }
 
 void MediumLevels::record(Commands& commands, const DeviceVolume& volume,
@@ -50,9 +51,13 @@ void MediumLevels::record(Commands& commands, const DeviceVolume& volume,
   commands.beginPass("octree");
   for (int level = 1; level <= volume.hierarchy.top(); ++level) {
     const shader::MediumLevelPush push = mediumPush(volume, level);
-    const std::array<Binding, 6> bindings{&volume.extinction, &volume.transferPoints,
-                                          &scalars,           &colors,
-                                          &volume.occupancy,  &coarse[std::size_t(level) - 1].indices};
+    const std::array<Binding, 7> bindings{&volume.extinction,
+                                          &volume.transferPoints,
+                                          &scalars,
+                                          &colors,
+                                          &volume.occupancy,
+                                          &coarse[std::size_t(level) - 1].indices,
+                                          volume.hasEmission() ? &volume.emission : &anyBuffer};
     commands.dispatchLinear(pipelines_[level == 1 ? 1 : 0], bindings, push, push.parentCount);
     commands.barrier(kCompute, kCompute);
   }
@@ -109,6 +114,13 @@ LevelData downloadMedium(const Device& device, const DeviceVolume& volume, int l
   download(device, volume.extinction, std::as_writable_bytes(std::span(stored)), first * sizeof(float));
   const std::vector<float> extinction = spreadOut(stored, blocks, grid.voxels());
   LevelData data{.dimensions = grid.dimensions, .extinction = {extinction.begin(), extinction.end()}};
+  if (volume.hasEmission()) {
+    std::vector<std::uint32_t> light(blocks.size());
+    download(device, volume.emission, std::as_writable_bytes(std::span(light)),
+             first * sizeof(std::uint32_t));
+    for (const std::uint32_t bits : spreadOut(light, blocks, grid.voxels()))
+      data.emission.push_back(volume.emissionUnit * unpackColor(bits));
+  }
   if (!volume.hasColors() || level == 0) return data;
   std::vector<glm::uvec2> colors(blocks.size());
   download(device, volume.blockColors, std::as_writable_bytes(std::span(colors)),

@@ -14,7 +14,7 @@
 
 namespace freevoxels {
 
-/// COMPUTE medium_level.comp: extinction, and colours where there is more than one; a dispatch a level.
+/// COMPUTE medium_level.comp: extinction, colours where there is more than one, light; a dispatch a level.
 class MediumLevels {
  public:
   MediumLevels(const Device& device, const DeviceVolume& volume);
@@ -37,7 +37,7 @@ class TableLevels {
   std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
 };
 
-/// Extinction and colours of a level, without its table. Waits.
+/// Extinction, colours and light of a level, without its table. Waits.
 LevelData downloadMedium(const Device& device, const DeviceVolume& volume, int level);
 
 }  // namespace freevoxels

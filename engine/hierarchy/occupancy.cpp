@@ -17,23 +17,23 @@ constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 
 }  // namespace
 
-OccupancyPass::OccupancyPass(const Device& device)
+OccupancyPass::OccupancyPass(const Device& device, bool emission)
     : voxels_(makeComputePipeline(
           device, {occupied_voxels_spv, "occupied voxels"},
-          {.bindings = std::vector(4, kStorage), .pushConstantBytes = sizeof(shader::BricksPush)},
-          {shader::kBrickThreads, 1, 1})),
+          {.bindings = std::vector(5, kStorage), .pushConstantBytes = sizeof(shader::BricksPush)},
+          {shader::kBrickThreads, 1, 1}, {emission ? 1u : 0u})),
       blocks_(makeComputePipeline(
           device, {occupied_blocks_spv, "occupied blocks"},
           {.bindings = {kStorage}, .pushConstantBytes = sizeof(shader::OccupiedBlocksPush)},
           {shader::kOccupancyThreads, 1, 1})) {}
 
 void OccupancyPass::recordVoxels(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks,
-                                 const Classification& classification, bool first) const {
+                                 bool first) const {
   commands.beginPass("occupancy");
   if (first) commands.clear(volume.occupancy);
-  const std::array<Binding, 4> bindings{&bricks.scalars(), &bricks.firstVoxels(), &volume.transferPoints,
-                                        &volume.occupancy};
-  const shader::BricksPush push = bricks.push(volume, classification);
+  const std::array<Binding, 5> bindings{&bricks.scalars(), &bricks.firstVoxels(), &volume.transferPoints,
+                                        &bricks.emissions(), &volume.occupancy};
+  const shader::BricksPush push = bricks.push();
   commands.dispatchLinear(voxels_, bindings, push, std::uint64_t(push.brickCount) * shader::kBrickThreads);
   commands.barrier(kCompute, kCompute);
 }

@@ -14,10 +14,11 @@ namespace freevoxels {
 /// CompactionPass's.
 class OccupancyPass {
  public:
-  explicit OccupancyPass(const Device& device);
+  /// Of volumes that send out light, or of others.
+  OccupancyPass(const Device& device, bool emission);
   /// The voxels of a batch of bricks, of which the first begins with none.
   void recordVoxels(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks,
-                    const Classification& classification, bool first) const;
+                    bool first) const;
   /// After those of all batches.
   void recordBlocks(Commands& commands, const DeviceVolume& volume) const;
 

@@ -15,17 +15,25 @@ namespace {
 /// COMPUTE pack_voxels.comp
 class PackPass {
  public:
-  PackPass(const Device& device, bool scalars)
-      : pipeline_(makeComputePipeline(device, {pack_voxels_spv, "pack voxels"},
-                                      {.bindings = std::vector(6, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                                       .pushConstantBytes = sizeof(shader::BricksPush)},
-                                      {shader::kBrickThreads, 1, 1}, {scalars ? 1u : 0u})) {}
-  void record(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks,
-              const Classification& classification) const {
-    const std::array<Binding, 6> bindings{
-        &bricks.scalars(), &bricks.firstVoxels(), &volume.transferPoints,
-        &volume.occupancy, &volume.extinction,    volume.hasColors() ? &volume.scalars : &volume.extinction};
-    const shader::BricksPush push = bricks.push(volume, classification);
+  PackPass(const Device& device, const DeviceVolume& volume)
+      : pipeline_(makeComputePipeline(
+            device, {pack_voxels_spv, "pack voxels"},
+            {.bindings = std::vector(9, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+             .pushConstantBytes = sizeof(shader::BricksPush)},
+            {shader::kBrickThreads, 1, 1},
+            {volume.hasEmission(), volume.hasColors() && !volume.hasAlbedos, volume.hasAlbedos})) {}
+  void record(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks) const {
+    const Buffer& anyBuffer = volume.extinction;
+    const std::array<Binding, 9> bindings{&bricks.scalars(),
+                                          &bricks.firstVoxels(),
+                                          &volume.transferPoints,
+                                          &bricks.emissions(),
+                                          &volume.occupancy,
+                                          &volume.extinction,
+                                          volume.hasColors() ? &volume.scalars : &anyBuffer,
+                                          volume.hasEmission() ? &volume.emission : &anyBuffer,
+                                          &bricks.albedos()};
+    const shader::BricksPush push = bricks.push();
     commands.beginPass("pack");
     commands.dispatchLinear(pipeline_, bindings, push,
                             std::uint64_t(push.brickCount) * shader::kBrickThreads);
@@ -44,6 +52,7 @@ Buffer makeStore(const Device& device, std::uint64_t values, std::uint64_t bytes
 void makeStores(const Device& device, DeviceVolume& volume) {
   const std::uint64_t blocks = volume.storedBlocks(), voxels = volume.stored.front();
   volume.extinction = makeStore(device, blocks, sizeof(float), "extinction");
+  if (volume.hasEmission()) volume.emission = makeStore(device, blocks, sizeof(std::uint32_t), "emission");
   if (!volume.hasColors()) return;
   volume.scalars = makeStore(device, voxels, sizeof(float), "scalars");
   volume.blockColors = makeStore(device, blocks - voxels, sizeof(glm::uvec2), "block colours");
@@ -54,11 +63,10 @@ class Builder {
   Builder(const Device& device, const Volume& volume, const Classification& classification,
           std::vector<StageTime>& times, const Progress& progress)
       : device_(device),
-        classification_(classification),
         times_(times),
         progress_(progress),
         built_{.volume = makeDeviceVolume(device, volume, classification)},
-        bricks_(device, volume.scalars) {}
+        bricks_(device, built_.volume, volume, classification) {}
 
   BuiltVolume run() && {
     findOccupancy();
@@ -71,11 +79,11 @@ class Builder {
  private:
   /// Of all levels, with the lists and the ranks.
   void findOccupancy() {
-    const OccupancyPass occupancy(device_);
-    const CompactionPass compaction(device_);
     const DeviceVolume& volume = built_.volume;
+    const OccupancyPass occupancy(device_, volume.hasEmission());
+    const CompactionPass compaction(device_);
     forEachBatch([&](Commands& commands, std::size_t batch) {
-      occupancy.recordVoxels(commands, volume, bricks_, classification_, batch == 0);
+      occupancy.recordVoxels(commands, volume, bricks_, batch == 0);
     });
     Commands commands(device_);
     occupancy.recordBlocks(commands, volume);
@@ -93,10 +101,9 @@ class Builder {
   /// What is kept of every block that holds anything.
   void store() {
     const DeviceVolume& volume = built_.volume;
-    const PackPass pack(device_, volume.hasColors());
+    const PackPass pack(device_, volume);
     const MediumLevels levels(device_, volume);
-    forEachBatch(
-        [&](Commands& commands, std::size_t) { pack.record(commands, volume, bricks_, classification_); });
+    forEachBatch([&](Commands& commands, std::size_t) { pack.record(commands, volume, bricks_); });
     Commands commands(device_);
     levels.record(commands, volume, built_.lists.coarse);
     submit(commands);
@@ -121,7 +128,6 @@ class Builder {
   }
 
   const Device& device_;
-  const Classification& classification_;
   std::vector<StageTime>& times_;
   const Progress& progress_;
   BuiltVolume built_;

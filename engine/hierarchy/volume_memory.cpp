@@ -44,7 +44,7 @@ void checkHolds(const Device& device, const HierarchyLayout& hierarchy, VolumeMe
 /// Of a box that holds nothing.
 VolumeMemory emptyMemory(const Device& device, const HierarchyLayout& hierarchy) {
   return volumeMemory(hierarchy, std::vector<std::uint64_t>(hierarchy.levels.size(), 0),
-                      DirectionSet::Directions26, false, sweepStyle(device));
+                      DirectionSet::Directions26, {}, sweepStyle(device));
 }
 
 /// Of a batch, were all bricks there.
@@ -60,18 +60,24 @@ std::uint64_t occupancyBytes(const HierarchyLayout& hierarchy) {
 
 }  // namespace
 
+StoredKinds storedKinds(const DeviceVolume& volume) {
+  return {.colors = volume.hasColors(), .albedos = volume.hasAlbedos, .emission = volume.hasEmission()};
+}
+
 VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std::uint64_t> stored,
-                          DirectionSet directions, bool colors, const SweepStyle& style) {
+                          DirectionSet directions, StoredKinds kinds, const SweepStyle& style) {
   const std::uint64_t blocks = std::accumulate(stored.begin(), stored.end(), std::uint64_t(0));
   const std::uint64_t voxels = stored.front(), coarse = blocks - voxels;
   return {.occupancy = occupancyBytes(hierarchy),
           .extinction = blocks * sizeof(float),
           .table = (blocks + coarse) * std::uint64_t(directionCount(directions)),
-          .colors = colors ? voxels * sizeof(float) + coarse * sizeof(glm::uvec2) : 0,
+          .colors = kinds.colors ? voxels * sizeof(float) + coarse * sizeof(glm::uvec2) : 0,
+          .emission = kinds.emission ? blocks * sizeof(std::uint32_t) : 0,
           // Of all blocks and of those of a frame, with a bit for each that could be one and two bytes for
           // each that has children.
           .lists = (blocks + voxels) * sizeof(std::uint32_t) + blocks + 2 * coarse,
-          .bricks = brickBytes(hierarchy.levels.front().dimensions),
+          .bricks = brickBytes(hierarchy.levels.front().dimensions) *
+                    (1u + (kinds.albedos ? 1u : 0u) + (kinds.emission ? 1u : 0u)),
           .sweep = planSweep(hierarchy.levels.front(), directions, style,
                              std::numeric_limits<std::uint64_t>::max())
                        .bytes(),
@@ -112,7 +118,7 @@ void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionS
   checkBinds(device, volume.layout.dimensions, volume.planeBytes(), 1);
   checkHolds(
       device, volume.hierarchy,
-      volumeMemory(volume.hierarchy, volume.stored, directions, volume.hasColors(), sweepStyle(device)),
+      volumeMemory(volume.hierarchy, volume.stored, directions, storedKinds(volume), sweepStyle(device)),
       directions, directions == DirectionSet::Directions26 ? "" : ", or take 26 directions");
 }
 

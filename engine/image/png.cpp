@@ -42,12 +42,14 @@ std::uint8_t toSrgbByte(float linear) {
   return toByte(srgbFromLinear(clampUnit(linear)));
 }
 
-/// Alpha above 1, which the additive composite makes, counts as 1.
+/// Alpha above 1, which the additive composite makes, counts as 1. Straight alpha cannot be less than a
+/// colour that it is to show: light of more than the opacity takes as much alpha as it needs.
 std::vector<std::uint8_t> toBytes(const Image& image, const glm::vec3* background) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(image.pixels.size() * (background ? 3 : 4));
   for (const glm::vec4& pixel : image.pixels) {
-    const float alpha = clampUnit(pixel.a);
+    const float needed = background ? pixel.a : std::max({pixel.a, pixel.r, pixel.g, pixel.b});
+    const float alpha = clampUnit(needed);
     for (int c = 0; c < 3; ++c) {
       const float straight = alpha > 0.0f ? pixel[c] / alpha : 0.0f;
       bytes.push_back(toSrgbByte(background ? pixel[c] + (1.0f - alpha) * (*background)[c] : straight));

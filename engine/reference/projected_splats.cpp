@@ -162,9 +162,13 @@ double SplatProjector::layerLength(const ProjectedSplat& splat) const {
   return glm::length(indexToWorld_ * (splat.toEye / std::max({size.x, size.y, size.z})));
 }
 
+double SplatProjector::leaving(const ProjectedSplat& splat, double extinction, int layers) const {
+  const double depth = extinction * layers * layerLength(splat);
+  return depth > 0.0 ? -std::expm1(-depth) / depth : 1.0;
+}
+
 double SplatProjector::opacity(const ProjectedSplat& splat, double extinction, int layers) const {
-  const double length = layers * layerLength(splat);
-  return -std::expm1(-extinction * length) / length;
+  return extinction * leaving(splat, extinction, layers);
 }
 
 CoveredPixel SplatProjector::cover(const ProjectedSplat& splat, glm::ivec2 pixel) const {

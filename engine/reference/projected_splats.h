@@ -55,6 +55,9 @@ class SplatProjector {
   glm::dvec3 toEye(glm::dvec3 position) const;
   /// World length of a lattice layer in the viewing direction.
   double layerLength(const ProjectedSplat& splat) const;
+  /// What of its own light leaves so many lattice layers in the viewing direction: (1 - exp(-x)) / x, x their
+  /// optical depth.
+  double leaving(const ProjectedSplat& splat, double extinction, int layers = 1) const;
   /// Opacity of so many lattice layers in the viewing direction per world length: (1 - exp(-sigma s)) / s.
   double opacity(const ProjectedSplat& splat, double extinction, int layers = 1) const;
 

@@ -1,5 +1,5 @@
 // Emission and absorption after Max 1995, "Optical models for direct volume rendering":
-//   C = integral of T(t) sigma(t) c(t) ds,   T = exp(-integral of sigma ds up to t).
+//   C = integral of T(t) (sigma(t) c(t) + j(t)) ds,   T = exp(-integral of sigma ds up to t).
 //
 // Within a cell the trilinear field f(x, y, z) is linear in each coordinate. Along the segment from a to b it
 // is a cubic of s in 0..1, and the values of f at the corners of the segment's bounding box are its polar
@@ -12,6 +12,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace freevoxels {
 
@@ -118,8 +119,9 @@ struct Depth {
   }
 };
 
-/// Calls visit(corner, cell, t0, t1) for the cells with extinction that the ray passes up to `leave`, in
-/// order, until it returns false. `corner` is the cell's first in its brick.
+/// Calls visit(corner, light, cell, t0, t1) for the cells with extinction or light that the ray passes up to
+/// `leave`, in order, until it returns false. `corner` is the cell's first in its brick, `light` in that of
+/// the light or null.
 template <typename Visit>
 void walkField(const ReferenceField& field, const MarchedRay& ray, double leave, Visit&& visit) {
   double enter = 0.0;
@@ -136,15 +138,19 @@ void walkField(const ReferenceField& field, const MarchedRay& ray, double leave,
   }
   constexpr double edge = ReferenceField::kBrickCells;
   const auto crossBrick = [&](glm::ivec3 position, double t0, double t1) {
-    const ReferenceField::Brick* const brick = field.brick(position);
+    static const ReferenceField::Brick kEmpty{};
+    const ReferenceField::Brick* const light = field.light(position);
+    const ReferenceField::Brick* const brick =
+        field.brick(position) || !light ? field.brick(position) : &kEmpty;
     if (!brick) return true;
     constexpr int n = ReferenceField::kBrickCorners;
     const glm::ivec3 first = position * ReferenceField::kBrickCells - 1;
     bool goOn = true;
     const auto crossCell = [&](glm::ivec3 cell, double from, double to) {
       const glm::ivec3 local = cell - first;
-      if (!ReferenceField::isFilled(*brick, local)) return true;
-      goOn = visit(brick->data() + local.x + n * (local.y + n * local.z), cell, from, to);
+      if (!light && !ReferenceField::isFilled(*brick, local)) return true;
+      const int corner = local.x + n * (local.y + n * local.z);
+      goOn = visit(brick->data() + corner, light ? light->data() + corner : nullptr, cell, from, to);
       return goOn;
     };
     walkCubes(ray.origin, ray.direction, first, first + ReferenceField::kBrickCells - 1, t0, t1, crossCell);
@@ -171,11 +177,12 @@ class March {
   RaySum run();
 
  private:
-  bool crossCell(const glm::vec4* corner, glm::ivec3 cell, double enter, double leave);
+  bool crossCell(const glm::vec4* corner, const glm::vec4* light, glm::ivec3 cell, double enter,
+                 double leave);
   double absorb(double thickness);
   void addEvenly(double thickness);
-  void addInterval(const Cubic& cubic, const Depth& depth, double begin, double end, double enter,
-                   double length);
+  void addInterval(const Cubic& cubic, const Cubic* own, const Depth& depth, double begin, double end,
+                   double enter, double length);
 
   const ReferenceField& field_;
   const MarchedRay& ray_;
@@ -188,26 +195,29 @@ class March {
 
 RaySum March::run() {
   walkField(field_, ray_, std::numeric_limits<double>::infinity(),
-            [this](const glm::vec4* corner, glm::ivec3 cell, double enter, double leave) {
-              return crossCell(corner, cell, enter, leave);
-            });
+            [this](const glm::vec4* corner, const glm::vec4* light, glm::ivec3 cell, double enter,
+                   double leave) { return crossCell(corner, light, cell, enter, leave); });
   return sum_;
 }
 
-bool March::crossCell(const glm::vec4* corner, glm::ivec3 cell, double enter, double leave) {
+bool March::crossCell(const glm::vec4* corner, const glm::vec4* light, glm::ivec3 cell, double enter,
+                      double leave) {
   const Cubic cubic = cubicAlong(corner, localAt(ray_, cell, enter), localAt(ray_, cell, leave));
+  std::optional<Cubic> own;
+  if (light) own = cubicAlong(light, localAt(ray_, cell, enter), localAt(ray_, cell, leave));
   const double length = (leave - enter) * ray_.worldLength;
   const Depth depth(cubic, length);
   const double total = depth.at(1.0);
-  if (!(total > 0.0)) return true;
-  if (field_.evenColor() && !ray_.distance && !light_) {
+  if (!(total > 0.0) && !own) return true;
+  if (field_.evenColor() && !ray_.distance && !light_ && !own) {
     addEvenly(total);
     return transmittance_ >= kNegligibleTransmittance;
   }
   const double wanted = std::max(total / kLongestDepth, (leave - enter) * intervals_);
-  const int count = int(std::ceil(std::min(wanted, kMostIntervals)));
+  const int count = std::max(int(std::ceil(std::min(wanted, kMostIntervals))), 1);
   for (int i = 0; i < count && transmittance_ >= kNegligibleTransmittance; ++i)
-    addInterval(cubic, depth, double(i) / count, double(i + 1) / count, enter, leave - enter);
+    addInterval(cubic, own ? &*own : nullptr, depth, double(i) / count, double(i + 1) / count, enter,
+                leave - enter);
   return transmittance_ >= kNegligibleTransmittance;
 }
 
@@ -225,9 +235,10 @@ void March::addEvenly(double thickness) {
   sum_.color += energy * *field_.evenColor();
 }
 
-/// The interval's light is its opacity times the mean colour in it, weighted by e.
-void March::addInterval(const Cubic& cubic, const Depth& depth, double begin, double end, double enter,
-                        double length) {
+/// The interval's light is its opacity times the mean colour in it, weighted by e; and where there is no
+/// opacity its own light, over its length.
+void March::addInterval(const Cubic& cubic, const Cubic* own, const Depth& depth, double begin, double end,
+                        double enter, double length) {
   glm::dvec4 mean(0.0);
   double distance = 0.0;
   const double before = depth.at(begin);
@@ -240,10 +251,14 @@ void March::addInterval(const Cubic& cubic, const Depth& depth, double begin, do
     glm::dvec4 emitted = kWeights[i] * seen * cubic.at(s);
     const double t = enter + s * length;
     if (light_) emitted *= glm::dvec4(light_->scattered(ray_.origin + t * ray_.direction, toEye_), 1.0);
+    if (own) emitted += kWeights[i] * seen * own->at(s);
     mean += emitted;
     distance += emitted.a * t;
   }
-  if (!(mean.a > 0.0)) return;
+  if (!(mean.a > 0.0)) {
+    sum_.color += transmittance_ * (end - begin) * length * ray_.worldLength * glm::dvec3(mean);
+    return;
+  }
   const double energy = absorb(depth.at(end) - before);
   sum_.color += energy / mean.a * glm::dvec3(mean);
   sum_.distance += energy / mean.a * distance;
@@ -258,14 +273,15 @@ RaySum marchRay(const ReferenceField& field, const MarchedRay& ray, double step,
 double marchDepth(const ReferenceField& field, const MarchedRay& ray, double end) {
   const double most = -std::log(kNegligibleTransmittance);
   double depth = 0.0;
-  walkField(field, ray, end, [&](const glm::vec4* corner, glm::ivec3 cell, double enter, double leave) {
-    // Two Gauss points are exact of a cubic.
-    const glm::dvec3 a = localAt(ray, cell, enter), b = localAt(ray, cell, leave);
-    double sum = 0.0;
-    for (const double s : kTwoNodes) sum += extinctionAt(corner, glm::mix(a, b, s));
-    depth += 0.5 * sum * (leave - enter) * ray.worldLength;
-    return depth < most;
-  });
+  walkField(field, ray, end,
+            [&](const glm::vec4* corner, const glm::vec4*, glm::ivec3 cell, double enter, double leave) {
+              // Two Gauss points are exact of a cubic.
+              const glm::dvec3 a = localAt(ray, cell, enter), b = localAt(ray, cell, leave);
+              double sum = 0.0;
+              for (const double s : kTwoNodes) sum += extinctionAt(corner, glm::mix(a, b, s));
+              depth += 0.5 * sum * (leave - enter) * ray.worldLength;
+              return depth < most;
+            });
   return depth;
 }
 

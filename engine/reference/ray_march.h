@@ -27,7 +27,8 @@ struct RaySum {
 ///
 /// The opacity is exact for any step: along a ray through a cell the field is a cubic, integrated as one. The
 /// colour is a Gauss quadrature, exact where the colour is constant; with `light` times what is scattered of
-/// that at each point. A ray ends where less than 1e-7 of the light passes.
+/// that at each point. To it comes the field's own light j, the sum of T j ds. A ray ends where less than
+/// 1e-7 of the light passes.
 RaySum marchRay(const ReferenceField& field, const MarchedRay& ray, double step,
                 const LightMarch* light = nullptr);
 

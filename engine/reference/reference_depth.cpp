@@ -23,9 +23,10 @@ class TableDepth : public ReferenceDepth {
   TableDepth(const Volume& volume, std::span<const double> extinction,
              const std::vector<std::vector<std::uint8_t>>& table, std::span<const LevelData> coarser,
              const TableSettings& settings, AttenuationLookup lookup, ToEye toEye,
-             std::optional<glm::dvec3> eyeInside)
+             std::optional<glm::dvec3> eyeInside, std::span<const glm::dvec3> emission)
       : volume_(volume),
         extinction_(extinction),
+        emission_(emission),
         table_(table),
         coarser_(coarser),
         settings_(settings),
@@ -61,7 +62,9 @@ class TableDepth : public ReferenceDepth {
   Block neighbour(Block block, int axis, int steps) const {
     Block next = block;
     next.cell[axis] += steps;
-    return extinctionOf(next, volume_, extinction_, coarser_) > 0.0 ? next : block;
+    const bool holds = extinctionOf(next, volume_, extinction_, coarser_) > 0.0 ||
+                       emissionOf(next, volume_, emission_, coarser_) != glm::dvec3(0.0);
+    return holds ? next : block;
   }
   double extinctionAt(glm::dvec3 place) const;
   /// A byte of the table, as long as if its line's layers had this world length.
@@ -70,6 +73,7 @@ class TableDepth : public ReferenceDepth {
 
   const Volume& volume_;
   const std::span<const double> extinction_;
+  const std::span<const glm::dvec3> emission_;
   const std::vector<std::vector<std::uint8_t>>& table_;
   const std::span<const LevelData> coarser_;
   const TableSettings settings_;
@@ -212,16 +216,29 @@ glm::dvec3 RayDepth::lookUp(const RayFan& fan, glm::dvec3 onPlane) const {
   return {std::max(value, 0.0), spline(slopes, x.y).first / apart, alongY / apart};
 }
 
+/// `level` is null for voxels.
+bool isOutside(const Block& block, const LevelData* level, const Volume& volume) {
+  const glm::ivec3 n = level == nullptr ? volume.dimensions : level->dimensions;
+  return glm::any(glm::lessThan(block.cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(block.cell, n));
+}
+
 }  // namespace
 
 double extinctionOf(const Block& block, const Volume& volume, std::span<const double> extinction,
                     std::span<const LevelData> coarser) {
   const LevelData* level = block.level == 0 ? nullptr : &coarser[std::size_t(block.level) - 1];
-  const glm::ivec3 n = level == nullptr ? volume.dimensions : level->dimensions;
-  if (glm::any(glm::lessThan(block.cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(block.cell, n)))
-    return 0.0;
+  if (isOutside(block, level, volume)) return 0.0;
   if (level == nullptr) return extinction[volume.at(block.cell.x, block.cell.y, block.cell.z)];
   return level->extinction[level->at(block.cell)];
+}
+
+glm::dvec3 emissionOf(const Block& block, const Volume& volume, std::span<const glm::dvec3> emission,
+                      std::span<const LevelData> coarser) {
+  const LevelData* level = block.level == 0 ? nullptr : &coarser[std::size_t(block.level) - 1];
+  const bool isDark = level == nullptr ? emission.empty() : level->emission.empty();
+  if (isDark || isOutside(block, level, volume)) return glm::dvec3(0.0);
+  if (level == nullptr) return emission[volume.at(block.cell.x, block.cell.y, block.cell.z)];
+  return level->emission[level->at(block.cell)];
 }
 
 glm::dvec3 ReferenceDepth::gradient(const Block& block, glm::dvec3 toEye, double layerDepth) const {
@@ -238,9 +255,10 @@ std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume, std::span<const
                                            const std::vector<std::vector<std::uint8_t>>& table,
                                            std::span<const LevelData> coarser, const TableSettings& settings,
                                            AttenuationLookup lookup, ToEye toEye,
-                                           std::optional<glm::dvec3> eyeInside) {
+                                           std::optional<glm::dvec3> eyeInside,
+                                           std::span<const glm::dvec3> emission) {
   return std::make_unique<TableDepth>(volume, extinction, table, coarser, settings, lookup, std::move(toEye),
-                                      eyeInside);
+                                      eyeInside, emission);
 }
 
 std::unique_ptr<ReferenceDepth> rayDepth(const Volume& volume, const RaySource& source, RayCodes codes) {

@@ -44,6 +44,10 @@ class ReferenceDepth {
 double extinctionOf(const Block& block, const Volume& volume, std::span<const double> extinction,
                     std::span<const LevelData> coarser);
 
+/// The light that it sends out, per world unit; `emission` has a value a voxel, or is empty. 0 outside.
+glm::dvec3 emissionOf(const Block& block, const Volume& volume, std::span<const glm::dvec3> emission,
+                      std::span<const LevelData> coarser);
+
 /// From a position in index space towards the eye, any length.
 using ToEye = std::function<glm::dvec3(glm::dvec3 position)>;
 
@@ -59,7 +63,8 @@ std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume, std::span<const
                                            const std::vector<std::vector<std::uint8_t>>& table,
                                            std::span<const LevelData> coarser, const TableSettings& settings,
                                            AttenuationLookup lookup, ToEye toEye,
-                                           std::optional<glm::dvec3> eyeInside);
+                                           std::optional<glm::dvec3> eyeInside,
+                                           std::span<const glm::dvec3> emission = {});
 
 /// Along the rays of the source's fans (ray_fans.h), between which depths and slopes are those of Catmull and
 /// Rom's spline. A block whose centre lies between two planes has the mean of what its line of sight has

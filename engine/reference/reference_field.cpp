@@ -12,9 +12,9 @@ bool isInside(glm::ivec3 voxel, glm::ivec3 dimensions) {
   return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) && glm::all(glm::lessThan(voxel, dimensions));
 }
 
-/// Null where no corner has extinction.
-std::unique_ptr<Brick> makeBrick(const Volume& volume, const Classification& classification,
-                                 glm::ivec3 position) {
+/// Null where `valueAt(voxel)` is 0 at all corners.
+template <typename ValueAt>
+std::unique_ptr<Brick> makeBrick(glm::ivec3 dimensions, glm::ivec3 position, const ValueAt& valueAt) {
   constexpr int n = ReferenceField::kBrickCorners;
   const glm::ivec3 first = position * ReferenceField::kBrickCells - 1;
   Brick brick{};
@@ -24,11 +24,9 @@ std::unique_ptr<Brick> makeBrick(const Volume& volume, const Classification& cla
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x, ++corner) {
         const glm::ivec3 voxel = first + glm::ivec3(x, y, z);
-        if (!isInside(voxel, volume.dimensions)) continue;
-        const ClassifiedVoxel material = classify(classification, volume.scalars.at(voxel));
-        if (!(material.extinction > 0.0)) continue;
-        brick[corner] = glm::vec4(material.extinction * material.color, material.extinction);
-        anything = true;
+        if (!isInside(voxel, dimensions)) continue;
+        brick[corner] = valueAt(voxel);
+        anything |= brick[corner] != glm::vec4(0.0f);
       }
   return anything ? std::make_unique<Brick>(brick) : nullptr;
 }
@@ -51,12 +49,22 @@ ReferenceField::ReferenceField(const Volume& volume, const Classification& class
     : dimensions_(volume.dimensions),
       brickCount_((volume.dimensions + kBrickCells) / kBrickCells),  // of dimensions + 1 cells
       bricks_(std::size_t(brickCount_.x) * std::size_t(brickCount_.y) * std::size_t(brickCount_.z)) {
-  if (!classification.transferFunction) evenColor_ = classification.albedo;
+  if (!classification.transferFunction && !volume.albedo) evenColor_ = classification.albedo;
+  if (brightestLight(classification, volume) > 0.0) light_.resize(bricks_.size());
+  const auto medium = [&](glm::ivec3 voxel) {
+    const ClassifiedVoxel material = classifyVoxel(classification, volume, voxel);
+    return material.extinction > 0.0 ? glm::vec4(material.extinction * material.color, material.extinction)
+                                     : glm::vec4(0.0f);
+  };
+  const auto light = [&](glm::ivec3 voxel) {
+    return glm::vec4(classifyVoxel(classification, volume, voxel).emission, 0.0);
+  };
   const std::size_t layer = std::size_t(brickCount_.x) * std::size_t(brickCount_.y);
   for (int z = 0; z < brickCount_.z; ++z) {
     tbb::parallel_for(std::size_t(0), layer, [&](std::size_t i) {
       const glm::ivec3 position(int(i % std::size_t(brickCount_.x)), int(i / std::size_t(brickCount_.x)), z);
-      bricks_[std::size_t(z) * layer + i] = makeBrick(volume, classification, position);
+      bricks_[std::size_t(z) * layer + i] = makeBrick(dimensions_, position, medium);
+      if (!light_.empty()) light_[std::size_t(z) * layer + i] = makeBrick(dimensions_, position, light);
     });
     if (progress) progress("classifying", double(z + 1) / brickCount_.z);
   }

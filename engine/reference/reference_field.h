@@ -1,7 +1,8 @@
 #pragma once
-// The continuous field that the oracle marches through: every voxel classified first, then extinction and
-// extinction times colour interpolated trilinearly between the voxel centres. Beyond the outermost centres
-// and at inactive voxels there is nothing, so that the field falls to 0 over one more voxel.
+// The continuous field that the oracle marches through: every voxel classified first, then extinction,
+// extinction times colour and light of its own interpolated trilinearly between the voxel centres. Beyond the
+// outermost centres and at inactive voxels there is nothing, so that the field falls to 0 over one more
+// voxel.
 
 #include <array>
 #include <glm/glm.hpp>
@@ -17,7 +18,8 @@ namespace freevoxels {
 
 /// A cell is the cube between eight neighbouring voxel centres: cell c reaches from c to c + 1 in index
 /// space, and the cells from -1 to dimensions - 1 hold the field. Bricks of 8³ cells, the first at cell -1,
-/// keep the values at all their cells' corners; a brick without any extinction is not there at all.
+/// keep the values at all their cells' corners; a brick without any extinction is not there at all. Light has
+/// bricks of its own.
 class ReferenceField {
  public:
   static constexpr int kBrickCells = 8;
@@ -36,18 +38,23 @@ class ReferenceField {
   glm::ivec3 brickCount() const { return brickCount_; }
   /// Where all voxels have one colour.
   const std::optional<glm::dvec3>& evenColor() const { return evenColor_; }
-  /// Null where the field is 0 throughout. The brick's cells start at 8 * position - 1.
-  const Brick* brick(glm::ivec3 position) const {
-    return bricks_[std::size_t(position.x) +
-                   std::size_t(brickCount_.x) *
-                       (std::size_t(position.y) + std::size_t(brickCount_.y) * std::size_t(position.z))]
-        .get();
+  /// Light that is sent out per world unit (rgb; a is 0), as the others. Null where there is none.
+  const Brick* light(glm::ivec3 position) const {
+    return light_.empty() ? nullptr : light_[indexOf(position)].get();
   }
+  /// Null where the extinction is 0 throughout. The brick's cells start at 8 * position - 1.
+  const Brick* brick(glm::ivec3 position) const { return bricks_[indexOf(position)].get(); }
 
  private:
+  std::size_t indexOf(glm::ivec3 position) const {
+    return std::size_t(position.x) +
+           std::size_t(brickCount_.x) *
+               (std::size_t(position.y) + std::size_t(brickCount_.y) * std::size_t(position.z));
+  }
+
   glm::ivec3 dimensions_, brickCount_;
   std::optional<glm::dvec3> evenColor_;
-  std::vector<std::unique_ptr<Brick>> bricks_;
+  std::vector<std::unique_ptr<Brick>> bricks_, light_;  ///< `light_` is empty where no voxel sends out any
 };
 
 }  // namespace freevoxels

@@ -32,8 +32,9 @@ std::vector<Child> childrenOf(const Block& parent, const LevelData& children, gl
 }
 
 template <typename ValueOf>
-double meanOf(const std::vector<Child>& children, const ValueOf& valueOf) {
-  double sum = 0.0, voxels = 0.0;
+auto meanOf(const std::vector<Child>& children, const ValueOf& valueOf) {
+  decltype(0.0 * valueOf(0)) sum(0.0);
+  double voxels = 0.0;
   for (const Child& child : children) {
     sum += child.voxels * valueOf(child.index);
     voxels += child.voxels;
@@ -70,14 +71,19 @@ std::uint8_t codeOf(const std::vector<Child>& children, const std::vector<std::u
 }  // namespace
 
 LevelData referenceVoxelLevel(const Volume& volume, const Classification& classification,
-                              std::vector<double> extinction, std::vector<std::vector<std::uint8_t>> table) {
+                              std::vector<double> extinction, std::vector<std::vector<std::uint8_t>> table,
+                              std::vector<glm::dvec3> emission) {
   LevelData level{.dimensions = volume.dimensions,
                   .extinction = std::move(extinction),
                   .colors = {},
+                  .emission = std::move(emission),
                   .table = std::move(table)};
-  if (classification.transferFunction)
-    for (const float value : denseScalars(volume))
-      level.colors.push_back(classify(classification, value).color);
+  if (!classification.transferFunction && !volume.albedo) return level;
+  const glm::ivec3 n = volume.dimensions;
+  for (int z = 0; z < n.z; ++z)
+    for (int y = 0; y < n.y; ++y)
+      for (int x = 0; x < n.x; ++x)
+        level.colors.push_back(classifyVoxel(classification, volume, {x, y, z}).color);
   return level;
 }
 
@@ -91,13 +97,15 @@ LevelData referenceParents(const LevelData& children, int level, const Volume& v
       for (int x = 0; x < n.x; ++x)
         family.push_back(childrenOf({level, {x, y, z}}, children, volume.dimensions));
   for (std::vector<Child> block : family) {
-    std::erase_if(block, [&](const Child& child) { return children.extinction[child.index] <= 0.0; });
+    std::erase_if(block, [&](const Child& child) { return !children.holdsAnything(child.index); });
     holding.push_back(std::move(block));
   }
   const double edge = volume.voxelSize() * (1 << (level - 1));
   for (const std::vector<Child>& block : family) {
     parents.extinction.push_back(
         meanOf(block, [&](std::size_t child) { return children.extinction[child]; }));
+    if (!children.emission.empty())
+      parents.emission.push_back(meanOf(block, [&](std::size_t child) { return children.emission[child]; }));
     if (!children.colors.empty()) parents.colors.push_back(colorOf(block, children, edge));
   }
   parents.table.resize(children.table.size());
@@ -118,7 +126,8 @@ std::vector<LevelData> referenceLevels(const LevelData& voxels, const Volume& vo
 }
 
 std::vector<Block> referenceCut(const Volume& volume, std::span<const double> extinction,
-                                const Camera& camera, const FrameSettings& settings) {
+                                const Camera& camera, const FrameSettings& settings,
+                                std::span<const glm::dvec3> emission) {
   const HierarchyLayout hierarchy(volume.dimensions);
   const DetailRule rule =
       detailRule(hierarchy, pixelRays(camera, settings.size, volume.indexToWorld), settings.size,
@@ -128,7 +137,9 @@ std::vector<Block> referenceCut(const Volume& volume, std::span<const double> ex
   for (int z = 0; z < n.z; ++z)
     for (int y = 0; y < n.y; ++y)
       for (int x = 0; x < n.x; ++x) {
-        if (!(extinction[volume.at(x, y, z)] > 0.0)) continue;
+        const std::size_t voxel = volume.at(x, y, z);
+        const bool shines = !emission.empty() && emission[voxel] != glm::dvec3(0.0);
+        if (!(extinction[voxel] > 0.0) && !shines) continue;
         Block block{0, {x, y, z}};
         while (block.level < rule.coarsest && (block.level < rule.finest || rule.isSmall(block.parent())))
           block = block.parent();

@@ -14,13 +14,15 @@
 
 namespace freevoxels {
 
-/// Level 0: the voxels, with colours unless all are the albedo. `table` may be empty.
+/// Level 0: the voxels, with colours unless all are the albedo. `table` may be empty, and `emission` where no
+/// voxel sends out light.
 LevelData referenceVoxelLevel(const Volume& volume, const Classification& classification,
-                              std::vector<double> extinction, std::vector<std::vector<std::uint8_t>> table);
+                              std::vector<double> extinction, std::vector<std::vector<std::uint8_t>> table,
+                              std::vector<glm::dvec3> emission = {});
 
-/// Level `level` from the one below it. Extinction is the mean over the block's voxels, colour the mean of
-/// the children's weighted by their voxels and their opacity along an edge, the attenuation the mean that
-/// `settings.filter` names, a transmittance stored as 0 counting as half the smallest code.
+/// Level `level` from the one below it. Extinction and light are the mean over the block's voxels, colour the
+/// mean of the children's weighted by their voxels and their opacity along an edge, the attenuation the mean
+/// that `settings.filter` names, a transmittance stored as 0 counting as half the smallest code.
 LevelData referenceParents(const LevelData& children, int level, const Volume& volume,
                            const TableSettings& settings);
 
@@ -28,9 +30,10 @@ LevelData referenceParents(const LevelData& children, int level, const Volume& v
 std::vector<LevelData> referenceLevels(const LevelData& voxels, const Volume& volume,
                                        const TableSettings& settings);
 
-/// Blocks that hold anything and are drawn by the rule of engine/hierarchy/detail_rule.h; `extinction` is of
-/// the voxels.
+/// Blocks that hold anything and are drawn by the rule of engine/hierarchy/detail_rule.h; `extinction` and
+/// `emission` are of the voxels.
 std::vector<Block> referenceCut(const Volume& volume, std::span<const double> extinction,
-                                const Camera& camera, const FrameSettings& settings);
+                                const Camera& camera, const FrameSettings& settings,
+                                std::span<const glm::dvec3> emission = {});
 
 }  // namespace freevoxels

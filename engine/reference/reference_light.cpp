@@ -42,7 +42,8 @@ ReferenceLight::ReferenceLight(const LightInputs& inputs, const FrameSettings& s
     depths_.push_back(tableDepth(
         inputs_.volume, inputs_.extinction, inputs_.table, inputs_.coarser, inputs_.tableSettings, lookup,
         [this, source](glm::dvec3 position) { return toLight(source, position); },
-        isInside(source, inputs_.volume.dimensions) ? std::optional(source.place) : std::nullopt));
+        isInside(source, inputs_.volume.dimensions) ? std::optional(source.place) : std::nullopt,
+        inputs_.emission));
   }
 }
 
@@ -113,7 +114,8 @@ glm::dvec3 ReferenceLight::scattered(const Block& block, glm::dvec3 toEye) const
   if (gradient != glm::dvec3(0.0)) {
     const double sigma = extinctionOf(block, inputs_.volume, inputs_.extinction, inputs_.coarser);
     normal = glm::normalize(glm::inverse(glm::transpose(toWorld_)) * gradient);
-    surface = lighting_.surface * surfaceShare(glm::length(gradient) / sigma);
+    surface =
+        lighting_.surface * surfaceShare(glm::length(gradient) / sigma);  // infinite where there is none
   }
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Light& light = lighting_.lights[i];

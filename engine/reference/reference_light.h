@@ -17,6 +17,7 @@ struct LightInputs {
   const std::vector<std::vector<std::uint8_t>>& table;
   std::span<const LevelData> coarser;
   TableSettings tableSettings;
+  std::span<const glm::dvec3> emission = {};
 };
 
 class ReferenceLight {

@@ -46,17 +46,19 @@ Image referenceSortedPicture(const Volume& volume, const Classification& classif
                              const ReferenceLight* light) {
   const SplatProjector projector(volume, camera, settings.size);
   std::vector<BlendedPixel> blended(std::size_t(settings.size.x) * std::size_t(settings.size.y));
-  const std::vector<float> scalars = denseScalars(volume);
   for (const std::uint32_t voxel : referenceBackToFront(volume, camera, voxels)) {
     const std::optional<ProjectedSplat> splat = projector.project(projector.voxel(voxel));
     if (!splat) continue;
-    const ClassifiedVoxel material = classify(classification, scalars[voxel]);
+    const ClassifiedVoxel material = classifyVoxel(classification, volume, projector.voxel(voxel).cell);
     const double opacity = projector.opacity(*splat, material.extinction);
+    const glm::dvec3 sent = projector.leaving(*splat, material.extinction) * material.emission;
     const glm::dvec3 lit = light ? light->scattered(projector.voxel(voxel), splat->toEye) : glm::dvec3(1.0);
     projector.forEachPixel(*splat, [&](const CoveredPixel& pixel) {
-      const double alpha = std::min(opacity * pixel.omega, 1.0);
+      const double whole = opacity * pixel.omega, alpha = std::min(whole, 1.0);
+      const glm::dvec3 own = sent * pixel.omega / std::max(whole, 1.0);
       BlendedPixel& behind = blended[pixel.index];
-      behind.color = alpha * glm::dvec4(lit * material.color, 1.0) + (1.0 - alpha) * behind.color;
+      behind.color = alpha * glm::dvec4(lit * material.color, 1.0) + glm::dvec4(own, 0.0) +
+                     (1.0 - alpha) * behind.color;
       behind.distance = alpha * splat->distance + (1.0 - alpha) * behind.distance;
     });
   }

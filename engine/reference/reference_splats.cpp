@@ -45,6 +45,10 @@ double halfLayer(double a, double b, double x) {
   return a * (1.0 - end) / x + b * (1.0 - end * (1.0 + 0.5 * x)) / (x * x);
 }
 
+double largest(glm::dvec3 light) {
+  return std::max({light.r, light.g, light.b});
+}
+
 class SplatSummer {
  public:
   SplatSummer(const Volume& volume, const Classification& classification, const SplatInputs& inputs,
@@ -74,13 +78,16 @@ class SplatSummer {
   double extinctionOf(const Block& block) const {
     return freevoxels::extinctionOf(block, volume_, inputs_.extinction, inputs_.coarser);
   }
-  ClassifiedVoxel materialOf(const Block& block) const;
+  glm::dvec3 emissionOf(const Block& block) const {
+    return freevoxels::emissionOf(block, volume_, inputs_.emission, inputs_.coarser);
+  }
+  glm::dvec3 colorOf(const Block& block) const;
   glm::dvec3 centreOfMass(const Block& block) const;
   DepthToEye depthToEye(const Block& block, const ProjectedSplat& splat, double extinction, int layers) const;
   DepthToEye depthBy(const ReferenceDepth& depths, const Block& block, const ProjectedSplat& splat,
                      double extinction, int layers) const;
   double extinctionAt(glm::dvec3 position, int axis) const;
-  double opacity(const Block& block, const ProjectedSplat& splat, double extinction, double inFront) const;
+  double leaving(const Block& block, const ProjectedSplat& splat, double extinction, double inFront) const;
 
   const Volume& volume_;
   const Classification& classification_;
@@ -104,7 +111,7 @@ std::unique_ptr<ReferenceDepth> SplatSummer::tableFor(const Camera& camera) cons
       volume_, inputs_.extinction, inputs_.table, inputs_.coarser, inputs_.tableSettings,
       settings_.attenuation == AttenuationLookup::Auto ? AttenuationLookup::Bilinear : settings_.attenuation,
       [this](glm::dvec3 position) { return projector_.toEye(position); },
-      inside ? std::optional(eyeSource(camera, volume_.indexToWorld).place) : std::nullopt);
+      inside ? std::optional(eyeSource(camera, volume_.indexToWorld).place) : std::nullopt, inputs_.emission);
 }
 
 std::unique_ptr<ReferenceLight> SplatSummer::lightFor() const {
@@ -113,34 +120,33 @@ std::unique_ptr<ReferenceLight> SplatSummer::lightFor() const {
                                                       .extinction = inputs_.extinction,
                                                       .table = inputs_.table,
                                                       .coarser = inputs_.coarser,
-                                                      .tableSettings = inputs_.tableSettings},
+                                                      .tableSettings = inputs_.tableSettings,
+                                                      .emission = inputs_.emission},
                                           settings_);
 }
 
-ClassifiedVoxel SplatSummer::materialOf(const Block& block) const {
-  const double extinction = extinctionOf(block);
-  if (block.level == 0) {
-    return {extinction, classify(classification_, volume_.scalars.at(block.cell)).color};
-  }
+glm::dvec3 SplatSummer::colorOf(const Block& block) const {
+  if (block.level == 0) return classifyVoxel(classification_, volume_, block.cell).color;
   const LevelData& level = inputs_.coarser[std::size_t(block.level) - 1];
-  return {extinction,
-          level.colors.empty() ? glm::dvec3(classification_.albedo) : level.colors[level.at(block.cell)]};
+  return level.colors.empty() ? glm::dvec3(classification_.albedo) : level.colors[level.at(block.cell)];
 }
 
-/// Of the extinction, which every child has at its own centre.
+/// Of the extinction, which every child has at its own centre, and half-way to that of the light.
 glm::dvec3 SplatSummer::centreOfMass(const Block& block) const {
   if (block.level == 0) return projector_.box(block).centre();
+  const double extinction = extinctionOf(block), light = largest(emissionOf(block));
   glm::dvec3 sum(0.0);
   double masses = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     const Block child{block.level - 1, 2 * block.cell + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)};
     const BlockBox box = projector_.box(child);
     if (glm::any(glm::lessThanEqual(box.extent, glm::ivec3(0)))) continue;
-    const double mass = extinctionOf(child) * box.voxels();
+    double mass = extinction > 0.0 ? extinctionOf(child) / extinction * box.voxels() : 0.0;
+    if (light > 0.0) mass += largest(emissionOf(child)) / light * box.voxels();
     sum += mass * box.centre();
     masses += mass;
   }
-  return sum / masses;
+  return masses > 0.0 ? sum / masses : projector_.box(block).centre();
 }
 
 /// Of rays and of the table, as far as each has a share.
@@ -191,9 +197,9 @@ double SplatSummer::extinctionAt(glm::dvec3 position, int axis) const {
   return sum;
 }
 
-/// Of a voxel, per world length, as far as its kernel, a tent along the line of sight, sees the eye better or
-/// worse than the front of its layer.
-double SplatSummer::opacity(const Block& block, const ProjectedSplat& splat, double extinction,
+/// What of a voxel's light leaves it, as far as its kernel, a tent along the line of sight, sees the eye
+/// better or worse than the front of its layer.
+double SplatSummer::leaving(const Block& block, const ProjectedSplat& splat, double extinction,
                             double inFront) const {
   const int axis = majorAxis(splat.toEye);
   const double layer = projector_.layerLength(splat), own = layer * extinction;
@@ -201,28 +207,28 @@ double SplatSummer::opacity(const Block& block, const ProjectedSplat& splat, dou
   const double before = std::min(layer * extinctionAt(voxel + ahead, axis), inFront);
   const double behind = layer * extinctionAt(voxel - ahead, axis);
   // From the middle of the layer in front to the middle of the layer behind.
-  return extinction *
-         (halfLayer(0.5, -1.0, -before) + halfLayer(0.5, 1.0, own) +
-          std::exp(-0.5 * own) * halfLayer(1.0, -1.0, own) + std::exp(-own) * halfLayer(0.5, -1.0, behind));
+  return halfLayer(0.5, -1.0, -before) + halfLayer(0.5, 1.0, own) +
+         std::exp(-0.5 * own) * halfLayer(1.0, -1.0, own) + std::exp(-own) * halfLayer(0.5, -1.0, behind);
 }
 
 void SplatSummer::add(const Block& block, std::vector<SplatSums>& picture) const {
   const std::optional<ProjectedSplat> splat = projector_.project(block, centreOfMass(block));
   if (!splat) return;
-  const auto [sigma, albedo] = materialOf(block);
+  const double sigma = extinctionOf(block);
+  const glm::dvec3 albedo = colorOf(block), emission = emissionOf(block);
   const int layers = projector_.box(block).extent[majorAxis(splat->toEye)];
   const DepthToEye depth = depthToEye(block, *splat, sigma, layers);
   const bool ofKernel =
       settings_.gradient && settings_.composite == Composite::Normalised && block.level == 0;
-  const double opacity = ofKernel ? this->opacity(block, *splat, sigma, depth.centre)
-                                  : projector_.opacity(*splat, sigma, layers);
+  const double leaving = ofKernel ? this->leaving(block, *splat, sigma, depth.centre)
+                                  : projector_.leaving(*splat, sigma, layers);
   const glm::dvec3 radiance = light_ ? albedo * light_->scattered(block, splat->toEye) : albedo;
-  const auto addTo = [&, extinction = sigma](const CoveredPixel& pixel) {
+  const auto addTo = [&](const CoveredPixel& pixel) {
     SplatSums& sums = picture[pixel.index];
-    const double energy = opacity * std::exp(-depth.at(pixel)) * pixel.omega;
-    sums.color += energy * radiance;
+    const double seen = leaving * std::exp(-depth.at(pixel)) * pixel.omega, energy = sigma * seen;
+    sums.color += energy * radiance + seen * emission;
     sums.energy += energy;
-    sums.depth += extinction * pixel.omega;
+    sums.depth += sigma * pixel.omega;
     sums.distance += energy * splat->distance;
   };
   projector_.forEachPixel(*splat, addTo);
@@ -268,10 +274,12 @@ std::vector<SplatSums> referenceBlockSums(const Volume& volume, const Classifica
   });
 }
 
-std::vector<std::uint32_t> referenceVisibleVoxels(const std::vector<double>& extinction) {
+std::vector<std::uint32_t> referenceVisibleVoxels(const std::vector<double>& extinction,
+                                                  std::span<const glm::dvec3> emission) {
   std::vector<std::uint32_t> voxels;
   for (std::size_t i = 0; i < extinction.size(); ++i)
-    if (extinction[i] > 0.0) voxels.push_back(std::uint32_t(i));
+    if (extinction[i] > 0.0 || (!emission.empty() && emission[i] != glm::dvec3(0.0)))
+      voxels.push_back(std::uint32_t(i));
   return voxels;
 }
 

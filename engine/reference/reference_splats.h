@@ -25,7 +25,8 @@ struct SplatInputs {
   std::span<const double> extinction;                   ///< of every voxel: the classification only colours
   const std::vector<std::vector<std::uint8_t>>& table;  ///< bytes [direction][voxel]
   TableSettings tableSettings;
-  std::span<const LevelData> coarser = {};  ///< levels above the voxels, as far as blocks of them are drawn
+  std::span<const LevelData> coarser = {};    ///< levels above the voxels, as far as blocks of them are drawn
+  std::span<const glm::dvec3> emission = {};  ///< of every voxel; empty where none sends out light
   const RayCodes* rays = nullptr;  ///< of the camera's eye, where they are looked up: none, made here
 };
 
@@ -40,8 +41,9 @@ std::vector<SplatSums> referenceBlockSums(const Volume& volume, const Classifica
                                           const SplatInputs& inputs, const Camera& camera,
                                           const FrameSettings& settings, std::span<const Block> blocks);
 
-/// Indices of the voxels with extinction above 0, ascending.
-std::vector<std::uint32_t> referenceVisibleVoxels(const std::vector<double>& extinction);
+/// Indices of the voxels with extinction above 0 or light, ascending; `emission` may be empty.
+std::vector<std::uint32_t> referenceVisibleVoxels(const std::vector<double>& extinction,
+                                                  std::span<const glm::dvec3> emission = {});
 
 Image referenceResolve(const std::vector<SplatSums>& sums, const FrameSettings& settings);
 

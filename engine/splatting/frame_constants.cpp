@@ -7,6 +7,7 @@
 
 #include "engine/splatting/footprint.h"
 #include "engine/splatting/splat_pass.h"
+#include "engine/volume/packed_light.h"
 
 namespace freevoxels {
 
@@ -72,6 +73,17 @@ double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::
   return std::max(voxels, blocks) + widened;
 }
 
+/// No ray through the volume has more light of its own; without it, no more than its colours, which are at
+/// most 1.
+double brightestRay(const DeviceVolume& volume) {
+  double longest = 0.0;
+  for (const glm::dvec3 signs :
+       {glm::dvec3(1, 1, 1), glm::dvec3(-1, 1, 1), glm::dvec3(1, -1, 1), glm::dvec3(1, 1, -1)})
+    longest = std::max(longest, glm::length(glm::dmat3(volume.indexToWorld) *
+                                            (signs * glm::dvec3(volume.layout.dimensions + 1))));
+  return volume.emissionUnit * kBrightest * longest;
+}
+
 shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& table, const Camera& camera,
                               const FrameSettings& settings, const PixelRays& rays,
                               const glm::dmat3& toPixel) {
@@ -107,7 +119,8 @@ shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& t
       .cells = int(table.directions),
       .opacityPoints = volume.opacityPointCount,
       .colorPoints = volume.colorPointCount,
-      .albedo = volume.albedo};
+      .albedo = volume.albedo,
+      .emissionUnit = float(volume.emissionUnit)};
   for (int level = 0; level < setup.levelCount; ++level) setup.levels[level] = volume.onDevice(level);
   return setup;
 }
@@ -128,6 +141,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                             settings.composite == Composite::Sorted ? 0.0 : double(settings.lod));
   frame.cull = cullRule(volume.layout.dimensions, rays, settings);
   if (!frame.eyeReadsTable()) frame.cull.hiddenDepth = 0.0;
+  if (frame.cull.hiddenDepth > 0.0) frame.cull.hiddenDepth += std::log(std::max(brightestRay(volume), 1.0));
   frame.resolve = {.ray = rays.direction,
                    .rayX = rays.directionX,
                    .rayY = rays.directionY,

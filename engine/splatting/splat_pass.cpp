@@ -29,11 +29,11 @@ ShaderCode fragmentShader(bool withDistance, bool sorted) {
                       : ShaderCode{splat_fragment_spv, "splat"};
 }
 
-Pipeline makeSetupPipeline(const Device& device, bool lit) {
+Pipeline makeSetupPipeline(const Device& device, const DeviceVolume& volume, bool lit) {
   return makeComputePipeline(device, {splat_setup_spv, "splat set-up"},
-                             {.bindings = std::vector(11, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                             {.bindings = std::vector(12, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
                               .pushConstantBytes = sizeof(shader::SetupPush)},
-                             {shader::kSplatThreads, 1, 1}, {lit ? 1u : 0u});
+                             {shader::kSplatThreads, 1, 1}, {lit, volume.hasEmission(), volume.hasAlbedos});
 }
 
 Pipeline makeSplatPipeline(const Device& device, bool quads, bool withDistance, bool sorted) {
@@ -86,7 +86,6 @@ SplatPass::SplatPass(const Device& device, bool withDistance, bool sorted)
     : device_(device),
       withDistance_(withDistance),
       sorted_(sorted),
-      setup_(makeSetupPipeline(device, false)),
       points_(makeSplatPipeline(device, false, withDistance, sorted)),
       quads_(makeSplatPipeline(device, true, withDistance, sorted)),
       eyeDepthsPass_(device),
@@ -146,7 +145,7 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
     splats_ = Buffer(device_, count * sizeof(shader::Splat), MemoryUse::Device, "splats");
   const Buffer& anyBuffer = frame_;
   const bool colors = inputs.volume.hasColors();
-  const std::array<Binding, 11> setup{&frame_,
+  const std::array<Binding, 12> setup{&frame_,
                                       &inputs.volume.transferPoints,
                                       inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
                                       inputs.order ? inputs.order : &inputs.visible->indices,
@@ -156,9 +155,11 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
                                       &splats_,
                                       colors ? &inputs.volume.blockColors : &anyBuffer,
                                       &inputs.volume.occupancy,
-                                      frame.lit ? inputs.lights : &anyBuffer};
+                                      frame.lit ? inputs.lights : &anyBuffer,
+                                      inputs.volume.hasEmission() ? &inputs.volume.emission : &anyBuffer};
   const std::array<Binding, 1> draw{&splats_};
-  if (frame.lit && litSetup_.handle() == VK_NULL_HANDLE) litSetup_ = makeSetupPipeline(device_, true);
+  Pipeline& setUp = frame.lit ? litSetup_ : setup_;
+  if (setUp.handle() == VK_NULL_HANDLE) setUp = makeSetupPipeline(device_, inputs.volume, frame.lit);
   const Pipeline& pipeline = frame.quads ? quads_ : points_;
   for (const RenderTarget* target : targets.all())
     commands.transition(*target, inputs.continued ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED,
@@ -170,8 +171,7 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
     const VkDeviceSize arguments = chunk * sizeof(shader::ChunkArguments);
     commands.beginPass("splat set-up");
     commands.barrier(kDraw, kCompute);
-    commands.dispatchIndirect(frame.lit ? litSetup_ : setup_, setup, shader::SetupPush{chunk},
-                              inputs.visible->chunks, arguments);
+    commands.dispatchIndirect(setUp, setup, shader::SetupPush{chunk}, inputs.visible->chunks, arguments);
     commands.beginPass("splat draw");
     commands.barrier(kCompute, kDraw);
     beginRendering(

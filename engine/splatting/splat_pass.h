@@ -64,6 +64,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
 /// by chunk. Leaves the targets in layout GENERAL, visible to compute.
 class SplatPass {
  public:
+  /// All frames have to be of one volume.
   SplatPass(const Device& device, bool withDistance, bool sorted = false);
 
   struct Inputs {
@@ -91,7 +92,8 @@ class SplatPass {
 
   const Device& device_;
   bool withDistance_, sorted_;
-  Pipeline setup_, litSetup_, points_, quads_;  ///< litSetup_ is made for the first frame that is lit
+  Pipeline setup_, litSetup_;  ///< made for the first frame that is lit, and that is not, of its volume
+  Pipeline points_, quads_;
   EyeDepthsPass eyeDepthsPass_;
   std::optional<RaySweep> rays_;
   Buffer frame_;      ///< shader::SetupFrame

@@ -17,6 +17,8 @@ namespace freevoxels {
 namespace {
 
 constexpr double kExtinctionTolerance = 1e-5;  ///< of sums of eight 32-bit floats
+constexpr double kLightTolerance = 2e-3;       ///< half a step of 9 bits
+constexpr double kLightFloor = 1e-3;           ///< of the brightest: fainter blocks count as that
 constexpr double kColorTolerance = 1e-3;       ///< of 16-bit halves
 constexpr double kCodeTolerance = 1.0;
 constexpr double kPictureTolerance = 1e-5;
@@ -47,12 +49,21 @@ double opticalDepthOf(const LevelData& level, int number, glm::ivec3 dimensions)
 }
 
 void compareMedium(const LevelData& level, const LevelData& reference, int number, Worst& extinction,
-                   Worst& color) {
+                   Worst& color, Worst& light) {
   FV_CHECK_EQ(level.extinction.size(), reference.extinction.size());
   FV_CHECK_EQ(level.colors.size(), reference.colors.size());
   for (std::size_t i = 0; i < level.extinction.size(); ++i) {
     const double expected = reference.extinction[i], difference = std::abs(level.extinction[i] - expected);
     extinction.take(difference == 0.0 ? 0.0 : difference / expected, [&] { return blockText(number, i); });
+  }
+  FV_CHECK_EQ(level.emission.size(), reference.emission.size());
+  const auto largest = [](glm::dvec3 v) { return std::max({v.r, v.g, v.b}); };
+  double brightest = 0.0;
+  for (const glm::dvec3& expected : reference.emission) brightest = std::max(brightest, largest(expected));
+  for (std::size_t i = 0; i < level.emission.size(); ++i) {
+    const double apart = largest(glm::abs(level.emission[i] - reference.emission[i]));
+    const double scale = std::max(largest(reference.emission[i]), kLightFloor * brightest);
+    light.take(apart == 0.0 ? 0.0 : apart / scale, [&] { return blockText(number, i); });
   }
   for (std::size_t i = 0; i < level.colors.size(); ++i)
     for (int c = 0; c < 3; ++c)
@@ -65,7 +76,7 @@ void compareTables(const LevelData& level, const LevelData& reference, int numbe
   for (std::size_t d = 0; d < level.table.size(); ++d) {
     FV_CHECK_EQ(level.table[d].size(), reference.table[d].size());
     for (std::size_t i = 0; i < level.table[d].size(); ++i)
-      if (reference.extinction[i] > 0.0)
+      if (reference.holdsAnything(i))
         worst.take(std::abs(int(level.table[d][i]) - int(reference.table[d][i])),
                    [&] { return fmt::format("{}, {}", directionText(set, int(d)), blockText(number, i)); });
   }
@@ -85,8 +96,7 @@ Camera randomCamera(const Volume& volume, std::mt19937& generator) {
 }
 
 /// Each camera with a level of detail at which several levels are likely.
-Check checkCoverage(Renderer& renderer, const Volume& volume, std::span<const double> extinction,
-                    glm::ivec2 size) {
+Check checkCoverage(Renderer& renderer, const Volume& volume, const LevelData& voxels, glm::ivec2 size) {
   std::mt19937 generator(5);
   Worst worst;
   for (int i = 0; i < kCameras; ++i) {
@@ -94,8 +104,9 @@ Check checkCoverage(Renderer& renderer, const Volume& volume, std::span<const do
     const Camera camera = randomCamera(volume, generator);
     settings.lod = float(std::uniform_real_distribution<double>(0.5, 40.0)(generator));
     renderer.render(camera, settings);
-    worst.take(double(coverageErrors(volume, extinction, renderer.downloadDrawnBlocks())),
-               [&] { return fmt::format("camera {}", i); });
+    worst.take(
+        double(coverageErrors(volume, voxels.extinction, renderer.downloadDrawnBlocks(), voxels.emission)),
+        [&] { return fmt::format("camera {}", i); });
   }
   return worst.atMost(0.0, "cut: voxels that are not covered once, from random places", "voxels");
 }
@@ -108,8 +119,11 @@ Check checkCutPicture(Renderer& renderer, const ValidationScene& scene, const Le
   camera.position = camera.lookAt + 0.6 * (camera.position - camera.lookAt);
   const FrameSettings settings{.size = size, .lod = 6.0f};
   const Image picture = renderer.render(camera, settings);
-  const SplatInputs inputs{
-      .extinction = voxels.extinction, .table = voxels.table, .tableSettings = table, .coarser = levels};
+  const SplatInputs inputs{.extinction = voxels.extinction,
+                           .table = voxels.table,
+                           .tableSettings = table,
+                           .coarser = levels,
+                           .emission = voxels.emission};
   const auto sums = referenceBlockSums(scene.volume, scene.classification, inputs, camera, settings,
                                        renderer.downloadDrawnBlocks());
   return largestDifference(picture, referenceResolve(sums, settings))
@@ -127,13 +141,13 @@ void compareBounds(const LevelData& level, const LevelData& children, int number
     for (int z = 0; z < n.z; ++z)
       for (int y = 0; y < n.y; ++y)
         for (int x = 0; x < n.x; ++x) {
-          if (children.extinction[children.at({x, y, z})] <= 0.0) continue;  // not stored
+          if (!children.holdsAnything(children.at({x, y, z}))) continue;  // not stored
           int& bound = expected[level.at(glm::ivec3(x, y, z) / 2)];
           const int code = codes[direction][children.at({x, y, z})];
           bound = largest ? std::max(bound, code) : std::min(bound, code);
         }
     for (std::size_t i = 0; i < expected.size(); ++i)
-      if (level.extinction[i] > 0.0)
+      if (level.holdsAnything(i))
         worst.take(std::abs(level.bounds[direction][i] - expected[i]), [&] {
           return fmt::format("level {}, block {}, {}", number, i,
                              directionText(settings.directions, int(direction)));
@@ -146,12 +160,12 @@ void compareBounds(const LevelData& level, const LevelData& children, int number
 std::vector<Check> compareLevels(const Volume& volume, const LevelData& voxels,
                                  std::span<const LevelData> levels, const TableSettings& settings,
                                  const char* name) {
-  Worst extinction, color, depth, table, bounds;
+  Worst extinction, color, light, depth, table, bounds;
   const double whole = opticalDepthOf(voxels, 0, volume.dimensions);
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const int level = int(i) + 1;
     const LevelData reference = referenceParents(i == 0 ? voxels : levels[i - 1], level, volume, settings);
-    compareMedium(levels[i], reference, level, extinction, color);
+    compareMedium(levels[i], reference, level, extinction, color, light);
     compareTables(levels[i], reference, level, settings.directions, table);
     compareBounds(levels[i], i == 0 ? voxels : levels[i - 1], level, settings, bounds);
     const double kept = opticalDepthOf(levels[i], level, volume.dimensions);
@@ -160,6 +174,7 @@ std::vector<Check> compareLevels(const Volume& volume, const LevelData& voxels,
   }
   return {extinction.atMost(kExtinctionTolerance, fmt::format("octree: extinction, {}", name), "relative"),
           color.atMost(kColorTolerance, fmt::format("octree: colour, {}", name)),
+          light.atMost(kLightTolerance, fmt::format("octree: light, {}", name), "relative"),
           depth.atMost(kExtinctionTolerance, fmt::format("octree: optical depth of the whole, {}", name),
                        "relative"),
           table.atMost(kCodeTolerance, fmt::format("octree: table, {}", name), "codes"),
@@ -167,7 +182,7 @@ std::vector<Check> compareLevels(const Volume& volume, const LevelData& voxels,
 }
 
 std::size_t coverageErrors(const Volume& volume, std::span<const double> extinction,
-                           std::span<const Block> blocks) {
+                           std::span<const Block> blocks, std::span<const glm::dvec3> emission) {
   std::vector<int> covered(volume.voxelCount(), 0);
   for (const Block& block : blocks) {
     const BlockBox box = boxOf(block, volume.dimensions);
@@ -177,8 +192,11 @@ std::size_t coverageErrors(const Volume& volume, std::span<const double> extinct
         for (int x = box.first.x; x < end.x; ++x) ++covered[volume.at(x, y, z)];
   }
   std::size_t errors = 0;
+  const auto holds = [&](std::size_t voxel) {
+    return extinction[voxel] > 0.0 || (!emission.empty() && emission[voxel] != glm::dvec3(0.0));
+  };
   for (std::size_t i = 0; i < covered.size(); ++i)
-    if (covered[i] > 1 || (covered[i] == 0 && extinction[i] > 0.0)) ++errors;
+    if (covered[i] > 1 || (covered[i] == 0 && holds(i))) ++errors;
   return errors;
 }
 
@@ -192,13 +210,14 @@ ReportSection levelChecks(const Device& device, const ValidationScene& scene, gl
   for (const Variant& variant : kVariants) {
     Renderer renderer(device, scene.volume, scene.classification, variant.settings);
     const std::vector<float> extinction = renderer.downloadExtinction();
-    const LevelData voxels = referenceVoxelLevel(
-        scene.volume, scene.classification, {extinction.begin(), extinction.end()}, renderer.downloadTable());
+    const LevelData voxels =
+        referenceVoxelLevel(scene.volume, scene.classification, {extinction.begin(), extinction.end()},
+                            renderer.downloadTable(), renderer.downloadEmission());
     const std::vector<LevelData> levels = renderer.downloadLevels();
     for (Check& check : compareLevels(scene.volume, voxels, levels, variant.settings, variant.name))
       section.checks.push_back(std::move(check));
     if (&variant != &kVariants.front()) continue;
-    section.checks.push_back(checkCoverage(renderer, scene.volume, voxels.extinction, size));
+    section.checks.push_back(checkCoverage(renderer, scene.volume, voxels, size));
     section.checks.push_back(checkCutPicture(renderer, scene, voxels, levels, variant.settings, size));
   }
   return section;

@@ -20,9 +20,9 @@ std::vector<Check> compareLevels(const Volume& volume, const LevelData& voxels,
                                  std::span<const LevelData> levels, const TableSettings& settings,
                                  const char* name);
 
-/// Voxels with extinction that are not in exactly one of the blocks.
+/// Voxels with extinction or light that are not in exactly one of the blocks.
 std::size_t coverageErrors(const Volume& volume, std::span<const double> extinction,
-                           std::span<const Block> blocks);
+                           std::span<const Block> blocks, std::span<const glm::dvec3> emission = {});
 
 /// Levels, coverage by the cuts of random cameras, and the sums of a cut of several levels.
 ReportSection levelChecks(const Device& device, const ValidationScene& scene, glm::ivec2 size);

@@ -14,6 +14,7 @@
 #include "engine/reference/reference_table.h"
 #include "engine/validation/lattice_steps.h"
 #include "engine/validation/worst.h"
+#include "engine/volume/packed_light.h"
 
 namespace freevoxels {
 
@@ -24,6 +25,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// A transfer function's -log(1 - alpha) in 32-bit floats loses up to 1 / (1 - kMaximumOpacity) = 4096 units
 /// in the last place of alpha, of 8.3 that are left.
 constexpr double kExtinctionTolerance = 1e-4;
+/// Half a step of 9 bits.
+constexpr double kEmissionTolerance = 2e-3;
 constexpr double kCodeTolerance = 1.0;
 /// Codes of depths along rays that are less than this are finer than 32-bit floats can add up.
 constexpr double kShallowDepth = 1e-3;
@@ -72,13 +75,23 @@ struct Outcome {
   TableSettings settings;
   StageOutputs& device;
   std::vector<double> extinction;
+  std::vector<glm::dvec3> emission;  ///< empty where there is none
   TableBytes table;
+
+  bool holdsAnything(std::size_t voxel) const {
+    return extinction[voxel] > 0.0 || (!emission.empty() && emission[voxel] != glm::dvec3(0.0));
+  }
   std::vector<std::uint32_t> visible;
 };
 
 double relativeDifference(double value, double reference) {
   if (value == reference) return 0.0;
   return reference == 0.0 ? kInfinity : std::abs(value / reference - 1.0);
+}
+
+/// NaN if any is.
+double largestComponent(glm::dvec3 v) {
+  return std::isnan(v.x + v.y + v.z) ? std::numeric_limits<double>::quiet_NaN() : std::max({v.x, v.y, v.z});
 }
 
 Check checkExtinction(const Outcome& outcome) {
@@ -91,8 +104,27 @@ Check checkExtinction(const Outcome& outcome) {
   return worst.atMost(kExtinctionTolerance, "classify: extinction", "relative");
 }
 
+/// Relative to the voxel's largest component, or the faintest that is stored.
+Check checkEmission(const Outcome& outcome) {
+  const Volume& volume = outcome.scene.volume;
+  const Classification& classification = outcome.scene.classification;
+  const double faintest = brightestLight(classification, volume) * kFaintest / kBrightest;
+  Worst worst;
+  std::size_t voxel = 0;
+  for (int z = 0; z < volume.dimensions.z; ++z)
+    for (int y = 0; y < volume.dimensions.y; ++y)
+      for (int x = 0; x < volume.dimensions.x; ++x, ++voxel) {
+        const glm::dvec3 expected = classifyVoxel(classification, volume, {x, y, z}).emission;
+        if (largestComponent(expected) < faintest && outcome.emission[voxel] == glm::dvec3(0.0)) continue;
+        worst.take(
+            largestComponent(glm::abs(outcome.emission[voxel] - expected)) / largestComponent(expected),
+            [&] { return voxelText(volume, voxel); });
+      }
+  return worst.atMost(kEmissionTolerance, "classify: emission", "relative");
+}
+
 Check checkVisible(const Outcome& outcome) {
-  const std::vector<std::uint32_t> reference = referenceVisibleVoxels(outcome.extinction);
+  const std::vector<std::uint32_t> reference = referenceVisibleVoxels(outcome.extinction, outcome.emission);
   const std::size_t length = std::max(reference.size(), outcome.visible.size());
   const auto entry = [](const std::vector<std::uint32_t>& list, std::size_t i) {
     return i < list.size() ? std::optional(list[i]) : std::nullopt;
@@ -118,12 +150,12 @@ struct PlaneDifference {
   }
 };
 
-PlaneDifference comparePlanes(std::span<const double> extinction, const std::vector<std::uint8_t>& plane,
+PlaneDifference comparePlanes(const Outcome& outcome, const std::vector<std::uint8_t>& plane,
                               const std::vector<std::uint8_t>& reference) {
   FV_CHECK_EQ(plane.size(), reference.size());
   PlaneDifference result;
   for (std::size_t i = 0; i < plane.size(); ++i) {
-    if (extinction[i] <= 0.0) continue;  // not stored
+    if (!outcome.holdsAnything(i)) continue;  // not stored
     ++result.bytes;
     const int difference = std::abs(int(plane[i]) - int(reference[i]));
     if (difference > 0) ++result.differing;
@@ -143,7 +175,7 @@ Check checkTable(const Outcome& outcome, const char* name, std::vector<std::vect
   Worst worst;
   for (int d = 0; d < directionCount(set); ++d) {
     const PlaneDifference difference =
-        comparePlanes(outcome.extinction, outcome.table[std::size_t(d)], reference[std::size_t(d)]);
+        comparePlanes(outcome, outcome.table[std::size_t(d)], reference[std::size_t(d)]);
     worst.take(difference.largest, [&] {
       return fmt::format("{}, {}", directionText(set, d), voxelText(outcome.scene.volume, difference.where));
     });
@@ -161,11 +193,6 @@ constexpr std::array<Channel, 4> kChannels{
      {"E", [](const SplatSums& s) { return glm::dvec3(s.energy); }},
      {"T", [](const SplatSums& s) { return glm::dvec3(s.depth); }},
      {"sum of e z", [](const SplatSums& s) { return glm::dvec3(s.distance); }}}};
-
-/// NaN if any is.
-double largestComponent(glm::dvec3 v) {
-  return std::isnan(v.x + v.y + v.z) ? std::numeric_limits<double>::quiet_NaN() : std::max({v.x, v.y, v.z});
-}
 
 Check checkSums(const std::vector<SplatSums>& sums, const std::vector<SplatSums>& reference,
                 const Channel& channel, glm::ivec2 size, const char* method) {
@@ -264,8 +291,10 @@ void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, R
                                 {.orthographic = method.orthographic});
   if (method.inside) camera = cameraInside(scene.volume, camera);
   const std::vector<SplatSums> sums = outcome.device.sums(camera, settings);
-  SplatInputs inputs{
-      .extinction = outcome.extinction, .table = outcome.table, .tableSettings = outcome.settings};
+  SplatInputs inputs{.extinction = outcome.extinction,
+                     .table = outcome.table,
+                     .tableSettings = outcome.settings,
+                     .emission = outcome.emission};
   RayCodes rays;
   if (rayShare(method.attenuation, camera, scene.volume.dimensions, scene.volume.indexToWorld) > 0.0) {
     rays = outcome.device.rays(camera);
@@ -309,10 +338,12 @@ ReportSection stageChecks(const StageMaker& make, const ValidationScene& scene, 
                           .settings = settings,
                           .device = *device,
                           .extinction = {extinction.begin(), extinction.end()},
+                          .emission = device->emission(),
                           .table = device->table(),
                           .visible = device->visibleVoxels()};
     if (variant == 0) {
       section.checks.push_back(checkExtinction(outcome));
+      if (!outcome.emission.empty()) section.checks.push_back(checkEmission(outcome));
       section.checks.push_back(checkVisible(outcome));
     }
     if (settings.directions == kLatticeSteps) directions.columns.push_back(kTables[variant].name);

@@ -13,6 +13,7 @@ class RendererOutputs : public StageOutputs {
       : renderer_(device, volume, classification, table) {}
 
   std::vector<float> extinction() override { return renderer_.downloadExtinction(); }
+  std::vector<glm::dvec3> emission() override { return renderer_.downloadEmission(); }
   TableBytes table() override { return renderer_.downloadTable(); }
   std::vector<std::uint32_t> visibleVoxels() override { return renderer_.downloadVisibleVoxels(); }
   RayCodes rays(const Camera& camera) override { return renderer_.downloadRays(camera); }

@@ -26,6 +26,8 @@ class StageOutputs {
   virtual ~StageOutputs() = default;
   /// Of every voxel, per world unit.
   virtual std::vector<float> extinction() = 0;
+  /// The same of light; empty where no voxel sends out any.
+  virtual std::vector<glm::dvec3> emission() = 0;
   virtual TableBytes table() = 0;
   virtual std::vector<std::uint32_t> visibleVoxels() = 0;
   /// From the camera's eye.

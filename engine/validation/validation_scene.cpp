@@ -63,6 +63,11 @@ ValidationScene makeValidationScene(Volume volume, SceneColor color, int maximum
       color == SceneColor::TransferFunction
           ? colourful(volume)
           : Classification{.densityScale = automaticDensityScale(volume), .albedo = {0.9f, 0.6f, 0.3f}};
+  if (volume.temperature) {
+    Emission emission;
+    emission.strength = automaticEmissionStrength(volume, emission);
+    scene.classification.emission = emission;
+  }
   scene.name = fmt::format("{}, {} voxels{}, {}", volume.source, sizeText(size),
                            size == whole ? "" : " of " + sizeText(whole),
                            color == SceneColor::TransferFunction ? "transfer function" : "density");

@@ -17,7 +17,7 @@ struct ValidationScene {
 enum class SceneColor { Density, TransferFunction };
 
 /// With the automatic density scale and an albedo of three different components, or with a transfer function
-/// of many colours over the volume's range. Longer than `maximumEdge` anywhere, the volume is cut to that
+/// of many colours over the volume's range; with the light of its temperatures, if it has any. Longer than `maximumEdge` anywhere, the volume is cut to that
 /// around the centre of its active voxels, and the name says so.
 ValidationScene makeValidationScene(Volume volume, SceneColor color, int maximumEdge);
 

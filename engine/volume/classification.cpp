@@ -10,10 +10,13 @@
 #include <functional>
 
 #include "engine/core/error.h"
+#include "engine/volume/blackbody.h"
 
 namespace freevoxels {
 
 namespace {
+
+constexpr glm::dvec3 kLuminance(0.2126, 0.7152, 0.0722);  // of linear Rec.709
 
 /// Piecewise linear, constant beyond the ends. `valueOf(point)` is what is interpolated.
 template <typename Points, typename ValueOf>
@@ -63,6 +66,66 @@ ClassifiedVoxel classify(const Classification& classification, float scalar) {
                                                 glm::dvec3(classification.albedo)};
   voxel.extinction = std::min(voxel.extinction, kMaximumExtinction);
   return voxel;
+}
+
+ClassifiedVoxel classifyVoxel(const Classification& classification, const Volume& volume, glm::ivec3 voxel) {
+  ClassifiedVoxel result = classify(classification, volume.scalars.at(voxel));
+  if (volume.albedo) result.color = albedoOf(classification, *volume.albedo, voxel);
+  if (classification.emission && volume.temperature)
+    result.emission = emittedLight(*classification.emission, volume.temperature->values.at(voxel));
+  return result;
+}
+
+glm::dvec3 emittedLight(const Emission& emission, float temperature) {
+  if (temperature == kInactiveVoxel) return glm::dvec3(0.0);
+  const double kelvin = emission.temperatureScale * double(temperature) + emission.temperatureOffset;
+  return glm::min(emission.strength * blackbodyColor(kelvin), glm::dvec3(kMaximumExtinction));
+}
+
+double brightestLight(const Classification& classification, const Volume& volume) {
+  if (!classification.emission || !volume.temperature || volume.temperature->activeVoxels == 0) return 0.0;
+  const glm::dvec3 light = emittedLight(*classification.emission, volume.temperature->maximum);
+  return std::max({light.r, light.g, light.b});
+}
+
+glm::vec3 albedoOf(const Classification& classification, const AlbedoGrid& grid, glm::ivec3 voxel) {
+  const glm::vec3 color(grid.values[0].at(voxel), grid.values[1].at(voxel), grid.values[2].at(voxel));
+  return color.r == kInactiveVoxel ? classification.albedo : color;
+}
+
+double automaticTemperatureScale(const TemperatureGrid& grid, double offset) {
+  const double maximum = grid.maximum;
+  if (!(maximum > 0.0) || maximum > kLeastKelvinMaximum) return 1.0;
+  return std::max(kReferenceTemperature - offset, 0.0) / maximum;
+}
+
+double automaticEmissionStrength(const Volume& volume, const Emission& emission) {
+  if (!volume.temperature) return 1.0;
+  Emission unit = emission;
+  unit.strength = 1.0;
+  struct Total {
+    double light = 0.0, squares = 0.0;
+  };
+  using Range = tbb::blocked_range<std::size_t>;
+  constexpr std::size_t kGrain = 32;
+  const std::span<const ScalarBricks::Brick> bricks = volume.temperature->values.bricks();
+  const Total total = tbb::parallel_deterministic_reduce(
+      Range(0, bricks.size(), kGrain), Total{},
+      [&](const Range& range, Total sum) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+          for (const float temperature : bricks[i]) {
+            const double light = glm::dot(emittedLight(unit, temperature), kLuminance);
+            sum.light += light;
+            sum.squares += light * light;
+          }
+        return sum;
+      },
+      [](const Total& a, const Total& b) {
+        return Total{a.light + b.light, a.squares + b.squares};
+      });
+  if (!(total.light > 0.0)) return 1.0;
+  const double voxels = total.light * total.light / total.squares;
+  return kAutomaticRadiance / (total.light / voxels * std::cbrt(voxels) * volume.voxelSize());
 }
 
 double automaticDensityScale(const Volume& volume) {

@@ -32,20 +32,41 @@ struct TransferFunction {
   double unitDistance = 1.0;          ///< world length that `opacity` refers to
 };
 
+/// What voxels send out by their temperature, as black bodies do (blackbody.h).
+struct Emission {
+  double strength = 1.0;  ///< luminance per world unit of what has kReferenceTemperature
+  /// Kelvin = scale x value + offset.
+  double temperatureScale = 1.0, temperatureOffset = 0.0;
+};
+
 struct Classification {
   std::optional<TransferFunction> transferFunction;  ///< when set, the two below are not used
   double densityScale = 1.0;                         ///< extinction per world unit at density 1
-  glm::vec3 albedo{0.9f};                            ///< linear Rec.709
+  glm::vec3 albedo{0.9f};  ///< linear Rec.709; the volume's grid of them has precedence where it is active
+  std::optional<Emission> emission = std::nullopt;  ///< of the volume's temperatures, if it has any
 };
 
 struct ClassifiedVoxel {
   double extinction = 0.0;  ///< sigma, per world unit
   glm::dvec3 color{0.0};
+  glm::dvec3 emission{0.0};  ///< per world unit
 };
 
 /// The reference for what the shaders do, in double precision. kInactiveVoxel gives extinction 0. A negative
 /// scalar counts as 0 in the physical way, as data with a transfer function.
 ClassifiedVoxel classify(const Classification& classification, float scalar);
+
+/// Of a voxel of the volume, with its temperature and albedo.
+ClassifiedVoxel classifyVoxel(const Classification& classification, const Volume& volume, glm::ivec3 voxel);
+
+/// Per world unit, linear Rec.709; 0 of kInactiveVoxel and of what is colder than kColdestLight, at most
+/// kMaximumExtinction.
+glm::dvec3 emittedLight(const Emission& emission, float temperature);
+
+/// The largest component of the light that any voxel sends out; 0 where none does.
+double brightestLight(const Classification& classification, const Volume& volume);
+/// Linear, in 0..1.
+glm::vec3 albedoOf(const Classification& classification, const AlbedoGrid& grid, glm::ivec3 voxel);
 
 /// Reads the JSON of README.md, section "Transfer functions". `range` defaults to the volume's minimum and
 /// maximum, `unit_distance` to its voxel size. Unknown keys, wrong types, points that do not ascend:
@@ -58,5 +79,16 @@ TransferFunction parseTransferFunction(const std::string& json, const Volume& vo
 /// voxels at their mean density has optical depth kAutomaticOpticalDepth.
 inline constexpr double kAutomaticOpticalDepth = 2.0;
 double automaticDensityScale(const Volume& volume);
+
+/// Kelvin per unit of the temperatures when none is given: 1, or where no value is above
+/// kLeastKelvinMaximum, as of no kelvin, what makes the largest one kReferenceTemperature.
+inline constexpr double kLeastKelvinMaximum = 200.0;
+double automaticTemperatureScale(const TemperatureGrid& grid, double offset);
+
+/// The strength used when none is given: a cube that sends out all the light, and is as large as so many
+/// voxels of one temperature as would have this light and this sum of its squares, has luminance
+/// kAutomaticRadiance.
+inline constexpr double kAutomaticRadiance = 2.0;
+double automaticEmissionStrength(const Volume& volume, const Emission& emission);
 
 }  // namespace freevoxels

@@ -1,8 +1,12 @@
 #include "engine/volume/device_bricks.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <limits>
 #include <vector>
+
+#include "engine/volume/packed_light.h"
 
 namespace freevoxels {
 
@@ -16,36 +20,75 @@ static_assert(shader::kMaximumExtinction == float(kMaximumExtinction));
 
 }  // namespace
 
-DeviceBricks::DeviceBricks(const Device& device, const ScalarBricks& bricks)
+DeviceBricks::DeviceBricks(const Device& device, const DeviceVolume& target, const Volume& volume,
+                           const Classification& classification)
     : device_(device),
-      bricks_(bricks),
-      batches_(
-          std::max<std::size_t>((bricks.bricks().size() * sizeof(Brick) + kBatchBytes - 1) / kBatchBytes, 1)),
-      bricksPerBatch_(std::clamp<std::size_t>(bricks.bricks().size(), 1, kBatchBytes / sizeof(Brick))),
+      target_(target),
+      volume_(volume),
+      classification_(classification),
+      bricks_(volume.scalars),
+      batches_(std::max<std::size_t>(
+          (bricks_.bricks().size() * sizeof(Brick) + kBatchBytes - 1) / kBatchBytes, 1)),
+      bricksPerBatch_(std::clamp<std::size_t>(bricks_.bricks().size(), 1, kBatchBytes / sizeof(Brick))),
       uploaded_(std::numeric_limits<std::size_t>::max()),
       scalars_(device, bricksPerBatch_ * sizeof(Brick), MemoryUse::Device, "bricks"),
-      firstVoxels_(device, bricksPerBatch_ * sizeof(glm::ivec3), MemoryUse::Device, "places of bricks") {}
+      firstVoxels_(device, bricksPerBatch_ * sizeof(glm::ivec3), MemoryUse::Device, "places of bricks") {
+  if (target.hasEmission())
+    emissions_ = Buffer(device, scalars_.bytes(), MemoryUse::Device, "emission of bricks");
+  if (target.hasAlbedos) albedos_ = Buffer(device, scalars_.bytes(), MemoryUse::Device, "albedos of bricks");
+}
+
+std::span<const Brick> DeviceBricks::batchOf(std::size_t batch) const {
+  const std::size_t first = batch * bricksPerBatch_;
+  return bricks_.bricks().subspan(first, std::min(bricksPerBatch_, bricks_.bricks().size() - first));
+}
+
+/// 0 beyond the box.
+void DeviceBricks::uploadPacked(const Buffer& buffer, std::size_t batch,
+                                const std::function<std::uint32_t(glm::ivec3 voxel)>& valueAt) const {
+  constexpr int n = ScalarBricks::kEdge;
+  constexpr std::size_t size = std::tuple_size_v<Brick>;
+  std::vector<std::uint32_t> values(batchOf(batch).size() * size);
+  tbb::parallel_for(std::size_t(0), batchOf(batch).size(), [&](std::size_t i) {
+    const glm::ivec3 first = bricks_.firstVoxel(batch * bricksPerBatch_ + i);
+    const glm::ivec3 begin = glm::max(-first, 0), end = glm::min(volume_.dimensions - first, n);
+    for (glm::ivec3 v(0, 0, begin.z); v.z < end.z; ++v.z)
+      for (v.y = begin.y; v.y < end.y; ++v.y)
+        for (v.x = begin.x; v.x < end.x; ++v.x)
+          values[i * size + ScalarBricks::indexInBrick(v)] = valueAt(first + v);
+  });
+  freevoxels::upload(device_, buffer, std::as_bytes(std::span(values)));
+}
 
 void DeviceBricks::upload(std::size_t batch) {
   if (uploaded_ == batch) return;
   uploaded_ = batch;
-  const std::size_t first = batch * bricksPerBatch_;
-  const std::size_t count = std::min(bricksPerBatch_, bricks_.bricks().size() - first);
+  const std::span<const Brick> bricks = batchOf(batch);
   std::vector<glm::ivec3> places;
-  for (std::size_t i = 0; i < count; ++i) places.push_back(bricks_.firstVoxel(first + i));
-  freevoxels::upload(device_, scalars_, std::as_bytes(bricks_.bricks().subspan(first, count)));
+  for (std::size_t i = 0; i < bricks.size(); ++i)
+    places.push_back(bricks_.firstVoxel(batch * bricksPerBatch_ + i));
+  freevoxels::upload(device_, scalars_, std::as_bytes(bricks));
   freevoxels::upload(device_, firstVoxels_, std::as_bytes(std::span(places)));
-  brickCount_ = std::uint32_t(count);
+  brickCount_ = std::uint32_t(bricks.size());
+  if (target_.hasEmission())
+    uploadPacked(emissions_, batch, [this](glm::ivec3 voxel) {
+      const float temperature = volume_.temperature->values.at(voxel);
+      return packLight(emittedLight(*classification_.emission, temperature) / target_.emissionUnit);
+    });
+  if (target_.hasAlbedos)
+    uploadPacked(albedos_, batch, [this](glm::ivec3 voxel) {
+      return packColor(albedoOf(classification_, *volume_.albedo, voxel));
+    });
 }
 
-shader::BricksPush DeviceBricks::push(const DeviceVolume& volume,
-                                      const Classification& classification) const {
-  return {.voxels = volume.onDevice(0),
+shader::BricksPush DeviceBricks::push() const {
+  return {.voxels = target_.onDevice(0),
           .brickCount = brickCount_,
-          .opacityPoints = volume.opacityPointCount,
-          .densityScale = float(std::min(classification.densityScale, kMaximumExtinction)),
-          .unitDistance =
-              classification.transferFunction ? float(classification.transferFunction->unitDistance) : 1.0f};
+          .opacityPoints = target_.opacityPointCount,
+          .densityScale = float(std::min(classification_.densityScale, kMaximumExtinction)),
+          .unitDistance = classification_.transferFunction
+                              ? float(classification_.transferFunction->unitDistance)
+                              : 1.0f};
 }
 
 }  // namespace freevoxels

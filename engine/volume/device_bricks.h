@@ -1,8 +1,10 @@
 #pragma once
-// The bricks of a volume's scalars on their way to the device, a batch at a time: what the volume is built
-// from.
+// The bricks of a volume's scalars, with their light and albedos, on their way to the device, a batch at a
+// time: what the volume is built from.
 
 #include <cstdint>
+#include <functional>
+#include <vector>
 
 #include "engine/volume/classification.h"
 #include "engine/volume/device_volume.h"
@@ -16,24 +18,37 @@ inline constexpr std::uint64_t kBatchBytes = std::uint64_t(16) << 20;
 
 class DeviceBricks {
  public:
-  DeviceBricks(const Device& device, const ScalarBricks& bricks);
+  /// Keeps references to the last three.
+  DeviceBricks(const Device& device, const DeviceVolume& target, const Volume& volume,
+               const Classification& classification);
 
   /// One that is empty where there is no brick.
   std::size_t batches() const { return batches_; }
   /// In place of the one before, on which no work may be under way. Waits.
   void upload(std::size_t batch);
   /// What occupied_voxels.comp and pack_voxels.comp do to the batch that was uploaded last.
-  shader::BricksPush push(const DeviceVolume& volume, const Classification& classification) const;
+  shader::BricksPush push() const;
   const Buffer& scalars() const { return scalars_; }
+  /// packed_light.h, as the scalars; any buffer where there are none.
+  const Buffer& emissions() const { return target_.hasEmission() ? emissions_ : scalars_; }
+  const Buffer& albedos() const { return target_.hasAlbedos ? albedos_ : scalars_; }
   const Buffer& firstVoxels() const { return firstVoxels_; }
 
  private:
+  std::span<const ScalarBricks::Brick> batchOf(std::size_t batch) const;
+  void uploadPacked(const Buffer& buffer, std::size_t batch,
+                    const std::function<std::uint32_t(glm::ivec3 voxel)>& valueAt) const;
+
   const Device& device_;
+  const DeviceVolume& target_;
+  const Volume& volume_;
+  const Classification& classification_;
   const ScalarBricks& bricks_;
   std::size_t batches_, bricksPerBatch_, uploaded_;
   std::uint32_t brickCount_ = 0;
-  Buffer scalars_;      ///< float
-  Buffer firstVoxels_;  ///< ivec3
+  Buffer scalars_;              ///< float
+  Buffer emissions_, albedos_;  ///< uint
+  Buffer firstVoxels_;          ///< ivec3
 };
 
 }  // namespace freevoxels

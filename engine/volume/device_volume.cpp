@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "engine/volume/packed_light.h"
 #include "shaders/interface.h"
 
 namespace freevoxels {
@@ -50,8 +51,11 @@ DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
                       .hierarchy = HierarchyLayout(volume.dimensions),
                       .indexToWorld = volume.indexToWorld,
                       .albedo = classification.albedo,
+                      .hasAlbedos = volume.albedo.has_value() && !classification.transferFunction,
+                      .emissionUnit = brightestLight(classification, volume) / kBrightest,
                       .voxelSize = volume.voxelSize(),
                       .activeVoxels = volume.activeVoxels};
+  if (result.hasEmission()) result.activeVoxels += volume.temperature->activeVoxels;
   const std::uint64_t words = result.hierarchy.paddedBlocks() / shader::kBlocksPerWord;
   result.occupancy = Buffer(device, words * sizeof(shader::OccupancyWord), MemoryUse::Device, "occupancy",
                             VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);

@@ -13,8 +13,8 @@
 
 namespace freevoxels {
 
-/// A block holds something where its extinction is above 0. What is kept of such blocks is kept at their
-/// ranks: in the order of HierarchyLayout, level by level.
+/// A block holds something where its extinction is above 0 or it sends out light. What is kept of such blocks
+/// is kept at their ranks: in the order of HierarchyLayout, level by level.
 struct DeviceVolume {
   GridLayout layout;
   HierarchyLayout hierarchy;  ///< its level 0 is `layout`
@@ -22,17 +22,21 @@ struct DeviceVolume {
   TexelView occupancyTexels;
   std::vector<std::uint64_t> stored;  ///< blocks of each level that hold anything
   Buffer extinction;                  ///< float, per world unit, of all levels
-  Buffer scalars;                     ///< float, of the voxels; does not exist where there is one colour
+  Buffer emission;                    ///< packed_light.h, of all levels; does not exist where there is none
+  Buffer scalars;  ///< float, or packed albedos, of the voxels; does not exist where there is one colour
   Buffer
       blockColors;  ///< four halves, of the levels above the voxels; does not exist where there is one colour
   Buffer transferPoints;  ///< vec4: opacity points, then colour points (transfer_function.glsl)
   std::uint32_t opacityPointCount = 0, colorPointCount = 0;  ///< 0 = physical
   glm::dmat4 indexToWorld{1.0};
   glm::vec3 albedo{0.0f};
+  bool hasAlbedos = false;    ///< a grid of them
+  double emissionUnit = 0.0;  ///< radiance per world unit that a stored 1 is; 0: no voxel sends out light
   double voxelSize = 0.0;
   std::uint64_t activeVoxels = 0;  ///< no more than this many can be visible
 
-  bool hasColors() const { return opacityPointCount > 0; }
+  bool hasColors() const { return opacityPointCount > 0 || hasAlbedos; }
+  bool hasEmission() const { return emissionUnit > 0.0; }
   /// Of all levels that hold anything.
   std::uint64_t storedBlocks() const;
   /// Of a level's first block that holds anything.

@@ -72,14 +72,19 @@ struct Field {
   float (*density)(vec3 position, float voxelSize);
   /// A distance within which it is 0, or null: boxes that are nearly empty are filled faster.
   float (*clearance)(vec3 position) = nullptr;
+  float (*temperature)(vec3 position) = nullptr;  ///< kelvin, or null where there is none
 };
 
-constexpr std::array<Field, 7> kFields{{
+constexpr std::array<Field, 8> kFields{{
     {{"cube", "a uniform cube of density 1"}, cubeDensity},
     {{"cloud", "a fractal cumulus cloud"}, [](vec3 position, float) { return cloudDensity(position); }},
     {{"plume", "a spiral of smoke in a box that is nearly empty"},
      [](vec3 position, float) { return plumeDensity(position); },
      plumeClearance},
+    {{"fire", "flames and smoke, with temperatures for --emission"},
+     [](vec3 position, float) { return fireDensity(position); },
+     nullptr,
+     fireTemperature},
     {{"marschner-lobb", "the reconstruction test signal of Marschner and Lobb"}, marschnerLobb},
     {{"shells", "nested translucent spherical shells"}, shellsDensity},
     {{"rods", "a lattice of thin rods"}, rodsDensity},
@@ -120,10 +125,9 @@ Volume makeProcedural(std::string_view name, int resolution) {
   volume.indexToWorld = glm::dmat4(voxelSize);
   volume.indexToWorld[3] = glm::dvec4(glm::dvec3(firstCenter), 1.0);
   const auto center = [&](int index) { return float(firstCenter + voxelSize * index); };
-  const auto scalarAt = [&](glm::ivec3 v) {
-    const float density = field.density({center(v.x), center(v.y), center(v.z)}, float(voxelSize));
-    return density == 0.0f ? kInactiveVoxel : density;
-  };
+  const auto place = [&](glm::ivec3 v) { return vec3(center(v.x), center(v.y), center(v.z)); };
+  const auto activeIf = [](float value) { return value == 0.0f ? kInactiveVoxel : value; };
+  const auto scalarAt = [&](glm::ivec3 v) { return activeIf(field.density(place(v), float(voxelSize))); };
   const auto mayHoldData = [&](glm::ivec3 first) {
     if (field.clearance == nullptr) return true;
     const double half = 0.5 * (ScalarBricks::kEdge - 1);
@@ -132,6 +136,12 @@ Volume makeProcedural(std::string_view name, int resolution) {
   };
   volume.scalars = ScalarBricks::make(volume.dimensions, scalarAt, mayHoldData);
   summariseValues(volume);
+  if (field.temperature == nullptr) return volume;
+  const auto temperatureAt = [&](glm::ivec3 v) { return activeIf(field.temperature(place(v))); };
+  volume.temperature = TemperatureGrid{
+      .name = "", .values = ScalarBricks::make(volume.dimensions, temperatureAt, mayHoldData)};
+  summariseValues(*volume.temperature);
+  coverBricks(volume, volume.temperature->values);
   return volume;
 }
 

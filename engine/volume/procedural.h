@@ -10,13 +10,14 @@
 namespace freevoxels {
 
 struct ProceduralKind {
-  std::string_view name;         ///< "cube", "cloud", "plume", "marschner-lobb", "shells", "rods", "head"
+  std::string_view name;  ///< "cube", "cloud", "plume", "fire", "marschner-lobb", "shells", "rods", "head"
   std::string_view description;  ///< one clause
 };
 
 const std::vector<ProceduralKind>& proceduralKinds();
 
-/// The field `name` sampled at the voxel centres of a resolution³ grid. Voxels of value 0 are inactive.
+/// The field `name` sampled at the voxel centres of a resolution³ grid, with its temperatures, if it has any.
+/// Voxels of value 0 are inactive.
 /// Unknown name or a resolution outside 1..2048: ExitCode::Usage.
 Volume makeProcedural(std::string_view name, int resolution);
 

@@ -15,6 +15,11 @@ float plumeDensity(glm::vec3 position);
 /// A distance within which there is none of it.
 float plumeClearance(glm::vec3 position);
 
+/// Smoke over a fire, thin where that is hot.
+float fireDensity(glm::vec3 position);
+/// Kelvin; 0 where nothing burns.
+float fireTemperature(glm::vec3 position);
+
 /// A head in front view along -z, with nested tissues of different density: skin 0.1 to 0.2, brain 0.3 to
 /// 0.4, bone 1. Surfaces are smoothed over `voxelSize`.
 float headDensity(glm::vec3 position, float voxelSize);

@@ -57,6 +57,13 @@ class ScalarBricks {
   std::span<const Brick> bricks() const { return bricks_; }
   /// The place in the box of a brick's first voxel; less than 0 where the brick begins before the box.
   glm::ivec3 firstVoxel(std::size_t brick) const { return cells_[brick] * kEdge - corner_; }
+  /// Of bricks of the box; those of boxes with the same `corner` are the same voxels.
+  glm::ivec3 cell(std::size_t brick) const { return cells_[brick]; }
+  /// Null where there is none.
+  const Brick* brickAt(glm::ivec3 cell) const {
+    const std::int32_t number = numbers_.empty() ? -1 : numbers_[cellIndex(cell)];
+    return number < 0 ? nullptr : &bricks_[std::size_t(number)];
+  }
   /// The same voxels in the box from `low` to `high`, beyond which there is no data.
   ScalarBricks cropped(glm::ivec3 low, glm::ivec3 high) const;
   /// On the host.

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,20 +29,31 @@ struct GridInfo {
   std::vector<std::uint64_t> storedBlocks;
   std::uint64_t hostBytes = 0;  ///< of the volume that readVdb makes of it; 0 where it cannot be rendered
   std::string unusable;         ///< empty, or why it cannot be rendered, in one clause
+  bool isTemperature = false;   ///< --emission takes it where no other is named
+  bool isAlbedo = false;        ///< --albedo-grid takes it
 };
 
 /// Every grid of the file in file order. Fails with ExitCode::Input on a missing, truncated or foreign file.
 std::vector<GridInfo> describeVdb(const std::filesystem::path& file);
 
+/// Grids of the same file and on the same lattice of voxels to read as well.
+struct MoreGrids {
+  std::optional<std::string> temperature;  ///< a float grid; empty: `temperature`, `heat` or `flame`
+  std::optional<std::string> albedo;       ///< a vec3s, vec3h or vec3d grid
+};
+
 /// Reads one float or half grid as a dense box around its active voxels (active tiles counted as voxels).
 /// `gridName`: "NAME" or "NAME[k]"; empty means `density`, else the only float grid, else an error that lists
 /// the choice. A level set becomes fog: density 1 inside, 0 outside, linear over the one voxel at the
-/// surface. Fails with ExitCode::Input: frustum transforms, other grid types, empty grids, unreadable files;
-/// and with ExitCode::OutOfMemory where the box exceeds `maximumVoxels`, before anything of that size is
-/// allocated.
-Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels);
+/// surface. With temperatures the box is around their active voxels too. Fails with ExitCode::Input:
+/// `more` that is not there or has another transform, frustum transforms, other grid types, empty grids,
+/// unreadable files; and with ExitCode::OutOfMemory where the box exceeds `maximumVoxels`, before anything of
+/// that size is allocated.
+Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels,
+               const MoreGrids& more = {});
 
-/// Writes the active voxels as one float fog-volume grid. Atomic (core/atomic_file.h).
+/// Writes the active voxels as one float fog-volume grid, and temperatures as another. Atomic
+/// (core/atomic_file.h).
 void writeVdb(const std::filesystem::path& file, const Volume& volume, const std::string& gridName);
 
 }  // namespace freevoxels

@@ -85,10 +85,6 @@ std::string valueTypeOf(const std::string& treeType, bool savedAsHalf) {
   return printable(value);
 }
 
-bool isReal(const VdbFile::Entry& entry) {
-  return whyTypeUnusable(entry.treeType, entry.valueType).empty();
-}
-
 std::string listOf(const std::vector<VdbFile::Entry>& entries) {
   std::string list;
   for (const VdbFile::Entry& entry : entries)
@@ -236,6 +232,14 @@ void VdbFile::checkTree(const VdbHeader::Grid& grid) const {
   const bool isShared = !grid.parentName.empty() && parent != header_.grids.end();
   VdbReader reader(path_);
   checkVdbTree(reader, isShared ? *parent : grid);
+}
+
+bool isReal(const VdbFile::Entry& entry) {
+  return whyTypeUnusable(entry.treeType, entry.valueType).empty();
+}
+
+bool isColor(const VdbFile::Entry& entry) {
+  return entry.valueType == "vec3s" || entry.valueType == "vec3h" || entry.valueType == "vec3d";
 }
 
 std::string whyTypeUnusable(const std::string& treeType, const std::string& valueType) {

@@ -5,6 +5,7 @@
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -57,6 +58,12 @@ class VdbFile {
   std::vector<openvdb::GridBase::Ptr>
       streamed_;  ///< parallel to entries_, for a file that has to be read as a whole
 };
+
+/// What grids of temperatures are called, in the order in which they are looked for.
+inline constexpr std::array<const char*, 3> kTemperatureNames{"temperature", "heat", "flame"};
+/// By OpenVDB's names of values.
+bool isReal(const VdbFile::Entry& entry);
+bool isColor(const VdbFile::Entry& entry);
 
 /// Empty, or why a grid of this type cannot be rendered, in one clause.
 std::string whyTypeUnusable(const std::string& treeType, const std::string& valueType);

@@ -143,6 +143,9 @@ GridInfo describe(VdbFile& file, const VdbFile::Entry& entry) {
   info.valueType = entry.valueType;
   info.gridClass = gridClassName(openvdb::GRID_UNKNOWN);
   info.unusable = whyTypeUnusable(entry.treeType, entry.valueType);
+  info.isTemperature =
+      isReal(entry) && std::ranges::find(kTemperatureNames, entry.baseName) != kTemperatureNames.end();
+  info.isAlbedo = isColor(entry);
   if (!openvdb::GridBase::isRegistered(entry.treeType)) return info;
 
   const openvdb::GridBase::ConstPtr grid = file.read(entry);

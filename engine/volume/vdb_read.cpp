@@ -1,58 +1,19 @@
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <limits>
 #include <new>
 
 #include "engine/core/error.h"
 #include "engine/volume/vdb.h"
-#include "engine/volume/vdb_density.h"
+#include "engine/volume/vdb_bricks.h"
+#include "engine/volume/vdb_channels.h"
 #include "engine/volume/vdb_grids.h"
 
 namespace freevoxels {
 
 namespace {
 
-using openvdb::Coord;
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
-using Leaf = openvdb::FloatTree::LeafNodeType;
-
-/// The bricks lie on the lattice of the leaves: a leaf is a brick, and a tile is several.
-static_assert(ScalarBricks::kEdge == int(Leaf::DIM));
-
-ScalarBricks::Brick& makeBrickAt(Volume& volume, const Coord& corner) {
-  constexpr int shift = Leaf::LOG2DIM;
-  return volume.scalars.makeBrick((glm::ivec3(corner.x(), corner.y(), corner.z()) >> shift) -
-                                  (volume.indexOrigin >> shift));
-}
-
-void fillTile(Volume& volume, const CoordBBox& tile, float value) {
-  for (int z = tile.min().z(); z <= tile.max().z(); z += int(Leaf::DIM))
-    for (int y = tile.min().y(); y <= tile.max().y(); y += int(Leaf::DIM))
-      for (int x = tile.min().x(); x <= tile.max().x(); x += int(Leaf::DIM))
-        makeBrickAt(volume, Coord(x, y, z)).fill(value);
-}
-
-template <typename ToDensity>
-void fillBrick(ScalarBricks::Brick& brick, const Leaf& leaf, const ToDensity& toDensity) {
-  for (auto voxel = leaf.cbeginValueAll(); voxel; ++voxel) {
-    const Coord place = Leaf::offsetToLocalCoord(voxel.pos());
-    brick[ScalarBricks::indexInBrick({place.x(), place.y(), place.z()})] =
-        toDensity(*voxel, voxel.isValueOn());
-  }
-}
-
-/// Leaves that hold nothing make no brick.
-template <typename ToDensity>
-void fillLeaves(Volume& volume, std::vector<const Leaf*> leaves, const ToDensity& toDensity) {
-  std::erase_if(leaves, [&](const Leaf* leaf) { return !holdsData(*leaf, toDensity); });
-  volume.scalars.reserve(volume.scalars.bricks().size() + leaves.size());
-  std::vector<ScalarBricks::Brick*> bricks;
-  for (const Leaf* leaf : leaves) bricks.push_back(&makeBrickAt(volume, leaf->origin()));
-  tbb::parallel_for(std::size_t(0), leaves.size(),
-                    [&](std::size_t i) { fillBrick(*bricks[i], *leaves[i], toDensity); });
-}
 
 void checkSize(const CoordBBox& bounds, std::uint64_t maximumVoxels, const std::string& source) {
   const auto extent = [&](int axis) { return double(bounds.max()[axis]) - double(bounds.min()[axis]) + 1.0; };
@@ -75,13 +36,15 @@ glm::dmat4 indexToWorldOf(const FloatGrid& grid, glm::ivec3 indexOrigin) {
   return indexToWorld;
 }
 
+/// Of the box around what `toDensity` keeps and around `more`.
 template <typename ToDensity>
 Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::string& source,
-                std::uint64_t maximumVoxels) {
-  std::vector<const Leaf*> leaves;
+                const CoordBBox& more, std::uint64_t maximumVoxels) {
+  std::vector<const VdbLeaf*> leaves;
   grid.tree().getNodes(leaves);
-  const CoordBBox bounds = boundsOf(grid.tree(), leaves, toDensity);
+  CoordBBox bounds = boundsOf(grid.tree(), leaves, toDensity);
   if (bounds.empty()) fail(ExitCode::Input, "{} cannot be rendered: {}", source, kNothingInsideClause);
+  bounds.expand(more);
   checkSize(bounds, maximumVoxels, source);
 
   Volume volume;
@@ -89,12 +52,7 @@ Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::st
   volume.dimensions = {bounds.dim().x(), bounds.dim().y(), bounds.dim().z()};
   volume.indexOrigin = {bounds.min().x(), bounds.min().y(), bounds.min().z()};
   volume.indexToWorld = indexToWorldOf(grid, volume.indexOrigin);
-  volume.scalars = ScalarBricks(volume.dimensions, volume.indexOrigin & (ScalarBricks::kEdge - 1));
-  visitTiles(grid.tree(), [&](const CoordBBox& box, float value, bool active) {
-    const float density = toDensity(value, active);
-    if (density != kInactiveVoxel) fillTile(volume, box, density);
-  });
-  fillLeaves(volume, std::move(leaves), toDensity);
+  volume.scalars = bricksOf(grid.tree(), std::move(leaves), volume.dimensions, volume.indexOrigin, toDensity);
   summariseValues(volume);
   return volume;
 }
@@ -105,21 +63,27 @@ Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::st
 
 }  // namespace
 
-Volume readVdb(const std::filesystem::path& path, const std::string& gridName, std::uint64_t maximumVoxels) {
+Volume readVdb(const std::filesystem::path& path, const std::string& gridName, std::uint64_t maximumVoxels,
+               const MoreGrids& more) {
   VdbFile file(path);
   const VdbFile::Entry& entry = file.choose(gridName);
   if (const std::string why = whyTypeUnusable(entry.treeType, entry.valueType); !why.empty())
     failUnusable(file, entry, why);
   if (const std::string why = whyTransformUnusable(file.readMetadata(entry)->transform()); !why.empty())
     failUnusable(file, entry, why);
+  VdbChannels channels(file, entry, more);
 
   const openvdb::GridBase::Ptr grid = file.read(entry);
   if (grid->activeVoxelCount() == 0) failUnusable(file, entry, kEmptyGridClause);
   const FloatGrid::ConstPtr floats = asFloatGrid(grid);
   const std::string source = fmt::format("{} {}", path.filename().string(), entry.name);
   try {
-    return withDensity(
-        *grid, [&](const auto& toDensity) { return toVolume(*floats, toDensity, source, maximumVoxels); });
+    channels.read();
+    Volume volume = withDensity(*grid, [&](const auto& toDensity) {
+      return toVolume(*floats, toDensity, source, channels.bounds(), maximumVoxels);
+    });
+    channels.addTo(volume);
+    return volume;
   } catch (const std::bad_alloc&) {
     fail(ExitCode::OutOfMemory, "not enough memory for {}; free some, or resample or crop the volume",
          source);

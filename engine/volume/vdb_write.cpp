@@ -18,7 +18,7 @@ using Leaf = openvdb::FloatTree::LeafNodeType;
 
 /// The leaf at `corner` (a multiple of its size, in the file's index space), or null where no voxel of it is
 /// active.
-std::unique_ptr<Leaf> makeLeaf(const Volume& volume, const Coord& corner) {
+std::unique_ptr<Leaf> makeLeaf(const Volume& volume, const ScalarBricks& scalars, const Coord& corner) {
   const glm::ivec3 first = glm::ivec3(corner.x(), corner.y(), corner.z()) - volume.indexOrigin;
   const glm::ivec3 begin = glm::max(first, glm::ivec3(0));
   const glm::ivec3 end = glm::min(first + int(Leaf::DIM), volume.dimensions);
@@ -26,7 +26,7 @@ std::unique_ptr<Leaf> makeLeaf(const Volume& volume, const Coord& corner) {
   for (int z = begin.z; z < end.z; ++z)
     for (int y = begin.y; y < end.y; ++y)
       for (int x = begin.x; x < end.x; ++x) {
-        const float value = volume.scalar(x, y, z);
+        const float value = scalars.at({x, y, z});
         if (value == kInactiveVoxel) continue;
         if (!leaf) leaf = std::make_unique<Leaf>(corner, 0.0f);
         leaf->setValueOn(corner + Coord(x - first.x, y - first.y, z - first.z), value);
@@ -35,11 +35,11 @@ std::unique_ptr<Leaf> makeLeaf(const Volume& volume, const Coord& corner) {
 }
 
 /// Of the leaves that a brick reaches into.
-std::set<Coord> leafCorners(const Volume& volume) {
+std::set<Coord> leafCorners(const Volume& volume, const ScalarBricks& scalars) {
   const int mask = ~(int(Leaf::DIM) - 1);
   std::set<Coord> corners;
-  for (std::size_t brick = 0; brick < volume.scalars.bricks().size(); ++brick) {
-    const glm::ivec3 first = volume.scalars.firstVoxel(brick) + volume.indexOrigin;
+  for (std::size_t brick = 0; brick < scalars.bricks().size(); ++brick) {
+    const glm::ivec3 first = scalars.firstVoxel(brick) + volume.indexOrigin;
     for (int corner = 0; corner < 8; ++corner) {
       const glm::ivec3 end =
           first + (ScalarBricks::kEdge - 1) * glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
@@ -49,9 +49,9 @@ std::set<Coord> leafCorners(const Volume& volume) {
   return corners;
 }
 
-void fillTree(openvdb::FloatTree& tree, const Volume& volume) {
-  for (const Coord& corner : leafCorners(volume))
-    if (auto leaf = makeLeaf(volume, corner)) tree.addLeaf(leaf.release());
+void fillTree(openvdb::FloatTree& tree, const Volume& volume, const ScalarBricks& scalars) {
+  for (const Coord& corner : leafCorners(volume, scalars))
+    if (auto leaf = makeLeaf(volume, scalars, corner)) tree.addLeaf(leaf.release());
   tree.prune();  // uniform leaves become tiles
 }
 
@@ -73,18 +73,24 @@ void checkComplete(const std::filesystem::path& file) {
   }
 }
 
+FloatGrid::Ptr makeGrid(const Volume& volume, const ScalarBricks& scalars, const std::string& name) {
+  const FloatGrid::Ptr grid = FloatGrid::create(0.0f);
+  grid->setName(name);
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  grid->setCreator("FreeVoxels");
+  grid->setTransform(transformOf(volume));
+  fillTree(grid->tree(), volume, scalars);
+  return grid;
+}
+
 }  // namespace
 
 void writeVdb(const std::filesystem::path& file, const Volume& volume, const std::string& gridName) {
   initialiseOpenVdb();
-  const FloatGrid::Ptr grid = FloatGrid::create(0.0f);
-  grid->setName(gridName);
-  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
-  grid->setCreator("FreeVoxels");
-  grid->setTransform(transformOf(volume));
-  fillTree(grid->tree(), volume);
+  openvdb::GridCPtrVec grids{makeGrid(volume, volume.scalars, gridName)};
+  if (volume.temperature) grids.push_back(makeGrid(volume, volume.temperature->values, "temperature"));
   writeAtomically(file, [&](const std::filesystem::path& temporary) {
-    openvdb::io::File(temporary.string()).write(openvdb::GridCPtrVec{grid});
+    openvdb::io::File(temporary.string()).write(grids);
     checkComplete(temporary);
   });
 }

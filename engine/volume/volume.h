@@ -1,14 +1,31 @@
 #pragma once
 // A volume as the engine sees it: a box of scalars and where it stands in the world.
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/volume/scalar_bricks.h"
 
 namespace freevoxels {
+
+/// Temperatures beside a volume's scalars.
+struct TemperatureGrid {
+  std::string name;
+  ScalarBricks values;  ///< as Volume::scalars, of the same box; in any unit
+  std::uint64_t activeVoxels = 0, nanVoxels = 0;
+  float minimum = 0.0f, maximum = 0.0f;  ///< of the active voxels
+};
+
+/// Albedos beside a volume's scalars, linear Rec.709 in 0..1.
+struct AlbedoGrid {
+  std::string name;
+  std::array<ScalarBricks, 3> values;  ///< red, green and blue, each as Volume::scalars, of the same box
+  std::uint64_t clippedVoxels = 0;     ///< that were not in 0..1; NaN is 0
+};
 
 struct Volume {
   std::string source;  ///< file and grid, for messages and metadata: "cloud.vdb density[1]"
@@ -23,6 +40,9 @@ struct Volume {
   std::uint64_t negativeVoxels =
       0;  ///< active voxels below 0; a density there counts as 0 (classification.h)
   float minimum = 0.0f, maximum = 0.0f;  ///< of the active voxels
+
+  std::optional<TemperatureGrid> temperature;
+  std::optional<AlbedoGrid> albedo;
 
   std::size_t voxelCount() const {
     return std::size_t(dimensions.x) * std::size_t(dimensions.y) * std::size_t(dimensions.z);
@@ -42,9 +62,14 @@ std::vector<float> denseScalars(const Volume& volume);
 
 /// Fills activeVoxels, nanVoxels, negativeVoxels, minimum and maximum, and replaces NaN and infinities by 0.
 void summariseValues(Volume& volume);
+/// The same of temperatures.
+void summariseValues(TemperatureGrid& grid);
 
-/// Drops the planes at the box's six sides that hold no active voxel; every voxel keeps its place in the
-/// world. A volume without active voxels stays as it is.
+/// Makes bricks of scalars, without data, where only `grid` has bricks: what has light alone is a voxel too.
+void coverBricks(Volume& volume, const ScalarBricks& grid);
+
+/// Drops the planes at the box's six sides that hold no active voxel of scalars or temperatures; every voxel
+/// keeps its place in the world. A volume without active voxels stays as it is.
 void cropToActive(Volume& volume);
 
 }  // namespace freevoxels

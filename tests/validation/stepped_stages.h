@@ -35,6 +35,7 @@ struct SteppedStages : StageOutputs {
     const LevelData voxels = downloadMedium(device, steps.volume, 0);
     return {voxels.extinction.begin(), voxels.extinction.end()};
   }
+  std::vector<glm::dvec3> emission() override { return downloadMedium(device, steps.volume, 0).emission; }
   TableBytes table() override { return downloadTable(device, steps.volume, steps.table); }
   std::vector<std::uint32_t> visibleVoxels() override {
     std::vector<std::uint32_t> voxels;

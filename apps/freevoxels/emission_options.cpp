@@ -1,0 +1,85 @@
+#include "apps/freevoxels/emission_options.h"
+
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+
+#include "engine/core/error.h"
+#include "engine/volume/blackbody.h"
+
+namespace freevoxels {
+
+void EmissionOptions::add(CLI::App& app) {
+  constexpr const char* kGroup = "Emission";
+  addOptionalNumber(
+      app, "--emission", "STRENGTH", emission, strength,
+      fmt::format("Light by temperature: luminance per world unit at {:g} K [so that it suits a "
+                  "picture]; a file may not follow",
+                  kReferenceTemperature),
+      {.minimum = 0.0})
+      ->group(kGroup);
+  addText(app, "--temperature-grid", "NAME", temperatureGrid,
+          "Grid of the temperatures, with --emission or alone [temperature, heat or flame]")
+      ->group(kGroup);
+  addNumber(
+      app, "--temperature-scale", "K", temperatureScale,
+      fmt::format("Kelvin per unit of the grid [1, or up to {:g} at most, {:g} K for its largest value]",
+                  kLeastKelvinMaximum, kReferenceTemperature),
+      {.minimum = 0.0})
+      ->group(kGroup);
+  addNumber(app, "--temperature-offset", "K", temperatureOffset, "Kelvin at 0 of the grid [0]")
+      ->group(kGroup);
+}
+
+void EmissionOptions::check(const InputOptions& input) const {
+  if (temperatureGrid && proceduralName(input.input))
+    fail(ExitCode::Usage, "--temperature-grid chooses among the grids of a file: {} takes --emission alone",
+         input.input);
+  if (grid()) return;
+  for (const auto& [name, given] :
+       {std::pair("--temperature-scale", temperatureScale), {"--temperature-offset", temperatureOffset}})
+    if (given) fail(ExitCode::Usage, "{} is of emission: add --emission or --temperature-grid NAME", name);
+}
+
+std::optional<std::string> EmissionOptions::grid() const {
+  if (temperatureGrid) return temperatureGrid;
+  return emission ? std::optional<std::string>("") : std::nullopt;
+}
+
+std::optional<Emission> EmissionOptions::resolve(const Volume& volume) const {
+  if (!grid()) return std::nullopt;
+  if (!volume.temperature)
+    fail(ExitCode::Usage, "{} has no temperatures: leave --emission out, or take procedural:fire",
+         volume.source);
+  Emission result{.temperatureOffset = temperatureOffset.value_or(0.0)};
+  result.temperatureScale =
+      temperatureScale.value_or(automaticTemperatureScale(*volume.temperature, result.temperatureOffset));
+  result.strength = strength.value_or(automaticEmissionStrength(volume, result));
+  return result;
+}
+
+void EmissionOptions::describe(OptionList& options, const Volume& volume,
+                               const std::optional<Emission>& resolved) const {
+  if (!resolved) return;
+  // A procedural volume's has no name.
+  if (!volume.temperature->name.empty()) options.emplace_back("--temperature-grid", volume.temperature->name);
+  options.emplace_back("--emission", numberText(resolved->strength));
+  options.emplace_back("--temperature-scale", numberText(resolved->temperatureScale));
+  options.emplace_back("--temperature-offset", numberText(resolved->temperatureOffset));
+}
+
+void EmissionOptions::warn(const Volume& volume, const Classification& classification) {
+  if (!classification.emission) return;
+  const TemperatureGrid& grid = *volume.temperature;
+  if (grid.nanVoxels > 0)
+    spdlog::warn("{} temperature{} of {} that {} NaN or infinite count{} as 0", grid.nanVoxels,
+                 grid.nanVoxels == 1 ? "" : "s", volume.source, grid.nanVoxels == 1 ? "is" : "are",
+                 grid.nanVoxels == 1 ? "s" : "");
+  if (classification.emission->strength > 0.0 && brightestLight(classification, volume) == 0.0)
+    spdlog::warn(
+        "no temperature of {} is above {:g} K, so that nothing sends out light; --temperature-scale "
+        "and --temperature-grid change that",
+        volume.source, kColdestLight);
+}
+
+}  // namespace freevoxels

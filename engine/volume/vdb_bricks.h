@@ -1,0 +1,69 @@
+#pragma once
+// Internal to the vdb_*.cpp files, as it includes OpenVDB: the values of a tree in bricks of a box.
+
+#include <openvdb/openvdb.h>
+#include <tbb/parallel_for.h>
+
+#include <vector>
+
+#include "engine/volume/vdb_density.h"
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+using VdbLeaf = openvdb::FloatTree::LeafNodeType;
+
+/// The bricks lie on the lattice of the leaves: a leaf is a brick, and a tile is several.
+static_assert(ScalarBricks::kEdge == int(VdbLeaf::DIM));
+
+/// A box without data; `origin` is its first voxel in the file's index space.
+inline ScalarBricks emptyBricks(glm::ivec3 dimensions, glm::ivec3 origin) {
+  return ScalarBricks(dimensions, origin & (ScalarBricks::kEdge - 1));
+}
+
+/// The brick at a leaf's place.
+inline glm::ivec3 brickCell(glm::ivec3 origin, const openvdb::Coord& corner) {
+  constexpr int shift = VdbLeaf::LOG2DIM;
+  return (glm::ivec3(corner.x(), corner.y(), corner.z()) >> shift) - (origin >> shift);
+}
+
+/// Calls `visit(corner)` for each place of a leaf in a tile.
+template <typename Visit>
+void forEachLeafIn(const openvdb::CoordBBox& tile, const Visit& visit) {
+  constexpr int n = int(VdbLeaf::DIM);
+  for (int z = tile.min().z(); z <= tile.max().z(); z += n)
+    for (int y = tile.min().y(); y <= tile.max().y(); y += n)
+      for (int x = tile.min().x(); x <= tile.max().x(); x += n) visit(openvdb::Coord(x, y, z));
+}
+
+template <typename ToDensity>
+void fillBrick(ScalarBricks::Brick& brick, const VdbLeaf& leaf, const ToDensity& toDensity) {
+  for (auto voxel = leaf.cbeginValueAll(); voxel; ++voxel) {
+    const openvdb::Coord place = VdbLeaf::offsetToLocalCoord(voxel.pos());
+    brick[ScalarBricks::indexInBrick({place.x(), place.y(), place.z()})] =
+        toDensity(*voxel, voxel.isValueOn());
+  }
+}
+
+/// What `toDensity` keeps of a tree, all of which is in the box. Leaves that hold nothing make no brick.
+template <typename ToDensity>
+ScalarBricks bricksOf(const openvdb::FloatTree& tree, std::vector<const VdbLeaf*> leaves,
+                      glm::ivec3 dimensions, glm::ivec3 origin, const ToDensity& toDensity) {
+  ScalarBricks result = emptyBricks(dimensions, origin);
+  visitTiles(tree, [&](const openvdb::CoordBBox& box, float value, bool active) {
+    const float density = toDensity(value, active);
+    if (density == kInactiveVoxel) return;
+    forEachLeafIn(box, [&](const openvdb::Coord& corner) {
+      result.makeBrick(brickCell(origin, corner)).fill(density);
+    });
+  });
+  std::erase_if(leaves, [&](const VdbLeaf* leaf) { return !holdsData(*leaf, toDensity); });
+  result.reserve(result.bricks().size() + leaves.size());
+  std::vector<ScalarBricks::Brick*> bricks;
+  for (const VdbLeaf* leaf : leaves) bricks.push_back(&result.makeBrick(brickCell(origin, leaf->origin())));
+  tbb::parallel_for(std::size_t(0), leaves.size(),
+                    [&](std::size_t i) { fillBrick(*bricks[i], *leaves[i], toDensity); });
+  return result;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,17 @@
+// Light and albedos in 4 bytes, 9 bits a component with an exponent that they share (as VK_FORMAT_E5B9G9R9_UFLOAT_PACK32):
+// a component is at most 1/512 of the largest off. Light is in units in which the brightest voxel's is kBrightest
+// (engine/volume/packed_light.h).
+
+vec3 unpackLight(uint bits) {
+  const uvec3 parts = uvec3(bits, bits >> 9, bits >> 18) & 511u;
+  return ldexp(vec3(parts), ivec3(int(bits >> 27) - 24));
+}
+
+// Not negative, and at most kBrightest.
+uint packLight(vec3 light) {
+  const float largest = max(light.r, max(light.g, light.b));
+  int exponent = max(int(floatBitsToUint(largest) >> 23) - 127, -16) + 1;
+  if (uint(ldexp(largest, 9 - exponent) + 0.5) == 512u) ++exponent;
+  const uvec3 parts = uvec3(ldexp(light, ivec3(9 - exponent)) + 0.5);
+  return parts.r | parts.g << 9 | parts.b << 18 | uint(exponent + 15) << 27;
+}

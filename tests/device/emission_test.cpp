@@ -1,0 +1,197 @@
+// Light that voxels send out, and grids of albedos, on the device: against the double-precision reference.
+
+#include <cmath>
+#include <random>
+
+#include "engine/reference/reference_hierarchy.h"
+#include "engine/reference/reference_sorted.h"
+#include "engine/validation/level_checks.h"
+#include "tests/device/splat_fixture.h"
+
+namespace freevoxels {
+namespace {
+
+/// Hot here and there, also where there is no density: each of both, of one, or of nothing.
+Volume hotVolume(bool sheared, glm::ivec3 size = {11, 14, 9}) {
+  Volume volume = randomVolume(size, sheared ? shearedTransform(size) : cubeTransform(size), 0.6, 1.0);
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+  volume.temperature = TemperatureGrid{.name = "t", .values = ScalarBricks(volume.dimensions)};
+  for (int z = 0; z < size.z; ++z)
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x)
+        if (uniform(generator) < 0.5f)
+          volume.temperature->values.set({x, y, z}, 900.0f + 1200.0f * uniform(generator));
+  summariseValues(*volume.temperature);
+  coverBricks(volume, volume.temperature->values);
+  return volume;
+}
+
+Classification hot(const Volume& volume, float opacity = 0.4f) {
+  Classification classification = coloured(volume, opacity);
+  classification.emission = Emission{.strength = 1.5};
+  return classification;
+}
+
+class EmissionTest : public SplatTest {
+ protected:
+  static std::vector<double> extinctionOf(const Renderer& renderer) {
+    const std::vector<float> device = renderer.downloadExtinction();
+    return {device.begin(), device.end()};
+  }
+  /// Given the light that the device keeps, which has nine bits.
+  static void expectSamePicture(const Volume& volume, const Classification& classification,
+                                const Camera& camera, const FrameSettings& settings) {
+    Renderer renderer(device(), volume, classification, {});
+    const Image picture = renderer.render(camera, settings);
+    const auto extinction = extinctionOf(renderer);
+    const auto table = renderer.downloadTable();
+    const auto levels = renderer.downloadLevels();
+    const auto emission = renderer.downloadEmission();
+    const auto sums = referenceBlockSums(volume, classification,
+                                         {.extinction = extinction,
+                                          .table = table,
+                                          .tableSettings = {},
+                                          .coarser = levels,
+                                          .emission = emission},
+                                         camera, settings, renderer.downloadDrawnBlocks());
+    const Image expected = referenceResolve(sums, settings);
+    EXPECT_LE(largestDifference(picture, expected), 2e-3);
+    EXPECT_GE(psnr(picture, expected), 70.0);
+    // It shines.
+    float brightest = 0.0f;
+    for (const glm::vec4& pixel : picture.pixels) brightest = std::max(brightest, pixel.r);
+    EXPECT_GT(brightest, 1.2f);
+  }
+};
+
+TEST_F(EmissionTest, EveryVoxelWithExtinctionOrLightIsKept) {
+  const Volume volume = hotVolume(true);
+  const Classification classification = hot(volume);
+  Renderer renderer(device(), volume, classification, {});
+  const auto emission = renderer.downloadEmission();
+  ASSERT_EQ(emission.size(), volume.voxelCount());
+  double brightest = 0.0;
+  std::size_t voxel = 0, alone = 0;
+  for (int z = 0; z < volume.dimensions.z; ++z)
+    for (int y = 0; y < volume.dimensions.y; ++y)
+      for (int x = 0; x < volume.dimensions.x; ++x, ++voxel) {
+        const ClassifiedVoxel expected = classifyVoxel(classification, volume, {x, y, z});
+        const double largest = std::max({expected.emission.r, expected.emission.g, expected.emission.b});
+        brightest = std::max(brightest, largest);
+        EXPECT_LE(glm::length(emission[voxel] - expected.emission), largest / 300.0);
+        if (largest > 0.0 && expected.extinction == 0.0) ++alone;
+      }
+  EXPECT_GT(alone, 100u);
+  EXPECT_EQ(renderer.downloadVisibleVoxels(), referenceVisibleVoxels(extinctionOf(renderer), emission));
+  EXPECT_NEAR(brightest, brightestLight(classification, volume), 1e-12);
+  EXPECT_EQ(renderer.memory().emission % sizeof(std::uint32_t), 0u);
+  EXPECT_GT(renderer.memory().emission, 0u);
+}
+
+TEST_F(EmissionTest, EveryCompositeAndLookUpMatchesTheReference) {
+  const Volume volume = hotVolume(true);
+  const Classification classification = hot(volume);
+  const Camera camera = framingCamera(volume, 35.0, 25.0, 1.25, {});
+  for (const Composite composite : {Composite::Normalised, Composite::Additive})
+    expectSamePicture(volume, classification, camera,
+                      {.size = {60, 48}, .composite = composite, .lod = 0.0f});
+  expectSamePicture(volume, classification, camera,
+                    {.size = {40, 32}, .attenuation = AttenuationLookup::Exact, .lod = 0.0f});
+  FrameSettings lit{.size = {40, 32}, .lod = 0.0f, .lighting = Lighting{.ambient = glm::dvec3(0.5)}};
+  lit.lighting->lights.push_back({.place = {1.0, 0.7, 0.2}});
+  lit.lighting->surface = 0.5;
+  expectSamePicture(volume, classification, camera, lit);
+}
+
+/// No extinction at all: sums without E and T, and blocks of nothing but light.
+TEST_F(EmissionTest, FlamesWithoutSmokeMatchTheReference) {
+  const Volume volume = hotVolume(true);
+  Classification classification{.densityScale = 0.0, .emission = Emission{.strength = 5.0}};
+  const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
+  for (const float lod : {0.0f, 9.0f})
+    expectSamePicture(volume, classification, camera, {.size = {40, 40}, .lod = lod});
+  Renderer renderer(device(), volume, classification, {});
+  for (const glm::vec4& pixel : renderer.render(camera, {.size = {40, 40}}).pixels) EXPECT_EQ(pixel.a, 0.0f);
+  Camera inside = camera;
+  inside.position = {0.02, 0.03, 0.01};
+  inside.lookAt = {0.3, 0.1, -0.2};
+  for (const AttenuationLookup lookup : {AttenuationLookup::Auto, AttenuationLookup::Bilinear})
+    expectSamePicture(volume, classification, inside, {.size = {40, 40}, .attenuation = lookup});
+}
+
+TEST_F(EmissionTest, LevelsAndTheirPicturesMatchTheReference) {
+  const Volume volume = hotVolume(true, {19, 23, 17});
+  const Classification classification = hot(volume);
+  Renderer renderer(device(), volume, classification, {});
+  const LevelData voxels = referenceVoxelLevel(volume, classification, extinctionOf(renderer),
+                                               renderer.downloadTable(), renderer.downloadEmission());
+  for (const Check& check : compareLevels(volume, voxels, renderer.downloadLevels(), {}, "depth8"))
+    EXPECT_TRUE(check.passed()) << check.name << ": " << check.figure << " " << check.where;
+  const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
+  for (const float lod : {6.0f, 20.0f})
+    expectSamePicture(volume, classification, camera, {.size = {30, 30}, .lod = lod, .culling = false});
+}
+
+TEST_F(EmissionTest, SortedPicturesMatchTheReference) {
+  const Volume volume = hotVolume(true);
+  const Classification classification = hot(volume);
+  const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
+  const FrameSettings settings{.size = {50, 50}, .composite = Composite::Sorted};
+  Renderer renderer(device(), volume, classification, {});
+  const Image picture = renderer.render(camera, settings);
+  const Image expected =
+      referenceSortedPicture(volume, classification, camera, settings, renderer.downloadVisibleVoxels());
+  EXPECT_GE(psnr(picture, expected), 60.0);
+}
+
+/// What is hidden by its transmittance alone may be bright enough to show.
+TEST_F(EmissionTest, CullingLeavesALampInSmokeThere) {
+  const glm::ivec3 size(48);
+  Volume volume = makeVolume(size, cubeTransform(size), [](int, int, int) { return 1.0; });
+  volume.temperature = TemperatureGrid{
+      .name = "t", .values = ScalarBricks::make(size, [&](glm::ivec3 v) {
+                     const double radius = glm::length(glm::dvec3(v) - 0.5 * glm::dvec3(size - 1));
+                     return radius < 6.0 ? 2500.0f : kInactiveVoxel;
+                   })};
+  summariseValues(*volume.temperature);
+  const Classification classification{.densityScale = 20.0, .emission = Emission{.strength = 400.0}};
+  Renderer renderer(device(), volume, classification, {});
+  const Camera camera = framingCamera(volume, 20.0, 15.0, 1.0, {});
+  FrameSettings settings{.size = {64, 64}};
+  const Image picture = renderer.render(camera, settings);
+  settings.culling = false;
+  const Image expected = renderer.render(camera, settings);
+  EXPECT_LE(largestDifference(picture, expected), 1e-2);
+  EXPECT_GT(expected.pixels[32 * 64 + 32].r, 2.0f);
+}
+
+TEST_F(EmissionTest, AlbedoGridsMatchTheReference) {
+  Volume volume = randomVolume({11, 14, 9}, shearedTransform({11, 14, 9}), 0.6, 1.0);
+  volume.albedo = AlbedoGrid{.name = "Cd", .values = {}};
+  for (int c = 0; c < 3; ++c)
+    volume.albedo->values[std::size_t(c)] = ScalarBricks::make(volume.dimensions, [&](glm::ivec3 v) {
+      return float((v.x * (5 + c) + v.y * (3 - c) + v.z * 7 * (c + 1)) % 17) / 16.0f;  // nine bits keep it
+    });
+  const Classification classification{.densityScale = 6.0};
+  const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
+  Renderer renderer(device(), volume, classification, {});
+  const auto extinction = extinctionOf(renderer);
+  const auto table = renderer.downloadTable();
+  const auto levels = renderer.downloadLevels();
+  for (const float lod : {0.0f, 9.0f}) {
+    const FrameSettings settings{.size = {40, 40}, .lod = lod, .culling = false};
+    const Image picture = renderer.render(camera, settings);
+    const auto sums =
+        referenceBlockSums(volume, classification,
+                           {.extinction = extinction, .table = table, .tableSettings = {}, .coarser = levels},
+                           camera, settings, renderer.downloadDrawnBlocks());
+    EXPECT_GE(psnr(picture, referenceResolve(sums, settings)), 70.0);
+  }
+  const LevelData voxels = referenceVoxelLevel(volume, classification, extinction, table);
+  for (const Check& check : compareLevels(volume, voxels, levels, {}, "depth8"))
+    EXPECT_TRUE(check.passed()) << check.name << ": " << check.figure << " " << check.where;
+}
+
+}  // namespace
+}  // namespace freevoxels
