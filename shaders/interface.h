@@ -318,6 +318,7 @@ struct FrameLighting {
   int lightCount;
   int lookup;                    // kLookup... of the lights' transmittances
   int fromEverywhere;            // whether there is light in `fromAll`
+  vec3 tint;                     // of the extinction, on the way of the light
   float phaseG;
   float surface;                 // how much of the lights is scattered as by surfaces
   mat3 gradientToWorld;

@@ -6,6 +6,7 @@
 // block has more light from a source that is in it.
 const float kNearestLight2 = 0.1283;
 const float kPi = 3.14159265358979;
+const float kMostRayDepth = 0.9999 * kOpaqueDepth;  // the end of the code of rays
 
 // Of Henyey and Greenstein, per steradian, from `before` to `after`, both of length 1. 1 + g² - 2 g cos without the
 // difference of large terms.
@@ -57,13 +58,22 @@ float meanSeen(SeenBlock seen, float own, float cosine) {
 }
 
 // What of the light from a direction reaches what is seen of the block. `depth` and `falling` as depthTowards has them.
-float reaching(SeenBlock seen, vec3 direction, vec3 way, float depth, float falling) {
+vec3 reaching(SeenBlock seen, vec3 direction, vec3 way, float depth, float falling) {
   const float layer = layerLength(direction);
   const bool inFull = frame.lighting.lookup == kLookupExact || frame.pathLengthCorrection != 0;
   const float counted = inFull ? layer : frame.voxelSize;
   const float inFront = depthInFront(seen.block, direction, depth, falling * seen.sigma * counted);
   const float own = seen.sigma * layer * float(layersOf(seen.block, direction));
-  return exp(-inFront) * meanSeen(seen, own, dot(way, seen.toEye));
+  const float cosine = dot(way, seen.toEye);
+  if (!kTinted) return vec3(exp(-inFront) * meanSeen(seen, own, cosine));
+  // At the end of its code a depth may be any larger one, and a tint would let light through.
+  if (falling == 0.0 || depth >= kMostRayDepth) return vec3(0.0);
+  vec3 part;
+  for (int c = 0; c < 3; ++c) {
+    const float tint = frame.lighting.tint[c];
+    part[c] = exp(-tint * inFront) * meanSeen(seen, tint * own, cosine);
+  }
+  return part;
 }
 
 // `light` is a number: a copy of a Light would be of all its rays.

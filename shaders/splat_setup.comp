@@ -11,6 +11,7 @@
 layout(constant_id = 0) const bool kLit = false;  // else a voxel sends out its colour
 layout(constant_id = 1) const bool kEmits = false;
 layout(constant_id = 2) const bool kAlbedos = false;  // are kept of voxels, and no scalars
+layout(constant_id = 3) const bool kTinted = false;   // whether every colour of light has an extinction of its own
 
 layout(local_size_x = kSplatThreads) in;
 layout(scalar, push_constant) uniform Push { SetupPush push; };

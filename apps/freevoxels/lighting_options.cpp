@@ -105,6 +105,17 @@ void LightingOptions::add(CLI::App& app) {
             "How much of the lights is scattered forwards, from -1 to 1 (Henyey and Greenstein) [0]",
             {-kMostPhaseG, kMostPhaseG})
       ->group(group);
+  app.add_option_function<std::string>(
+         "--extinction-tint",
+         [this](const std::string& text) {
+           tint = triple("--extinction-tint", "R,G,B", text, {.minimum = kLeastTint, .maximum = kMostTint});
+         },
+         "What the extinction is multiplied by for each colour on the way of the light, so that white light "
+         "turns "
+         "coloured within the volume [1,1,1]")
+      ->take_last()
+      ->type_name("R,G,B")
+      ->group(group);
 }
 
 void LightingOptions::addMethod(CLI::App& app) {
@@ -136,13 +147,17 @@ void LightingOptions::check() const {
   if ((environmentRotation || environmentIntensity) && !environment)
     fail(ExitCode::Usage, "{} is of an environment, and there is none: give an --environment",
          environmentRotation ? "--environment-rotation" : "--environment-intensity");
+  if (tint && lights.empty() && !ambient && !environment)
+    fail(ExitCode::Usage, "--extinction-tint is of the way of light, and there is none: give a --light");
   if (phaseG && lights.empty())
     fail(ExitCode::Usage, "--phase-g is how lights are scattered, and there is none: give a --light");
 }
 
 std::optional<Lighting> LightingOptions::resolve(const Volume& volume) const {
   if ((lights.empty() && !ambient && !environment) || shading == kNoShading) return std::nullopt;
-  Lighting lighting{.ambient = ambient.value_or(glm::dvec3(0.0)), .phaseG = phaseG.value_or(0.0)};
+  Lighting lighting{.ambient = ambient.value_or(glm::dvec3(0.0)),
+                    .tint = tint.value_or(glm::dvec3(1.0)),
+                    .phaseG = phaseG.value_or(0.0)};
   if (shading == kGradientShading) lighting.surface = surface.value_or(1.0);
   lighting.attenuation = LightAttenuation(attenuation.value_or(int(LightAttenuation::Table)));
   if (environment) {
@@ -172,6 +187,7 @@ void LightingOptions::describe(OptionList& options, const std::optional<Lighting
     options.emplace_back("--environment-rotation", numberText(resolved->environment->rotation));
     options.emplace_back("--environment-intensity", numberText(resolved->environment->intensity));
   }
+  options.emplace_back("--extinction-tint", numberText(resolved->tint));
   if (!resolved->lights.empty()) options.emplace_back("--phase-g", numberText(resolved->phaseG));
 }
 

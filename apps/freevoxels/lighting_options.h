@@ -22,6 +22,7 @@ struct LightingOptions {
   std::optional<std::string> environment;
   std::optional<double> environmentRotation, environmentIntensity;
   std::optional<double> phaseG;
+  std::optional<glm::dvec3> tint;
   std::optional<int> attenuation, shading;
   std::optional<double> surface;
 

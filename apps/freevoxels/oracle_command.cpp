@@ -57,7 +57,8 @@ std::uint64_t OracleCommand::voxelsThatFit() const {
          "a picture of {}x{} pixels needs {} bytes, and this machine has {}: lower --size", size.x, size.y,
          picture, machine);
   const LightingOptions& lighting = scene_.lighting;
-  const std::uint64_t channels = lighting.environment ? 3 : lighting.ambient ? 1 : 0;
+  const bool colored = lighting.environment || (lighting.ambient && lighting.tint);
+  const std::uint64_t channels = colored ? 3 : lighting.ambient ? 1 : 0;
   const std::uint64_t ambient = channels * kOracleAmbientBytesPerVoxel;
   return (machine - picture) / (kOracleBytesPerVoxel + ambient);
 }

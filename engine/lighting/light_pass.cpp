@@ -106,6 +106,7 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
       .lightCount = int(lighting.lights.size()),
       .lookup = lighting.attenuation == LightAttenuation::Exact ? shader::kLookupExact : ofTable,
       .fromEverywhere = lighting.comesFromEverywhere() ? 1 : 0,
+      .tint = lighting.tint,
       .phaseG = float(lighting.phaseG),
       .surface = float(lighting.surface),
       .gradientToWorld = glm::transpose(glm::inverse(glm::dmat3(volume.indexToWorld)))};

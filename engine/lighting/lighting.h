@@ -22,6 +22,9 @@ inline constexpr double kDefaultIrradiance = 4.0 * std::numbers::pi;
 /// Of the light that surfaces scatter, what goes into the highlight; and its exponent.
 inline constexpr double kHighlight = 0.2, kHighlightExponent = 40.0;
 
+/// Where a depth ends its code nothing is known of what comes through, and a small tint shows that.
+inline constexpr double kLeastTint = 0.2, kMostTint = 5.0;
+
 /// As narrow a phase function as 32-bit floats have.
 inline constexpr double kMostPhaseG = 0.99;
 
@@ -48,6 +51,9 @@ struct Lighting {
   glm::dvec3 ambient{0.0};  ///< radiance that comes from everywhere, linear Rec.709
   /// Radiance that depends on where it comes from, added to `ambient`; may be null.
   std::shared_ptr<const Environment> environment;
+  /// What the extinction is multiplied by for each colour on the way of the light, ambient light too, up to
+  /// where it is scattered; not from there to the eye. In kLeastTint..kMostTint.
+  glm::dvec3 tint{1.0};
   /// Of the phase function of the lights, up to kMostPhaseG either way: 0 scatters alike in all directions,
   /// more forwards. What comes from everywhere is scattered alike in all directions.
   double phaseG = 0.0;
@@ -59,6 +65,7 @@ struct Lighting {
   bool comesFromEverywhere() const { return ambient != glm::dvec3(0.0) || environment; }
   /// Whether a frame has to have the table.
   bool readsTable() const { return attenuation == LightAttenuation::Table || comesFromEverywhere(); }
+  bool isTinted() const { return tint != glm::dvec3(1.0); }
   bool operator==(const Lighting&) const = default;
 };
 

@@ -54,17 +54,20 @@ std::vector<LightMarch::Ray> LightMarch::environmentRays(const Lighting& lightin
 
 LightMarch::LightMarch(const ReferenceField& field, const glm::dmat4& indexToWorld, const Lighting& lighting,
                        int ambientRays, const Progress& progress)
-    : field_(field), toWorld_(indexToWorld), lighting_(lighting), channels_(lighting.environment ? 3 : 1) {
+    : field_(field),
+      toWorld_(indexToWorld),
+      lighting_(lighting),
+      channels_(lighting.environment || lighting.isTinted() ? 3 : 1) {
   for (const Light& light : lighting.lights) sources_.push_back(lightSource(light, indexToWorld));
   if (!lighting.comesFromEverywhere()) return;
   marchAmbient(lighting.environment ? environmentRays(lighting, ambientRays) : evenRays(ambientRays),
                progress);
 }
 
-double LightMarch::transmittance(glm::dvec3 position, glm::dvec3 direction, double end) const {
+glm::dvec3 LightMarch::transmittance(glm::dvec3 position, glm::dvec3 direction, double end) const {
   const MarchedRay ray{
       .origin = position, .direction = direction, .worldLength = glm::length(toWorld_ * direction)};
-  return std::exp(-marchDepth(field_, ray, end));
+  return glm::exp(-marchDepth(field_, ray, end) * lighting_.tint);
 }
 
 glm::dvec3 LightMarch::scatteredFrom(std::size_t i, glm::dvec3 position, glm::dvec3 toEye) const {
@@ -77,7 +80,7 @@ glm::dvec3 LightMarch::scatteredFrom(std::size_t i, glm::dvec3 position, glm::dv
   const double end = source.atInfinity ? std::numeric_limits<double>::infinity() : 1.0;
   const double irradiance = light.intensity / (source.atInfinity ? 1.0 : length * length);
   const double phase = phaseFunction(lighting_.phaseG, glm::dot(-worldWay / length, toEye));
-  return light.color * (irradiance * phase * transmittance(position, way, end));
+  return light.color * (irradiance * phase) * transmittance(position, way, end);
 }
 
 std::unique_ptr<LightMarch::Reaching> LightMarch::marchBrick(glm::ivec3 position,
@@ -137,7 +140,8 @@ glm::dvec3 LightMarch::reachingFromAll(glm::dvec3 position) const {
     const float* const parts = &(*reaching)[std::size_t((point.x + n * (point.y + n * point.z)) * channels_)];
     for (int c = 0; c < channels_; ++c) sum[c] += share.x * share.y * share.z * double(parts[c]);
   }
-  return channels_ == 3 ? sum : lighting_.ambient * sum.x;
+  if (channels_ == 1) sum = glm::dvec3(sum.x);
+  return lighting_.environment ? sum : lighting_.ambient * sum;
 }
 
 glm::dvec3 LightMarch::scattered(glm::dvec3 position, glm::dvec3 toEye) const {

@@ -34,7 +34,7 @@ class LightMarch {
   /// What reaches the points of a brick, x fastest, of white light or by channel.
   using Reaching = std::vector<float>;
 
-  double transmittance(glm::dvec3 position, glm::dvec3 direction, double end) const;
+  glm::dvec3 transmittance(glm::dvec3 position, glm::dvec3 direction, double end) const;
   glm::dvec3 scatteredFrom(std::size_t light, glm::dvec3 position, glm::dvec3 toEye) const;
   static std::vector<Ray> evenRays(int count);
   static std::vector<Ray> environmentRays(const Lighting& lighting, int count);
@@ -46,7 +46,7 @@ class LightMarch {
   const glm::dmat3 toWorld_;
   const Lighting lighting_;
   std::vector<RaySource> sources_;
-  const int channels_;                              ///< that reach differently: 1 without an environment
+  const int channels_;                              ///< that reach differently: 1 of white light alone
   std::vector<std::unique_ptr<Reaching>> ambient_;  ///< by brick; null where the field is 0
 };
 

@@ -53,8 +53,8 @@ glm::dvec3 ReferenceLight::toLight(const RaySource& source, glm::dvec3 position)
   return glm::length(way) < kAtLight ? glm::dvec3(0.0, 0.0, 1.0) : way;
 }
 
-double ReferenceLight::reaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth,
-                                double falling, double counted) const {
+glm::dvec3 ReferenceLight::reaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth,
+                                    double falling, double counted) const {
   const double sigma = extinctionOf(block, inputs_.volume, inputs_.extinction, inputs_.coarser);
   const auto layersOf = [&](glm::dvec3 way) {
     return boxOf(block, inputs_.volume.dimensions).extent[majorAxis(way)];
@@ -63,14 +63,21 @@ double ReferenceLight::reaching(const Block& block, glm::dvec3 toEye, glm::dvec3
     return sigma * layersOf(way) * glm::length(toWorld_ * (way / std::abs(way[majorAxis(way)])));
   };
   const double inFront = std::max(depth - 0.5 * (layersOf(direction) - 1) * falling * sigma * counted, 0.0);
-  // The integral of exp(-e t) times exp(-l t), or where the light comes from the other side exp(-l (1 - t)),
-  // over t from 0 to 1.
-  const double e = own(toEye), l = own(direction);
-  const double sameSide = meanOver(e + l);
-  const double otherSide = std::exp(-std::min(e, l)) * meanOver(std::abs(e - l));
+  const double e = own(toEye);
   const double cosine = glm::dot(glm::normalize(toWorld_ * toEye), glm::normalize(toWorld_ * direction));
-  return std::exp(-inFront) * (0.5 * (1.0 + cosine) * sameSide + 0.5 * (1.0 - cosine) * otherSide) /
-         meanOver(e);
+  const bool isUnknown = falling == 0.0 || depth >= 0.9999 * kOpaqueDepth;
+  if (lighting_.isTinted() && isUnknown) return glm::dvec3(0.0);
+  glm::dvec3 part;
+  for (int c = 0; c < 3; ++c) {
+    // The integral of exp(-e t) times exp(-l t), or where the light comes from the other side exp(-l (1 -
+    // t)), over t from 0 to 1.
+    const double l = lighting_.tint[c] * own(direction);
+    const double sameSide = meanOver(e + l);
+    const double otherSide = std::exp(-std::min(e, l)) * meanOver(std::abs(e - l));
+    part[c] = std::exp(-lighting_.tint[c] * inFront) *
+              (0.5 * (1.0 + cosine) * sameSide + 0.5 * (1.0 - cosine) * otherSide) / meanOver(e);
+  }
+  return part;
 }
 
 glm::dvec3 ReferenceLight::reachingFromAll(const Block& block, glm::dvec3 toEye) const {
@@ -123,14 +130,14 @@ glm::dvec3 ReferenceLight::scattered(const Block& block, glm::dvec3 toEye) const
     const glm::dvec3 across = way / std::abs(way[majorAxis(way)]);
     const ReferenceDepth& depth = *depths_[i];
     const double counted = depth.countedLength(glm::length(toWorld_ * across));
-    const double reached = reaching(block, toEye, way, depth.at(block), depth.falling(block), counted);
+    const glm::dvec3 reached = reaching(block, toEye, way, depth.at(block), depth.falling(block), counted);
     const glm::dvec3 before = -glm::normalize(toWorld_ * way);
     const glm::dvec3 apart = toWorld_ * (sources_[i].place - centre);
     const double distance2 = std::max(glm::dot(apart, apart), kNearestLight2 * edge * edge);
     double phase = phaseFunction(lighting_.phaseG, glm::dot(before, after));
     if (surface > 0.0) phase += surface * (surfaceScattering(normal, -before, after) - phase);
     const double irradiance = light.intensity / (light.atInfinity ? 1.0 : distance2);
-    sum += light.color * (irradiance * reached * phase);
+    sum += light.color * (irradiance * phase) * reached;
   }
   return sum + reachingFromAll(block, toEye);
 }

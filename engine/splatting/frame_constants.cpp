@@ -154,6 +154,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   frame.eye = eyeSource(camera, volume.indexToWorld);
   frame.eyeInside = isInside(frame.eye, volume.layout.dimensions);
   frame.lit = settings.lighting.has_value();
+  frame.tinted = frame.lit && settings.lighting->isTinted();
   frame.lightsReadTable = frame.lit && settings.lighting->readsTable();
 
   const double largestPoint = double(device.limits().pointSizeRange[1]);

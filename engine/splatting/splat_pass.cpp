@@ -29,11 +29,12 @@ ShaderCode fragmentShader(bool withDistance, bool sorted) {
                       : ShaderCode{splat_fragment_spv, "splat"};
 }
 
-Pipeline makeSetupPipeline(const Device& device, const DeviceVolume& volume, bool lit) {
+Pipeline makeSetupPipeline(const Device& device, const DeviceVolume& volume, bool lit, bool tinted) {
   return makeComputePipeline(device, {splat_setup_spv, "splat set-up"},
                              {.bindings = std::vector(12, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
                               .pushConstantBytes = sizeof(shader::SetupPush)},
-                             {shader::kSplatThreads, 1, 1}, {lit, volume.hasEmission(), volume.hasAlbedos});
+                             {shader::kSplatThreads, 1, 1},
+                             {lit, volume.hasEmission(), volume.hasAlbedos, tinted});
 }
 
 Pipeline makeSplatPipeline(const Device& device, bool quads, bool withDistance, bool sorted) {
@@ -158,8 +159,9 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
                                       frame.lit ? inputs.lights : &anyBuffer,
                                       inputs.volume.hasEmission() ? &inputs.volume.emission : &anyBuffer};
   const std::array<Binding, 1> draw{&splats_};
-  Pipeline& setUp = frame.lit ? litSetup_ : setup_;
-  if (setUp.handle() == VK_NULL_HANDLE) setUp = makeSetupPipeline(device_, inputs.volume, frame.lit);
+  Pipeline& setUp = setups_[std::size_t(frame.lit) + std::size_t(frame.tinted)];
+  if (setUp.handle() == VK_NULL_HANDLE)
+    setUp = makeSetupPipeline(device_, inputs.volume, frame.lit, frame.tinted);
   const Pipeline& pipeline = frame.quads ? quads_ : points_;
   for (const RenderTarget* target : targets.all())
     commands.transition(*target, inputs.continued ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED,

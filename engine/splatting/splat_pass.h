@@ -38,6 +38,7 @@ struct FrameConstants {
   RaySource eye;
   bool eyeInside = false;  ///< the volume's box
   bool lit = false;        ///< by setup.lighting, which is the caller's to fill
+  bool tinted = false;     ///< only what is lit
   bool lightsReadTable = false;
   DetailRule detail;
   CullRule cull;
@@ -92,7 +93,8 @@ class SplatPass {
 
   const Device& device_;
   bool withDistance_, sorted_;
-  Pipeline setup_, litSetup_;  ///< made for the first frame that is lit, and that is not, of its volume
+  /// Of its volume, each made for the first frame that is: not lit, lit, lit and tinted.
+  std::array<Pipeline, 3> setups_;
   Pipeline points_, quads_;
   EyeDepthsPass eyeDepthsPass_;
   std::optional<RaySweep> rays_;

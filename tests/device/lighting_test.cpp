@@ -67,6 +67,37 @@ TEST_F(LightingTest, SurfacesMatchTheReference) {
   expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
 }
 
+/// Of every look-up, surfaces and an environment.
+TEST_F(LightingTest, TintsMatchTheReference) {
+  const Volume v = volume(true);
+  const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
+  Lighting lighting = everything();
+  lighting.tint = {0.4, 1.0, 2.5};
+  lighting.surface = 0.5;
+  lighting.environment = std::make_shared<Environment>(makeSky(64));
+  expectSamePicture(v, camera, {.size = {50, 50}, .lighting = lighting});
+  expectSamePicture(v, camera, {.size = {50, 50}, .lighting = lighting}, {.code = AttenuationCode::Linear8});
+  lighting.attenuation = LightAttenuation::Exact;
+  expectSamePicture(v, camera, {.size = {50, 50}, .lighting = lighting});
+}
+
+TEST_F(LightingTest, ATintLetsNothingThroughAnOpaqueWall) {
+  constexpr int kEdge = 24;
+  const glm::ivec3 n(kEdge);
+  const Volume v = makeVolume(n, cubeTransform(n), [](int x, int, int) {
+    return x < 4 ? 0.5 : x < 12 ? 100.0 * kEdge : 0.0;
+  });
+  Renderer renderer(device(), v, {.densityScale = 1.0, .albedo = glm::vec3(1.0f)}, {});
+  const Camera camera{
+      .position = {-3, 0, 0}, .lookAt = {0, 0, 0}, .orthographic = true, .orthographicHeight = 1.0};
+  for (const LightAttenuation attenuation : {LightAttenuation::Table, LightAttenuation::Exact}) {
+    const Lighting lighting{
+        .lights = {{.place = {1, 0, 0}}}, .tint = glm::dvec3(kLeastTint), .attenuation = attenuation};
+    for (const glm::vec4& pixel : renderer.render(camera, {.size = {24, 24}, .lighting = lighting}).pixels)
+      EXPECT_LT(pixel.r, 1e-3f);
+  }
+}
+
 /// A sky whose sun is from the side; and turned.
 TEST_F(LightingTest, EnvironmentsMatchTheReference) {
   const Volume v = volume(true);

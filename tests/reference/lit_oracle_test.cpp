@@ -23,11 +23,14 @@ Volume box() {
 }
 
 /// The middle pixel of the box seen along -z.
-double middle(const Lighting& lighting, double depth) {
+glm::dvec3 middleColor(const Lighting& lighting, double depth) {
   const Camera camera{.position = {0, 0, 3}, .orthographic = true, .orthographicHeight = 0.01};
   const OracleSettings settings{.size = {1, 1}, .lighting = lighting};
   const Classification classification{.densityScale = depth, .albedo = glm::vec3(float(kAlbedo))};
-  return double(renderOracle(box(), classification, camera, settings).image.pixels[0].r);
+  return glm::dvec3(renderOracle(box(), classification, camera, settings).image.pixels[0]);
+}
+double middle(const Lighting& lighting, double depth) {
+  return middleColor(lighting, depth).r;
 }
 
 TEST(LitOracle, AHomogeneousBoxScattersWhatTheClosedFormsSay) {
@@ -51,6 +54,27 @@ TEST(LitOracle, AHomogeneousBoxScattersWhatTheClosedFormsSay) {
     tau += thickness;
   }
   EXPECT_NEAR(from({1, 0, 0}) / (scattered(0.0) * sum), 1.0, 1e-3);
+}
+
+/// Every colour has its own extinction on the way of the light alone.
+TEST(LitOracle, ATintIsOfTheExtinctionTowardsTheLight) {
+  const glm::dvec3 tint(0.5, 1.0, 2.0);
+  const double white = kAlbedo * kDefaultIrradiance / (4.0 * std::numbers::pi);
+  const auto from = [&](glm::dvec3 direction) {
+    return middleColor({.lights = {{.place = direction}}, .tint = tint}, kDepth);
+  };
+  const glm::dvec3 inFront = from({0, 0, 1}), behind = from({0, 0, -1});
+  for (int c = 0; c < 3; ++c) {
+    const double there = (1.0 - std::exp(-(1.0 + tint[c]) * kDepth)) / (1.0 + tint[c]);
+    const double less = 1.0 - tint[c];
+    const double through = less == 0.0 ? kDepth : (1.0 - std::exp(-less * kDepth)) / less;
+    EXPECT_NEAR(inFront[c] / (white * there), 1.0, 1e-5);
+    EXPECT_NEAR(behind[c] / (white * std::exp(-tint[c] * kDepth) * through), 1.0, 1e-5);
+  }
+  const glm::dvec3 around = middleColor({.ambient = glm::dvec3(1.0), .tint = tint}, kDepth);
+  EXPECT_DOUBLE_EQ(around.g, middle({.ambient = glm::dvec3(1.0)}, kDepth));
+  EXPECT_GT(around.r, around.g);
+  EXPECT_GT(around.g, around.b);
 }
 
 TEST(LitOracle, AmbientLightOfAThinBoxIsTheAlbedoTimesItsRadiance) {
