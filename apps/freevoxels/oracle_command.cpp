@@ -55,7 +55,9 @@ std::uint64_t OracleCommand::voxelsThatFit() const {
          "a picture of {}x{} pixels needs {} bytes, and this machine has {}: lower --size", size.x, size.y,
          picture, machine);
   const std::uint64_t ambient = scene_.lighting.ambient ? kOracleAmbientBytesPerVoxel : 0;
-  return (machine - picture) / (kOracleBytesPerVoxel + ambient);
+  const std::uint64_t light = scene_.emission.grid() ? kOracleLightBytesPerVoxel : 0;
+  const std::uint64_t albedo = scene_.classification.albedoGrid ? kOracleAlbedoBytesPerVoxel : 0;
+  return (machine - picture) / (kOracleBytesPerVoxel + ambient + light + albedo);
 }
 
 void OracleCommand::draw() const {
