@@ -11,8 +11,10 @@ void ClassificationOptions::add(CLI::App& app) {
           "Extinction per world unit at density 1 [so that the volume's mean optical depth suits a picture]",
           {.minimum = 0.0})
           ->group("Classification");
-  CLI::Option* color = addTriple(app, "--albedo", "R,G,B", albedo, "Colour, linear [0.9,0.9,0.9]", {0.0, 1.0})
-                           ->group("Classification");
+  CLI::Option* color =
+      addTriple(app, "--albedo", "R,G,B", albedo,
+                "Colour, linear [0.9,0.9,0.9; with --emission 0.1,0.1,0.1: soot]", {0.0, 1.0})
+          ->group("Classification");
   CLI::Option* grid =
       addText(app, "--albedo-grid", "NAME", albedoGrid, "Grid of vectors of the file: colours, linear, 0..1")
           ->group("Classification");

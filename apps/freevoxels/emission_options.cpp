@@ -13,21 +13,21 @@ void EmissionOptions::add(CLI::App& app) {
   constexpr const char* kGroup = "Emission";
   addOptionalNumber(
       app, "--emission", "STRENGTH", emission, strength,
-      fmt::format("Light by temperature: luminance per world unit at {:g} K [so that it suits a "
-                  "picture]; a file may not follow",
+      fmt::format("Light by temperature: luminance per world unit at {:g} K; no file may follow it "
+                  "without a number [so that it suits a picture]",
                   kReferenceTemperature),
       {.minimum = 0.0})
       ->group(kGroup);
   addText(app, "--temperature-grid", "NAME", temperatureGrid,
           "Grid of the temperatures, with --emission or alone [temperature, heat or flame]")
       ->group(kGroup);
-  addNumber(
-      app, "--temperature-scale", "K", temperatureScale,
-      fmt::format("Kelvin per unit of the grid [1, or up to {:g} at most, {:g} K for its largest value]",
-                  kLeastKelvinMaximum, kReferenceTemperature),
-      {.minimum = 0.0})
+  addNumber(app, "--temperature-scale", "K", temperatureScale,
+            fmt::format("Kelvin per unit of the grid [1; of values up to {:g} what makes the largest {:g} K]",
+                        kLeastKelvinMaximum, kReferenceTemperature),
+            {.minimum = 0.0})
       ->group(kGroup);
-  addNumber(app, "--temperature-offset", "K", temperatureOffset, "Kelvin at 0 of the grid [0]")
+  addNumber(app, "--temperature-offset", "K", temperatureOffset,
+            fmt::format("Kelvin at 0 of the grid [0; {:g} with such a scale]", kEmberTemperature))
       ->group(kGroup);
 }
 
@@ -46,15 +46,19 @@ std::optional<std::string> EmissionOptions::grid() const {
   return emission ? std::optional<std::string>("") : std::nullopt;
 }
 
-std::optional<Emission> EmissionOptions::resolve(const Volume& volume) const {
+std::optional<Emission> EmissionOptions::resolve(const Volume& volume,
+                                                 const Classification& classification) const {
   if (!grid()) return std::nullopt;
   if (!volume.temperature)
     fail(ExitCode::Usage, "{} has no temperatures: leave --emission out, or take procedural:fire",
          volume.source);
-  Emission result{.temperatureOffset = temperatureOffset.value_or(0.0)};
+  const TemperatureGrid& grid = *volume.temperature;
+  Emission result;
+  result.temperatureOffset =
+      temperatureOffset.value_or(temperatureScale ? 0.0 : automaticTemperatureOffset(grid));
   result.temperatureScale =
-      temperatureScale.value_or(automaticTemperatureScale(*volume.temperature, result.temperatureOffset));
-  result.strength = strength.value_or(automaticEmissionStrength(volume, result));
+      temperatureScale.value_or(automaticTemperatureScale(grid, result.temperatureOffset));
+  result.strength = strength ? *strength : automaticEmissionStrength(volume, classification, result);
   return result;
 }
 

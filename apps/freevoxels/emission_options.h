@@ -19,8 +19,8 @@ struct EmissionOptions {
   void check(const InputOptions& input) const;
   /// Of the grid to read; nothing where no emission is asked for.
   std::optional<std::string> grid() const;
-  /// Scale and strength default to the automatic ones.
-  std::optional<Emission> resolve(const Volume& volume) const;
+  /// What is not given defaults to the automatic values. `classification` is of what does not shine.
+  std::optional<Emission> resolve(const Volume& volume, const Classification& classification) const;
   void describe(OptionList& options, const Volume& volume, const std::optional<Emission>& resolved) const;
   /// One warning each for temperatures that are not drawn as they are, and where nothing sends out light.
   static void warn(const Volume& volume, const Classification& classification);

@@ -60,7 +60,9 @@ std::uint64_t OracleCommand::voxelsThatFit() const {
   const bool colored = lighting.environment || (lighting.ambient && lighting.tint);
   const std::uint64_t channels = colored ? 3 : lighting.ambient ? 1 : 0;
   const std::uint64_t ambient = channels * kOracleAmbientBytesPerVoxel;
-  return (machine - picture) / (kOracleBytesPerVoxel + ambient);
+  const std::uint64_t light = scene_.emission.grid() ? kOracleLightBytesPerVoxel : 0;
+  const std::uint64_t albedo = scene_.classification.albedoGrid ? kOracleAlbedoBytesPerVoxel : 0;
+  return (machine - picture) / (kOracleBytesPerVoxel + ambient + light + albedo);
 }
 
 void OracleCommand::draw() const {

@@ -57,7 +57,9 @@ Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
   scene.volume =
       input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.albedoGrid});
   scene.classification = classification.resolve(scene.volume);
-  scene.classification.emission = emission.resolve(scene.volume);
+  scene.classification.emission = emission.resolve(scene.volume, scene.classification);
+  if (scene.classification.emission && !classification.albedo)
+    scene.classification.albedo = glm::vec3(kSootAlbedo);
   scene.camera = camera.resolve(scene.volume);
   scene.lighting = lighting.resolve(scene.volume);
   return scene;

@@ -47,8 +47,10 @@ Oracle renderOracle(const Volume& volume, const Classification& classification, 
 
 /// Memory that the oracle needs in bytes: for every pixel, and for every voxel, scalar included, of a volume
 /// that is full and many bricks long in all three directions.
-/// A voxel takes the more again where there is ambient light, three times that with an environment or a tint.
+/// A voxel takes the more again where there is ambient light (three times that with an environment or a tint),
+/// where there are temperatures, and where there is a grid of albedos.
 inline constexpr std::uint64_t kOracleBytesPerVoxel = 28, kOracleBytesPerPixel = 96;
-inline constexpr std::uint64_t kOracleAmbientBytesPerVoxel = 40;
+inline constexpr std::uint64_t kOracleAmbientBytesPerVoxel = 40, kOracleLightBytesPerVoxel = 28,
+                               kOracleAlbedoBytesPerVoxel = 12;
 
 }  // namespace freevoxels

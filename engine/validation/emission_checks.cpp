@@ -36,11 +36,10 @@ constexpr std::array<Method, 2> kMethods{
     {{"default", AttenuationLookup::Auto}, {"exact", AttenuationLookup::Exact}}};
 
 Classification burning(const Volume& volume, double densityScale) {
-  Emission emission;
-  emission.strength = automaticEmissionStrength(volume, emission);
-  return {.densityScale = densityScale * automaticDensityScale(volume),
-          .albedo = glm::vec3(0.4f),
-          .emission = emission};
+  Classification classification{.densityScale = densityScale * automaticDensityScale(volume),
+                                .albedo = glm::vec3(kSootAlbedo)};
+  classification.emission = Emission{.strength = automaticEmissionStrength(volume, classification, {})};
+  return classification;
 }
 
 /// The unit cube, of one temperature and density.

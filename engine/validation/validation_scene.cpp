@@ -65,7 +65,7 @@ ValidationScene makeValidationScene(Volume volume, SceneColor color, int maximum
           : Classification{.densityScale = automaticDensityScale(volume), .albedo = {0.9f, 0.6f, 0.3f}};
   if (volume.temperature) {
     Emission emission;
-    emission.strength = automaticEmissionStrength(volume, emission);
+    emission.strength = automaticEmissionStrength(volume, scene.classification, emission);
     scene.classification.emission = emission;
   }
   scene.name = fmt::format("{}, {} voxels{}, {}", volume.source, sizeText(size),

@@ -56,6 +56,41 @@ double totalDensity(const Volume& volume) {
       std::plus<>());
 }
 
+bool areKelvin(const TemperatureGrid& grid) {
+  return !(grid.maximum > 0.0f) || double(grid.maximum) > kLeastKelvinMaximum;
+}
+
+/// Sums over all voxels: of the luminance that they send out, of its squares, and of it times the extinction.
+struct LightSums {
+  double light = 0.0, squares = 0.0, dimmed = 0.0;
+};
+
+LightSums operator+(const LightSums& a, const LightSums& b) {
+  return {a.light + b.light, a.squares + b.squares, a.dimmed + b.dimmed};
+}
+
+LightSums totalLight(const Volume& volume, const Classification& classification, const Emission& emission) {
+  using Range = tbb::blocked_range<std::size_t>;
+  constexpr std::size_t kGrain = 32;
+  const ScalarBricks& temperatures = volume.temperature->values;
+  return tbb::parallel_deterministic_reduce(
+      Range(0, temperatures.bricks().size(), kGrain), LightSums{},
+      [&](const Range& range, LightSums sum) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+          const ScalarBricks::Brick* scalars = volume.scalars.brickAt(temperatures.cell(i));
+          for (std::size_t voxel = 0; voxel < temperatures.bricks()[i].size(); ++voxel) {
+            const glm::dvec3 sent = emittedLight(emission, temperatures.bricks()[i][voxel]);
+            const double light = glm::dot(sent, kLuminance);
+            if (light == 0.0) continue;
+            const double sigma = scalars ? classify(classification, (*scalars)[voxel]).extinction : 0.0;
+            sum = sum + LightSums{light, light * light, light * sigma};
+          }
+        }
+        return sum;
+      },
+      std::plus<>());
+}
+
 }  // namespace
 
 ClassifiedVoxel classify(const Classification& classification, float scalar) {
@@ -93,39 +128,26 @@ glm::vec3 albedoOf(const Classification& classification, const AlbedoGrid& grid,
   return color.r == kInactiveVoxel ? classification.albedo : color;
 }
 
-double automaticTemperatureScale(const TemperatureGrid& grid, double offset) {
-  const double maximum = grid.maximum;
-  if (!(maximum > 0.0) || maximum > kLeastKelvinMaximum) return 1.0;
-  return std::max(kReferenceTemperature - offset, 0.0) / maximum;
+double automaticTemperatureOffset(const TemperatureGrid& grid) {
+  return areKelvin(grid) ? 0.0 : kEmberTemperature;
 }
 
-double automaticEmissionStrength(const Volume& volume, const Emission& emission) {
+double automaticTemperatureScale(const TemperatureGrid& grid, double offset) {
+  return areKelvin(grid) ? 1.0 : std::max(kReferenceTemperature - offset, 0.0) / double(grid.maximum);
+}
+
+double automaticEmissionStrength(const Volume& volume, const Classification& classification,
+                                 const Emission& emission) {
   if (!volume.temperature) return 1.0;
   Emission unit = emission;
   unit.strength = 1.0;
-  struct Total {
-    double light = 0.0, squares = 0.0;
-  };
-  using Range = tbb::blocked_range<std::size_t>;
-  constexpr std::size_t kGrain = 32;
-  const std::span<const ScalarBricks::Brick> bricks = volume.temperature->values.bricks();
-  const Total total = tbb::parallel_deterministic_reduce(
-      Range(0, bricks.size(), kGrain), Total{},
-      [&](const Range& range, Total sum) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i)
-          for (const float temperature : bricks[i]) {
-            const double light = glm::dot(emittedLight(unit, temperature), kLuminance);
-            sum.light += light;
-            sum.squares += light * light;
-          }
-        return sum;
-      },
-      [](const Total& a, const Total& b) {
-        return Total{a.light + b.light, a.squares + b.squares};
-      });
-  if (!(total.light > 0.0)) return 1.0;
-  const double voxels = total.light * total.light / total.squares;
-  return kAutomaticRadiance / (total.light / voxels * std::cbrt(voxels) * volume.voxelSize());
+  const LightSums all = totalLight(volume, classification, unit);
+  if (!(all.light > 0.0)) return 1.0;
+  const double voxels = all.light * all.light / all.squares;
+  const double edge = std::cbrt(voxels) * volume.voxelSize();
+  const double depth = all.dimmed / all.light * edge;
+  const double leaving = depth > 1e-6 ? -std::expm1(-depth) / depth : 1.0;
+  return kAutomaticRadiance / (all.light / voxels * edge * leaving);
 }
 
 double automaticDensityScale(const Volume& volume) {

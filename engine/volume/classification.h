@@ -80,15 +80,20 @@ TransferFunction parseTransferFunction(const std::string& json, const Volume& vo
 inline constexpr double kAutomaticOpticalDepth = 2.0;
 double automaticDensityScale(const Volume& volume);
 
-/// Kelvin per unit of the temperatures when none is given: 1, or where no value is above
-/// kLeastKelvinMaximum, as of no kelvin, what makes the largest one kReferenceTemperature.
-inline constexpr double kLeastKelvinMaximum = 200.0;
+/// Of the smoke of a fire, where no albedo is given: soot.
+inline constexpr float kSootAlbedo = 0.1f;
+
+/// How temperatures become kelvin where that is not given. Grids of which no value is above
+/// kLeastKelvinMaximum are in no kelvin: 0 is kEmberTemperature and the largest kReferenceTemperature.
+inline constexpr double kLeastKelvinMaximum = 200.0, kEmberTemperature = 1000.0;
+double automaticTemperatureOffset(const TemperatureGrid& grid);
 double automaticTemperatureScale(const TemperatureGrid& grid, double offset);
 
-/// The strength used when none is given: a cube that sends out all the light, and is as large as so many
-/// voxels of one temperature as would have this light and this sum of its squares, has luminance
-/// kAutomaticRadiance.
+/// The strength used when none is given (`emission` has another one): a cube that sends out all the light has
+/// luminance kAutomaticRadiance. It is as large as so many voxels of one temperature as would have this light
+/// and this sum of its squares, and dims it by the mean extinction where the light is.
 inline constexpr double kAutomaticRadiance = 2.0;
-double automaticEmissionStrength(const Volume& volume, const Emission& emission);
+double automaticEmissionStrength(const Volume& volume, const Classification& classification,
+                                 const Emission& emission);
 
 }  // namespace freevoxels

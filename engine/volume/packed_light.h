@@ -9,8 +9,8 @@ namespace freevoxels {
 
 /// Of the brightest voxel's components, in the units that are stored.
 inline constexpr double kBrightest = 32768.0;
-/// The same of what is left out: light of which a million voxels are as bright as one of the brightest.
-inline constexpr double kFaintest = kBrightest / (1 << 20);
+/// The same of what is left out: a thousand such voxels on a ray are a sixtieth of one of the brightest.
+inline constexpr double kFaintest = kBrightest / (1 << 16);
 
 /// Components from 0 to kBrightest.
 inline std::uint32_t packColor(glm::dvec3 color) {

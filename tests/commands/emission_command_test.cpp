@@ -33,8 +33,8 @@ TEST_F(EmissionCommand, TheHeaderRepeatsThePicture) {
   expectSuccess(run(std::string("render @fire.vdb @a.exr @a.png --emission --float") + kSmall));
   const std::string made = readBytes(folder / "a.exr");
   const std::string command = exrAttribute(made, "freevoxels:command");
-  for (const char* part :
-       {"--temperature-grid heat", "--temperature-scale 2500", "--emission ", "--temperature-offset 0"})
+  for (const char* part : {"--temperature-grid heat", "--temperature-scale 1250", "--emission ",
+                           "--temperature-offset 1000", "--albedo 0.1,0.1,0.1"})
     EXPECT_NE(command.find(part), std::string::npos) << part << " in " << command;
   Arguments arguments = words(command.substr(std::string("freevoxels ").size()));
   arguments.push_back((folder / "b.exr").string());

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "engine/image/image.h"
+#include "engine/image/metrics.h"
 #include "tests/commands/program_runner.h"
 
 namespace freevoxels::test {
@@ -34,6 +35,21 @@ TEST_F(RealVolumes, TheWellKnownOnesShow) {
     const Image image = readExr(folder / "a.exr");
     const auto visible = std::ranges::count_if(image.pixels, [](glm::vec4 pixel) { return pixel.a > 0.2f; });
     EXPECT_GT(visible, 64 * 64 / 20);
+  }
+}
+
+/// And the oracle draws the same.
+TEST_F(RealVolumes, FiresShine) {
+  for (const char* name : {"usd_densityAndHeat.vdb", "blender_fluid_0050.vdb"}) {
+    SCOPED_TRACE(name);
+    if (!std::filesystem::exists(kData / name)) continue;
+    for (const char* command : {"render", "oracle"})
+      expectSuccess(runFreevoxels({command, (kData / name).string(), (folder / command).string() + ".exr",
+                                   "--size", "48x48", "--quiet", "--float", "--emission"}));
+    const Image image = readExr(folder / "render.exr"), truth = readExr(folder / "oracle.exr");
+    EXPECT_GE(compareImages(image, truth).psnr, 32.0);
+    const auto shining = std::ranges::count_if(image.pixels, [](glm::vec4 pixel) { return pixel.r > 0.5f; });
+    EXPECT_GT(shining, 48 * 48 / 100);
   }
 }
 

@@ -5,7 +5,9 @@
 
 #include "engine/reference/reference_hierarchy.h"
 #include "engine/reference/reference_sorted.h"
+#include "engine/validation/emission_checks.h"
 #include "engine/validation/level_checks.h"
+#include "engine/validation/stage_checks.h"
 #include "tests/device/splat_fixture.h"
 
 namespace freevoxels {
@@ -143,6 +145,19 @@ TEST_F(EmissionTest, SortedPicturesMatchTheReference) {
   const Image expected =
       referenceSortedPicture(volume, classification, camera, settings, renderer.downloadVisibleVoxels());
   EXPECT_GE(psnr(picture, expected), 60.0);
+}
+
+/// What freevoxels-validate says of them.
+TEST_F(EmissionTest, TheChecksOfAFirePass) {
+  Volume fire = makeProcedural("fire", 24);
+  cropToActive(fire);
+  const ValidationScene scene = makeValidationScene(std::move(fire), SceneColor::Density, 24);
+  for (const ReportSection& section :
+       {stageChecks(deviceStages(device()), scene, {40, 40}), levelChecks(device(), scene, {40, 40}),
+        emissionChecks(device(), 32, 40)})
+    for (const Check& check : section.checks)
+      EXPECT_TRUE(check.passed()) << section.title << ": " << check.name << ": " << check.figure << " "
+                                  << check.where;
 }
 
 /// What is hidden by its transmittance alone may be bright enough to show.

@@ -64,6 +64,15 @@ TEST(Png, StraightAlphaIsTheColourDividedByAlpha) {
             (Bytes{188, 118, 255, 128, 0, 0, 0, 0}));
 }
 
+/// A flame without smoke has none of its own: 0.4 / 1 is byte 170 where alpha is 0.25. Over a background it
+/// adds.
+TEST(Png, LightTakesAsMuchAlphaAsItNeeds) {
+  const std::vector<glm::vec4> flame{{0.25f, 0.1f, 0.0f, 0.0f}, {3.0f, 0.5f, 0.18f, 0.2f}};
+  EXPECT_EQ(writeAndRead(flame), (Bytes{255, 170, 0, 64, 255, 188, 118, 255}));
+  const glm::vec3 background(0.25f, 0.08f, 0.0f);
+  EXPECT_EQ(writeAndRead({flame[0]}, &background), (Bytes{188, 118, 0}));
+}
+
 TEST(Png, BackgroundShowsThroughAndMakesThePictureOpaque) {
   const glm::vec3 background(1.0f, 0.0f, 0.36f);
   // 0.25 + 0.5 * 1 = 0.75 is byte 225; 0.5 * 0.36 = 0.18; an empty pixel is the background.

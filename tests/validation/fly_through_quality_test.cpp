@@ -28,6 +28,7 @@ class Popping : public StageOutputs {
   Popping(std::unique_ptr<StageOutputs> whole, const Volume& volume)
       : whole_(std::move(whole)), dimensions_(volume.dimensions), indexToWorld_(volume.indexToWorld) {}
   std::vector<float> extinction() override { return whole_->extinction(); }
+  std::vector<glm::dvec3> emission() override { return whole_->emission(); }
   TableBytes table() override { return whole_->table(); }
   std::vector<std::uint32_t> visibleVoxels() override { return whole_->visibleVoxels(); }
   RayCodes rays(const Camera& camera) override { return whole_->rays(camera); }

@@ -17,6 +17,7 @@ struct WrongStages : StageOutputs {
   Composite asked, drawn;
 
   std::vector<float> extinction() override { return right->extinction(); }
+  std::vector<glm::dvec3> emission() override { return right->emission(); }
   TableBytes table() override {
     TableBytes bytes = right->table();
     std::swap(bytes[std::size_t(directionIndex(kLatticeSteps, {1, 0, 0}))],

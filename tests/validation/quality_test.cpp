@@ -153,6 +153,7 @@ struct OracleStages : StageOutputs {
   int pictures = 0;
 
   std::vector<float> extinction() override { return {}; }
+  std::vector<glm::dvec3> emission() override { return {}; }
   TableBytes table() override { return {}; }
   std::vector<std::uint32_t> visibleVoxels() override { return {}; }
   RayCodes rays(const Camera&) override { return {}; }

@@ -67,26 +67,31 @@ TEST(Emission, TemperaturesAreKelvinByScaleAndOffset) {
 TEST(Emission, OnlyTemperaturesThatAreNoKelvinAreScaled) {
   TemperatureGrid grid;
   grid.maximum = 0.8f;
-  EXPECT_NEAR(automaticTemperatureScale(grid, 0.0) * 0.8, 2000.0, 1e-3);
+  EXPECT_EQ(automaticTemperatureOffset(grid), 1000.0);
+  EXPECT_NEAR(automaticTemperatureScale(grid, 1000.0) * 0.8, 1000.0, 1e-3);
   EXPECT_NEAR(automaticTemperatureScale(grid, 300.0) * 0.8 + 300.0, 2000.0, 1e-3);
   grid.maximum = 1500.0f;
+  EXPECT_EQ(automaticTemperatureOffset(grid), 0.0);
   EXPECT_EQ(automaticTemperatureScale(grid, 0.0), 1.0);
 }
 
-/// A cube of one temperature has the radiance, whatever cold voxels are around it and however fine it is.
+/// A cube of one temperature has the radiance, whatever cold voxels are around it, however fine and deep it
+/// is.
 TEST(Emission, TheAutomaticStrengthMakesACubeAsBrightAsItShouldBe) {
-  for (const int edge : {6, 12}) {
-    Volume volume =
-        makeVolume(glm::ivec3(2 * edge), glm::dmat4(1.0 / edge), [](int, int, int) { return 1.0; });
-    volume.temperature =
-        TemperatureGrid{.name = "t", .values = ScalarBricks::make(volume.dimensions, [&](glm::ivec3 v) {
-                                       return glm::all(glm::lessThan(v, glm::ivec3(edge))) ? 1800.0f : 700.0f;
-                                     })};
-    summariseValues(*volume.temperature);
-    Emission emission;
-    emission.strength = automaticEmissionStrength(volume, emission);
-    EXPECT_NEAR(glm::dot(emittedLight(emission, 1800.0f), kLuminance), kAutomaticRadiance, 1e-3);
-  }
+  for (const int edge : {6, 12})
+    for (const double sigma : {0.0, 3.0}) {
+      Volume volume =
+          makeVolume(glm::ivec3(2 * edge), glm::dmat4(1.0 / edge), [](int, int, int) { return 1.0; });
+      volume.temperature = TemperatureGrid{
+          .name = "t", .values = ScalarBricks::make(volume.dimensions, [&](glm::ivec3 v) {
+                         return glm::all(glm::lessThan(v, glm::ivec3(edge))) ? 1800.0f : 700.0f;
+                       })};
+      summariseValues(*volume.temperature);
+      Emission emission;
+      emission.strength = automaticEmissionStrength(volume, {.densityScale = sigma}, emission);
+      const double leaving = sigma > 0.0 ? -std::expm1(-sigma) / sigma : 1.0;
+      EXPECT_NEAR(glm::dot(emittedLight(emission, 1800.0f), kLuminance) * leaving, kAutomaticRadiance, 1e-3);
+    }
 }
 
 TEST(Emission, PackedLightKeepsNineBits) {
