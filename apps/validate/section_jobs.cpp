@@ -175,6 +175,7 @@ void addLight(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
 void addPaperFigures(std::vector<SectionJob>& jobs, const Device& device) {
   jobs.push_back({"figure 2 of the paper", [&device] { return paperFigure2(deviceStages(device)); }});
   jobs.push_back({"figure 6 of the paper", [&device] { return paperFigure6(deviceStages(device)); }});
+  jobs.push_back({"figure 7 of the paper", [&device] { return paperFigure7(deviceStages(device)); }});
   jobs.push_back({"leakage against layers", [&device] { return leakageOfLayers(deviceStages(device), {}); }});
 }
 

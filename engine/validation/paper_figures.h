@@ -1,5 +1,5 @@
 #pragma once
-// Figures 2 and 6 of Subr et al. 2007, drawn by the device.
+// Figures 2, 6 and 7 of Subr et al. 2007, drawn by the device.
 
 #include "engine/validation/report.h"
 #include "engine/validation/stage_outputs.h"
@@ -13,5 +13,8 @@ ReportSection paperFigure2(const StageMaker& make);
 /// Figure 6: a uniform translucent cube of few voxels, blended back to front and as FreeVoxels; and how far
 /// the opacity of each is from the oracle's.
 ReportSection paperFigure6(const StageMaker& make);
+
+/// Figure 7: a head in red light, and in white light that turns red within it; against the oracle.
+ReportSection paperFigure7(const StageMaker& make);
 
 }  // namespace freevoxels

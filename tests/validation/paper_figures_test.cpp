@@ -68,6 +68,13 @@ TEST_F(PaperFigures, Figure6ShowsTheLeak) {
   EXPECT_GT(wrong.checks[0].figure, 2.0 * section.checks[0].figure);
 }
 
+TEST_F(PaperFigures, Figure7IsAsTheOracleLightsIt) {
+  const ReportSection section = paperFigure7(deviceStages(device()));
+  EXPECT_EQ(section.checks.size(), 2u);
+  EXPECT_TRUE(section.passed());
+  EXPECT_EQ(paperFigure7(wrongStages(device(), Composite::Normalised, Composite::Additive)).failures(), 2u);
+}
+
 TEST_F(PaperFigures, LeakageFollowsEquation9) {
   const LayerStacks stacks{.opacities = {0.3, 0.9}, .layers = {1, 3}};
   const ReportSection section = leakageOfLayers(deviceStages(device()), stacks);
