@@ -14,7 +14,7 @@ inline constexpr double kTableLightPsnr = 32.0, kExactLightPsnr = 38.0, kEnviron
 /// One light from the side, from a few views.
 ReportSection lightQuality(const Device& device, const QualityScene& scene, int pictureEdge);
 
-/// A sky with a sun, from a few views.
+/// A sky with a sun, from one view: the oracle marches for it from every point of the volume.
 ReportSection environmentQuality(const Device& device, const QualityScene& scene, int pictureEdge);
 
 /// The shadow of a small opaque ball in thin fog, which 26 directions draw as a star, and the light within an
