@@ -166,7 +166,7 @@ TEST_F(SceneCommand, EveryCommandTakesOne) {
 TEST_F(SceneCommand, ExamplesAreRight) {
   for (const char* name : {"cloud.json", "head.json"}) {
     const std::string file = kScenes + "/" + name;
-    expectSuccess(runFreevoxels({"info", "--scene", file}));
+    expectSuccess(runFreevoxels({"info", "--scene", file, "--resolution", "16"}));
     expectSuccess(run("render --scene " + file + " --resolution 16 --size 48x32 @a.png --quiet"));
     EXPECT_EQ(readPng(folder / "a.png").size, glm::ivec2(48, 32));
   }
