@@ -9,7 +9,7 @@ namespace freevoxels {
 
 /// What lit pictures of volumes without parts of the size of a voxel have to reach, in dB: shadowed by the
 /// table, and exactly; and lit by a sky.
-inline constexpr double kTableLightPsnr = 32.0, kExactLightPsnr = 38.0, kEnvironmentPsnr = 32.0;
+inline constexpr double kTableLightPsnr = 32.0, kExactLightPsnr = 38.0, kEnvironmentPsnr = 42.0;
 
 /// One light from the side, from a few views.
 ReportSection lightQuality(const Device& device, const QualityScene& scene, int pictureEdge);
