@@ -35,6 +35,7 @@ constexpr int kQuickQualityPicture = 96, kWholeQualityPicture = 160, kLargeQuali
 /// Where a voxel is as large as the parts of a volume, no method has to reach anything.
 constexpr int kLeastResolutionWithGoals = kMedium;
 constexpr int kQuickLightPicture = 64;
+constexpr int kQuickSky = 24;  ///< voxels along an edge, where the oracle takes its time for each
 constexpr int kDetailResolution = kMedium;
 constexpr int kTurntableResolution = kMedium, kTurntableFrames = 72, kTurntablePicture = 64;
 constexpr int kQuickFlightFrames = 8, kWholeFlightFrames = 60, kFlightPicture = 64;
@@ -160,9 +161,9 @@ void addLight(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
                       return lightQuality(device, openQualityScene(device, subject, resolution),
                                           quick ? kQuickLightPicture : kQuickQualityPicture);
                     }});
+  const int sky = quick ? kQuickSky : kQuickProcedural;
   jobs.push_back({"light from all around", [=, &device] {
-                    return environmentQuality(device,
-                                              openQualityScene(device, kQualitySubjects[2], resolution),
+                    return environmentQuality(device, openQualityScene(device, kQualitySubjects[2], sky),
                                               quick ? kQuickLightPicture : kQuickQualityPicture);
                   }});
   jobs.push_back({"emission of fire", [=, &device] {

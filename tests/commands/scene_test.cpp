@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -74,21 +73,30 @@ TEST_F(SceneCommand, AreOptions) {
 TEST_F(SceneCommand, TheCommandLineWins) {
   writeSky("sky.exr");
   scene(kEverything);
-  const auto attribute = [&](const std::string& options, const std::string& name) {
-    return exrAttribute(bytes("render --scene @s.json @a.exr " + options), "freevoxels:" + name);
-  };
-  EXPECT_EQ(attribute("--fov 40", "fov"), "40");
-  EXPECT_EQ(attribute("--orthographic 2", "fov"), "");
-  EXPECT_EQ(attribute("--camera-position 1,2,3", "camera-position"), "1,2,3");
-  EXPECT_EQ(attribute("--light direction=0,1,0,intensity=2", "light"),
-            "direction=0,1,0,color=1,1,1,intensity=2");
-  EXPECT_EQ(attribute("--gradient", "gradient"), "yes");
-  EXPECT_EQ(attribute("--paper", "directions"), "26");  // one of the eight, in the scene too
-  EXPECT_EQ(attribute("--shading none", "light"), "");
-  EXPECT_EQ(attribute("procedural:cube --size 8x8", "resolution"), "128");
-  EXPECT_EQ(attribute("--ambient 0.5", "environment-rotation"), "30");
   writeBytes(folder / "t.json", R"({"opacity": [[0, 0], [1, 0.5]]})");
-  EXPECT_EQ(attribute("--transfer-function @t.json", "density-scale"), "");
+  std::string file;
+  const auto render = [&](const std::string& options) {
+    file = bytes("render --scene @s.json " + options + " --size 8x8");
+  };
+  const auto attribute = [&](const std::string& name) { return exrAttribute(file, "freevoxels:" + name); };
+  render("@a.exr --fov 40 --gradient --ambient 0.5 --light direction=0,1,0,intensity=2");
+  EXPECT_EQ(attribute("fov"), "40");
+  EXPECT_EQ(attribute("size"), "8x8");
+  EXPECT_EQ(attribute("gradient"), "yes");
+  EXPECT_EQ(attribute("ambient"), "0.5,0.5,0.5");
+  EXPECT_EQ(attribute("environment-rotation"), "30");
+  EXPECT_EQ(attribute("light"), "direction=0,1,0,color=1,1,1,intensity=2");
+
+  render("@a.exr --orthographic 2 --camera-position 1,2,3 --paper --shading none");
+  EXPECT_EQ(attribute("fov"), "");
+  EXPECT_EQ(attribute("camera-position"), "1,2,3");
+  EXPECT_EQ(attribute("directions"), "26");  // one of the eight, in the scene too
+  EXPECT_EQ(attribute("light"), "");
+
+  render("procedural:rods @a.exr --transfer-function @t.json");
+  EXPECT_EQ(attribute("input"), "procedural:rods");
+  EXPECT_EQ(attribute("resolution"), "128");
+  EXPECT_EQ(attribute("density-scale"), "");
 }
 
 TEST_F(SceneCommand, SavedOnesMakeTheSamePixelsFromAnyFolder) {
@@ -141,15 +149,15 @@ TEST_F(SceneCommand, EveryCommandTakesOne) {
   const ProgramResult info = run("info --scene @s.json");
   expectSuccess(info);
   EXPECT_EQ(info.out, run("info procedural:cloud --resolution 20").out);
-  bytes("oracle --scene @s.json @a.exr --size 6x6 --save-scene @o.json");
+  bytes("oracle --scene @s.json procedural:cloud --resolution 8 @a.exr --size 6x6 --save-scene @o.json");
   const auto oracle = nlohmann::json::parse(readBytes(folder / "o.json"));
   EXPECT_FALSE(oracle.contains("method"));
   EXPECT_EQ(oracle.at("camera").at("size"), nlohmann::json({6, 6}));
 
-  expectSuccess(run("turntable --scene @s.json @t#.exr --frames 3 --save-scene @t.json --quiet"));
-  EXPECT_EQ(nlohmann::json::parse(readBytes(folder / "t.json")).at("camera").at("frames"), 3);
+  expectSuccess(run("turntable --scene @s.json @t#.exr --frames 2 --save-scene @t.json --quiet"));
+  EXPECT_EQ(nlohmann::json::parse(readBytes(folder / "t.json")).at("camera").at("frames"), 2);
   expectSuccess(run("turntable --scene @t.json @u#.exr --quiet"));
-  for (const char frame : {'0', '1', '2'})
+  for (const char frame : {'0', '1'})
     EXPECT_EQ(readExr(folder / (std::string("t") + frame + ".exr")).pixels,
               readExr(folder / (std::string("u") + frame + ".exr")).pixels);
   expectSuccess(run("render --scene @t.json @a.png --quiet"));  // frames, float and aov say nothing here
@@ -158,12 +166,9 @@ TEST_F(SceneCommand, EveryCommandTakesOne) {
 TEST_F(SceneCommand, ExamplesAreRight) {
   for (const char* name : {"cloud.json", "head.json"}) {
     const std::string file = kScenes + "/" + name;
-    expectSuccess(runFreevoxels({"info", "--scene", file}));
-    // Smaller, by the way of IN.
-    const auto input = nlohmann::json::parse(readBytes(file)).at("input");
-    expectSuccess(run("render --scene " + file + " --resolution 24 --size 48x32 @a.png --quiet"));
+    expectSuccess(runFreevoxels({"info", "--scene", file, "--resolution", "16"}));
+    expectSuccess(run("render --scene " + file + " --resolution 16 --size 48x32 @a.png --quiet"));
     EXPECT_EQ(readPng(folder / "a.png").size, glm::ivec2(48, 32));
-    EXPECT_TRUE(input.contains("volume"));
   }
 }
 
