@@ -55,7 +55,7 @@ TEST_F(RealVolumes, FiresShine) {
     EXPECT_GE(compareImages(draw({"render"}), truth).psnr, 30.0);
     EXPECT_GE(compareImages(draw({"render", "--attenuation", "exact"}), truth).psnr, 38.0);
     const auto shining = std::ranges::count_if(truth.pixels, [](glm::vec4 pixel) { return pixel.r > 0.5f; });
-    EXPECT_GT(shining, 48 * 48 / 100);
+    EXPECT_GE(shining, 5);  // one of the flames is behind its smoke
   }
 }
 
