@@ -13,8 +13,8 @@ void EmissionOptions::add(CLI::App& app) {
   constexpr const char* kGroup = "Emission";
   addOptionalNumber(
       app, "--emission", "STRENGTH", emission, strength,
-      fmt::format("Light by temperature: luminance per world unit at {:g} K; no file may follow it "
-                  "without a number [so that it suits a picture]",
+      fmt::format("Light by temperature: luminance per world unit at {:g} K; without a number it cannot be "
+                  "followed by a file [so that it suits a picture]",
                   kReferenceTemperature),
       {.minimum = 0.0})
       ->group(kGroup);

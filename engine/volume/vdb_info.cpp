@@ -145,11 +145,11 @@ GridInfo describe(VdbFile& file, const VdbFile::Entry& entry) {
   info.unusable = whyTypeUnusable(entry.treeType, entry.valueType);
   info.isTemperature =
       isReal(entry) && std::ranges::find(kTemperatureNames, entry.baseName) != kTemperatureNames.end();
-  info.isAlbedo = isColor(entry);
   if (!openvdb::GridBase::isRegistered(entry.treeType)) return info;
 
   const openvdb::GridBase::ConstPtr grid = file.read(entry);
   info.gridClass = gridClassName(grid->getGridClass());
+  info.isAlbedo = isColor(entry) && grid->getGridClass() != openvdb::GRID_STAGGERED;  // those are velocities
   const openvdb::Vec3d size = grid->voxelSize();
   info.voxelSize = {size.x(), size.y(), size.z()};
   if (info.unusable.empty()) info.unusable = whyTransformUnusable(grid->transform());

@@ -16,7 +16,7 @@ class EmissionCommand : public CommandTest {
     openvdb::initialize();
     const auto density = openvdb::FloatGrid::create(0.0f), heat = openvdb::FloatGrid::create(0.0f);
     density->denseFill({openvdb::Coord(0), openvdb::Coord(7)}, 0.5f, true);
-    heat->denseFill({openvdb::Coord(2), openvdb::Coord(12, 5, 5)}, 0.8f, true);
+    heat->denseFill({openvdb::Coord(2), openvdb::Coord(12, 5, 5)}, 0.5f, true);
     const auto far = heat->deepCopy();
     const auto colors = openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f));
     colors->denseFill({openvdb::Coord(0), openvdb::Coord(7)}, openvdb::Vec3s(1.5f, 0.5f, 0.0f), true);
@@ -33,7 +33,7 @@ TEST_F(EmissionCommand, TheHeaderRepeatsThePicture) {
   expectSuccess(run(std::string("render @fire.vdb @a.exr @a.png --emission --float") + kSmall));
   const std::string made = readBytes(folder / "a.exr");
   const std::string command = exrAttribute(made, "freevoxels:command");
-  for (const char* part : {"--temperature-grid heat", "--temperature-scale 1250", "--emission ",
+  for (const char* part : {"--temperature-grid heat", "--temperature-scale 2000", "--emission ",
                            "--temperature-offset 1000", "--albedo 0.1,0.1,0.1"})
     EXPECT_NE(command.find(part), std::string::npos) << part << " in " << command;
   Arguments arguments = words(command.substr(std::string("freevoxels ").size()));

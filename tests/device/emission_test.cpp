@@ -8,6 +8,7 @@
 #include "engine/validation/emission_checks.h"
 #include "engine/validation/level_checks.h"
 #include "engine/validation/stage_checks.h"
+#include "engine/volume/packed_light.h"
 #include "tests/device/splat_fixture.h"
 
 namespace freevoxels {
@@ -31,7 +32,7 @@ Volume hotVolume(bool sheared, glm::ivec3 size = {11, 14, 9}) {
 
 Classification hot(const Volume& volume, float opacity = 0.4f) {
   Classification classification = coloured(volume, opacity);
-  classification.emission = Emission{.strength = 1.5};
+  classification.emission = Emission{.strength = 8.0};
   return classification;
 }
 
@@ -41,29 +42,36 @@ class EmissionTest : public SplatTest {
     const std::vector<float> device = renderer.downloadExtinction();
     return {device.begin(), device.end()};
   }
+  struct Frame {
+    Camera camera;
+    FrameSettings settings;
+  };
   /// Given the light that the device keeps, which has nine bits.
-  static void expectSamePicture(const Volume& volume, const Classification& classification,
-                                const Camera& camera, const FrameSettings& settings) {
+  static void expectSamePictures(const Volume& volume, const Classification& classification,
+                                 const std::vector<Frame>& frames) {
     Renderer renderer(device(), volume, classification, {});
-    const Image picture = renderer.render(camera, settings);
     const auto extinction = extinctionOf(renderer);
     const auto table = renderer.downloadTable();
     const auto levels = renderer.downloadLevels();
     const auto emission = renderer.downloadEmission();
-    const auto sums = referenceBlockSums(volume, classification,
-                                         {.extinction = extinction,
-                                          .table = table,
-                                          .tableSettings = {},
-                                          .coarser = levels,
-                                          .emission = emission},
-                                         camera, settings, renderer.downloadDrawnBlocks());
-    const Image expected = referenceResolve(sums, settings);
-    EXPECT_LE(largestDifference(picture, expected), 2e-3);
-    EXPECT_GE(psnr(picture, expected), 70.0);
-    // It shines.
-    float brightest = 0.0f;
-    for (const glm::vec4& pixel : picture.pixels) brightest = std::max(brightest, pixel.r);
-    EXPECT_GT(brightest, 1.2f);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      SCOPED_TRACE(i);
+      const auto& [camera, settings] = frames[i];
+      const Image picture = renderer.render(camera, settings);
+      const auto sums = referenceBlockSums(volume, classification,
+                                           {.extinction = extinction,
+                                            .table = table,
+                                            .tableSettings = {},
+                                            .coarser = levels,
+                                            .emission = emission},
+                                           camera, settings, renderer.downloadDrawnBlocks());
+      const Image expected = referenceResolve(sums, settings);
+      EXPECT_LE(largestDifference(picture, expected), 2e-3);
+      EXPECT_GE(psnr(picture, expected), 70.0);
+      float brightest = 0.0f;
+      for (const glm::vec4& pixel : picture.pixels) brightest = std::max(brightest, pixel.r);
+      EXPECT_GT(brightest, 1.2f);  // it shines
+    }
   }
 };
 
@@ -73,53 +81,54 @@ TEST_F(EmissionTest, EveryVoxelWithExtinctionOrLightIsKept) {
   Renderer renderer(device(), volume, classification, {});
   const auto emission = renderer.downloadEmission();
   ASSERT_EQ(emission.size(), volume.voxelCount());
-  double brightest = 0.0;
+  const double faintest = brightestLight(classification, volume) * kFaintest / kBrightest;
   std::size_t voxel = 0, alone = 0;
   for (int z = 0; z < volume.dimensions.z; ++z)
     for (int y = 0; y < volume.dimensions.y; ++y)
       for (int x = 0; x < volume.dimensions.x; ++x, ++voxel) {
         const ClassifiedVoxel expected = classifyVoxel(classification, volume, {x, y, z});
         const double largest = std::max({expected.emission.r, expected.emission.g, expected.emission.b});
-        brightest = std::max(brightest, largest);
-        EXPECT_LE(glm::length(emission[voxel] - expected.emission), largest / 300.0);
-        if (largest > 0.0 && expected.extinction == 0.0) ++alone;
+        if (largest < faintest) {
+          EXPECT_EQ(emission[voxel], glm::dvec3(0.0));
+          continue;
+        }
+        EXPECT_LE(glm::length(emission[voxel] - expected.emission), largest / 290.0);
+        if (expected.extinction == 0.0) ++alone;
       }
   EXPECT_GT(alone, 100u);
   EXPECT_EQ(renderer.downloadVisibleVoxels(), referenceVisibleVoxels(extinctionOf(renderer), emission));
-  EXPECT_NEAR(brightest, brightestLight(classification, volume), 1e-12);
   EXPECT_EQ(renderer.memory().emission % sizeof(std::uint32_t), 0u);
   EXPECT_GT(renderer.memory().emission, 0u);
 }
 
 TEST_F(EmissionTest, EveryCompositeAndLookUpMatchesTheReference) {
   const Volume volume = hotVolume(true);
-  const Classification classification = hot(volume);
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.25, {});
-  for (const Composite composite : {Composite::Normalised, Composite::Additive})
-    expectSamePicture(volume, classification, camera,
-                      {.size = {60, 48}, .composite = composite, .lod = 0.0f});
-  expectSamePicture(volume, classification, camera,
-                    {.size = {40, 32}, .attenuation = AttenuationLookup::Exact, .lod = 0.0f});
   FrameSettings lit{.size = {40, 32}, .lod = 0.0f, .lighting = Lighting{.ambient = glm::dvec3(0.5)}};
   lit.lighting->lights.push_back({.place = {1.0, 0.7, 0.2}});
   lit.lighting->surface = 0.5;
-  expectSamePicture(volume, classification, camera, lit);
+  expectSamePictures(volume, hot(volume),
+                     {{camera, {.size = {60, 48}, .lod = 0.0f}},
+                      {camera, {.size = {60, 48}, .composite = Composite::Additive, .lod = 0.0f}},
+                      {camera, {.size = {40, 32}, .attenuation = AttenuationLookup::Exact, .lod = 0.0f}},
+                      {camera, lit}});
 }
 
 /// No extinction at all: sums without E and T, and blocks of nothing but light.
 TEST_F(EmissionTest, FlamesWithoutSmokeMatchTheReference) {
   const Volume volume = hotVolume(true);
-  Classification classification{.densityScale = 0.0, .emission = Emission{.strength = 5.0}};
+  const Classification classification{.densityScale = 0.0, .emission = Emission{.strength = 5.0}};
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
-  for (const float lod : {0.0f, 9.0f})
-    expectSamePicture(volume, classification, camera, {.size = {40, 40}, .lod = lod});
-  Renderer renderer(device(), volume, classification, {});
-  for (const glm::vec4& pixel : renderer.render(camera, {.size = {40, 40}}).pixels) EXPECT_EQ(pixel.a, 0.0f);
   Camera inside = camera;
   inside.position = {0.02, 0.03, 0.01};
   inside.lookAt = {0.3, 0.1, -0.2};
-  for (const AttenuationLookup lookup : {AttenuationLookup::Auto, AttenuationLookup::Bilinear})
-    expectSamePicture(volume, classification, inside, {.size = {40, 40}, .attenuation = lookup});
+  expectSamePictures(volume, classification,
+                     {{camera, {.size = {40, 40}, .lod = 0.0f}},
+                      {camera, {.size = {40, 40}, .lod = 9.0f}},
+                      {inside, {.size = {40, 40}}},
+                      {inside, {.size = {40, 40}, .attenuation = AttenuationLookup::Bilinear}}});
+  Renderer renderer(device(), volume, classification, {});
+  for (const glm::vec4& pixel : renderer.render(camera, {.size = {40, 40}}).pixels) EXPECT_EQ(pixel.a, 0.0f);
 }
 
 TEST_F(EmissionTest, LevelsAndTheirPicturesMatchTheReference) {
@@ -131,8 +140,9 @@ TEST_F(EmissionTest, LevelsAndTheirPicturesMatchTheReference) {
   for (const Check& check : compareLevels(volume, voxels, renderer.downloadLevels(), {}, "depth8"))
     EXPECT_TRUE(check.passed()) << check.name << ": " << check.figure << " " << check.where;
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
-  for (const float lod : {6.0f, 20.0f})
-    expectSamePicture(volume, classification, camera, {.size = {30, 30}, .lod = lod, .culling = false});
+  expectSamePictures(volume, classification,
+                     {{camera, {.size = {30, 30}, .lod = 6.0f, .culling = false}},
+                      {camera, {.size = {30, 30}, .lod = 20.0f, .culling = false}}});
 }
 
 TEST_F(EmissionTest, SortedPicturesMatchTheReference) {
@@ -149,12 +159,11 @@ TEST_F(EmissionTest, SortedPicturesMatchTheReference) {
 
 /// What freevoxels-validate says of them.
 TEST_F(EmissionTest, TheChecksOfAFirePass) {
-  Volume fire = makeProcedural("fire", 24);
+  Volume fire = makeProcedural("fire", 20);
   cropToActive(fire);
-  const ValidationScene scene = makeValidationScene(std::move(fire), SceneColor::Density, 24);
+  const ValidationScene scene = makeValidationScene(std::move(fire), SceneColor::Density, 20);
   for (const ReportSection& section :
-       {stageChecks(deviceStages(device()), scene, {40, 40}), levelChecks(device(), scene, {40, 40}),
-        emissionChecks(device(), 32, 40)})
+       {stageChecks(deviceStages(device()), scene, {32, 32}), emissionChecks(device(), 24, 32)})
     for (const Check& check : section.checks)
       EXPECT_TRUE(check.passed()) << section.title << ": " << check.name << ": " << check.figure << " "
                                   << check.where;
@@ -170,7 +179,7 @@ TEST_F(EmissionTest, CullingLeavesALampInSmokeThere) {
                      return radius < 6.0 ? 2500.0f : kInactiveVoxel;
                    })};
   summariseValues(*volume.temperature);
-  const Classification classification{.densityScale = 20.0, .emission = Emission{.strength = 400.0}};
+  const Classification classification{.densityScale = 20.0, .emission = Emission{.strength = 2000.0}};
   Renderer renderer(device(), volume, classification, {});
   const Camera camera = framingCamera(volume, 20.0, 15.0, 1.0, {});
   FrameSettings settings{.size = {64, 64}};

@@ -93,8 +93,8 @@ TEST(Procedural, EveryKindFillsTheUnitCubeWithFiniteDensities) {
 TEST(Procedural, KindsAreTheDocumentedOnes) {
   std::vector<std::string> names;
   for (const ProceduralKind& kind : proceduralKinds()) names.emplace_back(kind.name);
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"cube", "cloud", "plume", "marschner-lobb", "shells", "rods", "head"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"cube", "cloud", "plume", "fire", "marschner-lobb", "shells",
+                                             "rods", "head"}));
 }
 
 TEST(Procedural, TheSameCommandMakesTheSameVolume) {
