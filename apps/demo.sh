@@ -14,14 +14,15 @@ if [ $# -eq 0 ]; then
   echo "demo: making a cloud"
   "$freevoxels" generate cloud "$out/cloud.vdb" --resolution 192
   input="$out/cloud.vdb"
-  set -- --transfer-function "$root/apps/transfer_functions/cloud.json" --camera-position 0.87,0.6,1.2 --look-at 0.01,-0.005,0
+  set -- --scene "$root/apps/scenes/cloud.json"
 else
   input="$1"
   shift
+  set -- --background 0.004,0.006,0.012 "$@"
 fi
 
 name="$(basename "${input#procedural:}")"
 name="${name%.*}"
 echo "demo: drawing $input"
-"$freevoxels" render "$input" "$out/$name.exr" "$out/$name.png" --background 0.004,0.006,0.012 "$@"
+"$freevoxels" render "$input" "$out/$name.exr" "$out/$name.png" "$@"
 echo "demo: the pictures are the files above"

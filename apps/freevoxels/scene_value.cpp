@@ -27,6 +27,11 @@ bool isFlag(const CLI::Option& option) {
   return option.get_items_expected_max() == 0;
 }
 
+/// Whether the option may stand without a value.
+bool standsAlone(const CLI::Option& option) {
+  return !isFlag(option) && option.get_items_expected_min() == 0;
+}
+
 bool isFile(const CLI::Option& option) {
   return option.get_positional() || option.get_type_name().starts_with("FILE");
 }
@@ -124,6 +129,8 @@ std::string sceneSection(const CLI::Option& option) {
 
 std::vector<std::string> optionTexts(const CLI::Option& option, const nlohmann::json& value,
                                      const fs::path& folder, const std::string& name) {
+  if (standsAlone(option) && value.is_boolean())
+    return value.get<bool>() ? std::vector<std::string>{""} : std::vector<std::string>{};
   if (!isRepeated(option)) return {optionText(option, value, folder, name)};
   if (!value.is_array()) fail(ExitCode::Input, "{} takes a list, not {}", name, inQuotes(value));
   std::vector<std::string> texts;

@@ -49,7 +49,7 @@ constexpr const char* kEverything = R"({
   "light": {"lights": [{"direction": [-1, 0.5, 0.25], "color": [1, 0.8, 0.55], "intensity": 26},
                        {"position": [1, 2, 1]}],
             "ambient": 0.25, "environment": "sky.exr", "environment-rotation": 30,
-            "phase-g": 0.3, "light-attenuation": "exact"},
+            "extinction-tint": [0.5, 1, 2], "phase-g": 0.3, "light-attenuation": "exact"},
   "method": {"directions": 98, "gradient": false, "lod": 1.5, "composite": "additive"},
   "output": {"background": [0.1, 0.2, 0.3], "float": true, "aov": "depth"}
 })";
@@ -58,7 +58,8 @@ constexpr const char* kTheSame =
     "render procedural:cloud @a.exr --resolution 20 --orbit 200,6 --fov 26 --size 40x30 --up 0,1,0.1 "
     "--density-scale 30 --albedo 0.8,0.9,0.7 --light "
     "direction=-1,0.5,0.25,color=1,0.8,0.55,intensity=26 --light position=1,2,1 --ambient 0.25 "
-    "--environment @sky.exr --environment-rotation 30 --phase-g 0.3 --light-attenuation exact --directions "
+    "--environment @sky.exr --environment-rotation 30 --extinction-tint 0.5,1,2 --phase-g 0.3 "
+    "--light-attenuation exact --directions "
     "98 "
     "--no-gradient --lod 1.5 --composite additive --float --aov depth";
 
@@ -125,6 +126,18 @@ TEST_F(SceneCommand, SavedOnesMakeTheSamePixelsFromAnyFolder) {
     std::filesystem::remove(folder / "made/here/s.json");
   }
   EXPECT_EQ(nlohmann::json::parse(readBytes(folder / "made/t.json")).size(), 2u);
+}
+
+TEST_F(SceneCommand, EmissionNeedsNoNumber) {
+  const std::string fire = "procedural:fire @a.exr --resolution 16 --size 24x24 ";
+  for (const auto& [json, option] :
+       {std::pair("true", "--emission"), {"3.5", "--emission 3.5"}, {"false", ""}}) {
+    scene(fmt::format(R"({{"emission": {{"emission": {}}}}})", json));
+    const std::string file = bytes("render " + fire + "--scene @s.json");
+    EXPECT_EQ(file, bytes("render " + fire + option));
+  }
+  const std::string file = bytes("render " + fire + "--emission --save-scene @kept.json");
+  EXPECT_EQ(file, bytes("render --scene @kept.json @a.exr"));
 }
 
 TEST_F(SceneCommand, TransferFunctionsMayBeInline) {
