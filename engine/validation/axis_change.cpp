@@ -25,11 +25,19 @@ Volume AxisChange::apply(const Volume& volume) const {
     if (mirrored[i]) origin += double(volume.dimensions[old] - 1) * volume.indexToWorld[old];
   }
   changed.indexToWorld[3] = origin;
-  changed.scalars = ScalarBricks(changed.dimensions);
-  for (int z = 0; z < volume.dimensions.z; ++z)
-    for (int y = 0; y < volume.dimensions.y; ++y)
-      for (int x = 0; x < volume.dimensions.x; ++x)
-        changed.scalars.set(voxel({x, y, z}, volume.dimensions), volume.scalar(x, y, z));
+  changed.scalars = apply(volume.scalars);
+  if (changed.temperature) changed.temperature->values = apply(volume.temperature->values);
+  if (changed.albedo)
+    for (ScalarBricks& values : changed.albedo->values) values = apply(values);
+  return changed;
+}
+
+ScalarBricks AxisChange::apply(const ScalarBricks& scalars) const {
+  const glm::ivec3 n = scalars.dimensions();
+  ScalarBricks changed({n[axis[0]], n[axis[1]], n[axis[2]]});
+  for (int z = 0; z < n.z; ++z)
+    for (int y = 0; y < n.y; ++y)
+      for (int x = 0; x < n.x; ++x) changed.set(voxel({x, y, z}, n), scalars.at({x, y, z}));
   return changed;
 }
 

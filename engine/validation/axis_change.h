@@ -16,6 +16,7 @@ struct AxisChange {
   /// Of an old voxel in a volume that had `dimensions`.
   glm::ivec3 voxel(glm::ivec3 old, glm::ivec3 dimensions) const;
   Volume apply(const Volume& volume) const;
+  ScalarBricks apply(const ScalarBricks& scalars) const;
 };
 
 }  // namespace freevoxels

@@ -37,9 +37,10 @@ TEST_F(ValidateCommand, PassesOnSmallVolumesAndSaysSoLineByLine) {
   EXPECT_EQ(linesWith(result.out, "PASSED: " + std::to_string(passed) + " checks, 0 failed"), 1u)
       << result.out;
   EXPECT_EQ(linesWith(result.out, "Closed forms"), 1u);
-  // Six procedural volumes and the file.
-  EXPECT_EQ(linesWith(result.out, "Stages: "), 7u);
-  EXPECT_EQ(linesWith(result.out, "Invariances: "), 7u);
+  // Seven procedural volumes and the file.
+  EXPECT_EQ(linesWith(result.out, "Stages: "), 8u);
+  EXPECT_EQ(linesWith(result.out, "Invariances: "), 8u);
+  EXPECT_EQ(linesWith(result.out, "Emission: "), 1u);
   // Four procedural volumes, their summary, and the file.
   EXPECT_EQ(linesWith(result.out, "Picture quality: "), 6u);
   EXPECT_EQ(linesWith(result.out, "Subr et al. 2007, "), 3u);

