@@ -14,7 +14,7 @@ ReportSection paperFigure2(const StageMaker& make);
 /// the opacity of each is from the oracle's.
 ReportSection paperFigure6(const StageMaker& make);
 
-/// Figure 7: a head in red light, and in white light that turns red within it; against the oracle.
+/// Figure 7: a head in red light, against the oracle; and in white light that turns red within it.
 ReportSection paperFigure7(const StageMaker& make);
 
 }  // namespace freevoxels
