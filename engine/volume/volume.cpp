@@ -89,6 +89,8 @@ void cropToActive(Volume& volume) {
   if (high.x < 0) return;
   volume.scalars = volume.scalars.cropped(low, high);
   if (volume.temperature) volume.temperature->values = volume.temperature->values.cropped(low, high);
+  if (volume.albedo)
+    for (ScalarBricks& values : volume.albedo->values) values = values.cropped(low, high);
   volume.dimensions = high - low + 1;
   volume.indexOrigin += low;
   volume.indexToWorld[3] = volume.indexToWorld * glm::dvec4(glm::dvec3(low), 1.0);

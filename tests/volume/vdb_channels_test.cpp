@@ -104,5 +104,21 @@ TEST_F(VdbChannelsTest, AFireGoesThroughAFile) {
   EXPECT_GT(fire.temperature->maximum, 1500.0f);
 }
 
+TEST(CropToActive, TakesTheAlbedosAlong) {
+  const glm::ivec3 size(5, 4, 3);
+  Volume volume = makeVolume(size, glm::dmat4(1.0), [](int x, int y, int) {
+    return x >= 3 && y >= 1 ? 1.0 : double(kInactiveVoxel);
+  });
+  volume.albedo.emplace();
+  for (ScalarBricks& values : volume.albedo->values)
+    values = ScalarBricks::make(size, [](glm::ivec3 v) { return 0.1f * float(v.x) + 0.01f * float(v.y); });
+  cropToActive(volume);
+  ASSERT_EQ(volume.dimensions, glm::ivec3(2, 3, 3));
+  for (const ScalarBricks& values : volume.albedo->values) {
+    EXPECT_EQ(values.at({0, 0, 0}), 0.1f * 3.0f + 0.01f * 1.0f);
+    EXPECT_EQ(values.at({1, 2, 2}), 0.1f * 4.0f + 0.01f * 3.0f);
+  }
+}
+
 }  // namespace
 }  // namespace freevoxels::test
