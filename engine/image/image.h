@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,12 @@ Image readPicture(const std::filesystem::path& file);
 /// 8-bit sRGB. Straight alpha without a background; composited over `background` (linear Rec.709) and opaque
 /// with one. Atomic. Fails with ExitCode::Output.
 void writePng(const std::filesystem::path& file, const Image& image, const glm::vec3* background);
+
+/// What writePng's file shows, 4 bytes a pixel.
+std::vector<std::uint8_t> srgbTexels(const Image& image, const glm::vec3* background);
+
+/// Such texels as an opaque picture, whatever their alpha is. Atomic. Fails with ExitCode::Output.
+void writePngTexels(const std::filesystem::path& file, glm::ivec2 size, std::span<const std::uint8_t> texels);
 
 /// The bytes of writePng's file.
 std::vector<std::uint8_t> encodePng(const Image& image, const glm::vec3* background);

@@ -217,14 +217,26 @@ class PngEncoder {
   png_infop info_ = nullptr;
 };
 
-void encode(const Image& image, const glm::vec3* background, const Sink& sink) {
-  FV_CHECK_LT(0, image.size.x);
-  FV_CHECK_LT(0, image.size.y);
-  FV_CHECK_EQ(image.pixels.size(), std::size_t(image.size.x) * std::size_t(image.size.y));
-  const std::vector<std::uint8_t> bytes = toBytes(image, background);
+void encode(glm::ivec2 size, int channels, const std::vector<std::uint8_t>& bytes, const Sink& sink) {
+  FV_CHECK_LT(0, size.x);
+  FV_CHECK_LT(0, size.y);
+  FV_CHECK_EQ(bytes.size(), std::size_t(size.x) * std::size_t(size.y) * std::size_t(channels));
   PngTarget target{sink};
   PngEncoder encoder(target);
-  if (!encoder.write(image.size, background ? 3 : 4, bytes.data())) std::rethrow_exception(target.failure);
+  if (!encoder.write(size, channels, bytes.data())) std::rethrow_exception(target.failure);
+}
+
+void encode(const Image& image, const glm::vec3* background, const Sink& sink) {
+  encode(image.size, background ? 3 : 4, toBytes(image, background), sink);
+}
+
+/// Atomic.
+void writeFile(const std::filesystem::path& file, const std::function<void(const Sink&)>& encodeInto) {
+  writeAtomically(file, [&](const std::filesystem::path& temporary) {
+    CheckedFile output(temporary);
+    encodeInto([&](const std::uint8_t* bytes, std::size_t count) { output.write(bytes, count); });
+    output.close();
+  });
 }
 
 }  // namespace
@@ -239,6 +251,15 @@ Image readPng(const std::filesystem::path& file) {
   return decode(file, stream.get());
 }
 
+std::vector<std::uint8_t> srgbTexels(const Image& image, const glm::vec3* background) {
+  const std::vector<std::uint8_t> bytes = toBytes(image, background);
+  if (!background) return bytes;
+  std::vector<std::uint8_t> texels(image.pixels.size() * 4, 255);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    std::copy_n(bytes.data() + 3 * i, 3, texels.data() + 4 * i);
+  return texels;
+}
+
 std::vector<std::uint8_t> encodePng(const Image& image, const glm::vec3* background) {
   std::vector<std::uint8_t> file;
   encode(image, background, [&](const std::uint8_t* bytes, std::size_t count) {
@@ -248,12 +269,16 @@ std::vector<std::uint8_t> encodePng(const Image& image, const glm::vec3* backgro
 }
 
 void writePng(const std::filesystem::path& file, const Image& image, const glm::vec3* background) {
-  writeAtomically(file, [&](const std::filesystem::path& temporary) {
-    CheckedFile output(temporary);
-    encode(image, background,
-           [&](const std::uint8_t* bytes, std::size_t count) { output.write(bytes, count); });
-    output.close();
-  });
+  writeFile(file, [&](const Sink& sink) { encode(image, background, sink); });
+}
+
+void writePngTexels(const std::filesystem::path& file, glm::ivec2 size,
+                    std::span<const std::uint8_t> texels) {
+  std::vector<std::uint8_t> opaque;
+  opaque.reserve(texels.size() / 4 * 3);
+  for (std::size_t i = 0; i < texels.size(); i += 4)
+    opaque.insert(opaque.end(), texels.begin() + std::ptrdiff_t(i), texels.begin() + std::ptrdiff_t(i) + 3);
+  writeFile(file, [&](const Sink& sink) { encode(size, 3, opaque, sink); });
 }
 
 }  // namespace freevoxels

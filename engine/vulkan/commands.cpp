@@ -81,6 +81,11 @@ void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings,
     } else if (const auto* view = std::get_if<const TexelView*>(&bindings[i])) {
       views[i] = (*view)->handle();
       write.pTexelBufferView = &views[i];
+    } else if (const auto* texture = std::get_if<const Texture*>(&bindings[i])) {
+      images[i] = {.sampler = (*texture)->sampler(),
+                   .imageView = (*texture)->view(),
+                   .imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+      write.pImageInfo = &images[i];
     } else {
       images[i] = {.imageView = std::get<const RenderTarget*>(bindings[i])->view(),
                    .imageLayout = VK_IMAGE_LAYOUT_GENERAL};
@@ -136,20 +141,20 @@ void Commands::barrier(VkPipelineStageFlags2 from, VkPipelineStageFlags2 to) {
   vkCmdPipelineBarrier2(buffer_, &dependency);
 }
 
-void Commands::transition(const RenderTarget& target, VkImageLayout from, VkImageLayout to,
+void Commands::transition(VkImage image, VkImageLayout from, VkImageLayout to,
                           VkPipelineStageFlags2 fromStage, VkPipelineStageFlags2 toStage) {
-  const VkImageMemoryBarrier2 image{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
-                                    .srcStageMask = fromStage,
-                                    .srcAccessMask = kAnyAccess,
-                                    .dstStageMask = toStage,
-                                    .dstAccessMask = kAnyAccess,
-                                    .oldLayout = from,
-                                    .newLayout = to,
-                                    .image = target.handle(),
-                                    .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
+  const VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
+                                      .srcStageMask = fromStage,
+                                      .srcAccessMask = kAnyAccess,
+                                      .dstStageMask = toStage,
+                                      .dstAccessMask = kAnyAccess,
+                                      .oldLayout = from,
+                                      .newLayout = to,
+                                      .image = image,
+                                      .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
   const VkDependencyInfo dependency{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO,
                                     .imageMemoryBarrierCount = 1,
-                                    .pImageMemoryBarriers = &image};
+                                    .pImageMemoryBarriers = &barrier};
   vkCmdPipelineBarrier2(buffer_, &dependency);
 }
 

@@ -11,11 +11,13 @@
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/image.h"
 #include "engine/vulkan/pipeline.h"
+#include "engine/vulkan/texture.h"
 
 namespace freevoxels {
 
-/// What a binding of set 0 points to: a whole buffer, its texels, or a storage image in layout GENERAL.
-using Binding = std::variant<const Buffer*, const TexelView*, const RenderTarget*>;
+/// What a binding of set 0 points to: a whole buffer, its texels, a storage image in layout GENERAL, or a
+/// texture with its sampler.
+using Binding = std::variant<const Buffer*, const TexelView*, const RenderTarget*, const Texture*>;
 
 class Commands {
  public:
@@ -70,8 +72,12 @@ class Commands {
 
   /// All writes of the `from` stages become visible to the `to` stages.
   void barrier(VkPipelineStageFlags2 from, VkPipelineStageFlags2 to);
+  void transition(VkImage image, VkImageLayout from, VkImageLayout to, VkPipelineStageFlags2 fromStage,
+                  VkPipelineStageFlags2 toStage);
   void transition(const RenderTarget& target, VkImageLayout from, VkImageLayout to,
-                  VkPipelineStageFlags2 fromStage, VkPipelineStageFlags2 toStage);
+                  VkPipelineStageFlags2 fromStage, VkPipelineStageFlags2 toStage) {
+    transition(target.handle(), from, to, fromStage, toStage);
+  }
 
   /// Ends the recording, runs it and waits; reports the passes as the device finishes them. Throws where the
   /// device does.

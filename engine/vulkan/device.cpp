@@ -206,7 +206,8 @@ std::vector<DeviceDescription> listDevices(const Instance& instance) {
   return descriptions;
 }
 
-Device::Device(const Instance& instance, std::string_view selector, std::uint64_t memoryLimit)
+Device::Device(const Instance& instance, std::string_view selector, std::uint64_t memoryLimit,
+               std::span<const char* const> moreExtensions)
     : memoryLimit_(memoryLimit) {
   description_ = choose(listDevices(instance), selector);
   physical_ = physicalDevices(instance)[std::size_t(description_.index)];
@@ -228,14 +229,19 @@ Device::Device(const Instance& instance, std::string_view selector, std::uint64_
                                       .queueFamilyIndex = queueFamily_,
                                       .queueCount = 1,
                                       .pQueuePriorities = &priority};
+  std::vector<const char*> extensions(kExtensions.begin(), kExtensions.end());
+  extensions.insert(extensions.end(), moreExtensions.begin(), moreExtensions.end());
   const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
                                 .pNext = &features.base,
                                 .queueCreateInfoCount = 1,
                                 .pQueueCreateInfos = &queue,
-                                .enabledExtensionCount = std::uint32_t(kExtensions.size()),
-                                .ppEnabledExtensionNames = kExtensions.data()};
-  VK_CHECK(vkCreateDevice(physical_, &info, nullptr, &device_));
-  volkLoadDevice(device_);
+                                .enabledExtensionCount = std::uint32_t(extensions.size()),
+                                .ppEnabledExtensionNames = extensions.data()};
+  const VkResult result = vkCreateDevice(physical_, &info, nullptr, &device_);
+  if (result == VK_ERROR_EXTENSION_NOT_PRESENT)
+    fail(ExitCode::Device, "{} lacks one of the extensions {}: choose another with --device",
+         description_.name, fmt::join(extensions, ", "));
+  VK_CHECK(result);
   vkGetDeviceQueue(device_, queueFamily_, 0, &queue_);
 }
 

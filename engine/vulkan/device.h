@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,9 +33,10 @@ class Device {
  public:
   /// `selector`: an index, UUID or (part of a) name; empty prefers a discrete GPU, then any GPU, then a CPU
   /// device. Fails with ExitCode::Device and the reason why each device was rejected. Of more than
-  /// `memoryLimit` bytes nothing is allocated.
+  /// `memoryLimit` bytes nothing is allocated. `extensions` are enabled beside the engine's own.
   Device(const Instance& instance, std::string_view selector,
-         std::uint64_t memoryLimit = std::numeric_limits<std::uint64_t>::max());
+         std::uint64_t memoryLimit = std::numeric_limits<std::uint64_t>::max(),
+         std::span<const char* const> extensions = {});
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;

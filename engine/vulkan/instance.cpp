@@ -55,7 +55,7 @@ bool validationRequested() {
   return value != nullptr && std::strcmp(value, "1") == 0;
 }
 
-Instance::Instance(bool validation) {
+Instance::Instance(bool validation, std::span<const char* const> moreExtensions) {
   if (volkInitialize() != VK_SUCCESS)
     fail(ExitCode::Device,
          "no Vulkan loader was found: install libvulkan1, and mesa-vulkan-drivers to render without a GPU");
@@ -83,14 +83,17 @@ Instance::Instance(bool validation) {
                                          .pNext = &messenger,
                                          .enabledValidationFeatureCount = std::uint32_t(enabled.size()),
                                          .pEnabledValidationFeatures = enabled.data()};
-  const std::array extensions{VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME};
+  std::vector<const char*> extensions(moreExtensions.begin(), moreExtensions.end());
+  if (validation)
+    extensions.insert(extensions.end(),
+                      {VK_EXT_DEBUG_UTILS_EXTENSION_NAME, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME});
   const VkInstanceCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO,
       .pNext = validation ? &features : nullptr,
       .pApplicationInfo = &application,
       .enabledLayerCount = validation ? 1u : 0u,
       .ppEnabledLayerNames = &kValidationLayer,
-      .enabledExtensionCount = validation ? std::uint32_t(extensions.size()) : 0u,
+      .enabledExtensionCount = std::uint32_t(extensions.size()),
       .ppEnabledExtensionNames = extensions.data(),
   };
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);

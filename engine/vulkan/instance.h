@@ -1,10 +1,11 @@
 #pragma once
-// The Vulkan loader and instance, headless: no window-system extension is asked for.
+// The Vulkan loader and instance, headless unless the caller names a window system's extensions.
 
 #include <volk.h>
 
 #include <atomic>
 #include <cstdint>
+#include <span>
 
 namespace freevoxels {
 
@@ -15,7 +16,7 @@ bool validationRequested();
 /// where validation is asked for and the layer is missing.
 class Instance {
  public:
-  explicit Instance(bool validation);
+  explicit Instance(bool validation, std::span<const char* const> extensions = {});
   ~Instance();
   Instance(const Instance&) = delete;
   Instance& operator=(const Instance&) = delete;

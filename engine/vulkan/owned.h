@@ -39,6 +39,7 @@ using OwnedBuffer = Owned<VkBuffer, &vkDestroyBuffer>;
 using OwnedBufferView = Owned<VkBufferView, &vkDestroyBufferView>;
 using OwnedImage = Owned<VkImage, &vkDestroyImage>;
 using OwnedImageView = Owned<VkImageView, &vkDestroyImageView>;
+using OwnedSampler = Owned<VkSampler, &vkDestroySampler>;
 using OwnedShaderModule = Owned<VkShaderModule, &vkDestroyShaderModule>;
 using OwnedSetLayout = Owned<VkDescriptorSetLayout, &vkDestroyDescriptorSetLayout>;
 using OwnedPipelineLayout = Owned<VkPipelineLayout, &vkDestroyPipelineLayout>;
@@ -46,6 +47,8 @@ using OwnedPipeline = Owned<VkPipeline, &vkDestroyPipeline>;
 using OwnedCommandPool = Owned<VkCommandPool, &vkDestroyCommandPool>;
 using OwnedQueryPool = Owned<VkQueryPool, &vkDestroyQueryPool>;
 using OwnedSemaphore = Owned<VkSemaphore, &vkDestroySemaphore>;
+using OwnedFence = Owned<VkFence, &vkDestroyFence>;
+using OwnedSwapchain = Owned<VkSwapchainKHR, &vkDestroySwapchainKHR>;
 
 }  // namespace freevoxels
 

@@ -1,0 +1,35 @@
+#pragma once
+// Images that shaders sample, for user interfaces.
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <span>
+
+#include "engine/vulkan/buffer.h"
+#include "engine/vulkan/device.h"
+#include "engine/vulkan/owned.h"
+
+namespace freevoxels {
+
+/// 8-bit RGBA, sampled as the bytes are: linear between texels, constant beyond the edge.
+class Texture {
+ public:
+  Texture() = default;
+  Texture(const Device& device, glm::ivec2 size, const char* name);
+
+  /// 4 bytes a texel, row 0 is the top. To be called before it is sampled. Waits.
+  void upload(const Device& device, std::span<const std::uint8_t> texels);
+
+  VkImageView view() const { return view_.get(); }
+  VkSampler sampler() const { return sampler_.get(); }
+  glm::ivec2 size() const { return size_; }
+
+ private:
+  DeviceMemory memory_;
+  OwnedImage image_;
+  OwnedImageView view_;
+  OwnedSampler sampler_;
+  glm::ivec2 size_{0};
+};
+
+}  // namespace freevoxels
