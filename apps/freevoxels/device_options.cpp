@@ -13,14 +13,21 @@ void DeviceOptions::add(CLI::App& app) {
   addText(app, "--device", "INDEX|NAME|UUID", selector,
           "Of 'freevoxels devices', or part of a name [a discrete GPU, then any GPU, then a CPU]")
       ->group("Device");
-  addWholeNumber(app, "--memory-limit", "MIB", memoryLimit,
-                 "Device memory to use at most; a volume is then swept in thinner slabs [what the device has]",
-                 {1.0, double(std::numeric_limits<int>::max())})
+  addWholeNumber(
+      app, "--memory-limit", "MIB", memoryLimit,
+      "Device memory to use at most; a volume is then swept in thinner slabs [what the device has]",
+      {1.0, double(std::numeric_limits<int>::max())})
       ->group("Device");
 }
 
-void withInstance(const std::function<void(const Instance&)>& work) {
-  const Instance instance(validationRequested());
+std::unique_ptr<Device> DeviceOptions::open(const Instance& instance) const {
+  const std::uint64_t limit =
+      memoryLimit ? std::uint64_t(*memoryLimit) << 20 : std::numeric_limits<std::uint64_t>::max();
+  return std::make_unique<Device>(instance, selector.value_or(""), limit);
+}
+
+void withInstance(const std::function<void(const Instance&)>& work, std::span<const char* const> extensions) {
+  const Instance instance(validationRequested(), extensions);
   work(instance);
   if (const std::uint64_t count = instance.validationMessageCount(); count > 0)
     throw InternalError(fmt::format("{} Vulkan validation messages, printed above", count));
@@ -28,10 +35,8 @@ void withInstance(const std::function<void(const Instance&)>& work) {
 
 void DeviceOptions::withDevice(const std::function<void(const Device&)>& work) const {
   withInstance([&](const Instance& instance) {
-    const std::uint64_t limit = memoryLimit ? std::uint64_t(*memoryLimit) << 20
-                                            : std::numeric_limits<std::uint64_t>::max();
-    const Device device(instance, selector.value_or(""), limit);
-    work(device);
+    const std::unique_ptr<Device> device = open(instance);
+    work(*device);
   });
 }
 

@@ -2,6 +2,7 @@
 // Which Vulkan device, and opening it.
 
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "apps/freevoxels/option_values.h"
@@ -14,13 +15,15 @@ struct DeviceOptions {
   std::optional<int> memoryLimit;  ///< MiB
 
   void add(CLI::App& app);
+  std::unique_ptr<Device> open(const Instance& instance) const;
   /// Opens the device and calls `work` with it. With FREEVOXELS_VALIDATION=1 any message of the validation
   /// layer is an internal error in the end.
   void withDevice(const std::function<void(const Device&)>& work) const;
 };
 
 /// Calls `work` with a Vulkan instance; validation as in withDevice.
-void withInstance(const std::function<void(const Instance&)>& work);
+void withInstance(const std::function<void(const Instance&)>& work,
+                  std::span<const char* const> extensions = {});
 
 /// Says where the work is done if it is no GPU that does it.
 void mentionCpu(const Device& device);

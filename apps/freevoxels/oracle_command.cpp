@@ -79,7 +79,7 @@ void OracleCommand::draw() const {
   const OracleSettings settings{
       .size = scene_.camera.size, .depth = scene_.output.wantsDepth(), .lighting = scene.lighting};
   const Oracle oracle =
-      renderOracle(scene.volume, scene.classification, scene.camera, settings, line.progress());
+      renderOracle(*scene.volume, scene.classification, scene.camera, settings, line.progress());
   line.erase();
   logOracle(oracle, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   if (!oracle.converged)

@@ -11,6 +11,8 @@ namespace freevoxels {
 
 namespace {
 
+constexpr const char* kGroup = "Output";
+
 std::string extensionOf(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension().string();
   std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
@@ -28,16 +30,19 @@ bool isPng(const std::string& file) {
 }
 
 void OutputOptions::add(CLI::App& app) {
-  const char* const group = "Output";
   app.add_option("OUT", files,
                  "Pictures to write: .exr (linear, premultiplied) or .png (sRGB, straight alpha)");
-  addTriple(app, "--background", "R,G,B", background,
-            "Colour behind the volume in a .png, linear [transparent]", {0.0, 1.0})
-      ->group(group);
-  app.add_flag("--float", fullFloat, "32 bits a channel in an .exr [16]")->group(group);
+  addBackground(app);
+  app.add_flag("--float", fullFloat, "32 bits a channel in an .exr [16]")->group(kGroup);
   addWord(app, "--aov", {"depth"}, aov,
           "Adds the channel Z, mean distance along the viewing axis, to an .exr")
-      ->group(group);
+      ->group(kGroup);
+}
+
+void OutputOptions::addBackground(CLI::App& app) {
+  addTriple(app, "--background", "R,G,B", background,
+            "Colour behind the volume in a .png, linear [transparent]", {0.0, 1.0})
+      ->group(kGroup);
 }
 
 bool OutputOptions::honours(const std::string& option) const {

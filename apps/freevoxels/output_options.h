@@ -23,6 +23,8 @@ struct OutputOptions {
   std::optional<int> aov;
 
   void add(CLI::App& app);
+  /// --background alone.
+  void addBackground(CLI::App& app);
   /// Whether the option, "--float", changes any of the files.
   bool honours(const std::string& option) const;
   /// Before any work: extensions, options that no output can honour (ExitCode::Usage), folders

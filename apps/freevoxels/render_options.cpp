@@ -96,7 +96,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
 
   ProgressLine line(!messages.quiet);
   Scene view = open(opened, line, report);
-  const std::vector<Camera> cameras = scene.camera.resolveOrbit(view.volume, int(outputs.size()));
+  const std::vector<Camera> cameras = scene.camera.resolveOrbit(*view.volume, int(outputs.size()));
   view.camera = cameras.front();
   settings.lighting = view.lighting;
   report.device = opened.description();
@@ -110,7 +110,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
   logOptions(report.options);
   mentionCpu(opened);
 
-  Renderer renderer(opened, view.volume, view.classification, method.table(), line.progress());
+  Renderer renderer(opened, *view.volume, view.classification, method.table(), line.progress());
   const std::vector<StageTime> built = renderer.timings();
   addTimes(report.stages, built);
   for (std::size_t frame = 0; frame < outputs.size(); ++frame) {
@@ -130,7 +130,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
     addTimes(report.stages, writing);
   }
   report.visibleVoxels = renderer.visibleVoxelCount();
-  report.voxels = view.volume.voxelCount();
+  report.voxels = view.volume->voxelCount();
   report.memory = renderer.memory();
   report.devicePeak = opened.peakBytes();
   report.cut = renderer.cutCounts();

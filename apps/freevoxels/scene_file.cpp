@@ -40,11 +40,13 @@ std::string quoted(const std::string& section, const std::string& key) {
   return inQuotes(section.empty() ? key : section + "." + key);
 }
 
-/// Of all commands that take scenes.
+/// Of the command and all others of the program that take scenes.
 std::vector<const CLI::Option*> sceneOptions(const CLI::App& command) {
   std::vector<const CLI::Option*> options;
-  const CLI::App& program = *command.get_parent();
-  for (const CLI::App* other : program.get_subcommands([](const CLI::App*) { return true; })) {
+  std::vector<const CLI::App*> commands{&command};
+  if (const CLI::App* program = command.get_parent())
+    commands = program->get_subcommands([](const CLI::App*) { return true; });
+  for (const CLI::App* other : commands) {
     if (other->get_option_no_throw("--scene") == nullptr) continue;
     for (const CLI::Option* option : other->get_options())
       if (!sceneSection(*option).empty()) options.push_back(option);

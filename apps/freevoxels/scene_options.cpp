@@ -9,12 +9,16 @@ void SceneOptions::add(CLI::App& app) {
   input.add(app);
   input.addGrid(app);
   output.add(app);
+  addLook(app);
+  file.addSave(app);
+}
+
+void SceneOptions::addLook(CLI::App& app) {
   classification.add(app);
   emission.add(app);
   camera.add(app);
   lighting.add(app);
   file.add(app);
-  file.addSave(app);
 }
 
 void SceneOptions::takeScene() {
@@ -28,13 +32,17 @@ void SceneOptions::takeScene() {
   if (output.files.empty()) fail(ExitCode::Usage, "OUT is required: name a picture to write, .exr or .png");
 }
 
-void SceneOptions::check(const std::vector<std::string>& moreOutputs) const {
+void SceneOptions::checkLook() const {
   input.check();
   if (classification.albedoGrid && proceduralName(input.input))
     fail(ExitCode::Usage, "--albedo-grid chooses among the grids of a file, and {} has one", input.input);
   emission.check(input);
   camera.check();
   lighting.check();
+}
+
+void SceneOptions::check(const std::vector<std::string>& moreOutputs) const {
+  checkLook();
   output.check();
   std::vector<std::string> files = moreOutputs;
   if (file.saved) files.push_back(*file.saved);
@@ -52,22 +60,28 @@ SceneOptions SceneOptions::withOutputs(std::vector<std::string> files) const {
   return options;
 }
 
-Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
-  Scene scene;
-  scene.volume =
-      input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.albedoGrid});
-  scene.classification = classification.resolve(scene.volume);
-  scene.classification.emission = emission.resolve(scene.volume, scene.classification);
+Volume SceneOptions::readVolume(std::uint64_t maximumVoxels) const {
+  return input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.albedoGrid});
+}
+
+Scene SceneOptions::resolve(std::shared_ptr<const Volume> volume) const {
+  Scene scene{.volume = std::move(volume)};
+  scene.classification = classification.resolve(*scene.volume);
+  scene.classification.emission = emission.resolve(*scene.volume, scene.classification);
   if (scene.classification.emission && !classification.albedo)
     scene.classification.albedo = glm::vec3(kSootAlbedo);
-  scene.camera = camera.resolve(scene.volume);
-  scene.lighting = lighting.resolve(scene.volume);
+  scene.camera = camera.resolve(*scene.volume);
+  scene.lighting = lighting.resolve(*scene.volume);
   return scene;
 }
 
+Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
+  return resolve(std::make_shared<const Volume>(readVolume(maximumVoxels)));
+}
+
 void SceneOptions::warn(const Scene& scene) const {
-  warnAboutValues(scene.volume, !scene.classification.transferFunction);
-  EmissionOptions::warn(scene.volume, scene.classification);
+  warnAboutValues(*scene.volume, !scene.classification.transferFunction);
+  EmissionOptions::warn(*scene.volume, scene.classification);
 }
 
 void SceneOptions::save(const OptionList& options) const {
@@ -78,7 +92,7 @@ OptionList SceneOptions::describe(const Scene& scene, const OptionList& method) 
   OptionList options;
   input.describe(options);
   classification.describe(options, scene.classification);
-  emission.describe(options, scene.volume, scene.classification.emission);
+  emission.describe(options, *scene.volume, scene.classification.emission);
   camera.describe(options, scene.camera);
   lighting.describe(options, scene.lighting);
   options.insert(options.end(), method.begin(), method.end());
@@ -88,7 +102,7 @@ OptionList SceneOptions::describe(const Scene& scene, const OptionList& method) 
 
 void SceneOptions::write(const Image& image, const Scene& scene, const std::string& command,
                          const OptionList& options, std::map<std::string, std::string> facts) const {
-  facts.emplace("volume", scene.volume.source);
+  facts.emplace("volume", scene.volume->source);
   ExrOptions exr =
       exrMetadata(command, options, facts, scene.camera, double(image.size.x) / double(image.size.y));
   exr.fullFloat = output.fullFloat;

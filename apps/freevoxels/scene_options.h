@@ -2,6 +2,8 @@
 // What every command that makes pictures of a volume is told: the volume, what it is made of, from where it
 // is seen, and where the pictures go.
 
+#include <memory>
+
 #include "apps/freevoxels/camera_options.h"
 #include "apps/freevoxels/classification_options.h"
 #include "apps/freevoxels/emission_options.h"
@@ -13,7 +15,7 @@
 namespace freevoxels {
 
 struct Scene {
-  Volume volume;
+  std::shared_ptr<const Volume> volume;
   Classification classification;
   Camera camera;
   std::optional<Lighting> lighting;
@@ -29,14 +31,22 @@ struct SceneOptions {
   SceneFileOptions file;
 
   void add(CLI::App& app);
+  /// Those of them that say how a volume looks.
+  void addLook(CLI::App& app);
   /// What --scene has and the command line has not. A single picture is then OUT, where the scene has the
   /// volume. To be called before all below.
   void takeScene();
+  /// Options that are wrong with any volume and any file: ExitCode::Usage.
+  void checkLook() const;
   /// Before any work; `moreOutputs` are the files that the command writes besides pictures.
   void check(const std::vector<std::string>& moreOutputs = {}) const;
   /// The same scene with other files to write.
   SceneOptions withOutputs(std::vector<std::string> files) const;
-  /// Reads the volume and what is made for it.
+  /// Reads the volume, with the grids that the options need.
+  Volume readVolume(std::uint64_t maximumVoxels) const;
+  /// Reads what else there is to read.
+  Scene resolve(std::shared_ptr<const Volume> volume) const;
+  /// Both.
   Scene open(std::uint64_t maximumVoxels) const;
   /// One warning each for values of the scene's volume that are not drawn as they are.
   void warn(const Scene& scene) const;
