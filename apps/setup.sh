@@ -11,8 +11,9 @@ packages=(
   glslang-tools spirv-tools
   libglm-dev libfmt-dev libspdlog-dev nlohmann-json3-dev libcli11-dev
   libopenexr-dev libpng-dev
+  libglfw3-dev libimgui-dev
   libopenvdb-dev libtbb-dev libboost-iostreams-dev # OpenVDB's headers and CMake module need the last
-  libgtest-dev
+  libgtest-dev xvfb xdotool
 )
 
 say() { echo "setup: $*"; }

@@ -1,0 +1,25 @@
+#pragma once
+// The panels at the window's side. Each draws into the current Dear ImGui window and sets
+// ViewState::changed where it changes what is looked at.
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "apps/view/view_state.h"
+
+namespace freevoxels {
+
+using Activity = std::optional<std::pair<std::string, double>>;
+
+/// What is being done, and what went wrong.
+void drawStatus(const ViewState& state, const Activity& activity);
+void drawVolumePanel(ViewState& state);
+void drawCameraPanel(ViewState& state);
+/// What to take away: the command line, pictures, scenes.
+void drawExportPanel(ViewState& state);
+
+/// All of them, in their order.
+void drawPanelsOf(ViewState& state, const Activity& activity);
+
+}  // namespace freevoxels

@@ -1,0 +1,137 @@
+#include "apps/view/picture_area.h"
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "apps/view/navigation.h"
+#include "apps/view/ui_painter.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr double kDollyPerNotch = 0.9;
+constexpr double kFlightPerSecond = 0.5;  // of the box's longest edge
+constexpr float kCheckEdge = 12.0f;       // of the squares behind what is transparent
+
+bool isDown(int key) {
+  return ImGui::IsKeyDown(key);
+}
+
+double longestEdge(const Volume& volume) {
+  const glm::dmat3 axes(volume.indexToWorld);
+  double longest = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+    longest = std::max(longest, glm::length(axes[axis]) * volume.dimensions[axis]);
+  return longest;
+}
+
+/// From where it looks from now.
+Camera framed(const Camera& camera, const Volume& volume, double aspect) {
+  const glm::dvec3 arm = glm::normalize(camera.position - camera.lookAt);
+  const double azimuth = glm::degrees(std::atan2(arm.x, arm.z));
+  const double elevation = glm::degrees(std::asin(std::clamp(arm.y, -1.0, 1.0)));
+  constexpr double kMostElevation = 89.0;  // beyond, +y is along the view
+  return framingCamera(volume, azimuth, std::clamp(elevation, -kMostElevation, kMostElevation), aspect,
+                       {.orthographic = camera.orthographic, .verticalFov = camera.verticalFov});
+}
+
+/// What is transparent shows as squares.
+void drawChecks(ImVec2 low, ImVec2 high) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(low, high, IM_COL32(38, 38, 38, 255));
+  for (float y = low.y; y < high.y; y += kCheckEdge)
+    for (float x = low.x + (int((y - low.y) / kCheckEdge) % 2 != 0 ? kCheckEdge : 0.0f); x < high.x;
+         x += 2 * kCheckEdge)
+      list.AddRectFilled({x, y}, {std::min(x + kCheckEdge, high.x), std::min(y + kCheckEdge, high.y)},
+                         IM_COL32(46, 46, 46, 255));
+}
+
+/// The world's axes as the camera sees them, in a corner.
+void drawAxes(const Camera& camera, ImVec2 corner) {
+  constexpr float kLength = 28.0f;
+  constexpr std::array kColors{IM_COL32(230, 90, 80, 255), IM_COL32(120, 200, 90, 255),
+                               IM_COL32(90, 140, 240, 255)};
+  constexpr std::array kNames{"x", "y", "z"};
+  const glm::dmat3 toCamera(worldToCamera(camera));
+  std::array<int, 3> order{0, 1, 2};
+  std::ranges::sort(order, {}, [&](int axis) { return toCamera[axis].z; });
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  for (const int axis : order) {
+    const ImVec2 end(corner.x + kLength * float(toCamera[axis].x),
+                     corner.y - kLength * float(toCamera[axis].y));
+    list.AddLine(corner, end, kColors[std::size_t(axis)], 2.0f);
+    list.AddText({end.x + 3.0f, end.y - 7.0f}, kColors[std::size_t(axis)], kNames[std::size_t(axis)]);
+  }
+}
+
+}  // namespace
+
+void PictureArea::drag(ViewState& state, glm::vec2 size) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const glm::dvec2 way = glm::dvec2(io.MouseDelta.x, -io.MouseDelta.y) / double(size.y);
+  const bool left = ImGui::IsMouseDown(ImGuiMouseButton_Left);
+  if (way != glm::dvec2(0.0)) {
+    if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || (left && io.KeyShift))
+      state.look(panned(*state.camera, way));
+    else if (ImGui::IsMouseDown(ImGuiMouseButton_Right))
+      state.look(turned(*state.camera, way));
+    else if (left && io.KeyCtrl)
+      state.look(dollied(*state.camera, std::exp(-4.0 * way.y)));
+    else if (left)
+      state.look(orbited(*state.camera, way));
+  }
+}
+
+void PictureArea::fly(ViewState& state) {
+  glm::dvec3 way(double(isDown(GLFW_KEY_D)) - double(isDown(GLFW_KEY_A)),
+                 double(isDown(GLFW_KEY_E)) - double(isDown(GLFW_KEY_Q)),
+                 double(isDown(GLFW_KEY_W)) - double(isDown(GLFW_KEY_S)));
+  if (way == glm::dvec3(0.0) || !state.latest) return;
+  moves_ = true;
+  const double pace = ImGui::GetIO().KeyShift ? 4.0 : 1.0;
+  way *=
+      pace * kFlightPerSecond * longestEdge(*state.latest->scene.volume) * double(ImGui::GetIO().DeltaTime);
+  state.look(flown(*state.camera, way));
+}
+
+void PictureArea::keys(ViewState& state) const {
+  const double aspect = double(state.scene.camera.size.x) / double(state.scene.camera.size.y);
+  if (ImGui::IsKeyPressed(GLFW_KEY_F, false) && state.latest)
+    state.look(framed(*state.camera, *state.latest->scene.volume, aspect));
+  if (ImGui::IsKeyPressed(GLFW_KEY_O, false)) state.look(withOtherProjection(*state.camera));
+  for (int axis = 0; axis < 6; ++axis)
+    if (ImGui::IsKeyPressed(GLFW_KEY_1 + axis, false)) state.look(alongAxis(*state.camera, axis));
+}
+
+void PictureArea::draw(ViewState& state, const Texture* texture) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const ImVec2 low = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+  pixels_ = glm::max(
+      glm::ivec2(glm::vec2(room.x * io.DisplayFramebufferScale.x, room.y * io.DisplayFramebufferScale.y)),
+      glm::ivec2(0));
+  moves_ = false;
+  if (room.x < 1.0f || room.y < 1.0f) return;
+  const ImVec2 high(low.x + room.x, low.y + room.y);
+  drawChecks(low, high);
+  if (texture != nullptr) ImGui::GetWindowDrawList()->AddImage(textureId(*texture), low, high);
+  constexpr ImGuiButtonFlags kAnyButton = ImGuiButtonFlags_MouseButtonLeft |
+                                          ImGuiButtonFlags_MouseButtonMiddle |
+                                          ImGuiButtonFlags_MouseButtonRight;
+  ImGui::InvisibleButton("picture", room, kAnyButton);
+  if (!state.camera) return;
+  drawAxes(*state.camera, {low.x + 44.0f, high.y - 44.0f});
+  moves_ = ImGui::IsItemActive();
+  if (moves_) drag(state, {room.x, room.y});
+  if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f)
+    state.look(dollied(*state.camera, std::pow(kDollyPerNotch, double(io.MouseWheel))));
+  if (io.WantTextInput || io.KeyCtrl) return;
+  fly(state);
+  keys(state);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,79 @@
+#include "apps/view/picture_maker.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "engine/volume/coarse_volume.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// Everything that the table and what is stored of a volume come from, beside the volume.
+std::string rendererOptions(const PictureRequest& request, const Scene& scene) {
+  OptionList options;
+  request.scene.classification.describe(options, scene.classification);
+  request.scene.emission.describe(options, *scene.volume, scene.classification.emission);
+  const TableSettings table = request.method.table();
+  options.emplace_back("table", fmt::format("{} {} {} {}", int(table.directions), int(table.code),
+                                            int(table.filter), table.pathLengthCorrection));
+  return commandText(options);
+}
+
+int blockEdge(const Volume& volume, int mostVoxelsAlongEdge) {
+  const glm::ivec3 size = volume.dimensions;
+  return (std::max({size.x, size.y, size.z}) + mostVoxelsAlongEdge - 1) / mostVoxelsAlongEdge;
+}
+
+}  // namespace
+
+PictureMaker::PictureMaker(const Device& device, VolumeCache& volumes, int mostVoxelsAlongEdge)
+    : device_(device), volumes_(volumes), mostVoxelsAlongEdge_(mostVoxelsAlongEdge) {}
+
+std::shared_ptr<const Volume> PictureMaker::coarse(const Scene& scene) {
+  const bool densities = !scene.classification.transferFunction;
+  if (whole_ == scene.volume && densities == coarseIsOfDensities_) return coarse_;
+  const int edge = blockEdge(*scene.volume, mostVoxelsAlongEdge_);
+  whole_ = scene.volume;
+  coarseIsOfDensities_ = densities;
+  coarse_ = edge <= 1 ? whole_
+                      : std::make_shared<const Volume>(coarseVolume(
+                            *whole_, edge, densities ? WithoutData::Zero : WithoutData::Ignored));
+  rendererOptions_.clear();
+  return coarse_;
+}
+
+void PictureMaker::makeRenderer(const Scene& scene, const MethodOptions& method, const std::string& options,
+                                const Progress& progress) {
+  const std::shared_ptr<const Volume> volume = coarse(scene);
+  if (renderer_ && options == rendererOptions_) return;
+  renderer_ = nullptr;  // not both at once
+  rendererOptions_.clear();
+  renderer_ = std::make_unique<Renderer>(device_, *volume, scene.classification, method.table(), progress);
+  rendererOptions_ = options;
+}
+
+Picture PictureMaker::make(const PictureRequest& request, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  request.scene.checkLook();
+  if (progress) progress("reading " + request.scene.input.input, 0.0);
+  Picture picture{.number = request.number, .scene = request.scene.resolve(volumes_.read(request.scene))};
+  makeRenderer(picture.scene, request.method, rendererOptions(request, picture.scene), progress);
+
+  FrameSettings settings{.size = request.scene.camera.size, .lighting = picture.scene.lighting};
+  request.method.apply(settings);
+  picture.image = renderer_->render(picture.scene.camera, settings, progress);
+  OptionList method;
+  request.method.describe(method);
+  picture.options = request.scene.describe(picture.scene, method);
+  picture.coarse = coarse_ != whole_;
+  picture.times = renderer_->timings();
+  picture.memory = renderer_->memory();
+  picture.cut = renderer_->cutCounts();
+  picture.visibleVoxels = renderer_->visibleVoxelCount();
+  picture.milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return picture;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,63 @@
+#pragma once
+// Pictures made beside the window, so that it never waits for them.
+
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "apps/freevoxels/device_options.h"
+#include "apps/view/picture_maker.h"
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+class RenderThread {
+ public:
+  struct Result {
+    std::uint64_t number = 0;                ///< of the request
+    std::shared_ptr<const Picture> picture;  ///< null where it failed
+    std::string problem;                     ///< then the sentence that says why
+    ExitCode code = ExitCode::Success;       ///< and what `freevoxels render` would end with
+  };
+
+  /// On a device of its own. `finished` is called by the thread whenever there is a result.
+  RenderThread(const Instance& instance, const DeviceOptions& device, VolumeCache& volumes,
+               int mostVoxelsAlongEdge, std::function<void()> finished);
+  /// Waits for the picture that is being made.
+  ~RenderThread();
+  RenderThread(const RenderThread&) = delete;
+  RenderThread& operator=(const RenderThread&) = delete;
+
+  /// Takes the place of a request that has not been begun.
+  void ask(PictureRequest request);
+  /// The last one since the last call.
+  std::optional<Result> take();
+  /// What it is doing, and how much of that is done; nothing while it waits.
+  std::optional<std::pair<std::string, double>> activity() const;
+
+ private:
+  void run();
+  Result answer(const PictureRequest& request);
+
+  const Instance& instance_;
+  const DeviceOptions& deviceOptions_;
+  VolumeCache& volumes_;
+  const int mostVoxelsAlongEdge_;
+  const std::function<void()> finished_;
+  std::unique_ptr<Device> device_;
+  std::unique_ptr<PictureMaker> maker_;
+
+  mutable std::mutex mutex_;  ///< of all below
+  std::condition_variable asked_;
+  bool ends_ = false;
+  std::optional<PictureRequest> waiting_;
+  std::optional<Result> result_;
+  std::optional<std::pair<std::string, double>> activity_;
+  std::thread thread_;
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,36 @@
+#pragma once
+// Dear ImGui's triangles, drawn into a window.
+
+#include <imgui.h>
+
+#include "apps/view/swapchain.h"
+#include "engine/vulkan/commands.h"
+#include "engine/vulkan/pipeline.h"
+#include "engine/vulkan/texture.h"
+
+namespace freevoxels {
+
+/// What Dear ImGui calls a texture; it must live until the frame that shows it is drawn.
+inline ImTextureID textureId(const Texture& texture) {
+  return const_cast<Texture*>(&texture);
+}
+
+class UiPainter {
+ public:
+  /// After Dear ImGui has its fonts.
+  UiPainter(const Device& device, VkFormat format);
+
+  /// Clears the acquired image and draws into it, up to layout PRESENT_SRC_KHR. Waits.
+  void draw(const ImDrawData& triangles, const Swapchain& target);
+
+ private:
+  void upload(const ImDrawData& triangles);
+  void record(Commands& commands, const ImDrawData& triangles, glm::ivec2 size) const;
+
+  const Device& device_;
+  Pipeline pipeline_;
+  Texture fonts_;
+  Buffer vertices_, indices_;  ///< at least as large as the last frame needed
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,176 @@
+#include "apps/view/viewer.h"
+
+#include <backends/imgui_impl_glfw.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "apps/view/panels.h"
+#include "engine/core/error.h"
+#include "engine/image/image.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr std::array kDeviceExtensions{VK_KHR_SWAPCHAIN_EXTENSION_NAME};
+constexpr glm::ivec2 kWindowSize{1280, 800};
+constexpr float kFontPixels = 13.0f;
+constexpr float kSidebar = 340.0f;
+
+constexpr int kQuickVoxels = 64;             // along the longest edge, while something moves
+constexpr double kQuickMilliseconds = 45.0;  // that a picture may take then
+constexpr double kLeastQuickScale = 0.2;
+constexpr std::chrono::milliseconds kStill{120};  // before the whole picture is begun
+constexpr double kIdleSeconds = 0.25;             // between frames in which nothing happens
+
+std::string titleOf(const ViewState& state) {
+  return state.scene.input.input + " - FreeVoxels";
+}
+
+}  // namespace
+
+Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const ViewOptions& options)
+    : options_(options),
+      window_(windows, "FreeVoxels", kWindowSize),
+      device_(instance, options.device.selector.value_or(""), std::numeric_limits<std::uint64_t>::max(),
+              kDeviceExtensions),
+      swapchain_(instance, device_, window_),
+      state_{.scene = options.scene, .method = options.method},
+      volumes_(maximumVoxels(device_)),
+      quick_(instance, options_.device, volumes_, kQuickVoxels, Window::wake),
+      whole_(instance, options_.device, volumes_, std::numeric_limits<int>::max(), Window::wake) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  ImFontConfig font;
+  font.SizePixels = std::round(kFontPixels * window_.contentScale());
+  io.Fonts->AddFontDefault(&font);
+  ImGui::StyleColorsDark();
+  ImGui::GetStyle().ScaleAllSizes(window_.contentScale());
+  painter_ = std::make_unique<UiPainter>(device_, swapchain_.format());
+}
+
+void Viewer::show(const std::shared_ptr<const Picture>& picture) {
+  state_.latest = picture;
+  if (!picture->coarse) state_.whole = picture;
+  if (!state_.camera) state_.camera = picture->scene.camera;
+  const std::optional<glm::dvec3>& background = state_.scene.output.background;
+  const glm::vec3 color(background.value_or(glm::dvec3(0.0)));
+  if (!texture_ || texture_->size() != picture->image.size)
+    texture_ = std::make_unique<Texture>(device_, picture->image.size, "picture");
+  texture_->upload(device_, srgbTexels(picture->image, background ? &color : nullptr));
+}
+
+void Viewer::takeResults() {
+  const auto take = [this](RenderThread& thread) {
+    const std::optional<RenderThread::Result> result = thread.take();
+    if (!result) return false;
+    if (!result->picture) {
+      state_.problem = result->problem;
+      failed_ = result->number;
+      if (options_.screenshot) fail(result->code, "{}", result->problem);
+      return false;
+    }
+    state_.problem.clear();
+    const std::uint64_t shown = state_.latest ? state_.latest->number : 0;
+    if (result->number < shown) return false;
+    show(result->picture);
+    return true;
+  };
+  if (take(quick_)) {
+    const double faster = std::sqrt(kQuickMilliseconds / std::max(state_.latest->milliseconds, 1.0));
+    quickScale_ = std::clamp(quickScale_ * std::clamp(faster, 0.7, 1.3), kLeastQuickScale, 1.0);
+  }
+  if (take(whole_)) wholeIsQuick_ = state_.latest->milliseconds < kQuickMilliseconds;
+}
+
+/// While things change, pictures are made quickly; of what stays, one is made of everything.
+void Viewer::ask() {
+  if (area_.pixels().x > 0 && area_.pixels().y > 0 && state_.scene.camera.size != area_.pixels()) {
+    state_.scene.camera.size = area_.pixels();
+    state_.changed = true;
+  }
+  if (area_.pixels().x == 0) return;
+  const Clock::time_point now = Clock::now();
+  if (state_.changed) {
+    state_.changed = false;
+    lastChange_ = now;
+    PictureRequest request{.scene = state_.scene, .method = state_.method, .number = ++lastRequest_};
+    if (wholeIsQuick_) {
+      askedOfWhole_ = lastRequest_;
+      whole_.ask(std::move(request));
+      return;
+    }
+    request.scene.camera.size =
+        glm::max(glm::ivec2(glm::round(quickScale_ * glm::dvec2(request.scene.camera.size))), glm::ivec2(1));
+    quick_.ask(std::move(request));
+  }
+  const bool still = now - lastChange_ >= kStill && !area_.moves();
+  if (still && askedOfWhole_ != lastRequest_) {
+    askedOfWhole_ = lastRequest_;
+    whole_.ask({.scene = state_.scene, .method = state_.method, .number = lastRequest_});
+  }
+}
+
+bool Viewer::isComplete() const {
+  return state_.whole && state_.whole->number == lastRequest_ && !state_.changed &&
+         state_.latest == state_.whole;
+}
+
+void Viewer::drawPanels() {
+  const ImGuiIO& io = ImGui::GetIO();
+  constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
+                                      ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                                      ImGuiWindowFlags_NoSavedSettings;
+  const float sidebar = std::min(kSidebar * window_.contentScale(), 0.5f * io.DisplaySize.x);
+  ImGui::SetNextWindowPos({0.0f, 0.0f});
+  ImGui::SetNextWindowSize({sidebar, io.DisplaySize.y});
+  ImGui::Begin("panels", nullptr, kFixed);
+  const auto activity = whole_.activity() ? whole_.activity() : quick_.activity();
+  drawPanelsOf(state_, activity);
+  ImGui::End();
+
+  ImGui::SetNextWindowPos({sidebar, 0.0f});
+  ImGui::SetNextWindowSize({io.DisplaySize.x - sidebar, io.DisplaySize.y});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0f, 0.0f});
+  ImGui::Begin("picture", nullptr,
+               kFixed | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::PopStyleVar();
+  area_.draw(state_, texture_.get());
+  ImGui::End();
+}
+
+void Viewer::drawFrame() {
+  if (!swapchain_.acquire()) return;
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+  drawPanels();
+  ImGui::Render();
+  painter_->draw(*ImGui::GetDrawData(), swapchain_);
+  if (isComplete()) ++completeFrames_;
+  if (options_.screenshot && completeFrames_ == options_.after.value_or(1)) writeScreenshot();
+  swapchain_.present();
+}
+
+void Viewer::writeScreenshot() const {
+  const DeferredInterrupts wholeFile;
+  writePngTexels(*options_.screenshot, swapchain_.size(), swapchain_.read());
+}
+
+void Viewer::run() {
+  std::string title;
+  while (!window_.wantsToClose()) {
+    const bool settles = !isComplete() && askedOfWhole_ != lastRequest_;
+    Window::waitForEvents(area_.moves() || settles || options_.screenshot ? 1e-3 : kIdleSeconds);
+    for (const std::string& file : window_.takeDropped()) state_.open(file);
+    if (title != titleOf(state_)) window_.setTitle(title = titleOf(state_));
+    takeResults();
+    drawFrame();
+    ask();
+    if (options_.screenshot && completeFrames_ >= options_.after.value_or(1)) return;
+  }
+}
+
+}  // namespace freevoxels

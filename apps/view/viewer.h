@@ -1,0 +1,56 @@
+#pragma once
+// The window with its panels, and who makes the pictures in it.
+
+#include <chrono>
+#include <memory>
+
+#include "apps/view/picture_area.h"
+#include "apps/view/render_thread.h"
+#include "apps/view/swapchain.h"
+#include "apps/view/ui_painter.h"
+#include "apps/view/view_options.h"
+#include "apps/view/view_state.h"
+#include "apps/view/volume_cache.h"
+#include "apps/view/window.h"
+
+namespace freevoxels {
+
+class Viewer {
+ public:
+  /// Fails with ExitCode::Device where there is no display, or no device that draws into one.
+  Viewer(const WindowSystem& windows, const Instance& instance, const ViewOptions& options);
+
+  /// Until the window is closed, or its screenshot taken. Fails as the picture of a screenshot does.
+  void run();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void takeResults();
+  void show(const std::shared_ptr<const Picture>& picture);
+  void ask();
+  void drawFrame();
+  void drawPanels();
+  bool isComplete() const;
+  void writeScreenshot() const;
+
+  const ViewOptions options_;
+  Window window_;
+  Device device_;  ///< that draws the window; pictures are made on others
+  Swapchain swapchain_;
+  std::unique_ptr<UiPainter> painter_;
+
+  ViewState state_;
+  PictureArea area_;
+  std::unique_ptr<Texture> texture_;
+
+  VolumeCache volumes_;
+  RenderThread quick_, whole_;  ///< of few voxels, and of all
+  std::uint64_t lastRequest_ = 0, askedOfWhole_ = 0, failed_ = 0;
+  Clock::time_point lastChange_;
+  double quickScale_ = 0.5;  ///< of the picture's edges while something moves
+  bool wholeIsQuick_ = false;
+  int completeFrames_ = 0;
+};
+
+}  // namespace freevoxels
