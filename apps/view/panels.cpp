@@ -56,16 +56,10 @@ void drawCameraPanel(ViewState& state) {
   if (ImGui::Checkbox("orthographic (O)", &orthographic)) state.look(withOtherProjection(camera));
 }
 
-void drawExportPanel(ViewState& state) {
-  if (!ImGui::CollapsingHeader("Take away", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  if (ImGui::Button("Copy command line")) ImGui::SetClipboardText(state.commandLine("picture.png").c_str());
-}
-
 void drawPanelsOf(ViewState& state, const Activity& activity) {
   drawStatus(state, activity);
   drawVolumePanel(state);
   drawCameraPanel(state);
-  drawExportPanel(state);
 }
 
 }  // namespace freevoxels

@@ -20,9 +20,10 @@ struct PictureRequest {
 };
 
 struct Picture {
-  std::uint64_t number = 0;  ///< of the request
+  PictureRequest request;    ///< that it answers
   Scene scene;               ///< as resolved; its volume is the whole one
   OptionList options;        ///< that make the same pixels
+  DeviceDescription device;  ///< that made it
   Image image;
   bool coarse = false;  ///< of fewer voxels than the volume has
   std::vector<StageTime> times;

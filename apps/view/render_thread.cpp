@@ -1,9 +1,16 @@
 #include "apps/view/render_thread.h"
 
-#include <new>
 #include <utility>
 
+#include "apps/view/failure.h"
+
 namespace freevoxels {
+
+namespace {
+
+struct Ended {};
+
+}  // namespace
 
 RenderThread::RenderThread(const Instance& instance, const DeviceOptions& device, VolumeCache& volumes,
                            int mostVoxelsAlongEdge, std::function<void()> finished)
@@ -45,6 +52,7 @@ std::optional<std::pair<std::string, double>> RenderThread::activity() const {
 RenderThread::Result RenderThread::answer(const PictureRequest& request) {
   const Progress progress = [this](std::string_view stage, double fraction) {
     const std::lock_guard lock(mutex_);
+    if (ends_) throw Ended();
     activity_.emplace(std::string(stage), fraction);
   };
   Result result{.number = request.number};
@@ -52,19 +60,15 @@ RenderThread::Result RenderThread::answer(const PictureRequest& request) {
     if (!device_) device_ = deviceOptions_.open(instance_);
     if (!maker_) maker_ = std::make_unique<PictureMaker>(*device_, volumes_, mostVoxelsAlongEdge_);
     result.picture = std::make_shared<const Picture>(maker_->make(request, progress));
-  } catch (const Error& error) {
-    result.problem = error.what();
-    result.code = error.code();
-    if (error.code() == ExitCode::Device) {  // lost: the next request opens it again
+  } catch (const Ended&) {  // nobody takes a result
+  } catch (...) {
+    const Failure failure = currentFailure();
+    result.problem = failure.sentence;
+    result.code = failure.code;
+    if (failure.code == ExitCode::Device) {  // lost: the next request opens it again
       maker_ = nullptr;
       device_ = nullptr;
     }
-  } catch (const std::bad_alloc&) {
-    result.code = ExitCode::OutOfMemory;
-    result.problem = "this machine's memory is full: use a smaller volume or picture";
-  } catch (const std::exception& error) {
-    result.code = ExitCode::Internal;
-    result.problem = fmt::format("internal error, please report it: {}", error.what());
   }
   return result;
 }
