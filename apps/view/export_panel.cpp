@@ -44,10 +44,8 @@ void ExportPanel::draw(ViewState& state) {
   if (!ImGui::CollapsingHeader("Take away", ImGuiTreeNodeFlags_DefaultOpen)) return;
   ImGui::PushID("take away");
   if (state.whole) drawCommand(*state.whole, meantFile(pictureName_));
-  ImGui::BeginDisabled(waiting_ || job_.busy());
   drawPictureFields(state);
   drawTurn(state.whole.get());
-  ImGui::EndDisabled();
   drawWork();
   ImGui::PopID();
 }
@@ -111,12 +109,12 @@ void ExportPanel::drawTurn(const Picture* picture) {
 
 void ExportPanel::drawWork() {
   const bool busy = job_.busy();
-  if (waiting_ || busy) {
+  if (busy || !waiting_.empty()) {
     const auto [stage, fraction] =
         busy ? job_.activity() : std::pair<std::string, double>("waiting for the whole picture", 0.0);
     ImGui::TextWrapped("%s", stage.c_str());
     if (ImGui::Button("Cancel")) {
-      waiting_.reset();
+      waiting_.clear();
       job_.cancel();
     }
     ImGui::SameLine();
@@ -128,20 +126,21 @@ void ExportPanel::drawWork() {
 
 void ExportPanel::want(Task task) {
   last_ = {};
-  waiting_ = std::move(task);
+  waiting_.push_back(std::move(task));
 }
 
 void ExportPanel::begin(const ViewState& state) {
   if (std::optional<ExportJob::Outcome> outcome = job_.take()) last_ = std::move(*outcome);
-  if (!waiting_ || job_.busy()) return;
+  if (waiting_.empty() || job_.busy()) return;
   if (state.failed) {
     last_ = {false, "not saved, as there is no picture: " + state.problem};
-    waiting_.reset();
+    waiting_.clear();
   } else if (state.complete) {
-    job_.start([work = std::move(waiting_->work),
+    Task& next = waiting_.front();
+    job_.start([work = std::move(next.work),
                 picture = state.whole](const Progress& progress) { work(*picture, progress); },
-               std::move(waiting_->done));
-    waiting_.reset();
+               std::move(next.done));
+    waiting_.pop_front();
   }
 }
 

@@ -1,9 +1,9 @@
 #pragma once
 // "Take away": the command line of what is seen, and its files.
 
+#include <deque>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "apps/freevoxels/device_options.h"
@@ -43,7 +43,7 @@ class ExportPanel {
   std::string pictureName_ = "picture.png", sceneName_ = "scene.json", turnName_ = "turn_####.png";
   int turnFrames_;
   Field focus_ = Field::None;
-  std::optional<Task> waiting_;  ///< for the picture to be complete
+  std::deque<Task> waiting_;  ///< for the picture to be complete
   ExportJob::Outcome last_;
   ExportJob job_;  ///< ends before what it uses
 };

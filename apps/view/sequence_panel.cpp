@@ -41,11 +41,7 @@ void SequencePanel::drawControls(ViewState& state, int& frame) {
                        ImGuiSliderFlags_AlwaysClamp)) {
     plays_ = false;
   }
-  const bool space = !ImGui::GetIO().WantTextInput && ImGui::IsKeyPressed(GLFW_KEY_SPACE, false);
-  if (ImGui::Button(plays_ ? "Pause (space)" : "Play (space)") || space) {
-    plays_ = !plays_;
-    problem_.clear();
-  }
+  if (ImGui::Button(plays_ ? "Pause (space)" : "Play (space)")) playOrPause();
   ImGui::SameLine();
   ImGui::SetNextItemWidth(-1.0f);
   ImGui::SliderFloat("##rate", &framesPerSecond_, 1.0f, kMostFramesPerSecond, "%.0f frames a second",
@@ -53,7 +49,21 @@ void SequencePanel::drawControls(ViewState& state, int& frame) {
   drawSentence(problem_, false);
 }
 
-void SequencePanel::step(ViewState& state, int& frame) {
+void SequencePanel::playOrPause() {
+  plays_ = !plays_;
+  problem_.clear();
+}
+
+void SequencePanel::takeKeys(int frames, int& frame) {
+  if (ImGui::GetIO().WantTextInput) return;
+  if (ImGui::IsKeyPressed(GLFW_KEY_SPACE, false)) playOrPause();
+  const int step = int(ImGui::IsKeyPressed(GLFW_KEY_PERIOD)) - int(ImGui::IsKeyPressed(GLFW_KEY_COMMA));
+  if (step == 0) return;
+  plays_ = false;
+  frame = (frame + step + frames) % frames;
+}
+
+void SequencePanel::play(const ViewState& state, int& frame) {
   const Clock::time_point now = Clock::now();
   const std::chrono::duration<float> time(1.0f / framesPerSecond_);
   if (!plays_ || state.changed || !state.answered || now - shown_ < time) return;
@@ -63,13 +73,15 @@ void SequencePanel::step(ViewState& state, int& frame) {
 }
 
 void SequencePanel::draw(ViewState& state) {
-  if (!state.sequence) plays_ = false;
-  if (!state.sequence) return offer(state);
-  if (!ImGui::CollapsingHeader("Frames", ImGuiTreeNodeFlags_DefaultOpen) && !plays_) return;
+  if (!state.sequence) {
+    plays_ = false;
+    return offer(state);
+  }
   const int before = frameOf(state);
   int frame = before;
-  drawControls(state, frame);
-  step(state, frame);
+  if (ImGui::CollapsingHeader("Frames", ImGuiTreeNodeFlags_DefaultOpen)) drawControls(state, frame);
+  takeKeys(int(state.sequence->files.size()), frame);
+  play(state, frame);
   if (frame != before) state.showFrame(state.sequence->files[std::size_t(frame)]);
 }
 

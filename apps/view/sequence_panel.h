@@ -11,7 +11,8 @@ namespace freevoxels {
 class SequencePanel {
  public:
   /// Into the current Dear ImGui window; nothing where the volume is no frame of others. While it plays, the
-  /// next frame waits for its time and for the picture of the one before. Space plays and pauses.
+  /// next frame waits for its time and for the picture of the one before. Space plays and pauses,
+  /// comma and full stop go back and on.
   void draw(ViewState& state);
   bool plays() const { return plays_; }
 
@@ -19,8 +20,10 @@ class SequencePanel {
   using Clock = std::chrono::steady_clock;
 
   void offer(ViewState& state);
+  void playOrPause();
   void drawControls(ViewState& state, int& frame);
-  void step(ViewState& state, int& frame);
+  void takeKeys(int frames, int& frame);
+  void play(const ViewState& state, int& frame);
 
   bool plays_ = false;
   float framesPerSecond_ = 24.0f;
