@@ -30,7 +30,7 @@ bool hides(const InputEvent& event, const InputEvent& before) {
     case Kind::Move:
       return before.kind == Kind::Button || before.kind == Kind::Wheel;
     case Kind::Button:
-      return before.kind != Kind::Move;
+      return before.kind != Kind::Move || !event.down;  // a drag is on before it ends
     case Kind::Wheel:
       return before.kind == Kind::Button;
     case Kind::Key:

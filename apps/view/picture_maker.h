@@ -25,7 +25,6 @@ struct Picture {
   OptionList options;        ///< that make the same pixels
   DeviceDescription device;  ///< that made it
   Image image;
-  bool coarse = false;  ///< of fewer voxels than the volume has
   std::vector<StageTime> times;
   double milliseconds = 0.0;  ///< in all
   VolumeMemory memory;

@@ -58,7 +58,6 @@ Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const View
 
 void Viewer::show(const std::shared_ptr<const Picture>& picture) {
   state_.latest = picture;
-  if (!picture->coarse) state_.whole = picture;
   const bool isAsked = picture->request.number == lastRequest_ && !state_.changed;
   if (!state_.camera && isAsked) state_.camera = picture->scene.camera;
   const std::optional<glm::dvec3>& background = state_.scene.output.background;
@@ -80,8 +79,11 @@ void Viewer::takeResults() {
       return false;
     }
     state_.problem.clear();
+    const bool isWhole = &thread == &whole_;
     const std::uint64_t shown = state_.latest ? state_.latest->request.number : 0;
-    if (result->number < shown) return false;
+    const bool wholeIsThere = state_.whole && result->number <= state_.whole->request.number;
+    if (result->number < shown || (!isWhole && wholeIsThere)) return false;
+    if (isWhole) state_.whole = result->picture;
     show(result->picture);
     return true;
   };

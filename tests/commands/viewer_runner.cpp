@@ -110,10 +110,14 @@ void ViewerSession::type(char shortcut, const std::string& text) const {
   hands("key Return");
 }
 
+void ViewerSession::saveAll(char shortcut, const std::string& pattern, const std::string& last) const {
+  type(shortcut, pattern);
+  EXPECT_TRUE(waitUntil([&] { return fs::exists(folder_ / last); }))
+      << last << " is not saved: " << readBytes(folder_ / "said.txt");
+}
+
 std::string ViewerSession::save(char shortcut, const std::string& name) const {
-  type(shortcut, name);
-  EXPECT_TRUE(waitUntil([&] { return fs::exists(folder_ / name); }))
-      << name << " is not saved: " << readBytes(folder_ / "said.txt");
+  saveAll(shortcut, name, name);
   return readBytes(folder_ / name);
 }
 

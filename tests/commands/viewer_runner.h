@@ -37,6 +37,8 @@ class ViewerSession {
   void hands(const std::string& words) const;
   /// Presses the shortcut, types the name and Enter; waits until there is such a file, and returns it.
   std::string save(char shortcut, const std::string& name) const;
+  /// The same of a pattern, whose last file is `last`.
+  void saveAll(char shortcut, const std::string& pattern, const std::string& last) const;
   void open(const std::string& name) const;
   /// Ctrl+Q, and how it ended.
   ProgramResult quit();

@@ -40,7 +40,7 @@ TEST(InputQueue, AKeyThatIsUpAtOnceIsSeen) {
 
 TEST(InputQueue, AClickIsSeenAndWhereItWas) {
   EXPECT_EQ(frames({move(1), button(true), button(false)}), "21");
-  EXPECT_EQ(frames({move(1), move(2), button(true), move(3), move(4), button(false), move(5)}), "331");
+  EXPECT_EQ(frames({move(1), move(2), button(true), move(3), move(4), button(false), move(5)}), "3211");
 }
 
 TEST(InputQueue, ModifiersHoldForWhatIsBetweenThem) {
