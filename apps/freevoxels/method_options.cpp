@@ -25,7 +25,7 @@ void MethodOptions::add(CLI::App& app) {
       ->group(group);
   addWord(app, "--attenuation", kAttenuations, attenuation,
           "How the table is looked up between its directions; exact does not read it, but "
-          "sweeps from the eye for every frame; auto: exact where the eye is inside the volume, bilinear "
+          "sweeps from the eye for every frame; auto: exact of what shines and where the eye is inside, bilinear "
           "where it "
           "is far away, and a mix of both between [auto]")
       ->group(group);
