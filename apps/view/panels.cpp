@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "apps/view/navigation.h"
+#include "apps/view/understand_panel.h"
 
 namespace freevoxels {
 
@@ -65,6 +66,7 @@ void drawPanelsOf(ViewState& state, const Activity& activity) {
   drawStatus(state, activity);
   drawVolumePanel(state);
   drawCameraPanel(state);
+  drawUnderstandPanel(state);
   drawExportPanel(state);
 }
 

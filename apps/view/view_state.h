@@ -14,6 +14,9 @@ namespace freevoxels {
 struct ViewState {
   SceneOptions scene;
   MethodOptions method;
+  Diagnosis diagnosis;
+  int comparison = 0;  ///< 0: nothing, or what comparedMethod makes of it
+  float split = 0.5f;  ///< part of the picture's width that is not the other method's
   /// Set by whoever changes one of those; a picture is asked for and it is cleared.
   bool changed = true;
 
@@ -24,6 +27,8 @@ struct ViewState {
   /// Why there is no newer one.
   std::string problem;
 
+  /// The method that is shown beside this one.
+  std::optional<MethodOptions> comparedMethod() const;
   /// Looks from there.
   void look(const Camera& from);
   /// Opens another volume, framed anew, with the same method and light.

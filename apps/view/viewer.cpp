@@ -56,11 +56,27 @@ void Viewer::show(const std::shared_ptr<const Picture>& picture) {
   state_.latest = picture;
   if (!picture->coarse) state_.whole = picture;
   if (!state_.camera) state_.camera = picture->scene.camera;
+  upload(picture->diagnosis ? *picture->diagnosis : picture->image, texture_);
+  if (picture->compared)
+    upload(*picture->compared, comparedTexture_);
+  else
+    comparedTexture_ = nullptr;
+}
+
+void Viewer::upload(const Image& image, std::unique_ptr<Texture>& texture) const {
   const std::optional<glm::dvec3>& background = state_.scene.output.background;
   const glm::vec3 color(background.value_or(glm::dvec3(0.0)));
-  if (!texture_ || texture_->size() != picture->image.size)
-    texture_ = std::make_unique<Texture>(device_, picture->image.size, "picture");
-  texture_->upload(device_, srgbTexels(picture->image, background ? &color : nullptr));
+  if (!texture || texture->size() != image.size)
+    texture = std::make_unique<Texture>(device_, image.size, "picture");
+  texture->upload(device_, srgbTexels(image, background ? &color : nullptr));
+}
+
+PictureRequest Viewer::request() const {
+  return {.scene = state_.scene,
+          .method = state_.method,
+          .diagnosis = state_.diagnosis,
+          .compared = state_.comparedMethod(),
+          .number = lastRequest_};
 }
 
 void Viewer::takeResults() {
@@ -97,20 +113,21 @@ void Viewer::ask() {
   if (state_.changed) {
     state_.changed = false;
     lastChange_ = now;
-    PictureRequest request{.scene = state_.scene, .method = state_.method, .number = ++lastRequest_};
+    ++lastRequest_;
+    PictureRequest quick = request();
     if (wholeIsQuick_) {
       askedOfWhole_ = lastRequest_;
-      whole_.ask(std::move(request));
+      whole_.ask(std::move(quick));
       return;
     }
-    request.scene.camera.size =
-        glm::max(glm::ivec2(glm::round(quickScale_ * glm::dvec2(request.scene.camera.size))), glm::ivec2(1));
-    quick_.ask(std::move(request));
+    quick.scene.camera.size =
+        glm::max(glm::ivec2(glm::round(quickScale_ * glm::dvec2(quick.scene.camera.size))), glm::ivec2(1));
+    quick_.ask(std::move(quick));
   }
   const bool still = now - lastChange_ >= kStill && !area_.moves();
   if (still && askedOfWhole_ != lastRequest_) {
     askedOfWhole_ = lastRequest_;
-    whole_.ask({.scene = state_.scene, .method = state_.method, .number = lastRequest_});
+    whole_.ask(request());
   }
 }
 
@@ -138,7 +155,7 @@ void Viewer::drawPanels() {
   ImGui::Begin("picture", nullptr,
                kFixed | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar();
-  area_.draw(state_, texture_.get());
+  area_.draw(state_, texture_.get(), comparedTexture_.get());
   ImGui::End();
 }
 

@@ -28,6 +28,8 @@ class Viewer {
 
   void takeResults();
   void show(const std::shared_ptr<const Picture>& picture);
+  void upload(const Image& image, std::unique_ptr<Texture>& texture) const;
+  PictureRequest request() const;
   void ask();
   void drawFrame();
   void drawPanels();
@@ -42,7 +44,7 @@ class Viewer {
 
   ViewState state_;
   PictureArea area_;
-  std::unique_ptr<Texture> texture_;
+  std::unique_ptr<Texture> texture_, comparedTexture_;
 
   VolumeCache volumes_;
   RenderThread quick_, whole_;  ///< of few voxels, and of all
