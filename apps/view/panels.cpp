@@ -17,7 +17,7 @@ void drawStatus(const ViewState& state, const Activity& activity) {
   if (activity)
     ImGui::Text("%s %.0f %%", activity->first.c_str(), 100.0 * activity->second);
   else if (state.latest)
-    ImGui::Text("%s picture in %.0f ms", state.latest->coarse ? "quick" : "whole",
+    ImGui::Text("%s picture in %.0f ms", state.latest == state.whole ? "whole" : "quick",
                 state.latest->milliseconds);
   else
     ImGui::TextUnformatted(" ");

@@ -70,7 +70,6 @@ Picture PictureMaker::make(const PictureRequest& request, const Progress& progre
   OptionList method;
   request.method.describe(method);
   picture.options = request.scene.describe(picture.scene, method);
-  picture.coarse = coarse_ != whole_;
   picture.times = renderer_->timings();
   picture.memory = renderer_->memory();
   picture.cut = renderer_->cutCounts();

@@ -29,7 +29,6 @@ struct Picture {
   Image image;
   std::optional<Image> diagnosis;  ///< what is shown in its place
   std::optional<Image> compared;
-  bool coarse = false;  ///< of fewer voxels than the volume has
   std::vector<StageTime> times;
   double milliseconds = 0.0;  ///< in all
   VolumeMemory memory;

@@ -22,7 +22,7 @@ struct ViewState {
 
   /// As the scene's options say. None before the first picture, which says what is not given.
   std::optional<Camera> camera;
-  /// The last picture that was made of the whole volume, and the last of all.
+  /// The last picture of all voxels and in full size, and the last of all.
   std::shared_ptr<const Picture> whole, latest;
   /// Why there is no newer one.
   std::string problem;

@@ -54,7 +54,6 @@ Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const View
 
 void Viewer::show(const std::shared_ptr<const Picture>& picture) {
   state_.latest = picture;
-  if (!picture->coarse) state_.whole = picture;
   if (!state_.camera) state_.camera = picture->scene.camera;
   upload(picture->diagnosis ? *picture->diagnosis : picture->image, texture_);
   if (picture->compared)
@@ -90,8 +89,12 @@ void Viewer::takeResults() {
       return false;
     }
     state_.problem.clear();
+    const bool isWhole = &thread == &whole_;
+    // A whole picture is not replaced by a quick one of the same.
     const std::uint64_t shown = state_.latest ? state_.latest->number : 0;
-    if (result->number < shown) return false;
+    if (result->number < shown || (!isWhole && state_.whole && result->number <= state_.whole->number))
+      return false;
+    if (isWhole) state_.whole = result->picture;
     show(result->picture);
     return true;
   };
