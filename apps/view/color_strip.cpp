@@ -29,10 +29,12 @@ bool ColorStrip::draw(TransferModel& model) {
   for (std::size_t i = 0; i < model.color.size(); ++i) {
     const ImVec2 place(span.at(model.color[i].x), y);
     list.AddCircleFilled(place, radius, selected_ == i ? kSelected : kUnselected);
-    list.AddCircleFilled(place, 0.7f * radius, shownColor(model.color[i].color, 1.0f));
+    list.AddCircleFilled(place, 0.6f * radius, shownColor(model.color[i].color, 1.0f));
     list.AddCircle(place, radius, kEdge);
   }
-  if (selected_) changed |= editColor("colour##point", model.color[*selected_].color);
+  if (selected_) return editColor("colour##point", model.color[*selected_].color) || changed;
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextDisabled("Click a point to change its colour.");
   return changed;
 }
 

@@ -101,6 +101,7 @@ void OpacityCurve::drawPoints(const TransferModel& model, const Frame& frame) co
 /// What a hand is not exact enough for.
 bool OpacityCurve::drawFields(TransferModel& model, glm::dvec2 range) {
   if (!selected_) {
+    ImGui::AlignTextToFramePadding();
     ImGui::Text("%.4g", range.x);
     const std::string highest = fmt::format("{:.4g}", range.y);
     ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(highest.c_str()).x);

@@ -55,7 +55,9 @@ std::optional<std::size_t> near(const Points& points, double x) {
 template <typename Points>
 std::size_t insert(Points& points, const typename Points::value_type& point) {
   const auto above = std::ranges::upper_bound(points, point.x, {}, [](const auto& p) { return p.x; });
-  return std::size_t(points.insert(above, point) - points.begin());
+  const auto place = std::size_t(above - points.begin());
+  points.insert(above, point);
+  return place;
 }
 
 }  // namespace
