@@ -8,6 +8,12 @@
 
 namespace freevoxels {
 
+namespace {
+
+constexpr double kLeastOffset = -2000.0, kMostOffset = 4000.0;  // kelvin
+
+}  // namespace
+
 void EmissionPanel::draw(ViewState& state, GridList& grids) {
   const std::vector<GridChoice>* const all = grids.of(state.scene.input.input);
   if (!ImGui::CollapsingHeader("Emission") || !state.latest || !all) return;
@@ -44,8 +50,13 @@ bool EmissionPanel::drawOptions(ViewState& state, const std::vector<GridChoice>&
                             automatic(options.strength, resolved->strength));
   changed |= scale_.draw("K per unit", "Kelvin for each unit of the grid's values", options.temperatureScale,
                          automatic(options.temperatureScale, resolved->temperatureScale));
-  const double usual = options.temperatureOffset ? 0.0 : resolved->temperatureOffset;
-  changed |= slideOptional("K at 0", options.temperatureOffset, usual, -2000.0, 4000.0, "%.0f K");
+  if (options.temperatureScale && !options.temperatureOffset)  // which a scale of its own would make 0
+    options.temperatureOffset = resolved->temperatureOffset;
+  double offset = options.temperatureOffset.value_or(resolved->temperatureOffset);
+  if (slide("K at 0", offset, kLeastOffset, kMostOffset, "%.0f K")) {
+    options.temperatureOffset = offset;
+    changed = true;
+  }
   hint("Kelvin where the grid's value is 0");
   return changed;
 }

@@ -53,7 +53,7 @@ bool drawLightBall(const char* name, float size, glm::dvec3& direction, glm::dve
   const ImVec2 low = ImGui::GetCursorScreenPos();
   const Disc disc{{low.x + 0.5f * size, low.y + 0.5f * size}, 0.42f * size};
   ImGui::InvisibleButton(name, {size, size});
-  hint("Drag to where the light comes from; beyond the edge it comes from behind");
+  hint("Drag to where the light comes from; past the edge: behind");
   ImDrawList& list = *ImGui::GetWindowDrawList();
   drawShaded(list, disc, direction, color / std::max({color.r, color.g, color.b, 1.0}));
   list.AddCircle(disc.middle, disc.radius, kEdge, kSectors);

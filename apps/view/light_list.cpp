@@ -11,7 +11,8 @@ namespace freevoxels {
 namespace {
 
 constexpr float kBall = 5.6f, kBallLabels = 6.0f;  // widths in units of text's size
-constexpr double kDegreeSteps = 0.1, kDirectionSteps = 1e-4;
+constexpr float kHeaderStrength = 0.5f;            // of a panel's header
+constexpr double kDirectionSteps = 1e-4;
 
 glm::dvec3 roundedDirection(glm::dvec3 direction) {
   for (int c = 0; c < 3; ++c) direction[c] = roundedTo(direction[c], kDirectionSteps);
@@ -61,7 +62,10 @@ bool drawLight(std::size_t number, LightingOptions::GivenLight& given, const Cam
                const Volume& volume, bool& stays) {
   const std::string title =
       fmt::format("{} {}###light", given.light.atInfinity ? "directional light" : "point light", number + 1);
-  if (!ImGui::CollapsingHeader(title.c_str(), &stays, ImGuiTreeNodeFlags_DefaultOpen)) return !stays;
+  ImGui::PushStyleColor(ImGuiCol_Header, ImGui::GetColorU32(ImGuiCol_Header, kHeaderStrength));
+  const bool open = ImGui::CollapsingHeader(title.c_str(), &stays, ImGuiTreeNodeFlags_DefaultOpen);
+  ImGui::PopStyleColor();
+  if (!open) return !stays;
   bool changed =
       given.light.atInfinity ? drawDirection(given.light, camera) : drawPosition(given.light, volume);
   changed |= drawIntensity(given, volume);
