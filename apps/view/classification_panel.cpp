@@ -19,10 +19,10 @@ glm::dvec2 rangeOf(const TransferModel& model, const Volume& volume) {
 }  // namespace
 
 void ClassificationPanel::draw(ViewState& state) {
+  if (state.latest) follow(state);
   if (!ImGui::CollapsingHeader("Colour and opacity", ImGuiTreeNodeFlags_DefaultOpen) || !state.latest) return;
   ImGui::PushID("classification");
   const LabelRoom room;
-  follow(state);
   drawKind(state);
   if (state.scene.classification.transferFunction)
     drawTransferFunction(state);
@@ -34,18 +34,26 @@ void ClassificationPanel::draw(ViewState& state) {
 /// Another volume, or options that were changed elsewhere.
 void ClassificationPanel::follow(ViewState& state) {
   const Volume& volume = *state.latest->scene.volume;
+  const std::optional<std::string>& text = state.scene.classification.transferFunction;
   if (volume.source != volume_) {
     volume_ = volume.source;
+    histogram_.forget();
     density_ = {};
     model_.range.reset();
     model_.unitDistance.reset();
+    if (text) modelText_.clear();  // which may have both
   }
-  const std::optional<std::string>& text = state.scene.classification.transferFunction;
   if (!text || *text == modelText_) return;
   modelText_ = *text;
-  preset_.clear();
+  deselect();
   if (!isInlineJson(*text)) file_ = *text;
   attempt(state, [&] { model_ = TransferModel::read(*text, volume); });
+}
+
+void ClassificationPanel::deselect() {
+  curve_ = {};
+  strip_ = {};
+  preset_.clear();
 }
 
 void ClassificationPanel::drawKind(ViewState& state) {
@@ -104,6 +112,7 @@ bool ClassificationPanel::drawPresets(const Volume& volume) {
   if (!ImGui::BeginCombo("preset", preset_.empty() ? "your own" : preset_.c_str())) return false;
   for (const TransferPreset& preset : kTransferPresets)
     if (ImGui::Selectable(preset.name, preset_ == preset.name)) {
+      deselect();
       model_.takeCurves(TransferModel::read(preset.json, volume));
       preset_ = preset.name;
       changed = true;
@@ -142,7 +151,7 @@ bool ClassificationPanel::drawFile(ViewState& state) {
   if (ImGui::Button("Load") && !file_.empty())
     attempt(state, [&] {
       model_ = TransferModel::read(file_, *state.latest->scene.volume);
-      preset_.clear();
+      deselect();
       loaded = true;
     });
   ImGui::SameLine();

@@ -21,6 +21,8 @@ class ClassificationPanel {
 
  private:
   void follow(ViewState& state);
+  /// The points, and the preset, of curves that are no more.
+  void deselect();
   void drawKind(ViewState& state);
   void drawDensity(ViewState& state);
   void drawTransferFunction(ViewState& state);

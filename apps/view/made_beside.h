@@ -34,6 +34,12 @@ class MadeBeside {
     return value_ && key_ == key ? &*value_ : nullptr;
   }
 
+  /// Neither key nor value is kept any longer.
+  void forget() {
+    key_.reset();
+    value_.reset();
+  }
+
  private:
   const std::function<Value(const Key&)> make_;
   std::optional<Key> key_;

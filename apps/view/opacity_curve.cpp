@@ -116,7 +116,8 @@ bool OpacityCurve::drawFields(TransferModel& model, glm::dvec2 range) {
   ImGui::SetNextItemWidth(kFieldWidth * ImGui::GetFontSize());
   changed |= ImGui::InputDouble("opacity##point", &alpha, 0.0, 0.0, "%.4g");
   hint("Of what is as thick as the unit length");
-  if (changed) model.moveOpacity(*selected_, (value - range.x) / (range.y - range.x), alpha);
+  const double width = range.y - range.x;  // 0 of a uniform volume
+  if (changed) model.moveOpacity(*selected_, width > 0.0 ? (value - range.x) / width : point.x, alpha);
   return changed;
 }
 

@@ -87,6 +87,8 @@ bool dragVector(const char* label, glm::dvec3& value, double step) {
   if (!ImGui::DragScalarN(label, ImGuiDataType_Double, &value.x, 3, float(step), nullptr, nullptr, "%.3g",
                           ImGuiSliderFlags_NoRoundToFormat))
     return false;
+  for (int c = 0; c < 3; ++c)
+    if (!std::isfinite(value[c])) value[c] = 0.0;
   const double digits = std::pow(10.0, std::floor(std::log10(step)) - 1.0);
   for (int c = 0; c < 3; ++c) value[c] = roundedTo(value[c], digits);
   return true;
