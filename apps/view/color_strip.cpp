@@ -34,7 +34,8 @@ bool ColorStrip::draw(TransferModel& model) {
   }
   if (selected_) return editColor("colour##point", model.color[*selected_].color) || changed;
   ImGui::AlignTextToFramePadding();
-  ImGui::TextDisabled("Click a point to change its colour.");
+  ImGui::TextDisabled(model.color.empty() ? "White. Click the strip to add a colour."
+                                          : "Click a point to change its colour.");
   return changed;
 }
 
