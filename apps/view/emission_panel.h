@@ -14,7 +14,7 @@ class EmissionPanel {
  private:
   bool drawOptions(ViewState& state, const std::vector<GridChoice>& grids);
 
-  AutomaticSlider strength_, scale_;
+  AutomaticSlider strength_, scale_{5.0};
 };
 
 }  // namespace freevoxels

@@ -48,8 +48,8 @@ bool drawTable(MethodOptions& method, const TableSettings& usual) {
 bool drawDetail(MethodOptions& method, const FrameSettings& usual) {
   bool changed = tick("gradient in a splat", method.gradient, usual.gradient);
   hint("Whether transmittance varies across a splat");
-  changed |= slideOptional("level of detail", method.lod, double(usual.lod), 0.0, 8.0, "%.2g pixels");
-  hint("Blocks of voxels up to this wide are one splat; 0: never");
+  changed |= slideOptional("level of detail", method.lod, double(usual.lod), 0.0, 8.0, "%.2g px");
+  hint("Blocks of voxels up to so many pixels wide are one splat");
   changed |= tick("leave out what is hidden", method.culling, usual.culling);
   hint("Blocks outside of the image or behind others");
   ImGui::BeginDisabled(!method.culling.value_or(usual.culling));

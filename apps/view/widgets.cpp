@@ -136,12 +136,11 @@ bool smallButtonAtRight(const char* label) {
 
 bool AutomaticSlider::draw(const char* label, const char* meaning, std::optional<double>& value,
                            std::optional<double> automatic) {
-  constexpr double kFactor = 100.0;
   if (automatic) middle_ = automatic;
   if (!middle_ && value) middle_ = value;
   const double middle = middle_ && *middle_ > 0.0 ? *middle_ : 1.0;
   double slid = value.value_or(middle);
-  bool changed = slideLogarithmic(label, slid, middle / kFactor, middle * kFactor);
+  bool changed = slideLogarithmic(label, slid, middle / factor_, middle * factor_);
   hint(meaning);
   if (changed) value = slid;
   if (value) {

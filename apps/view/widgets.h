@@ -51,13 +51,17 @@ bool editText(const char* label, std::string& text, const char* whenEmpty);
 bool smallButtonAtRight(const char* label);
 
 /// A slider whose middle is what the value is where it is not given: the last automatic value that was known,
-/// or else the first that was seen. A factor of 100 either way.
+/// or else the first that was seen.
 class AutomaticSlider {
  public:
+  /// How far it goes either way.
+  explicit AutomaticSlider(double factor = 100.0) : factor_(factor) {}
+
   bool draw(const char* label, const char* meaning, std::optional<double>& value,
             std::optional<double> automatic);
 
  private:
+  double factor_;
   std::optional<double> middle_;
 };
 
