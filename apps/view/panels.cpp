@@ -62,9 +62,10 @@ void drawExportPanel(ViewState& state) {
   if (ImGui::Button("Copy command line")) ImGui::SetClipboardText(state.commandLine("picture.png").c_str());
 }
 
-void drawPanelsOf(ViewState& state, const Activity& activity) {
+void drawPanelsOf(ViewState& state, const Activity& activity, LookPanels& looks) {
   drawStatus(state, activity);
   drawVolumePanel(state);
+  looks.draw(state);
   drawCameraPanel(state);
   drawUnderstandPanel(state);
   drawExportPanel(state);

@@ -149,7 +149,7 @@ void Viewer::drawPanels() {
   ImGui::SetNextWindowSize({sidebar, io.DisplaySize.y});
   ImGui::Begin("panels", nullptr, kFixed);
   const auto activity = whole_.activity() ? whole_.activity() : quick_.activity();
-  drawPanelsOf(state_, activity);
+  drawPanelsOf(state_, activity, looks_);
   ImGui::End();
 
   ImGui::SetNextWindowPos({sidebar, 0.0f});

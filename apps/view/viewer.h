@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 
+#include "apps/view/look_panels.h"
 #include "apps/view/picture_area.h"
 #include "apps/view/render_thread.h"
 #include "apps/view/swapchain.h"
@@ -43,6 +44,7 @@ class Viewer {
   std::unique_ptr<UiPainter> painter_;
 
   ViewState state_;
+  LookPanels looks_;
   PictureArea area_;
   std::unique_ptr<Texture> texture_, comparedTexture_;
 
