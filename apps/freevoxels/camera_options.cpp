@@ -30,6 +30,14 @@ void CameraOptions::add(CLI::App& app) {
   for (CLI::Option* option : {from, at, upwards, around, fov, flat, pixels}) option->group("Camera");
 }
 
+void CameraOptions::look(const Camera& from) {
+  *this = {.position = from.position, .lookAt = from.lookAt, .up = from.up, .size = size};
+  if (from.orthographic)
+    orthographicHeight = from.orthographicHeight;
+  else
+    verticalFov = from.verticalFov;
+}
+
 Camera CameraOptions::given() const {
   Camera camera;
   if (lookAt) camera.lookAt = *lookAt;

@@ -19,6 +19,8 @@ struct CameraOptions {
   glm::ivec2 size{1024, 1024};
 
   void add(CLI::App& app);
+  /// Looks from exactly there, with a picture of the same size.
+  void look(const Camera& from);
   /// Refuses what is wrong with any volume, before one is read: ExitCode::Usage.
   void check() const;
   /// What is not given frames the volume: the position orbits the look-at point, which is the centre of the

@@ -6,6 +6,9 @@
 
 namespace freevoxels {
 
+/// Of a full turn.
+inline constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
+
 /// The pattern with the frame's number, padded with zeros, in place of the run of # in its file name; a
 /// number that needs more digits has them. ExitCode::Usage where the file name has no run of # or several.
 std::string frameName(const std::string& pattern, int frame);

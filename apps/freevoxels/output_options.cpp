@@ -32,22 +32,28 @@ bool isPng(const std::string& file) {
 void OutputOptions::add(CLI::App& app) {
   app.add_option("OUT", files,
                  "Pictures to write: .exr (linear, premultiplied) or .png (sRGB, straight alpha)");
-  addBackground(app);
+  addForm(app);
+}
+
+void OutputOptions::addForm(CLI::App& app) {
+  addTriple(app, "--background", "R,G,B", background,
+            "Colour behind the volume in a .png, linear [transparent]", {0.0, 1.0})
+      ->group(kGroup);
   app.add_flag("--float", fullFloat, "32 bits a channel in an .exr [16]")->group(kGroup);
   addWord(app, "--aov", {"depth"}, aov,
           "Adds the channel Z, mean distance along the viewing axis, to an .exr")
       ->group(kGroup);
 }
 
-void OutputOptions::addBackground(CLI::App& app) {
-  addTriple(app, "--background", "R,G,B", background,
-            "Colour behind the volume in a .png, linear [transparent]", {0.0, 1.0})
-      ->group(kGroup);
-}
-
 bool OutputOptions::honours(const std::string& option) const {
   if (option == "--background") return std::ranges::any_of(files, isPng);
   return (option != "--aov" && option != "--float") || std::ranges::any_of(files, isExr);
+}
+
+void OutputOptions::leaveOutUnhonoured() {
+  if (!honours("--background")) background.reset();
+  if (!honours("--aov")) aov.reset();
+  fullFloat = fullFloat && honours("--float");
 }
 
 void OutputOptions::check() const {

@@ -23,10 +23,12 @@ struct OutputOptions {
   std::optional<int> aov;
 
   void add(CLI::App& app);
-  /// --background alone.
-  void addBackground(CLI::App& app);
+  /// How they are written, without OUT.
+  void addForm(CLI::App& app);
   /// Whether the option, "--float", changes any of the files.
   bool honours(const std::string& option) const;
+  /// Leaves out what changes none of the files.
+  void leaveOutUnhonoured();
   /// Before any work: extensions, options that no output can honour (ExitCode::Usage), folders
   /// (ExitCode::Output).
   void check() const;

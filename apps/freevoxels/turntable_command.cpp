@@ -8,8 +8,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
-
 constexpr const char* kExamples =
     "A run of # in the file name of each OUT becomes the number of the frame, from 0.\n"
     "With --orbit (or neither) the camera turns about +y, its distance the least from which no frame cuts\n"

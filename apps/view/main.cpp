@@ -17,9 +17,14 @@ int main(int argc, char** argv) {
       "Examples:\n"
       "  freevoxels-view cloud.vdb\n"
       "  freevoxels-view procedural:head --transfer-function apps/transfer_functions/bone.json\n"
+      "  freevoxels-view smoke_####.vdb\n"
       "  freevoxels-view --scene apps/scenes/cloud.json --screenshot window.png\n"
       "Drag to turn, with Shift to pan, with Ctrl or the wheel to come nearer, with the right button to look "
-      "around; W A S D Q E fly, F frames the volume, 1 to 6 look along the axes, O changes the projection.\n"
+      "around; W A S D Q E fly, F frames the volume, 1 to 6 look along the axes, O changes the projection, "
+      "Space "
+      "plays a sequence. Ctrl+O opens a file (or drop it onto the window), Ctrl+S saves the picture, Ctrl+E "
+      "the "
+      "scene, Ctrl+T a turn; Ctrl+Q ends.\n"
       "Exit codes: as of 'freevoxels'.");
   app.callback([&options] {
     options.prepare();

@@ -57,18 +57,12 @@ void drawCameraPanel(ViewState& state) {
   if (ImGui::Checkbox("orthographic (O)", &orthographic)) state.look(withOtherProjection(camera));
 }
 
-void drawExportPanel(ViewState& state) {
-  if (!ImGui::CollapsingHeader("Take away", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  if (ImGui::Button("Copy command line")) ImGui::SetClipboardText(state.commandLine("picture.png").c_str());
-}
-
 void drawPanelsOf(ViewState& state, const Activity& activity, LookPanels& looks) {
   drawStatus(state, activity);
   drawVolumePanel(state);
   looks.draw(state);
   drawCameraPanel(state);
   drawUnderstandPanel(state);
-  drawExportPanel(state);
 }
 
 }  // namespace freevoxels

@@ -17,8 +17,6 @@ using Activity = std::optional<std::pair<std::string, double>>;
 void drawStatus(const ViewState& state, const Activity& activity);
 void drawVolumePanel(ViewState& state);
 void drawCameraPanel(ViewState& state);
-/// What to take away: the command line, pictures, scenes.
-void drawExportPanel(ViewState& state);
 
 /// All of them, in their order.
 void drawPanelsOf(ViewState& state, const Activity& activity, LookPanels& looks);

@@ -61,10 +61,14 @@ Picture PictureMaker::make(const PictureRequest& request, const Progress& progre
   const auto start = std::chrono::steady_clock::now();
   request.scene.checkLook();
   if (progress) progress("reading " + request.scene.input.input, 0.0);
-  Picture picture{.number = request.number, .scene = request.scene.resolve(volumes_.read(request.scene))};
+  Picture picture{.request = request,
+                  .scene = request.scene.resolve(volumes_.read(request.scene)),
+                  .device = device_.description()};
   makeRenderer(picture.scene, request.method, rendererOptions(request, picture.scene), progress);
 
-  FrameSettings settings{.size = request.scene.camera.size, .lighting = picture.scene.lighting};
+  FrameSettings settings{.size = request.scene.camera.size,
+                         .depth = request.scene.output.wantsDepth(),
+                         .lighting = picture.scene.lighting};
   request.method.apply(settings);
   picture.image = renderer_->render(picture.scene.camera, settings, progress);
   OptionList method;

@@ -23,9 +23,10 @@ struct PictureRequest {
 };
 
 struct Picture {
-  std::uint64_t number = 0;  ///< of the request
+  PictureRequest request;    ///< that it answers
   Scene scene;               ///< as resolved; its volume is the whole one
   OptionList options;        ///< that make the same pixels
+  DeviceDescription device;  ///< that made it
   Image image;
   std::optional<Image> diagnosis;  ///< what is shown in its place
   std::optional<Image> compared;

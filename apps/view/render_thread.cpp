@@ -1,9 +1,16 @@
 #include "apps/view/render_thread.h"
 
-#include <new>
 #include <utility>
 
+#include "apps/view/failure.h"
+
 namespace freevoxels {
+
+namespace {
+
+struct Ended {};
+
+}  // namespace
 
 RenderThread::RenderThread(const Instance& instance, const DeviceOptions& device, VolumeCache& volumes,
                            int mostVoxelsAlongEdge, std::function<void()> finished)
@@ -45,6 +52,7 @@ std::optional<std::pair<std::string, double>> RenderThread::activity() const {
 std::shared_ptr<const Picture> RenderThread::makePicture(const PictureRequest& request) {
   const Progress progress = [this](std::string_view stage, double fraction) {
     const std::lock_guard lock(mutex_);
+    if (ends_) throw Ended();
     activity_.emplace(std::string(stage), fraction);
   };
   if (!device_) device_ = deviceOptions_.open(instance_);
@@ -69,20 +77,16 @@ RenderThread::Result RenderThread::answer(const PictureRequest& request) {
   Result result{.number = request.number};
   try {
     result.picture = makePicture(request);
-  } catch (const Error& error) {
-    result.problem = error.what();
-    result.code = error.code();
-    if (error.code() == ExitCode::Device) {  // lost: the next request opens it again
+  } catch (const Ended&) {  // nobody takes a result
+  } catch (...) {
+    const Failure failure = currentFailure();
+    result.problem = failure.sentence;
+    result.code = failure.code;
+    if (failure.code == ExitCode::Device) {  // lost: the next request opens it again
       maker_ = nullptr;
       comparing_ = nullptr;
       device_ = nullptr;
     }
-  } catch (const std::bad_alloc&) {
-    result.code = ExitCode::OutOfMemory;
-    result.problem = "this machine's memory is full: use a smaller volume or picture";
-  } catch (const std::exception& error) {
-    result.code = ExitCode::Internal;
-    result.problem = fmt::format("internal error, please report it: {}", error.what());
   }
   return result;
 }

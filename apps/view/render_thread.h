@@ -27,7 +27,7 @@ class RenderThread {
   /// On a device of its own. `finished` is called by the thread whenever there is a result.
   RenderThread(const Instance& instance, const DeviceOptions& device, VolumeCache& volumes,
                int mostVoxelsAlongEdge, std::function<void()> finished);
-  /// Waits for the picture that is being made.
+  /// Gives up the picture that is being made, and waits until the device is done with what it has begun.
   ~RenderThread();
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;

@@ -13,6 +13,9 @@ namespace freevoxels {
 
 namespace {
 
+/// Nanoseconds for an image, of which a window that nobody sees may have none: it has to answer all the same.
+constexpr std::uint64_t kLongestWait = 100'000'000;
+
 /// Bytes are shown as they are written, sRGB.
 bool isPlain(VkSurfaceFormatKHR format) {
   return (format.format == VK_FORMAT_B8G8R8A8_UNORM || format.format == VK_FORMAT_R8G8B8A8_UNORM) &&
@@ -136,7 +139,7 @@ bool Swapchain::acquire() {
     if (!make()) return false;
   const VkFence fence = acquired_.get();
   const auto next = [&] {
-    return vkAcquireNextImageKHR(device_.handle(), swapchain_.get(), UINT64_MAX, VK_NULL_HANDLE, fence,
+    return vkAcquireNextImageKHR(device_.handle(), swapchain_.get(), kLongestWait, VK_NULL_HANDLE, fence,
                                  &current_);
   };
   VkResult result = next();
@@ -145,6 +148,7 @@ bool Swapchain::acquire() {
     result = next();
     if (isStale(result)) return false;  // it still changes
   }
+  if (result == VK_TIMEOUT || result == VK_NOT_READY) return false;
   if (result != VK_SUBOPTIMAL_KHR) VK_CHECK(result);
   VK_CHECK(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX));
   VK_CHECK(vkResetFences(device_.handle(), 1, &fence));

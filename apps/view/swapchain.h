@@ -24,7 +24,7 @@ class Swapchain {
   VkFormat format() const { return format_.format; }
 
   /// Waits for an image to draw into, in layout UNDEFINED. False where there is none: the window has no area,
-  /// or is changing.
+  /// is changing or is out of sight.
   bool acquire();
   glm::ivec2 size() const { return size_; }
   VkImage image() const { return images_[current_]; }

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
+#include "apps/freevoxels/frame_names.h"
 #include "engine/core/error.h"
 
 namespace freevoxels {
@@ -17,12 +18,16 @@ constexpr int kMostFrames = 1'000'000;
 void ViewOptions::add(CLI::App& app) {
   scene.input.add(app);
   scene.input.addGrid(app);
-  scene.output.addBackground(app);
+  scene.output.addForm(app);
   scene.addLook(app);
   scene.lighting.addMethod(app);
   method.add(app);
   device.add(app);
   messages.add(app);
+  addWholeNumber(app, "--frames", "N", frames,
+                 fmt::format("Frames of a turn that is saved [{}]", kDefaultFrames),
+                 {1.0, double(kMaximumFrames)})
+      ->group("Camera");
   CLI::Option* const file =
       addText(app, "--screenshot", "FILE.png", screenshot, "Writes what the window shows, and ends");
   file->group("Window");
@@ -33,18 +38,26 @@ void ViewOptions::add(CLI::App& app) {
       ->group("Window");
 }
 
+void ViewOptions::takeScene() {
+  scene.file.apply([](const std::string&) { return true; });
+  std::string& volume = scene.input.input;
+  if (volume.empty()) volume = kFirstVolume;
+  scene.checkLook();
+  if (isPattern(volume)) {
+    sequence = findSequence(volume);
+    volume = sequence->files.front();
+  }
+  if (!proceduralName(volume) && !std::filesystem::exists(volume))
+    fail(ExitCode::Input, "cannot read '{}': there is no such file; check its name", volume);
+}
+
 void ViewOptions::prepare() {
   messages.apply();
-  scene.file.apply([](const std::string&) { return true; });
-  if (scene.input.input.empty()) scene.input.input = kFirstVolume;
-  scene.checkLook();
-  if (!proceduralName(scene.input.input) && !std::filesystem::exists(scene.input.input))
-    fail(ExitCode::Input, "cannot read '{}': there is no such file; check its name", scene.input.input);
-  if (screenshot) {
-    if (!isPng(*screenshot))
-      fail(ExitCode::Usage, "'{}' is not a picture of a window; name it .png", *screenshot);
-    checkOutput(*screenshot);
-  }
+  takeScene();
+  if (!screenshot) return;
+  if (!isPng(*screenshot))
+    fail(ExitCode::Usage, "'{}' is not a picture of a window; name it .png", *screenshot);
+  checkOutput(*screenshot);
 }
 
 }  // namespace freevoxels

@@ -1,5 +1,7 @@
 #include "apps/view/view_state.h"
 
+#include "engine/core/error.h"
+
 namespace freevoxels {
 
 std::optional<MethodOptions> ViewState::comparedMethod() const {
@@ -24,37 +26,37 @@ std::optional<MethodOptions> ViewState::comparedMethod() const {
 }
 
 void ViewState::look(const Camera& from) {
+  try {
+    checkCamera(from);
+  } catch (const Error& error) {
+    problem = error.what();
+    return;
+  }
   camera = from;
-  CameraOptions& options = scene.camera;
-  options.orbit.reset();
-  options.position = from.position;
-  options.lookAt = from.lookAt;
-  options.up = from.up;
-  options.verticalFov.reset();
-  options.orthographicHeight.reset();
-  if (from.orthographic)
-    options.orthographicHeight = from.orthographicHeight;
-  else
-    options.verticalFov = from.verticalFov;
+  scene.camera.look(from);
   changed = true;
 }
 
-void ViewState::open(const std::string& file) {
-  const glm::ivec2 size = scene.camera.size;
-  scene.input = {.input = file};
-  scene.classification = {};
-  scene.emission = {};
-  scene.camera = {.size = size};
+void ViewState::show(const SceneOptions& other, const std::optional<Sequence>& frames) {
+  scene = other;
+  sequence = frames;
   camera.reset();
   problem.clear();
   changed = true;
 }
 
-std::string ViewState::commandLine(const std::string& picture) const {
-  if (!whole) return "";
-  OptionList options = whole->options;
-  options.insert(options.begin() + 1, {"", picture});  // behind the volume
-  return "freevoxels render " + commandText(options);
+void ViewState::showFrame(const std::string& file) {
+  scene.input.input = file;
+  changed = true;
+  if (!camera) return;  // the first picture says what is not given
+  scene.camera.look(*camera);
+  const Classification& now = latest->scene.classification;
+  ClassificationOptions& classification = scene.classification;
+  if (!now.transferFunction && !classification.densityScale) classification.densityScale = now.densityScale;
+  if (!now.emission) return;
+  scene.emission.strength = now.emission->strength;
+  scene.emission.temperatureScale = now.emission->temperatureScale;
+  scene.emission.temperatureOffset = now.emission->temperatureOffset;
 }
 
 }  // namespace freevoxels

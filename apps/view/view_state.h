@@ -8,6 +8,7 @@
 #include "apps/freevoxels/method_options.h"
 #include "apps/freevoxels/scene_options.h"
 #include "apps/view/picture_maker.h"
+#include "apps/view/sequence.h"
 
 namespace freevoxels {
 
@@ -17,6 +18,8 @@ struct ViewState {
   Diagnosis diagnosis;
   int comparison = 0;  ///< 0: nothing, or what comparedMethod makes of it
   float split = 0.5f;  ///< part of the picture's width that is not the other method's
+  /// That the volume is a frame of.
+  std::optional<Sequence> sequence;
   /// Set by whoever changes one of those; a picture is asked for and it is cleared.
   bool changed = true;
 
@@ -26,15 +29,19 @@ struct ViewState {
   std::shared_ptr<const Picture> whole, latest;
   /// Why there is no newer one.
   std::string problem;
+  /// Whether `latest`, or a problem, answers what the options say; whether `whole` does; whether a whole
+  /// picture of it cannot be drawn.
+  bool answered = false, complete = false, failed = false;
 
   /// The method that is shown beside this one.
   std::optional<MethodOptions> comparedMethod() const;
-  /// Looks from there.
+  /// Looks from there, unless nothing is seen from there: `problem` says why.
   void look(const Camera& from);
-  /// Opens another volume, framed anew, with the same method and light.
-  void open(const std::string& file);
-  /// `freevoxels render` with everything that makes the whole picture again, into `picture`.
-  std::string commandLine(const std::string& picture) const;
+  /// Another volume, as the scene has it; of a sequence where it is one of its frames.
+  void show(const SceneOptions& other, const std::optional<Sequence>& frames);
+  /// Another frame of the sequence, from the same place. What would be chosen for its picture stays as it was
+  /// chosen for the one before, so that a film does not flicker.
+  void showFrame(const std::string& file);
 };
 
 }  // namespace freevoxels

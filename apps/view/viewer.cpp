@@ -1,12 +1,13 @@
 #include "apps/view/viewer.h"
 
-#include <backends/imgui_impl_glfw.h>
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "apps/freevoxels/frame_names.h"
 #include "apps/view/panels.h"
 #include "engine/core/error.h"
 #include "engine/image/image.h"
@@ -38,7 +39,9 @@ Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const View
       device_(instance, options.device.selector.value_or(""), std::numeric_limits<std::uint64_t>::max(),
               kDeviceExtensions),
       swapchain_(instance, device_, window_),
-      state_{.scene = options.scene, .method = options.method},
+      state_{.scene = options.scene, .method = options.method, .sequence = options.sequence},
+      files_(!options.screenshot),
+      takeAway_(instance, options_.device, options.frames.value_or(kDefaultFrames), Window::wake),
       volumes_(maximumVoxels(device_)),
       quick_(instance, options_.device, volumes_, kQuickVoxels, Window::wake),
       whole_(instance, options_.device, volumes_, std::numeric_limits<int>::max(), Window::wake) {
@@ -49,12 +52,14 @@ Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const View
   io.Fonts->AddFontDefault(&font);
   ImGui::StyleColorsDark();
   ImGui::GetStyle().ScaleAllSizes(window_.contentScale());
+  files_.remember(state_.sequence ? state_.sequence->pattern : state_.scene.input.input);
   painter_ = std::make_unique<UiPainter>(device_, swapchain_.format());
 }
 
 void Viewer::show(const std::shared_ptr<const Picture>& picture) {
   state_.latest = picture;
-  if (!state_.camera) state_.camera = picture->scene.camera;
+  const bool isAsked = picture->request.number == lastRequest_ && !state_.changed;
+  if (!state_.camera && isAsked) state_.camera = picture->scene.camera;
   upload(picture->diagnosis ? *picture->diagnosis : picture->image, texture_);
   if (picture->compared)
     upload(*picture->compared, comparedTexture_);
@@ -82,17 +87,18 @@ void Viewer::takeResults() {
   const auto take = [this](RenderThread& thread) {
     const std::optional<RenderThread::Result> result = thread.take();
     if (!result) return false;
+    answered_ = std::max(answered_, result->number);
     if (!result->picture) {
       state_.problem = result->problem;
-      failed_ = result->number;
+      if (&thread == &whole_) failed_ = result->number;
       if (options_.screenshot) fail(result->code, "{}", result->problem);
       return false;
     }
     state_.problem.clear();
     const bool isWhole = &thread == &whole_;
     // A whole picture is not replaced by a quick one of the same.
-    const std::uint64_t shown = state_.latest ? state_.latest->number : 0;
-    if (result->number < shown || (!isWhole && state_.whole && result->number <= state_.whole->number))
+    const std::uint64_t shown = state_.latest ? state_.latest->request.number : 0;
+    if (result->number < shown || (!isWhole && state_.whole && result->number <= state_.whole->request.number))
       return false;
     if (isWhole) state_.whole = result->picture;
     show(result->picture);
@@ -127,7 +133,7 @@ void Viewer::ask() {
         glm::max(glm::ivec2(glm::round(quickScale_ * glm::dvec2(quick.scene.camera.size))), glm::ivec2(1));
     quick_.ask(std::move(quick));
   }
-  const bool still = now - lastChange_ >= kStill && !area_.moves();
+  const bool still = now - lastChange_ >= kStill && !area_.moves() && !frames_.plays();
   if (still && askedOfWhole_ != lastRequest_) {
     askedOfWhole_ = lastRequest_;
     whole_.ask(request());
@@ -135,12 +141,16 @@ void Viewer::ask() {
 }
 
 bool Viewer::isComplete() const {
-  return state_.whole && state_.whole->number == lastRequest_ && !state_.changed &&
+  return state_.whole && state_.whole->request.number == lastRequest_ && !state_.changed &&
          state_.latest == state_.whole;
 }
 
 void Viewer::drawPanels() {
+  state_.complete = isComplete();
+  state_.failed = failed_ == lastRequest_ && !state_.changed;
+  state_.answered = answered_ == lastRequest_ && !state_.changed;
   const ImGuiIO& io = ImGui::GetIO();
+  if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Q, false)) window_.close();
   constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                                       ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoBringToFrontOnFocus |
                                       ImGuiWindowFlags_NoSavedSettings;
@@ -149,23 +159,26 @@ void Viewer::drawPanels() {
   ImGui::SetNextWindowSize({sidebar, io.DisplaySize.y});
   ImGui::Begin("panels", nullptr, kFixed);
   const auto activity = whole_.activity() ? whole_.activity() : quick_.activity();
+  files_.draw(state_);
+  frames_.draw(state_);
   drawPanelsOf(state_, activity, looks_);
+  takeAway_.draw(state_);
   ImGui::End();
 
   ImGui::SetNextWindowPos({sidebar, 0.0f});
   ImGui::SetNextWindowSize({io.DisplaySize.x - sidebar, io.DisplaySize.y});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0f, 0.0f});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);  // which would hide a part of the picture
   ImGui::Begin("picture", nullptr,
                kFixed | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  ImGui::PopStyleVar();
+  ImGui::PopStyleVar(2);
   area_.draw(state_, texture_.get(), comparedTexture_.get());
   ImGui::End();
 }
 
 void Viewer::drawFrame() {
   if (!swapchain_.acquire()) return;
-  ImGui_ImplGlfw_NewFrame();
-  ImGui::NewFrame();
+  window_.beginFrame();
   drawPanels();
   ImGui::Render();
   painter_->draw(*ImGui::GetDrawData(), swapchain_);
@@ -183,14 +196,17 @@ void Viewer::run() {
   std::string title;
   while (!window_.wantsToClose()) {
     const bool settles = !isComplete() && askedOfWhole_ != lastRequest_;
-    Window::waitForEvents(area_.moves() || settles || options_.screenshot ? 1e-3 : kIdleSeconds);
-    for (const std::string& file : window_.takeDropped()) state_.open(file);
+    const bool hurries =
+        area_.moves() || frames_.plays() || settles || options_.screenshot || window_.inputWaits();
+    Window::waitForEvents(hurries ? 1e-3 : kIdleSeconds);
+    for (const std::string& file : window_.takeDropped()) files_.open(state_, file);
     if (title != titleOf(state_)) window_.setTitle(title = titleOf(state_));
     takeResults();
     drawFrame();
     ask();
     if (options_.screenshot && completeFrames_ >= options_.after.value_or(1)) return;
   }
+  window_.hide();
 }
 
 }  // namespace freevoxels

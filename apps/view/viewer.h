@@ -4,9 +4,12 @@
 #include <chrono>
 #include <memory>
 
+#include "apps/view/export_panel.h"
+#include "apps/view/files_panel.h"
 #include "apps/view/look_panels.h"
 #include "apps/view/picture_area.h"
 #include "apps/view/render_thread.h"
+#include "apps/view/sequence_panel.h"
 #include "apps/view/swapchain.h"
 #include "apps/view/ui_painter.h"
 #include "apps/view/view_options.h"
@@ -46,11 +49,14 @@ class Viewer {
   ViewState state_;
   LookPanels looks_;
   PictureArea area_;
+  FilesPanel files_;
+  SequencePanel frames_;
+  ExportPanel takeAway_;
   std::unique_ptr<Texture> texture_, comparedTexture_;
 
   VolumeCache volumes_;
   RenderThread quick_, whole_;  ///< of few voxels, and of all
-  std::uint64_t lastRequest_ = 0, askedOfWhole_ = 0, failed_ = 0;
+  std::uint64_t lastRequest_ = 0, askedOfWhole_ = 0, answered_ = 0, failed_ = 0;
   Clock::time_point lastChange_;
   double quickScale_ = 0.5;  ///< of the picture's edges while something moves
   bool wholeIsQuick_ = false;

@@ -15,6 +15,9 @@ std::string nameOf(const SceneOptions& scene) {
 
 }  // namespace
 
+VolumeCache::VolumeCache(const SceneOptions& scene, std::shared_ptr<const Volume> volume)
+    : maximumVoxels_(volume->voxelCount()), name_(nameOf(scene)), volume_(std::move(volume)) {}
+
 std::shared_ptr<const Volume> VolumeCache::read(const SceneOptions& scene) {
   const std::lock_guard lock(mutex_);
   std::string name = nameOf(scene);

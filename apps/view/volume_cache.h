@@ -13,6 +13,9 @@ class VolumeCache {
  public:
   explicit VolumeCache(std::uint64_t maximumVoxels) : maximumVoxels_(maximumVoxels) {}
 
+  /// Has read the volume that the options name.
+  VolumeCache(const SceneOptions& scene, std::shared_ptr<const Volume> volume);
+
   /// The volume that the options name, read unless it is the last one; whoever comes meanwhile waits for it.
   std::shared_ptr<const Volume> read(const SceneOptions& scene);
 

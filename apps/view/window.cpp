@@ -6,6 +6,9 @@
 #include <backends/imgui_impl_glfw.h>
 #include <imgui.h>
 
+#include <algorithm>
+#include <functional>
+#include <limits>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -13,6 +16,12 @@
 namespace freevoxels {
 
 namespace {
+
+constexpr glm::dvec2 kNowhere(-std::numeric_limits<float>::max());  // as Dear ImGui has it
+
+Window& windowOf(GLFWwindow* handle) {
+  return *static_cast<Window*>(glfwGetWindowUserPointer(handle));
+}
 
 std::string lastProblem() {
   const char* text = nullptr;
@@ -55,13 +64,70 @@ Window::Window(const WindowSystem&, const std::string& title, glm::ivec2 size) {
   if (window_ == nullptr)
     fail(ExitCode::Device, "no window can be opened ({}): 'freevoxels render' draws without a display",
          lastProblem());
+  ImGui::CreateContext();
+  ImGui_ImplGlfw_InitForVulkan(window_, false);
+  listen();
+}
+
+void Window::listen() {
   glfwSetWindowUserPointer(window_, this);
   glfwSetDropCallback(window_, [](GLFWwindow* handle, int count, const char** files) {
-    auto& window = *static_cast<Window*>(glfwGetWindowUserPointer(handle));
+    Window& window = windowOf(handle);
     window.dropped_.insert(window.dropped_.end(), files, files + count);
   });
-  ImGui::CreateContext();
-  ImGui_ImplGlfw_InitForVulkan(window_, true);
+  glfwSetCursorPosCallback(window_, [](GLFWwindow* handle, double x, double y) {
+    windowOf(handle).input_.add({.kind = InputEvent::Kind::Move, .value = {x, y}});
+  });
+  glfwSetCursorEnterCallback(window_, [](GLFWwindow* handle, int entered) {
+    Window& window = windowOf(handle);
+    if (entered == GLFW_FALSE && std::ranges::none_of(window.buttons_, std::identity()))
+      window.input_.add({.kind = InputEvent::Kind::Move, .value = kNowhere});
+  });
+  glfwSetMouseButtonCallback(window_, [](GLFWwindow* handle, int button, int action, int) {
+    windowOf(handle).input_.add(
+        {.kind = InputEvent::Kind::Button, .code = button, .down = action == GLFW_PRESS});
+  });
+  glfwSetScrollCallback(window_, [](GLFWwindow* handle, double x, double y) {
+    windowOf(handle).input_.add({.kind = InputEvent::Kind::Wheel, .value = {x, y}});
+  });
+  glfwSetKeyCallback(window_, [](GLFWwindow* handle, int key, int, int action, int) {
+    if (action != GLFW_REPEAT)  // Dear ImGui repeats by itself
+      windowOf(handle).input_.add({.kind = InputEvent::Kind::Key, .code = key, .down = action == GLFW_PRESS});
+  });
+  glfwSetCharCallback(window_, [](GLFWwindow* handle, unsigned int character) {
+    windowOf(handle).input_.add({.kind = InputEvent::Kind::Character, .code = int(character)});
+  });
+  glfwSetWindowFocusCallback(window_, ImGui_ImplGlfw_WindowFocusCallback);
+}
+
+void Window::give(const InputEvent& event) {
+  ImGuiIO& io = ImGui::GetIO();
+  switch (event.kind) {
+    case InputEvent::Kind::Move:
+      cursor_ = event.value;
+      break;
+    case InputEvent::Kind::Button:
+      if (std::size_t(event.code) < buttons_.size()) buttons_[std::size_t(event.code)] = event.down;
+      break;
+    case InputEvent::Kind::Wheel:
+      ImGui_ImplGlfw_ScrollCallback(window_, event.value.x, event.value.y);
+      break;
+    case InputEvent::Kind::Key:
+      ImGui_ImplGlfw_KeyCallback(window_, event.code, 0, event.down ? GLFW_PRESS : GLFW_RELEASE, 0);
+      break;
+    case InputEvent::Kind::Character:
+      io.AddInputCharacter(static_cast<unsigned int>(event.code));
+      break;
+  }
+}
+
+void Window::beginFrame() {
+  for (const InputEvent& event : input_.nextFrame()) give(event);
+  ImGui_ImplGlfw_NewFrame();
+  ImGuiIO& io = ImGui::GetIO();  // not the mouse as it is by now
+  io.MousePos = {cursor_.x, cursor_.y};
+  std::ranges::copy(buttons_, io.MouseDown);
+  ImGui::NewFrame();
 }
 
 Window::~Window() {
@@ -74,8 +140,16 @@ bool Window::wantsToClose() const {
   return glfwWindowShouldClose(window_) != GLFW_FALSE;
 }
 
+void Window::close() const {
+  glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
+
 void Window::setTitle(const std::string& title) const {
   glfwSetWindowTitle(window_, title.c_str());
+}
+
+void Window::hide() const {
+  glfwHideWindow(window_);
 }
 
 glm::ivec2 Window::pixels() const {

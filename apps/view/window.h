@@ -1,10 +1,13 @@
 #pragma once
 // The window: GLFW, and Dear ImGui's input from it.
 
+#include <array>
 #include <glm/glm.hpp>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "apps/view/input_queue.h"
 
 struct GLFWwindow;
 
@@ -33,11 +36,19 @@ class Window {
 
   GLFWwindow* handle() const { return window_; }
   bool wantsToClose() const;
+  /// As its own button does.
+  void close() const;
   void setTitle(const std::string& title) const;
+  /// It is gone for those who look, before what is behind it ends.
+  void hide() const;
   /// Of the framebuffer, in pixels; 0 while it is minimised.
   glm::ivec2 pixels() const;
   /// Pixels to a unit of text: 2 on a screen of twice the usual density.
   float contentScale() const;
+  /// Begins a frame of Dear ImGui, with what hands did since the last.
+  void beginFrame();
+  /// Whether the next frame has to show more of that, soon.
+  bool inputWaits() const { return !input_.settled(); }
   /// Files dropped onto the window since the last call.
   std::vector<std::string> takeDropped();
 
@@ -47,7 +58,13 @@ class Window {
   static void wake();
 
  private:
+  void listen();
+  void give(const InputEvent& event);
+
   GLFWwindow* window_ = nullptr;
+  InputQueue input_;
+  glm::vec2 cursor_{0.0f};
+  std::array<bool, 3> buttons_{};
   std::vector<std::string> dropped_;
 };
 

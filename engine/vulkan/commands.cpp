@@ -189,7 +189,12 @@ void Commands::submitAndWait(const Progress& progress) {
         vkWaitSemaphores(device_.handle(), &wait, progress ? kProgressInterval : UINT64_MAX);
     if (result == VK_SUCCESS) return;
     if (result != VK_TIMEOUT) VK_CHECK(result);
-    reportProgress(progress);
+    try {
+      reportProgress(progress);
+    } catch (...) {  // whoever gives up has nothing in use behind
+      VK_CHECK(vkWaitSemaphores(device_.handle(), &wait, UINT64_MAX));
+      throw;
+    }
   }
 }
 

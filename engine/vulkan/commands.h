@@ -80,7 +80,7 @@ class Commands {
   }
 
   /// Ends the recording, runs it and waits; reports the passes as the device finishes them. Throws where the
-  /// device does.
+  /// device does, or `progress` when the device is done.
   void submitAndWait(const Progress& progress = {});
   /// Device time of each pass; after submitAndWait.
   std::vector<StageTime> times() const;

@@ -1,0 +1,30 @@
+#pragma once
+// "Open": a field for a file's name, and what was opened last.
+
+#include <string>
+
+#include "apps/view/recent_files.h"
+#include "apps/view/view_state.h"
+
+namespace freevoxels {
+
+class FilesPanel {
+ public:
+  /// Without `remembers` nothing is kept of what is opened.
+  explicit FilesPanel(bool remembers);
+
+  /// Into the current Dear ImGui window. Ctrl+O asks for a name.
+  void draw(ViewState& state);
+  /// openFile; what goes wrong is said in the panel.
+  void open(ViewState& state, const std::string& file);
+  /// Is on the list then.
+  void remember(const std::string& file);
+
+ private:
+  void drawRecent(ViewState& state);
+
+  RecentFiles recent_;
+  std::string name_, problem_;
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,65 @@
+#include "apps/view/input_queue.h"
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+
+namespace freevoxels {
+
+namespace {
+
+using Kind = InputEvent::Kind;
+
+constexpr int kShortcutFrames = 3;  // until a field that is asked for has the cursor
+constexpr int kSettlingFrames = 3;  // in which Dear ImGui shows what came of an event
+
+bool isControl(const InputEvent& event) {
+  return event.kind == Kind::Key &&
+         (event.code == GLFW_KEY_LEFT_CONTROL || event.code == GLFW_KEY_RIGHT_CONTROL);
+}
+
+bool isModifier(const InputEvent& event) {
+  return event.kind == Kind::Key && event.code >= GLFW_KEY_LEFT_SHIFT && event.code <= GLFW_KEY_RIGHT_SUPER;
+}
+
+/// Whether a frame that has `before` would see something else than happened if it had `event` as well.
+bool hides(const InputEvent& event, const InputEvent& before) {
+  if (isModifier(event) || isModifier(before))
+    return isModifier(event) && (!isModifier(before) || before.code == event.code);
+  switch (event.kind) {
+    case Kind::Move:
+      return before.kind == Kind::Button || before.kind == Kind::Wheel;
+    case Kind::Button:
+      return before.kind != Kind::Move;
+    case Kind::Wheel:
+      return before.kind == Kind::Button;
+    case Kind::Key:
+      if (before.kind == Kind::Key) return before.code == event.code || (event.down && before.down);
+      return event.down && before.kind != Kind::Move;
+    case Kind::Character:
+      return before.kind == Kind::Button;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<InputEvent> InputQueue::nextFrame() {
+  std::vector<InputEvent> frame;
+  if (held_ > 0) {
+    --held_;
+    return frame;
+  }
+  while (!events_.empty()) {
+    const InputEvent& next = events_.front();
+    if (std::ranges::any_of(frame, [&](const InputEvent& before) { return hides(next, before); })) break;
+    if (isControl(next)) control_ = next.down;
+    if (control_ && next.kind == Kind::Key && next.down && !isModifier(next)) held_ = kShortcutFrames;
+    frame.push_back(next);
+    events_.pop_front();
+  }
+  unsettled_ = frame.empty() ? std::max(unsettled_ - 1, 0) : kSettlingFrames;
+  return frame;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,78 @@
+#include "apps/view/opened_file.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apps/view/view_options.h"
+#include "engine/core/error.h"
+#include "engine/core/json_file.h"
+
+namespace freevoxels {
+
+namespace {
+
+bool hasExtension(const std::string& file, const char* extension) {
+  return std::filesystem::path(file).extension() == extension;
+}
+
+void openScene(ViewState& state, const std::string& file) {
+  CLI::App command;
+  ViewOptions options;
+  options.add(command);  // whose options are the keys
+  options.scene.file.file = file;
+  options.takeScene();
+  options.scene.camera.size = state.scene.camera.size;
+  options.scene.file = state.scene.file;
+  state.show(options.scene, options.sequence);
+  state.method = options.method;
+}
+
+bool isTransferFunction(const std::string& file) {
+  const nlohmann::json json = readJson("scene or transfer function", file);
+  return json.is_object() && json.contains("opacity");
+}
+
+void openVolume(ViewState& state, const std::string& file) {
+  SceneOptions scene = state.scene;
+  scene.input = {.input = file};
+  scene.classification = {};
+  scene.emission = {};
+  scene.camera = {.size = scene.camera.size};
+  std::optional<Sequence> sequence;
+  if (isPattern(file)) {
+    sequence = findSequence(file);
+    scene.input.input = sequence->files.front();
+  }
+  state.show(scene, sequence);
+}
+
+}  // namespace
+
+void openFile(ViewState& state, const std::string& file) {
+  const bool named = proceduralName(file) || isPattern(file);
+  if (!named && !std::filesystem::exists(file))
+    fail(ExitCode::Input, "cannot read '{}': there is no such file; check its name", file);
+  if (named || hasExtension(file, ".vdb")) return openVolume(state, file);
+  if (hasExtension(file, ".exr")) {
+    state.scene.lighting.environment = file;
+    state.changed = true;
+  } else if (!hasExtension(file, ".json")) {
+    fail(ExitCode::Input,
+         "'{}' cannot be shown: open a volume (.vdb), a scene or a transfer function (.json), or the light "
+         "around (.exr)",
+         file);
+  } else if (isTransferFunction(file)) {
+    state.scene.classification = {.transferFunction = file};
+    state.changed = true;
+  } else {
+    openScene(state, file);
+  }
+}
+
+bool isWorthRemembering(const std::string& file) {
+  return !proceduralName(file) && !hasExtension(file, ".exr") &&
+         !(hasExtension(file, ".json") && isTransferFunction(file));
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,198 @@
+// freevoxels-view: its window on a display of the tests' own, used as a person does.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "engine/image/image.h"
+#include "tests/commands/viewer_runner.h"
+
+namespace freevoxels::test {
+
+namespace {
+
+constexpr int kSidebar = 340;     // pixels at the window's left that are not the picture's
+constexpr int kAxesCorner = 100;  // at the picture's lower left, with the axes
+constexpr glm::ivec2 kWindow{1280, 800};
+
+class Viewer : public CommandTest {
+ protected:
+  void SetUp() override {
+    if (!installedProgram("Xvfb") || !installedProgram("xdotool"))
+      GTEST_SKIP() << "Xvfb and xdotool are not installed: no window can be opened and used here";
+    setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
+    display.emplace();
+  }
+  ProgramResult view(const std::string& text) const {
+    return runProgramFile(FREEVOXELS_VIEW_PROGRAM, words(text));
+  }
+  std::unique_ptr<ViewerSession> use(const std::string& text) const {
+    return std::make_unique<ViewerSession>(folder.path(), words(text));
+  }
+  static void expectQuietEnd(ViewerSession& session) {
+    const ProgramResult result = session.quit();
+    EXPECT_EQ(result.exitCode, 0);
+    EXPECT_EQ(result.err, "");
+  }
+  static nlohmann::json sceneOf(const ViewerSession& session, const std::string& name) {
+    return nlohmann::json::parse(session.save('e', name));
+  }
+  static glm::dvec3 vectorOf(const nlohmann::json& scene, const char* key) {
+    const auto& value = scene.at("camera").at(key);
+    return {value.at(0), value.at(1), value.at(2)};
+  }
+  static glm::dvec3 armOf(const nlohmann::json& scene) {
+    return vectorOf(scene, "camera-position") - vectorOf(scene, "look-at");
+  }
+
+  std::optional<Display> display;
+};
+
+/// What of the window's picture is not that of the file, but for the axes.
+int differingPixels(const Image& window, const Image& picture) {
+  int different = 0;
+  for (int y = 0; y < picture.size.y; ++y)
+    for (int x = 0; x < picture.size.x; ++x) {
+      if (x < kAxesCorner && y >= picture.size.y - kAxesCorner) continue;
+      const int column = x + window.size.x - picture.size.x;
+      different += window.pixels[std::size_t(y * window.size.x + column)] !=
+                   picture.pixels[std::size_t(y * picture.size.x + x)];
+    }
+  return different;
+}
+
+}  // namespace
+
+TEST_F(Viewer, TheWindowShowsThePictureOfRender) {
+  const std::string options =
+      " --resolution 32 --orbit 200,15 --background 0.1,0.2,0.3 --light direction=1,1,0";
+  const ProgramResult shown = view("procedural:cloud --screenshot @window.png" + options);
+  EXPECT_EQ(shown.exitCode, 0);
+  EXPECT_EQ(shown.err, "");
+  const std::string size = fmt::format(" --size {}x{}", kWindow.x - kSidebar, kWindow.y);
+  expectSuccess(run("render procedural:cloud @picture.png --quiet" + options + size));
+  const Image window = readPng(folder / "window.png"), picture = readPng(folder / "picture.png");
+  ASSERT_EQ(window.size, kWindow);
+  EXPECT_EQ(differingPixels(window, picture), 0);
+  EXPECT_NE(picture.pixels[std::size_t(400 * picture.size.x + 470)], picture.pixels.front());
+  EXPECT_EQ(folder.fileCount(), 2u) << "a screenshot remembers no file";
+}
+
+TEST_F(Viewer, WhatIsTakenAwayIsWhatTheProgramsMake) {
+  const auto session = use("procedural:cloud --resolution 32 --frames 3 --background 0.1,0.2,0.3");
+  session->hands("windowsize @ 560 240");
+  const std::string before = session->save('s', "before.png");
+  session->hands("mousemove 420 100 mousedown 1 mousemove 450 120 mouseup 1");
+  const std::string png = session->save('s', "a.png"), exr = session->save('s', "a.exr");
+  const std::string scene = session->save('e', "a.json");
+  EXPECT_NE(before, png) << "the drag has turned it";
+  session->save('t', "turn_#.exr");
+  session->save('s', "after.png");
+  expectQuietEnd(*session);
+
+  std::string command = exrAttribute(exr, "freevoxels:command");
+  ASSERT_TRUE(command.starts_with("freevoxels render ")) << command;
+  command.erase(0, std::string("freevoxels ").size());
+  EXPECT_EQ(command.find("--background"), std::string::npos) << "an .exr has none";
+  expectSuccess(run(command + " @b.exr @b.png --background 0.1,0.2,0.3 --save-scene @b.json --quiet"));
+  EXPECT_TRUE(png == readBytes(folder / "b.png"));
+  EXPECT_EQ(scene, readBytes(folder / "b.json"));
+  expectSuccess(run("render --scene @a.json @c.exr --quiet"));
+  EXPECT_TRUE(exr == readBytes(folder / "c.exr"));
+
+  expectSuccess(run("turntable --scene @a.json @again_#.exr --frames 3 --quiet"));
+  for (const char frame : {'0', '1', '2'})
+    EXPECT_TRUE(readBytes(folder / (std::string("turn_") + frame + ".exr")) ==
+                readBytes(folder / (std::string("again_") + frame + ".exr")))
+        << frame;
+}
+
+TEST_F(Viewer, HandsMoveTheCamera) {
+  const auto session = use("procedural:cloud --resolution 16");
+  session->hands("windowsize @ 440 100");
+  const nlohmann::json first = sceneOf(*session, "0.json");
+  session->hands("mousemove 400 40 click 4");
+  const nlohmann::json nearer = sceneOf(*session, "1.json");
+  EXPECT_LT(glm::distance(armOf(nearer), 0.9 * armOf(first)), 1e-9);
+  session->hands("mousemove 400 40 mousedown 1 mousemove 410 40 mouseup 1");
+  const glm::dvec3 arm = armOf(sceneOf(*session, "2.json")), was = armOf(nearer);
+  EXPECT_NEAR(glm::length(arm), glm::length(was), 1e-9);
+  EXPECT_NEAR(arm.y, was.y, 1e-9);
+  EXPECT_NEAR(was.z * arm.x - was.x * arm.z, -std::sin(0.1 * M_PI) * (was.x * was.x + was.z * was.z), 1e-9)
+      << "a tenth of the height is a tenth of half a turn";
+  for (int axis = 0; axis < 6; ++axis) {
+    session->hands("key " + std::to_string(axis + 1));
+    glm::dvec3 side(0.0);
+    side[axis / 2] = axis % 2 == 0 ? glm::length(was) : -glm::length(was);
+    EXPECT_LT(glm::distance(armOf(sceneOf(*session, fmt::format("axis{}.json", axis))), side), 1e-9) << axis;
+  }
+  session->hands("key o");
+  EXPECT_TRUE(sceneOf(*session, "flat.json").at("camera").contains("orthographic"));
+  session->hands("key o key f");
+  EXPECT_GT(glm::length(armOf(sceneOf(*session, "framed.json"))), glm::length(was)) << "all of it is seen";
+  expectQuietEnd(*session);
+}
+
+TEST_F(Viewer, AWindowMayChangeAndGoAway) {
+  const auto session = use("procedural:cloud --resolution 32");
+  for (const char* size : {"900 700", "400 300", "30 30", "1 1", "341 200", "1300 100"})
+    session->hands(std::string("windowsize @ ") + size);
+  session->hands("windowminimize @");
+  session->hands("windowunmap @");
+  session->hands("windowsize @ 600 300");
+  session->hands("windowmap @ mousemove 400 100");
+  session->hands("windowsize --sync @ 500 200");
+  session->save('s', "a.png");
+  EXPECT_EQ(readPng(folder / "a.png").size.y, 200);
+  session->hands("windowsize --sync @ 640 480");
+  session->hands("key w");  // begins another picture
+  expectQuietEnd(*session);
+}
+
+TEST_F(Viewer, BadFilesAreSaidAndTheWindowStays) {
+  writeBytes(folder / "bad.vdb", "this is no volume");
+  const auto session = use("procedural:cloud --resolution 16");
+  session->hands("windowsize @ 600 200");
+  session->save('s', "a.png");
+  session->open("none.vdb");
+  session->open("bad.vdb");
+  session->hands("mousemove 500 100 click 4 key 3");
+  session->open("procedural:cube");
+  EXPECT_EQ(sceneOf(*session, "b.json").at("input").at("volume"), "procedural:cube");
+  expectQuietEnd(*session);
+
+  const ProgramResult refused = view("@bad.vdb --screenshot @w.png");
+  EXPECT_EQ(refused.exitCode, int(ExitCode::Input));
+  EXPECT_NE(refused.err.find("bad.vdb"), std::string::npos) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "w.png"));
+}
+
+TEST_F(Viewer, ASequenceGoesFromFrameToFrame) {
+  expectSuccess(run("generate cloud @s_1.vdb --resolution 16 --quiet"));
+  expectSuccess(run("generate plume @s_3.vdb --resolution 16 --quiet"));
+  writeBytes(folder / "s_2.vdb", "this is no volume");
+  const auto session = use("@s_#.vdb");
+  session->hands("windowsize @ 600 200");
+  const nlohmann::json first = sceneOf(*session, "1.json");
+  EXPECT_EQ(first.at("input").at("volume"), "s_1.vdb");
+  session->hands("mousemove 500 100 key period key period");  // over one that cannot be read
+  const nlohmann::json third = sceneOf(*session, "3.json");
+  EXPECT_EQ(third.at("input").at("volume"), "s_3.vdb");
+  EXPECT_EQ(third.at("camera"), first.at("camera"));
+  EXPECT_EQ(third.at("classification"), first.at("classification")) << "no frame is lit as another is not";
+  session->hands("mousemove 500 100 key space key space key comma key comma");
+  expectQuietEnd(*session);
+}
+
+TEST_F(Viewer, WithoutADisplayItSaysSo) {
+  display.reset();
+  unsetenv("WAYLAND_DISPLAY");
+  const ProgramResult refused = view("procedural:cloud");
+  EXPECT_EQ(refused.exitCode, int(ExitCode::Device));
+  EXPECT_EQ(std::ranges::count(refused.err, '\n'), 1) << refused.err;
+  EXPECT_NE(refused.err.find("'freevoxels render' draws without a display"), std::string::npos)
+      << refused.err;
+}
+
+}  // namespace freevoxels::test
