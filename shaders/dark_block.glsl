@@ -73,7 +73,7 @@ bool isHidden(ivec3 cell, int level) {
     if (i > 0) block[(major + 1 + (i & 1)) % 3] += i < 3 ? 1 : -1;
     const uint address = blockAddress(frame.levels[level], block);
     if (isInside(frame.levels[level], block) && holdsAnything(address))
-      dark = isDark(rankAt(frame.levels[level], address) + frame.boundsOffset, around);
+      dark = isDark(boundOf(frame.levels[level], rankAt(frame.levels[level], address)), around);
   }
   return dark;
 }

@@ -3,7 +3,7 @@
 // A_V of Subr et al. 2007, Section 3.3. A thread a direction marches from the eye as the sweeps do from a voxel, with
 // half of what is at the eye itself.
 #extension GL_GOOGLE_include_directive : require
-#include "interface.h"
+#include "frame_interface.h"
 #include "blocks.glsl"
 
 layout(local_size_x = kEyeThreads) in;

@@ -3,7 +3,7 @@
 // alpha is exact and the sums only decide how the colours along the ray mix. Sorted: the colour is there
 // already.
 #extension GL_GOOGLE_include_directive : require
-#include "interface.h"
+#include "frame_interface.h"
 #include "opacity.glsl"
 
 layout(constant_id = 0) const bool kWithDistance = false;

@@ -2,7 +2,7 @@
 // What a voxel adds to a pixel's sums: Subr et al. 2007, Eq. 10. The ray's world length per index length is
 // common to all voxels of the pixel: resolve.comp multiplies by it.
 #extension GL_GOOGLE_include_directive : require
-#include "interface.h"
+#include "frame_interface.h"
 #include "splat_weight.glsl"
 
 layout(location = 0) out vec4 colorEnergySum;

@@ -2,7 +2,7 @@
 // A splat as a point sprite, or as a quad where points of its size are beyond the device: vertices pulled
 // from the records.
 #extension GL_GOOGLE_include_directive : require
-#include "interface.h"
+#include "frame_interface.h"
 
 layout(constant_id = 0) const bool kQuads = false;
 

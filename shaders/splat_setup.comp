@@ -2,7 +2,7 @@
 // A voxel or a block of them becomes a splat: its transmittance to the eye, colour, and footprint on the image
 // (Subr et al. 2007, Section 3.3 and 4.1, Eq. 10). Independent of every other one.
 #extension GL_GOOGLE_include_directive : require
-#include "interface.h"
+#include "frame_interface.h"
 #include "attenuation_code.glsl"
 #include "blocks.glsl"
 #define TRANSFER_BINDING 1

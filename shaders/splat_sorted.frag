@@ -2,7 +2,7 @@
 // A voxel in front of what its pixel holds already: Subr et al. 2007, Eq. 9, which leaks. Colours are
 // premultiplied; every output is blended with its own alpha: source + (1 - alpha) destination.
 #extension GL_GOOGLE_include_directive : require
-#include "interface.h"
+#include "frame_interface.h"
 #include "splat_weight.glsl"
 
 layout(location = 0) out vec4 color;

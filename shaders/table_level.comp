@@ -1,9 +1,9 @@
 #version 460
-// A level of the octree's attenuation table from the one below, for a few directions, a thread a block that holds
-// anything: Subr et al. 2007, Section 3.2, Eq. 7. The geometric mean of transmittances is the mean of optical depths.
+// A level of the octree's attenuation table from the one below, for a few directions, a thread the blocks that hold
+// anything and share a bound: Subr et al. 2007, Section 3.2, Eq. 7. The geometric mean of transmittances is the mean of optical depths.
 // Children that hold nothing or are outside of the volume do not count, the others as much as they have voxels.
 //
-// And its bounds: the code of the most transparent voxel of each block, which says what can be left out behind others.
+// And its bounds: the code of the most transparent voxel, which says what can be left out behind others.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_8bit_storage : require
 #include "interface.h"
@@ -62,7 +62,7 @@ void findChildren(ivec3 cell) {
     [[unroll]] for (int x = 0; x < 2; ++x) {
       const bool holds = exists && (word.x >> (bit + x) & 1u) != 0;
       const int width = min(push.voxels.x - (child.x + x) * push.childEdge, push.childEdge);
-      ranks[2 * row + x] = holds ? rank : 0;
+      ranks[2 * row + x] = holds ? rank : push.child.firstRank;
       voxels[2 * row + x] = holds ? float(width) * float(inside.y) * float(inside.z) : 0.0;
       rank += holds ? 1 : 0;
     }
@@ -80,7 +80,7 @@ Parent parentOf(utextureBuffer codes) {
   [[unroll]] for (int child = 0; child < 8; ++child) {
     const bool holds = voxels[child] > 0.0;
     const uint code = texelFetch(codes, int(ranks[child])).x;
-    const uint bound = kFromVoxels ? code : texelFetch(codes, int(ranks[child] + push.boundsOffset)).x;
+    const uint bound = kFromVoxels ? code : texelFetch(codes, int(boundOf(push.child, ranks[child]))).x;
     sum += voxels[child] * filtered(code);
     all += voxels[child];
     used |= holds ? code : 0;
@@ -95,16 +95,24 @@ Parent parentOf(utextureBuffer codes) {
   if (i < push.directionCount) {                                                                  \
     const Parent parent = parentOf(read##i);                                                      \
     plane##i.codes[rank] = uint8_t(parent.code);                                                  \
-    plane##i.codes[rank + push.boundsOffset] = uint8_t(parent.bound);                             \
+    bounds[i] = clearer(bounds[i], parent.bound);                                                 \
     /* Few are darker than all before them. */                                                    \
     if (kFromVoxels && parent.darkest > darkest[push.firstDirection + i])                         \
       atomicMax(darkest[push.firstDirection + i], parent.darkest);                                \
   }
+#define STORE_BOUND(i) \
+  if (i < push.directionCount) plane##i.codes[push.parent.firstBound + group] = uint8_t(bounds[i]);
 
 void main() {
-  const uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kLevelThreads;
-  if (i >= push.parentCount) return;
-  findChildren(cellAt(push.parent, parents[i]));
-  const uint rank = push.parent.firstRank + i;
-  MAKE(0) MAKE(1) MAKE(2) MAKE(3) MAKE(4) MAKE(5) MAKE(6)
+  const uint group = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kLevelThreads;
+  const uint first = group * kBoundBlocks, end = min(first + kBoundBlocks, push.parentCount);
+  if (first >= end) return;
+  uint bounds[kDirectionsPerLevelPass];
+  [[unroll]] for (int i = 0; i < kDirectionsPerLevelPass; ++i) bounds[i] = kDarkest;
+  [[dont_unroll]] for (uint i = first; i < end; ++i) {
+    findChildren(cellAt(push.parent, parents[i]));
+    const uint rank = push.parent.firstRank + i;
+    MAKE(0) MAKE(1) MAKE(2) MAKE(3) MAKE(4) MAKE(5) MAKE(6)
+  }
+  STORE_BOUND(0) STORE_BOUND(1) STORE_BOUND(2) STORE_BOUND(3) STORE_BOUND(4) STORE_BOUND(5) STORE_BOUND(6)
 }

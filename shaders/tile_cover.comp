@@ -7,7 +7,7 @@
 // is, every voxel on the pixel's ray is dark in the table, which has no direction through the opening that the pixel
 // looks through: all of them count.
 #extension GL_GOOGLE_include_directive : require
-#include "interface.h"
+#include "frame_interface.h"
 
 const float kLeastEnergy = 0.25;
 

@@ -9,11 +9,6 @@ namespace freevoxels {
 
 namespace {
 
-// In the order of the enumerators.
-const std::vector<std::string> kAttenuations{"table", "exact"};
-const std::vector<std::string> kShadings{"none", "scatter", "gradient"};
-constexpr int kNoShading = 0, kGradientShading = 2;
-
 constexpr const char* kForm = "direction=X,Y,Z[,color=R,G,B][,intensity=I] or position=X,Y,Z[,...]";
 
 glm::dvec3 triple(const char* name, const char* form, const std::string& value, NumberRange range = {}) {
@@ -120,11 +115,11 @@ void LightingOptions::add(CLI::App& app) {
 
 void LightingOptions::addMethod(CLI::App& app) {
   addWord(
-      app, "--light-attenuation", kAttenuations, attenuation,
+      app, "--light-attenuation", kLightAttenuationWords, attenuation,
       "Whether the shadows of lights are looked up in the table, or along rays that are swept once for each "
       "light, exactly [table]")
       ->group("Light");
-  addWord(app, "--shading", kShadings, shading,
+  addWord(app, "--shading", kShadingWords, shading,
           "What a voxel does with lights: scatters them as fog does, or as a surface across the change of "
           "its extinction, "
           "or nothing: it sends out its colour [scatter]")
@@ -139,10 +134,10 @@ void LightingOptions::check() const {
   if (attenuation && lights.empty())
     fail(ExitCode::Usage,
          "--light-attenuation is how lights are shadowed, and there is none: give a --light");
-  if (shading == kGradientShading && lights.empty())
+  if (shading == int(Shading::Gradient) && lights.empty())
     fail(ExitCode::Usage,
          "--shading gradient is how lights are scattered, and there is none: give a --light");
-  if (surface && shading != kGradientShading)
+  if (surface && shading != int(Shading::Gradient))
     fail(ExitCode::Usage, "--surface-share is of --shading gradient: give that as well");
   if ((environmentRotation || environmentIntensity) && !environment)
     fail(ExitCode::Usage, "{} is of an environment, and there is none: give an --environment",
@@ -154,11 +149,11 @@ void LightingOptions::check() const {
 }
 
 std::optional<Lighting> LightingOptions::resolve(const Volume& volume) const {
-  if ((lights.empty() && !ambient && !environment) || shading == kNoShading) return std::nullopt;
+  if ((lights.empty() && !ambient && !environment) || shading == int(Shading::None)) return std::nullopt;
   Lighting lighting{.ambient = ambient.value_or(glm::dvec3(0.0)),
                     .tint = tint.value_or(glm::dvec3(1.0)),
                     .phaseG = phaseG.value_or(0.0)};
-  if (shading == kGradientShading) lighting.surface = surface.value_or(1.0);
+  if (shading == int(Shading::Gradient)) lighting.surface = surface.value_or(1.0);
   lighting.attenuation = LightAttenuation(attenuation.value_or(int(LightAttenuation::Table)));
   if (environment) {
     auto around = std::make_shared<Environment>(readEnvironment(*environment));
@@ -175,9 +170,10 @@ std::optional<Lighting> LightingOptions::resolve(const Volume& volume) const {
 
 void LightingOptions::describe(OptionList& options, const std::optional<Lighting>& resolved) const {
   if (!resolved) return;
-  if (attenuation) options.emplace_back("--light-attenuation", kAttenuations[std::size_t(*attenuation)]);
-  if (shading == kGradientShading) {
-    options.emplace_back("--shading", kShadings[std::size_t(*shading)]);
+  if (attenuation)
+    options.emplace_back("--light-attenuation", kLightAttenuationWords[std::size_t(*attenuation)]);
+  if (shading == int(Shading::Gradient)) {
+    options.emplace_back("--shading", kShadingWords[std::size_t(*shading)]);
     options.emplace_back("--surface-share", numberText(resolved->surface));
   }
   for (const Light& light : resolved->lights) options.emplace_back("--light", lightText(light));

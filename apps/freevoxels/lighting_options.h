@@ -12,6 +12,11 @@
 
 namespace freevoxels {
 
+/// What --shading and --light-attenuation take, in the order of the enumerators.
+enum class Shading : int { None = 0, Scatter = 1, Gradient = 2 };
+inline const std::vector<std::string> kShadingWords{"none", "scatter", "gradient"};
+inline const std::vector<std::string> kLightAttenuationWords{"table", "exact"};
+
 struct LightingOptions {
   struct GivenLight {
     Light light;

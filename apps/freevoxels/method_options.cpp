@@ -5,34 +5,22 @@
 
 namespace freevoxels {
 
-namespace {
-
-// In the order of the enumerators.
-const std::vector<std::string> kComposites{"normalised", "additive", "sorted"};
-const std::vector<std::string> kAttenuations{"bilinear", "nearest", "exact", "auto"};
-const std::vector<std::string> kCodes{"depth8", "linear8"};
-const std::vector<std::string> kHierarchyFilters{"geometric", "arithmetic"};
-// In ascending order of DirectionSet's values, from 1.
-const std::vector<std::string> kDirections{"26", "98"};
-
-}  // namespace
-
 void MethodOptions::add(CLI::App& app) {
   const char* const group = "Method";
-  addWord(app, "--composite", kComposites, composite,
+  addWord(app, "--composite", kCompositeWords, composite,
           "How the splats become the picture; sorted is back-to-front alpha blending, to compare with "
           "[normalised]")
       ->group(group);
-  addWord(app, "--attenuation", kAttenuations, attenuation,
+  addWord(app, "--attenuation", kAttenuationWords, attenuation,
           "How the table is looked up between its directions; exact does not read it, but "
-          "sweeps from the eye for every frame; auto: exact where the eye is inside the volume, bilinear "
+          "sweeps from the eye for every frame; auto: exact of what shines and where the eye is inside, bilinear "
           "where it "
           "is far away, and a mix of both between [auto]")
       ->group(group);
-  addWord(app, "--directions", kDirections, directions,
+  addWord(app, "--directions", kDirectionWords, directions,
           "How many directions the table holds; 98 are more exact and take more memory and time [26]")
       ->group(group);
-  addWord(app, "--code", kCodes, code, "What a byte of the table holds [depth8]")->group(group);
+  addWord(app, "--code", kCodeWords, code, "What a byte of the table holds [depth8]")->group(group);
   app.add_flag_function(
          "--path-length-correction,!--no-path-length-correction",
          [this](std::int64_t count) { pathLengthCorrection = count > 0; },
@@ -56,7 +44,7 @@ void MethodOptions::add(CLI::App& app) {
             "Transmittance to the eye below which a block is behind others; 0: none is [1/512]",
             {.minimum = 0.0, .maximum = 1.0})
       ->group(group);
-  addWord(app, "--hierarchy-filter", kHierarchyFilters, hierarchyFilter,
+  addWord(app, "--hierarchy-filter", kHierarchyFilterWords, hierarchyFilter,
           "Which mean of its voxels' transmittances a block has [geometric]")
       ->group(group);
   app.add_flag("--paper", paper,
@@ -86,17 +74,17 @@ void MethodOptions::apply(FrameSettings& frame) const {
 void MethodOptions::describe(OptionList& options) const {
   FrameSettings frame;
   apply(frame);
-  options.emplace_back("--composite", kComposites[std::size_t(frame.composite)]);
-  options.emplace_back("--attenuation", kAttenuations[std::size_t(frame.attenuation)]);
-  options.emplace_back("--directions", kDirections[std::size_t(table().directions) - 1]);
-  options.emplace_back("--code", kCodes[std::size_t(table().code)]);
+  options.emplace_back("--composite", kCompositeWords[std::size_t(frame.composite)]);
+  options.emplace_back("--attenuation", kAttenuationWords[std::size_t(frame.attenuation)]);
+  options.emplace_back("--directions", kDirectionWords[std::size_t(table().directions) - 1]);
+  options.emplace_back("--code", kCodeWords[std::size_t(table().code)]);
   options.emplace_back(
       table().pathLengthCorrection ? "--path-length-correction" : "--no-path-length-correction", "");
   options.emplace_back(frame.gradient ? "--gradient" : "--no-gradient", "");
   options.emplace_back("--lod", numberText(lod.value_or(double(frame.lod))));
   options.emplace_back(frame.culling ? "--culling" : "--no-culling", "");
   options.emplace_back("--cull-threshold", numberText(double(frame.cullThreshold)));
-  options.emplace_back("--hierarchy-filter", kHierarchyFilters[std::size_t(table().filter)]);
+  options.emplace_back("--hierarchy-filter", kHierarchyFilterWords[std::size_t(table().filter)]);
 }
 
 }  // namespace freevoxels

@@ -3,11 +3,21 @@
 // eight, but an option that is given explicitly wins over it.
 
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "apps/freevoxels/option_values.h"
 #include "engine/splatting/render_settings.h"
 
 namespace freevoxels {
+
+/// What the options take, in the order of the enumerators; of the directions in that of DirectionSet's
+/// values, from 1.
+inline const std::vector<std::string> kCompositeWords{"normalised", "additive", "sorted"};
+inline const std::vector<std::string> kAttenuationWords{"bilinear", "nearest", "exact", "auto"};
+inline const std::vector<std::string> kDirectionWords{"26", "98"};
+inline const std::vector<std::string> kCodeWords{"depth8", "linear8"};
+inline const std::vector<std::string> kHierarchyFilterWords{"geometric", "arithmetic"};
 
 struct MethodOptions {
   bool paper = false;

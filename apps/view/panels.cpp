@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "apps/view/navigation.h"
+#include "apps/view/understand_panel.h"
 
 namespace freevoxels {
 
@@ -56,10 +57,12 @@ void drawCameraPanel(ViewState& state) {
   if (ImGui::Checkbox("orthographic (O)", &orthographic)) state.look(withOtherProjection(camera));
 }
 
-void drawPanelsOf(ViewState& state, const Activity& activity) {
+void drawPanelsOf(ViewState& state, const Activity& activity, LookPanels& looks) {
   drawStatus(state, activity);
   drawVolumePanel(state);
+  looks.draw(state);
   drawCameraPanel(state);
+  drawUnderstandPanel(state);
 }
 
 }  // namespace freevoxels

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "apps/view/look_panels.h"
 #include "apps/view/view_state.h"
 
 namespace freevoxels {
@@ -18,6 +19,6 @@ void drawVolumePanel(ViewState& state);
 void drawCameraPanel(ViewState& state);
 
 /// All of them, in their order.
-void drawPanelsOf(ViewState& state, const Activity& activity);
+void drawPanelsOf(ViewState& state, const Activity& activity, LookPanels& looks);
 
 }  // namespace freevoxels

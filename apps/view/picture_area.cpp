@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kDollyPerNotch = 0.9;
 constexpr double kFlightPerSecond = 0.5;  // of the box's longest edge
+constexpr float kSplitReach = 8.0f;       // of the mouse, to take the split
 constexpr float kCheckEdge = 12.0f;       // of the squares behind what is transparent
 
 bool isDown(int key) {
@@ -49,6 +50,17 @@ void drawChecks(ImVec2 low, ImVec2 high) {
          x += 2 * kCheckEdge)
       list.AddRectFilled({x, y}, {std::min(x + kCheckEdge, high.x), std::min(y + kCheckEdge, high.y)},
                          IM_COL32(46, 46, 46, 255));
+}
+
+/// The other method's picture, right of the split.
+void drawCompared(const Texture& texture, float part, ImVec2 low, ImVec2 high) {
+  const float split = low.x + part * (high.x - low.x);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRect({split, low.y}, high, true);
+  drawChecks(low, high);
+  list.AddImage(textureId(texture), low, high);
+  list.PopClipRect();
+  list.AddLine({split, low.y}, {split, high.y}, IM_COL32(255, 200, 60, 255), 2.0f);
 }
 
 /// The world's axes as the camera sees them, in a corner.
@@ -108,7 +120,7 @@ void PictureArea::keys(ViewState& state) const {
     if (ImGui::IsKeyPressed(GLFW_KEY_1 + axis, false)) state.look(alongAxis(*state.camera, axis));
 }
 
-void PictureArea::draw(ViewState& state, const Texture* texture) {
+void PictureArea::draw(ViewState& state, const Texture* texture, const Texture* compared) {
   const ImGuiIO& io = ImGui::GetIO();
   const ImVec2 low = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
   pixels_ = glm::max(
@@ -119,13 +131,19 @@ void PictureArea::draw(ViewState& state, const Texture* texture) {
   const ImVec2 high(low.x + room.x, low.y + room.y);
   drawChecks(low, high);
   if (texture != nullptr) ImGui::GetWindowDrawList()->AddImage(textureId(*texture), low, high);
+  if (compared != nullptr) drawCompared(*compared, state.split, low, high);
   constexpr ImGuiButtonFlags kAnyButton = ImGuiButtonFlags_MouseButtonLeft |
                                           ImGuiButtonFlags_MouseButtonMiddle |
                                           ImGuiButtonFlags_MouseButtonRight;
   ImGui::InvisibleButton("picture", room, kAnyButton);
   if (!state.camera) return;
   drawAxes(*state.camera, {low.x + 44.0f, high.y - 44.0f});
-  moves_ = ImGui::IsItemActive();
+  const float split = low.x + state.split * room.x;
+  if (ImGui::IsItemActivated())
+    splits_ = compared != nullptr && std::abs(io.MousePos.x - split) < kSplitReach;
+  moves_ = ImGui::IsItemActive() && !splits_;
+  if (ImGui::IsItemActive() && splits_)
+    state.split = std::clamp((io.MousePos.x - low.x) / room.x, 0.0f, 1.0f);
   if (moves_) drag(state, {room.x, room.y});
   if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f)
     state.look(dollied(*state.camera, std::pow(kDollyPerNotch, double(io.MouseWheel))));

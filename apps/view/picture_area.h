@@ -10,8 +10,9 @@ namespace freevoxels {
 
 class PictureArea {
  public:
-  /// Fills what is left of the current Dear ImGui window. `texture` may be null.
-  void draw(ViewState& state, const Texture* texture);
+  /// Fills what is left of the current Dear ImGui window; right of ViewState::split with `compared`. Both may
+  /// be null.
+  void draw(ViewState& state, const Texture* texture, const Texture* compared);
 
   /// Of the area in the last frame, in pixels; 0 before.
   glm::ivec2 pixels() const { return pixels_; }
@@ -24,7 +25,7 @@ class PictureArea {
   void keys(ViewState& state) const;
 
   glm::ivec2 pixels_{0};
-  bool moves_ = false;
+  bool moves_ = false, splits_ = false;  ///< a hand is on the camera, or on the split
 };
 
 }  // namespace freevoxels

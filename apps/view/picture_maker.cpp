@@ -14,9 +14,7 @@ std::string rendererOptions(const PictureRequest& request, const Scene& scene) {
   OptionList options;
   request.scene.classification.describe(options, scene.classification);
   request.scene.emission.describe(options, *scene.volume, scene.classification.emission);
-  const TableSettings table = request.method.table();
-  options.emplace_back("table", fmt::format("{} {} {} {}", int(table.directions), int(table.code),
-                                            int(table.filter), table.pathLengthCorrection));
+  options.emplace_back("table", tableText(request.method.table()));
   return commandText(options);
 }
 
@@ -27,8 +25,13 @@ int blockEdge(const Volume& volume, int mostVoxelsAlongEdge) {
 
 }  // namespace
 
+std::string tableText(const TableSettings& table) {
+  return fmt::format("{} {} {} {}", int(table.directions), int(table.code), int(table.filter),
+                     table.pathLengthCorrection);
+}
+
 PictureMaker::PictureMaker(const Device& device, VolumeCache& volumes, int mostVoxelsAlongEdge)
-    : device_(device), volumes_(volumes), mostVoxelsAlongEdge_(mostVoxelsAlongEdge) {}
+    : device_(device), volumes_(volumes), mostVoxelsAlongEdge_(mostVoxelsAlongEdge), diagnoser_(device) {}
 
 std::shared_ptr<const Volume> PictureMaker::coarse(const Scene& scene) {
   const bool densities = !scene.classification.transferFunction;
@@ -48,6 +51,7 @@ void PictureMaker::makeRenderer(const Scene& scene, const MethodOptions& method,
   const std::shared_ptr<const Volume> volume = coarse(scene);
   if (renderer_ && options == rendererOptions_) return;
   renderer_ = nullptr;  // not both at once
+  diagnoser_.reset();
   rendererOptions_.clear();
   renderer_ = std::make_unique<Renderer>(device_, *volume, scene.classification, method.table(), progress);
   rendererOptions_ = options;
@@ -74,6 +78,9 @@ Picture PictureMaker::make(const PictureRequest& request, const Progress& progre
   picture.memory = renderer_->memory();
   picture.cut = renderer_->cutCounts();
   picture.visibleVoxels = renderer_->visibleVoxelCount();
+  if (request.diagnosis.shown != Shown::Picture)
+    picture.diagnosis = diagnoser_.make(request.diagnosis, *renderer_, *coarse_, request.method.table(),
+                                        picture.scene.camera, settings);
   picture.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return picture;

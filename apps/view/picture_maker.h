@@ -7,6 +7,7 @@
 
 #include "apps/freevoxels/method_options.h"
 #include "apps/freevoxels/scene_options.h"
+#include "apps/view/diagnosis.h"
 #include "apps/view/volume_cache.h"
 #include "engine/renderer.h"
 
@@ -16,7 +17,9 @@ namespace freevoxels {
 struct PictureRequest {
   SceneOptions scene;
   MethodOptions method;
-  std::uint64_t number = 0;  ///< larger than that of any before
+  Diagnosis diagnosis;
+  std::optional<MethodOptions> compared;  ///< another method, to look at beside it
+  std::uint64_t number = 0;               ///< larger than that of any before
 };
 
 struct Picture {
@@ -25,12 +28,17 @@ struct Picture {
   OptionList options;        ///< that make the same pixels
   DeviceDescription device;  ///< that made it
   Image image;
+  std::optional<Image> diagnosis;  ///< what is shown in its place
+  std::optional<Image> compared;
   std::vector<StageTime> times;
   double milliseconds = 0.0;  ///< in all
   VolumeMemory memory;
   CutCounts cut;
   std::uint64_t visibleVoxels = 0;
 };
+
+/// Different for tables that are made differently.
+std::string tableText(const TableSettings& table);
 
 /// Keeps a volume on a device, and makes again only what a request changes.
 class PictureMaker {
@@ -53,6 +61,7 @@ class PictureMaker {
   bool coarseIsOfDensities_ = false;
   std::string rendererOptions_;
   std::unique_ptr<Renderer> renderer_;
+  Diagnoser diagnoser_;
 };
 
 }  // namespace freevoxels

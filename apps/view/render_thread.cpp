@@ -49,17 +49,34 @@ std::optional<std::pair<std::string, double>> RenderThread::activity() const {
   return activity_;
 }
 
-RenderThread::Result RenderThread::answer(const PictureRequest& request) {
+std::shared_ptr<const Picture> RenderThread::makePicture(const PictureRequest& request) {
   const Progress progress = [this](std::string_view stage, double fraction) {
     const std::lock_guard lock(mutex_);
     if (ends_) throw Ended();
     activity_.emplace(std::string(stage), fraction);
   };
+  if (!device_) device_ = deviceOptions_.open(instance_);
+  const auto makerOf = [this](std::unique_ptr<PictureMaker>& maker) -> PictureMaker& {
+    if (!maker) maker = std::make_unique<PictureMaker>(*device_, volumes_, mostVoxelsAlongEdge_);
+    return *maker;
+  };
+  auto picture = std::make_shared<Picture>(makerOf(maker_).make(request, progress));
+  if (!request.compared) {
+    comparing_ = nullptr;
+    return picture;
+  }
+  PictureRequest other = request;
+  other.method = *request.compared;
+  other.diagnosis = {};
+  const bool sameTable = tableText(other.method.table()) == tableText(request.method.table());
+  picture->compared = makerOf(sameTable ? maker_ : comparing_).make(other, progress).image;
+  return picture;
+}
+
+RenderThread::Result RenderThread::answer(const PictureRequest& request) {
   Result result{.number = request.number};
   try {
-    if (!device_) device_ = deviceOptions_.open(instance_);
-    if (!maker_) maker_ = std::make_unique<PictureMaker>(*device_, volumes_, mostVoxelsAlongEdge_);
-    result.picture = std::make_shared<const Picture>(maker_->make(request, progress));
+    result.picture = makePicture(request);
   } catch (const Ended&) {  // nobody takes a result
   } catch (...) {
     const Failure failure = currentFailure();
@@ -67,6 +84,7 @@ RenderThread::Result RenderThread::answer(const PictureRequest& request) {
     result.code = failure.code;
     if (failure.code == ExitCode::Device) {  // lost: the next request opens it again
       maker_ = nullptr;
+      comparing_ = nullptr;
       device_ = nullptr;
     }
   }

@@ -42,6 +42,7 @@ class RenderThread {
  private:
   void run();
   Result answer(const PictureRequest& request);
+  std::shared_ptr<const Picture> makePicture(const PictureRequest& request);
 
   const Instance& instance_;
   const DeviceOptions& deviceOptions_;
@@ -50,6 +51,7 @@ class RenderThread {
   const std::function<void()> finished_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<PictureMaker> maker_;
+  std::unique_ptr<PictureMaker> comparing_;  ///< with another table
 
   mutable std::mutex mutex_;  ///< of all below
   std::condition_variable asked_;

@@ -4,6 +4,27 @@
 
 namespace freevoxels {
 
+std::optional<MethodOptions> ViewState::comparedMethod() const {
+  if (diagnosis.shown != Shown::Picture) return std::nullopt;
+  MethodOptions other = method;
+  switch (comparison) {
+    case 1:
+      other.composite = int(Composite::Sorted);
+      return other;
+    case 2:
+      return MethodOptions{.paper = true};
+    case 3:
+      other.attenuation = int(AttenuationLookup::Exact);
+      return other;
+    case 4:
+      other.lod = 0.0;
+      other.culling = false;
+      return other;
+    default:
+      return std::nullopt;
+  }
+}
+
 void ViewState::look(const Camera& from) {
   try {
     checkCamera(from);

@@ -15,6 +15,9 @@ namespace freevoxels {
 struct ViewState {
   SceneOptions scene;
   MethodOptions method;
+  Diagnosis diagnosis;
+  int comparison = 0;  ///< 0: nothing, or what comparedMethod makes of it
+  float split = 0.5f;  ///< part of the picture's width that is not the other method's
   /// That the volume is a frame of.
   std::optional<Sequence> sequence;
   /// Set by whoever changes one of those; a picture is asked for and it is cleared.
@@ -22,7 +25,7 @@ struct ViewState {
 
   /// As the scene's options say. None before the first picture, which says what is not given.
   std::optional<Camera> camera;
-  /// The last picture that was made of the whole volume, and the last of all.
+  /// The last picture of all voxels and in full size, and the last of all.
   std::shared_ptr<const Picture> whole, latest;
   /// Why there is no newer one.
   std::string problem;
@@ -30,6 +33,8 @@ struct ViewState {
   /// picture of it cannot be drawn.
   bool answered = false, complete = false, failed = false;
 
+  /// The method that is shown beside this one.
+  std::optional<MethodOptions> comparedMethod() const;
   /// Looks from there, unless nothing is seen from there: `problem` says why.
   void look(const Camera& from);
   /// Another volume, as the scene has it; of a sequence where it is one of its frames.

@@ -60,11 +60,27 @@ void Viewer::show(const std::shared_ptr<const Picture>& picture) {
   state_.latest = picture;
   const bool isAsked = picture->request.number == lastRequest_ && !state_.changed;
   if (!state_.camera && isAsked) state_.camera = picture->scene.camera;
+  upload(picture->diagnosis ? *picture->diagnosis : picture->image, texture_);
+  if (picture->compared)
+    upload(*picture->compared, comparedTexture_);
+  else
+    comparedTexture_ = nullptr;
+}
+
+void Viewer::upload(const Image& image, std::unique_ptr<Texture>& texture) const {
   const std::optional<glm::dvec3>& background = state_.scene.output.background;
   const glm::vec3 color(background.value_or(glm::dvec3(0.0)));
-  if (!texture_ || texture_->size() != picture->image.size)
-    texture_ = std::make_unique<Texture>(device_, picture->image.size, "picture");
-  texture_->upload(device_, srgbTexels(picture->image, background ? &color : nullptr));
+  if (!texture || texture->size() != image.size)
+    texture = std::make_unique<Texture>(device_, image.size, "picture");
+  texture->upload(device_, srgbTexels(image, background ? &color : nullptr));
+}
+
+PictureRequest Viewer::request() const {
+  return {.scene = state_.scene,
+          .method = state_.method,
+          .diagnosis = state_.diagnosis,
+          .compared = state_.comparedMethod(),
+          .number = lastRequest_};
 }
 
 void Viewer::takeResults() {
@@ -80,9 +96,10 @@ void Viewer::takeResults() {
     }
     state_.problem.clear();
     const bool isWhole = &thread == &whole_;
+    // A whole picture is not replaced by a quick one of the same.
     const std::uint64_t shown = state_.latest ? state_.latest->request.number : 0;
-    const bool wholeIsThere = state_.whole && result->number <= state_.whole->request.number;
-    if (result->number < shown || (!isWhole && wholeIsThere)) return false;
+    if (result->number < shown || (!isWhole && state_.whole && result->number <= state_.whole->request.number))
+      return false;
     if (isWhole) state_.whole = result->picture;
     show(result->picture);
     return true;
@@ -105,20 +122,21 @@ void Viewer::ask() {
   if (state_.changed) {
     state_.changed = false;
     lastChange_ = now;
-    PictureRequest request{.scene = state_.scene, .method = state_.method, .number = ++lastRequest_};
+    ++lastRequest_;
+    PictureRequest quick = request();
     if (wholeIsQuick_) {
       askedOfWhole_ = lastRequest_;
-      whole_.ask(std::move(request));
+      whole_.ask(std::move(quick));
       return;
     }
-    request.scene.camera.size =
-        glm::max(glm::ivec2(glm::round(quickScale_ * glm::dvec2(request.scene.camera.size))), glm::ivec2(1));
-    quick_.ask(std::move(request));
+    quick.scene.camera.size =
+        glm::max(glm::ivec2(glm::round(quickScale_ * glm::dvec2(quick.scene.camera.size))), glm::ivec2(1));
+    quick_.ask(std::move(quick));
   }
   const bool still = now - lastChange_ >= kStill && !area_.moves() && !frames_.plays();
   if (still && askedOfWhole_ != lastRequest_) {
     askedOfWhole_ = lastRequest_;
-    whole_.ask({.scene = state_.scene, .method = state_.method, .number = lastRequest_});
+    whole_.ask(request());
   }
 }
 
@@ -143,7 +161,7 @@ void Viewer::drawPanels() {
   const auto activity = whole_.activity() ? whole_.activity() : quick_.activity();
   files_.draw(state_);
   frames_.draw(state_);
-  drawPanelsOf(state_, activity);
+  drawPanelsOf(state_, activity, looks_);
   takeAway_.draw(state_);
   ImGui::End();
 
@@ -154,7 +172,7 @@ void Viewer::drawPanels() {
   ImGui::Begin("picture", nullptr,
                kFixed | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   ImGui::PopStyleVar(2);
-  area_.draw(state_, texture_.get());
+  area_.draw(state_, texture_.get(), comparedTexture_.get());
   ImGui::End();
 }
 

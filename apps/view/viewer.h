@@ -6,6 +6,7 @@
 
 #include "apps/view/export_panel.h"
 #include "apps/view/files_panel.h"
+#include "apps/view/look_panels.h"
 #include "apps/view/picture_area.h"
 #include "apps/view/render_thread.h"
 #include "apps/view/sequence_panel.h"
@@ -31,6 +32,8 @@ class Viewer {
 
   void takeResults();
   void show(const std::shared_ptr<const Picture>& picture);
+  void upload(const Image& image, std::unique_ptr<Texture>& texture) const;
+  PictureRequest request() const;
   void ask();
   void drawFrame();
   void drawPanels();
@@ -44,11 +47,12 @@ class Viewer {
   std::unique_ptr<UiPainter> painter_;
 
   ViewState state_;
+  LookPanels looks_;
   PictureArea area_;
   FilesPanel files_;
   SequencePanel frames_;
   ExportPanel takeAway_;
-  std::unique_ptr<Texture> texture_;
+  std::unique_ptr<Texture> texture_, comparedTexture_;
 
   VolumeCache volumes_;
   RenderThread quick_, whole_;  ///< of few voxels, and of all

@@ -194,16 +194,20 @@ void AttenuationSweep::recordBundles(SlabSweep& sweep, glm::ivec2 yz) const {
 
 namespace {
 
-/// Of every plane, the codes from a byte on of what is stored of a level.
+/// Of every plane, what is stored of a level: from the byte `first` on, of `share` blocks a byte.
 std::vector<std::vector<std::uint8_t>> downloadPlanes(const Device& device, const DeviceVolume& volume,
                                                       const AttenuationTable& table, int level,
-                                                      VkDeviceSize first) {
+                                                      VkDeviceSize first, std::size_t share) {
   const std::vector<std::uint32_t> blocks = downloadStored(device, volume, level);
   const std::uint64_t count = volume.hierarchy.levels[std::size_t(level)].voxels();
   const SeenRuns runs = downloadSeenRuns(device, table);
   std::vector<std::vector<std::uint8_t>> result;
-  for (const Buffer& plane : table.planes)
-    result.push_back(spreadOut(downloadCodes(device, plane, runs, first, blocks.size()), blocks, count));
+  for (const Buffer& plane : table.planes) {
+    const auto stored = downloadCodes(device, plane, runs, first, (blocks.size() + share - 1) / share);
+    std::vector<std::uint8_t> codes(blocks.size());
+    for (std::size_t i = 0; i < codes.size(); ++i) codes[i] = stored[i / share];
+    result.push_back(spreadOut(codes, blocks, count));
+  }
   return result;
 }
 
@@ -211,12 +215,12 @@ std::vector<std::vector<std::uint8_t>> downloadPlanes(const Device& device, cons
 
 std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const DeviceVolume& volume,
                                                      const AttenuationTable& table, int level) {
-  return downloadPlanes(device, volume, table, level, volume.firstRank(level));
+  return downloadPlanes(device, volume, table, level, volume.firstRank(level), 1);
 }
 
 std::vector<std::vector<std::uint8_t>> downloadBounds(const Device& device, const DeviceVolume& volume,
                                                       const AttenuationTable& table, int level) {
-  return downloadPlanes(device, volume, table, level, volume.firstRank(level) + volume.boundsOffset());
+  return downloadPlanes(device, volume, table, level, volume.firstBound(level), shader::kBoundBlocks);
 }
 
 std::vector<double> downloadLargestDepths(const Device& device, const AttenuationTable& table) {

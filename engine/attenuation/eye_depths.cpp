@@ -3,6 +3,7 @@
 #include <array>
 
 #include "embedded/eye_depths.h"
+#include "shaders/frame_interface.h"
 
 namespace freevoxels {
 

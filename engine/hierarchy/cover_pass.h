@@ -3,7 +3,7 @@
 // behind.
 
 #include "engine/vulkan/commands.h"
-#include "shaders/interface.h"
+#include "shaders/frame_interface.h"
 
 namespace freevoxels {
 

@@ -73,7 +73,6 @@ shader::CutFrame cutFrame(const CutInputs& inputs) {
       .edgePerDistance = float(inputs.detail.edgePerDistance),
       .outside = inputs.cull.outside ? 1 : 0,
       .hides = inputs.cull.hiddenDepth > 0.0 ? 1 : 0,
-      .boundsOffset = volume.boundsOffset(),
       .tiles = coverTiles(inputs.rays.size),
       .indexToWorld = setup.indexToWorld,
       .indexToPixel = setup.indexToPixel,
@@ -111,7 +110,7 @@ CutPass::CutPass(const Device& device, AttenuationCode code)
 void CutPass::makeRoom(const CutInputs& inputs) {
   const std::uint64_t most = mostDrawn(inputs);
   const std::uint64_t groups = std::max<std::uint64_t>(groupCount_, 1);
-  const std::uint64_t coarse = std::max<std::uint64_t>((inputs.volume.boundsOffset() + 3) / 4 * 4, 4);
+  const std::uint64_t coarse = std::max<std::uint64_t>((inputs.volume.coarseBlocks() + 3) / 4 * 4, 4);
   cut_.chunkCount = 2 * std::uint32_t((most + shader::kSplatsPerChunk - 1) / shader::kSplatsPerChunk);
   makeLarger(device_, children_, coarse, "blocks to look at");
   makeLarger(device_, deferred_, coarse, "deferred blocks");

@@ -53,4 +53,9 @@ struct HierarchyLayout {
 /// How many blocks of each level hold one of the voxels that `holding` says so of (x fastest).
 std::vector<std::uint64_t> countStored(const HierarchyLayout& hierarchy, std::vector<bool> holding);
 
+/// How many bounds a direction of the attenuation table has for so many blocks of a level above the voxels.
+inline std::uint64_t boundCount(std::uint64_t storedBlocks) {
+  return (storedBlocks + shader::kBoundBlocks - 1) / shader::kBoundBlocks;
+}
+
 }  // namespace freevoxels

@@ -88,8 +88,7 @@ void TableLevels::record(Commands& commands, const DeviceVolume& volume,
                                 .parent = volume.onDevice(level),
                                 .voxels = volume.layout.dimensions,
                                 .childEdge = Block{.level = level - 1}.edge(),
-                                .parentCount = std::uint32_t(volume.stored[std::size_t(level)]),
-                                .boundsOffset = volume.boundsOffset()};
+                                .parentCount = std::uint32_t(volume.stored[std::size_t(level)])};
     for (std::size_t first = 0; first < directions; first += kGroup) {
       std::vector<Binding> bindings{&table.darkest, &volume.occupancyTexels,
                                     &coarse[std::size_t(level) - 1].indices};
@@ -100,7 +99,7 @@ void TableLevels::record(Commands& commands, const DeviceVolume& volume,
         bindings.emplace_back(&table.planes[std::min(first + i, directions - 1)]);
       push.firstDirection = std::uint32_t(first);
       push.directionCount = std::uint32_t(std::min(kGroup, directions - first));
-      commands.dispatchLinear(pipelines_[level == 1 ? 1 : 0], bindings, push, push.parentCount);
+      commands.dispatchLinear(pipelines_[level == 1 ? 1 : 0], bindings, push, boundCount(push.parentCount));
     }
     commands.barrier(kCompute, kCompute);
   }

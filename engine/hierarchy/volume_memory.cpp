@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/volume/device_bricks.h"
+#include "shaders/frame_interface.h"
 
 namespace freevoxels {
 
@@ -68,9 +69,11 @@ VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std:
                           DirectionSet directions, StoredKinds kinds, const SweepStyle& style) {
   const std::uint64_t blocks = std::accumulate(stored.begin(), stored.end(), std::uint64_t(0));
   const std::uint64_t voxels = stored.front(), coarse = blocks - voxels;
+  std::uint64_t codes = blocks;
+  for (const std::uint64_t count : stored.subspan(1)) codes += boundCount(count);
   return {.occupancy = occupancyBytes(hierarchy),
           .extinction = blocks * sizeof(float),
-          .table = (blocks + coarse) * std::uint64_t(directionCount(directions)),
+          .table = codes * std::uint64_t(directionCount(directions)),
           .colors = kinds.colors ? voxels * sizeof(float) + coarse * sizeof(glm::uvec2) : 0,
           .emission = kinds.emission ? blocks * sizeof(std::uint32_t) : 0,
           // Of all blocks and of those of a frame, with a bit for each that could be one and two bytes for

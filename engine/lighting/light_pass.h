@@ -11,6 +11,7 @@
 #include "engine/lighting/lighting.h"
 #include "engine/splatting/render_settings.h"
 #include "engine/volume/device_volume.h"
+#include "shaders/frame_interface.h"
 
 namespace freevoxels {
 

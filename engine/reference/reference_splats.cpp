@@ -58,7 +58,8 @@ class SplatSummer {
         inputs_(inputs),
         settings_(settings),
         projector_(volume, camera, settings.size),
-        rayShare_(rayShare(settings.attenuation, camera, volume.dimensions, volume.indexToWorld)),
+        rayShare_(rayShare(lookupFor(settings.attenuation, !inputs.emission.empty()), camera,
+                           volume.dimensions, volume.indexToWorld)),
         rays_(rayShare_ > 0.0 ? raysFor(camera) : nullptr),
         table_(rayShare_ < 1.0 ? tableFor(camera) : nullptr),
         light_(lightFor()) {

@@ -57,6 +57,12 @@ bool eyeIsInside(const Camera& camera, glm::ivec3 dimensions, const glm::dmat4& 
 /// An eye is near to the volume's box within this part of the box's longest edge.
 inline constexpr double kNearBox = 0.5;
 
+/// Auto of a volume that shines is Exact: a flame behind smoke shows as many times the table's error as it is
+/// bright.
+inline AttenuationLookup lookupFor(AttenuationLookup lookup, bool shines) {
+  return lookup == AttenuationLookup::Auto && shines ? AttenuationLookup::Exact : lookup;
+}
+
 /// What share of a voxel's optical depth to the eye is that along rays from it, the rest being the table's: 1
 /// of Exact, 0 of the table's own look-ups. Of Auto 1 for an eye inside, as the table tells how much light
 /// leaves the volume; outside less the farther the eye is from the box, down to 0 where it is no longer near,

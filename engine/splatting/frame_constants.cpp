@@ -90,12 +90,12 @@ shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& t
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
   const glm::dvec3 eyeToMiddle = middle - rays.origin;
   const bool sorted = settings.composite == Composite::Sorted;
-  const double share =
-      sorted ? 0.0 : rayShare(settings.attenuation, camera, volume.layout.dimensions, volume.indexToWorld);
-  const int lookup = sorted                                            ? shader::kLookupNone
-                     : share == 1.0                                    ? shader::kLookupExact
-                     : settings.attenuation == AttenuationLookup::Auto ? shader::kLookupBilinear
-                                                                       : int(settings.attenuation);
+  const AttenuationLookup wanted = lookupFor(settings.attenuation, volume.hasEmission());
+  const double share = sorted ? 0.0 : rayShare(wanted, camera, volume.layout.dimensions, volume.indexToWorld);
+  const int lookup = sorted                              ? shader::kLookupNone
+                     : share == 1.0                      ? shader::kLookupExact
+                     : wanted == AttenuationLookup::Auto ? shader::kLookupBilinear
+                                                         : int(wanted);
   shader::SetupFrame setup{
       .indexToWorld = glm::dmat3(volume.indexToWorld),
       .indexToPixel = toPixel,

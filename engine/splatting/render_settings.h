@@ -21,7 +21,8 @@ enum class AttenuationLookup : int {
   Bilinear = 0,  ///< of the four directions of the table around the viewing direction
   Nearest = 1,   ///< the paper's
   Exact = 2,     ///< not from the table: along rays from the eye (ray_fans.h), once a frame
-  Auto = 3,      ///< Exact of an eye inside the volume, Bilinear far away, a mix between: rayShare
+  Auto = 3,      ///< Exact of an eye inside the volume, Bilinear far away, a mix between: rayShare; Exact of
+                 ///< a volume that shines: lookupFor
 };
 
 struct FrameSettings {

@@ -14,7 +14,7 @@
 #include "engine/splatting/render_settings.h"
 #include "engine/splatting/visible_voxels.h"
 #include "engine/volume/device_volume.h"
-#include "shaders/interface.h"
+#include "shaders/frame_interface.h"
 
 namespace freevoxels {
 

@@ -130,7 +130,25 @@ Check checkCutPicture(Renderer& renderer, const ValidationScene& scene, const Le
       .atMost(kPictureTolerance, "cut: picture of several levels");
 }
 
-/// A bound is exactly the code of the most transparent child that holds anything.
+/// Blocks in a row that hold anything share the most transparent of their bounds.
+void shareBounds(std::vector<int>& bounds, const LevelData& level, bool largest) {
+  std::vector<std::size_t> sharing;
+  const auto share = [&] {
+    int shared = largest ? 0 : 255;
+    for (const std::size_t block : sharing)
+      shared = largest ? std::max(shared, bounds[block]) : std::min(shared, bounds[block]);
+    for (const std::size_t block : sharing) bounds[block] = shared;
+    sharing.clear();
+  };
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    if (!level.holdsAnything(i)) continue;
+    sharing.push_back(i);
+    if (sharing.size() == std::size_t(shader::kBoundBlocks)) share();
+  }
+  share();
+}
+
+/// A bound is exactly the code, or the bound, of the most transparent child that holds anything.
 void compareBounds(const LevelData& level, const LevelData& children, int number,
                    const TableSettings& settings, Worst& worst) {
   const bool largest = settings.code == AttenuationCode::Linear8;
@@ -146,6 +164,7 @@ void compareBounds(const LevelData& level, const LevelData& children, int number
           const int code = codes[direction][children.at({x, y, z})];
           bound = largest ? std::max(bound, code) : std::min(bound, code);
         }
+    shareBounds(expected, level, largest);
     for (std::size_t i = 0; i < expected.size(); ++i)
       if (level.holdsAnything(i))
         worst.take(std::abs(level.bounds[direction][i] - expected[i]), [&] {

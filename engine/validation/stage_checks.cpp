@@ -296,7 +296,8 @@ void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, R
                      .tableSettings = outcome.settings,
                      .emission = outcome.emission};
   RayCodes rays;
-  if (rayShare(method.attenuation, camera, scene.volume.dimensions, scene.volume.indexToWorld) > 0.0) {
+  const AttenuationLookup lookup = lookupFor(method.attenuation, !outcome.emission.empty());
+  if (rayShare(lookup, camera, scene.volume.dimensions, scene.volume.indexToWorld) > 0.0) {
     rays = outcome.device.rays(camera);
     section.checks.push_back(checkRays(outcome, camera, rays, method.name));
     inputs.rays = &rays;

@@ -37,10 +37,17 @@ std::uint32_t DeviceVolume::firstRank(int level) const {
   return std::uint32_t(std::accumulate(stored.begin(), stored.begin() + level, std::uint64_t(0)));
 }
 
+std::uint32_t DeviceVolume::firstBound(int level) const {
+  std::uint64_t first = storedBlocks();
+  for (int below = 1; below < level; ++below) first += boundCount(stored[std::size_t(below)]);
+  return std::uint32_t(first);
+}
+
 shader::BlockLevel DeviceVolume::onDevice(int level) const {
   const GridLayout& grid = hierarchy.levels[std::size_t(level)];
   return {.first = hierarchy.first[std::size_t(level)],
           .firstRank = stored.empty() ? 0 : firstRank(level),
+          .firstBound = stored.empty() ? 0 : firstBound(level),
           .rowPitch = grid.rowPitch,
           .dimensions = grid.dimensions};
 }

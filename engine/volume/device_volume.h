@@ -41,11 +41,14 @@ struct DeviceVolume {
   std::uint64_t storedBlocks() const;
   /// Of a level's first block that holds anything.
   std::uint32_t firstRank(int level) const;
-  /// Bytes of a direction of the attenuation table: a code a block, then a bound a block above the voxels,
-  /// which is that of the most transparent of the block's voxels that hold anything.
-  std::uint64_t planeBytes() const { return storedBlocks() + boundsOffset(); }
-  /// The bound of a block follows its code by this many blocks.
-  std::uint32_t boundsOffset() const { return std::uint32_t(storedBlocks() - stored.front()); }
+  /// Of the levels above the voxels.
+  std::uint64_t coarseBlocks() const { return storedBlocks() - stored.front(); }
+  /// Where in a direction of the attenuation table a level's bounds begin: behind the codes of all blocks,
+  /// one for shader::kBoundBlocks blocks above the voxels, which is the code of the most transparent of their
+  /// voxels that hold anything.
+  std::uint32_t firstBound(int level) const;
+  /// Of a direction of the table.
+  std::uint64_t planeBytes() const { return firstBound(int(stored.size())); }
   shader::BlockLevel onDevice(int level) const;
 };
 

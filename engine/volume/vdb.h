@@ -36,6 +36,17 @@ struct GridInfo {
 /// Every grid of the file in file order. Fails with ExitCode::Input on a missing, truncated or foreign file.
 std::vector<GridInfo> describeVdb(const std::filesystem::path& file);
 
+/// What of a grid is known without its voxels.
+struct GridChoice {
+  std::string name;                                              ///< as GridInfo::name
+  bool isDensity = false;                                        ///< readVdb may take it
+  bool isReal = false, isTemperature = false, isAlbedo = false;  ///< the latter as in GridInfo
+};
+
+/// In file order. Reads the file's table of contents and each grid's metadata; a file that was streamed out
+/// as a whole. Fails as describeVdb does.
+std::vector<GridChoice> listVdb(const std::filesystem::path& file);
+
 /// Grids of the same file and on the same lattice of voxels to read as well.
 struct MoreGrids {
   std::optional<std::string> temperature;  ///< a float grid; empty: `temperature`, `heat` or `flame`

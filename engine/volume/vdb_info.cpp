@@ -137,19 +137,27 @@ void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   });
 }
 
+bool hasTemperatures(const VdbFile::Entry& entry) {
+  return isReal(entry) && std::ranges::find(kTemperatureNames, entry.baseName) != kTemperatureNames.end();
+}
+
+/// Staggered vectors are velocities.
+bool hasAlbedos(const VdbFile::Entry& entry, const openvdb::GridBase& grid) {
+  return isColor(entry) && grid.getGridClass() != openvdb::GRID_STAGGERED;
+}
+
 GridInfo describe(VdbFile& file, const VdbFile::Entry& entry) {
   GridInfo info;
   info.name = entry.name;
   info.valueType = entry.valueType;
   info.gridClass = gridClassName(openvdb::GRID_UNKNOWN);
   info.unusable = whyTypeUnusable(entry.treeType, entry.valueType);
-  info.isTemperature =
-      isReal(entry) && std::ranges::find(kTemperatureNames, entry.baseName) != kTemperatureNames.end();
+  info.isTemperature = hasTemperatures(entry);
   if (!openvdb::GridBase::isRegistered(entry.treeType)) return info;
 
   const openvdb::GridBase::ConstPtr grid = file.read(entry);
   info.gridClass = gridClassName(grid->getGridClass());
-  info.isAlbedo = isColor(entry) && grid->getGridClass() != openvdb::GRID_STAGGERED;  // those are velocities
+  info.isAlbedo = hasAlbedos(entry, *grid);
   const openvdb::Vec3d size = grid->voxelSize();
   info.voxelSize = {size.x(), size.y(), size.z()};
   if (info.unusable.empty()) info.unusable = whyTransformUnusable(grid->transform());
@@ -166,6 +174,20 @@ std::vector<GridInfo> describeVdb(const std::filesystem::path& path) {
   std::vector<GridInfo> infos;
   for (const VdbFile::Entry& entry : file.entries()) infos.push_back(describe(file, entry));
   return infos;
+}
+
+std::vector<GridChoice> listVdb(const std::filesystem::path& path) {
+  VdbFile file(path);
+  std::vector<GridChoice> choices;
+  for (const VdbFile::Entry& entry : file.entries()) {
+    GridChoice& choice = choices.emplace_back(GridChoice{.name = entry.name});
+    choice.isDensity = whyTypeUnusable(entry.treeType, entry.valueType).empty();
+    choice.isReal = isReal(entry);
+    choice.isTemperature = hasTemperatures(entry);
+    if (openvdb::GridBase::isRegistered(entry.treeType))
+      choice.isAlbedo = hasAlbedos(entry, *file.readMetadata(entry));
+  }
+  return choices;
 }
 
 }  // namespace freevoxels

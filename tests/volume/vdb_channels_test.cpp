@@ -92,6 +92,27 @@ TEST_F(VdbChannelsTest, ColoursAreCutToWhatAnAlbedoCanBe) {
   expectRefused({.albedo = "none"}, {"none"});
 }
 
+TEST_F(VdbChannelsTest, TheGridsAreListedForWhatTheyCanBe) {
+  const auto velocity = colours({Coord(0), Coord(1)}, openvdb::Vec3s(0.5f));
+  velocity->setName("v");
+  velocity->setGridClass(openvdb::GRID_STAGGERED);
+  write({makeGrid("density"), makeGrid("heat"), makeGrid("density"),
+         colours({Coord(0), Coord(1)}, openvdb::Vec3s(0.5f)), velocity});
+  const std::vector<GridChoice> choices = listVdb(file);
+  const std::vector<GridInfo> infos = describeVdb(file);
+  ASSERT_EQ(choices.size(), infos.size());
+  for (std::size_t i = 0; i < infos.size(); ++i) {
+    EXPECT_EQ(choices[i].name, infos[i].name);
+    EXPECT_EQ(choices[i].isDensity, infos[i].unusable.empty());
+    EXPECT_EQ(choices[i].isReal, infos[i].hasRange);
+    EXPECT_EQ(choices[i].isTemperature, infos[i].isTemperature);
+    EXPECT_EQ(choices[i].isAlbedo, infos[i].isAlbedo);
+  }
+  EXPECT_TRUE(choices[1].isTemperature);
+  EXPECT_TRUE(choices[3].isAlbedo);
+  EXPECT_FALSE(choices[4].isAlbedo) << "velocities";
+}
+
 /// So the box around both grids is, and the densities as they were.
 TEST_F(VdbChannelsTest, AFireGoesThroughAFile) {
   Volume fire = makeProcedural("fire", 24);

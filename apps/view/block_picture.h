@@ -1,0 +1,29 @@
+#pragma once
+// Blocks of the octree as coloured squares, the nearest in front.
+
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "engine/hierarchy/hierarchy_layout.h"
+#include "engine/image/image.h"
+#include "engine/splatting/camera.h"
+
+namespace freevoxels {
+
+/// Of a level, linear; they repeat after six.
+glm::vec3 levelColor(int level);
+
+struct PaintedBlock {
+  Block block;
+  glm::vec3 color{0.0f};  ///< linear
+};
+
+/// Over black, opaque. The blocks are of a volume of these dimensions.
+Image paintBlocks(std::span<const PaintedBlock> blocks, glm::ivec3 dimensions, const glm::dmat4& indexToWorld,
+                  const Camera& camera, glm::ivec2 size);
+
+/// Those of `voxels` that are in none of `drawn`: what was left out.
+std::vector<Block> leftOut(std::span<const Block> drawn, std::span<const Block> voxels);
+
+}  // namespace freevoxels

@@ -1,0 +1,78 @@
+#include "apps/view/light_edits.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace freevoxels {
+
+namespace {
+
+/// As many digits as a hand is exact.
+glm::dvec3 rounded(glm::dvec3 value, double steps) {
+  return glm::round(value * steps) / steps;
+}
+
+}  // namespace
+
+void dropIdleOptions(LightingOptions& options) {
+  if (options.lights.empty()) {
+    options.attenuation.reset();
+    options.phaseG.reset();
+    options.shading.reset();
+  }
+  if (options.shading != int(Shading::Gradient)) options.surface.reset();
+  if (!options.environment) {
+    options.environmentRotation.reset();
+    options.environmentIntensity.reset();
+  }
+  if (options.lights.empty() && !options.ambient && !options.environment) options.tint.reset();
+}
+
+glm::dvec2 anglesOf(glm::dvec3 direction) {
+  const glm::dvec3 unit = glm::normalize(direction);
+  return glm::degrees(glm::dvec2(std::atan2(unit.x, unit.z), std::asin(std::clamp(unit.y, -1.0, 1.0))));
+}
+
+glm::dvec3 directionOf(glm::dvec2 angles) {
+  const double azimuth = glm::radians(angles.x), elevation = glm::radians(angles.y);
+  return {std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+          std::cos(azimuth) * std::cos(elevation)};
+}
+
+glm::dvec3 directionOnBall(glm::dvec2 place) {
+  const double distance = glm::length(place);
+  const double radius = distance <= 1.0 ? distance : std::max(2.0 - distance, 0.0);
+  const glm::dvec2 across = distance > 0.0 ? place * (radius / distance) : place;
+  const double depth = std::sqrt(std::max(1.0 - radius * radius, 0.0));
+  return {across, distance <= 1.0 ? depth : -depth};
+}
+
+LightingOptions::GivenLight newLight(const Camera& camera, const Volume& volume, bool atInfinity) {
+  const glm::dvec3 fromUpperLeft =
+      glm::transpose(glm::dmat3(worldToCamera(camera))) * glm::normalize(glm::dvec3(-0.5, 0.7, 0.5));
+  LightingOptions::GivenLight given{.light = {.atInfinity = atInfinity}};
+  if (atInfinity) {
+    constexpr double kSteps = 1e3;
+    given.light.place = rounded(fromUpperLeft, kSteps);
+    return given;
+  }
+  constexpr double kBeyondCorners = 1.25;
+  const glm::dvec3 middle = 0.5 * (glm::dvec3(volume.dimensions) - 1.0);
+  const double steps = std::pow(10.0, 3.0 - std::floor(std::log10(halfDiagonal(volume))));
+  given.light.place = rounded(glm::dvec3(volume.indexToWorld * glm::dvec4(middle, 1.0)) +
+                                  kBeyondCorners * halfDiagonal(volume) * fromUpperLeft,
+                              steps);
+  return given;
+}
+
+double usualIntensity(const Light& light, const Volume& volume) {
+  LightingOptions one;
+  one.lights.push_back({.light = light});
+  return one.resolve(volume)->lights[0].intensity;
+}
+
+double halfDiagonal(const Volume& volume) {
+  return 0.5 * glm::length(glm::dmat3(volume.indexToWorld) * glm::dvec3(volume.dimensions));
+}
+
+}  // namespace freevoxels

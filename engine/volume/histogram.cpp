@@ -1,0 +1,56 @@
+#include "engine/volume/histogram.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+using Counts = std::vector<std::uint64_t>;
+
+/// Of a value in a histogram with so many bins.
+std::size_t binOf(double value, double minimum, double maximum, std::size_t bins) {
+  if (!(maximum > minimum)) return 0;
+  const double place = (value - minimum) / (maximum - minimum) * double(bins);
+  return std::size_t(std::clamp(place, 0.0, double(bins - 1)));
+}
+
+Counts sum(Counts a, const Counts& b) {
+  std::ranges::transform(a, b, a.begin(), std::plus<>());
+  return a;
+}
+
+}  // namespace
+
+std::uint64_t Histogram::countBetween(double low, double high) const {
+  if (counts.empty() || high < double(minimum) || low > double(maximum)) return 0;
+  const auto at = [this](double value) { return binOf(value, minimum, maximum, counts.size()); };
+  return *std::max_element(counts.begin() + std::ptrdiff_t(at(low)),
+                           counts.begin() + std::ptrdiff_t(at(high)) + 1);
+}
+
+Histogram histogramOf(const Volume& volume, int bins) {
+  FV_CHECK_LT(0, bins);
+  using Range = tbb::blocked_range<std::size_t>;
+  constexpr std::size_t kGrain = 64;
+  const std::span<const ScalarBricks::Brick> bricks = volume.scalars.bricks();
+  const double minimum = volume.minimum, maximum = volume.maximum;
+  Counts counts = tbb::parallel_reduce(
+      Range(0, bricks.size(), kGrain), Counts(std::size_t(bins)),
+      [&](const Range& range, Counts partial) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i)
+          for (const float scalar : bricks[i])
+            if (scalar != kInactiveVoxel) ++partial[binOf(scalar, minimum, maximum, partial.size())];
+        return partial;
+      },
+      sum);
+  return {volume.minimum, volume.maximum, std::move(counts)};
+}
+
+}  // namespace freevoxels

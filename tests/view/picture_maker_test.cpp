@@ -1,0 +1,52 @@
+#include "apps/view/picture_maker.h"
+
+#include <algorithm>
+
+#include "tests/device/device_fixture.h"
+
+namespace freevoxels {
+namespace {
+
+class PictureMakerTest : public DeviceTest {
+ protected:
+  static PictureRequest litCloud() {
+    PictureRequest request;
+    request.scene.input = {.input = "procedural:cloud", .grid = std::nullopt, .resolution = 24};
+    request.scene.camera.size = {48, 48};
+    request.scene.lighting.lights.push_back({.light = {.place = {0.0, 1.0, 0.0}}});
+    return request;
+  }
+  /// Of that name, in the order of the picture's stages; a stage has its time only where it is new, or where
+  /// it is of the volume that is kept.
+  static std::vector<double> timesOf(const Picture& picture, const std::string& stage) {
+    std::vector<double> times;
+    for (const StageTime& time : picture.times)
+      if (time.name == stage) times.push_back(time.milliseconds);
+    return times;
+  }
+
+  VolumeCache volumes_{1u << 30};
+  PictureMaker maker_{device(), volumes_, 1024};
+};
+
+TEST_F(PictureMakerTest, TurningALightKeepsTheVolumeAndItsTable) {
+  PictureRequest request = litCloud();
+  const Picture first = maker_.make(request, {});
+  request.scene.lighting.lights[0].light.place = {1.0, 0.0, 0.0};
+  const Picture turned = maker_.make(request, {});
+  EXPECT_NE(turned.image.pixels, first.image.pixels);
+  ASSERT_EQ(timesOf(first, "upload").size(), 1u);
+  EXPECT_EQ(timesOf(turned, "upload"), timesOf(first, "upload")) << "measured once";
+  EXPECT_EQ(timesOf(first, "attenuation sweeps").size(), 1u);
+  EXPECT_EQ(timesOf(turned, "attenuation sweeps").size(), 0u);
+}
+
+TEST_F(PictureMakerTest, AnotherClassificationMakesAnotherTable) {
+  PictureRequest request = litCloud();
+  maker_.make(request, {});
+  request.scene.classification.transferFunction = R"({"opacity": [[0, 0], [1, 0.5]]})";
+  EXPECT_EQ(timesOf(maker_.make(request, {}), "attenuation sweeps").size(), 1u);
+}
+
+}  // namespace
+}  // namespace freevoxels
