@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "apps/freevoxels/program.h"
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
 #include "engine/core/json_file.h"
@@ -46,7 +45,6 @@ void RecentFiles::add(const std::string& opened) {
   try {
     std::error_code seenWhenWriting;
     fs::create_directories(file_.parent_path(), seenWhenWriting);
-    const DeferredInterrupts wholeFile;
     using Json = nlohmann::json;
     writeTextAtomically(file_, Json(list_).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   } catch (const Error& error) {

@@ -28,6 +28,17 @@ std::vector<std::string_view> wordsOf(std::string_view command) {
   return words;
 }
 
+/// A word that is longer than a line, where nothing in it keeps a shell from joining it again.
+std::string inPieces(std::string_view word, std::size_t columns) {
+  std::string pieces;
+  const bool plain = word.find_first_of("'\"\\") == std::string_view::npos;
+  for (; plain && columns > 1 && word.size() > columns; word.remove_prefix(columns - 1)) {
+    pieces += word.substr(0, columns - 1);
+    pieces += "\\\n";
+  }
+  return pieces.append(word);
+}
+
 }  // namespace
 
 std::string wrappedCommand(std::string_view command, std::size_t columns) {
@@ -36,8 +47,9 @@ std::string wrappedCommand(std::string_view command, std::size_t columns) {
   for (const std::string_view word : wordsOf(command)) {
     const bool fits = used + 1 + word.size() + kBreakColumns <= columns;
     if (used > 0) text += fits ? " " : kBreak;
-    used = used > 0 && fits ? used + 1 + word.size() : word.size();
-    text += word;
+    const std::string pieces = used > 0 && fits ? std::string(word) : inPieces(word, columns);
+    used = used > 0 && fits ? used + 1 + word.size() : pieces.size() - (pieces.rfind('\n') + 1);
+    text += pieces;
   }
   return text;
 }

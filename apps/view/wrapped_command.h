@@ -6,8 +6,8 @@
 
 namespace freevoxels {
 
-/// Broken between its words into lines of at most so many characters, where its words allow that. A shell
-/// takes the lines for the same command.
+/// Broken into lines of at most so many characters: between its words, or within those that are longer and
+/// not quoted. A shell takes the lines for the same command.
 std::string wrappedCommand(std::string_view command, std::size_t columns);
 
 }  // namespace freevoxels

@@ -22,6 +22,11 @@ TEST(WrappedCommand, BreaksBetweenWords) {
   EXPECT_EQ(wrappedCommand("", 8), "");
 }
 
+TEST(WrappedCommand, BreaksWordsThatAreLongerThanALine) {
+  EXPECT_EQ(wrappedCommand("a 1234567890 b", 6), "a \\\n12345\\\n67890 \\\nb");
+  EXPECT_EQ(wrappedCommand("'123 4567890'", 6), "'123 4567890'") << "a quoted one has to stay";
+}
+
 TEST(WrappedCommand, AShellTakesItForTheSameCommand) {
   const std::string command =
       R"(printf '[%s]' a --b 'c  d' 'it'\''s  here' "" '{"x": [1, 2]}' longer-than-a-line-of-all)";
