@@ -134,9 +134,9 @@ std::vector<std::string> findRejections(VkPhysicalDevice physical,
                                   properties.limits.maxPerStageDescriptorStorageBuffers,
                                   kStorageBuffersPerStage));
   if (!findQueueFamily(physical))
-    reasons.push_back("it has no queue for both graphics and compute with timestamps");
+    reasons.emplace_back("it has no queue for both graphics and compute with timestamps");
   if (!canBlend(physical, VK_FORMAT_R32G32B32A32_SFLOAT) || !canBlend(physical, VK_FORMAT_R32_SFLOAT))
-    reasons.push_back("it cannot blend into 32-bit float images");
+    reasons.emplace_back("it cannot blend into 32-bit float images");
   return reasons;
 }
 

@@ -145,7 +145,9 @@ TEST(Navigation, TheOtherProjectionKeepsTheSizeAndIsItsOwnInverse) {
     EXPECT_EQ(back.orthographic, before.orthographic);
     EXPECT_LT(glm::distance(onImage(back, before.lookAt + 0.5 * right), size), 1e-12);
     if (!orthographic) expectNear(back.position, before.position);
-    if (orthographic) EXPECT_NEAR(back.orthographicHeight, before.orthographicHeight, 1e-12);
+    if (orthographic) {
+      EXPECT_NEAR(back.orthographicHeight, before.orthographicHeight, 1e-12);
+    }
   }
 }
 
