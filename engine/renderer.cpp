@@ -75,7 +75,7 @@ const AttenuationTable& Renderer::State::sweptTable(const Progress& progress) {
 const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progress) {
   sweptTable(progress);
   if (!largestDepths.empty()) return *table;
-  const TableLevels pass(device, tableSettings);
+  TableLevels pass(device, tableSettings);
   Commands commands(device);
   pass.record(commands, built.volume, built.lists.coarse, *table);
   commands.submitAndWait(progress);

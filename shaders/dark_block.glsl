@@ -48,11 +48,13 @@ bool findAround(vec3 toEye, int major, int level, out Around around) {
 }
 
 // Whether no voxel of a block that holds anything sends more than the threshold towards these directions.
-bool isDark(uint bound, Around around) {
-  const uint place = codePlace(frame.cells, bound);
+bool isDark(int level, uint rank, Around around) {
+  const uint place = codePlace(frame.cells, boundOf(frame.levels[level], level, rank));
+  const int half_ = int((rank - frame.levels[level].firstRank) % kBoundBlocks);
   bool dark = true;
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    const uint code = codeAt(around.planes[i], place);
+    uint code = codeAt(around.planes[i], place);
+    if (level == 1) code = unpackBound(bitfieldExtract(code, 4 * half_, 4));
     if (decodeDepth(kCode, code) < around.depths[i]) dark = false;
     // Between 0 and 1 depths jump so much that a splat next to both may shine at its rim.
     if (kCode == kCodeLinear8 && code != 0) dark = false;
@@ -73,7 +75,7 @@ bool isHidden(ivec3 cell, int level) {
     if (i > 0) block[(major + 1 + (i & 1)) % 3] += i < 3 ? 1 : -1;
     const uint address = blockAddress(frame.levels[level], block);
     if (isInside(frame.levels[level], block) && holdsAnything(address))
-      dark = isDark(boundOf(frame.levels[level], rankAt(frame.levels[level], address)), around);
+      dark = isDark(level, rankAt(frame.levels[level], address), around);
   }
   return dark;
 }

@@ -36,8 +36,14 @@ FV_CONSTANT int kEyeThreads = 64;
 FV_CONSTANT int kSplatThreads = 64;
 FV_CONSTANT int kResolveTile = 8;
 FV_CONSTANT int kLevelThreads = 64;
-// Blocks in a row of their ranks that share a bound: half of what a bound for each would take hides about as much.
+// Blocks of 2³ voxels, in a row of their ranks, whose bounds are in one byte: most bounds are of these, and half a byte hides
+// about as much. Those of larger blocks have a byte each.
 FV_CONSTANT int kBoundBlocks = 2;
+// What a level of the octree's table is made from: voxels, whose codes are their own bounds; blocks of them, whose whole
+// bounds are handed on beside the table; larger blocks.
+FV_CONSTANT int kChildrenVoxels = 0;
+FV_CONSTANT int kChildrenPacked = 1;
+FV_CONSTANT int kChildrenBlocks = 2;
 FV_CONSTANT int kDirectionsPerLevelPass = 7;  // share what they ask of the children's occupancy
 
 // Blocks in a row of their ranks whose codes in the table are kept, or are not, together.
@@ -103,7 +109,7 @@ FV_CONSTANT int kCompositeSorted = 2;
 struct BlockLevel {
   uint first;       // index of its first block
   uint firstRank;   // of its blocks that hold anything
-  uint firstBound;  // where in a direction of the table their bounds begin, one for every kBoundBlocks of them
+  uint firstBound;  // where in a direction of the table their bounds begin
   int rowPitch;
   ivec3 dimensions;
 };

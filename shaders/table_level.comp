@@ -1,6 +1,6 @@
 #version 460
 // A level of the octree's attenuation table from the one below, for a few directions, a thread the blocks that hold
-// anything and share a bound: Subr et al. 2007, Section 3.2, Eq. 7. The geometric mean of transmittances is the mean of optical depths.
+// anything and share a byte of bounds: Subr et al. 2007, Section 3.2, Eq. 7. The geometric mean of transmittances is the mean of optical depths.
 // Children that hold nothing or are outside of the volume do not count, the others as much as they have voxels.
 //
 // And its bounds: the code of the most transparent voxel, which says what can be left out behind others.
@@ -13,7 +13,7 @@
 
 layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const int kFilter = kFilterGeometric;
-layout(constant_id = 2) const bool kFromVoxels = false;  // whose codes are their own bounds
+layout(constant_id = 2) const int kChildren = kChildrenBlocks;
 
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { TableLevelPush push; };
@@ -26,6 +26,8 @@ layout(scalar, binding = 2) readonly buffer Parents { uint parents[]; };
   layout(binding = 3 + i) uniform utextureBuffer read##i;      \
   layout(scalar, binding = 3 + kDirectionsPerLevelPass + i) writeonly buffer Plane##i { uint8_t codes[]; } plane##i;
 PLANE(0) PLANE(1) PLANE(2) PLANE(3) PLANE(4) PLANE(5) PLANE(6)
+// The bounds of the blocks of level 1, a byte each: of a direction of the pass behind those of the one before.
+layout(scalar, binding = 3 + 2 * kDirectionsPerLevelPass) buffer OwnBounds { uint8_t ownBounds[]; };
 
 const bool kSquares = kCode == kCodeDepth8 && kFilter == kFilterGeometric;  // depths are as the squares of codes
 
@@ -73,14 +75,21 @@ struct Parent {
   uint code, bound, darkest;
 };
 
-Parent parentOf(utextureBuffer codes) {
+uint boundOfChild(utextureBuffer codes, uint code, uint rank, uint direction) {
+  if (kChildren == kChildrenVoxels) return code;
+  const uint place = rank - push.child.firstRank, count = push.parent.firstRank - push.child.firstRank;
+  if (kChildren == kChildrenPacked) return uint(ownBounds[direction * count + place]);
+  return texelFetch(codes, int(push.child.firstBound + place)).x;
+}
+
+Parent parentOf(utextureBuffer codes, uint direction) {
   float sum = 0.0, all = 0.0;
   uint used = 0;
   Parent parent = Parent(0, kDarkest, 0);
   [[unroll]] for (int child = 0; child < 8; ++child) {
     const bool holds = voxels[child] > 0.0;
     const uint code = texelFetch(codes, int(ranks[child])).x;
-    const uint bound = kFromVoxels ? code : texelFetch(codes, int(boundOf(push.child, ranks[child]))).x;
+    const uint bound = boundOfChild(codes, code, ranks[child], direction);
     sum += voxels[child] * filtered(code);
     all += voxels[child];
     used |= holds ? code : 0;
@@ -91,13 +100,21 @@ Parent parentOf(utextureBuffer codes) {
   return parent;
 }
 
+const bool kPacks = kChildren == kChildrenVoxels;  // a byte has the bounds of several blocks
+const uint kBlocks = kPacks ? kBoundBlocks : 1;
+
+uint withBound(uint bounds, uint bound, uint place) {
+  return kPacks ? bitfieldInsert(bounds, packBound(kCode, bound), int(4 * place), 4) : bound;
+}
+
 #define MAKE(i)                                                                                   \
   if (i < push.directionCount) {                                                                  \
-    const Parent parent = parentOf(read##i);                                                      \
-    plane##i.codes[rank] = uint8_t(parent.code);                                                  \
-    bounds[i] = clearer(bounds[i], parent.bound);                                                 \
+    const Parent parent = parentOf(read##i, i);                                                   \
+    plane##i.codes[push.parent.firstRank + block] = uint8_t(parent.code);                         \
+    bounds[i] = withBound(bounds[i], parent.bound, block - first);                                \
+    if (kPacks) ownBounds[i * push.parentCount + block] = uint8_t(parent.bound);                  \
     /* Few are darker than all before them. */                                                    \
-    if (kFromVoxels && parent.darkest > darkest[push.firstDirection + i])                         \
+    if (kPacks && parent.darkest > darkest[push.firstDirection + i])                              \
       atomicMax(darkest[push.firstDirection + i], parent.darkest);                                \
   }
 #define STORE_BOUND(i) \
@@ -105,13 +122,12 @@ Parent parentOf(utextureBuffer codes) {
 
 void main() {
   const uint group = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kLevelThreads;
-  const uint first = group * kBoundBlocks, end = min(first + kBoundBlocks, push.parentCount);
+  const uint first = group * kBlocks, end = min(first + kBlocks, push.parentCount);
   if (first >= end) return;
   uint bounds[kDirectionsPerLevelPass];
   [[unroll]] for (int i = 0; i < kDirectionsPerLevelPass; ++i) bounds[i] = kDarkest;
-  [[dont_unroll]] for (uint i = first; i < end; ++i) {
-    findChildren(cellAt(push.parent, parents[i]));
-    const uint rank = push.parent.firstRank + i;
+  [[dont_unroll]] for (uint block = first; block < end; ++block) {
+    findChildren(cellAt(push.parent, parents[block]));
     MAKE(0) MAKE(1) MAKE(2) MAKE(3) MAKE(4) MAKE(5) MAKE(6)
   }
   STORE_BOUND(0) STORE_BOUND(1) STORE_BOUND(2) STORE_BOUND(3) STORE_BOUND(4) STORE_BOUND(5) STORE_BOUND(6)

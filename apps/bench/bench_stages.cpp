@@ -88,7 +88,7 @@ Result octree(const Device& device, AttenuationCode code, int resolution, int ru
   const AttenuationTable table = makeTable(device, onDevice.volume, {.code = code});
   AttenuationSweep sweep(device, table.settings);
   const MediumLevels medium(device, onDevice.volume);
-  const TableLevels levels(device, table.settings);
+  TableLevels levels(device, table.settings);
   double sweeps = std::numeric_limits<double>::max();
   const double time = least(runs, [&] {
     Commands before(device), commands(device);

@@ -194,10 +194,13 @@ void AttenuationSweep::recordBundles(SlabSweep& sweep, glm::ivec2 yz) const {
 
 namespace {
 
-/// Of every plane, what is stored of a level: from the byte `first` on, of `share` blocks a byte.
+/// Of every plane, the bytes from `first` on of what is stored of a level: of block i byte i / `share`, as
+/// `valueOf(byte, i)`.
+template <typename ValueOf>
 std::vector<std::vector<std::uint8_t>> downloadPlanes(const Device& device, const DeviceVolume& volume,
                                                       const AttenuationTable& table, int level,
-                                                      VkDeviceSize first, std::size_t share) {
+                                                      VkDeviceSize first, std::size_t share,
+                                                      const ValueOf& valueOf) {
   const std::vector<std::uint32_t> blocks = downloadStored(device, volume, level);
   const std::uint64_t count = volume.hierarchy.levels[std::size_t(level)].voxels();
   const SeenRuns runs = downloadSeenRuns(device, table);
@@ -205,22 +208,34 @@ std::vector<std::vector<std::uint8_t>> downloadPlanes(const Device& device, cons
   for (const Buffer& plane : table.planes) {
     const auto stored = downloadCodes(device, plane, runs, first, (blocks.size() + share - 1) / share);
     std::vector<std::uint8_t> codes(blocks.size());
-    for (std::size_t i = 0; i < codes.size(); ++i) codes[i] = stored[i / share];
+    for (std::size_t i = 0; i < codes.size(); ++i) codes[i] = valueOf(stored[i / share], i);
     result.push_back(spreadOut(codes, blocks, count));
   }
   return result;
+}
+
+std::uint8_t wholeByte(std::uint8_t byte, std::size_t) {
+  return byte;
+}
+
+/// As shaders/attenuation_code.glsl packs them.
+std::uint8_t boundInByte(std::uint8_t byte, std::size_t block) {
+  return std::uint8_t((byte >> (block % shader::kBoundBlocks * 4) & 15) * 16);
 }
 
 }  // namespace
 
 std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const DeviceVolume& volume,
                                                      const AttenuationTable& table, int level) {
-  return downloadPlanes(device, volume, table, level, volume.firstRank(level), 1);
+  return downloadPlanes(device, volume, table, level, volume.firstRank(level), 1, wholeByte);
 }
 
 std::vector<std::vector<std::uint8_t>> downloadBounds(const Device& device, const DeviceVolume& volume,
                                                       const AttenuationTable& table, int level) {
-  return downloadPlanes(device, volume, table, level, volume.firstBound(level), shader::kBoundBlocks);
+  const std::uint32_t first = volume.firstBound(level);
+  if (level == 1)
+    return downloadPlanes(device, volume, table, level, first, shader::kBoundBlocks, boundInByte);
+  return downloadPlanes(device, volume, table, level, first, 1, wholeByte);
 }
 
 std::vector<double> downloadLargestDepths(const Device& device, const AttenuationTable& table) {

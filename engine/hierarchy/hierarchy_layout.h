@@ -53,9 +53,11 @@ struct HierarchyLayout {
 /// How many blocks of each level hold one of the voxels that `holding` says so of (x fastest).
 std::vector<std::uint64_t> countStored(const HierarchyLayout& hierarchy, std::vector<bool> holding);
 
-/// How many bounds a direction of the attenuation table has for so many blocks of a level above the voxels.
-inline std::uint64_t boundCount(std::uint64_t storedBlocks) {
-  return (storedBlocks + shader::kBoundBlocks - 1) / shader::kBoundBlocks;
+/// Bytes that a direction of the attenuation table has for the bounds of so many blocks of a level above the
+/// voxels.
+inline std::uint64_t boundBytes(int level, std::uint64_t storedBlocks) {
+  const std::uint64_t inOne = level == 1 ? shader::kBoundBlocks : 1;
+  return (storedBlocks + inOne - 1) / inOne;
 }
 
 }  // namespace freevoxels

@@ -63,33 +63,38 @@ void MediumLevels::record(Commands& commands, const DeviceVolume& volume,
   }
 }
 
-TableLevels::TableLevels(const Device& device, const TableSettings& settings) {
+TableLevels::TableLevels(const Device& device, const TableSettings& settings) : device_(device) {
   std::vector<VkDescriptorType> bindings{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                          VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
                                          VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
   bindings.insert(bindings.end(), shader::kDirectionsPerLevelPass, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER);
-  bindings.insert(bindings.end(), shader::kDirectionsPerLevelPass, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
-  for (const std::uint32_t fromVoxels : {0u, 1u})
-    pipelines_[fromVoxels] =
+  bindings.insert(bindings.end(), shader::kDirectionsPerLevelPass + 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
+  for (std::uint32_t children = 0; children < pipelines_.size(); ++children)
+    pipelines_[children] =
         makeComputePipeline(device, {table_level_spv, "table level"},
                             {.bindings = bindings, .pushConstantBytes = sizeof(shader::TableLevelPush)},
                             {shader::kLevelThreads, 1, 1},
-                            {std::uint32_t(settings.code), std::uint32_t(settings.filter), fromVoxels});
+                            {std::uint32_t(settings.code), std::uint32_t(settings.filter), children});
 }
 
 void TableLevels::record(Commands& commands, const DeviceVolume& volume,
-                         std::span<const VisibleVoxels> coarse, const AttenuationTable& table) const {
+                         std::span<const VisibleVoxels> coarse, const AttenuationTable& table) {
   constexpr std::size_t kGroup = shader::kDirectionsPerLevelPass;
   commands.beginPass("octree table");
   commands.clear(table.darkest);
+  if (volume.hierarchy.top() == 0) return;
+  ownBounds_ = Buffer(device_, ownBoundBytes(volume.stored[1]), MemoryUse::Device, "bounds of blocks");
   const std::size_t directions = table.planes.size();
-  for (int level = 1; level <= volume.hierarchy.top(); ++level) {
-    shader::TableLevelPush push{.child = volume.onDevice(level - 1),
-                                .parent = volume.onDevice(level),
-                                .voxels = volume.layout.dimensions,
-                                .childEdge = Block{.level = level - 1}.edge(),
-                                .parentCount = std::uint32_t(volume.stored[std::size_t(level)])};
-    for (std::size_t first = 0; first < directions; first += kGroup) {
+  for (std::size_t first = 0; first < directions; first += kGroup) {
+    for (int level = 1; level <= volume.hierarchy.top(); ++level) {
+      const shader::TableLevelPush push{
+          .child = volume.onDevice(level - 1),
+          .parent = volume.onDevice(level),
+          .voxels = volume.layout.dimensions,
+          .childEdge = Block{.level = level - 1}.edge(),
+          .parentCount = std::uint32_t(volume.stored[std::size_t(level)]),
+          .firstDirection = std::uint32_t(first),
+          .directionCount = std::uint32_t(std::min(kGroup, directions - first))};
       std::vector<Binding> bindings{&table.darkest, &volume.occupancyTexels,
                                     &coarse[std::size_t(level) - 1].indices};
       // Whatever is bound in the last group's place of more is not looked at.
@@ -97,11 +102,12 @@ void TableLevels::record(Commands& commands, const DeviceVolume& volume,
         bindings.emplace_back(&table.planeTexels[std::min(first + i, directions - 1)]);
       for (std::size_t i = 0; i < kGroup; ++i)
         bindings.emplace_back(&table.planes[std::min(first + i, directions - 1)]);
-      push.firstDirection = std::uint32_t(first);
-      push.directionCount = std::uint32_t(std::min(kGroup, directions - first));
-      commands.dispatchLinear(pipelines_[level == 1 ? 1 : 0], bindings, push, boundCount(push.parentCount));
+      bindings.emplace_back(&ownBounds_);
+      const int children = std::min(level - 1, shader::kChildrenBlocks);
+      commands.dispatchLinear(pipelines_[std::size_t(children)], bindings, push,
+                              boundBytes(level, push.parentCount));
+      commands.barrier(kCompute, kCompute);
     }
-    commands.barrier(kCompute, kCompute);
   }
 }
 

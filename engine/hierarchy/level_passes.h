@@ -1,6 +1,7 @@
 #pragma once
 // The levels of the octree above the voxels, each from the one below: Subr et al. 2007, Section 3.2.
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -30,12 +31,20 @@ class MediumLevels {
 class TableLevels {
  public:
   TableLevels(const Device& device, const TableSettings& settings);
+  /// What was recorded before must be done.
   void record(Commands& commands, const DeviceVolume& volume, std::span<const VisibleVoxels> coarse,
-              const AttenuationTable& table) const;
+              const AttenuationTable& table);
 
  private:
-  std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
+  const Device& device_;
+  std::array<Pipeline, 3> pipelines_;  ///< by kChildren...
+  Buffer ownBounds_;                   ///< of level 1, a byte each, for the directions of a dispatch
 };
+
+/// What TableLevels needs for so many blocks of 2³ voxels that hold anything, while it works.
+inline std::uint64_t ownBoundBytes(std::uint64_t blocks) {
+  return std::max<std::uint64_t>(blocks * shader::kDirectionsPerLevelPass, 1);
+}
 
 /// Extinction, colours and light of a level, without its table. Waits.
 LevelData downloadMedium(const Device& device, const DeviceVolume& volume, int level);

@@ -43,8 +43,8 @@ struct DeviceVolume {
   std::uint32_t firstRank(int level) const;
   /// Of the levels above the voxels.
   std::uint64_t coarseBlocks() const { return storedBlocks() - stored.front(); }
-  /// Where in a direction of the attenuation table a level's bounds begin: behind the codes of all blocks,
-  /// one for shader::kBoundBlocks blocks above the voxels, which is the code of the most transparent of their
+  /// Where in a direction of the attenuation table a level's bounds begin: behind the codes of all blocks, a
+  /// byte a block above the voxels, or for kBoundBlocks of level 1: the code of the most transparent of its
   /// voxels that hold anything.
   std::uint32_t firstBound(int level) const;
   /// Of a direction of the table.

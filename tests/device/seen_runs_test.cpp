@@ -40,7 +40,7 @@ class SeenRunsTest : public DeviceTest {
       AttenuationSweep sweep(device(), settings);
       Commands commands(device());
       sweep.record(commands, built.volume, table);
-      const TableLevels levels(device(), settings);
+      TableLevels levels(device(), settings);
       levels.record(commands, built.volume, built.lists.coarse, table);
       commands.submitAndWait();
     }
