@@ -68,11 +68,10 @@ TEST_F(PaperFigures, Figure6ShowsTheLeak) {
   EXPECT_GT(wrong.checks[0].figure, 2.0 * section.checks[0].figure);
 }
 
-TEST_F(PaperFigures, Figure7IsAsTheOracleLightsIt) {
-  const ReportSection section = paperFigure7(deviceStages(device()));
-  EXPECT_EQ(section.checks.size(), 2u);
-  EXPECT_TRUE(section.passed());
+/// That it passes is part of ValidateCommand's test: the oracle takes its time.
+TEST_F(PaperFigures, Figure7NoticesWhatTheOracleDoesNotShow) {
   const ReportSection wrong = paperFigure7(wrongStages(device(), Composite::Normalised, Composite::Additive));
+  ASSERT_EQ(wrong.checks.size(), 2u);
   EXPECT_FALSE(wrong.checks[0].passed());
 }
 

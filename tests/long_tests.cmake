@@ -1,0 +1,4 @@
+# The longest tests begin first, so that none of them is left for one processor in the end.
+set_tests_properties(ValidateCommand.PassesOnSmallVolumesAndSaysSoLineByLine
+                     MemoryLimit.SparseSmokeIn512CubedTakesLessThanAGibibyteOfHostAndDevice
+                     PROPERTIES COST 1000)
