@@ -1,9 +1,10 @@
 #version 460
-// A level of the octree's attenuation table from the one below, for a few directions, a thread the blocks that hold
-// anything and share a byte of bounds: Subr et al. 2007, Section 3.2, Eq. 7. The geometric mean of transmittances is the mean of optical depths.
+// A level of the octree's attenuation table from the one below, for a few directions, a thread a block that holds
+// anything: Subr et al. 2007, Section 3.2, Eq. 7. The geometric mean of transmittances is the mean of optical depths.
 // Children that hold nothing or are outside of the volume do not count, the others as much as they have voxels.
 //
-// And its bounds: the code of the most transparent voxel, which says what can be left out behind others.
+// And its bounds: the code of the most transparent voxel, which says what can be left out behind others. Those of level 1
+// are for pack_bounds.comp.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_8bit_storage : require
 #include "interface.h"
@@ -100,35 +101,22 @@ Parent parentOf(utextureBuffer codes, uint direction) {
   return parent;
 }
 
-const bool kPacks = kChildren == kChildrenVoxels;  // a byte has the bounds of several blocks
-const uint kBlocks = kPacks ? kBoundBlocks : 1;
-
-uint withBound(uint bounds, uint bound, uint place) {
-  return kPacks ? bitfieldInsert(bounds, packBound(kCode, bound), int(4 * place), 4) : bound;
-}
-
 #define MAKE(i)                                                                                   \
   if (i < push.directionCount) {                                                                  \
     const Parent parent = parentOf(read##i, i);                                                   \
     plane##i.codes[push.parent.firstRank + block] = uint8_t(parent.code);                         \
-    bounds[i] = withBound(bounds[i], parent.bound, block - first);                                \
-    if (kPacks) ownBounds[i * push.parentCount + block] = uint8_t(parent.bound);                  \
+    if (kChildren == kChildrenVoxels)                                                             \
+      ownBounds[i * push.parentCount + block] = uint8_t(parent.bound);                            \
+    else                                                                                          \
+      plane##i.codes[push.parent.firstBound + block] = uint8_t(parent.bound);                     \
     /* Few are darker than all before them. */                                                    \
-    if (kPacks && parent.darkest > darkest[push.firstDirection + i])                              \
+    if (kChildren == kChildrenVoxels && parent.darkest > darkest[push.firstDirection + i])        \
       atomicMax(darkest[push.firstDirection + i], parent.darkest);                                \
   }
-#define STORE_BOUND(i) \
-  if (i < push.directionCount) plane##i.codes[push.parent.firstBound + group] = uint8_t(bounds[i]);
 
 void main() {
-  const uint group = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kLevelThreads;
-  const uint first = group * kBlocks, end = min(first + kBlocks, push.parentCount);
-  if (first >= end) return;
-  uint bounds[kDirectionsPerLevelPass];
-  [[unroll]] for (int i = 0; i < kDirectionsPerLevelPass; ++i) bounds[i] = kDarkest;
-  [[dont_unroll]] for (uint block = first; block < end; ++block) {
-    findChildren(cellAt(push.parent, parents[block]));
-    MAKE(0) MAKE(1) MAKE(2) MAKE(3) MAKE(4) MAKE(5) MAKE(6)
-  }
-  STORE_BOUND(0) STORE_BOUND(1) STORE_BOUND(2) STORE_BOUND(3) STORE_BOUND(4) STORE_BOUND(5) STORE_BOUND(6)
+  const uint block = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kLevelThreads;
+  if (block >= push.parentCount) return;
+  findChildren(cellAt(push.parent, parents[block]));
+  MAKE(0) MAKE(1) MAKE(2) MAKE(3) MAKE(4) MAKE(5) MAKE(6)
 }

@@ -4,6 +4,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "embedded/medium_level.h"
+#include "embedded/pack_bounds.h"
 #include "embedded/table_level.h"
 #include "engine/hierarchy/occupancy.h"
 #include "engine/volume/packed_light.h"
@@ -75,6 +76,11 @@ TableLevels::TableLevels(const Device& device, const TableSettings& settings) : 
                             {.bindings = bindings, .pushConstantBytes = sizeof(shader::TableLevelPush)},
                             {shader::kLevelThreads, 1, 1},
                             {std::uint32_t(settings.code), std::uint32_t(settings.filter), children});
+  pack_ = makeComputePipeline(
+      device, {pack_bounds_spv, "pack bounds"},
+      {.bindings = std::vector(shader::kDirectionsPerLevelPass + 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+       .pushConstantBytes = sizeof(shader::TableLevelPush)},
+      {shader::kLevelThreads, 1, 1}, {std::uint32_t(settings.code)});
 }
 
 void TableLevels::record(Commands& commands, const DeviceVolume& volume,
@@ -100,12 +106,16 @@ void TableLevels::record(Commands& commands, const DeviceVolume& volume,
       // Whatever is bound in the last group's place of more is not looked at.
       for (std::size_t i = 0; i < kGroup; ++i)
         bindings.emplace_back(&table.planeTexels[std::min(first + i, directions - 1)]);
+      std::vector<Binding> packing{&ownBounds_};
       for (std::size_t i = 0; i < kGroup; ++i)
-        bindings.emplace_back(&table.planes[std::min(first + i, directions - 1)]);
+        packing.emplace_back(&table.planes[std::min(first + i, directions - 1)]);
+      bindings.insert(bindings.end(), packing.begin() + 1, packing.end());
       bindings.emplace_back(&ownBounds_);
       const int children = std::min(level - 1, shader::kChildrenBlocks);
-      commands.dispatchLinear(pipelines_[std::size_t(children)], bindings, push,
-                              boundBytes(level, push.parentCount));
+      commands.dispatchLinear(pipelines_[std::size_t(children)], bindings, push, push.parentCount);
+      commands.barrier(kCompute, kCompute);
+      if (level > 1) continue;
+      commands.dispatchLinear(pack_, packing, push, boundBytes(level, push.parentCount));
       commands.barrier(kCompute, kCompute);
     }
   }

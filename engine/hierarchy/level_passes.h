@@ -26,7 +26,7 @@ class MediumLevels {
   std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
 };
 
-/// COMPUTE table_level.comp: the attenuation table and its bounds; a dispatch a level and
+/// COMPUTE table_level.comp, pack_bounds.comp: the attenuation table and its bounds; a dispatch a level and
 /// kDirectionsPerLevelPass directions.
 class TableLevels {
  public:
@@ -38,7 +38,8 @@ class TableLevels {
  private:
   const Device& device_;
   std::array<Pipeline, 3> pipelines_;  ///< by kChildren...
-  Buffer ownBounds_;                   ///< of level 1, a byte each, for the directions of a dispatch
+  Pipeline pack_;
+  Buffer ownBounds_;  ///< of level 1, a byte each, for the directions of a dispatch
 };
 
 /// What TableLevels needs for so many blocks of 2³ voxels that hold anything, while it works.
