@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "engine/core/error.h"
+#include "engine/vulkan/image_parts.h"
 
 namespace freevoxels {
 
@@ -109,16 +110,7 @@ bool Swapchain::make() {
   VK_CHECK(vkGetSwapchainImagesKHR(device_.handle(), made, &count, nullptr));
   images_.resize(count);
   VK_CHECK(vkGetSwapchainImagesKHR(device_.handle(), made, &count, images_.data()));
-  for (const VkImage image : images_) {
-    const VkImageViewCreateInfo viewInfo{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                         .image = image,
-                                         .viewType = VK_IMAGE_VIEW_TYPE_2D,
-                                         .format = format_.format,
-                                         .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-    VkImageView view = VK_NULL_HANDLE;
-    VK_CHECK(vkCreateImageView(device_.handle(), &viewInfo, nullptr, &view));
-    views_.emplace_back(device_.handle(), view);
-  }
+  for (const VkImage image : images_) views_.push_back(makeImageView(device_, image, format_.format));
   return true;
 }
 

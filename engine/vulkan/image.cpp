@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
-#include "engine/vulkan/buffer.h"
+#include "engine/vulkan/image_parts.h"
 
 namespace freevoxels {
 
@@ -47,33 +47,10 @@ std::uint64_t bytesPerPixel(VkFormat format) {
 RenderTarget::RenderTarget(const Device& device, glm::ivec2 size, VkFormat format, const char* name)
     : format_(format), size_(size) {
   checkTargetFits(device, size, format);
-  const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-                               .imageType = VK_IMAGE_TYPE_2D,
-                               .format = format,
-                               .extent = {std::uint32_t(size.x), std::uint32_t(size.y), 1},
-                               .mipLevels = 1,
-                               .arrayLayers = 1,
-                               .samples = VK_SAMPLE_COUNT_1_BIT,
-                               .tiling = VK_IMAGE_TILING_OPTIMAL,
-                               .usage = kUsage};
-  VkImage image = VK_NULL_HANDLE;
-  VK_CHECK(vkCreateImage(device.handle(), &info, nullptr, &image));
-  image_ = OwnedImage(device.handle(), image);
-  device.setName(VK_OBJECT_TYPE_IMAGE, std::uint64_t(image), name);
-
-  VkMemoryRequirements needs;
-  vkGetImageMemoryRequirements(device.handle(), image, &needs);
-  memory_ = DeviceMemory(device, needs, MemoryUse::Device, false);
-  VK_CHECK(vkBindImageMemory(device.handle(), image, memory_.get(), 0));
-
-  const VkImageViewCreateInfo viewInfo{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                       .image = image,
-                                       .viewType = VK_IMAGE_VIEW_TYPE_2D,
-                                       .format = format,
-                                       .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-  VkImageView view = VK_NULL_HANDLE;
-  VK_CHECK(vkCreateImageView(device.handle(), &viewInfo, nullptr, &view));
-  view_ = OwnedImageView(device.handle(), view);
+  ImageParts parts = makeImageParts(device, size, format, kUsage, name);
+  memory_ = std::move(parts.memory);
+  image_ = std::move(parts.image);
+  view_ = std::move(parts.view);
 }
 
 }  // namespace freevoxels

@@ -4,12 +4,12 @@
 
 #include "engine/core/error.h"
 #include "engine/vulkan/commands.h"
+#include "engine/vulkan/image_parts.h"
 
 namespace freevoxels {
 
 namespace {
 
-constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
 constexpr std::uint64_t kTexelBytes = 4;
 
 }  // namespace
@@ -19,33 +19,11 @@ Texture::Texture(const Device& device, glm::ivec2 size, const char* name) : size
   if (std::uint32_t(size.x) > most || std::uint32_t(size.y) > most)
     fail(ExitCode::OutOfMemory, "{} takes no picture of {}x{} pixels, only up to {} along an edge",
          device.description().name, size.x, size.y, most);
-  const VkImageCreateInfo info{.sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
-                               .imageType = VK_IMAGE_TYPE_2D,
-                               .format = kFormat,
-                               .extent = {std::uint32_t(size.x), std::uint32_t(size.y), 1},
-                               .mipLevels = 1,
-                               .arrayLayers = 1,
-                               .samples = VK_SAMPLE_COUNT_1_BIT,
-                               .tiling = VK_IMAGE_TILING_OPTIMAL,
-                               .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT};
-  VkImage image = VK_NULL_HANDLE;
-  VK_CHECK(vkCreateImage(device.handle(), &info, nullptr, &image));
-  image_ = OwnedImage(device.handle(), image);
-  device.setName(VK_OBJECT_TYPE_IMAGE, std::uint64_t(image), name);
-
-  VkMemoryRequirements needs;
-  vkGetImageMemoryRequirements(device.handle(), image, &needs);
-  memory_ = DeviceMemory(device, needs, MemoryUse::Device, false);
-  VK_CHECK(vkBindImageMemory(device.handle(), image, memory_.get(), 0));
-
-  const VkImageViewCreateInfo viewInfo{.sType = VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO,
-                                       .image = image,
-                                       .viewType = VK_IMAGE_VIEW_TYPE_2D,
-                                       .format = kFormat,
-                                       .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1}};
-  VkImageView view = VK_NULL_HANDLE;
-  VK_CHECK(vkCreateImageView(device.handle(), &viewInfo, nullptr, &view));
-  view_ = OwnedImageView(device.handle(), view);
+  ImageParts parts = makeImageParts(device, size, VK_FORMAT_R8G8B8A8_UNORM,
+                                    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, name);
+  memory_ = std::move(parts.memory);
+  image_ = std::move(parts.image);
+  view_ = std::move(parts.view);
 
   const VkSamplerCreateInfo samplerInfo{.sType = VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO,
                                         .magFilter = VK_FILTER_LINEAR,
