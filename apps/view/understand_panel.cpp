@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <optional>
+#include <vector>
 
 #include "apps/view/block_picture.h"
+#include "apps/view/widgets.h"
 #include "engine/attenuation/directions.h"
-#include "engine/image/srgb.h"
 
 namespace freevoxels {
 
@@ -17,11 +18,6 @@ namespace {
 
 constexpr float kSphereRadius = 62.0f;  // pixels at the usual density of text
 constexpr float kDotRadius = 3.5f;
-
-ImU32 colorOf(glm::vec3 linear) {
-  return IM_COL32(int(255.0f * srgbFromLinear(linear.r)), int(255.0f * srgbFromLinear(linear.g)),
-                  int(255.0f * srgbFromLinear(linear.b)), 255);
-}
 
 /// From the middle of the volume to the eye, index space.
 glm::dvec3 towardsEye(const Scene& scene, const Camera& camera) {
@@ -37,47 +33,77 @@ bool isBlended(const DirectionBlend& blend, int direction) {
   return false;
 }
 
+/// A dot on the sphere of directions.
+struct DirectionDot {
+  int direction = 0;
+  ImVec2 place;
+  bool faces = false;    ///< the camera
+  bool blended = false;  ///< is one of the four around the line of sight
+};
+
+std::vector<DirectionDot> placeDots(const Scene& scene, const Camera& camera, DirectionSet set,
+                                    const std::optional<DirectionBlend>& blend, ImVec2 centre, float radius) {
+  const glm::dmat3 toCamera = glm::dmat3(worldToCamera(camera)) * glm::dmat3(scene.volume->indexToWorld);
+  std::vector<DirectionDot> dots;
+  for (int i = 0; i < directionCount(set); ++i) {
+    const glm::dvec3 seen = glm::normalize(toCamera * directionAt(set, i));
+    dots.push_back({.direction = i,
+                    .place = {centre.x + radius * float(seen.x), centre.y - radius * float(seen.y)},
+                    .faces = seen.z > 0.0,
+                    .blended = blend && isBlended(*blend, i)});
+  }
+  return dots;
+}
+
+void drawDot(const DirectionDot& dot, ImVec2 centre, bool chosen) {
+  constexpr ImU32 kBlended = IM_COL32(255, 200, 60, 255), kLine = IM_COL32(255, 200, 60, 110);
+  const int shade = dot.faces ? 170 : 80;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (dot.blended) list.AddLine(centre, dot.place, kLine);
+  if (dot.faces || dot.blended)
+    list.AddCircleFilled(dot.place, kDotRadius, dot.blended ? kBlended : IM_COL32(shade, shade, shade, 255));
+  else
+    list.AddCircle(dot.place, kDotRadius, IM_COL32(shade, shade, shade, 255));
+  if (chosen) list.AddCircle(dot.place, 2.0f * kDotRadius, IM_COL32(90, 160, 255, 255));
+}
+
+/// Of those that face the camera, the one under the mouse.
+std::optional<int> dotUnderMouse(const std::vector<DirectionDot>& dots) {
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  float nearest = 8.0f * 8.0f;
+  std::optional<int> found;
+  for (const DirectionDot& dot : dots) {
+    const float x = mouse.x - dot.place.x, y = mouse.y - dot.place.y;
+    if (!dot.faces || x * x + y * y >= nearest) continue;
+    nearest = x * x + y * y;
+    found = dot.direction;
+  }
+  return found;
+}
+
 /// The directions of the table as the camera sees them; the four around the line of sight to the middle are
 /// bright. A click chooses one.
 void drawSphere(ViewState& state, DirectionSet set) {
   const Scene& scene = state.latest->scene;
-  const Camera& camera = *state.camera;
   const float radius = kSphereRadius * ImGui::GetFontSize() / 13.0f;
   const ImVec2 low = ImGui::GetCursorScreenPos();
   const ImVec2 centre(low.x + radius + 8.0f, low.y + radius + 4.0f);
   ImGui::InvisibleButton("sphere", {2.0f * radius + 16.0f, 2.0f * radius + 8.0f});
   const bool clicked = ImGui::IsItemClicked();
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddCircle(centre, radius, IM_COL32(110, 110, 110, 255), 48);
-  const glm::dvec3 toEye = towardsEye(scene, camera);
-  const bool hasSight = toEye != glm::dvec3(0.0);
-  const DirectionBlend blend = bilinearDirections(set, hasSight ? toEye : glm::dvec3(0.0, 0.0, 1.0));
-  const glm::dmat3 toCamera = glm::dmat3(worldToCamera(camera)) * glm::dmat3(scene.volume->indexToWorld);
-  float nearestClick = 8.0f * 8.0f;
-  for (int i = 0; i < directionCount(set); ++i) {
-    const glm::dvec3 seen = glm::normalize(toCamera * directionAt(set, i));
-    const ImVec2 dot(centre.x + radius * float(seen.x), centre.y - radius * float(seen.y));
-    const bool used = hasSight && isBlended(blend, i);
-    const int shade = seen.z > 0.0 ? 170 : 80;
-    const ImU32 color = used ? IM_COL32(255, 200, 60, 255) : IM_COL32(shade, shade, shade, 255);
-    if (used) list.AddLine(centre, dot, IM_COL32(255, 200, 60, 110));
-    if (seen.z > 0.0 || used)
-      list.AddCircleFilled(dot, kDotRadius, color);
-    else
-      list.AddCircle(dot, kDotRadius, color);
-    if (i == state.diagnosis.direction) list.AddCircle(dot, 2.0f * kDotRadius, IM_COL32(90, 160, 255, 255));
-    const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const float distance = (mouse.x - dot.x) * (mouse.x - dot.x) + (mouse.y - dot.y) * (mouse.y - dot.y);
-    if (clicked && seen.z > 0.0 && distance < nearestClick) {
-      nearestClick = distance;
-      state.diagnosis.direction = i;
-      state.changed = true;
-    }
+  ImGui::GetWindowDrawList()->AddCircle(centre, radius, IM_COL32(110, 110, 110, 255), 48);
+  const glm::dvec3 toEye = towardsEye(scene, *state.camera);
+  std::optional<DirectionBlend> blend;
+  if (toEye != glm::dvec3(0.0)) blend = bilinearDirections(set, toEye);
+  const auto dots = placeDots(scene, *state.camera, set, blend, centre, radius);
+  for (const DirectionDot& dot : dots) drawDot(dot, centre, dot.direction == state.diagnosis.direction);
+  if (const auto chosen = clicked ? dotUnderMouse(dots) : std::nullopt) {
+    state.diagnosis.direction = *chosen;
+    state.changed = true;
   }
-  for (std::size_t i = 0; hasSight && i < blend.directions.size(); ++i) {
-    if (blend.weights[i] <= 0.0) continue;
-    const glm::dvec3 d = directionAt(set, blend.directions[i]);
-    ImGui::Text("%.0f %%  towards %g, %g, %g", 100.0 * blend.weights[i], d.x, d.y, d.z);
+  for (std::size_t i = 0; blend && i < blend->directions.size(); ++i) {
+    if (blend->weights[i] <= 0.0) continue;
+    const glm::dvec3 d = directionAt(set, blend->directions[i]);
+    ImGui::Text("%.0f %%  towards %g, %g, %g", 100.0 * blend->weights[i], d.x, d.y, d.z);
   }
 }
 
@@ -109,7 +135,7 @@ void drawBlockControls(ViewState& state) {
     const float size = ImGui::GetFontSize();
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + size, corner.y + size},
-                                              colorOf(levelColor(int(level))));
+                                              shownColor(levelColor(int(level)), 1.0f));
     ImGui::Dummy({size, size});
     ImGui::SameLine();
     ImGui::Text("%llu of %d^3 voxels", static_cast<unsigned long long>(drawn[level]), 1 << level);
