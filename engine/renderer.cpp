@@ -46,6 +46,8 @@ struct Renderer::State {
   const AttenuationTable& tableWithLevels(const Progress& progress = {});
   void recordDrawing(Commands& commands, const Frame& frame, const AttenuationTable* read,
                      const Buffer* order);
+  std::uint64_t frameBytes(const FrameSettings& settings) const;
+  FrameSettings resolved(const FrameSettings& settings);
   FrameConstants constantsOf(const Camera& camera, const FrameSettings& settings, const Progress& progress);
   Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
                      const Progress& progress = {});
@@ -120,6 +122,22 @@ void Renderer::State::recordDrawing(Commands& commands, const Frame& frame, cons
   splats->record(commands, drawing, constants, frame.targets);
 }
 
+/// Of what every frame needs, without rays and table.
+std::uint64_t Renderer::State::frameBytes(const FrameSettings& settings) const {
+  const VolumeMemory memory = memoryOfVolume();
+  return memory.lists + memory.splats + 2 * targetBytes(settings);
+}
+
+/// How lights are shadowed, if that is left to the volume and the device.
+FrameSettings Renderer::State::resolved(const FrameSettings& settings) {
+  FrameSettings result = settings;
+  if (!settings.lighting) return result;
+  if (!lights) lights.emplace(device);
+  const std::uint64_t tableBytes = table ? 0 : memoryOfVolume().table;
+  result.lighting->attenuation = lights->resolve(built.volume, settings, frameBytes(settings) + tableBytes);
+  return result;
+}
+
 /// Auto takes the table alone where rays from the eye find no room.
 FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSettings& settings,
                                             const Progress& progress) {
@@ -130,8 +148,7 @@ FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSet
   std::uint64_t mostRayBytes = settings.mostRayBytes;
   if (settings.attenuation == AttenuationLookup::Auto) {
     // Without rays there is a picture, and without the rest of the frame there is none.
-    const VolumeMemory memory = memoryOfVolume();
-    const std::uint64_t others = memory.lists + memory.splats + 2 * targetBytes(settings);
+    const std::uint64_t others = frameBytes(settings);
     mostRayBytes =
         std::min(mostRayBytes, device.availableBytes() - std::min(device.availableBytes(), others));
   }
@@ -149,9 +166,9 @@ FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSet
 
 /// Up to the sums in the targets; the sorted picture is made there, and has none.
 Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const Camera& camera,
-                                                     const FrameSettings& settings,
-                                                     const Progress& progress) {
+                                                     const FrameSettings& wanted, const Progress& progress) {
   frameTimes.clear();
+  const FrameSettings settings = resolved(wanted);
   const bool sorted = settings.composite == Composite::Sorted;
   if (!splats || !splats->draws(settings)) {
     splats = std::make_unique<SplatPass>(device, settings.depth, sorted);
@@ -163,10 +180,8 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
   const AttenuationTable* read = nullptr;
   if (frame.constants.readsTable())
     read = frame.constants.readsLevels() ? &tableWithLevels(progress) : &sweptTable(progress);
-  if (settings.lighting) {
-    if (!lights) lights.emplace(device);
+  if (settings.lighting)
     frame.constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, frameTimes);
-  }
   CullRule& cull = frame.constants.cull;
   if (cull.hiddenDepth > 0.0 &&
       !canHide(tableSettings, largestDepths, glm::dmat3(built.volume.indexToWorld), cull.hiddenDepth))

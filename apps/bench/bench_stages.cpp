@@ -82,8 +82,8 @@ Result sweeps(const Device& device, DirectionSet directions, int resolution, int
           .perSecond = double(count * volume.voxelCount()) / time * 1e3};
 }
 
-Result octree(const Device& device, AttenuationCode code, int resolution, int runs) {
-  const Volume volume = stripes(resolution);
+Result octree(const Device& device, const char* name, AttenuationCode code, int resolution, int runs) {
+  const Volume volume = name == kStripes ? stripes(resolution) : makeProcedural(name, resolution);
   const BuiltVolume onDevice = built(device, volume);
   const AttenuationTable table = makeTable(device, onDevice.volume, {.code = code});
   AttenuationSweep sweep(device, table.settings);
@@ -100,11 +100,12 @@ Result octree(const Device& device, AttenuationCode code, int resolution, int ru
     commands.submitAndWait();
     return total(commands);
   });
-  return {.name = fmt::format("octree, {0}x{0}x{0}, {1}: {2:.2f} of the sweeps", resolution,
+  const std::uint64_t voxels = onDevice.volume.stored.front();
+  return {.name = fmt::format("octree of {0}, {1}^3, {2}: {3:.2f} of the sweeps", name, resolution,
                               code == AttenuationCode::Depth8 ? "depth8" : "linear8", time / sweeps),
           .milliseconds = time,
-          .copyMilliseconds = copyTime(27 * volume.voxelCount()),
-          .perSecond = 26.0 * double(volume.voxelCount()) / time * 1e3};
+          .copyMilliseconds = copyTime(27 * voxels),
+          .perSecond = 26.0 * double(voxels) / time * 1e3};
 }
 
 std::vector<Result> zoom(const Device& device, int resolution, int runs) {
@@ -159,8 +160,8 @@ std::vector<Result> lights(const Device& device, int resolution, int runs) {
   const Classification classification{.densityScale = automaticDensityScale(volume)};
   const Camera camera = framingCamera(volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
   std::vector<Result> results;
-  for (const int count : {1, 16}) {
-    FrameSettings settings{.size = {1024, 1024}, .lighting = Lighting{}};
+  const auto measure = [&](int count, LightAttenuation attenuation) {
+    FrameSettings settings{.size = {1024, 1024}, .lighting = Lighting{.attenuation = attenuation}};
     for (int i = 0; i < count; ++i)
       settings.lighting->lights.push_back({.place = {std::cos(0.4 * i), 0.5, std::sin(0.4 * i)}});
     const double time = least(runs, [&] {
@@ -173,10 +174,14 @@ std::vector<Result> lights(const Device& device, int resolution, int runs) {
     });
     const std::string ratio =
         results.empty() ? "" : fmt::format(": {:.2f} of one light", time / results.front().milliseconds);
-    results.push_back({.name = fmt::format("cloud {}^3, {} light{}, whole{}", resolution, count,
-                                           count == 1 ? "" : "s", ratio),
-                       .milliseconds = time});
-  }
+    results.push_back(
+        {.name = fmt::format("cloud {}^3, {} light{}, {}, whole{}", resolution, count, count == 1 ? "" : "s",
+                             attenuation == LightAttenuation::Table ? "table" : "exact", ratio),
+         .milliseconds = time});
+  };
+  measure(1, LightAttenuation::Table);
+  measure(16, LightAttenuation::Table);
+  for (const int count : {1, int(kMostExactLights)}) measure(count, LightAttenuation::Exact);
   return results;
 }
 

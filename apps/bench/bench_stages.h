@@ -14,9 +14,12 @@ namespace freevoxels::bench {
 /// The sweeps for all D directions of a set over an N³ volume, beside a copy of (D + 1) N³ bytes.
 Result sweeps(const Device& device, DirectionSet directions, int resolution, int runs);
 
-/// The octree's levels above the voxels, beside a copy of the voxels' 27 N³ bytes; the name has the ratio to
-/// the 26 sweeps.
-Result octree(const Device& device, AttenuationCode code, int resolution, int runs);
+/// A volume of which six of seven voxels hold anything, unlike their neighbours.
+inline constexpr const char* kStripes = "stripes";
+
+/// The octree's levels above the voxels of kStripes or a procedural volume, beside a copy of 27 bytes for
+/// each that holds anything; the name has the ratio to the 26 sweeps.
+Result octree(const Device& device, const char* name, AttenuationCode code, int resolution, int runs);
 
 /// Choosing, setting up and drawing the blocks of a cloud of N³ voxels from near to far, without and with
 /// level of detail.
@@ -25,8 +28,8 @@ std::vector<Result> zoom(const Device& device, int resolution, int runs);
 /// Choosing, setting up and drawing the voxels of a head of N³ voxels, all of them and culled.
 std::vector<Result> culling(const Device& device, QualityColor color, int resolution, int runs);
 
-/// A cloud of N³ voxels, from memory to a lit picture of 1024 x 1024 pixels in memory: with one light, and
-/// with 16.
+/// A cloud of N³ voxels, from memory to a lit picture of 1024 x 1024 pixels in memory: with one light and 16
+/// that the table shadows, and with as many as Auto shadows exactly.
 std::vector<Result> lights(const Device& device, int resolution, int runs);
 
 /// The list of visible voxels of an N³ volume of which a thirtieth is visible, beside a copy of 4 N³ bytes.

@@ -1,7 +1,10 @@
 // freevoxels-bench: how long each stage takes, as a table and as JSON.
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "apps/bench/bench_stages.h"
@@ -16,35 +19,97 @@ namespace {
 using namespace freevoxels;
 using bench::Result;
 
-std::vector<Result> measureAll(const Device& device, const std::vector<std::string>& inputs, bool quick) {
-  const int runs = quick ? 2 : 5;
-  std::vector<Result> results;
-  for (int resolution : quick ? std::vector{64, 128} : std::vector{64, 128, 256})
-    results.push_back(bench::sweeps(device, DirectionSet::Directions26, resolution, runs));
+struct Extent {
+  std::vector<std::string> inputs{"procedural:cloud"};
+  bool quick = false;
+
+  int runs() const { return quick ? 2 : 5; }
+  std::vector<int> resolutions() const { return quick ? std::vector{64, 128} : std::vector{64, 128, 256}; }
+};
+using Results = std::vector<Result>;
+
+Results sweeps(const Device& device, const Extent& extent) {
+  Results results;
+  for (int resolution : extent.resolutions())
+    results.push_back(bench::sweeps(device, DirectionSet::Directions26, resolution, extent.runs()));
   for (int resolution : {64, 128})
-    results.push_back(bench::sweeps(device, DirectionSet::Directions98, resolution, runs));
-  for (int resolution : quick ? std::vector{64, 128} : std::vector{64, 128, 256})
-    results.push_back(bench::octree(device, AttenuationCode::Depth8, resolution, runs));
-  results.push_back(bench::octree(device, AttenuationCode::Linear8, 128, runs));
-  for (Result& result : bench::zoom(device, 128, runs)) results.push_back(std::move(result));
-  for (const QualityColor color : {QualityColor::Skin, QualityColor::Bone})
-    for (Result& result : bench::culling(device, color, quick ? 128 : 256, runs))
-      results.push_back(std::move(result));
-  for (Result& result : bench::lights(device, 128, runs)) results.push_back(std::move(result));
-  results.push_back(bench::compaction(device, quick ? 128 : 256, runs));
-  for (double pixels : {3.0, 5.0, 9.0}) results.push_back(bench::splats(device, pixels, runs));
-  for (const Result& result : bench::flight(device, quick ? 64 : 128, quick ? 1 : 2))
-    results.push_back(result);
-  if (!quick)  // a twentieth of more than 512³ voxels
-    results.push_back(
-        bench::wholeRender(device, {.input = "procedural:plume", .grid = {}, .resolution = 640}, 1));
-  for (const std::string& input : inputs)
-    results.push_back(
-        bench::wholeRender(device, {.input = input, .grid = {}, .resolution = {}}, runs));
+    results.push_back(bench::sweeps(device, DirectionSet::Directions98, resolution, extent.runs()));
   return results;
 }
 
-std::vector<std::string> tableLines(const std::vector<Result>& results) {
+Results octree(const Device& device, const Extent& extent) {
+  Results results;
+  for (const char* name : {bench::kStripes, "cloud"})
+    for (int resolution : extent.resolutions())
+      results.push_back(bench::octree(device, name, AttenuationCode::Depth8, resolution, extent.runs()));
+  results.push_back(bench::octree(device, bench::kStripes, AttenuationCode::Linear8, 128, extent.runs()));
+  return results;
+}
+
+Results zoom(const Device& device, const Extent& extent) {
+  return bench::zoom(device, 128, extent.runs());
+}
+
+Results culling(const Device& device, const Extent& extent) {
+  Results results;
+  for (const QualityColor color : {QualityColor::Skin, QualityColor::Bone})
+    std::ranges::move(bench::culling(device, color, extent.quick ? 128 : 256, extent.runs()),
+                      std::back_inserter(results));
+  return results;
+}
+
+Results lights(const Device& device, const Extent& extent) {
+  return bench::lights(device, 128, extent.runs());
+}
+
+Results list(const Device& device, const Extent& extent) {
+  return {bench::compaction(device, extent.quick ? 128 : 256, extent.runs())};
+}
+
+Results splats(const Device& device, const Extent& extent) {
+  Results results;
+  for (double pixels : {3.0, 5.0, 9.0}) results.push_back(bench::splats(device, pixels, extent.runs()));
+  return results;
+}
+
+Results flight(const Device& device, const Extent& extent) {
+  return bench::flight(device, extent.quick ? 64 : 128, extent.quick ? 1 : 2);
+}
+
+Results whole(const Device& device, const Extent& extent) {
+  Results results;
+  if (!extent.quick)  // a twentieth of more than 512³ voxels
+    results.push_back(
+        bench::wholeRender(device, {.input = "procedural:plume", .grid = {}, .resolution = 640}, 1));
+  for (const std::string& input : extent.inputs)
+    results.push_back(
+        bench::wholeRender(device, {.input = input, .grid = {}, .resolution = {}}, extent.runs()));
+  return results;
+}
+
+struct Stage {
+  std::string name;
+  Results (*measure)(const Device& device, const Extent& extent);
+};
+const std::vector<Stage> kStages{{"sweeps", sweeps},   {"octree", octree}, {"zoom", zoom},
+                                 {"culling", culling}, {"lights", lights}, {"list", list},
+                                 {"splats", splats},   {"flight", flight}, {"whole", whole}};
+
+std::vector<std::string> stageNames() {
+  std::vector<std::string> names;
+  for (const Stage& stage : kStages) names.push_back(stage.name);
+  return names;
+}
+
+Results measure(const Device& device, const Extent& extent, const std::vector<std::string>& wanted) {
+  Results results;
+  for (const Stage& stage : kStages)
+    if (std::ranges::count(wanted, stage.name) > 0)
+      std::ranges::move(stage.measure(device, extent), std::back_inserter(results));
+  return results;
+}
+
+std::vector<std::string> tableLines(const Results& results) {
   using Align = TextTable::Align;
   TextTable table{.columns = {Align::Left, Align::Right, Align::Right, Align::Right},
                   .rows = {{"stage", "ms", "x copy", "million/s"}}};
@@ -57,7 +122,7 @@ std::vector<std::string> tableLines(const std::vector<Result>& results) {
   return table.lines();
 }
 
-nlohmann::ordered_json toJson(const Device& device, const std::vector<Result>& results) {
+nlohmann::ordered_json toJson(const Device& device, const Results& results) {
   nlohmann::ordered_json json{{"device", device.description().name}, {"driver", device.description().driver}};
   for (const Result& result : results) {
     nlohmann::ordered_json stage{{"stage", result.name}, {"milliseconds", result.milliseconds}};
@@ -80,17 +145,21 @@ int main(int argc, char** argv) {
       "with two threads of this machine in the same run.",
       "freevoxels-bench");
   DeviceOptions device;
-  std::vector<std::string> inputs{"procedural:cloud"};
+  Extent extent;
+  std::vector<std::string> wanted = stageNames();
   std::string json;
-  bool quick = false;
-  app.add_option("IN", inputs, "Volumes to render whole: files, or procedural:NAME")->capture_default_str();
+  app.add_option("IN", extent.inputs, "Volumes to render whole: files, or procedural:NAME")
+      ->capture_default_str();
   app.add_option("--json", json, "Also write the figures to this file");
-  app.add_flag("--quick", quick, "Smaller volumes and fewer runs");
+  app.add_option("--stages", wanted, "Only these, with commas between them [all]")
+      ->delimiter(',')
+      ->check(CLI::IsMember(stageNames()));
+  app.add_flag("--quick", extent.quick, "Smaller volumes and fewer runs");
   device.add(app);
   app.callback([&] {
     if (!json.empty()) checkWritable(json);
     device.withDevice([&](const Device& opened) {
-      const std::vector<Result> results = measureAll(opened, inputs, quick);
+      const Results results = measure(opened, extent, wanted);
       fmt::print("{}\n", opened.description().name);
       for (const std::string& line : tableLines(results)) fmt::print("{}\n", line);
       if (json.empty()) return;

@@ -114,10 +114,10 @@ void LightingOptions::add(CLI::App& app) {
 }
 
 void LightingOptions::addMethod(CLI::App& app) {
-  addWord(
-      app, "--light-attenuation", kLightAttenuationWords, attenuation,
-      "Whether the shadows of lights are looked up in the table, or along rays that are swept once for each "
-      "light, exactly [table]")
+  addWord(app, "--light-attenuation", kLightAttenuationWords, attenuation,
+          "Whether the shadows of lights are looked up in the table, or exact, along rays that are swept "
+          "once for "
+          "each light: auto is exact for up to 4 lights, where memory is plenty [auto]")
       ->group("Light");
   addWord(app, "--shading", kShadingWords, shading,
           "What a voxel does with lights: scatters them as fog does, or as a surface across the change of "
@@ -154,7 +154,7 @@ std::optional<Lighting> LightingOptions::resolve(const Volume& volume) const {
                     .tint = tint.value_or(glm::dvec3(1.0)),
                     .phaseG = phaseG.value_or(0.0)};
   if (shading == int(Shading::Gradient)) lighting.surface = surface.value_or(1.0);
-  lighting.attenuation = LightAttenuation(attenuation.value_or(int(LightAttenuation::Table)));
+  lighting.attenuation = LightAttenuation(attenuation.value_or(int(LightAttenuation::Auto)));
   if (environment) {
     auto around = std::make_shared<Environment>(readEnvironment(*environment));
     around->rotation = environmentRotation.value_or(around->rotation);

@@ -15,7 +15,7 @@ namespace freevoxels {
 /// What --shading and --light-attenuation take, in the order of the enumerators.
 enum class Shading : int { None = 0, Scatter = 1, Gradient = 2 };
 inline const std::vector<std::string> kShadingWords{"none", "scatter", "gradient"};
-inline const std::vector<std::string> kLightAttenuationWords{"table", "exact"};
+inline const std::vector<std::string> kLightAttenuationWords{"table", "exact", "auto"};
 
 struct LightingOptions {
   struct GivenLight {

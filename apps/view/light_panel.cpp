@@ -34,7 +34,7 @@ bool drawScattering(LightingOptions& options) {
   }
   changed |= slideOptional("phase g", options.phaseG, 0.0, -kMostPhaseG, kMostPhaseG, "%.2f");
   hint("Scattering: forwards above 0, backwards below");
-  changed |= choose("shadows", kLightAttenuationWords, options.attenuation, int(LightAttenuation::Table));
+  changed |= choose("shadows", kLightAttenuationWords, options.attenuation, int(LightAttenuation::Auto));
   hint("Looked up in the table, or exact along rays of each light");
   return changed;
 }

@@ -25,21 +25,37 @@ shader::Light deviceLight(const Light& light, const RaySource& source, glm::dvec
       .beyond = {0, 0}};
 }
 
-/// Of all lights together.
-void checkRaysFit(const Device& device, glm::ivec3 dimensions, std::span<const RaySource> sources) {
-  std::uint64_t bytes = 0, largest = 0;
+/// With Auto, of the device's memory.
+constexpr std::uint64_t kMostRayShare = 4;
+
+struct RayMemory {
+  std::uint64_t bytes = 0, largest = 0;  ///< of all lights, and of one
+};
+
+RayMemory rayMemory(glm::ivec3 dimensions, std::span<const RaySource> sources) {
+  RayMemory memory;
   for (const RaySource& source : sources) {
-    bytes += rayBytes(dimensions, source);
-    largest = std::max(largest, rayBytes(dimensions, source));
+    memory.bytes += rayBytes(dimensions, source);
+    memory.largest = std::max(memory.largest, rayBytes(dimensions, source));
   }
+  return memory;
+}
+
+void checkRaysFit(const Device& device, const RayMemory& rays) {
   const std::uint64_t memory = device.availableBytes();
   const std::uint64_t piece = std::min(std::uint64_t(device.maximumAllocation()), memory);
-  if (bytes > memory || largest > piece)
+  if (rays.bytes > memory || rays.largest > piece)
     fail(ExitCode::OutOfMemory,
          "exact shadows of these lights need {} MiB for their rays, {} MiB in one piece, and {} has {} and "
          "{} MiB: "
          "use --light-attenuation table, fewer lights or a smaller volume",
-         bytes >> 20, largest >> 20, device.description().name, memory >> 20, piece >> 20);
+         rays.bytes >> 20, rays.largest >> 20, device.description().name, memory >> 20, piece >> 20);
+}
+
+std::vector<RaySource> sourcesOf(const Lighting& lighting, const DeviceVolume& volume) {
+  std::vector<RaySource> sources;
+  for (const Light& light : lighting.lights) sources.push_back(lightSource(light, volume.indexToWorld));
+  return sources;
 }
 
 }  // namespace
@@ -58,9 +74,10 @@ void LightPass::setBeyond(Commands& commands, const DeviceVolume& volume, Direct
 }
 
 void LightPass::setRays(Commands& commands, const DeviceVolume& volume, std::vector<shader::Light>& lights) {
-  std::vector<RaySource> sources;
-  for (const Light& light : placed_->lights) sources.push_back(lightSource(light, volume.indexToWorld));
-  checkRaysFit(device_, volume.layout.dimensions, sources);
+  const std::vector<RaySource> sources = sourcesOf(*placed_, volume);
+  const RayMemory memory = rayMemory(volume.layout.dimensions, sources);
+  checkRaysFit(device_, memory);
+  rayBytes_ = memory.bytes;
   for (std::size_t i = 0; i < lights.size(); ++i) {
     RaySweep& sweep = rays_.emplace_back(device_, "light sweep");
     sweep.record(commands, volume, sources[i]);
@@ -75,11 +92,24 @@ std::vector<shader::Light> LightPass::place(Commands& commands, const DeviceVolu
   for (const Light& light : placed_->lights)
     lights.push_back(deviceLight(light, lightSource(light, volume.indexToWorld), middle));
   rays_.clear();
+  rayBytes_ = 0;
   if (placed_->attenuation == LightAttenuation::Exact)
     setRays(commands, volume, lights);
   else
     setBeyond(commands, volume, set, lights);
   return lights;
+}
+
+LightAttenuation LightPass::resolve(const DeviceVolume& volume, const FrameSettings& settings,
+                                    std::uint64_t others) const {
+  const LightAttenuation wanted = lightAttenuationFor(settings);
+  if (settings.lighting->attenuation != LightAttenuation::Auto || wanted == LightAttenuation::Table)
+    return wanted;
+  const RayMemory rays = rayMemory(volume.layout.dimensions, sourcesOf(*settings.lighting, volume));
+  const std::uint64_t available = device_.availableBytes() + rayBytes_;
+  const bool fits = rays.bytes <= device_.memoryBytes() / kMostRayShare && rays.bytes + others <= available &&
+                    rays.largest <= device_.maximumAllocation();
+  return fits ? LightAttenuation::Exact : LightAttenuation::Table;
 }
 
 shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const TableSettings& table,

@@ -20,8 +20,12 @@ class LightPass {
  public:
   explicit LightPass(const Device& device) : device_(device), beyond_(device) {}
 
-  /// Of settings that have lighting. Waits for what it has to make; no frame may be under way. Adds the times
-  /// of that to `times`.
+  /// Table or Exact, of settings that have lighting. Auto is Table where rays would take more than a quarter
+  /// of the device's memory, or would leave less of it than `others` bytes.
+  LightAttenuation resolve(const DeviceVolume& volume, const FrameSettings& settings,
+                           std::uint64_t others) const;
+  /// Of settings whose lighting is not Auto. Waits for what it has to make; no frame may be under way. Adds
+  /// the times of that to `times`.
   shader::FrameLighting prepare(const DeviceVolume& volume, const TableSettings& table,
                                 const FrameSettings& settings, std::vector<StageTime>& times);
   /// shader::Light, of the last frame.
@@ -40,6 +44,7 @@ class LightPass {
   Buffer lights_;                    ///< shader::Light
   Buffer beyondDepths_;              ///< kEyeDepthsBytes a light that is inside of the volume
   std::deque<RaySweep> rays_;        ///< of the lights; empty where they are looked up in the table
+  std::uint64_t rayBytes_ = 0;       ///< of those
 };
 
 }  // namespace freevoxels

@@ -44,7 +44,11 @@ struct Light {
 enum class LightAttenuation : int {
   Table = 0,  ///< as the table says: nothing is made for a light
   Exact = 1,  ///< along rays of its own (ray_fans.h), swept once for as long as the lights stay as they are
+  Auto = 2,   ///< Exact of a few lights, where memory is plenty: lightAttenuationFor, LightPass::resolve
 };
+
+/// With Auto more lights than these are the table's, which answers for each in the time of a look-up.
+inline constexpr std::size_t kMostExactLights = 4;
 
 struct Lighting {
   std::vector<Light> lights;
@@ -60,10 +64,10 @@ struct Lighting {
   /// How much of what a voxel does to the lights it does as a piece of surface (surfaceScattering), in 0..1,
   /// where the extinction changes most; the rest as fog.
   double surface = 0.0;
-  LightAttenuation attenuation = LightAttenuation::Table;  ///< of the lights; what is ambient is the table's
+  LightAttenuation attenuation = LightAttenuation::Auto;  ///< of the lights; what is ambient is the table's
 
   bool comesFromEverywhere() const { return ambient != glm::dvec3(0.0) || environment; }
-  /// Whether a frame has to have the table.
+  /// Whether a frame has to have the table; of Auto only what it comes to says that.
   bool readsTable() const { return attenuation == LightAttenuation::Table || comesFromEverywhere(); }
   bool isTinted() const { return tint != glm::dvec3(1.0); }
   bool operator==(const Lighting&) const = default;

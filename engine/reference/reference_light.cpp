@@ -34,7 +34,7 @@ ReferenceLight::ReferenceLight(const LightInputs& inputs, const FrameSettings& s
   for (const Light& light : lighting_.lights) {
     const RaySource source = lightSource(light, inputs_.volume.indexToWorld);
     sources_.push_back(source);
-    if (lighting_.attenuation == LightAttenuation::Exact) {
+    if (lightAttenuationFor(settings) == LightAttenuation::Exact) {
       depths_.push_back(
           rayDepth(inputs_.volume, source, referenceRays(inputs_.volume, inputs_.extinction, source)));
       continue;

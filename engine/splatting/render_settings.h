@@ -48,4 +48,14 @@ struct FrameSettings {
   std::optional<Lighting> lighting = std::nullopt;
 };
 
+/// Of settings that have lighting: what Auto is of them where memory is plenty. Who looks up the paper's way
+/// gets the paper's shadows.
+inline LightAttenuation lightAttenuationFor(const FrameSettings& settings) {
+  const Lighting& lighting = *settings.lighting;
+  if (lighting.attenuation != LightAttenuation::Auto) return lighting.attenuation;
+  const bool isPaper = settings.attenuation == AttenuationLookup::Nearest;
+  return lighting.lights.size() <= kMostExactLights && !isPaper ? LightAttenuation::Exact
+                                                                : LightAttenuation::Table;
+}
+
 }  // namespace freevoxels

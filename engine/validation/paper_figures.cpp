@@ -212,9 +212,10 @@ ReportSection paperFigure7(const StageMaker& make) {
                             "shadows in one pass. Where each colour has an extinction of its own on the way "
                             "of the light, white light "
                             "turns red in flesh."};
-  const Lighting red{.lights = {{.place = kToLight, .color = kRed, .intensity = kLitIntensity}}};
-  const Lighting white{.lights = {{.place = kToLight, .intensity = kLitIntensity}}};
-  Lighting turning = white;
+  const Lighting white{.lights = {{.place = kToLight, .intensity = kLitIntensity}},
+                       .attenuation = LightAttenuation::Table};
+  Lighting red = white, turning = white;
+  red.lights.front().color = kRed;
   turning.tint = kFleshTint;
   const Image turned = shown.picture(kLitPicture, turning);
   section.pictures.push_back({.caption = "From " + viewText(kLitView),

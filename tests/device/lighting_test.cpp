@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/attenuation/ray_sweep.h"
 #include "engine/reference/reference_light.h"
 #include "engine/reference/reference_sorted.h"
 #include "engine/validation/sky_environment.h"
@@ -18,7 +19,8 @@ Lighting everything() {
               {{.place = {1.0, 0.7, 0.2}, .color = {1.0, 0.6, 0.3}, .intensity = 9.0},
                {.place = {-0.9, 0.4, 1.2}, .atInfinity = false, .color = {0.2, 0.5, 1.0}, .intensity = 20.0}},
           .ambient = {0.2, 0.25, 0.3},
-          .phaseG = 0.4};
+          .phaseG = 0.4,
+          .attenuation = LightAttenuation::Table};
 }
 
 class LightingTest : public SplatTest {
@@ -172,6 +174,43 @@ TEST_F(LightingTest, ExactLightsAreSweptOnceWhileTheyStandStill) {
   EXPECT_EQ(sweeps(40.0), 1);
 }
 
+TEST_F(LightingTest, AutoShadowsAFewLightsExactly) {
+  const Volume v = volume(true);
+  const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
+  Renderer renderer(device(), v, coloured(v), {});
+  const auto pixels = [&](LightAttenuation attenuation, std::size_t lights,
+                          AttenuationLookup lookup = AttenuationLookup::Auto) {
+    Lighting lighting{.lights = std::vector<Light>(lights), .attenuation = attenuation};
+    for (std::size_t i = 0; i < lights; ++i) lighting.lights[i].place = {double(i) - 1.4, 0.7, 0.3};
+    return renderer.render(camera, {.size = {32, 32}, .attenuation = lookup, .lighting = lighting}).pixels;
+  };
+  using enum LightAttenuation;
+  ASSERT_NE(pixels(Table, kMostExactLights), pixels(Exact, kMostExactLights));
+  EXPECT_EQ(pixels(Auto, kMostExactLights), pixels(Exact, kMostExactLights));
+  EXPECT_EQ(pixels(Auto, kMostExactLights + 1), pixels(Table, kMostExactLights + 1));
+  EXPECT_EQ(pixels(Auto, 1, AttenuationLookup::Nearest), pixels(Table, 1, AttenuationLookup::Nearest));
+}
+
+/// Where the table of a volume finds room and rays of its lights do not.
+TEST_F(LightingTest, AutoShadowsByTheTableWhereMemoryIsShort) {
+  const Volume v = makeVolume(glm::ivec3(96), cubeTransform(glm::ivec3(96)), [](int x, int y, int z) {
+    return x < 8 && y < 8 && z < 8 ? 1.0 : kInactiveVoxel;
+  });
+  const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
+  FrameSettings settings{.size = {32, 32}, .lighting = Lighting{.lights = {{}}}};
+  const auto lightSweeps = [&](std::uint64_t memoryLimit) {
+    const Device limited(instance(), "", memoryLimit);
+    Renderer renderer(limited, v, coloured(v), {});
+    renderer.render(camera, settings);
+    return std::ranges::count(renderer.timings(), "light sweep", &StageTime::name);
+  };
+  constexpr std::uint64_t kMiB = 1 << 20;
+  const std::uint64_t rays = rayBytes(v.dimensions, lightSource(Light{}, v.indexToWorld));
+  ASSERT_GT(rays, 4 * kMiB);
+  EXPECT_EQ(lightSweeps(64 * kMiB), 1);
+  EXPECT_EQ(lightSweeps(4 * rays - kMiB), 0);
+}
+
 TEST_F(LightingTest, SortedPicturesMatchTheReference) {
   const Volume v = volume(true);
   const Classification classification = coloured(v, 0.5f);
@@ -213,19 +252,26 @@ TEST_F(LightingTest, TwoLightsAreTheSumOfEachAlone) {
   Renderer renderer(device(), v, coloured(v), {});
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
   const FrameSettings settings{.size = {40, 40}};
-  const Lighting both = everything();
-  std::vector<glm::dvec3> alone;
-  for (const Lighting& one : {Lighting{.lights = {both.lights[0]}, .phaseG = both.phaseG},
-                              Lighting{.lights = {both.lights[1]}, .phaseG = both.phaseG},
-                              Lighting{.ambient = both.ambient, .phaseG = both.phaseG}}) {
-    const auto sums = colours(renderer, camera, settings, one);
-    if (alone.empty()) alone.resize(sums.size(), glm::dvec3(0.0));
-    for (std::size_t i = 0; i < sums.size(); ++i) alone[i] += sums[i];
+  for (const LightAttenuation attenuation : {LightAttenuation::Table, LightAttenuation::Exact}) {
+    Lighting both = everything();
+    both.attenuation = attenuation;
+    std::array<Lighting, 3> parts{both, both, both};
+    for (std::size_t i = 0; i < 2; ++i) {
+      parts[i].lights = {both.lights[i]};
+      parts[i].ambient = glm::dvec3(0.0);
+    }
+    parts[2].lights.clear();
+    std::vector<glm::dvec3> alone;
+    for (const Lighting& one : parts) {
+      const auto sums = colours(renderer, camera, settings, one);
+      if (alone.empty()) alone.resize(sums.size(), glm::dvec3(0.0));
+      for (std::size_t i = 0; i < sums.size(); ++i) alone[i] += sums[i];
+    }
+    const auto together = colours(renderer, camera, settings, both);
+    ASSERT_GT(largest(together), 0.0);
+    for (std::size_t i = 0; i < together.size(); ++i)
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(together[i][c], alone[i][c], 1e-5 * alone[i][c] + 1e-30);
   }
-  const auto together = colours(renderer, camera, settings, both);
-  ASSERT_GT(largest(together), 0.0);
-  for (std::size_t i = 0; i < together.size(); ++i)
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(together[i][c], alone[i][c], 1e-5 * alone[i][c] + 1e-30);
 }
 
 TEST_F(LightingTest, ALightThatMovesAwayDimsWithTheSquareOfItsDistance) {
@@ -253,19 +299,22 @@ TEST_F(LightingTest, AHomogeneousBoxScattersWhatTheClosedFormsSay) {
   Renderer renderer(device(), v, classification, {});
   const Camera camera{
       .position = {0, 0, 3}, .lookAt = {0, 0, 0}, .orthographic = true, .orthographicHeight = 1.0};
-  const auto middle = [&](glm::dvec3 direction) {
-    const FrameSettings settings{.size = {33, 33},
-                                 .lighting = Lighting{.lights = {{.place = direction}}, .phaseG = kPhaseG}};
+  const auto middle = [&](glm::dvec3 direction, LightAttenuation attenuation) {
+    const Lighting lighting{.lights = {{.place = direction}}, .phaseG = kPhaseG, .attenuation = attenuation};
+    const FrameSettings settings{.size = {33, 33}, .lighting = lighting};
     return double(renderer.render(camera, settings).pixels[33 * 16 + 16].r);
   };
   const auto scattered = [](double cosine) {
     return 0.5 * kDefaultIrradiance * phaseFunction(kPhaseG, cosine);
   };
-  EXPECT_NEAR(middle({0, 0, 1}) / (scattered(-1.0) * (1.0 - std::exp(-2.0 * kDepth)) / 2.0), 1.0, 5e-3);
-  // All of these voxels have one depth to the light, 1, of which half a code is 0.0157.
-  EXPECT_NEAR(middle({1, 0, 0}) / (scattered(0.0) * std::exp(-kDepth / 2.0) * (1.0 - std::exp(-kDepth))), 1.0,
-              0.016);
-  EXPECT_NEAR(middle({0, 0, -1}) / (scattered(1.0) * kDepth * std::exp(-kDepth)), 1.0, 5e-3);
+  for (const LightAttenuation by : {LightAttenuation::Table, LightAttenuation::Exact}) {
+    EXPECT_NEAR(middle({0, 0, 1}, by) / (scattered(-1.0) * (1.0 - std::exp(-2.0 * kDepth)) / 2.0), 1.0, 5e-3);
+    // All of these voxels have one depth to the light, 1, of which half a code of the table is 0.0157.
+    EXPECT_NEAR(
+        middle({1, 0, 0}, by) / (scattered(0.0) * std::exp(-kDepth / 2.0) * (1.0 - std::exp(-kDepth))), 1.0,
+        by == LightAttenuation::Table ? 0.016 : 1e-3);
+    EXPECT_NEAR(middle({0, 0, -1}, by) / (scattered(1.0) * kDepth * std::exp(-kDepth)), 1.0, 5e-3);
+  }
 }
 
 /// What is nowhere shadowed looks in ambient light of radiance 1 as it does without lights.

@@ -86,7 +86,8 @@ TEST_F(SeenRunsTest, GiveTheSamePicturesBitForBit) {
   whole.attenuation = AttenuationLookup::Bilinear;
   FrameSettings lit = whole;
   lit.lighting = Lighting{.lights = {{.place = {1.0, 2.0, 3.0}}, {.place = middle, .atInfinity = false}},
-                          .ambient = glm::vec3(0.3f)};
+                          .ambient = glm::vec3(0.3f),
+                          .attenuation = LightAttenuation::Table};
   const Camera outside = framingCamera(volume, 35.0, 25.0, 1.0, {});
   Camera inside = outside;
   inside.position = middle;
