@@ -31,6 +31,7 @@ ExportPanel::ExportPanel(const Instance& instance, const DeviceOptions& device, 
     : instance_(instance), device_(device), turnFrames_(turnFrames), job_(std::move(finished)) {}
 
 void ExportPanel::takeKeys() {
+  if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false) && !ImGui::GetIO().WantTextInput) cancel();
   if (!ImGui::GetIO().KeyCtrl) return;
   if (ImGui::IsKeyPressed(GLFW_KEY_S, false)) focus_ = Field::Picture;
   if (ImGui::IsKeyPressed(GLFW_KEY_E, false)) focus_ = Field::Scene;
@@ -113,10 +114,7 @@ void ExportPanel::drawWork() {
     const auto [stage, fraction] =
         busy ? job_.activity() : std::pair<std::string, double>("waiting for the whole picture", 0.0);
     ImGui::TextWrapped("%s", stage.c_str());
-    if (ImGui::Button("Cancel")) {
-      waiting_.clear();
-      job_.cancel();
-    }
+    if (ImGui::Button("Cancel")) cancel();
     ImGui::SameLine();
     ImGui::ProgressBar(float(fraction), {-1.0f, 0.0f});
   } else {
@@ -127,6 +125,11 @@ void ExportPanel::drawWork() {
 void ExportPanel::want(Task task) {
   last_ = {};
   waiting_.push_back(std::move(task));
+}
+
+void ExportPanel::cancel() {
+  waiting_.clear();
+  job_.cancel();
 }
 
 void ExportPanel::begin(const ViewState& state) {

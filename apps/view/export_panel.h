@@ -19,8 +19,11 @@ class ExportPanel {
               std::function<void()> finished);
 
   /// Into the current Dear ImGui window. What is wanted of a picture is written when it is complete. Ctrl+S,
-  /// Ctrl+E and Ctrl+T ask for the names of a picture, a scene and a turn.
+  /// Ctrl+E and Ctrl+T ask for the names of a picture, a scene and a turn; Escape gives up what is being
+  /// written.
   void draw(ViewState& state);
+  /// For a picture to be complete.
+  bool waits() const { return !waiting_.empty(); }
 
  private:
   enum class Field { None, Picture, Scene, Turn };
@@ -36,6 +39,7 @@ class ExportPanel {
   void drawWork();
   bool wants(Field field, const char* button, std::string& name);
   void want(Task task);
+  void cancel();
   void begin(const ViewState& state);
 
   const Instance& instance_;

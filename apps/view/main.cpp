@@ -24,7 +24,7 @@ int main(int argc, char** argv) {
       "Space "
       "plays a sequence. Ctrl+O opens a file (or drop it onto the window), Ctrl+S saves the picture, Ctrl+E "
       "the "
-      "scene, Ctrl+T a turn; Ctrl+Q ends.\n"
+      "scene, Ctrl+T a turn, and Escape gives that up; Ctrl+Q ends.\n"
       "Exit codes: as of 'freevoxels'.");
   app.callback([&options] {
     options.prepare();

@@ -8,6 +8,28 @@
 
 namespace freevoxels {
 
+namespace {
+
+/// That of the table, where it was made for this picture.
+double tableMilliseconds(const Picture& picture) {
+  double sum = 0.0;
+  for (const StageTime& time : picture.times)
+    if (time.name == "attenuation sweeps" || time.name == "octree table" || time.name == "unseen runs")
+      sum += time.milliseconds;
+  return sum;
+}
+
+void drawPictureTime(const Picture& picture, bool whole, double perSecond) {
+  const double table = tableMilliseconds(picture);
+  const std::string of = table > 0.0 ? fmt::format(", {:.0f} of them the table", table) : "";
+  const std::string often = whole || perSecond == 0.0 ? "" : fmt::format(", {:.0f} a second", perSecond);
+  ImGui::TextUnformatted(
+      fmt::format("{} picture in {:.0f} ms{}{}", whole ? "whole" : "quick", picture.milliseconds, of, often)
+          .c_str());
+}
+
+}  // namespace
+
 void drawStatus(const ViewState& state, const Activity& activity) {
   if (!state.problem.empty()) {
     ImGui::PushStyleColor(ImGuiCol_Text, {1.0f, 0.5f, 0.4f, 1.0f});
@@ -17,8 +39,7 @@ void drawStatus(const ViewState& state, const Activity& activity) {
   if (activity)
     ImGui::Text("%s %.0f %%", activity->first.c_str(), 100.0 * activity->second);
   else if (state.latest)
-    ImGui::Text("%s picture in %.0f ms", state.latest == state.whole ? "whole" : "quick",
-                state.latest->milliseconds);
+    drawPictureTime(*state.latest, state.latest == state.whole, state.picturesPerSecond);
   else
     ImGui::TextUnformatted(" ");
 }

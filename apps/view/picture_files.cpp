@@ -75,7 +75,7 @@ void saveTurn(const Instance& instance, const DeviceOptions& device, const Pictu
 
   const std::unique_ptr<Device> opened = device.open(instance);
   VolumeCache volumes(request.scene, picture.scene.volume);
-  PictureMaker maker(*opened, volumes, std::numeric_limits<int>::max());
+  PictureMaker maker(*opened, volumes);
   for (int frame = 0; frame < frames; ++frame) {
     const double start = double(frame) / frames;
     const Progress ofFrame = [&](std::string_view stage, double fraction) {

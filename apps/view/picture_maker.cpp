@@ -18,9 +18,9 @@ std::string rendererOptions(const PictureRequest& request, const Scene& scene) {
   return commandText(options);
 }
 
-int blockEdge(const Volume& volume, int mostVoxelsAlongEdge) {
+int blockEdge(const Volume& volume, int voxelsAlongEdge) {
   const glm::ivec3 size = volume.dimensions;
-  return (std::max({size.x, size.y, size.z}) + mostVoxelsAlongEdge - 1) / mostVoxelsAlongEdge;
+  return 1 + (std::max({size.x, size.y, size.z}) - 1) / voxelsAlongEdge;
 }
 
 }  // namespace
@@ -30,14 +30,15 @@ std::string tableText(const TableSettings& table) {
                      table.pathLengthCorrection);
 }
 
-PictureMaker::PictureMaker(const Device& device, VolumeCache& volumes, int mostVoxelsAlongEdge)
-    : device_(device), volumes_(volumes), mostVoxelsAlongEdge_(mostVoxelsAlongEdge), diagnoser_(device) {}
+PictureMaker::PictureMaker(const Device& device, VolumeCache& volumes)
+    : device_(device), volumes_(volumes), diagnoser_(device) {}
 
-std::shared_ptr<const Volume> PictureMaker::coarse(const Scene& scene) {
+std::shared_ptr<const Volume> PictureMaker::coarse(const Scene& scene, int voxelsAlongEdge) {
   const bool densities = !scene.classification.transferFunction;
-  if (whole_ == scene.volume && densities == coarseIsOfDensities_) return coarse_;
-  const int edge = blockEdge(*scene.volume, mostVoxelsAlongEdge_);
+  const int edge = blockEdge(*scene.volume, voxelsAlongEdge);
+  if (whole_ == scene.volume && edge == blockEdge_ && densities == coarseIsOfDensities_) return coarse_;
   whole_ = scene.volume;
+  blockEdge_ = edge;
   coarseIsOfDensities_ = densities;
   coarse_ = edge <= 1 ? whole_
                       : std::make_shared<const Volume>(coarseVolume(
@@ -46,14 +47,15 @@ std::shared_ptr<const Volume> PictureMaker::coarse(const Scene& scene) {
   return coarse_;
 }
 
-void PictureMaker::makeRenderer(const Scene& scene, const MethodOptions& method, const std::string& options,
-                                const Progress& progress) {
-  const std::shared_ptr<const Volume> volume = coarse(scene);
+void PictureMaker::makeRenderer(const Scene& scene, const PictureRequest& request, const Progress& progress) {
+  const std::shared_ptr<const Volume> volume = coarse(scene, request.voxelsAlongEdge);
+  const std::string options = rendererOptions(request, scene);
   if (renderer_ && options == rendererOptions_) return;
   renderer_ = nullptr;  // not both at once
   diagnoser_.reset();
   rendererOptions_.clear();
-  renderer_ = std::make_unique<Renderer>(device_, *volume, scene.classification, method.table(), progress);
+  renderer_ =
+      std::make_unique<Renderer>(device_, *volume, scene.classification, request.method.table(), progress);
   rendererOptions_ = options;
 }
 
@@ -64,7 +66,7 @@ Picture PictureMaker::make(const PictureRequest& request, const Progress& progre
   Picture picture{.request = request,
                   .scene = request.scene.resolve(volumes_.read(request.scene)),
                   .device = device_.description()};
-  makeRenderer(picture.scene, request.method, rendererOptions(request, picture.scene), progress);
+  makeRenderer(picture.scene, request, progress);
 
   FrameSettings settings{.size = request.scene.camera.size,
                          .depth = request.scene.output.wantsDepth(),

@@ -1,6 +1,7 @@
 #pragma once
 // Pictures of what the viewer's options say, as `freevoxels render` makes them.
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -20,6 +21,8 @@ struct PictureRequest {
   Diagnosis diagnosis;
   std::optional<MethodOptions> compared;  ///< another method, to look at beside it
   std::uint64_t number = 0;               ///< larger than that of any before
+  /// Of more voxels along the volume's longest edge, means of blocks of them are drawn.
+  int voxelsAlongEdge = std::numeric_limits<int>::max();
 };
 
 struct Picture {
@@ -43,21 +46,19 @@ std::string tableText(const TableSettings& table);
 /// Keeps a volume on a device, and makes again only what a request changes.
 class PictureMaker {
  public:
-  /// A picture is of at most so many voxels along the longest edge of the volume: means of blocks of them.
-  PictureMaker(const Device& device, VolumeCache& volumes, int mostVoxelsAlongEdge);
+  PictureMaker(const Device& device, VolumeCache& volumes);
 
   /// Fails as `freevoxels render` does.
   Picture make(const PictureRequest& request, const Progress& progress);
 
  private:
-  void makeRenderer(const Scene& scene, const MethodOptions& method, const std::string& options,
-                    const Progress& progress);
-  std::shared_ptr<const Volume> coarse(const Scene& scene);
+  void makeRenderer(const Scene& scene, const PictureRequest& request, const Progress& progress);
+  std::shared_ptr<const Volume> coarse(const Scene& scene, int voxelsAlongEdge);
 
   const Device& device_;
   VolumeCache& volumes_;
-  const int mostVoxelsAlongEdge_;
   std::shared_ptr<const Volume> whole_, coarse_;  ///< coarse_ is of whole_, or the same
+  int blockEdge_ = 0;                             ///< that it is of
   bool coarseIsOfDensities_ = false;
   std::string rendererOptions_;
   std::unique_ptr<Renderer> renderer_;

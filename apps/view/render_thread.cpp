@@ -10,14 +10,16 @@ namespace {
 
 struct Ended {};
 
+/// Before, nobody could read what is being done.
+constexpr std::chrono::milliseconds kWorthSaying{250};
+
 }  // namespace
 
 RenderThread::RenderThread(const Instance& instance, const DeviceOptions& device, VolumeCache& volumes,
-                           int mostVoxelsAlongEdge, std::function<void()> finished)
+                           std::function<void()> finished)
     : instance_(instance),
       deviceOptions_(device),
       volumes_(volumes),
-      mostVoxelsAlongEdge_(mostVoxelsAlongEdge),
       finished_(std::move(finished)),
       device_(device.open(instance)),
       thread_([this] { run(); }) {}
@@ -46,6 +48,7 @@ std::optional<RenderThread::Result> RenderThread::take() {
 
 std::optional<std::pair<std::string, double>> RenderThread::activity() const {
   const std::lock_guard lock(mutex_);
+  if (std::chrono::steady_clock::now() - begun_ < kWorthSaying) return std::nullopt;
   return activity_;
 }
 
@@ -57,7 +60,7 @@ std::shared_ptr<const Picture> RenderThread::makePicture(const PictureRequest& r
   };
   if (!device_) device_ = deviceOptions_.open(instance_);
   const auto makerOf = [this](std::unique_ptr<PictureMaker>& maker) -> PictureMaker& {
-    if (!maker) maker = std::make_unique<PictureMaker>(*device_, volumes_, mostVoxelsAlongEdge_);
+    if (!maker) maker = std::make_unique<PictureMaker>(*device_, volumes_);
     return *maker;
   };
   auto picture = std::make_shared<Picture>(makerOf(maker_).make(request, progress));
@@ -98,6 +101,7 @@ void RenderThread::run() {
     if (ends_) return;
     const PictureRequest request = *std::exchange(waiting_, std::nullopt);
     activity_.emplace("drawing", 0.0);
+    begun_ = std::chrono::steady_clock::now();
     lock.unlock();
     Result result = answer(request);
     lock.lock();

@@ -1,6 +1,7 @@
 #pragma once
 // Pictures made beside the window, so that it never waits for them.
 
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -26,7 +27,7 @@ class RenderThread {
 
   /// On a device of its own. `finished` is called by the thread whenever there is a result.
   RenderThread(const Instance& instance, const DeviceOptions& device, VolumeCache& volumes,
-               int mostVoxelsAlongEdge, std::function<void()> finished);
+               std::function<void()> finished);
   /// Gives up the picture that is being made, and waits until the device is done with what it has begun.
   ~RenderThread();
   RenderThread(const RenderThread&) = delete;
@@ -36,7 +37,7 @@ class RenderThread {
   void ask(PictureRequest request);
   /// The last one since the last call.
   std::optional<Result> take();
-  /// What it is doing, and how much of that is done; nothing while it waits.
+  /// What it is doing, and how much of that is done; nothing while it waits, or has just begun.
   std::optional<std::pair<std::string, double>> activity() const;
 
  private:
@@ -47,7 +48,6 @@ class RenderThread {
   const Instance& instance_;
   const DeviceOptions& deviceOptions_;
   VolumeCache& volumes_;
-  const int mostVoxelsAlongEdge_;
   const std::function<void()> finished_;
   std::unique_ptr<Device> device_;
   std::unique_ptr<PictureMaker> maker_;
@@ -59,6 +59,7 @@ class RenderThread {
   std::optional<PictureRequest> waiting_;
   std::optional<Result> result_;
   std::optional<std::pair<std::string, double>> activity_;
+  std::chrono::steady_clock::time_point begun_;
   std::thread thread_;
 };
 

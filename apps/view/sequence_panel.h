@@ -15,6 +15,7 @@ class SequencePanel {
   /// comma and full stop go back and on.
   void draw(ViewState& state);
   bool plays() const { return plays_; }
+  void pause() { plays_ = false; }
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -27,6 +27,8 @@ struct ViewState {
   std::optional<Camera> camera;
   /// The last picture of all voxels and in full size, and the last of all.
   std::shared_ptr<const Picture> whole, latest;
+  /// How many are shown while they follow each other; 0 of a single one.
+  double picturesPerSecond = 0.0;
   /// Why there is no newer one.
   std::string problem;
   /// Whether `latest`, or a problem, answers what the options say; whether `whole` does; whether a whole

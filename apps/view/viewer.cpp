@@ -2,6 +2,7 @@
 
 #include <GLFW/glfw3.h>
 #include <imgui.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <array>
@@ -21,11 +22,11 @@ constexpr glm::ivec2 kWindowSize{1280, 800};
 constexpr float kFontPixels = 13.0f;
 constexpr float kSidebar = 340.0f;
 
-constexpr int kQuickVoxels = 64;             // along the longest edge, while something moves
-constexpr double kQuickMilliseconds = 45.0;  // that a picture may take then
-constexpr double kLeastQuickScale = 0.2;
+constexpr double kQuickMilliseconds = 45.0;       // that a whole picture may take while something moves
 constexpr std::chrono::milliseconds kStill{120};  // before the whole picture is begun
-constexpr double kIdleSeconds = 0.25;             // between frames in which nothing happens
+constexpr std::chrono::milliseconds kPaint{60};  // between frames while a picture is made that is wanted soon
+constexpr double kIdleSeconds = 0.25;            // between frames in which nothing happens
+constexpr double kSoonSeconds = 0.01;            // in which something does
 
 std::string titleOf(const ViewState& state) {
   return state.scene.input.input + " - FreeVoxels";
@@ -43,8 +44,8 @@ Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const View
       files_(!options.screenshot),
       takeAway_(instance, options_.device, options.frames.value_or(kDefaultFrames), Window::wake),
       volumes_(maximumVoxels(device_)),
-      quick_(instance, options_.device, volumes_, kQuickVoxels, Window::wake),
-      whole_(instance, options_.device, volumes_, std::numeric_limits<int>::max(), Window::wake) {
+      quick_(instance, options_.device, volumes_, Window::wake),
+      whole_(instance, options_.device, volumes_, Window::wake) {
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   ImFontConfig font;
@@ -58,6 +59,12 @@ Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const View
 
 void Viewer::show(const std::shared_ptr<const Picture>& picture) {
   state_.latest = picture;
+  newPicture_ = true;
+  rate_.add(Clock::now());
+  state_.picturesPerSecond = rate_.perSecond();
+  spdlog::debug("{} picture, {}x{}: {:.1f} ms, {:.1f} a second", picture == state_.whole ? "whole" : "quick",
+                picture->image.size.x, picture->image.size.y, picture->milliseconds,
+                state_.picturesPerSecond);
   const bool isAsked = picture->request.number == lastRequest_ && !state_.changed;
   if (!state_.camera && isAsked) state_.camera = picture->scene.camera;
   upload(picture->diagnosis ? *picture->diagnosis : picture->image, texture_);
@@ -98,16 +105,14 @@ void Viewer::takeResults() {
     const bool isWhole = &thread == &whole_;
     // A whole picture is not replaced by a quick one of the same.
     const std::uint64_t shown = state_.latest ? state_.latest->request.number : 0;
-    if (result->number < shown || (!isWhole && state_.whole && result->number <= state_.whole->request.number))
+    if (result->number < shown ||
+        (!isWhole && state_.whole && result->number <= state_.whole->request.number))
       return false;
     if (isWhole) state_.whole = result->picture;
     show(result->picture);
     return true;
   };
-  if (take(quick_)) {
-    const double faster = std::sqrt(kQuickMilliseconds / std::max(state_.latest->milliseconds, 1.0));
-    quickScale_ = std::clamp(quickScale_ * std::clamp(faster, 0.7, 1.3), kLeastQuickScale, 1.0);
-  }
+  if (take(quick_)) pace_.took(state_.latest->milliseconds);
   if (take(whole_)) wholeIsQuick_ = state_.latest->milliseconds < kQuickMilliseconds;
 }
 
@@ -124,16 +129,19 @@ void Viewer::ask() {
     lastChange_ = now;
     ++lastRequest_;
     PictureRequest quick = request();
-    if (wholeIsQuick_) {
+    if (wholeIsQuick_ || options_.screenshot) {
       askedOfWhole_ = lastRequest_;
       whole_.ask(std::move(quick));
       return;
     }
+    quick.voxelsAlongEdge = pace_.voxelsAlongEdge();
     quick.scene.camera.size =
-        glm::max(glm::ivec2(glm::round(quickScale_ * glm::dvec2(quick.scene.camera.size))), glm::ivec2(1));
+        glm::max(glm::ivec2(glm::round(pace_.scale() * glm::dvec2(quick.scene.camera.size))), glm::ivec2(1));
     quick_.ask(std::move(quick));
   }
-  const bool still = now - lastChange_ >= kStill && !area_.moves() && !frames_.plays();
+  // Not both at once, as they share the processor.
+  const bool still =
+      now - lastChange_ >= kStill && answered_ == lastRequest_ && !area_.moves() && !frames_.plays();
   if (still && askedOfWhole_ != lastRequest_) {
     askedOfWhole_ = lastRequest_;
     whole_.ask(request());
@@ -163,6 +171,7 @@ void Viewer::drawPanels() {
   frames_.draw(state_);
   drawPanelsOf(state_, activity, looks_);
   takeAway_.draw(state_);
+  if (takeAway_.waits()) frames_.pause();  // for the whole picture of this frame
   ImGui::End();
 
   ImGui::SetNextWindowPos({sidebar, 0.0f});
@@ -176,11 +185,21 @@ void Viewer::drawPanels() {
   ImGui::End();
 }
 
+/// On a processor that draws it all, a window painted at every move of the mouse leaves no time for pictures.
+bool Viewer::paints() const {
+  const bool waits = answered_ < lastRequest_ && texture_;
+  return !waits || newPicture_ || Clock::now() - painted_ >= kPaint;
+}
+
 void Viewer::drawFrame() {
-  if (!swapchain_.acquire()) return;
+  const bool paint = paints();
+  if (paint && !swapchain_.acquire()) return;
   window_.beginFrame();
   drawPanels();
   ImGui::Render();
+  if (!paint) return;
+  painted_ = Clock::now();
+  newPicture_ = false;
   painter_->draw(*ImGui::GetDrawData(), swapchain_);
   if (isComplete()) ++completeFrames_;
   if (options_.screenshot && completeFrames_ == options_.after.value_or(1)) writeScreenshot();
@@ -192,13 +211,17 @@ void Viewer::writeScreenshot() const {
   writePngTexels(*options_.screenshot, swapchain_.size(), swapchain_.read());
 }
 
+/// Until something is to be done, if nothing happens.
+double Viewer::patience() const {
+  if (options_.screenshot || window_.inputWaits()) return 0.0;
+  const bool settles = !isComplete() && askedOfWhole_ != lastRequest_;
+  return area_.moves() || frames_.plays() || settles ? kSoonSeconds : kIdleSeconds;
+}
+
 void Viewer::run() {
   std::string title;
   while (!window_.wantsToClose()) {
-    const bool settles = !isComplete() && askedOfWhole_ != lastRequest_;
-    const bool hurries =
-        area_.moves() || frames_.plays() || settles || options_.screenshot || window_.inputWaits();
-    Window::waitForEvents(hurries ? 1e-3 : kIdleSeconds);
+    Window::waitForEvents(patience());
     for (const std::string& file : window_.takeDropped()) files_.open(state_, file);
     if (title != titleOf(state_)) window_.setTitle(title = titleOf(state_));
     takeResults();

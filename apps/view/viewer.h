@@ -8,6 +8,8 @@
 #include "apps/view/files_panel.h"
 #include "apps/view/look_panels.h"
 #include "apps/view/picture_area.h"
+#include "apps/view/picture_rate.h"
+#include "apps/view/quick_pace.h"
 #include "apps/view/render_thread.h"
 #include "apps/view/sequence_panel.h"
 #include "apps/view/swapchain.h"
@@ -35,9 +37,11 @@ class Viewer {
   void upload(const Image& image, std::unique_ptr<Texture>& texture) const;
   PictureRequest request() const;
   void ask();
+  bool paints() const;
   void drawFrame();
   void drawPanels();
   bool isComplete() const;
+  double patience() const;
   void writeScreenshot() const;
 
   const ViewOptions options_;
@@ -57,8 +61,10 @@ class Viewer {
   VolumeCache volumes_;
   RenderThread quick_, whole_;  ///< of few voxels, and of all
   std::uint64_t lastRequest_ = 0, askedOfWhole_ = 0, answered_ = 0, failed_ = 0;
-  Clock::time_point lastChange_;
-  double quickScale_ = 0.5;  ///< of the picture's edges while something moves
+  Clock::time_point lastChange_, painted_;
+  bool newPicture_ = false;  ///< that has not been painted
+  PictureRate rate_;         ///< of all that are shown
+  QuickPace pace_;
   bool wholeIsQuick_ = false;
   int completeFrames_ = 0;
 };

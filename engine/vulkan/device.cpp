@@ -11,6 +11,7 @@
 
 #include "engine/core/error.h"
 #include "engine/vulkan/owned.h"
+#include "engine/vulkan/pipeline.h"
 
 namespace freevoxels {
 
@@ -208,7 +209,7 @@ std::vector<DeviceDescription> listDevices(const Instance& instance) {
 
 Device::Device(const Instance& instance, std::string_view selector, std::uint64_t memoryLimit,
                std::span<const char* const> moreExtensions)
-    : memoryLimit_(memoryLimit) {
+    : memoryLimit_(memoryLimit), pipelines_(std::make_unique<PipelineStore>()) {
   description_ = choose(listDevices(instance), selector);
   physical_ = physicalDevices(instance)[std::size_t(description_.index)];
 
@@ -247,6 +248,7 @@ Device::Device(const Instance& instance, std::string_view selector, std::uint64_
 
 Device::~Device() {
   vkDeviceWaitIdle(device_);
+  pipelines_ = nullptr;
   vkDestroyDevice(device_, nullptr);
 }
 

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,6 +16,8 @@
 #include "engine/vulkan/instance.h"
 
 namespace freevoxels {
+
+struct PipelineStore;
 
 struct DeviceDescription {
   int index = 0;
@@ -60,6 +63,9 @@ class Device {
   void claim(std::uint64_t bytes) const;
   void release(std::uint64_t bytes) const { allocated_ -= bytes; }
 
+  /// All that were made: pipeline.h.
+  PipelineStore& pipelines() const { return *pipelines_; }
+
   /// Shows `name` in validation messages and debuggers.
   void setName(VkObjectType type, std::uint64_t handle, const char* name) const;
 
@@ -74,6 +80,7 @@ class Device {
   std::uint32_t queueFamily_ = 0;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
+  std::unique_ptr<PipelineStore> pipelines_;
 };
 
 }  // namespace freevoxels

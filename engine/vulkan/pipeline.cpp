@@ -85,23 +85,21 @@ struct FixedState {
                                            .pDynamicStates = kDynamic.data()};
 };
 
-}  // namespace
-
-VkShaderStageFlags Pipeline::stages() const {
-  return bindPoint_ == VK_PIPELINE_BIND_POINT_COMPUTE
+VkShaderStageFlags stagesOf(VkPipelineBindPoint bindPoint) {
+  return bindPoint == VK_PIPELINE_BIND_POINT_COMPUTE
              ? VkShaderStageFlags(VK_SHADER_STAGE_COMPUTE_BIT)
              : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 }
 
-Pipeline::Pipeline(const Device& device, PipelineInterface interface, VkPipelineBindPoint bindPoint)
-    : interface_(std::move(interface)), bindPoint_(bindPoint) {
-  FV_CHECK_LE(interface_.pushConstantBytes, device.limits().maxPushConstantsSize);
+PipelineParts makeLayout(const Device& device, const PipelineInterface& interface,
+                         VkPipelineBindPoint bindPoint) {
+  FV_CHECK_LE(interface.pushConstantBytes, device.limits().maxPushConstantsSize);
+  PipelineParts parts{.interface = interface, .bindPoint = bindPoint};
+  const VkShaderStageFlags stages = stagesOf(bindPoint);
   std::vector<VkDescriptorSetLayoutBinding> bindings;
-  for (std::uint32_t i = 0; i < interface_.bindings.size(); ++i)
-    bindings.push_back({.binding = i,
-                        .descriptorType = interface_.bindings[i],
-                        .descriptorCount = 1,
-                        .stageFlags = stages()});
+  for (std::uint32_t i = 0; i < interface.bindings.size(); ++i)
+    bindings.push_back(
+        {.binding = i, .descriptorType = interface.bindings[i], .descriptorCount = 1, .stageFlags = stages});
   const VkDescriptorSetLayoutCreateInfo setInfo{
       .sType = VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO,
       .flags = VK_DESCRIPTOR_SET_LAYOUT_CREATE_PUSH_DESCRIPTOR_BIT_KHR,
@@ -109,24 +107,34 @@ Pipeline::Pipeline(const Device& device, PipelineInterface interface, VkPipeline
       .pBindings = bindings.data()};
   VkDescriptorSetLayout set = VK_NULL_HANDLE;
   VK_CHECK(vkCreateDescriptorSetLayout(device.handle(), &setInfo, nullptr, &set));
-  setLayout_ = OwnedSetLayout(device.handle(), set);
+  parts.setLayout = OwnedSetLayout(device.handle(), set);
 
-  const VkPushConstantRange range{.stageFlags = stages(), .offset = 0, .size = interface_.pushConstantBytes};
+  const VkPushConstantRange range{.stageFlags = stages, .offset = 0, .size = interface.pushConstantBytes};
   const VkPipelineLayoutCreateInfo layoutInfo{
       .sType = VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO,
       .setLayoutCount = 1,
       .pSetLayouts = &set,
-      .pushConstantRangeCount = interface_.pushConstantBytes > 0 ? 1u : 0u,
+      .pushConstantRangeCount = interface.pushConstantBytes > 0 ? 1u : 0u,
       .pPushConstantRanges = &range};
   VkPipelineLayout layout = VK_NULL_HANDLE;
   VK_CHECK(vkCreatePipelineLayout(device.handle(), &layoutInfo, nullptr, &layout));
-  layout_ = OwnedPipelineLayout(device.handle(), layout);
+  parts.layout = OwnedPipelineLayout(device.handle(), layout);
+  return parts;
 }
 
-Pipeline makeComputePipeline(const Device& device, const ShaderCode& code, PipelineInterface interface,
-                             glm::ivec3 workgroup, const Specialisation& constants) {
-  Pipeline result(device, std::move(interface), VK_PIPELINE_BIND_POINT_COMPUTE);
-  result.workgroup_ = workgroup;
+/// The one that was made of this before, or else one that is made now.
+template <typename Make>
+Pipeline stored(const Device& device, const PipelineKey& key, const Make& make) {
+  PipelineStore& store = device.pipelines();
+  const std::lock_guard lock(store.mutex);
+  const auto found = store.made.find(key);
+  return Pipeline(found != store.made.end() ? found->second : store.made.emplace(key, make()).first->second);
+}
+
+PipelineParts makeCompute(const Device& device, const ShaderCode& code, const PipelineInterface& interface,
+                          glm::ivec3 workgroup, const Specialisation& constants) {
+  PipelineParts result = makeLayout(device, interface, VK_PIPELINE_BIND_POINT_COMPUTE);
+  result.workgroup = workgroup;
   const OwnedShaderModule module = makeModule(device, code);
   const SpecialisationInfo specialisation(constants);
   const VkComputePipelineCreateInfo info{
@@ -136,22 +144,20 @@ Pipeline makeComputePipeline(const Device& device, const ShaderCode& code, Pipel
                 .module = module.get(),
                 .pName = "main",
                 .pSpecializationInfo = specialisation.get()},
-      .layout = result.layout()};
+      .layout = result.layout.get()};
   VkPipeline pipeline = VK_NULL_HANDLE;
   VK_CHECK(vkCreateComputePipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
-  result.pipeline_ = OwnedPipeline(device.handle(), pipeline);
+  result.pipeline = OwnedPipeline(device.handle(), pipeline);
   device.setName(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline), code.name);
   return result;
 }
 
-Pipeline makeGraphicsPipeline(const Device& device, const ShaderCode& vertex, const ShaderCode& fragment,
-                              PipelineInterface interface, VkPrimitiveTopology topology,
-                              std::span<const VkFormat> attachments, Blend blend,
-                              const Specialisation& constants) {
-  Pipeline result(device, std::move(interface), VK_PIPELINE_BIND_POINT_GRAPHICS);
+PipelineParts makeGraphics(const Device& device, const ShaderCode& vertex, const ShaderCode& fragment,
+                           const PipelineKey& key) {
+  PipelineParts result = makeLayout(device, key.interface, VK_PIPELINE_BIND_POINT_GRAPHICS);
   const OwnedShaderModule vertexModule = makeModule(device, vertex);
   const OwnedShaderModule fragmentModule = makeModule(device, fragment);
-  const SpecialisationInfo specialisation(constants);
+  const SpecialisationInfo specialisation(key.constants);
   const std::array stages{
       VkPipelineShaderStageCreateInfo{.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                                       .stage = VK_SHADER_STAGE_VERTEX_BIT,
@@ -163,10 +169,10 @@ Pipeline makeGraphicsPipeline(const Device& device, const ShaderCode& vertex, co
                                       .module = fragmentModule.get(),
                                       .pName = "main",
                                       .pSpecializationInfo = specialisation.get()}};
-  const FixedState state(topology, attachments.size(), blend);
+  const FixedState state(key.topology, key.attachments.size(), key.blend);
   const VkPipelineRenderingCreateInfo rendering{.sType = VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO,
-                                                .colorAttachmentCount = std::uint32_t(attachments.size()),
-                                                .pColorAttachmentFormats = attachments.data()};
+                                                .colorAttachmentCount = std::uint32_t(key.attachments.size()),
+                                                .pColorAttachmentFormats = key.attachments.data()};
   const VkGraphicsPipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO,
                                           .pNext = &rendering,
                                           .stageCount = std::uint32_t(stages.size()),
@@ -178,12 +184,38 @@ Pipeline makeGraphicsPipeline(const Device& device, const ShaderCode& vertex, co
                                           .pMultisampleState = &state.multisample,
                                           .pColorBlendState = &state.blend,
                                           .pDynamicState = &state.dynamic,
-                                          .layout = result.layout()};
+                                          .layout = result.layout.get()};
   VkPipeline pipeline = VK_NULL_HANDLE;
   VK_CHECK(vkCreateGraphicsPipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
-  result.pipeline_ = OwnedPipeline(device.handle(), pipeline);
+  result.pipeline = OwnedPipeline(device.handle(), pipeline);
   device.setName(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline), vertex.name);
   return result;
+}
+
+}  // namespace
+
+VkShaderStageFlags Pipeline::stages() const {
+  return stagesOf(parts_->bindPoint);
+}
+
+Pipeline makeComputePipeline(const Device& device, const ShaderCode& code, PipelineInterface interface,
+                             glm::ivec3 workgroup, const Specialisation& constants) {
+  const PipelineKey key{
+      .code = {code.words.data(), nullptr}, .interface = std::move(interface), .constants = constants};
+  return stored(device, key, [&] { return makeCompute(device, code, key.interface, workgroup, constants); });
+}
+
+Pipeline makeGraphicsPipeline(const Device& device, const ShaderCode& vertex, const ShaderCode& fragment,
+                              PipelineInterface interface, VkPrimitiveTopology topology,
+                              std::span<const VkFormat> attachments, Blend blend,
+                              const Specialisation& constants) {
+  const PipelineKey key{.code = {vertex.words.data(), fragment.words.data()},
+                        .interface = std::move(interface),
+                        .constants = constants,
+                        .topology = topology,
+                        .attachments = {attachments.begin(), attachments.end()},
+                        .blend = blend};
+  return stored(device, key, [&] { return makeGraphics(device, vertex, fragment, key); });
 }
 
 }  // namespace freevoxels

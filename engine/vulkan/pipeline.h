@@ -1,9 +1,12 @@
 #pragma once
 // Compute and graphics pipelines over embedded SPIR-V, with push descriptors and push constants.
 
+#include <array>
+#include <compare>
 #include <cstdint>
 #include <glm/glm.hpp>
-#include <initializer_list>
+#include <map>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -22,6 +25,7 @@ struct ShaderCode {
 struct PipelineInterface {
   std::vector<VkDescriptorType> bindings;
   std::uint32_t pushConstantBytes = 0;
+  auto operator<=>(const PipelineInterface&) const = default;
 };
 
 /// Values of the specialisation constants 0, 1, 2, ...: ints or bools.
@@ -33,32 +37,51 @@ enum class Blend {
   Over,      ///< source + (1 - alpha of the fragment's output for this attachment) * destination
 };
 
+/// What a device keeps of a pipeline.
+struct PipelineParts {
+  PipelineInterface interface;
+  VkPipelineBindPoint bindPoint = VK_PIPELINE_BIND_POINT_COMPUTE;
+  glm::ivec3 workgroup{1};  ///< compute only
+  OwnedSetLayout setLayout;
+  OwnedPipelineLayout layout;
+  OwnedPipeline pipeline;
+};
+
+/// One of its device's pipelines, which live as long as it does.
 class Pipeline {
  public:
   Pipeline() = default;
-  VkPipeline handle() const { return pipeline_.get(); }
-  VkPipelineLayout layout() const { return layout_.get(); }
-  VkPipelineBindPoint bindPoint() const { return bindPoint_; }
+  explicit Pipeline(const PipelineParts& parts) : parts_(&parts) {}
+
+  /// None of a pipeline that is still to be made.
+  VkPipeline handle() const { return parts_ != nullptr ? parts_->pipeline.get() : VK_NULL_HANDLE; }
+  VkPipelineLayout layout() const { return parts_->layout.get(); }
+  VkPipelineBindPoint bindPoint() const { return parts_->bindPoint; }
   /// That see the descriptors and the push constants.
   VkShaderStageFlags stages() const;
-  const PipelineInterface& interface() const { return interface_; }
+  const PipelineInterface& interface() const { return parts_->interface; }
   /// Invocations of one workgroup; compute only.
-  glm::ivec3 workgroup() const { return workgroup_; }
+  glm::ivec3 workgroup() const { return parts_->workgroup; }
 
  private:
-  friend Pipeline makeComputePipeline(const Device&, const ShaderCode&, PipelineInterface, glm::ivec3,
-                                      const Specialisation&);
-  friend Pipeline makeGraphicsPipeline(const Device&, const ShaderCode&, const ShaderCode&, PipelineInterface,
-                                       VkPrimitiveTopology, std::span<const VkFormat>, Blend,
-                                       const Specialisation&);
-  Pipeline(const Device& device, PipelineInterface interface, VkPipelineBindPoint bindPoint);
+  const PipelineParts* parts_ = nullptr;
+};
 
-  PipelineInterface interface_;
-  VkPipelineBindPoint bindPoint_ = VK_PIPELINE_BIND_POINT_COMPUTE;
-  OwnedSetLayout setLayout_;
-  OwnedPipelineLayout layout_;
-  OwnedPipeline pipeline_;
-  glm::ivec3 workgroup_{1};
+/// What a pipeline is made from, all of it.
+struct PipelineKey {
+  std::array<const std::uint32_t*, 2> code{};  ///< compute, or vertex and fragment
+  PipelineInterface interface;
+  Specialisation constants;
+  VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
+  std::vector<VkFormat> attachments;
+  Blend blend = Blend::Additive;
+  auto operator<=>(const PipelineKey&) const = default;
+};
+
+/// Every pipeline of a device is made once: lavapipe compiles one in up to a tenth of a second, each time.
+struct PipelineStore {
+  std::mutex mutex;
+  std::map<PipelineKey, PipelineParts> made;
 };
 
 /// `workgroup` must be the shader's local size.

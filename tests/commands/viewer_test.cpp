@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "engine/image/image.h"
 #include "tests/commands/viewer_runner.h"
@@ -188,7 +189,32 @@ TEST_F(Viewer, ASequenceGoesFromFrameToFrame) {
   EXPECT_EQ(third.at("input").at("volume"), "s_3.vdb");
   EXPECT_EQ(third.at("camera"), first.at("camera"));
   EXPECT_EQ(third.at("classification"), first.at("classification")) << "no frame is lit as another is not";
-  session->hands("mousemove 500 100 key space key space key comma key comma");
+  std::set<std::string> seen;
+  for (int i = 0; i < 30 && seen.size() < 2; ++i) {
+    session->hands("key space sleep 0.2");
+    const nlohmann::json frame = sceneOf(*session, fmt::format("played{}.json", i));
+    seen.insert(frame.at("input").at("volume"));
+  }
+  EXPECT_EQ(seen, (std::set<std::string>{"s_1.vdb", "s_3.vdb"}))
+      << "it plays, and a scene is of a frame of it";
+  session->hands("key space key comma key comma");
+  expectQuietEnd(*session);
+}
+
+TEST_F(Viewer, ATurnIsGivenUp) {
+  const auto session = use("procedural:cloud --resolution 32 --frames 999");
+  session->hands("windowsize @ 600 200");
+  session->saveAll('t', "turn_###.png", "turn_002.png");
+  session->hands("mousemove 500 100 key Escape");
+  session->save('s', "after.png");  // comes after what is being written
+  EXPECT_FALSE(std::filesystem::exists(folder / "turn_998.png"));
+  int frames = 0;
+  while (std::filesystem::exists(folder / fmt::format("turn_{:03}.png", frames))) {
+    EXPECT_EQ(readPng(folder / fmt::format("turn_{:03}.png", frames)).size.y, 200);
+    ++frames;
+  }
+  EXPECT_EQ(int(folder.fileCount()), frames + 2)
+      << "the picture, what it said, and no part of a frame";
   expectQuietEnd(*session);
 }
 

@@ -26,7 +26,7 @@ class PictureMakerTest : public DeviceTest {
   }
 
   VolumeCache volumes_{1u << 30};
-  PictureMaker maker_{device(), volumes_, 1024};
+  PictureMaker maker_{device(), volumes_};
 };
 
 TEST_F(PictureMakerTest, TurningALightKeepsTheVolumeAndItsTable) {

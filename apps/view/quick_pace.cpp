@@ -1,0 +1,39 @@
+#include "apps/view/quick_pace.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace freevoxels {
+
+namespace {
+
+/// Beside the window's own frames, 15 pictures a second on two cores.
+constexpr double kMilliseconds = 32.0;
+constexpr std::array kVoxels{64, 48, 32, 24, 16};
+constexpr double kLeastScale = 0.2, kFirstScale = 0.5;
+/// Splats cost more than pixels: beyond these there are fewer or more of them.
+constexpr double kCoarsensBelow = 0.35, kRefinesAbove = 0.95;
+/// Each number of voxels has a table of its own, so none is chosen for a single slow picture.
+constexpr int kLeastPictures = 3;
+
+}  // namespace
+
+int QuickPace::voxelsAlongEdge() const {
+  return kVoxels[step_];
+}
+
+void QuickPace::took(double milliseconds) {
+  // Slowly, as the window's own frames make one picture take longer than the next.
+  const double faster = std::pow(kMilliseconds / std::max(milliseconds, 1.0), 0.25);
+  scale_ = std::clamp(scale_ * std::clamp(faster, 0.75, 1.15), kLeastScale, 1.0);
+  if (++pictures_ < kLeastPictures) return;
+  const bool coarsens = scale_ < kCoarsensBelow && step_ + 1 < kVoxels.size();
+  const bool refines = scale_ > kRefinesAbove && step_ > 0;
+  if (!coarsens && !refines) return;
+  step_ += coarsens ? 1 : std::size_t(-1);
+  scale_ = kFirstScale;
+  pictures_ = 0;
+}
+
+}  // namespace freevoxels

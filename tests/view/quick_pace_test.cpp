@@ -1,0 +1,42 @@
+#include "apps/view/quick_pace.h"
+
+#include <gtest/gtest.h>
+
+namespace freevoxels {
+namespace {
+
+/// Milliseconds of a picture, for splats and for pixels.
+double timeOf(const QuickPace& pace, double splats, double pixels) {
+  const double voxels = pace.voxelsAlongEdge() / 64.0;
+  return splats * voxels * voxels * voxels + pixels * pace.scale() * pace.scale();
+}
+
+TEST(QuickPace, ComesToPicturesThatAreQuickEnough) {
+  for (const double splats : {1.0, 30.0, 100.0, 1000.0})
+    for (const double pixels : {1.0, 100.0, 400.0}) {
+      QuickPace pace;
+      for (int i = 0; i < 60; ++i) pace.took(timeOf(pace, splats, pixels));
+      EXPECT_LT(timeOf(pace, splats, pixels), 60.0)
+          << splats << " " << pixels << " " << pace.voxelsAlongEdge();
+    }
+}
+
+TEST(QuickPace, IsAsFineAsTimeAllows) {
+  QuickPace pace;
+  for (int i = 0; i < 20; ++i) pace.took(500.0);
+  EXPECT_LT(pace.voxelsAlongEdge(), 48);
+  for (int i = 0; i < 60; ++i) pace.took(timeOf(pace, 5.0, 20.0));
+  EXPECT_EQ(pace.voxelsAlongEdge(), 64);
+  EXPECT_EQ(pace.scale(), 1.0);
+}
+
+TEST(QuickPace, DoesNotChangeTheVoxelsForOneSlowPicture) {
+  QuickPace pace;
+  for (int i = 0; i < 10; ++i) pace.took(32.0);
+  const int before = pace.voxelsAlongEdge();
+  pace.took(5000.0);
+  EXPECT_EQ(pace.voxelsAlongEdge(), before);
+}
+
+}  // namespace
+}  // namespace freevoxels
