@@ -189,14 +189,14 @@ TEST_F(Viewer, ASequenceGoesFromFrameToFrame) {
   EXPECT_EQ(third.at("input").at("volume"), "s_3.vdb");
   EXPECT_EQ(third.at("camera"), first.at("camera"));
   EXPECT_EQ(third.at("classification"), first.at("classification")) << "no frame is lit as another is not";
+  expectSuccess(run("generate cube @s_2.vdb --resolution 16 --quiet"));  // nothing is saved of a bad one
   std::set<std::string> seen;
   for (int i = 0; i < 30 && seen.size() < 2; ++i) {
     session->hands("key space sleep 0.2");
     const nlohmann::json frame = sceneOf(*session, fmt::format("played{}.json", i));
     seen.insert(frame.at("input").at("volume"));
   }
-  EXPECT_EQ(seen, (std::set<std::string>{"s_1.vdb", "s_3.vdb"}))
-      << "it plays, and a scene is of a frame of it";
+  EXPECT_EQ(seen.size(), 2u) << "it plays, and a scene is of the frame that is seen then";
   session->hands("key space key comma key comma");
   expectQuietEnd(*session);
 }
@@ -213,8 +213,7 @@ TEST_F(Viewer, ATurnIsGivenUp) {
     EXPECT_EQ(readPng(folder / fmt::format("turn_{:03}.png", frames)).size.y, 200);
     ++frames;
   }
-  EXPECT_EQ(int(folder.fileCount()), frames + 2)
-      << "the picture, what it said, and no part of a frame";
+  EXPECT_EQ(int(folder.fileCount()), frames + 2) << "the picture, what it said, and no part of a frame";
   expectQuietEnd(*session);
 }
 
