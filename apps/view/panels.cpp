@@ -21,11 +21,11 @@ double tableMilliseconds(const Picture& picture) {
 
 void drawPictureTime(const Picture& picture, bool whole, double perSecond) {
   const double table = tableMilliseconds(picture);
-  const std::string of = table > 0.0 ? fmt::format(", {:.0f} of them the table", table) : "";
+  const std::string of = table > 0.0 ? fmt::format(", table {:.0f}", table) : "";
   const std::string often = whole || perSecond == 0.0 ? "" : fmt::format(", {:.0f} a second", perSecond);
-  ImGui::TextUnformatted(
-      fmt::format("{} picture in {:.0f} ms{}{}", whole ? "whole" : "quick", picture.milliseconds, of, often)
-          .c_str());
+  const std::string text =
+      fmt::format("{} picture: {:.0f} ms{}{}", whole ? "whole" : "quick", picture.milliseconds, of, often);
+  ImGui::TextUnformatted(text.c_str());
 }
 
 }  // namespace

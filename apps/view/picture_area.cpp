@@ -64,8 +64,9 @@ void drawCompared(const Texture& texture, float part, ImVec2 low, ImVec2 high) {
 }
 
 /// The world's axes as the camera sees them, in a corner.
-void drawAxes(const Camera& camera, ImVec2 corner) {
-  constexpr float kLength = 28.0f;
+void drawAxes(const Camera& camera, ImVec2 lowerLeft) {
+  const float scale = ImGui::GetFontSize() / 13.0f, length = 28.0f * scale;
+  const ImVec2 corner(lowerLeft.x + 44.0f * scale, lowerLeft.y - 44.0f * scale);
   constexpr std::array kColors{IM_COL32(230, 90, 80, 255), IM_COL32(120, 200, 90, 255),
                                IM_COL32(90, 140, 240, 255)};
   constexpr std::array kNames{"x", "y", "z"};
@@ -74,10 +75,11 @@ void drawAxes(const Camera& camera, ImVec2 corner) {
   std::ranges::sort(order, {}, [&](int axis) { return toCamera[axis].z; });
   ImDrawList& list = *ImGui::GetWindowDrawList();
   for (const int axis : order) {
-    const ImVec2 end(corner.x + kLength * float(toCamera[axis].x),
-                     corner.y - kLength * float(toCamera[axis].y));
+    const ImVec2 end(corner.x + length * float(toCamera[axis].x),
+                     corner.y - length * float(toCamera[axis].y));
     list.AddLine(corner, end, kColors[std::size_t(axis)], 2.0f);
-    list.AddText({end.x + 3.0f, end.y - 7.0f}, kColors[std::size_t(axis)], kNames[std::size_t(axis)]);
+    list.AddText({end.x + 3.0f * scale, end.y - 7.0f * scale}, kColors[std::size_t(axis)],
+                 kNames[std::size_t(axis)]);
   }
 }
 
@@ -137,7 +139,7 @@ void PictureArea::draw(ViewState& state, const Texture* texture, const Texture* 
                                           ImGuiButtonFlags_MouseButtonRight;
   ImGui::InvisibleButton("picture", room, kAnyButton);
   if (!state.camera) return;
-  drawAxes(*state.camera, {low.x + 44.0f, high.y - 44.0f});
+  drawAxes(*state.camera, {low.x, high.y});
   const float split = low.x + state.split * room.x;
   if (ImGui::IsItemActivated())
     splits_ = compared != nullptr && std::abs(io.MousePos.x - split) < kSplitReach;
