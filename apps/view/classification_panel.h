@@ -18,6 +18,8 @@ inline constexpr int kHistogramBins = 2048;
 class ClassificationPanel {
  public:
   void draw(ViewState& state);
+  /// For the histogram.
+  bool waits() const { return histogram_.isMaking(); }
 
  private:
   void follow(ViewState& state);

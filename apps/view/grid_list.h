@@ -15,6 +15,8 @@ class GridList {
   /// read, of which its picture says why.
   const std::vector<GridChoice>* of(const std::string& input) { return grids_.of(input); }
 
+  bool isMaking() const { return grids_.isMaking(); }
+
  private:
   static std::vector<GridChoice> list(const std::string& input);
 

@@ -11,6 +11,8 @@ namespace freevoxels {
 class LookPanels {
  public:
   void draw(ViewState& state);
+  /// For something that they show.
+  bool waits() const { return classification_.waits() || grids_.isMaking(); }
 
  private:
   GridList grids_;

@@ -34,6 +34,8 @@ class MadeBeside {
     return value_ && key_ == key ? &*value_ : nullptr;
   }
 
+  bool isMaking() const { return made_.valid(); }
+
   /// Neither key nor value is kept any longer.
   void forget() {
     key_.reset();

@@ -201,7 +201,7 @@ void Viewer::drawFrame() {
   painted_ = Clock::now();
   newPicture_ = false;
   painter_->draw(*ImGui::GetDrawData(), swapchain_);
-  if (isComplete()) ++completeFrames_;
+  if (isComplete() && !looks_.waits()) ++completeFrames_;
   if (options_.screenshot && completeFrames_ == options_.after.value_or(1)) writeScreenshot();
   swapchain_.present();
 }
