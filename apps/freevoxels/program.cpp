@@ -7,11 +7,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <csignal>
 #include <cstdio>
 #include <iostream>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <new>
 
 #include "engine/core/atomic_file.h"
@@ -75,6 +78,15 @@ extern "C" void deferSignal(int signal) {
   deferredSignal = signal;
 }
 
+constexpr std::array kDeferred{SIGINT, SIGTERM, SIGHUP};
+
+/// The first who defers changes what signals do, the last one restores it.
+struct Deferring {
+  std::mutex mutex;
+  int count = 0;
+  std::array<struct sigaction, kDeferred.size()> before;
+} deferring;
+
 }  // namespace
 
 std::string programVersion() {
@@ -117,15 +129,22 @@ void MessageOptions::apply() const {
 }
 
 DeferredInterrupts::DeferredInterrupts() {
+  const std::lock_guard lock(deferring.mutex);
+  if (deferring.count++ > 0) return;
   struct sigaction defer {};
   defer.sa_handler = deferSignal;
-  for (int i = 0; i < 3; ++i) sigaction(kSignals[i], &defer, &before_[i]);
+  for (std::size_t i = 0; i < kDeferred.size(); ++i) sigaction(kDeferred[i], &defer, &deferring.before[i]);
 }
 
 DeferredInterrupts::~DeferredInterrupts() {
-  for (int i = 0; i < 3; ++i) sigaction(kSignals[i], &before_[i], nullptr);
-  const int signal = deferredSignal;
-  deferredSignal = 0;
+  int signal = 0;
+  {
+    const std::lock_guard lock(deferring.mutex);
+    if (--deferring.count > 0) return;
+    for (std::size_t i = 0; i < kDeferred.size(); ++i) sigaction(kDeferred[i], &deferring.before[i], nullptr);
+    signal = deferredSignal;
+    deferredSignal = 0;
+  }
   if (signal != 0) std::raise(signal);
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 // What every program does the same way: messages, exit codes, interrupts.
 
-#include <csignal>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -28,17 +27,13 @@ struct MessageOptions {
 };
 
 /// While one lives, SIGINT, SIGTERM and SIGHUP wait: an output that is being written is finished, not left as
-/// a temporary file. A signal that came meanwhile ends the program afterwards.
+/// a temporary file. A signal that came meanwhile ends the program afterwards. Any thread may have one.
 class DeferredInterrupts {
  public:
   DeferredInterrupts();
   ~DeferredInterrupts();
   DeferredInterrupts(const DeferredInterrupts&) = delete;
   DeferredInterrupts& operator=(const DeferredInterrupts&) = delete;
-
- private:
-  static constexpr int kSignals[] = {SIGINT, SIGTERM, SIGHUP};
-  struct sigaction before_[3];
 };
 
 /// checkWritable, which tries with a temporary file, safe from interrupts.
