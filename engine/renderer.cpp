@@ -46,7 +46,6 @@ struct Renderer::State {
   const AttenuationTable& tableWithLevels(const Progress& progress = {});
   void recordDrawing(Commands& commands, const Frame& frame, const AttenuationTable* read,
                      const Buffer* order);
-  std::uint64_t frameBytes(const FrameSettings& settings) const;
   FrameSettings resolved(const FrameSettings& settings);
   FrameConstants constantsOf(const Camera& camera, const FrameSettings& settings, const Progress& progress);
   Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
@@ -122,19 +121,13 @@ void Renderer::State::recordDrawing(Commands& commands, const Frame& frame, cons
   splats->record(commands, drawing, constants, frame.targets);
 }
 
-/// Of what every frame needs, without rays and table.
-std::uint64_t Renderer::State::frameBytes(const FrameSettings& settings) const {
-  const VolumeMemory memory = memoryOfVolume();
-  return memory.lists + memory.splats + 2 * targetBytes(settings);
-}
-
 /// How lights are shadowed, if that is left to the volume and the device.
 FrameSettings Renderer::State::resolved(const FrameSettings& settings) {
   FrameSettings result = settings;
   if (!settings.lighting) return result;
   if (!lights) lights.emplace(device);
-  const std::uint64_t tableBytes = table ? 0 : memoryOfVolume().table;
-  result.lighting->attenuation = lights->resolve(built.volume, settings, frameBytes(settings) + tableBytes);
+  const std::uint64_t others = memoryOfVolume().peak() + 2 * targetBytes(settings);
+  result.lighting->attenuation = lights->resolve(built.volume, settings, others);
   return result;
 }
 
@@ -147,10 +140,13 @@ FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSet
   if (constants.readsTable()) sweptTable(progress);  // of the two it needs room first
   std::uint64_t mostRayBytes = settings.mostRayBytes;
   if (settings.attenuation == AttenuationLookup::Auto) {
-    // Without rays there is a picture, and without the rest of the frame there is none.
-    const std::uint64_t others = frameBytes(settings);
-    mostRayBytes =
-        std::min(mostRayBytes, device.availableBytes() - std::min(device.availableBytes(), others));
+    // Without rays there is a picture, and without the rest of the frame there is none. Whatever is allocated
+    // now, so that it is the same for every frame.
+    VolumeMemory memory = memoryOfVolume();
+    if (!constants.readsTable()) memory.table = memory.sweep = memory.levels = 0;
+    std::uint64_t others = memory.peak() + 2 * targetBytes(settings);
+    if (settings.lighting) others += LightPass::rayBytes(built.volume, *settings.lighting);
+    mostRayBytes = std::min(mostRayBytes, device.memoryBytes() - std::min(device.memoryBytes(), others));
   }
   try {
     splats->makeRoomForRays(built.volume, constants.eye, mostRayBytes);

@@ -82,7 +82,7 @@ Result sweeps(const Device& device, DirectionSet directions, int resolution, int
           .perSecond = double(count * volume.voxelCount()) / time * 1e3};
 }
 
-Result octree(const Device& device, const char* name, AttenuationCode code, int resolution, int runs) {
+Result octree(const Device& device, std::string_view name, AttenuationCode code, int resolution, int runs) {
   const Volume volume = name == kStripes ? stripes(resolution) : makeProcedural(name, resolution);
   const BuiltVolume onDevice = built(device, volume);
   const AttenuationTable table = makeTable(device, onDevice.volume, {.code = code});

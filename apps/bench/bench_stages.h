@@ -1,6 +1,7 @@
 #pragma once
 // The stages that freevoxels-bench measures, each by the device's own clock.
 
+#include <string_view>
 #include <vector>
 
 #include "apps/bench/measure.h"
@@ -15,11 +16,11 @@ namespace freevoxels::bench {
 Result sweeps(const Device& device, DirectionSet directions, int resolution, int runs);
 
 /// A volume of which six of seven voxels hold anything, unlike their neighbours.
-inline constexpr const char* kStripes = "stripes";
+inline constexpr std::string_view kStripes = "stripes";
 
 /// The octree's levels above the voxels of kStripes or a procedural volume, beside a copy of 27 bytes for
 /// each that holds anything; the name has the ratio to the 26 sweeps.
-Result octree(const Device& device, const char* name, AttenuationCode code, int resolution, int runs);
+Result octree(const Device& device, std::string_view name, AttenuationCode code, int resolution, int runs);
 
 /// Choosing, setting up and drawing the blocks of a cloud of N³ voxels from near to far, without and with
 /// level of detail.

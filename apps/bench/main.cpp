@@ -3,7 +3,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fstream>
-#include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
@@ -39,7 +38,7 @@ Results sweeps(const Device& device, const Extent& extent) {
 
 Results octree(const Device& device, const Extent& extent) {
   Results results;
-  for (const char* name : {bench::kStripes, "cloud"})
+  for (const std::string_view name : {bench::kStripes, std::string_view("cloud")})
     for (int resolution : extent.resolutions())
       results.push_back(bench::octree(device, name, AttenuationCode::Depth8, resolution, extent.runs()));
   results.push_back(bench::octree(device, bench::kStripes, AttenuationCode::Linear8, 128, extent.runs()));

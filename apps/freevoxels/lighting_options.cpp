@@ -115,9 +115,11 @@ void LightingOptions::add(CLI::App& app) {
 
 void LightingOptions::addMethod(CLI::App& app) {
   addWord(app, "--light-attenuation", kLightAttenuationWords, attenuation,
-          "Whether the shadows of lights are looked up in the table, or exact, along rays that are swept "
-          "once for "
-          "each light: auto is exact for up to 4 lights, where memory is plenty [auto]")
+          fmt::format(
+              "Whether the shadows of lights are looked up in the table, or exact, along rays that are swept "
+              "once for each light: auto is exact for up to {} lights where memory is plenty, not with "
+              "--attenuation nearest [auto]",
+              kMostExactLights))
       ->group("Light");
   addWord(app, "--shading", kShadingWords, shading,
           "What a voxel does with lights: scatters them as fog does, or as a surface across the change of "

@@ -22,8 +22,8 @@ class ExportPanel {
   /// Ctrl+E and Ctrl+T ask for the names of a picture, a scene and a turn; Escape gives up what is being
   /// written.
   void draw(ViewState& state);
-  /// For a picture to be complete.
-  bool waits() const { return !waiting_.empty(); }
+  /// For a picture to be complete, not for what is being written.
+  bool waits() const { return !waiting_.empty() && !job_.busy(); }
 
  private:
   enum class Field { None, Picture, Scene, Turn };

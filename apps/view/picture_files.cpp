@@ -1,7 +1,6 @@
 #include "apps/view/picture_files.h"
 
 #include <CLI/CLI.hpp>
-#include <limits>
 
 #include "apps/freevoxels/frame_names.h"
 #include "apps/freevoxels/render_options.h"

@@ -60,12 +60,12 @@ void PictureMaker::makeRenderer(const Scene& scene, const PictureRequest& reques
 }
 
 Picture PictureMaker::make(const PictureRequest& request, const Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
   request.scene.checkLook();
   if (progress) progress("reading " + request.scene.input.input, 0.0);
   Picture picture{.request = request,
                   .scene = request.scene.resolve(volumes_.read(request.scene)),
                   .device = device_.description()};
+  const auto start = std::chrono::steady_clock::now();
   makeRenderer(picture.scene, request, progress);
 
   FrameSettings settings{.size = request.scene.camera.size,

@@ -34,7 +34,7 @@ struct Picture {
   std::optional<Image> diagnosis;  ///< what is shown in its place
   std::optional<Image> compared;
   std::vector<StageTime> times;
-  double milliseconds = 0.0;  ///< in all
+  double milliseconds = 0.0;  ///< in all, but for reading files
   VolumeMemory memory;
   CutCounts cut;
   std::uint64_t visibleVoxels = 0;

@@ -17,7 +17,8 @@ class QuickPace {
  private:
   std::size_t step_ = 1;  ///< of the numbers of voxels
   double scale_ = 0.5;
-  int pictures_ = 0;  ///< of this many voxels
+  int pictures_ = 0;  ///< in a row, that want other voxels
+  int rest_ = 0;      ///< pictures before more voxels are tried
 };
 
 }  // namespace freevoxels

@@ -72,7 +72,9 @@ std::shared_ptr<const Picture> RenderThread::makePicture(const PictureRequest& r
   other.method = *request.compared;
   other.diagnosis = {};
   const bool sameTable = tableText(other.method.table()) == tableText(request.method.table());
-  picture->compared = makerOf(sameTable ? maker_ : comparing_).make(other, progress).image;
+  Picture compared = makerOf(sameTable ? maker_ : comparing_).make(other, progress);
+  picture->compared = std::move(compared.image);
+  picture->milliseconds += compared.milliseconds;
   return picture;
 }
 

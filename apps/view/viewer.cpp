@@ -214,7 +214,7 @@ void Viewer::writeScreenshot() const {
 /// Until something is to be done, if nothing happens.
 double Viewer::patience() const {
   if (options_.screenshot || window_.inputWaits()) return 0.0;
-  const bool settles = !isComplete() && askedOfWhole_ != lastRequest_;
+  const bool settles = answered_ < lastRequest_ || (!isComplete() && askedOfWhole_ != lastRequest_);
   return area_.moves() || frames_.plays() || settles ? kSoonSeconds : kIdleSeconds;
 }
 

@@ -61,23 +61,22 @@ std::vector<RaySource> sourcesOf(const Lighting& lighting, const DeviceVolume& v
 }  // namespace
 
 void LightPass::setBeyond(Commands& commands, const DeviceVolume& volume, DirectionSet set,
-                          std::vector<shader::Light>& lights) {
+                          const Lighting& lighting, std::vector<shader::Light>& lights) {
   int slot = 0;
   beyondDepths_ = Buffer(device_, std::max<VkDeviceSize>(lights.size(), 1) * kEyeDepthsBytes,
                          MemoryUse::Device, "depths beyond lights");
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    const RaySource source = lightSource(placed_->lights[i], volume.indexToWorld);
+    const RaySource source = lightSource(lighting.lights[i], volume.indexToWorld);
     if (!isInside(source, volume.layout.dimensions)) continue;
     beyond_.record(commands, volume, set, source, beyondDepths_, slot);
     lights[i].beyond = halves(beyondDepths_.address() + VkDeviceSize(slot++) * kEyeDepthsBytes);
   }
 }
 
-void LightPass::setRays(Commands& commands, const DeviceVolume& volume, std::vector<shader::Light>& lights) {
-  const std::vector<RaySource> sources = sourcesOf(*placed_, volume);
-  const RayMemory memory = rayMemory(volume.layout.dimensions, sources);
-  checkRaysFit(device_, memory);
-  rayBytes_ = memory.bytes;
+void LightPass::setRays(Commands& commands, const DeviceVolume& volume, const Lighting& lighting,
+                        std::vector<shader::Light>& lights) {
+  const std::vector<RaySource> sources = sourcesOf(lighting, volume);
+  checkRaysFit(device_, rayMemory(volume.layout.dimensions, sources));
   for (std::size_t i = 0; i < lights.size(); ++i) {
     RaySweep& sweep = rays_.emplace_back(device_, "light sweep");
     sweep.record(commands, volume, sources[i]);
@@ -85,19 +84,23 @@ void LightPass::setRays(Commands& commands, const DeviceVolume& volume, std::vec
   }
 }
 
-std::vector<shader::Light> LightPass::place(Commands& commands, const DeviceVolume& volume,
-                                            DirectionSet set) {
+std::vector<shader::Light> LightPass::place(Commands& commands, const DeviceVolume& volume, DirectionSet set,
+                                            const Lighting& lighting) {
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
   std::vector<shader::Light> lights;
-  for (const Light& light : placed_->lights)
+  for (const Light& light : lighting.lights)
     lights.push_back(deviceLight(light, lightSource(light, volume.indexToWorld), middle));
   rays_.clear();
-  rayBytes_ = 0;
-  if (placed_->attenuation == LightAttenuation::Exact)
-    setRays(commands, volume, lights);
+  if (lighting.attenuation == LightAttenuation::Exact)
+    setRays(commands, volume, lighting, lights);
   else
-    setBeyond(commands, volume, set, lights);
+    setBeyond(commands, volume, set, lighting, lights);
   return lights;
+}
+
+std::uint64_t LightPass::rayBytes(const DeviceVolume& volume, const Lighting& lighting) {
+  if (lighting.attenuation != LightAttenuation::Exact) return 0;
+  return rayMemory(volume.layout.dimensions, sourcesOf(lighting, volume)).bytes;
 }
 
 LightAttenuation LightPass::resolve(const DeviceVolume& volume, const FrameSettings& settings,
@@ -106,8 +109,8 @@ LightAttenuation LightPass::resolve(const DeviceVolume& volume, const FrameSetti
   if (settings.lighting->attenuation != LightAttenuation::Auto || wanted == LightAttenuation::Table)
     return wanted;
   const RayMemory rays = rayMemory(volume.layout.dimensions, sourcesOf(*settings.lighting, volume));
-  const std::uint64_t available = device_.availableBytes() + rayBytes_;
-  const bool fits = rays.bytes <= device_.memoryBytes() / kMostRayShare && rays.bytes + others <= available &&
+  const std::uint64_t memory = device_.memoryBytes();
+  const bool fits = rays.bytes <= memory / kMostRayShare && rays.bytes + others <= memory &&
                     rays.largest <= device_.maximumAllocation();
   return fits ? LightAttenuation::Exact : LightAttenuation::Table;
 }
@@ -120,16 +123,17 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
     fromAll_ = directionLight(lighting, set, volume.indexToWorld);
   const bool stand =
       placed_ && placed_->lights == lighting.lights && placed_->attenuation == lighting.attenuation;
-  placed_ = lighting;
   if (!stand) {
+    placed_.reset();  // until there is room for all of these
     Commands commands(device_);
-    const std::vector<shader::Light> lights = place(commands, volume, set);
+    const std::vector<shader::Light> lights = place(commands, volume, set, lighting);
     commands.submitAndWait();
     addTimes(times, commands.times());
     const auto bytes = std::as_bytes(std::span(lights));
     lights_ = Buffer(device_, std::max<VkDeviceSize>(bytes.size(), 4), MemoryUse::Device, "lights");
     upload(device_, lights_, bytes);
   }
+  placed_ = lighting;
   const int ofTable =
       settings.attenuation == AttenuationLookup::Nearest ? shader::kLookupNearest : shader::kLookupBilinear;
   shader::FrameLighting frame{

@@ -20,10 +20,13 @@ class LightPass {
  public:
   explicit LightPass(const Device& device) : device_(device), beyond_(device) {}
 
-  /// Table or Exact, of settings that have lighting. Auto is Table where rays would take more than a quarter
-  /// of the device's memory, or would leave less of it than `others` bytes.
+  /// Table or Exact, of settings that have lighting. Auto is lightAttenuationFor, but Table where rays would
+  /// take more than a quarter of the device's memory, or more than `others` bytes leave of it: whatever is
+  /// allocated now, so that it is the same for every frame.
   LightAttenuation resolve(const DeviceVolume& volume, const FrameSettings& settings,
                            std::uint64_t others) const;
+  /// On the device, of lighting that is not Auto.
+  static std::uint64_t rayBytes(const DeviceVolume& volume, const Lighting& lighting);
   /// Of settings whose lighting is not Auto. Waits for what it has to make; no frame may be under way. Adds
   /// the times of that to `times`.
   shader::FrameLighting prepare(const DeviceVolume& volume, const TableSettings& table,
@@ -32,10 +35,12 @@ class LightPass {
   const Buffer& lights() const { return lights_; }
 
  private:
-  std::vector<shader::Light> place(Commands& commands, const DeviceVolume& volume, DirectionSet set);
-  void setBeyond(Commands& commands, const DeviceVolume& volume, DirectionSet set,
+  std::vector<shader::Light> place(Commands& commands, const DeviceVolume& volume, DirectionSet set,
+                                   const Lighting& lighting);
+  void setBeyond(Commands& commands, const DeviceVolume& volume, DirectionSet set, const Lighting& lighting,
                  std::vector<shader::Light>& lights);
-  void setRays(Commands& commands, const DeviceVolume& volume, std::vector<shader::Light>& lights);
+  void setRays(Commands& commands, const DeviceVolume& volume, const Lighting& lighting,
+               std::vector<shader::Light>& lights);
 
   const Device& device_;
   EyeDepthsPass beyond_;
@@ -44,7 +49,6 @@ class LightPass {
   Buffer lights_;                    ///< shader::Light
   Buffer beyondDepths_;              ///< kEyeDepthsBytes a light that is inside of the volume
   std::deque<RaySweep> rays_;        ///< of the lights; empty where they are looked up in the table
-  std::uint64_t rayBytes_ = 0;       ///< of those
 };
 
 }  // namespace freevoxels

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "engine/attenuation/directions.h"
 #include "engine/core/error.h"
 
@@ -24,10 +26,13 @@ std::string pixelText(glm::ivec2 imageSize, std::size_t pixel) {
 
 Worst largestDifference(const Image& a, const Image& b) {
   FV_CHECK_EQ(a.pixels.size(), b.pixels.size());
+  double brightest = 1.0;
+  for (const glm::vec4& pixel : b.pixels)
+    brightest = std::max({brightest, double(pixel.r), double(pixel.g), double(pixel.b)});
   Worst worst;
   for (std::size_t i = 0; i < a.pixels.size(); ++i)
     for (int c = 0; c < 4; ++c)
-      worst.take(std::abs(double(a.pixels[i][c]) - double(b.pixels[i][c])),
+      worst.take(std::abs(double(a.pixels[i][c]) - double(b.pixels[i][c])) / brightest,
                  [&] { return pixelText(a.size, i); });
   return worst;
 }

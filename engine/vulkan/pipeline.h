@@ -67,7 +67,7 @@ class Pipeline {
   const PipelineParts* parts_ = nullptr;
 };
 
-/// What a pipeline is made from, all of it.
+/// What a pipeline is made from; the size of a workgroup is in the code.
 struct PipelineKey {
   std::array<const std::uint32_t*, 2> code{};  ///< compute, or vertex and fragment
   PipelineInterface interface;
@@ -78,7 +78,7 @@ struct PipelineKey {
   auto operator<=>(const PipelineKey&) const = default;
 };
 
-/// Every pipeline of a device is made once: lavapipe compiles one in up to a tenth of a second, each time.
+/// The pipelines of a device, kept for whoever wants the same again: lavapipe compiles one in up to a tenth of a second, each time.
 struct PipelineStore {
   std::mutex mutex;
   std::map<PipelineKey, PipelineParts> made;

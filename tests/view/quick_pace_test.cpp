@@ -11,11 +11,17 @@ double timeOf(const QuickPace& pace, double splats, double pixels) {
   return splats * voxels * voxels * voxels + pixels * pace.scale() * pace.scale();
 }
 
-TEST(QuickPace, ComesToPicturesThatAreQuickEnough) {
-  for (const double splats : {1.0, 30.0, 100.0, 1000.0})
-    for (const double pixels : {1.0, 100.0, 400.0}) {
+TEST(QuickPace, ComesToPicturesThatAreQuickEnoughAndStays) {
+  for (const double splats : {1.0, 30.0, 100.0, 150.0, 1000.0})
+    for (const double pixels : {1.0, 20.0, 100.0, 400.0}) {
       QuickPace pace;
-      for (int i = 0; i < 60; ++i) pace.took(timeOf(pace, splats, pixels));
+      int changes = 0;
+      for (int i = 0; i < 120; ++i) {
+        const int before = pace.voxelsAlongEdge();
+        pace.took(timeOf(pace, splats, pixels));
+        changes += pace.voxelsAlongEdge() != before;
+      }
+      EXPECT_LE(changes, 4) << splats << " " << pixels;
       EXPECT_LT(timeOf(pace, splats, pixels), 60.0)
           << splats << " " << pixels << " " << pace.voxelsAlongEdge();
     }
@@ -25,7 +31,7 @@ TEST(QuickPace, IsAsFineAsTimeAllows) {
   QuickPace pace;
   for (int i = 0; i < 20; ++i) pace.took(500.0);
   EXPECT_LT(pace.voxelsAlongEdge(), 48);
-  for (int i = 0; i < 60; ++i) pace.took(timeOf(pace, 5.0, 20.0));
+  for (int i = 0; i < 1000; ++i) pace.took(timeOf(pace, 5.0, 20.0));
   EXPECT_EQ(pace.voxelsAlongEdge(), 64);
   EXPECT_EQ(pace.scale(), 1.0);
 }
