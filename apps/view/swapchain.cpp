@@ -141,7 +141,7 @@ bool Swapchain::acquire() {
     if (isStale(result)) return false;  // it still changes
   }
   if (result == VK_TIMEOUT || result == VK_NOT_READY) return false;
-  if (result != VK_SUBOPTIMAL_KHR) VK_CHECK(result);
+  if (result != VK_SUBOPTIMAL_KHR) VK_CHECK_RESULT(result, "vkAcquireNextImageKHR");
   VK_CHECK(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX));
   VK_CHECK(vkResetFences(device_.handle(), 1, &fence));
   return true;
@@ -157,7 +157,7 @@ void Swapchain::present() {
   if (isStale(result)) {
     recreate(result);
   } else if (result != VK_SUBOPTIMAL_KHR) {
-    VK_CHECK(result);
+    VK_CHECK_RESULT(result, "vkQueuePresentKHR");
   }
 }
 

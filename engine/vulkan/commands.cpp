@@ -188,7 +188,7 @@ void Commands::submitAndWait(const Progress& progress) {
     const VkResult result =
         vkWaitSemaphores(device_.handle(), &wait, progress ? kProgressInterval : UINT64_MAX);
     if (result == VK_SUCCESS) return;
-    if (result != VK_TIMEOUT) VK_CHECK(result);
+    if (result != VK_TIMEOUT) VK_CHECK_RESULT(result, "vkWaitSemaphores");
     try {
       reportProgress(progress);
     } catch (...) {  // whoever gives up has nothing in use behind
@@ -206,7 +206,7 @@ void Commands::reportProgress(const Progress& progress) const {
   const VkResult result = vkGetQueryPoolResults(
       device_.handle(), queries_.get(), 0, std::uint32_t(stamps.size()), stamps.size() * sizeof(Timestamp),
       stamps.data(), sizeof(Timestamp), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WITH_AVAILABILITY_BIT);
-  if (result != VK_NOT_READY) VK_CHECK(result);
+  if (result != VK_NOT_READY) VK_CHECK_RESULT(result, "vkGetQueryPoolResults");
   const auto started =
       std::ranges::count_if(stamps, [](const Timestamp& stamp) { return stamp.available != 0; });
   if (started == 0) return;

@@ -242,7 +242,7 @@ Device::Device(const Instance& instance, std::string_view selector, std::uint64_
   if (result == VK_ERROR_EXTENSION_NOT_PRESENT)
     fail(ExitCode::Device, "{} lacks one of the extensions {}: choose another with --device",
          description_.name, fmt::join(extensions, ", "));
-  VK_CHECK(result);
+  VK_CHECK_RESULT(result, "vkCreateDevice");
   vkGetDeviceQueue(device_, queueFamily_, 0, &queue_);
 }
 

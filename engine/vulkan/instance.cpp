@@ -99,7 +99,7 @@ Instance::Instance(bool validation, std::span<const char* const> moreExtensions)
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
     fail(ExitCode::Device, "no Vulkan driver was found: install mesa-vulkan-drivers to render without a GPU");
-  VK_CHECK(result);
+  VK_CHECK_RESULT(result, "vkCreateInstance");
   volkLoadInstance(instance_);
   if (validation) VK_CHECK(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_));
 }

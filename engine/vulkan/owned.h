@@ -52,4 +52,6 @@ using OwnedSwapchain = Owned<VkSwapchainKHR, &vkDestroySwapchainKHR>;
 
 }  // namespace freevoxels
 
-#define VK_CHECK(call) ::freevoxels::checkVulkan((call), #call, __FILE__, __LINE__)
+#define VK_CHECK(call) VK_CHECK_RESULT((call), #call)
+// Of a call whose result has other meanings as well.
+#define VK_CHECK_RESULT(result, call) ::freevoxels::checkVulkan((result), call, __FILE__, __LINE__)
