@@ -78,7 +78,8 @@ struct PipelineKey {
   auto operator<=>(const PipelineKey&) const = default;
 };
 
-/// The pipelines of a device, kept for whoever wants the same again: lavapipe compiles one in up to a tenth of a second, each time.
+/// The pipelines of a device, kept for whoever wants the same again: lavapipe compiles one in up to a tenth
+/// of a second, each time.
 struct PipelineStore {
   std::mutex mutex;
   std::map<PipelineKey, PipelineParts> made;
