@@ -32,7 +32,7 @@ Worst largestDifference(const Image& a, const Image& b) {
   Worst worst;
   for (std::size_t i = 0; i < a.pixels.size(); ++i)
     for (int c = 0; c < 4; ++c)
-      worst.take(std::abs(double(a.pixels[i][c]) - double(b.pixels[i][c])) / brightest,
+      worst.take(std::abs(double(a.pixels[i][c]) - double(b.pixels[i][c])) / (c < 3 ? brightest : 1.0),
                  [&] { return pixelText(a.size, i); });
   return worst;
 }

@@ -45,8 +45,8 @@ std::string directionText(DirectionSet set, int direction);
 /// "pixel (1, 2)", of an index in reading order
 std::string pixelText(glm::ivec2 imageSize, std::size_t pixel);
 
-/// Largest difference of two pictures of one size, in premultiplied RGBA; of flames, which are brighter than
-/// 1, relative to the brightest component of `b`.
+/// Largest difference of two pictures of one size, in premultiplied RGBA; colours of flames, which are
+/// brighter than 1, relative to the brightest component of `b`.
 Worst largestDifference(const Image& a, const Image& b);
 
 }  // namespace freevoxels
