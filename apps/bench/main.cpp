@@ -108,12 +108,17 @@ Results measure(const Device& device, const Extent& extent, const std::vector<st
   return results;
 }
 
+/// Of a GPU, most are less than a millisecond.
+std::string timeText(double milliseconds) {
+  return fmt::format("{:.{}f}", milliseconds, milliseconds < 10.0 ? 3 : 1);
+}
+
 std::vector<std::string> tableLines(const Results& results) {
   using Align = TextTable::Align;
   TextTable table{.columns = {Align::Left, Align::Right, Align::Right, Align::Right},
                   .rows = {{"stage", "ms", "x copy", "million/s"}}};
   for (const Result& result : results)
-    table.rows.push_back({result.name, fmt::format("{:.1f}", result.milliseconds),
+    table.rows.push_back({result.name, timeText(result.milliseconds),
                           result.copyMilliseconds > 0.0
                               ? fmt::format("{:.1f}", result.milliseconds / result.copyMilliseconds)
                               : "",

@@ -19,22 +19,23 @@ struct Interval {
   double low, high;
 };
 
-/// Gives the fan the rays that cross what `covered` is of the farthest plane.
-void placeRays(RayFan& fan, const std::array<Interval, 2>& covered, double mostRays) {
+/// Gives the fan the rays that cross what `covered` is of the farthest plane. They lie about the middle of
+/// the volume, so that those of a mirrored one are their mirror image.
+void placeRays(RayFan& fan, const std::array<Interval, 2>& covered, glm::ivec3 dimensions) {
   const auto length = [&](int side) {
     return covered[std::size_t(side)].high - covered[std::size_t(side)].low;
   };
+  const glm::ivec2 across(dimensions[(fan.axis + 1) % 3], dimensions[(fan.axis + 2) % 3]);
+  const double mostRays = kMostRaysPerLine * (across.x + 4.0) * (across.y + 4.0);
   fan.spacing = std::max(kFinestSpacing, std::sqrt(length(0) * length(1) / mostRays));
   for (int side = 0; side < 2; ++side) {
     const auto [low, high] = covered[std::size_t(side)];
-    // Every second ray meets the voxels of the farthest plane, and along an axis those of all planes.
-    fan.origin[side] = fan.spacing * (std::floor(low / fan.spacing) - 1.0);
+    // Half a voxel apart, every second ray meets the voxels of the farthest plane, and along an axis those of
+    // all planes.
+    const double middle = 0.5 * (across[side] - 1);
+    fan.origin[side] = middle + fan.spacing * (std::floor((low - middle) / fan.spacing) - 1.0);
     fan.rayCount[side] = int(std::ceil((high - fan.origin[side]) / fan.spacing)) + 2;
   }
-}
-
-double mostRaysAcross(glm::ivec3 dimensions, int axis) {
-  return kMostRaysPerLine * (dimensions[(axis + 1) % 3] + 4.0) * (dimensions[(axis + 2) % 3] + 4.0);
 }
 
 RayFan parallelFan(glm::ivec3 dimensions, glm::dvec3 fromSource) {
@@ -51,7 +52,7 @@ RayFan parallelFan(glm::ivec3 dimensions, glm::dvec3 fromSource) {
     covered[std::size_t(side)] = {std::min(0.0, -drift) - kMargin,
                                   dimensions[other] - 1 + std::max(0.0, -drift) + kMargin};
   }
-  placeRays(fan, covered, mostRaysAcross(dimensions, axis));
+  placeRays(fan, covered, dimensions);
   return fan;
 }
 
@@ -76,7 +77,7 @@ RayFan fanFrom(glm::dvec3 source, glm::ivec3 dimensions, int axis, int direction
                                   source[other] + std::min(highest, radius + kMargin)};
     if (covered[std::size_t(side)].low >= covered[std::size_t(side)].high) return fan;
   }
-  placeRays(fan, covered, mostRaysAcross(dimensions, axis));
+  placeRays(fan, covered, dimensions);
   fan.firstPlane = int(first);
   fan.planeCount = int(std::abs(fan.farthest - first)) + 1;
   fan.convergence = 1.0 / (fan.farthest - source[axis]);

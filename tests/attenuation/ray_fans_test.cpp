@@ -79,6 +79,25 @@ TEST(RayFans, RaysPassTheSource) {
   }
 }
 
+TEST(RayFans, MirroredSourcesHaveMirroredRays) {
+  for (const RaySource& source : sources()) {
+    RaySource mirrored{.place = -source.place, .atInfinity = source.atInfinity};
+    if (!source.atInfinity) mirrored.place += glm::dvec3(kSize - 1);
+    const std::array<RayFan, 6> fans = rayFans(kSize, source), mirroredFans = rayFans(kSize, mirrored);
+    for (std::size_t i = 0; i < fans.size(); ++i) {
+      const RayFan &fan = fans[i], &mirror = mirroredFans[i ^ 1];
+      ASSERT_EQ(mirror.planeCount, fan.planeCount);
+      if (fan.planeCount == 0) continue;
+      EXPECT_NEAR(mirror.spacing, fan.spacing, 1e-9);
+      for (int side = 0; side < 2; ++side) {
+        const double last = kSize[(fan.axis + 1 + side) % 3] - 1;
+        const double between = (last - mirror.origin[side] - fan.origin[side]) / fan.spacing;
+        EXPECT_NEAR(between, std::round(between), 1e-6) << source.place.x;
+      }
+    }
+  }
+}
+
 TEST(RayFans, AreNoMoreThanTheyMayBe) {
   for (const RaySource& source : sources())
     for (const RayFan& fan : rayFans(kSize, source)) {
