@@ -54,8 +54,11 @@ void resumeLines(uint first, uint thread, uint threads) {
     depths[line] = keptDepths[first + uint(line) * threads + thread];
 }
 
-// Where an index has come to that makes a number of steps and wraps around.
-int movedBy(int index, int steps, int count) { return ((index + steps) % count + count) % count; }
+// Where an index has come to that makes a number of steps and wraps around. A remainder of negative numbers is undefined.
+int movedBy(int index, int steps, int count) {
+  const int by = abs(steps) % count;
+  return wrapped(steps < 0 ? index - by : index + by, count);
+}
 
 // Lines that have just come around the end of the row start again at the boundary of the volume.
 void restartWrappedLines(int window, int quads, int phase) {

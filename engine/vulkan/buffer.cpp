@@ -85,7 +85,7 @@ Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const ch
   vkGetBufferMemoryRequirements(device.handle(), buffer, &needs);
   memory_ = DeviceMemory(device, needs, use, true);
   VK_CHECK(vkBindBufferMemory(device.handle(), buffer, memory_.get(), 0));
-  if (memory_.hostCoherent()) {
+  if (memory_.hostCoherent() && (use != MemoryUse::Device || device.mapsOwnMemory())) {
     void* mapped = nullptr;
     VK_CHECK(vkMapMemory(device.handle(), memory_.get(), 0, VK_WHOLE_SIZE, 0, &mapped));
     mapped_ = static_cast<std::byte*>(mapped);
@@ -107,6 +107,7 @@ TexelView::TexelView(const Device& device, const Buffer& buffer, VkFormat format
 
 void upload(const Device& device, const Buffer& buffer, std::span<const std::byte> data) {
   FV_CHECK_LE(data.size(), buffer.bytes());
+  if (data.empty()) return;
   if (buffer.mapped() != nullptr) {
     std::memcpy(buffer.mapped(), data.data(), data.size());
     return;

@@ -209,7 +209,9 @@ std::vector<DeviceDescription> listDevices(const Instance& instance) {
 
 Device::Device(const Instance& instance, std::string_view selector, std::uint64_t memoryLimit,
                std::span<const char* const> moreExtensions)
-    : memoryLimit_(memoryLimit), pipelines_(std::make_unique<PipelineStore>()) {
+    : memoryLimit_(memoryLimit),
+      mapsOwnMemory_(!instance.validates()),
+      pipelines_(std::make_unique<PipelineStore>()) {
   description_ = choose(listDevices(instance), selector);
   physical_ = physicalDevices(instance)[std::size_t(description_.index)];
 

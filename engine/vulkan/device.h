@@ -58,6 +58,9 @@ class Device {
   std::uint64_t peakBytes() const { return peak_; }
   const DeviceDescription& description() const { return description_; }
   bool isCpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
+  /// Whether the host copies to and from MemoryUse::Device itself where it can. Not under validation, so that
+  /// tests go through staging buffers as GPUs do.
+  bool mapsOwnMemory() const { return mapsOwnMemory_; }
 
   /// Counts an allocation. Fails with ExitCode::OutOfMemory beyond the limit.
   void claim(std::uint64_t bytes) const;
@@ -76,6 +79,7 @@ class Device {
   VkPhysicalDeviceMemoryProperties memory_{};
   VkDeviceSize maximumAllocation_ = 0;
   std::uint64_t memoryLimit_;
+  bool mapsOwnMemory_;
   mutable std::atomic<std::uint64_t> allocated_ = 0, peak_ = 0;
   std::uint32_t queueFamily_ = 0;
   VkDevice device_ = VK_NULL_HANDLE;

@@ -22,6 +22,7 @@ class Instance {
   Instance& operator=(const Instance&) = delete;
 
   VkInstance handle() const { return instance_; }
+  bool validates() const { return messenger_ != VK_NULL_HANDLE; }
   /// Warnings and errors of the validation layer so far; each was also printed on stderr.
   std::uint64_t validationMessageCount() const { return validationMessages_; }
 
