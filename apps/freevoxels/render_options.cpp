@@ -6,6 +6,7 @@
 
 #include "apps/freevoxels/progress_line.h"
 #include "engine/renderer.h"
+#include "engine/vulkan/pipeline.h"
 
 namespace freevoxels {
 
@@ -129,6 +130,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
     }
     addTimes(report.stages, writing);
   }
+  addTimes(report.stages, opened.pipelines().times);
   report.visibleVoxels = renderer.visibleVoxelCount();
   report.voxels = view.volume->voxelCount();
   report.memory = renderer.memory();

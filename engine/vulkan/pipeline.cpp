@@ -127,8 +127,9 @@ template <typename Make>
 Pipeline stored(const Device& device, const PipelineKey& key, const Make& make) {
   PipelineStore& store = device.pipelines();
   const std::lock_guard lock(store.mutex);
-  const auto found = store.made.find(key);
-  return Pipeline(found != store.made.end() ? found->second : store.made.emplace(key, make()).first->second);
+  if (const auto found = store.made.find(key); found != store.made.end()) return Pipeline(found->second);
+  const StageTimer timer(store.times, "make pipelines");
+  return Pipeline(store.made.emplace(key, make()).first->second);
 }
 
 PipelineParts makeCompute(const Device& device, const ShaderCode& code, const PipelineInterface& interface,

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/core/stages.h"
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/owned.h"
 
@@ -83,6 +84,7 @@ struct PipelineKey {
 struct PipelineStore {
   std::mutex mutex;
   std::map<PipelineKey, PipelineParts> made;
+  std::vector<StageTime> times;  ///< to make them
 };
 
 /// `workgroup` must be the shader's local size.
