@@ -54,10 +54,12 @@ TEST_F(SlabSweepTest, ALimitOfMemoryMakesThinnerSlabsOfTheSameTable) {
     std::vector<StageTime> times;
     const BuiltVolume built = buildVolume(limited, volume, {.densityScale = 1.0}, times);
     const AttenuationTable table = makeTable(limited, built.volume, {});
-    AttenuationSweep sweep(limited, {}, sweepStyleOf(false));
-    Commands commands(limited);
-    sweep.record(commands, built.volume, table);
-    commands.submitAndWait();
+    {
+      AttenuationSweep sweep(limited, {}, sweepStyleOf(false));
+      Commands commands(limited);
+      sweep.record(commands, built.volume, table);
+      commands.submitAndWait();
+    }
     return std::pair(downloadTable(limited, built.volume, table), limited.peakBytes());
   };
   const auto [table, peak] = tableAndPeak(std::numeric_limits<std::uint64_t>::max());
