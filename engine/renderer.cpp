@@ -143,7 +143,7 @@ FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSet
     // Without rays there is a picture, and without the rest of the frame there is none. Whatever is allocated
     // now, so that it is the same for every frame.
     VolumeMemory memory = memoryOfVolume();
-    if (!constants.readsTable()) memory.table = memory.sweep = memory.levels = 0;
+    if (!constants.readsTable()) memory.table = memory.sweep = 0;
     std::uint64_t others = memory.peak() + 2 * targetBytes(settings);
     if (settings.lighting) others += LightPass::rayBytes(built.volume, *settings.lighting);
     mostRayBytes = std::min(mostRayBytes, device.memoryBytes() - std::min(device.memoryBytes(), others));

@@ -12,10 +12,10 @@ ivec3 cellAt(BlockLevel level, uint address) {
   return ivec3(index - row * level.rowPitch, row - plane * level.dimensions.y, plane);
 }
 
-// Where in a direction of the table the bound is of a block above the voxels that has this rank.
-uint boundOf(BlockLevel level, int number, uint rank) {
-  return level.firstBound + (rank - level.firstRank) / (number == 1 ? kBoundBlocks : 1);
-}
+// The byte of a direction of the table in which the bound is of a block above the voxels that has this rank, and which of
+// those in it.
+uint boundOf(BlockLevel level, uint rank) { return level.firstBound + (rank - level.firstRank) / kBoundBlocks; }
+int boundInByte(BlockLevel level, uint rank) { return int((rank - level.firstRank) % kBoundBlocks); }
 
 // How much of a block is inside of the volume, in voxels along each axis; not positive outside.
 ivec3 extentInside(ivec3 cell, int edge, ivec3 voxels) { return min(voxels - cell * edge, ivec3(edge)); }

@@ -49,12 +49,11 @@ bool findAround(vec3 toEye, int major, int level, out Around around) {
 
 // Whether no voxel of a block that holds anything sends more than the threshold towards these directions.
 bool isDark(int level, uint rank, Around around) {
-  const uint place = codePlace(frame.cells, boundOf(frame.levels[level], level, rank));
-  const int half_ = int((rank - frame.levels[level].firstRank) % kBoundBlocks);
+  const uint place = codePlace(frame.cells, boundOf(frame.levels[level], rank));
+  const int inByte = boundInByte(frame.levels[level], rank);
   bool dark = true;
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    uint code = codeAt(around.planes[i], place);
-    if (level == 1) code = unpackBound(bitfieldExtract(code, 4 * half_, 4));
+    const uint code = unpackBound(codeAt(around.planes[i], place), inByte);
     if (decodeDepth(kCode, code) < around.depths[i]) dark = false;
     // Between 0 and 1 depths jump so much that a splat next to both may shine at its rim.
     if (kCode == kCodeLinear8 && code != 0) dark = false;

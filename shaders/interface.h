@@ -36,15 +36,12 @@ FV_CONSTANT int kEyeThreads = 64;
 FV_CONSTANT int kSplatThreads = 64;
 FV_CONSTANT int kResolveTile = 8;
 FV_CONSTANT int kLevelThreads = 64;
-// Blocks of 2³ voxels, in a row of their ranks, whose bounds are in one byte: most bounds are of these, and half a byte hides
-// about as much. Those of larger blocks have a byte each.
+// Blocks in a row of their ranks whose bounds are in one byte: half a byte hides about as much as a whole one. A thread of
+// the octree's table makes them together.
 FV_CONSTANT int kBoundBlocks = 2;
-// What a level of the octree's table is made from: voxels, whose codes are their own bounds; blocks of them, whose whole
-// bounds are handed on beside the table; larger blocks.
-FV_CONSTANT int kChildrenVoxels = 0;
-FV_CONSTANT int kChildrenPacked = 1;
-FV_CONSTANT int kChildrenBlocks = 2;
-FV_CONSTANT int kDirectionsPerLevelPass = 7;  // share what they ask of the children's occupancy
+// Directions of a dispatch of the octree's table, and on a GPU of a layer of its workgroups.
+FV_CONSTANT int kDirectionsPerLevelPass = 13;
+FV_CONSTANT int kDirectionsPerLayer = 4;
 
 // Blocks in a row of their ranks whose codes in the table are kept, or are not, together.
 FV_CONSTANT int kRunBlocks = 8;

@@ -1,10 +1,9 @@
 #version 460
-// A level of the octree's attenuation table from the one below, for a few directions, a thread a block that holds
-// anything: Subr et al. 2007, Section 3.2, Eq. 7. The geometric mean of transmittances is the mean of optical depths.
-// Children that hold nothing or are outside of the volume do not count, the others as much as they have voxels.
+// A level of the octree's attenuation table from the one below, for a few directions, a thread kBoundBlocks blocks
+// that hold anything: Subr et al. 2007, Section 3.2, Eq. 7. The geometric mean of transmittances is the mean of optical
+// depths. Children that hold nothing or are outside of the volume do not count, the others as much as they have voxels.
 //
-// And its bounds: the code of the most transparent voxel, which says what can be left out behind others. Those of level 1
-// are for pack_bounds.comp.
+// And its bounds: the code of the most transparent voxel, which says what can be left out behind others.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_8bit_storage : require
 #include "interface.h"
@@ -14,7 +13,10 @@
 
 layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const int kFilter = kFilterGeometric;
-layout(constant_id = 2) const int kChildren = kChildrenBlocks;
+layout(constant_id = 2) const bool kFromVoxels = false;  // whose codes are their own bounds
+// A CPU loads texels faster than bytes, and asks about occupancy once for all directions; a GPU neither.
+layout(constant_id = 3) const bool kCpu = true;
+const uint kShare = kCpu ? kDirectionsPerLevelPass : kDirectionsPerLayer;
 
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { TableLevelPush push; };
@@ -22,15 +24,15 @@ layout(scalar, push_constant) uniform Push { TableLevelPush push; };
 layout(scalar, binding = 0) buffer Darkest { uint darkest[]; };
 layout(binding = 1) uniform utextureBuffer occupancy;  // an OccupancyWord a texel
 layout(scalar, binding = 2) readonly buffer Parents { uint parents[]; };
-// A direction's codes, read and written.
-#define PLANE(i)                                                \
-  layout(binding = 3 + i) uniform utextureBuffer read##i;      \
-  layout(scalar, binding = 3 + kDirectionsPerLevelPass + i) writeonly buffer Plane##i { uint8_t codes[]; } plane##i;
-PLANE(0) PLANE(1) PLANE(2) PLANE(3) PLANE(4) PLANE(5) PLANE(6)
-// The bounds of the blocks of level 1, a byte each: of a direction of the pass behind those of the one before.
-layout(scalar, binding = 3 + 2 * kDirectionsPerLevelPass) buffer OwnBounds { uint8_t ownBounds[]; };
+// A direction's codes and bounds, read and written.
+#define PLANE(i)                                           \
+  layout(binding = 3 + i) uniform utextureBuffer read##i; \
+  layout(scalar, binding = 3 + kDirectionsPerLevelPass + i) buffer Plane##i { uint8_t bytes[]; } plane##i;
+#define FOR_EACH_DIRECTION(F) F(0) F(1) F(2) F(3) F(4) F(5) F(6) F(7) F(8) F(9) F(10) F(11) F(12)
+FOR_EACH_DIRECTION(PLANE)
 
 const bool kSquares = kCode == kCodeDepth8 && kFilter == kFilterGeometric;  // depths are as the squares of codes
+const uint kDarkest = kCode == kCodeLinear8 ? 0 : 255;
 
 // What the filter takes the mean of. A transmittance that is stored as 0 counts as half the smallest code: it is
 // less than a whole one, and -infinity would be all that is left of any mean.
@@ -46,51 +48,56 @@ uint codeOf(float mean) {
 // Of the two, the one of more transmittance.
 uint clearer(uint a, uint b) { return kCode == kCodeLinear8 ? max(a, b) : min(a, b); }
 uint darkness(uint code) { return kCode == kCodeLinear8 ? 255 - code : code; }
-const uint kDarkest = kCode == kCodeLinear8 ? 0 : 255;
 
 // The children: their ranks, and how many voxels they have; none of those that hold nothing.
 uint ranks[8];
 float voxels[8];
 
-void findChildren(ivec3 cell) {
+// None behind the level's last block.
+void findChildren(uint block) {
+  const ivec3 cell = cellAt(push.parent, parents[min(block, push.parentCount - 1)]);
   [[unroll]] for (int row = 0; row < 4; ++row) {
     const ivec3 child = 2 * cell + ivec3(0, row & 1, row >> 1);
-    const bool exists = all(lessThan(child, push.child.dimensions));
-    const ivec3 inside = extentInside(child, push.childEdge, push.voxels);
+    const bool exists = block < push.parentCount && all(lessThan(child, push.child.dimensions));
     // Two that are neighbours in x are in one word.
     const uint address = exists ? blockAddress(push.child, child) : 0;
     const uvec2 word = texelFetch(occupancy, int(address / kBlocksPerWord)).xy;
     const int bit = int(address % kBlocksPerWord);
+    const ivec3 inside = extentInside(child, push.childEdge, push.voxels);
     uint rank = push.child.firstRank + rankIn(word, bit);
     [[unroll]] for (int x = 0; x < 2; ++x) {
       const bool holds = exists && (word.x >> (bit + x) & 1u) != 0;
       const int width = min(push.voxels.x - (child.x + x) * push.childEdge, push.childEdge);
       ranks[2 * row + x] = holds ? rank : push.child.firstRank;
-      voxels[2 * row + x] = holds ? float(width) * float(inside.y) * float(inside.z) : 0.0;
+      voxels[2 * row + x] = !holds ? 0.0 : kFromVoxels ? 1.0 : float(width) * float(inside.y) * float(inside.z);
       rank += holds ? 1 : 0;
     }
   }
 }
 
+// What a direction has of them: their codes, and the bytes in which their bounds are.
+uint childCodes[8];
+uint childBounds[8];
+
+#define BYTE(i, place) (kCpu ? texelFetch(read##i, int(place)).x : uint(plane##i.bytes[place]))
+#define LOAD(i)                                                                                           \
+  [[unroll]] for (int child = 0; child < 8; ++child) {                                                    \
+    childCodes[child] = BYTE(i, ranks[child]);                                                            \
+    if (!kFromVoxels) childBounds[child] = BYTE(i, boundOf(push.child, ranks[child]));                    \
+  }
+
 struct Parent {
   uint code, bound, darkest;
 };
 
-uint boundOfChild(utextureBuffer codes, uint code, uint rank, uint direction) {
-  if (kChildren == kChildrenVoxels) return code;
-  const uint place = rank - push.child.firstRank, count = push.parent.firstRank - push.child.firstRank;
-  if (kChildren == kChildrenPacked) return uint(ownBounds[direction * count + place]);
-  return texelFetch(codes, int(push.child.firstBound + place)).x;
-}
-
-Parent parentOf(utextureBuffer codes, uint direction) {
+Parent makeParent() {
   float sum = 0.0, all = 0.0;
   uint used = 0;
   Parent parent = Parent(0, kDarkest, 0);
   [[unroll]] for (int child = 0; child < 8; ++child) {
     const bool holds = voxels[child] > 0.0;
-    const uint code = texelFetch(codes, int(ranks[child])).x;
-    const uint bound = boundOfChild(codes, code, ranks[child], direction);
+    const uint code = childCodes[child];
+    const uint bound = kFromVoxels ? code : unpackBound(childBounds[child], boundInByte(push.child, ranks[child]));
     sum += voxels[child] * filtered(code);
     all += voxels[child];
     used |= holds ? code : 0;
@@ -101,22 +108,39 @@ Parent parentOf(utextureBuffer codes, uint direction) {
   return parent;
 }
 
-#define MAKE(i)                                                                                   \
-  if (i < push.directionCount) {                                                                  \
-    const Parent parent = parentOf(read##i, i);                                                   \
-    plane##i.codes[push.parent.firstRank + block] = uint8_t(parent.code);                         \
-    if (kChildren == kChildrenVoxels)                                                             \
-      ownBounds[i * push.parentCount + block] = uint8_t(parent.bound);                            \
-    else                                                                                          \
-      plane##i.codes[push.parent.firstBound + block] = uint8_t(parent.bound);                     \
-    /* Few are darker than all before them. */                                                    \
-    if (kChildren == kChildrenVoxels && parent.darkest > darkest[push.firstDirection + i])        \
-      atomicMax(darkest[push.firstDirection + i], parent.darkest);                                \
+bool isWanted(uint direction) {
+  return direction / kShare == gl_WorkGroupID.z && direction < push.directionCount;
+}
+
+// By direction, of a thread's blocks.
+uint bounds[kDirectionsPerLevelPass];
+uint deepest[kDirectionsPerLevelPass];
+
+#define BEGIN(i) bounds[i] = deepest[i] = 0;
+#define MAKE(i)                                                                                           \
+  if (isWanted(i)) {                                                                                      \
+    LOAD(i)                                                                                               \
+    const Parent parent = makeParent();                                                                   \
+    if (block < push.parentCount) plane##i.bytes[push.parent.firstRank + block] = uint8_t(parent.code);   \
+    bounds[i] |= packBound(kCode, parent.bound) << (4 * (block - first));                                 \
+    deepest[i] = max(deepest[i], parent.darkest);                                                         \
+  }
+#define END(i)                                                                                            \
+  if (isWanted(i)) {                                                                                      \
+    plane##i.bytes[push.parent.firstBound + first / kBoundBlocks] = uint8_t(bounds[i]);                   \
+    /* Few are darker than all before them. */                                                            \
+    if (kFromVoxels && deepest[i] > darkest[push.firstDirection + i])                                     \
+      atomicMax(darkest[push.firstDirection + i], deepest[i]);                                            \
   }
 
 void main() {
-  const uint block = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kLevelThreads;
-  if (block >= push.parentCount) return;
-  findChildren(cellAt(push.parent, parents[block]));
-  MAKE(0) MAKE(1) MAKE(2) MAKE(3) MAKE(4) MAKE(5) MAKE(6)
+  const uint first =
+      kBoundBlocks * (gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kLevelThreads);
+  if (first >= push.parentCount) return;
+  FOR_EACH_DIRECTION(BEGIN)
+  [[dont_unroll]] for (uint block = first; block < first + kBoundBlocks; ++block) {
+    findChildren(block);
+    FOR_EACH_DIRECTION(MAKE)
+  }
+  FOR_EACH_DIRECTION(END)
 }

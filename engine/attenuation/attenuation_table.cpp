@@ -232,10 +232,8 @@ std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const
 
 std::vector<std::vector<std::uint8_t>> downloadBounds(const Device& device, const DeviceVolume& volume,
                                                       const AttenuationTable& table, int level) {
-  const std::uint32_t first = volume.firstBound(level);
-  if (level == 1)
-    return downloadPlanes(device, volume, table, level, first, shader::kBoundBlocks, boundInByte);
-  return downloadPlanes(device, volume, table, level, first, 1, wholeByte);
+  return downloadPlanes(device, volume, table, level, volume.firstBound(level), shader::kBoundBlocks,
+                        boundInByte);
 }
 
 std::vector<double> downloadLargestDepths(const Device& device, const AttenuationTable& table) {

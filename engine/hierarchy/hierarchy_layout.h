@@ -55,9 +55,8 @@ std::vector<std::uint64_t> countStored(const HierarchyLayout& hierarchy, std::ve
 
 /// Bytes that a direction of the attenuation table has for the bounds of so many blocks of a level above the
 /// voxels.
-inline std::uint64_t boundBytes(int level, std::uint64_t storedBlocks) {
-  const std::uint64_t inOne = level == 1 ? shader::kBoundBlocks : 1;
-  return (storedBlocks + inOne - 1) / inOne;
+inline std::uint64_t boundBytes(std::uint64_t storedBlocks) {
+  return (storedBlocks + shader::kBoundBlocks - 1) / shader::kBoundBlocks;
 }
 
 }  // namespace freevoxels

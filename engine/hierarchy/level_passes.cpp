@@ -4,7 +4,6 @@
 #include <glm/gtc/packing.hpp>
 
 #include "embedded/medium_level.h"
-#include "embedded/pack_bounds.h"
 #include "embedded/table_level.h"
 #include "engine/hierarchy/occupancy.h"
 #include "engine/volume/packed_light.h"
@@ -18,6 +17,10 @@ constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BI
 static_assert(shader::kFilterGeometric == int(HierarchyFilter::Geometric));
 static_assert(shader::kFilterArithmetic == int(HierarchyFilter::Arithmetic));
 static_assert(shader::kRowAlignment % 2 == 0);  // two children of a row are in one word of occupancy
+
+std::uint32_t layersOf(std::uint32_t directions) {
+  return (directions + shader::kDirectionsPerLayer - 1) / shader::kDirectionsPerLayer;
+}
 
 shader::MediumLevelPush mediumPush(const DeviceVolume& volume, int level) {
   const int childEdge = Block{.level = level - 1}.edge();
@@ -64,23 +67,18 @@ void MediumLevels::record(Commands& commands, const DeviceVolume& volume,
   }
 }
 
-TableLevels::TableLevels(const Device& device, const TableSettings& settings) : device_(device) {
+TableLevels::TableLevels(const Device& device, const TableSettings& settings) : cpu_(device.isCpu()) {
   std::vector<VkDescriptorType> bindings{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                          VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
                                          VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
   bindings.insert(bindings.end(), shader::kDirectionsPerLevelPass, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER);
-  bindings.insert(bindings.end(), shader::kDirectionsPerLevelPass + 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
-  for (std::uint32_t children = 0; children < pipelines_.size(); ++children)
-    pipelines_[children] =
+  bindings.insert(bindings.end(), shader::kDirectionsPerLevelPass, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
+  for (const std::uint32_t fromVoxels : {0u, 1u})
+    pipelines_[fromVoxels] =
         makeComputePipeline(device, {table_level_spv, "table level"},
                             {.bindings = bindings, .pushConstantBytes = sizeof(shader::TableLevelPush)},
                             {shader::kLevelThreads, 1, 1},
-                            {std::uint32_t(settings.code), std::uint32_t(settings.filter), children});
-  pack_ = makeComputePipeline(
-      device, {pack_bounds_spv, "pack bounds"},
-      {.bindings = std::vector(shader::kDirectionsPerLevelPass + 1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-       .pushConstantBytes = sizeof(shader::TableLevelPush)},
-      {shader::kLevelThreads, 1, 1}, {std::uint32_t(settings.code)});
+                            {std::uint32_t(settings.code), std::uint32_t(settings.filter), fromVoxels, cpu_});
 }
 
 void TableLevels::record(Commands& commands, const DeviceVolume& volume,
@@ -88,36 +86,27 @@ void TableLevels::record(Commands& commands, const DeviceVolume& volume,
   constexpr std::size_t kGroup = shader::kDirectionsPerLevelPass;
   commands.beginPass("octree table");
   commands.clear(table.darkest);
-  if (volume.hierarchy.top() == 0) return;
-  ownBounds_ = Buffer(device_, ownBoundBytes(volume.stored[1]), MemoryUse::Device, "bounds of blocks");
   const std::size_t directions = table.planes.size();
-  for (std::size_t first = 0; first < directions; first += kGroup) {
-    for (int level = 1; level <= volume.hierarchy.top(); ++level) {
-      const shader::TableLevelPush push{
-          .child = volume.onDevice(level - 1),
-          .parent = volume.onDevice(level),
-          .voxels = volume.layout.dimensions,
-          .childEdge = Block{.level = level - 1}.edge(),
-          .parentCount = std::uint32_t(volume.stored[std::size_t(level)]),
-          .firstDirection = std::uint32_t(first),
-          .directionCount = std::uint32_t(std::min(kGroup, directions - first))};
+  for (int level = 1; level <= volume.hierarchy.top(); ++level) {
+    shader::TableLevelPush push{.child = volume.onDevice(level - 1),
+                                .parent = volume.onDevice(level),
+                                .voxels = volume.layout.dimensions,
+                                .childEdge = Block{.level = level - 1}.edge(),
+                                .parentCount = std::uint32_t(volume.stored[std::size_t(level)])};
+    for (std::size_t first = 0; first < directions; first += kGroup) {
+      push.firstDirection = std::uint32_t(first);
+      push.directionCount = std::uint32_t(std::min(kGroup, directions - first));
       std::vector<Binding> bindings{&table.darkest, &volume.occupancyTexels,
                                     &coarse[std::size_t(level) - 1].indices};
       // Whatever is bound in the last group's place of more is not looked at.
       for (std::size_t i = 0; i < kGroup; ++i)
         bindings.emplace_back(&table.planeTexels[std::min(first + i, directions - 1)]);
-      std::vector<Binding> packing{&ownBounds_};
       for (std::size_t i = 0; i < kGroup; ++i)
-        packing.emplace_back(&table.planes[std::min(first + i, directions - 1)]);
-      bindings.insert(bindings.end(), packing.begin() + 1, packing.end());
-      bindings.emplace_back(&ownBounds_);
-      const int children = std::min(level - 1, shader::kChildrenBlocks);
-      commands.dispatchLinear(pipelines_[std::size_t(children)], bindings, push, push.parentCount);
-      commands.barrier(kCompute, kCompute);
-      if (level > 1) continue;
-      commands.dispatchLinear(pack_, packing, push, boundBytes(level, push.parentCount));
-      commands.barrier(kCompute, kCompute);
+        bindings.emplace_back(&table.planes[std::min(first + i, directions - 1)]);
+      commands.dispatchLinear(pipelines_[level == 1 ? 1 : 0], bindings, push, boundBytes(push.parentCount),
+                              cpu_ ? 1 : layersOf(push.directionCount));
     }
+    commands.barrier(kCompute, kCompute);
   }
 }
 

@@ -26,7 +26,7 @@ class MediumLevels {
   std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
 };
 
-/// COMPUTE table_level.comp, pack_bounds.comp: the attenuation table and its bounds; a dispatch a level and
+/// COMPUTE table_level.comp: the attenuation table and its bounds; a dispatch a level and
 /// kDirectionsPerLevelPass directions.
 class TableLevels {
  public:
@@ -36,16 +36,9 @@ class TableLevels {
               const AttenuationTable& table);
 
  private:
-  const Device& device_;
-  std::array<Pipeline, 3> pipelines_;  ///< by kChildren...
-  Pipeline pack_;
-  Buffer ownBounds_;  ///< of level 1, a byte each, for the directions of a dispatch
+  bool cpu_;
+  std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
 };
-
-/// What TableLevels needs for so many blocks of 2³ voxels that hold anything, while it works.
-inline std::uint64_t ownBoundBytes(std::uint64_t blocks) {
-  return std::max<std::uint64_t>(blocks * shader::kDirectionsPerLevelPass, 1);
-}
 
 /// Extinction, colours and light of a level, without its table. Waits.
 LevelData downloadMedium(const Device& device, const DeviceVolume& volume, int level);

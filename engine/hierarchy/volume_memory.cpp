@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "engine/core/error.h"
-#include "engine/hierarchy/level_passes.h"
 #include "engine/volume/device_bricks.h"
 #include "shaders/frame_interface.h"
 
@@ -71,7 +70,7 @@ VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std:
   const std::uint64_t blocks = std::accumulate(stored.begin(), stored.end(), std::uint64_t(0));
   const std::uint64_t voxels = stored.front(), coarse = blocks - voxels;
   std::uint64_t codes = blocks;
-  for (std::size_t level = 1; level < stored.size(); ++level) codes += boundBytes(int(level), stored[level]);
+  for (std::size_t level = 1; level < stored.size(); ++level) codes += boundBytes(stored[level]);
   return {.occupancy = occupancyBytes(hierarchy),
           .extinction = blocks * sizeof(float),
           .table = codes * std::uint64_t(directionCount(directions)),
@@ -85,7 +84,6 @@ VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std:
           .sweep = planSweep(hierarchy.levels.front(), directions, style,
                              std::numeric_limits<std::uint64_t>::max())
                        .bytes(),
-          .levels = stored.size() > 1 ? ownBoundBytes(stored[1]) : 0,
           .splats = std::min<std::uint64_t>(voxels, shader::kSplatsPerChunk) * sizeof(shader::Splat)};
 }
 

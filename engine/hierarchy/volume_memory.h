@@ -28,7 +28,6 @@ struct VolumeMemory {
   std::uint64_t lists = 0;       ///< and of what a frame draws
   std::uint64_t bricks = 0;      ///< of a batch, while the volume is built
   std::uint64_t sweep = 0;       ///< of a slab, while the table is made
-  std::uint64_t levels = 0;      ///< while that of the octree's blocks is made
   std::uint64_t splats = 0;      ///< of a chunk, while a frame is drawn
 
   /// What is kept of the volume, whatever is drawn of it.
@@ -36,7 +35,7 @@ struct VolumeMemory {
   /// The most at any time, without the images and the sort of a frame.
   std::uint64_t peak() const {
     return occupancy + extinction + colors + emission + lists +
-           std::max(bricks, table + std::max({sweep, levels, splats}));
+           std::max(bricks, table + std::max(sweep, splats));
   }
 };
 

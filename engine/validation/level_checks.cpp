@@ -137,8 +137,8 @@ int packedBound(int code, bool largest) {
 
 using Bounds = std::vector<std::vector<int>>;  // [direction][block], any where nothing is held
 
-/// A bound is exactly the code of the most transparent voxel that holds anything; `own` is that of the
-/// children, one by one, and becomes the parents'.
+/// A bound is what half a byte keeps of the code of the most transparent voxel that holds anything; `own` is
+/// that of the children, one by one, and becomes the parents'.
 void compareBounds(const LevelData& level, const LevelData& children, int number,
                    const TableSettings& settings, Bounds& own, Worst& worst) {
   const bool largest = settings.code == AttenuationCode::Linear8;
@@ -156,12 +156,10 @@ void compareBounds(const LevelData& level, const LevelData& children, int number
     own[direction] = expected;
     for (std::size_t i = 0; i < expected.size(); ++i)
       if (level.holdsAnything(i))
-        worst.take(std::abs(level.bounds[direction][i] -
-                            (number == 1 ? packedBound(expected[i], largest) : expected[i])),
-                   [&] {
-                     return fmt::format("level {}, block {}, {}", number, i,
-                                        directionText(settings.directions, int(direction)));
-                   });
+        worst.take(std::abs(level.bounds[direction][i] - packedBound(expected[i], largest)), [&] {
+          return fmt::format("level {}, block {}, {}", number, i,
+                             directionText(settings.directions, int(direction)));
+        });
   }
 }
 

@@ -39,7 +39,7 @@ std::uint32_t DeviceVolume::firstRank(int level) const {
 
 std::uint32_t DeviceVolume::firstBound(int level) const {
   std::uint64_t first = storedBlocks();
-  for (int below = 1; below < level; ++below) first += boundBytes(below, stored[std::size_t(below)]);
+  for (int below = 1; below < level; ++below) first += boundBytes(stored[std::size_t(below)]);
   return std::uint32_t(first);
 }
 

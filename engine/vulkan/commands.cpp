@@ -106,13 +106,13 @@ void Commands::dispatchThreads(const Pipeline& pipeline, glm::ivec3 threads) {
   vkCmdDispatch(buffer_, std::uint32_t(groups.x), std::uint32_t(groups.y), std::uint32_t(groups.z));
 }
 
-void Commands::dispatchInvocations(const Pipeline& pipeline, std::uint64_t count) {
+void Commands::dispatchInvocations(const Pipeline& pipeline, std::uint64_t count, std::uint32_t layers) {
   constexpr std::uint64_t kRow = 65535;  // workgroups that every device takes in one dimension
   const auto threads = std::uint64_t(pipeline.workgroup().x);
   const std::uint64_t groups = (count + threads - 1) / threads;
   const std::uint64_t rows = (groups + kRow - 1) / kRow;
   FV_CHECK_LE(rows, kRow);
-  vkCmdDispatch(buffer_, std::uint32_t(std::min(groups, kRow)), std::uint32_t(rows), 1);
+  vkCmdDispatch(buffer_, std::uint32_t(std::min(groups, kRow)), std::uint32_t(rows), layers);
 }
 
 void Commands::copy(const Buffer& from, const Buffer& to, VkBufferCopy region) {

@@ -38,12 +38,12 @@ class Commands {
     dispatchThreads(pipeline, threads);
   }
   /// `count` invocations in a row; the shader computes its index from gl_WorkGroupID.x + y *
-  /// gl_NumWorkGroups.x.
+  /// gl_NumWorkGroups.x. As many again for each layer, gl_WorkGroupID.z.
   template <typename Push>
   void dispatchLinear(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
-                      std::uint64_t count) {
+                      std::uint64_t count, std::uint32_t layers = 1) {
     bind(pipeline, bindings, &push, sizeof(Push));
-    dispatchInvocations(pipeline, count);
+    dispatchInvocations(pipeline, count, layers);
   }
   template <typename Push>
   void dispatchIndirect(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
@@ -87,7 +87,7 @@ class Commands {
 
  private:
   void dispatchThreads(const Pipeline& pipeline, glm::ivec3 threads);
-  void dispatchInvocations(const Pipeline& pipeline, std::uint64_t count);
+  void dispatchInvocations(const Pipeline& pipeline, std::uint64_t count, std::uint32_t layers);
   void writeTimestamp();
   void reportProgress(const Progress& progress) const;
 

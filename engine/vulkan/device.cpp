@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::array kExtensions{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
 
-constexpr std::uint32_t kStorageBuffersPerStage = 11;  // splat_setup.comp
+constexpr std::uint32_t kStorageBuffersPerStage = 15;  // table_level.comp
 
 /// The features that the engine uses, linked into one chain: queried to judge a device, enabled to open it.
 struct Features {

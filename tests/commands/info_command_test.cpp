@@ -31,10 +31,10 @@ TEST_F(InfoCommand, ShowsWhatGenerateWrote) {
   EXPECT_GT(grid.at("active_voxels"), 0);
   EXPECT_NEAR(grid.at("voxel_size").at(0), 1.0 / 20.0, 1e-9);
   // A cube that fills its box: levels of 20, 10, 5, 3, 2 and 1 blocks along an edge, each above the voxels
-  // with a bound beside its code, half a byte of the smallest.
-  const int voxels = 20 * 20 * 20, small = 10 * 10 * 10, larger = 5 * 5 * 5 + 3 * 3 * 3 + 2 * 2 * 2 + 1;
+  // with a bound of half a byte beside its code, in whole bytes for a level.
+  const int voxels = 20 * 20 * 20, above = 10 * 10 * 10 + 5 * 5 * 5 + 3 * 3 * 3 + 2 * 2 * 2 + 1;
   EXPECT_EQ(grid.at("active_voxels"), voxels);
-  EXPECT_EQ(grid.at("table_bytes"), 26 * (voxels + small + small / 2 + 2 * larger));
+  EXPECT_EQ(grid.at("table_bytes"), 26 * (voxels + above + (above + 3) / 2));
   // 27 bricks of 8³ floats, and a number for each.
   EXPECT_EQ(grid.at("host_bytes"), 27 * (8 * 8 * 8 * 4 + 4));
   EXPECT_GT(grid.at("stored_bytes"), grid.at("table_bytes"));
