@@ -39,9 +39,7 @@ FV_CONSTANT int kLevelThreads = 64;
 // Blocks in a row of their ranks whose bounds are in one byte: half a byte hides about as much as a whole one. A thread of
 // the octree's table makes them together.
 FV_CONSTANT int kBoundBlocks = 2;
-// Directions of a dispatch of the octree's table, and on a GPU of a layer of its workgroups.
-FV_CONSTANT int kDirectionsPerLevelPass = 13;
-FV_CONSTANT int kDirectionsPerLayer = 4;
+FV_CONSTANT int kDirectionsPerLevelPass = 13;  // of a dispatch of the octree's table
 
 // Blocks in a row of their ranks whose codes in the table are kept, or are not, together.
 FV_CONSTANT int kRunBlocks = 8;

@@ -14,9 +14,7 @@
 layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const int kFilter = kFilterGeometric;
 layout(constant_id = 2) const bool kFromVoxels = false;  // whose codes are their own bounds
-// A CPU loads texels faster than bytes, and asks about occupancy once for all directions; a GPU neither.
-layout(constant_id = 3) const bool kCpu = true;
-const uint kShare = kCpu ? kDirectionsPerLevelPass : kDirectionsPerLayer;
+layout(constant_id = 3) const uint kPerLayer = kDirectionsPerLevelPass;  // directions of a layer of workgroups
 
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { TableLevelPush push; };
@@ -27,7 +25,7 @@ layout(scalar, binding = 2) readonly buffer Parents { uint parents[]; };
 // A direction's codes and bounds, read and written.
 #define PLANE(i)                                           \
   layout(binding = 3 + i) uniform utextureBuffer read##i; \
-  layout(scalar, binding = 3 + kDirectionsPerLevelPass + i) buffer Plane##i { uint8_t bytes[]; } plane##i;
+  layout(scalar, binding = 3 + kDirectionsPerLevelPass + i) writeonly buffer Plane##i { uint8_t bytes[]; } plane##i;
 #define FOR_EACH_DIRECTION(F) F(0) F(1) F(2) F(3) F(4) F(5) F(6) F(7) F(8) F(9) F(10) F(11) F(12)
 FOR_EACH_DIRECTION(PLANE)
 
@@ -75,29 +73,23 @@ void findChildren(uint block) {
   }
 }
 
-// What a direction has of them: their codes, and the bytes in which their bounds are.
-uint childCodes[8];
-uint childBounds[8];
-
-#define BYTE(i, place) (kCpu ? texelFetch(read##i, int(place)).x : uint(plane##i.bytes[place]))
-#define LOAD(i)                                                                                           \
-  [[unroll]] for (int child = 0; child < 8; ++child) {                                                    \
-    childCodes[child] = BYTE(i, ranks[child]);                                                            \
-    if (!kFromVoxels) childBounds[child] = BYTE(i, boundOf(push.child, ranks[child]));                    \
-  }
-
 struct Parent {
   uint code, bound, darkest;
 };
 
-Parent makeParent() {
+uint boundOfChild(utextureBuffer bytes, uint code, uint rank) {
+  if (kFromVoxels) return code;
+  return unpackBound(texelFetch(bytes, int(boundOf(push.child, rank))).x, boundInByte(push.child, rank));
+}
+
+Parent parentOf(utextureBuffer bytes) {
   float sum = 0.0, all = 0.0;
   uint used = 0;
   Parent parent = Parent(0, kDarkest, 0);
   [[unroll]] for (int child = 0; child < 8; ++child) {
     const bool holds = voxels[child] > 0.0;
-    const uint code = childCodes[child];
-    const uint bound = kFromVoxels ? code : unpackBound(childBounds[child], boundInByte(push.child, ranks[child]));
+    const uint code = texelFetch(bytes, int(ranks[child])).x;
+    const uint bound = boundOfChild(bytes, code, ranks[child]);
     sum += voxels[child] * filtered(code);
     all += voxels[child];
     used |= holds ? code : 0;
@@ -109,7 +101,12 @@ Parent makeParent() {
 }
 
 bool isWanted(uint direction) {
-  return direction / kShare == gl_WorkGroupID.z && direction < push.directionCount;
+  return direction / kPerLayer == gl_WorkGroupID.z && direction < push.directionCount;
+}
+
+// Few are darker than all before them.
+void takeDarkest(uint direction, uint code) {
+  if (code > darkest[direction]) atomicMax(darkest[direction], code);
 }
 
 // By direction, of a thread's blocks.
@@ -119,8 +116,7 @@ uint deepest[kDirectionsPerLevelPass];
 #define BEGIN(i) bounds[i] = deepest[i] = 0;
 #define MAKE(i)                                                                                           \
   if (isWanted(i)) {                                                                                      \
-    LOAD(i)                                                                                               \
-    const Parent parent = makeParent();                                                                   \
+    const Parent parent = parentOf(read##i);                                                              \
     if (block < push.parentCount) plane##i.bytes[push.parent.firstRank + block] = uint8_t(parent.code);   \
     bounds[i] |= packBound(kCode, parent.bound) << (4 * (block - first));                                 \
     deepest[i] = max(deepest[i], parent.darkest);                                                         \
@@ -128,9 +124,7 @@ uint deepest[kDirectionsPerLevelPass];
 #define END(i)                                                                                            \
   if (isWanted(i)) {                                                                                      \
     plane##i.bytes[push.parent.firstBound + first / kBoundBlocks] = uint8_t(bounds[i]);                   \
-    /* Few are darker than all before them. */                                                            \
-    if (kFromVoxels && deepest[i] > darkest[push.firstDirection + i])                                     \
-      atomicMax(darkest[push.firstDirection + i], deepest[i]);                                            \
+    if (kFromVoxels) takeDarkest(push.firstDirection + i, deepest[i]);                                    \
   }
 
 void main() {

@@ -18,8 +18,9 @@ static_assert(shader::kFilterGeometric == int(HierarchyFilter::Geometric));
 static_assert(shader::kFilterArithmetic == int(HierarchyFilter::Arithmetic));
 static_assert(shader::kRowAlignment % 2 == 0);  // two children of a row are in one word of occupancy
 
-std::uint32_t layersOf(std::uint32_t directions) {
-  return (directions + shader::kDirectionsPerLayer - 1) / shader::kDirectionsPerLayer;
+/// More share what they ask of the children's occupancy, fewer keep a GPU busy.
+std::uint32_t directionsPerLayer(const Device& device) {
+  return device.isCpu() ? shader::kDirectionsPerLevelPass : 4;
 }
 
 shader::MediumLevelPush mediumPush(const DeviceVolume& volume, int level) {
@@ -67,18 +68,19 @@ void MediumLevels::record(Commands& commands, const DeviceVolume& volume,
   }
 }
 
-TableLevels::TableLevels(const Device& device, const TableSettings& settings) : cpu_(device.isCpu()) {
+TableLevels::TableLevels(const Device& device, const TableSettings& settings)
+    : perLayer_(directionsPerLayer(device)) {
   std::vector<VkDescriptorType> bindings{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                          VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
                                          VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
   bindings.insert(bindings.end(), shader::kDirectionsPerLevelPass, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER);
   bindings.insert(bindings.end(), shader::kDirectionsPerLevelPass, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
   for (const std::uint32_t fromVoxels : {0u, 1u})
-    pipelines_[fromVoxels] =
-        makeComputePipeline(device, {table_level_spv, "table level"},
-                            {.bindings = bindings, .pushConstantBytes = sizeof(shader::TableLevelPush)},
-                            {shader::kLevelThreads, 1, 1},
-                            {std::uint32_t(settings.code), std::uint32_t(settings.filter), fromVoxels, cpu_});
+    pipelines_[fromVoxels] = makeComputePipeline(
+        device, {table_level_spv, "table level"},
+        {.bindings = bindings, .pushConstantBytes = sizeof(shader::TableLevelPush)},
+        {shader::kLevelThreads, 1, 1},
+        {std::uint32_t(settings.code), std::uint32_t(settings.filter), fromVoxels, perLayer_});
 }
 
 void TableLevels::record(Commands& commands, const DeviceVolume& volume,
@@ -104,7 +106,7 @@ void TableLevels::record(Commands& commands, const DeviceVolume& volume,
       for (std::size_t i = 0; i < kGroup; ++i)
         bindings.emplace_back(&table.planes[std::min(first + i, directions - 1)]);
       commands.dispatchLinear(pipelines_[level == 1 ? 1 : 0], bindings, push, boundBytes(push.parentCount),
-                              cpu_ ? 1 : layersOf(push.directionCount));
+                              (push.directionCount + perLayer_ - 1) / perLayer_);
     }
     commands.barrier(kCompute, kCompute);
   }

@@ -36,7 +36,7 @@ class TableLevels {
               const AttenuationTable& table);
 
  private:
-  bool cpu_;
+  std::uint32_t perLayer_;             ///< directions of a layer of workgroups
   std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
 };
 
