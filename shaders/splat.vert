@@ -30,5 +30,5 @@ void main() {
   }
   gl_Position = vec4((position - push.viewportOrigin) / push.viewportSize * 2.0 - 1.0, 0.0, 1.0);
   if (size == 0.0) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside the clip volume
-  gl_PointSize = size;
+  gl_PointSize = max(size, 1.0);
 }

@@ -14,7 +14,7 @@
 layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const int kFilter = kFilterGeometric;
 layout(constant_id = 2) const bool kFromVoxels = false;  // whose codes are their own bounds
-layout(constant_id = 3) const uint kPerLayer = kDirectionsPerLevelPass;  // directions of a layer of workgroups
+layout(constant_id = 3) const uint kPerThread = kDirectionsPerLevelPass;  // directions, of its layer of workgroups
 
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { TableLevelPush push; };
@@ -101,7 +101,7 @@ Parent parentOf(utextureBuffer bytes) {
 }
 
 bool isWanted(uint direction) {
-  return direction / kPerLayer == gl_WorkGroupID.z && direction < push.directionCount;
+  return direction / kPerThread == gl_WorkGroupID.z && direction < push.directionCount;
 }
 
 // Few are darker than all before them.

@@ -141,11 +141,12 @@ std::vector<Result> culling(const Device& device, QualityColor color, int resolu
     const FrameSettings settings{.size = glm::ivec2(1024), .culling = culled};
     renderer.render(camera, settings);  // what is made once
     Frame best;
-    for (int run = 0; run < runs; ++run) {
+    least(runs, [&] {
       renderer.render(camera, settings);
-      best = std::min(best, frameTime(renderer),
-                      [](const Frame& a, const Frame& b) { return a.total() < b.total(); });
-    }
+      const Frame frame = frameTime(renderer);
+      if (frame.total() < best.total()) best = frame;
+      return frame.total();
+    });
     results.push_back(
         {.name = fmt::format("{} head {}^3{}: {} splats, {:.3f} of it choosing them",
                              color == QualityColor::Skin ? "opaque" : "bone", resolution,

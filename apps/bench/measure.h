@@ -16,7 +16,8 @@ struct Result {
   double perSecond = 0.0;         ///< items a second, 0 = not counted
 };
 
-/// Milliseconds of the fastest of `runs` or more calls of `run`, which returns its own time in milliseconds.
+/// Milliseconds of the fastest of `runs` calls of `run`, which returns its own time in milliseconds; of more
+/// where these take less than a third of a second.
 double least(int runs, const std::function<double()>& run);
 
 /// Milliseconds to copy `bytes` with two threads, the fastest of a few runs.

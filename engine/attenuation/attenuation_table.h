@@ -71,7 +71,8 @@ class AttenuationSweep {
 std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const DeviceVolume& volume,
                                                      const AttenuationTable& table, int level = 0);
 
-/// The same of the bounds of a level above the voxels: the codes of the most transparent voxel of each block.
+/// The same of the bounds of a level above the voxels: what half a byte keeps of the code of each block's
+/// most transparent voxel.
 std::vector<std::vector<std::uint8_t>> downloadBounds(const Device& device, const DeviceVolume& volume,
                                                       const AttenuationTable& table, int level);
 

@@ -14,7 +14,7 @@ struct LevelData {
   std::vector<glm::dvec3> colors;                ///< empty where all are the albedo
   std::vector<glm::dvec3> emission = {};         ///< per world unit; empty where no block sends out light
   std::vector<std::vector<std::uint8_t>> table;  ///< bytes [direction][block], any where nothing is held
-  /// The same of each block's most transparent voxel, of level 1 as half a byte keeps it; empty for level 0.
+  /// The same of each block's most transparent voxel, as half a byte keeps it; empty for level 0.
   std::vector<std::vector<std::uint8_t>> bounds;
 
   /// Whether a block has extinction or sends out light.

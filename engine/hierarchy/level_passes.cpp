@@ -18,11 +18,6 @@ static_assert(shader::kFilterGeometric == int(HierarchyFilter::Geometric));
 static_assert(shader::kFilterArithmetic == int(HierarchyFilter::Arithmetic));
 static_assert(shader::kRowAlignment % 2 == 0);  // two children of a row are in one word of occupancy
 
-/// More share what they ask of the children's occupancy, fewer keep a GPU busy.
-std::uint32_t directionsPerLayer(const Device& device) {
-  return device.isCpu() ? shader::kDirectionsPerLevelPass : 4;
-}
-
 shader::MediumLevelPush mediumPush(const DeviceVolume& volume, int level) {
   const int childEdge = Block{.level = level - 1}.edge();
   return {.child = volume.onDevice(level - 1),
@@ -69,7 +64,12 @@ void MediumLevels::record(Commands& commands, const DeviceVolume& volume,
 }
 
 TableLevels::TableLevels(const Device& device, const TableSettings& settings)
-    : perLayer_(directionsPerLayer(device)) {
+    : TableLevels(device, settings,
+                  device.isCpu() ? shader::kDirectionsPerLevelPass : kDirectionsPerGpuThread) {}
+
+TableLevels::TableLevels(const Device& device, const TableSettings& settings,
+                         std::uint32_t directionsPerThread)
+    : perThread_(directionsPerThread) {
   std::vector<VkDescriptorType> bindings{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
                                          VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
                                          VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
@@ -80,11 +80,11 @@ TableLevels::TableLevels(const Device& device, const TableSettings& settings)
         device, {table_level_spv, "table level"},
         {.bindings = bindings, .pushConstantBytes = sizeof(shader::TableLevelPush)},
         {shader::kLevelThreads, 1, 1},
-        {std::uint32_t(settings.code), std::uint32_t(settings.filter), fromVoxels, perLayer_});
+        {std::uint32_t(settings.code), std::uint32_t(settings.filter), fromVoxels, perThread_});
 }
 
 void TableLevels::record(Commands& commands, const DeviceVolume& volume,
-                         std::span<const VisibleVoxels> coarse, const AttenuationTable& table) {
+                         std::span<const VisibleVoxels> coarse, const AttenuationTable& table) const {
   constexpr std::size_t kGroup = shader::kDirectionsPerLevelPass;
   commands.beginPass("octree table");
   commands.clear(table.darkest);
@@ -106,7 +106,7 @@ void TableLevels::record(Commands& commands, const DeviceVolume& volume,
       for (std::size_t i = 0; i < kGroup; ++i)
         bindings.emplace_back(&table.planes[std::min(first + i, directions - 1)]);
       commands.dispatchLinear(pipelines_[level == 1 ? 1 : 0], bindings, push, boundBytes(push.parentCount),
-                              (push.directionCount + perLayer_ - 1) / perLayer_);
+                              (push.directionCount + perThread_ - 1) / perThread_);
     }
     commands.barrier(kCompute, kCompute);
   }

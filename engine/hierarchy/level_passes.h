@@ -26,17 +26,21 @@ class MediumLevels {
   std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
 };
 
+/// Of a GPU, which fewer keep busier. All of a dispatch share what they ask of the children's occupancy.
+constexpr std::uint32_t kDirectionsPerGpuThread = 4;
+
 /// COMPUTE table_level.comp: the attenuation table and its bounds; a dispatch a level and
 /// kDirectionsPerLevelPass directions.
 class TableLevels {
  public:
   TableLevels(const Device& device, const TableSettings& settings);
+  TableLevels(const Device& device, const TableSettings& settings, std::uint32_t directionsPerThread);
   /// What was recorded before must be done.
   void record(Commands& commands, const DeviceVolume& volume, std::span<const VisibleVoxels> coarse,
-              const AttenuationTable& table);
+              const AttenuationTable& table) const;
 
  private:
-  std::uint32_t perLayer_;             ///< directions of a layer of workgroups
+  std::uint32_t perThread_;            ///< directions: as many layers of workgroups as a dispatch needs
   std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
 };
 

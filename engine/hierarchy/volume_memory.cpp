@@ -12,6 +12,9 @@ namespace freevoxels {
 
 namespace {
 
+/// Shaders number voxels by signed integers, those of the padding too.
+constexpr std::uint64_t kMostNumbered = std::numeric_limits<std::int32_t>::max();
+
 /// Bytes of the largest buffer that the passes can bind, of which they may see a texel every `texelBytes`.
 std::uint64_t largestBinding(const Device& device, std::uint64_t texelBytes) {
   return std::min({std::uint64_t(device.limits().maxStorageBufferRange),
@@ -26,6 +29,14 @@ void checkBinds(const Device& device, glm::ivec3 box, std::uint64_t bytes, std::
          "a volume of {}x{}x{} voxels needs a buffer of {} MiB and {} binds at most {} MiB: crop or resample "
          "it",
          box.x, box.y, box.z, bytes >> 20, device.description().name, most >> 20);
+}
+
+/// The least that the sweeps need.
+void checkSweepBinds(const Device& device, const HierarchyLayout& hierarchy, DirectionSet directions) {
+  const GridLayout& voxels = hierarchy.levels.front();
+  const SweepPlan least = planSweep(voxels, directions, sweepStyle(device), 0);
+  checkBinds(device, voxels.dimensions, least.slabBytes, sizeof(glm::vec4));
+  checkBinds(device, voxels.dimensions, least.keptBytes, sizeof(glm::vec4));
 }
 
 /// Of the sweeps the least that they need: they make do with what there is.
@@ -99,17 +110,17 @@ std::uint64_t maximumVoxels(const Device& device) {
   const auto bytes = double(occupancyBytes(cube));
   const double most =
       double(std::min(largestBinding(device, sizeof(shader::OccupancyWord)), device.memoryBytes()));
-  // Shaders number voxels by signed integers.
-  return std::uint64_t(std::min(most * (voxels / bytes), double(std::numeric_limits<std::int32_t>::max())));
+  return std::uint64_t(std::min(most * (voxels / bytes), double(kMostNumbered)));
 }
 
 void checkBoxFits(const Device& device, const HierarchyLayout& hierarchy) {
   const glm::ivec3 box = hierarchy.levels.front().dimensions;
-  const SweepPlan least =
-      planSweep(hierarchy.levels.front(), DirectionSet::Directions26, sweepStyle(device), 0);
+  if (hierarchy.levels.front().paddedVoxels() > kMostNumbered)
+    fail(ExitCode::OutOfMemory,
+         "a volume of {}x{}x{} voxels has more than can be numbered: crop or resample it", box.x, box.y,
+         box.z);
   checkBinds(device, box, occupancyBytes(hierarchy), sizeof(shader::OccupancyWord));
-  checkBinds(device, box, least.slabBytes, sizeof(glm::vec4));
-  checkBinds(device, box, least.keptBytes, sizeof(glm::vec4));
+  checkSweepBinds(device, hierarchy, DirectionSet::Directions26);
   checkHolds(device, hierarchy, emptyMemory(device, hierarchy), DirectionSet::Directions26, "");
 }
 
@@ -119,6 +130,7 @@ void checkStoresFit(const Device& device, const DeviceVolume& volume) {
 
 void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions) {
   checkBinds(device, volume.layout.dimensions, volume.planeBytes(), 1);
+  checkSweepBinds(device, volume.hierarchy, directions);
   checkHolds(
       device, volume.hierarchy,
       volumeMemory(volume.hierarchy, volume.stored, directions, storedKinds(volume), sweepStyle(device)),

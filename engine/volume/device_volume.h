@@ -44,8 +44,8 @@ struct DeviceVolume {
   /// Of the levels above the voxels.
   std::uint64_t coarseBlocks() const { return storedBlocks() - stored.front(); }
   /// Where in a direction of the attenuation table a level's bounds begin: behind the codes of all blocks, a
-  /// byte for kBoundBlocks above the voxels: the code of the most transparent of a block's voxels that hold
-  /// anything.
+  /// byte for kBoundBlocks blocks above the voxels: what half a byte keeps of the code of the most
+  /// transparent of a block's voxels that hold anything.
   std::uint32_t firstBound(int level) const;
   /// Of a direction of the table.
   std::uint64_t planeBytes() const { return firstBound(int(stored.size())); }

@@ -10,8 +10,8 @@
 namespace freevoxels {
 
 enum class MemoryUse {
-  Device,  ///< read and written by the device; mapped too where the device's memory is the host's (lavapipe)
-  Upload,  ///< written by the host, read once by the device
+  Device,    ///< read and written by the device; mapped too where it can be and Device::mapsOwnMemory
+  Upload,    ///< written by the host, read once by the device
   Readback,  ///< written by the device, read by the host
 };
 
@@ -46,7 +46,7 @@ class Buffer {
   VkBuffer handle() const { return buffer_.get(); }
   VkDeviceSize bytes() const { return bytes_; }
   VkDeviceAddress address() const { return address_; }
-  /// Null where the host cannot see the memory.
+  /// Null where the memory is not mapped.
   std::byte* mapped() const { return mapped_; }
 
  private:

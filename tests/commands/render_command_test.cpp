@@ -60,6 +60,17 @@ TEST_F(RenderCommand, TheSameCommandGivesTheSameBytes) {
   EXPECT_EQ(render("", "a.png"), render("", "b.png"));
 }
 
+/// Under validation all goes through staging buffers, as on a GPU; without, lavapipe's memory is mapped.
+TEST_F(RenderCommand, GivesTheSameBytesWithoutValidation) {
+  const std::string options = " --light direction=1,1,0.5 --ambient 0.2 --lod 4";
+  const std::string validated = render(options);
+  Arguments arguments{"-u", "FREEVOXELS_VALIDATION", FREEVOXELS_PROGRAM};
+  std::ranges::copy(words("render procedural:cloud @b.exr" + std::string(kSmall) + options),
+                    std::back_inserter(arguments));
+  expectSuccess(runProgramFile("/usr/bin/env", arguments));
+  EXPECT_EQ(readBytes(folder / "b.exr"), validated);
+}
+
 TEST_F(RenderCommand, TheRecordedCommandGivesTheSameBytes) {
   const std::string first = render("--float --paper --orbit 10,-20");
   const std::string command = exrAttribute(first, "freevoxels:command");

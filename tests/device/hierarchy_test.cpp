@@ -4,7 +4,10 @@
 #include <cmath>
 #include <cstring>
 
+#include "engine/attenuation/attenuation_table.h"
 #include "engine/hierarchy/detail_rule.h"
+#include "engine/hierarchy/level_passes.h"
+#include "engine/hierarchy/volume_builder.h"
 #include "engine/reference/reference_hierarchy.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/renderer.h"
@@ -262,6 +265,33 @@ TEST_F(HierarchyTest, AZoomShowsNoPop) {
   const QualitySubject& head = kQualitySubjects.front();
   expectPassedAndPrint(
       zoomQuality(device(), makeQualityScene(head, 32, makeProcedural(head.procedural, 32))));
+}
+
+/// As a CPU and as a GPU makes them.
+TEST_F(HierarchyTest, TablesAreTheSameHoweverManyDirectionsAThreadHas) {
+  const Volume volume = randomVolume(kOdd, shearedTransform(kOdd), 0.4, 8.0);
+  for (const DirectionSet set : {DirectionSet::Directions26, DirectionSet::Directions98}) {
+    const TableSettings settings{.directions = set};
+    std::vector<StageTime> times;
+    const BuiltVolume built = buildVolume(device(), volume, {.densityScale = 1.0}, times);
+    const auto levelsOf = [&](std::uint32_t directionsPerThread) {
+      const AttenuationTable table = makeTable(device(), built.volume, settings);
+      AttenuationSweep sweep(device(), settings);
+      Commands commands(device());
+      sweep.record(commands, built.volume, table);
+      TableLevels(device(), settings, directionsPerThread)
+          .record(commands, built.volume, built.lists.coarse, table);
+      commands.submitAndWait();
+      std::vector<std::vector<std::vector<std::uint8_t>>> levels;
+      for (int level = 1; level <= built.volume.hierarchy.top(); ++level) {
+        levels.push_back(downloadTable(device(), built.volume, table, level));
+        levels.push_back(downloadBounds(device(), built.volume, table, level));
+      }
+      return std::pair(levels, downloadLargestDepths(device(), table));
+    };
+    EXPECT_TRUE(levelsOf(shader::kDirectionsPerLevelPass) == levelsOf(kDirectionsPerGpuThread))
+        << directionCount(set);
+  }
 }
 
 }  // namespace

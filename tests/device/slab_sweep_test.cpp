@@ -60,7 +60,8 @@ TEST_F(SlabSweepTest, ALimitOfMemoryMakesThinnerSlabsOfTheSameTable) {
       sweep.record(commands, built.volume, table);
       commands.submitAndWait();
     }
-    return std::pair(downloadTable(limited, built.volume, table), limited.peakBytes());
+    const auto codes = downloadTable(limited, built.volume, table);
+    return std::pair(codes, limited.peakBytes());
   };
   const auto [table, peak] = tableAndPeak(std::numeric_limits<std::uint64_t>::max());
   const auto [limitedTable, limitedPeak] = tableAndPeak(peak - 500'000);

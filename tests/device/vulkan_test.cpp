@@ -38,10 +38,15 @@ TEST_F(VulkanTest, UploadAndDownloadReturnTheSameBytes) {
   std::iota(data.begin(), data.end(), 17u);
   for (MemoryUse use : {MemoryUse::Device, MemoryUse::Upload, MemoryUse::Readback}) {
     const Buffer buffer(device(), data.size() * sizeof(std::uint32_t), use, "test");
+    EXPECT_EQ(buffer.mapped() != nullptr, use != MemoryUse::Device);
     upload(device(), buffer, std::as_bytes(std::span(data)));
+    upload(device(), buffer, {});
     std::vector<std::uint32_t> back(data.size());
     download(device(), buffer, std::as_writable_bytes(std::span(back)));
     EXPECT_EQ(data, back);
+    std::uint32_t last = 0;
+    download(device(), buffer, std::as_writable_bytes(std::span(&last, 1)), buffer.bytes() - sizeof(last));
+    EXPECT_EQ(last, data.back());
   }
 }
 
