@@ -115,11 +115,11 @@ std::uint64_t maximumVoxels(const Device& device) {
 
 void checkBoxFits(const Device& device, const HierarchyLayout& hierarchy) {
   const glm::ivec3 box = hierarchy.levels.front().dimensions;
+  checkBinds(device, box, occupancyBytes(hierarchy), sizeof(shader::OccupancyWord));
   if (hierarchy.levels.front().paddedVoxels() > kMostNumbered)
     fail(ExitCode::OutOfMemory,
-         "a volume of {}x{}x{} voxels has more than can be numbered: crop or resample it", box.x, box.y,
-         box.z);
-  checkBinds(device, box, occupancyBytes(hierarchy), sizeof(shader::OccupancyWord));
+         "a volume of {}x{}x{} voxels has more than the {} that can be numbered: crop or resample it", box.x,
+         box.y, box.z, kMostNumbered);
   checkSweepBinds(device, hierarchy, DirectionSet::Directions26);
   checkHolds(device, hierarchy, emptyMemory(device, hierarchy), DirectionSet::Directions26, "");
 }
