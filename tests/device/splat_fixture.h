@@ -40,10 +40,8 @@ class SplatTest : public DeviceTest {
       worstAlpha = std::max(worstAlpha, difference.w);
     }
     const bool normalised = settings.composite == Composite::Normalised;
-    // Places of splats are 32-bit floats: from 4096 pixels on a step is 5e-4 of one or more.
-    const double rounding = std::max({settings.size.x, settings.size.y, 4096}) / 4096.0;
     EXPECT_LE(worstColor, 5e-3);
-    EXPECT_LE(worstAlpha, normalised ? rounding * 1e-4 : 5e-3);
+    EXPECT_LE(worstAlpha, normalised ? 1e-4 : 5e-3);
     EXPECT_LE(worstRelativeDepth(picture, expected), 2e-3);
     EXPECT_GE(psnr(picture, expected), 65.0);
   }
