@@ -11,6 +11,7 @@
 #include "engine/hierarchy/level_passes.h"
 #include "engine/lighting/light_pass.h"
 #include "engine/splatting/depth_sort.h"
+#include "engine/splatting/gather_pass.h"
 #include "engine/splatting/resolve_pass.h"
 #include "engine/splatting/splat_pass.h"
 #include "engine/splatting/sums_readback.h"
@@ -34,6 +35,8 @@ struct Renderer::State {
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
   std::unique_ptr<DepthSort> sort;
+  std::optional<GatherVolume> gatherVolume;
+  std::optional<GatherPass> gather;
   std::optional<LightPass> lights;
   std::vector<StageTime> buildTimes, frameTimes;
 
@@ -50,6 +53,10 @@ struct Renderer::State {
   FrameConstants constantsOf(const Camera& camera, const FrameSettings& settings, const Progress& progress);
   Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
                      const Progress& progress = {});
+  SplatTargets recordGather(Commands& commands, const Camera& camera, const FrameSettings& settings,
+                            const Progress& progress);
+  SplatTargets recordImage(Commands& commands, const Camera& camera, const FrameSettings& settings,
+                           const Progress& progress);
 };
 
 VolumeMemory Renderer::State::memoryOfVolume() const {
@@ -186,6 +193,41 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
   return frame;
 }
 
+/// The image in the targets, without their optical depth.
+SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& camera, const FrameSettings& wanted,
+                                           const Progress& progress) {
+  frameTimes.clear();
+  FrameSettings settings = resolved(wanted);
+  settings.attenuation = AttenuationLookup::Exact;
+  FrameConstants constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
+  SplatTargets targets = makeImageTargets(device, settings);
+  shader::GatherFrame lattice =
+      makeGatherFrame(built.volume, camera, settings, constants.detail, constants.hiddenTransmittance);
+  const AttenuationTable* read = nullptr;
+  if (constants.lightsReadTable)
+    read = constants.detail.coarsest > 0 ? &tableWithLevels(progress) : &sweptTable(progress);
+  if (settings.lighting)
+    constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, frameTimes);
+  if (!gatherVolume) gatherVolume.emplace(device, built);
+  if (!gather) gather.emplace(device);
+  gatherVolume->record(commands, {.frame = constants,
+                                  .table = read,
+                                  .lighting = settings.lighting ? &*settings.lighting : nullptr,
+                                  .lights = settings.lighting ? &lights->lights() : nullptr});
+  gatherVolume->describe(lattice);
+  gather->record(commands, *gatherVolume, lattice, targets);
+  return targets;
+}
+
+SplatTargets Renderer::State::recordImage(Commands& commands, const Camera& camera, const FrameSettings& settings,
+                                          const Progress& progress) {
+  if (drawsByGathering(settings)) return recordGather(commands, camera, settings, progress);
+  Frame frame = recordSplats(commands, camera, settings, progress);
+  if (settings.composite != Composite::Sorted || settings.depth)
+    resolve->record(commands, frame.constants, frame.targets);
+  return std::move(frame.targets);
+}
+
 Renderer::Renderer(const Device& device, const Volume& volume, const Classification& classification,
                    const TableSettings& table, const Progress& progress) {
   state_ = std::make_unique<State>(State{.device = device, .tableSettings = table});
@@ -199,13 +241,11 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   checkFrameFits(state_->device, settings);
   State& state = *state_;
   Commands commands(state.device);
-  const State::Frame frame = state.recordSplats(commands, camera, settings, progress);
-  if (settings.composite != Composite::Sorted || settings.depth)
-    state.resolve->record(commands, frame.constants, frame.targets);
+  const SplatTargets targets = state.recordImage(commands, camera, settings, progress);
   commands.beginPass("read back");
-  const TargetReadback color(state.device, commands, frame.targets.colorEnergy);
+  const TargetReadback color(state.device, commands, targets.colorEnergy);
   std::optional<TargetReadback> depth;
-  if (settings.depth) depth.emplace(state.device, commands, frame.targets.distance);
+  if (settings.depth) depth.emplace(state.device, commands, targets.distance);
   commands.submitAndWait(progress);
   addTimes(state.frameTimes, commands.times());
 

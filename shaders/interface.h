@@ -88,6 +88,10 @@ FV_CONSTANT float kMaximumExtinction = 1e30f;
 FV_CONSTANT float kHighlight = 0.2f;
 FV_CONSTANT float kHighlightExponent = 40.0f;
 
+// The mean over a ball of a block's volume of 1 / distance² from its middle is 1 over this much of the edge's square: no
+// block has more light from a source that is in it.
+FV_CONSTANT float kNearestLight2 = 0.1283f;
+
 FV_CONSTANT int kCodeDepth8 = 0;
 FV_CONSTANT int kCodeLinear8 = 1;
 FV_CONSTANT int kFilterGeometric = 0;

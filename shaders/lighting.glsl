@@ -1,10 +1,8 @@
 // What a block of albedo 1 scatters towards the eye of the light that it gets: Subr et al. 2007, Section 4.3. Include after
-// block_depth.glsl and self_attenuation.glsl; `frame` is the SetupFrame,
-// `lights` its lights.
+// block_depth.glsl and self_attenuation.glsl; `frame` is the SetupFrame, `lights` its lights. kAnyView says whether the
+// light is wanted for all positions of the eye, to first order in the direction towards it: then there must be neither a
+// phase function nor surfaces.
 
-// The mean over a ball of a block's volume of 1 / distance² from its middle is 1 over this much of the edge's square: no
-// block has more light from a source that is in it.
-const float kNearestLight2 = 0.1283;
 const float kPi = 3.14159265358979;
 const float kMostRayDepth = 0.9999 * kOpaqueDepth;  // the end of the code of rays
 
@@ -48,36 +46,64 @@ float surfaceScattering(vec3 normal, vec3 toLight, vec3 toEye) {
   return (1.0 - kHighlight) * abs(dot(normal, toLight)) / (2.0 * kPi) + kHighlight * highlight;
 }
 
-// The mean over a block of what it lets through towards a light, `own` its optical depth there, each part weighted by what
-// it sends to the eye. Seen from the light's side the parts that the eye sees are those in the light, from the other
-// side those in the dark; `cosine` is between the two ways.
-float meanSeen(SeenBlock seen, float own, float cosine) {
+// What of a light reaches the parts of a block that the eye sees, were it on the light's side of the block, and on the
+// other one.
+struct Sides {
+  vec3 same, other;
+};
+
+// The means over a block of what it lets through towards a light, `own` its optical depth there, each part weighted by
+// what it sends to the eye. Seen from the light's side the parts that the eye sees are those in the light (x), from the
+// other side those in the dark (y).
+vec2 meansSeen(SeenBlock seen, float own) {
   const float sameSide = selfAttenuation(seen.own + own);
   const float otherSide = exp(-min(seen.own, own)) * selfAttenuation(abs(seen.own - own));
-  return mix(otherSide, sameSide, 0.5 + 0.5 * cosine) / selfAttenuation(seen.own);
+  return vec2(sameSide, otherSide) / selfAttenuation(seen.own);
 }
 
 // What of the light from a direction reaches what is seen of the block. `depth` and `falling` as depthTowards has them.
-vec3 reaching(SeenBlock seen, vec3 direction, vec3 way, float depth, float falling) {
+Sides reaching(SeenBlock seen, vec3 direction, float depth, float falling) {
   const float layer = layerLength(direction);
   const bool inFull = frame.lighting.lookup == kLookupExact || frame.pathLengthCorrection != 0;
   const float counted = inFull ? layer : frame.voxelSize;
   const float inFront = depthInFront(seen.block, direction, depth, falling * seen.sigma * counted);
   const float own = seen.sigma * layer * float(layersOf(seen.block, direction));
-  const float cosine = dot(way, seen.toEye);
-  if (!kTinted) return vec3(exp(-inFront) * meanSeen(seen, own, cosine));
+  if (!kTinted) {
+    const vec2 means = exp(-inFront) * meansSeen(seen, own);
+    return Sides(vec3(means.x), vec3(means.y));
+  }
   // At the end of its code a depth may be any larger one, and a tint would let light through.
-  if (falling == 0.0 || depth >= kMostRayDepth) return vec3(0.0);
-  vec3 part;
+  if (falling == 0.0 || depth >= kMostRayDepth) return Sides(vec3(0.0), vec3(0.0));
+  Sides sides;
   for (int c = 0; c < 3; ++c) {
     const float tint = frame.lighting.tint[c];
-    part[c] = exp(-tint * inFront) * meanSeen(seen, tint * own, cosine);
+    const vec2 means = exp(-tint * inFront) * meansSeen(seen, tint * own);
+    sides.same[c] = means.x;
+    sides.other[c] = means.y;
   }
-  return part;
+  return sides;
+}
+
+// Towards the eye; with kAnyView the mean over all directions d towards it, and for each the share 1 + dot(`towards`, d)
+// of its luminance.
+struct ScatteredLight {
+  vec3 light, towards;
+};
+
+float luminanceOf(vec3 light) { return light.r + light.g + light.b; }
+
+// `way` is the direction towards where `light` comes from, in the world and of length 1.
+void addLight(inout ScatteredLight sum, SeenBlock seen, vec3 light, Sides sides, vec3 way) {
+  if (kAnyView) {
+    sum.light += 0.5 * light * (sides.same + sides.other);
+    sum.towards += 0.5 * luminanceOf(light * (sides.same - sides.other)) * way;
+  } else {
+    sum.light += light * mix(sides.other, sides.same, 0.5 + 0.5 * dot(way, seen.toEye));
+  }
 }
 
 // `light` is a number: a copy of a Light would be of all its rays.
-vec3 scatteredFrom(int light, SeenBlock seen) {
+void addScattered(inout ScatteredLight sum, int light, SeenBlock seen) {
   vec3 toLight = lights[light].place;
   float distance2 = 1.0;
   if (lights[light].atInfinity == 0) {
@@ -94,17 +120,16 @@ vec3 scatteredFrom(int light, SeenBlock seen) {
   else
     depth = depthTowards(towardsSource(toLight, frame.lighting.lookup, lights[light].beyond), seen.rank, falling);
   const vec3 way = normalize(frame.indexToWorld * toLight);
-  float phase = phaseFunction(frame.lighting.phaseG, -way, seen.toEye);
+  float phase = kAnyView ? 1.0 / (4.0 * kPi) : phaseFunction(frame.lighting.phaseG, -way, seen.toEye);
   if (seen.surface > 0.0) phase = mix(phase, surfaceScattering(seen.normal, way, seen.toEye), seen.surface);
-  return lights[light].color * (phase * reaching(seen, toLight, way, depth, falling) / distance2);
+  addLight(sum, seen, lights[light].color * (phase / distance2), reaching(seen, toLight, depth, falling), way);
 }
 
 // The mean of the radiance that reaches the block from all directions: what is dark from everywhere is dark in ambient light.
-vec3 reachingFromAll(SeenBlock seen) {
+void addFromEverywhere(inout ScatteredLight sum, SeenBlock seen) {
   const Towards towards = towardsSource(vec3(0.0, 0.0, 1.0), kLookupBilinear, uvec2(0));
   const int edge = 2 * frame.cells + 1;
   const uint place = codePlace(frame.cells, seen.rank);
-  vec3 sum = vec3(0.0);
   for (int i = 0; i < edge * edge * edge; ++i) {
     if (frame.lighting.fromAll[i] == vec3(0.0)) continue;  // dark, or no direction: inside of the cube
     const ivec3 cell = ivec3(i % edge, i / edge % edge, i / edge / edge) - frame.cells;
@@ -112,16 +137,15 @@ vec3 reachingFromAll(SeenBlock seen) {
     const float falling = isAtEnd(towards, cell, place) ? 0.0 : 1.0;
     const vec3 direction = vec3(cell) / float(frame.cells);
     const vec3 way = normalize(frame.indexToWorld * direction);
-    sum += frame.lighting.fromAll[i] * reaching(seen, direction, way, depth, falling);
+    addLight(sum, seen, frame.lighting.fromAll[i], reaching(seen, direction, depth, falling), way);
   }
-  return sum;
 }
 
-// Per albedo. `towardsEye` is as directionToEye has it.
-vec3 scatteredLight(Block block, float sigma, uint rank, vec3 towardsEye) {
-  const float own = sigma * layerLength(towardsEye) * float(layersOf(block, towardsEye));
-  SeenBlock seen = SeenBlock(block, rank, sigma, normalize(frame.indexToWorld * towardsEye), own, vec3(0.0), 0.0);
-  if (frame.lighting.surface > 0.0) {
+// Per albedo. `towardsEye` is the world's direction of length 1 in which the light is sent, `own` the block's optical
+// depth in it.
+ScatteredLight scatteredLight(Block block, float sigma, uint rank, vec3 towardsEye, float own) {
+  SeenBlock seen = SeenBlock(block, rank, sigma, towardsEye, own, vec3(0.0), 0.0);
+  if (!kAnyView && frame.lighting.surface > 0.0) {
     const vec3 gradient = extinctionGradient(block);
     const vec3 normal = frame.lighting.gradientToWorld * gradient;
     // Where the extinction hardly changes there is no surface, and its normal is noise.
@@ -130,8 +154,8 @@ vec3 scatteredLight(Block block, float sigma, uint rank, vec3 towardsEye) {
       seen.surface = frame.lighting.surface * min(2.0 * length(gradient) / sigma, 1.0);
     }
   }
-  vec3 sum = vec3(0.0);
-  for (int i = 0; i < frame.lighting.lightCount; ++i) sum += scatteredFrom(i, seen);
-  if (frame.lighting.fromEverywhere != 0) sum += reachingFromAll(seen);
+  ScatteredLight sum = ScatteredLight(vec3(0.0), vec3(0.0));
+  for (int i = 0; i < frame.lighting.lightCount; ++i) addScattered(sum, i, seen);
+  if (frame.lighting.fromEverywhere != 0) addFromEverywhere(sum, seen);
   return sum;
 }

@@ -1,21 +1,14 @@
 // Optical depth between the source of a ray sweep and a position on one of its planes, and how it changes
 // within the plane. Include after interface.h, major_axis.glsl and GL_EXT_buffer_reference_uvec2.
 
+#include "catmull_rom.glsl"
+
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RayDepths { uint pairs[]; };
 
 // `fromSource` is the direction in which the ray leaves it.
 int fanIndex(vec3 fromSource) {
   const int axis = majorAxis(fromSource);
   return 2 * axis + (fromSource[axis] > 0.0 ? 1 : 0);
-}
-
-// Catmull-Rom weights of the samples at -1, 0, 1, 2 for a position x in 0..1, and their derivative.
-vec4 cubicWeights(float x) {
-  return 0.5 * vec4(x * (-1.0 + x * (2.0 - x)), 2.0 + x * x * (-5.0 + 3.0 * x), x * (1.0 + x * (4.0 - 3.0 * x)),
-                    x * x * (-1.0 + x));
-}
-vec4 cubicSlopes(float x) {
-  return 0.5 * vec4(-1.0 + x * (4.0 - 3.0 * x), x * (-10.0 + 9.0 * x), 1.0 + x * (8.0 - 9.0 * x), x * (-2.0 + 3.0 * x));
 }
 
 // The depth, and its change per voxel along the fan's two sides.

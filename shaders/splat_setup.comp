@@ -39,14 +39,9 @@ layout(scalar, binding = 11) readonly buffer Emission { uint emission[]; };
 #include "part_ahead.glsl"
 #include "splat_projection.glsl"
 #include "self_attenuation.glsl"
+const bool kAnyView = false;
 #include "lighting.glsl"
-
-vec3 colorOf(Block block, uint rank) {
-  if (frame.opacityPoints == 0 && !kAlbedos) return frame.albedo;
-  if (block.level > 0) return unpackColor(blockColors[rank - frame.levels[1].firstRank]);
-  if (kAlbedos) return unpackLight(albedos[rank]);
-  return evaluatePoints(frame.opacityPoints, frame.colorPoints, scalars[rank]);
-}
+#include "block_color.glsl"
 
 void main() {
   const uint local = gl_GlobalInvocationID.x;
@@ -73,7 +68,7 @@ void main() {
   const float leaving = ofKernel ? kernelMean(block.center, direction, depth, toEye.depth) : selfAttenuation(depth);
   const float energy = sigma * leaving * peak;
   vec3 color = colorOf(block, rank);
-  if (kLit) color *= scatteredLight(block, sigma, rank, direction);
+  if (kLit) color *= scatteredLight(block, sigma, rank, normalize(frame.indexToWorld * direction), depth).light;
   splat.colorEnergy = vec4(energy * color, energy);
   if (kEmits) splat.colorEnergy.rgb += leaving * peak * frame.emissionUnit * unpackLight(emission[rank]);
   splat.center = footprint.center;

@@ -3,6 +3,8 @@
 #include <CLI/CLI.hpp>
 #include <cstdint>
 
+#include "engine/core/error.h"
+
 namespace freevoxels {
 
 void MethodOptions::add(CLI::App& app) {
@@ -10,6 +12,11 @@ void MethodOptions::add(CLI::App& app) {
   addWord(app, "--composite", kCompositeWords, composite,
           "How the splats become the picture; sorted is back-to-front alpha blending, to compare with "
           "[normalised]")
+      ->group(group);
+  addWord(app, "--draw", kDrawWords, draw,
+          "How the volume becomes the image; gather marches through it for every sample of the image, splats draws a "
+          "billboard for every voxel; auto: gather where attenuation is auto or exact and the composite is not "
+          "sorted, else splats [auto]")
       ->group(group);
   addWord(app, "--attenuation", kAttenuationWords, attenuation,
           "How the table is looked up between its directions; exact does not read it, but "
@@ -62,9 +69,14 @@ TableSettings MethodOptions::table() const {
 }
 
 void MethodOptions::apply(FrameSettings& frame) const {
+  frame.draw = Draw(draw.value_or(int(Draw::Auto)));
   frame.composite = Composite(composite.value_or(int(paper ? Composite::Additive : Composite::Normalised)));
   frame.attenuation = AttenuationLookup(
       attenuation.value_or(int(paper ? AttenuationLookup::Nearest : AttenuationLookup::Auto)));
+  if (frame.draw == Draw::Gather && !canGather(frame))
+    fail(ExitCode::Usage,
+         "--draw gather computes exact transmittance and no sorted image: leave --attenuation and --composite out, or "
+         "use --draw splats");
   frame.gradient = gradient.value_or(!paper);
   frame.lod = float(lod.value_or(paper ? 0.0 : 1.0));
   frame.culling = culling.value_or(!paper);
@@ -75,6 +87,7 @@ void MethodOptions::describe(OptionList& options) const {
   FrameSettings frame;
   apply(frame);
   options.emplace_back("--composite", kCompositeWords[std::size_t(frame.composite)]);
+  options.emplace_back("--draw", kDrawWords[std::size_t(frame.draw)]);
   options.emplace_back("--attenuation", kAttenuationWords[std::size_t(frame.attenuation)]);
   options.emplace_back("--directions", kDirectionWords[std::size_t(table().directions) - 1]);
   options.emplace_back("--code", kCodeWords[std::size_t(table().code)]);

@@ -13,6 +13,7 @@ namespace freevoxels {
 
 /// What the options take, in the order of the enumerators; of the directions in that of DirectionSet's
 /// values, from 1.
+inline const std::vector<std::string> kDrawWords{"auto", "gather", "splats"};
 inline const std::vector<std::string> kCompositeWords{"normalised", "additive", "sorted"};
 inline const std::vector<std::string> kAttenuationWords{"bilinear", "nearest", "exact", "auto"};
 inline const std::vector<std::string> kDirectionWords{"26", "98"};
@@ -21,7 +22,7 @@ inline const std::vector<std::string> kHierarchyFilterWords{"geometric", "arithm
 
 struct MethodOptions {
   bool paper = false;
-  std::optional<int> composite, attenuation, directions, code, hierarchyFilter;
+  std::optional<int> draw, composite, attenuation, directions, code, hierarchyFilter;
   std::optional<bool> pathLengthCorrection, gradient, culling;
   std::optional<double> lod, cullThreshold;
 

@@ -140,8 +140,11 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   frame.detail = detailRule(volume.hierarchy, rays, settings.size,
                             settings.composite == Composite::Sorted ? 0.0 : double(settings.lod));
   frame.cull = cullRule(volume.layout.dimensions, rays, settings);
+  if (frame.cull.hiddenDepth > 0.0) {
+    frame.cull.hiddenDepth += std::log(std::max(brightestRay(volume), 1.0));
+    frame.hiddenTransmittance = std::exp(-frame.cull.hiddenDepth);
+  }
   if (!frame.eyeReadsTable()) frame.cull.hiddenDepth = 0.0;
-  if (frame.cull.hiddenDepth > 0.0) frame.cull.hiddenDepth += std::log(std::max(brightestRay(volume), 1.0));
   frame.resolve = {.ray = rays.direction,
                    .rayX = rays.directionX,
                    .rayY = rays.directionY,

@@ -25,8 +25,15 @@ enum class AttenuationLookup : int {
                  ///< a volume that shines: lookupFor
 };
 
+enum class Draw : int {
+  Auto = 0,    ///< Gather where it can draw the frame: drawsByGathering
+  Gather = 1,  ///< samples of the image march through the volume, with the transmittance of their own rays
+  Splats = 2,  ///< billboards, added in any order: the paper's
+};
+
 struct FrameSettings {
   glm::ivec2 size{1024, 1024};
+  Draw draw = Draw::Auto;
   Composite composite = Composite::Normalised;
   AttenuationLookup attenuation = AttenuationLookup::Auto;
   /// Whether the optical depth to the eye varies across a footprint, to first order, and normalised along the
@@ -47,6 +54,15 @@ struct FrameSettings {
   /// bilinearly, or as AttenuationLookup::Nearest says.
   std::optional<Lighting> lighting = std::nullopt;
 };
+
+/// The gather computes transmittance along its own rays, so it draws no frame that the table or an order decides.
+inline bool canGather(const FrameSettings& settings) {
+  return settings.composite != Composite::Sorted &&
+         (settings.attenuation == AttenuationLookup::Exact || settings.attenuation == AttenuationLookup::Auto);
+}
+inline bool drawsByGathering(const FrameSettings& settings) {
+  return settings.draw != Draw::Splats && canGather(settings);
+}
 
 /// Of settings that have lighting: what Auto is of them where memory is plenty. Who looks up the paper's way
 /// gets the paper's shadows.

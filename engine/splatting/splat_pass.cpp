@@ -73,13 +73,18 @@ void checkFrameFits(const Device& device, const FrameSettings& settings) {
          device.memoryBytes() >> 20);
 }
 
-SplatTargets makeTargets(const Device& device, const FrameSettings& settings) {
+SplatTargets makeImageTargets(const Device& device, const FrameSettings& settings) {
   SplatTargets targets{.colorEnergy = RenderTarget(device, settings.size, kColorFormat, "C and E"),
                        .opticalDepth = {},
                        .distance = {}};
+  if (settings.depth) targets.distance = RenderTarget(device, settings.size, kScalarFormat, "distance");
+  return targets;
+}
+
+SplatTargets makeTargets(const Device& device, const FrameSettings& settings) {
+  SplatTargets targets = makeImageTargets(device, settings);
   if (settings.composite != Composite::Sorted)
     targets.opticalDepth = RenderTarget(device, settings.size, kScalarFormat, "T");
-  if (settings.depth) targets.distance = RenderTarget(device, settings.size, kScalarFormat, "distance");
   return targets;
 }
 

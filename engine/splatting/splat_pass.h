@@ -28,6 +28,8 @@ struct SplatTargets {
 };
 
 SplatTargets makeTargets(const Device& device, const FrameSettings& settings);
+/// Of a frame that needs no sums at the pixels: without the optical depth.
+SplatTargets makeImageTargets(const Device& device, const FrameSettings& settings);
 std::uint64_t targetBytes(const FrameSettings& settings);
 
 /// The frame's constants, computed in double precision on the host.
@@ -40,6 +42,8 @@ struct FrameConstants {
   bool lit = false;        ///< by setup.lighting, which is the caller's to fill
   bool tinted = false;     ///< only what is lit
   bool lightsReadTable = false;
+  /// Transmittance to the eye below which nothing shows, however bright the volume; 0 where nothing is left out.
+  double hiddenTransmittance = 0.0;
   DetailRule detail;
   CullRule cull;
   /// Whether the levels of the table above the voxels are looked up.

@@ -96,7 +96,8 @@ void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings,
   vkCmdBindPipeline(buffer_, pipeline.bindPoint(), pipeline.handle());
   vkCmdPushDescriptorSetKHR(buffer_, pipeline.bindPoint(), pipeline.layout(), 0, std::uint32_t(writes.size()),
                             writes.data());
-  vkCmdPushConstants(buffer_, pipeline.layout(), pipeline.stages(), 0, std::uint32_t(pushBytes), push);
+  if (pushBytes > 0)
+    vkCmdPushConstants(buffer_, pipeline.layout(), pipeline.stages(), 0, std::uint32_t(pushBytes), push);
 }
 
 void Commands::dispatchThreads(const Pipeline& pipeline, glm::ivec3 threads) {

@@ -37,6 +37,11 @@ class Commands {
     bind(pipeline, bindings, &push, sizeof(Push));
     dispatchThreads(pipeline, threads);
   }
+  /// The same of a pipeline without push constants.
+  void dispatch(const Pipeline& pipeline, std::span<const Binding> bindings, glm::ivec3 threads) {
+    bind(pipeline, bindings, nullptr, 0);
+    dispatchThreads(pipeline, threads);
+  }
   /// `count` invocations in a row; the shader computes its index from gl_WorkGroupID.x + y *
   /// gl_NumWorkGroups.x. As many again for each layer, gl_WorkGroupID.z.
   template <typename Push>

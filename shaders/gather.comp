@@ -1,0 +1,235 @@
+#version 460
+// A thread per sample of the image's lattice marches its ray through the slices of blocks across the index axis that it
+// passes most slices of, and adds up what four blocks of each slice send to the eye, interpolated bilinearly, behind
+// what the ray has passed before: Subr et al. 2007, Section 2.1, Eq. 3 and 4, with the transmittance of the ray itself
+// in place of the attenuation table.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "gather_interface.h"
+#include "gather_ray.glsl"
+
+layout(constant_id = 0) const int kAxis = 2;        // rays with another axis are left to other dispatches
+layout(constant_id = 1) const bool kTowards = false;  // whether the light of blocks depends on the direction to the eye
+
+layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
+layout(scalar, binding = 0) uniform Frame { GatherFrame frame; };
+layout(binding = 1) uniform utextureBuffer windows;    // mask of 32 blocks, and how many occupied ones are before them
+layout(binding = 2) uniform utextureBuffer skipCells;  // 0: the cell and its next neighbours are empty
+layout(binding = 3) uniform utextureBuffer sources;    // by rank: source term and extinction, four halves
+layout(binding = 4) uniform textureBuffer towards;     // by rank, where kTowards says so
+layout(binding = 5, rgba32f) writeonly uniform imageBuffer colorEnergy;  // C, E
+layout(binding = 6, r32f) writeonly uniform imageBuffer distances;       // sum of e times distance
+
+const bool kPaired = kAxis != 0;  // the first side is x: its neighbours share a window
+const int kSideA = kAxis == 0 ? 1 : 0;
+const int kSideB = kAxis == 2 ? 1 : 2;
+
+struct Ray {
+  vec2 origin, slope;   // positions on the sides: origin + slope * slice, in blocks of the level
+  float direction;      // 1 or -1, of ascending or descending slices
+  float eye;            // where the ray starts, slices of the level
+  float layer;          // world length of a slice of the level on the ray, times the extinction's unit
+  vec3 toEye;           // in the world, of length 1
+};
+
+// The level's geometry, read once a level.
+struct Slices {
+  ivec2 dimensions;     // of the sides, blocks
+  ivec3 strides;        // of the sides and the axis, in addresses
+  uint firstWindow, firstRank;
+  ivec3 skipStrides;
+  int skipFirst, skipShift;
+  ivec2 skipLast;       // the last cells of the sides
+};
+
+struct Sums {
+  vec3 color;
+  float distance;       // sum of e times slices from the eye
+  float transmittance;
+};
+
+// Weights of the two neighbours along a side; `low` becomes the first one that is inside, with its weight first.
+vec2 sideWeights(float position, int count, out int low) {
+  const float first = floor(position);
+  const float part = position - first;
+  low = int(first);
+  vec2 weights = vec2(low < count ? 1.0 - part : 0.0, low + 1 < count ? part : 0.0);
+  if (low < 0) weights = vec2(low == -1 ? part : 0.0, 0.0);
+  low = clamp(low, 0, count - 1);
+  return weights;
+}
+
+// Adds a block's source term and extinction.
+void addBlock(inout vec4 slice, uint rank, float weight, vec3 toEye) {
+  const uvec2 halves = texelFetch(sources, int(rank)).xy;
+  vec4 source = vec4(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y));
+  if (kTowards) source.rgb *= 1.0 + dot(texelFetch(towards, int(rank)).xyz, toEye);
+  slice += weight * source;
+}
+
+// Two neighbours in x.
+void addPair(inout vec4 slice, Slices level, int address, vec2 weights, vec3 toEye) {
+  const uvec2 window = texelFetch(windows, int(level.firstWindow) + (address >> kWindowShift)).xy;
+  const int bit = address & (kWindowStep - 1);
+  const uint rank = level.firstRank + window.y + bitCount(window.x & ((1u << bit) - 1u));
+  const uint first = window.x >> bit & 1u, second = window.x >> (bit + 1) & 1u;
+  addBlock(slice, rank, first != 0 ? weights.x : 0.0, toEye);
+  addBlock(slice, rank + first, second != 0 ? weights.y : 0.0, toEye);
+}
+
+void addSingle(inout vec4 slice, Slices level, int address, float weight, vec3 toEye) {
+  const uvec2 window = texelFetch(windows, int(level.firstWindow) + (address >> kWindowShift)).xy;
+  const int bit = address & (kWindowStep - 1);
+  const uint rank = level.firstRank + window.y + bitCount(window.x & ((1u << bit) - 1u));
+  addBlock(slice, rank, (window.x >> bit & 1u) != 0 ? weight : 0.0, toEye);
+}
+
+// Source term and extinction, interpolated.
+vec4 sliceAt(Slices level, vec2 position, int slice, vec3 toEye) {
+  vec4 result = vec4(0.0);
+  ivec2 low;
+  const vec2 a = sideWeights(position.x, level.dimensions.x, low.x);
+  const vec2 b = sideWeights(position.y, level.dimensions.y, low.y);
+  const int address = low.x * level.strides.x + low.y * level.strides.y + slice * level.strides.z;
+  const int next = b.y > 0.0 ? address + level.strides.y : address;
+  if (kPaired) {
+    addPair(result, level, address, a * b.x, toEye);
+    addPair(result, level, next, a * b.y, toEye);
+  } else {
+    const int aside = a.y > 0.0 ? level.strides.x : 0;
+    addSingle(result, level, address, a.x * b.x, toEye);
+    addSingle(result, level, address + aside, a.y * b.x, toEye);
+    addSingle(result, level, next, a.x * b.y, toEye);
+    addSingle(result, level, next + aside, a.y * b.y, toEye);
+  }
+  return result;
+}
+
+// The part of a slice's tent that is in front of the eye, which is `ahead` slices before it.
+float partInFront(float ahead) {
+  const float a = clamp(ahead, -1.0, 1.0);
+  return a >= 0.0 ? 0.5 + a - 0.5 * a * a : 0.5 * (1.0 + a) * (1.0 + a);
+}
+
+// The slice's light is constant over it; what leaves it is the mean of its own transmittance.
+void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
+  const vec4 found = sliceAt(level, ray.origin + ray.slope * float(slice), slice, ray.toEye);
+  const float ahead = (float(slice) - ray.eye) * ray.direction;
+  const float length = ray.layer * partInFront(ahead);
+  const float depth = length * found.a;
+  const float through = exp(-depth);
+  const float leaving = depth < 0.01 ? 1.0 - 0.5 * depth : (1.0 - through) / depth;
+  const float rest = sums.transmittance * through;
+  sums.color += sums.transmittance * leaving * length * found.rgb;
+  sums.distance += (sums.transmittance - rest) * max(ahead, 0.0);
+  sums.transmittance = rest;
+}
+
+// Whether the kGatherGroup slices from `slice` on in the ray's direction may hold anything.
+bool mayHold(Slices level, Ray ray, int slice) {
+  const float last = float(slice) + ray.direction * float(kGatherGroup - 1);
+  const vec2 low = min(ray.origin + ray.slope * float(slice), ray.origin + ray.slope * last);
+  const ivec2 cell = clamp(ivec2(floor(low)) >> level.skipShift, ivec2(0), level.skipLast);
+  const int plane = max(min(slice, int(last)), 0) >> level.skipShift;
+  return texelFetch(skipCells, level.skipFirst + cell.x * level.skipStrides.x + cell.y * level.skipStrides.y +
+                                   plane * level.skipStrides.z).x != 0;
+}
+
+// The slices from `slices.x` to `slices.y` - 1 that the ray meets within the volume and in front of the eye.
+ivec2 slicesOnRay(Slices level, Ray ray, ivec2 slices) {
+  vec2 range = vec2(slices) - vec2(0.0, 1.0);
+  [[unroll]] for (int side = 0; side < 2; ++side) {
+    const float slope = abs(ray.slope[side]) < 1e-7 ? 1e-7 : ray.slope[side];
+    const float a = (-1.0 - ray.origin[side]) / slope, b = (float(level.dimensions[side]) - ray.origin[side]) / slope;
+    range = vec2(max(range.x, min(a, b)), min(range.y, max(a, b)));
+  }
+  if (ray.direction > 0.0)
+    range.x = max(range.x, ray.eye - 1.0);
+  else
+    range.y = min(range.y, ray.eye + 1.0);
+  // Beyond what 32 bits can count there is no slice.
+  range = clamp(range, vec2(slices) - vec2(1.0), vec2(slices) + vec2(1.0));
+  return ivec2(max(int(floor(range.x)), slices.x), min(int(ceil(range.y)), slices.y - 1));
+}
+
+void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end) {
+  const int direction = int(ray.direction);
+  int slice = direction > 0 ? slices.x : slices.y;
+  int left = slices.y - slices.x + 1;
+  if (left <= 0) return;
+  // Loops that end with their conditions: lavapipe runs a body once more, masked, where a loop begins with one.
+  do {
+    bool empty;
+    do {
+      empty = !mayHold(level, ray, slice);
+      if (empty) {
+        slice += direction * kGatherGroup;
+        left -= kGatherGroup;
+      }
+    } while (empty && left > 0);
+    if (left > 0) {
+      const int rest = left - min(left, kGatherGroup);
+      do {
+        addSlice(sums, level, ray, slice);
+        slice += direction;
+        --left;
+      } while (left > rest);
+    }
+  } while (left > 0 && sums.transmittance > end);
+}
+
+Slices slicesOf(int number) {
+  const GatherLevel level = frame.levels[number];
+  const ivec3 strides = ivec3(1, level.level.rowPitch, level.level.rowPitch * level.level.dimensions.y);
+  const ivec3 skipStrides = ivec3(1, level.skip.rowPitch, level.skip.rowPitch * level.skip.dimensions.y);
+  Slices slices;
+  slices.dimensions = ivec2(level.level.dimensions[kSideA], level.level.dimensions[kSideB]);
+  slices.strides = ivec3(strides[kSideA], strides[kSideB], strides[kAxis]);
+  slices.firstWindow = level.firstWindow;
+  slices.firstRank = level.level.firstRank;
+  slices.skipStrides = ivec3(skipStrides[kSideA], skipStrides[kSideB], skipStrides[kAxis]);
+  slices.skipFirst = int(level.skip.first);
+  slices.skipShift = level.skipShift;
+  slices.skipLast = ivec2(level.skip.dimensions[kSideA], level.skip.dimensions[kSideB]) - 1;
+  return slices;
+}
+
+void main() {
+  const ivec2 index = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(index, frame.samples))) return;
+  const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);
+  const vec3 alongAxes =
+      vec3(dot(frame.axes[0].along, position), dot(frame.axes[1].along, position), dot(frame.axes[2].along, position));
+  if (rayAxis(alongAxes) != kAxis) return;
+
+  const float along = alongAxes[kAxis];
+  const vec3 world = frame.worldRay[0] * position.x + frame.worldRay[1] * position.y + frame.worldRay[2] * position.z;
+  const vec2 slope = vec2(dot(frame.axes[kAxis].slope[0], position), dot(frame.axes[kAxis].slope[1], position)) / along;
+  const vec2 middle = vec2(dot(frame.axes[kAxis].middle[0], position), dot(frame.axes[kAxis].middle[1], position)) / along;
+  const float middlePlane = frame.axes[kAxis].middlePlane;
+  const float eye = dot(frame.axes[kAxis].eye, position);
+  Sums sums = Sums(vec3(0.0), 0.0, 1.0);
+  float distance = 0.0;  // sum of e times world distance from the eye plane
+  for (int number = frame.finest; number <= frame.coarsest; ++number) {
+    // In blocks of the level, whose first one's middle is at half an edge less half a voxel.
+    const float edge = float(1 << number);
+    const Slices level = slicesOf(number);
+    Ray ray;
+    ray.origin = (middle + slope * (0.5 * edge - 0.5 - middlePlane) + 0.5) / edge - 0.5;
+    ray.slope = slope;
+    ray.direction = along > 0.0 ? 1.0 : -1.0;
+    ray.eye = (eye + 0.5) / edge - 0.5;
+    ray.layer = length(world) / abs(along) * edge * frame.extinctionUnit;
+    ray.toEye = -normalize(world);
+    const ivec2 slices = slicesOnRay(level, ray, frame.axes[kAxis].slices[along > 0.0 ? 1 : 0][number]);
+    sums.distance = 0.0;
+    if (sums.transmittance > frame.end) march(sums, level, ray, slices, frame.end);
+    distance += sums.distance * edge / abs(along);
+  }
+  // A ray that ended before the volume did: what is behind counts as what is in front of it.
+  const float energy = 1.0 - sums.transmittance;
+  const float whole = sums.transmittance > frame.end ? 1.0 : 1.0 / energy;
+  const int place = index.x + index.y * frame.samples.x;
+  imageStore(colorEnergy, place, whole * vec4(frame.sourceUnit * sums.color, energy));
+  imageStore(distances, place, vec4(whole * distance));
+}

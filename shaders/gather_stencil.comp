@@ -1,0 +1,79 @@
+#version 460
+// The round footprint of the lattice's sums: a slice's tent has the width of a splat's kernel across the slice, but seen
+// obliquely it is narrower along the tilt. A stencil of 3x3 samples adds the variance that is missing, at the mean
+// distance of what the sample shows. Voxels smaller than a pixel are widened to it, as footprints are.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "gather_interface.h"
+#include "gather_ray.glsl"
+
+layout(constant_id = 0) const bool kWithDistance = false;
+layout(constant_id = 1) const bool kDirect = false;  // the lattice is that of the pixels: write the image
+
+layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
+layout(scalar, binding = 0) uniform Frame { GatherFrame frame; };
+layout(binding = 1) uniform textureBuffer colorEnergy;  // C, E
+layout(binding = 2) uniform textureBuffer distances;    // sum of e times distance
+layout(binding = 3, rgba32f) writeonly uniform imageBuffer colorEnergyOut;
+layout(binding = 4, r32f) writeonly uniform imageBuffer distancesOut;
+layout(binding = 5, rgba32f) writeonly uniform image2D colorImage;
+layout(binding = 6, r32f) writeonly uniform image2D distanceImage;
+#include "gather_resolve.glsl"
+
+const float kStencilStrength = 1.2;   // measured: higher than the missing variance, as the stencil is coarse
+const float kMostVariance = 0.8;      // beyond it the middle weight would come near to 0
+
+int placeOf(ivec2 index) {
+  const ivec2 inside = clamp(index, ivec2(0), frame.samples - 1);
+  return inside.x + inside.y * frame.samples.x;
+}
+
+// Covariance (xx, xy, yy) that the sums lack, in squares of the lattice's pitch.
+vec3 missingCovariance(vec3 position, float distance) {
+  const int axis = rayAxis(vec3(dot(frame.axes[0].along, position), dot(frame.axes[1].along, position),
+                                dot(frame.axes[2].along, position)));
+  const float scale = frame.orthographic != 0 ? 1.0 : 1.0 / distance;
+  const vec2 tilt = (frame.axes[axis].tilt - position.yz * frame.axes[axis].tiltDepth) * scale;
+  const float pixels = frame.pixelsPerVoxel * scale;
+  const float widening = kFootprintVariance * max(1.0 - pixels * pixels, 0.0);
+  const vec3 covariance =
+      kStencilStrength * kFootprintVariance * vec3(tilt.x * tilt.x, tilt.x * tilt.y, tilt.y * tilt.y) + vec3(widening, 0.0, widening);
+  const vec3 inLattice = covariance / (frame.pitch * frame.pitch);
+  return inLattice * min(kMostVariance / max(inLattice.x + inLattice.z, 1e-20), 1.0);
+}
+
+void main() {
+  const ivec2 index = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(index, frame.samples))) return;
+  vec4 colors[9];
+  float weighted[9];
+  [[unroll]] for (int i = 0; i < 9; ++i) {
+    const int place = placeOf(index + ivec2(i % 3 - 1, i / 3 - 1));
+    colors[i] = texelFetch(colorEnergy, place);
+    weighted[i] = texelFetch(distances, place).x;
+  }
+  // Beside a silhouette only the neighbours know the distance.
+  float energy = 0.0, distance = 0.0;
+  [[unroll]] for (int i = 0; i < 9; ++i) {
+    energy += colors[i].a;
+    distance += weighted[i];
+  }
+  const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);
+  const vec3 covariance = energy > 1e-20 && distance > 0.0 ? missingCovariance(position, distance / energy) : vec3(0.0);
+  const float cross = 0.25 * covariance.y;
+  const float weights[9] = float[9](cross, 0.5 * covariance.z, -cross, 0.5 * covariance.x, 1.0 - covariance.x - covariance.z,
+                                    0.5 * covariance.x, -cross, 0.5 * covariance.z, cross);
+  vec4 color = vec4(0.0);
+  distance = 0.0;
+  [[unroll]] for (int i = 0; i < 9; ++i) {
+    color += weights[i] * colors[i];
+    distance += weights[i] * weighted[i];
+  }
+  if (kDirect) {
+    resolvePixel(index, color, distance);
+    return;
+  }
+  const int place = index.x + index.y * frame.samples.x;
+  imageStore(colorEnergyOut, place, color);
+  imageStore(distancesOut, place, vec4(distance));
+}

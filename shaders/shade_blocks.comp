@@ -1,0 +1,75 @@
+#version 460
+// What the gather reads of occupied blocks, a thread a block: extinction, and the source term, which is the light that the
+// block sends to the eye per world unit, extinction times colour plus emission. Without a phase function and surfaces the
+// source term is for all positions of the eye, and made once, until lights change: the source term times
+// 1 + dot(towards, direction to the eye), the direction in the world and of length 1.
+#extension GL_GOOGLE_include_directive : require
+#include "gather_interface.h"
+#include "attenuation_code.glsl"
+#include "blocks.glsl"
+#define TRANSFER_BINDING 1
+#include "transfer_function.glsl"
+
+layout(constant_id = 0) const bool kLit = false;  // else a voxel sends out its colour
+layout(constant_id = 1) const bool kEmits = false;
+layout(constant_id = 2) const bool kAlbedos = false;  // are kept of voxels, and no scalars
+layout(constant_id = 3) const bool kTinted = false;   // whether every colour of light has an extinction of its own
+layout(constant_id = 4) const bool kAnyView = false;  // whether the source term is for all positions of the eye
+
+layout(local_size_x = kShadeThreads) in;
+layout(scalar, push_constant) uniform Push { ShadePush push; };
+layout(scalar, binding = 0) readonly buffer Frame { SetupFrame frame; };
+layout(scalar, binding = 2) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
+layout(scalar, binding = 3) readonly buffer Blocks { uint blocks[]; };  // addresses of the level's occupied ones
+layout(scalar, binding = 4) readonly buffer Scalars { float scalars[]; };
+layout(scalar, binding = 4) readonly buffer Albedos { uint albedos[]; };
+layout(scalar, binding = 5) readonly buffer Extinction { float extinction[]; };
+layout(scalar, binding = 6) writeonly buffer Sources { uvec2 sources[]; };  // source term and extinction, four halves
+layout(scalar, binding = 7) readonly buffer BlockColors { uvec2 blockColors[]; };
+layout(scalar, binding = 8) readonly buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 9) readonly buffer Lights { Light lights[]; };
+layout(scalar, binding = 10) readonly buffer Emission { uint emission[]; };
+layout(scalar, binding = 11) writeonly buffer TowardsEye { uint towardsEye[]; };
+#define PLANE_ADDRESS(cell) planeAddresses[cell]
+#include "major_axis.glsl"
+#include "stored_block.glsl"
+#include "direction_lookup.glsl"
+#include "ray_lookup.glsl"
+#include "packed_light.glsl"
+#include "block_at.glsl"
+#include "block_depth.glsl"
+#include "depth_to_eye.glsl"
+#include "self_attenuation.glsl"
+#include "lighting.glsl"
+#include "block_color.glsl"
+
+const float kLargestHalf = 65504.0;
+
+ScatteredLight scatteredBy(Block block, float sigma, uint rank) {
+  if (kAnyView) return scatteredLight(block, sigma, rank, vec3(0.0), sigma * push.meanLayer * float(block.edge));
+  const vec3 direction = directionToEye(block.center);
+  const float own = sigma * layerLength(direction) * float(layersOf(block, direction));
+  return scatteredLight(block, sigma, rank, normalize(frame.indexToWorld * direction), own);
+}
+
+void main() {
+  const uint number = gl_LocalInvocationID.x + kShadeThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
+  if (number >= push.count) return;
+  const uint rank = push.firstRank + number;
+  const Block block = blockAt(blocks[number]);
+  // What of the block is outside of the volume is empty.
+  const vec3 part = vec3(block.extent) / float(block.edge);
+  const float inside = part.x * part.y * part.z;
+  const float sigma = extinction[rank];
+  vec3 source = sigma * colorOf(block, rank);
+  vec3 towards = vec3(0.0);
+  if (kLit) {
+    const ScatteredLight scattered = scatteredBy(block, sigma, rank);
+    source *= scattered.light;
+    towards = luminanceOf(source) / max(luminanceOf(scattered.light), 1e-37) * scattered.towards;
+  }
+  if (kEmits) source += frame.emissionUnit * unpackLight(emission[rank]);
+  const vec4 stored = min(inside * vec4(push.sourceScale * source, push.extinctionScale * sigma), kLargestHalf);
+  sources[rank] = uvec2(packHalf2x16(stored.rg), packHalf2x16(stored.ba));
+  if (kLit && kAnyView) towardsEye[rank] = packSnorm4x8(vec4(towards / max(luminanceOf(source), 1e-37), 0.0));
+}
