@@ -33,7 +33,7 @@ enum class Draw : int {
 
 struct FrameSettings {
   glm::ivec2 size{1024, 1024};
-  Draw draw = Draw::Auto;
+  Draw draw = Draw::Splats;  ///< the front ends begin with Auto
   Composite composite = Composite::Normalised;
   AttenuationLookup attenuation = AttenuationLookup::Auto;
   /// Whether the optical depth to the eye varies across a footprint, to first order, and normalised along the

@@ -1,0 +1,195 @@
+// Frames by gathering: against closed forms, a plain sum on the CPU and the oracle, and what must not happen.
+
+#include <cmath>
+
+#include "engine/reference/oracle.h"
+#include "engine/validation/quality_scenes.h"
+#include "tests/device/splat_fixture.h"
+
+namespace freevoxels {
+namespace {
+
+class GatherTest : public SplatTest {
+ protected:
+  static FrameSettings gathering(glm::ivec2 size) {
+    return {.size = size, .draw = Draw::Gather, .lod = 0.0f};
+  }
+  /// Looks along -z at the volume's middle with this many pixels a voxel.
+  static Camera alongZ(const Volume& volume, glm::ivec2 size, double pixelsPerVoxel) {
+    Camera camera;
+    camera.lookAt = glm::dvec3(volume.indexToWorld * glm::dvec4(0.5 * glm::dvec3(volume.dimensions - 1), 1.0));
+    camera.position = camera.lookAt + glm::dvec3(0.0, 0.0, 10.0);
+    camera.orthographic = true;
+    camera.orthographicHeight = size.y / pixelsPerVoxel * glm::length(glm::dvec3(volume.indexToWorld[1]));
+    return camera;
+  }
+  struct Scene {
+    Volume volume;
+    Classification classification;
+  };
+  static Scene cloud(int resolution) {
+    Scene scene{.volume = makeProcedural("cloud", resolution), .classification = {}};
+    scene.classification.densityScale = automaticDensityScale(scene.volume);
+    return scene;
+  }
+  static double qualityOf(const Scene& scene, const Camera& camera, const FrameSettings& settings) {
+    Renderer renderer(device(), scene.volume, scene.classification, {});
+    const Oracle oracle = renderOracle(scene.volume, scene.classification, camera,
+                                       {.size = settings.size, .tolerance = 4e-3, .lighting = settings.lighting});
+    return psnr(renderer.render(camera, settings), oracle.image);
+  }
+};
+
+TEST_F(GatherTest, HomogeneousBoxIsTheLawOfBeerAndLambert) {
+  const Volume box = makeVolume({20, 20, 12}, cubeTransform({20, 20, 12}), [](int, int, int) { return 1.0; });
+  const double voxel = glm::length(glm::dvec3(box.indexToWorld[2]));
+  for (const double depth : {1e-4, 0.3, 3.0, 40.0}) {
+    const Classification classification{.densityScale = depth / (12.0 * voxel), .albedo = glm::vec3(0.8f, 0.5f, 0.2f)};
+    Renderer renderer(device(), box, classification, {});
+    const glm::ivec2 size(31, 31);
+    const Image image = renderer.render(alongZ(box, size, 3.0), gathering(size));
+    const glm::vec4 middle = image.pixels[15 + 15 * 31];
+    const double alpha = 1.0 - std::exp(-depth);
+    EXPECT_NEAR(middle.a, alpha, 1e-3 * alpha) << depth;
+    EXPECT_NEAR(middle.r, 0.8 * alpha, 2e-3 * alpha) << depth;
+    EXPECT_NEAR(middle.b, 0.2 * alpha, 2e-3 * alpha) << depth;
+  }
+}
+
+/// Along an axis, with a pixel a voxel in the middle of each, the stencil and the interpolation change nothing: front to
+/// back compositing of the voxels behind the pixel.
+TEST_F(GatherTest, MatchesTheSumAlongAnAxis) {
+  const glm::ivec3 n(17, 13, 21);
+  const Volume volume = randomVolume(n, cubeTransform(n), 0.6, 1.0);
+  const Classification classification = coloured(volume, 0.5f);
+  Renderer renderer(device(), volume, classification, {});
+  const glm::ivec2 size(n.x, n.y);
+  const Image image = renderer.render(alongZ(volume, size, 1.0), gathering(size));
+  const std::vector<double> extinction = referenceExtinction(volume, classification);
+  const double layer = glm::length(glm::dvec3(volume.indexToWorld[2]));
+  for (int y = 0; y < n.y; ++y)
+    for (int x = 0; x < n.x; ++x) {
+      glm::dvec4 sum(0.0);
+      for (int z = n.z - 1; z >= 0; --z) {
+        const double opacity = 1.0 - std::exp(-layer * extinction[std::size_t(x + n.x * (y + n.y * z))]);
+        const glm::dvec3 color(classifyVoxel(classification, volume, {x, y, z}).color);
+        sum += (1.0 - sum.a) * opacity * glm::dvec4(color, 1.0);
+      }
+      const glm::vec4 pixel = image.pixels[std::size_t(x + size.x * (n.y - 1 - y))];
+      for (int c = 0; c < 4; ++c) EXPECT_NEAR(pixel[c], sum[c], 2e-3) << x << ' ' << y << ' ' << c;
+    }
+}
+
+TEST_F(GatherTest, ComesNearerToTheOracleThanSplats) {
+  const QualityScene head =
+      makeQualityScene({"head", QualityColor::Bone, false}, 48, makeProcedural("head", 48));
+  const Scene scene{.volume = head.volume, .classification = head.classification};
+  Camera orthographic;
+  orthographic.orthographic = true;
+  for (const Camera& base : {Camera{}, orthographic})
+    for (const glm::dvec2 angles : {glm::dvec2(35.0, 25.0), {80.0, 10.0}, {200.0, 75.0}}) {
+      const Camera camera = framingCamera(scene.volume, angles.x, angles.y, 1.0, base);
+      const double splats = qualityOf(scene, camera, {.size = {128, 128}});
+      const double gather = qualityOf(scene, camera, gathering({128, 128}));
+      EXPECT_GE(gather, splats - 0.3) << angles.x << ' ' << angles.y;
+      EXPECT_GE(gather, 40.0) << angles.x << ' ' << angles.y;
+    }
+}
+
+TEST_F(GatherTest, EyeInsideMatchesTheOracle) {
+  const Scene scene = cloud(48);
+  for (const glm::dvec3 direction : {glm::dvec3(0.2, -0.1, -1.0), {1.0, 0.4, 0.3}}) {
+    Camera camera;
+    camera.position = glm::dvec3(scene.volume.indexToWorld * glm::dvec4(22.3, 25.1, 30.7, 1.0));
+    camera.lookAt = camera.position + direction;
+    camera.verticalFov = 80.0;
+    EXPECT_GE(qualityOf(scene, camera, gathering({96, 96})), 40.0);
+  }
+}
+
+TEST_F(GatherTest, ShearedGridMatchesTheOracle) {
+  Scene scene = cloud(32);
+  scene.volume.indexToWorld = shearedTransform(scene.volume.dimensions);
+  scene.classification.densityScale = automaticDensityScale(scene.volume);
+  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
+  EXPECT_GE(qualityOf(scene, camera, gathering({96, 96})), 40.0);
+}
+
+TEST_F(GatherTest, LitVolumesAreAsNearToTheOracleAsSplats) {
+  for (const double phaseG : {0.0, 0.6}) {
+    const Scene scene = cloud(32);
+    const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
+    FrameSettings settings{.size = {64, 64}, .lighting = Lighting{.lights = {{}}, .phaseG = phaseG}};
+    const double splats = qualityOf(scene, camera, settings);
+    settings.draw = Draw::Gather;
+    EXPECT_GE(qualityOf(scene, camera, settings), splats - 0.3) << phaseG;
+  }
+}
+
+TEST_F(GatherTest, CoarseLevelsLookLikeVoxels) {
+  const Volume volume = makeProcedural("cloud", 96);
+  const Classification classification{.densityScale = automaticDensityScale(volume)};
+  Renderer renderer(device(), volume, classification, {});
+  Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
+  camera.position = camera.lookAt + 4.0 * (camera.position - camera.lookAt);
+  FrameSettings settings = gathering({96, 96});
+  const Image voxels = renderer.render(camera, settings);
+  settings.lod = 1.0f;
+  EXPECT_GE(psnr(renderer.render(camera, settings), voxels), 45.0);
+}
+
+TEST_F(GatherTest, DistanceIsTheMeanOfWhatIsSeen) {
+  const glm::ivec3 n(16, 16, 16);
+  const Volume slice =
+      makeVolume(n, cubeTransform(n), [](int, int, int z) { return z == 11 ? 1.0 : 0.0; });
+  Renderer renderer(device(), slice, {.densityScale = 5.0}, {});
+  const glm::ivec2 size(15, 15);
+  FrameSettings settings = gathering(size);
+  settings.depth = true;
+  const Camera camera = alongZ(slice, size, 2.0);
+  const Image image = renderer.render(camera, settings);
+  const double z = (slice.indexToWorld * glm::dvec4(8.0, 8.0, 11.0, 1.0)).z;
+  EXPECT_NEAR(image.depth[7 + 7 * 15], camera.position.z - z, 1e-3);
+}
+
+TEST_F(GatherTest, IsTheSameToTheBitEveryTime) {
+  const Volume volume = makeProcedural("cloud", 40);
+  const Classification classification{.densityScale = automaticDensityScale(volume)};
+  const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
+  FrameSettings settings = gathering({120, 90});
+  settings.lighting = Lighting{.lights = {{}}};
+  Renderer first(device(), volume, classification, {}), second(device(), volume, classification, {});
+  const Image image = first.render(camera, settings);
+  EXPECT_TRUE(image.pixels == first.render(camera, settings).pixels);
+  EXPECT_TRUE(image.pixels == second.render(camera, settings).pixels);
+}
+
+/// What was shaded for one light or for none is not shown with another.
+TEST_F(GatherTest, ChangedLightsAreShadedAgain) {
+  const Volume volume = makeProcedural("cloud", 32);
+  const Classification classification{.densityScale = automaticDensityScale(volume)};
+  const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
+  Renderer renderer(device(), volume, classification, {});
+  FrameSettings settings = gathering({64, 64});
+  const Image unlit = renderer.render(camera, settings);
+  settings.lighting = Lighting{.lights = {{.place = {1.0, 0.2, 0.0}}}};
+  const Image right = renderer.render(camera, settings);
+  settings.lighting->lights[0].place = {-1.0, 0.2, 0.0};
+  const Image left = renderer.render(camera, settings);
+  EXPECT_LT(psnr(left, right), 40.0);
+  EXPECT_LT(psnr(unlit, right), 40.0);
+  settings.lighting->lights[0].place = {1.0, 0.2, 0.0};
+  EXPECT_TRUE(renderer.render(camera, settings).pixels == right.pixels);
+  settings.lighting.reset();
+  EXPECT_TRUE(renderer.render(camera, settings).pixels == unlit.pixels);
+}
+
+TEST_F(GatherTest, NothingIsDrawnOfAnEmptyVolume) {
+  const Volume empty = makeVolume({9, 9, 9}, cubeTransform({9, 9, 9}), [](int, int, int) { return 0.0; });
+  Renderer renderer(device(), empty, {.densityScale = 1.0}, {});
+  for (const glm::vec4& pixel : renderer.render(alongZ(empty, {20, 20}, 2.0), gathering({20, 20})).pixels)
+    EXPECT_EQ(pixel, glm::vec4(0.0f));
+}
+
+}  // namespace
+}  // namespace freevoxels
