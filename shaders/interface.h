@@ -31,6 +31,7 @@ FV_CONSTANT int kScanThreads = 256;
 
 FV_CONSTANT int kBrickThreads = kBrickEdge * kBrickEdge;  // a row of a brick each
 FV_CONSTANT int kSweepThreads = 32;
+FV_CONSTANT int kExpandTile = 8;
 FV_CONSTANT int kRaySweepThreads = 64;
 FV_CONSTANT int kEyeThreads = 64;
 FV_CONSTANT int kSplatThreads = 64;
@@ -173,11 +174,20 @@ struct OccupancyWord {
   uint before;
 };
 
+// Planes of a fan, counted from its first, from `begin` on and before `end`, of which ray_sweep.comp has the extinction:
+// that of the voxel of plane k and with the coordinates a and b on the fan's sides is at
+//   origin + k planeStride + a strideA + b strideB.
+struct RaySlab {
+  int begin, end;
+  int origin, planeStride, strideA, strideB;
+};
+
 // ray_sweep.comp
 struct RaySweepPush {
   RayFan fan;
   mat3 indexToWorld;
-  BlockLevel voxels;
+  ivec2 sides;  // the volume's dimensions on the fan's sides
+  RaySlab slab;
 };
 
 // medium_level.comp
@@ -251,7 +261,9 @@ struct CutCounts {
 
 // expand_voxels.comp
 struct ExpandPush {
-  uint firstWord, wordCount;  // of voxels
+  BlockLevel voxels;
+  ivec3 first;   // voxel, whose x is a multiple of 4; may be before those of the volume
+  ivec3 extent;  // in quads along x
 };
 
 // occupied_blocks.comp
@@ -301,9 +313,10 @@ static_assert(sizeof(ChunkArguments) == 52);
 static_assert(sizeof(CutFrame) <= 16384);  // a uniform buffer, which every device takes up to here
 static_assert(sizeof(CutPush) == 16);
 static_assert(sizeof(DepthKeyPush) == 80);
+static_assert(sizeof(ExpandPush) == 52);
 static_assert(sizeof(HalfSweepPush) == 84);
 static_assert(sizeof(MediumLevelPush) == 92);
-static_assert(sizeof(RaySweepPush) == 124);
+static_assert(sizeof(RaySweepPush) == 128);  // what every device takes
 static_assert(sizeof(TableLevelPush) == 84);
 }  // namespace freevoxels::shader
 #endif

@@ -1,6 +1,7 @@
 #version 460
 // Optical depth along the rays of a fan (engine/attenuation/ray_fans.h), a thread a ray: at every plane of
-// voxels, what the planes before it hold. Subr et al. 2007, Eq. 5, along rays instead of lattice lines.
+// voxels, what the planes before it hold. Subr et al. 2007, Eq. 5, along rays instead of lattice lines. A dispatch marches
+// through a slab of planes and hands the depths over to the next.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -8,36 +9,27 @@
 
 layout(local_size_x = kRaySweepThreads) in;
 layout(scalar, push_constant) uniform Push { RaySweepPush push; };
-layout(scalar, binding = 0) readonly buffer Occupancy { OccupancyWord occupancy[]; };
-layout(scalar, binding = 1) readonly buffer Extinction { float extinction[]; };
+layout(binding = 0) uniform samplerBuffer extinction;  // of the slab's voxels, with 0 around the volume
+layout(scalar, binding = 1) buffer Carried { float carried[]; };  // from slab to slab, by ray
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Depths { uint pairs[]; };
 
-#include "blocks.glsl"
-#include "stored_block.glsl"
-
-int sideA, sideB;
-
-float extinctionAt(int plane, ivec2 side) {
-  ivec3 voxel;
-  voxel[push.fan.axis] = plane;
-  voxel[sideA] = side.x;
-  voxel[sideB] = side.y;
-  return extinctionOf(push.voxels, voxel);
-}
-
+// `plane` is counted from the fan's first.
 float interpolated(int plane, vec2 position) {
-  const vec2 low = floor(position);
-  const vec2 w = position - low;
-  const ivec2 corner = ivec2(low);
-  return mix(mix(extinctionAt(plane, corner), extinctionAt(plane, corner + ivec2(1, 0)), w.x),
-             mix(extinctionAt(plane, corner + ivec2(0, 1)), extinctionAt(plane, corner + ivec2(1, 1)), w.x), w.y);
+  // There is 0 a voxel beyond the volume on each side, and so it is farther out.
+  const vec2 near = clamp(position, vec2(-1.0), vec2(push.sides));
+  const vec2 low = min(floor(near), vec2(push.sides - 1));
+  const vec2 w = near - low;
+  const int a = push.slab.strideA, b = push.slab.strideB;
+  const int first = push.slab.origin + plane * push.slab.planeStride + int(low.x) * a + int(low.y) * b;
+  return mix(mix(texelFetch(extinction, first).x, texelFetch(extinction, first + a).x, w.x),
+             mix(texelFetch(extinction, first + b).x, texelFetch(extinction, first + a + b).x, w.x), w.y);
 }
 
 // The planes, counted from the first, between which the ray is near enough to the volume to be looked up: x
 // to y.
 ivec2 planesWithin(vec2 atFirst, vec2 perPlane) {
   float enter = 0.0, leave = float(push.fan.planeCount - 1);
-  const vec2 high = vec2(push.voxels.dimensions[sideA], push.voxels.dimensions[sideB]) + 1.0;
+  const vec2 high = vec2(push.sides) + 1.0;
   [[unroll]] for (int side = 0; side < 2; ++side) {
     const float reach = 2.0 + 2.0 * push.fan.spacing;
     const float slope = abs(perPlane[side]) < 1e-7 ? 1e-7 : perPlane[side];
@@ -54,8 +46,8 @@ float sourceCut(vec2 atFirst, vec2 perPlane) {
   const RayFan fan = push.fan;
   if (fan.convergence == 0.0) return 0.0;
   const float distance = min(abs(float(fan.firstPlane) - fan.farthest + 1.0 / fan.convergence), 1.0);
-  const float first = interpolated(fan.firstPlane, atFirst);
-  const float before = interpolated(fan.firstPlane - fan.direction, atFirst - perPlane);
+  const float first = interpolated(0, atFirst);
+  const float before = interpolated(-1, atFirst - perPlane);
   return 0.5 * (distance * (mix(first, before, distance) + first) - first);
 }
 
@@ -64,8 +56,6 @@ void main() {
   const RayFan fan = push.fan;
   const uint rays = uint(fan.rayCount.x * fan.rayCount.y);
   if (ray >= rays) return;
-  sideA = (fan.axis + 1) % 3;
-  sideB = (fan.axis + 2) % 3;
 
   const vec2 offset = fan.spacing * vec2(ray % fan.rayCount.x, ray / fan.rayCount.x);
   const vec2 slope = fan.slope + offset * fan.convergence;  // along the axis upwards
@@ -73,21 +63,30 @@ void main() {
   const vec2 perPlane = slope * float(fan.direction);
   vec3 layerStep;
   layerStep[fan.axis] = 1.0;
-  layerStep[sideA] = slope.x;
-  layerStep[sideB] = slope.y;
+  layerStep[(fan.axis + 1) % 3] = slope.x;
+  layerStep[(fan.axis + 2) % 3] = slope.y;
   const float layer = length(push.indexToWorld * layerStep);
 
   const ivec2 planes = planesWithin(atFirst, perPlane);
+  const int begin = push.slab.begin / 2, end = (push.slab.end + 1) / 2;
+  int pair = max(planes.x / 2, begin);
+  const int behind = min(planes.y / 2 + 1, end);
+  if (pair >= behind) return;
   Depths depths = Depths(fan.depths);
-  float depth = planes.x == 0 ? layer * sourceCut(atFirst, perPlane) : 0.0;
-  for (int pair = planes.x / 2; pair <= planes.y / 2; ++pair) {
+  float depth = 0.0;
+  if (planes.x / 2 < begin)
+    depth = carried[ray];
+  else if (planes.x == 0)
+    depth = layer * sourceCut(atFirst, perPlane);
+  // Software Vulkan runs the body of a loop that ends with its condition once less.
+  do {
     vec2 planeDepths;
     [[unroll]] for (int i = 0; i < 2; ++i) {
       const int plane = 2 * pair + i;
       planeDepths[i] = depth;
-      if (plane < fan.planeCount)
-        depth += layer * interpolated(fan.firstPlane + fan.direction * plane, atFirst + perPlane * float(plane));
+      depth += layer * interpolated(plane, atFirst + perPlane * float(plane));
     }
     depths.pairs[uint(pair) * rays + ray] = packUnorm2x16(sqrt(clamp(planeDepths / kOpaqueDepth, 0.0, 1.0)));
-  }
+  } while (++pair < behind);
+  if (push.slab.end < fan.planeCount) carried[ray] = depth;
 }

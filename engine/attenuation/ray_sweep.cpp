@@ -29,49 +29,143 @@ shader::RayFan deviceFan(const RayFan& fan, VkDeviceAddress depths) {
           .depths = {std::uint32_t(depths), std::uint32_t(depths >> 32)}};
 }
 
-std::uint64_t depthBytes(const std::array<RayFan, 6>& fans) {
-  std::uint64_t bytes = 0;
-  for (const RayFan& fan : fans) bytes += depthBytes(fan);
-  return bytes;
+/// Bytes of the extinction of a slab, which the caches of processors hold: of more only where four planes
+/// are.
+constexpr std::uint64_t kSlabBytes = std::uint64_t(8) << 20;
+constexpr int kQuad = 4;  // voxels of a row that ExpandPass takes together
+
+/// The next multiple of a quad, also of less than 0.
+int quadsUp(int voxels) { return (voxels + kQuad - 1) & -kQuad; }
+
+/// A part of the volume with a voxel or a quad of nothing around it on the sides of a fan.
+struct SlabBox {
+  glm::ivec3 first, extent;
+
+  std::uint64_t bytes() const {
+    return std::uint64_t(extent.x) * std::uint64_t(extent.y) * std::uint64_t(extent.z) * sizeof(float);
+  }
+};
+
+/// The planes of a fan from `begin` on and before `end`, rounded up to even, and before the fan's first the
+/// one on the other side of the source.
+SlabBox slabBox(const RayFan& fan, glm::ivec3 dimensions, int begin, int end) {
+  SlabBox box{.first = glm::ivec3(-kQuad, -1, -1),
+              .extent = {quadsUp(dimensions.x) + 2 * kQuad, dimensions.y + 2, dimensions.z + 2}};
+  const int near = fan.firstPlane + fan.direction * (begin == 0 ? -1 : begin);
+  const int far = fan.firstPlane + fan.direction * (end + end % 2 - 1);
+  int low = std::min(near, far), high = std::max(near, far) + 1;
+  if (fan.axis == 0) {
+    low = quadsUp(low - kQuad + 1);
+    high = quadsUp(high);
+  }
+  box.first[fan.axis] = low;
+  box.extent[fan.axis] = high - low;
+  return box;
 }
 
-void checkFits(const Device& device, const std::array<RayFan, 6>& fans, std::uint64_t mostBytes) {
-  const std::uint64_t bytes = depthBytes(fans);
-  std::uint64_t largest = 0;
-  for (const RayFan& fan : fans) largest = std::max(largest, depthBytes(fan));
+/// Of a slab, a multiple of four.
+int planesPerSlab(const RayFan& fan, glm::ivec3 dimensions) {
+  glm::ivec3 plane = dimensions + 2;
+  plane[fan.axis] = 1;
+  const std::uint64_t bytes = SlabBox{.first = {}, .extent = plane}.bytes();
+  const std::uint64_t most = std::uint64_t(quadsUp(fan.planeCount));
+  return int(std::clamp<std::uint64_t>(kSlabBytes / bytes, kQuad, most)) / kQuad * kQuad;
+}
+
+/// What the sweep of a source needs.
+struct RayRoom {
+  std::uint64_t depths = 0;   ///< of all fans, bytes
+  std::uint64_t largest = 0;  ///< of those of a fan
+  std::uint64_t slab = 0, carried = 0;
+
+  std::uint64_t bytes() const { return depths + slab + carried; }
+};
+
+RayRoom roomFor(const std::array<RayFan, 6>& fans, glm::ivec3 dimensions) {
+  RayRoom room{.slab = sizeof(float), .carried = sizeof(float)};  // bindings need buffers
+  for (const RayFan& fan : fans) {
+    if (fan.planeCount == 0) continue;
+    room.depths += depthBytes(fan);
+    room.largest = std::max(room.largest, depthBytes(fan));
+    room.carried = std::max(room.carried, fan.rays() * sizeof(float));
+    const int planes = planesPerSlab(fan, dimensions);
+    for (int begin = 0; begin < fan.planeCount; begin += planes) {
+      const int end = std::min(begin + planes, fan.planeCount);
+      room.slab = std::max(room.slab, slabBox(fan, dimensions, begin, end).bytes());
+    }
+  }
+  return room;
+}
+
+void checkFits(const Device& device, const RayRoom& room, std::uint64_t mostBytes) {
   // Shaders index the depths of a fan with 31 bits.
   const std::uint64_t most = std::uint64_t(std::numeric_limits<std::int32_t>::max()) * sizeof(std::uint32_t);
   const std::uint64_t fits = std::min(std::uint64_t(device.maximumAllocation()), mostBytes);
-  if (bytes > fits || largest > most)
+  if (room.bytes() > mostBytes || room.depths > fits || room.largest > most)
     fail(ExitCode::OutOfMemory,
          "exact transmittance needs {} MiB for its rays from here and {} has {} MiB in one piece: use "
          "--attenuation bilinear, or a smaller volume",
-         bytes >> 20, device.description().name, std::min(fits, most) >> 20);
+         room.bytes() >> 20, device.description().name, std::min(fits, most) >> 20);
 }
 
 }  // namespace
 
 std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source) {
-  std::uint64_t bytes = 0;
-  for (const RayFan& fan : rayFans(dimensions, source)) bytes += depthBytes(fan);
-  return bytes;
+  return roomFor(rayFans(dimensions, source), dimensions).bytes();
 }
 
 RaySweep::RaySweep(const Device& device, const char* name)
     : device_(device),
       name_(name),
-      pipeline_(makeComputePipeline(device, {ray_sweep_spv, "ray sweep"},
-                                    {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                                     .pushConstantBytes = sizeof(shader::RaySweepPush)},
-                                    {shader::kRaySweepThreads, 1, 1})) {}
+      expand_(device),
+      pipeline_(makeComputePipeline(
+          device, {ray_sweep_spv, "ray sweep"},
+          {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+           .pushConstantBytes = sizeof(shader::RaySweepPush)},
+          {shader::kRaySweepThreads, 1, 1})) {}
 
 void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source, std::uint64_t mostBytes) {
-  const std::array<RayFan, 6> fans = rayFans(dimensions, source);
-  checkFits(device_, fans, std::min(mostBytes, device_.availableBytes() + depths_.bytes()));
-  const std::uint64_t bytes = depthBytes(fans);
-  if (depths_.bytes() >= bytes) return;
-  depths_ = {};  // not both at once
-  depths_ = Buffer(device_, bytes, MemoryUse::Device, "ray depths");
+  const RayRoom room = roomFor(rayFans(dimensions, source), dimensions);
+  const std::uint64_t own = depths_.bytes() + slab_.bytes() + carried_.bytes();
+  checkFits(device_, room, std::min(mostBytes, device_.availableBytes() + own));
+  const auto grow = [&](Buffer& buffer, std::uint64_t bytes, const char* name, VkBufferUsageFlags usage = 0) {
+    if (buffer.bytes() >= bytes) return false;
+    buffer = {};  // not both at once
+    buffer = Buffer(device_, bytes, MemoryUse::Device, name, usage);
+    return true;
+  };
+  grow(depths_, room.depths, "ray depths");
+  grow(carried_, room.carried, "ray depths between slabs");
+  if (grow(slab_, room.slab, "extinction around rays", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT))
+    slabTexels_ = TexelView(device_, slab_, VK_FORMAT_R32_SFLOAT);
+}
+
+void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const RayFan& fan,
+                         const shader::RayFan& onDevice) const {
+  const glm::ivec3 dimensions = volume.layout.dimensions;
+  const int sideA = (fan.axis + 1) % 3, sideB = (fan.axis + 2) % 3;
+  const int planes = planesPerSlab(fan, dimensions);
+  for (int begin = 0; begin < fan.planeCount; begin += planes) {
+    const int end = std::min(begin + planes, fan.planeCount);
+    const SlabBox box = slabBox(fan, dimensions, begin, end);
+    expand_.recordBox(commands, volume, box.first, box.extent, slab_);
+    const glm::ivec3 strides(1, box.extent.x, box.extent.x * box.extent.y);
+    glm::ivec3 origin = -box.first;
+    origin[fan.axis] += fan.firstPlane;
+    const glm::ivec3 offsets = origin * strides;
+    const shader::RaySweepPush push{.fan = onDevice,
+                                    .indexToWorld = glm::dmat3(volume.indexToWorld),
+                                    .sides = {dimensions[sideA], dimensions[sideB]},
+                                    .slab = {.begin = begin,
+                                             .end = end,
+                                             .origin = offsets.x + offsets.y + offsets.z,
+                                             .planeStride = fan.direction * strides[fan.axis],
+                                             .strideA = strides[sideA],
+                                             .strideB = strides[sideB]}};
+    const std::array<Binding, 2> bindings{&slabTexels_, &carried_};
+    commands.dispatchLinear(pipeline_, bindings, push, fan.rays());
+    commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+  }
 }
 
 void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RaySource& source) {
@@ -83,17 +177,13 @@ void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RayS
   for (std::size_t i = 0; i < fans.size(); ++i) {
     fans_[i] = deviceFan(fans[i], address);
     if (fans[i].planeCount == 0) continue;
-    const shader::RaySweepPush push{
-        .fan = fans_[i], .indexToWorld = glm::dmat3(volume.indexToWorld), .voxels = volume.onDevice(0)};
-    const std::array<Binding, 2> bindings{&volume.occupancy, &volume.extinction};
-    commands.dispatchLinear(pipeline_, bindings, push, fans[i].rays());
+    recordFan(commands, volume, fans[i], fans_[i]);
     address += depthBytes(fans[i]);
     if (source.atInfinity) {
       fans_.fill(fans_[i]);
       break;
     }
   }
-  commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
 RayCodes RaySweep::sweep(const DeviceVolume& volume, const RaySource& source) {

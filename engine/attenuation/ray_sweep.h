@@ -1,10 +1,13 @@
 #pragma once
-// Optical depths along the ray fans of a source, on the device: one dispatch a fan, a thread a ray.
+// Optical depths along the ray fans of a source, on the device: a thread a ray. What is kept of the volume is
+// expanded first, a slab of planes at a time: to look up a voxel's place among those that hold anything takes
+// several times as long as its extinction, and four rays share it.
 
 #include <cstdint>
 #include <limits>
 
 #include "engine/attenuation/ray_fans.h"
+#include "engine/hierarchy/occupancy.h"
 #include "engine/volume/device_volume.h"
 #include "engine/vulkan/commands.h"
 #include "shaders/interface.h"
@@ -14,7 +17,7 @@ namespace freevoxels {
 /// On the device, of the rays of a source.
 std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source);
 
-/// COMPUTE ray_sweep.comp
+/// COMPUTE expand_voxels.comp and ray_sweep.comp, a dispatch each for a fan's every slab.
 class RaySweep {
  public:
   /// Its time is that of the pass `name`.
@@ -33,9 +36,16 @@ class RaySweep {
   RayCodes sweep(const DeviceVolume& volume, const RaySource& source);
 
  private:
+  void recordFan(Commands& commands, const DeviceVolume& volume, const RayFan& fan,
+                 const shader::RayFan& onDevice) const;
+
   const Device& device_;
   const char* name_;
+  ExpandPass expand_;
   Pipeline pipeline_;
+  Buffer slab_;  ///< float: extinction of its voxels
+  TexelView slabTexels_;
+  Buffer carried_;  ///< float, by ray: depth between slabs
   Buffer depths_;  ///< uint: codes of planes 2k and 2k + 1; by fan, k and ray
   std::array<shader::RayFan, 6> fans_{};
 };

@@ -14,6 +14,7 @@ namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+constexpr int kQuad = 4;  // voxels of a row that expand_voxels.comp takes together
 
 }  // namespace
 
@@ -53,22 +54,29 @@ void OccupancyPass::recordBlocks(Commands& commands, const DeviceVolume& volume)
 ExpandPass::ExpandPass(const Device& device)
     : pipeline_(makeComputePipeline(
           device, {expand_voxels_spv, "expand voxels"},
-          {.bindings = {kStorage, kStorage, kStorage}, .pushConstantBytes = sizeof(shader::ExpandPush)},
-          {shader::kOccupancyThreads, 1, 1})) {}
+          {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
+                        kStorage},
+           .pushConstantBytes = sizeof(shader::ExpandPush)},
+          {shader::kExpandTile, shader::kExpandTile, 1})) {}
 
 std::uint32_t ExpandPass::record(Commands& commands, const DeviceVolume& volume, int first, int planes,
                                  const Buffer& extinction) const {
-  const std::uint64_t plane =
-      std::uint64_t(volume.layout.rowPitch) * std::uint64_t(volume.layout.dimensions.y);
-  const std::uint64_t begin = plane * std::uint64_t(first) / shader::kBlocksPerWord;
-  const std::uint64_t end =
-      (plane * std::uint64_t(first + planes) + shader::kBlocksPerWord - 1) / shader::kBlocksPerWord;
-  FV_CHECK_LE((end - begin) * shader::kBlocksPerWord * sizeof(float), extinction.bytes());
-  const shader::ExpandPush push{.firstWord = std::uint32_t(begin), .wordCount = std::uint32_t(end - begin)};
-  const std::array<Binding, 3> bindings{&volume.occupancy, &volume.extinction, &extinction};
-  commands.dispatchLinear(pipeline_, bindings, push, push.wordCount);
+  const GridLayout& grid = volume.layout;
+  recordBox(commands, volume, {0, 0, first}, {grid.rowPitch, grid.dimensions.y, planes}, extinction);
+  return volume.hierarchy.indexOf({.level = 0, .cell = {0, 0, first}});
+}
+
+void ExpandPass::recordBox(Commands& commands, const DeviceVolume& volume, glm::ivec3 first,
+                           glm::ivec3 extent, const Buffer& extinction) const {
+  FV_CHECK_EQ(first.x % kQuad, 0);
+  FV_CHECK_EQ(extent.x % kQuad, 0);
+  FV_CHECK_LE(glm::u64vec3(extent).x * glm::u64vec3(extent).y * glm::u64vec3(extent).z * sizeof(float),
+              extinction.bytes());
+  const glm::ivec3 quads(extent.x / kQuad, extent.y, extent.z);
+  const shader::ExpandPush push{.voxels = volume.onDevice(0), .first = first, .extent = quads};
+  const std::array<Binding, 3> bindings{&volume.occupancyTexels, &volume.extinctionQuads, &extinction};
+  commands.dispatch(pipeline_, bindings, push, quads);
   commands.barrier(kCompute, kCompute);
-  return push.firstWord * shader::kBlocksPerWord;
 }
 
 std::vector<std::uint32_t> downloadStored(const Device& device, const DeviceVolume& volume, int level) {

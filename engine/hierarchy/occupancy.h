@@ -26,14 +26,17 @@ class OccupancyPass {
   Pipeline voxels_, blocks_;
 };
 
-/// COMPUTE expand_voxels.comp: the extinction of all voxels of a slab again, for the sweeps.
+/// COMPUTE expand_voxels.comp: the extinction of all voxels of a slab or a box again, for the sweeps.
 class ExpandPass {
  public:
   explicit ExpandPass(const Device& device);
-  /// Of `planes` planes from `first` on, with what else is in their words of occupancy: into `extinction`,
-  /// which begins with the voxel whose index is returned.
+  /// Of `planes` planes across z from `first` on, with the padding: into `extinction`, which begins with the
+  /// voxel whose index is returned.
   std::uint32_t record(Commands& commands, const DeviceVolume& volume, int first, int planes,
                        const Buffer& extinction) const;
+  /// Of a box, x fastest, 0 beyond the volume. The x of `first` and of `extent` are multiples of 4.
+  void recordBox(Commands& commands, const DeviceVolume& volume, glm::ivec3 first, glm::ivec3 extent,
+                 const Buffer& extinction) const;
 
  private:
   Pipeline pipeline_;

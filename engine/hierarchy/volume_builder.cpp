@@ -51,7 +51,9 @@ Buffer makeStore(const Device& device, std::uint64_t values, std::uint64_t bytes
 
 void makeStores(const Device& device, DeviceVolume& volume) {
   const std::uint64_t blocks = volume.storedBlocks(), voxels = volume.stored.front();
-  volume.extinction = makeStore(device, blocks, sizeof(float), "extinction");
+  volume.extinction = Buffer(device, extinctionBytes(blocks), MemoryUse::Device, "extinction",
+                             VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  volume.extinctionQuads = TexelView(device, volume.extinction);
   if (volume.hasEmission()) volume.emission = makeStore(device, blocks, sizeof(std::uint32_t), "emission");
   if (!volume.hasColors()) return;
   volume.scalars = makeStore(device, voxels, sizeof(float), "scalars");

@@ -83,7 +83,7 @@ VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std:
   std::uint64_t codes = blocks;
   for (std::size_t level = 1; level < stored.size(); ++level) codes += boundBytes(stored[level]);
   return {.occupancy = occupancyBytes(hierarchy),
-          .extinction = blocks * sizeof(float),
+          .extinction = extinctionBytes(blocks),
           .table = codes * std::uint64_t(directionCount(directions)),
           .colors = kinds.colors ? voxels * sizeof(float) + coarse * sizeof(glm::uvec2) : 0,
           .emission = kinds.emission ? blocks * sizeof(std::uint32_t) : 0,
@@ -125,7 +125,7 @@ void checkBoxFits(const Device& device, const HierarchyLayout& hierarchy) {
 }
 
 void checkStoresFit(const Device& device, const DeviceVolume& volume) {
-  checkBinds(device, volume.layout.dimensions, volume.storedBlocks() * sizeof(float), sizeof(glm::vec4));
+  checkBinds(device, volume.layout.dimensions, extinctionBytes(volume.storedBlocks()), sizeof(glm::vec4));
 }
 
 void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions) {

@@ -22,6 +22,7 @@ struct DeviceVolume {
   TexelView occupancyTexels;
   std::vector<std::uint64_t> stored;  ///< blocks of each level that hold anything
   Buffer extinction;                  ///< float, per world unit, of all levels
+  TexelView extinctionQuads;          ///< four of them a texel
   Buffer emission;                    ///< packed_light.h, of all levels; does not exist where there is none
   Buffer scalars;  ///< float, or packed albedos, of the voxels; does not exist where there is one colour
   Buffer
@@ -51,6 +52,12 @@ struct DeviceVolume {
   std::uint64_t planeBytes() const { return firstBound(int(stored.size())); }
   shader::BlockLevel onDevice(int level) const;
 };
+
+/// Of so many blocks that hold anything, in texels of four, and two beyond the last whole one:
+/// expand_voxels.comp looks at a texel and the next.
+inline std::uint64_t extinctionBytes(std::uint64_t storedBlocks) {
+  return (storedBlocks / 4 + 2) * sizeof(glm::vec4);
+}
 
 /// Everything but what is kept of the blocks.
 DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
