@@ -11,12 +11,16 @@
 #include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 #include <half.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdint>
 #include <new>
+#include <thread>
 
 #include "engine/core/atomic_file.h"
 #include "engine/core/checked_file.h"
@@ -29,6 +33,10 @@ namespace {
 
 constexpr std::array<const char*, 4> kColorChannels = {"R", "G", "B", "A"};
 constexpr float kLargestHalf = 65504.0f;
+constexpr std::size_t kPixelsATask = 1 << 14;
+
+/// Of 1 to 9. Files become at most a tenth larger than by OpenEXR's 4, in two thirds of the time.
+constexpr int kZipLevel = 3;
 
 /// OpenEXR swallows exceptions in its destructors; CheckedFile remembers them until close.
 class ExrStream : public Imf::OStream {
@@ -42,9 +50,19 @@ class ExrStream : public Imf::OStream {
   CheckedFile& file_;
 };
 
+/// Blocks of scan lines are compressed, and decompressed, side by side.
+void useAllProcessors() {
+  static const bool once = [] {
+    Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency()));
+    return true;
+  }();
+  static_cast<void>(once);
+}
+
 Imf::Header makeHeader(const Image& image, const ExrOptions& options) {
   Imf::Header header(image.size.x, image.size.y);
   header.compression() = Imf::ZIP_COMPRESSION;
+  header.zipCompressionLevel() = kZipLevel;
   Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec.709 with D65 white
   for (const char* name : kColorChannels)
     header.channels().insert(name, Imf::Channel(options.fullFloat ? Imf::FLOAT : Imf::HALF));
@@ -63,9 +81,13 @@ Imf::Header makeHeader(const Image& image, const ExrOptions& options) {
 /// Values beyond the range of half become the largest half, not infinity.
 std::vector<half> toHalf(const std::vector<glm::vec4>& pixels) {
   std::vector<half> halves(pixels.size() * 4);
-  for (std::size_t i = 0; i < pixels.size(); ++i)
-    for (int c = 0; c < 4; ++c)
-      halves[4 * i + std::size_t(c)] = half(std::clamp(pixels[i][c], -kLargestHalf, kLargestHalf));
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), kPixelsATask),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i < range.end(); ++i)
+                        for (int c = 0; c < 4; ++c)
+                          halves[4 * i + std::size_t(c)] =
+                              half(std::clamp(pixels[i][c], -kLargestHalf, kLargestHalf));
+                    });
   return halves;
 }
 
@@ -87,6 +109,7 @@ void encode(const std::filesystem::path& file, const Image& image, const ExrOpti
                                         : makeSlice(Imf::HALF, halves.data() + c, 4, width));
   if (!image.depth.empty()) frame.insert("Z", makeSlice(Imf::FLOAT, image.depth.data(), 1, width));
 
+  useAllProcessors();
   CheckedFile output(file);
   ExrStream stream(output, file);
   {

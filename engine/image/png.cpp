@@ -1,12 +1,13 @@
 // sRGB PNG in, 8-bit sRGB PNG out. The bytes written depend on the image only: no time chunk.
 
 #include <png.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cerrno>
-#include <cmath>
 #include <csetjmp>
 #include <cstdint>
 #include <cstdio>
@@ -28,34 +29,37 @@ namespace freevoxels {
 namespace {
 
 constexpr std::int64_t kMaximumPixels = std::int64_t(1) << 30;
+constexpr std::size_t kPixelsATask = 1 << 14;
+
+/// Of 1 to 9. Rendered pictures become at most a tenth larger than by libpng's 6, in half the time.
+constexpr int kCompressionLevel = 4;
 
 /// 0 for NaN.
 float clampUnit(float value) {
   return value > 0.0f ? std::min(value, 1.0f) : 0.0f;
 }
 
-std::uint8_t toByte(float unit) {
-  return std::uint8_t(std::lround(255.0f * unit));
-}
-
-std::uint8_t toSrgbByte(float linear) {
-  return toByte(srgbFromLinear(clampUnit(linear)));
-}
-
 /// Alpha above 1, which the additive composite makes, counts as 1. Straight alpha cannot be less than a
 /// colour that it is to show: light of more than the opacity takes as much alpha as it needs.
-std::vector<std::uint8_t> toBytes(const Image& image, const glm::vec3* background) {
-  std::vector<std::uint8_t> bytes;
-  bytes.reserve(image.pixels.size() * (background ? 3 : 4));
-  for (const glm::vec4& pixel : image.pixels) {
-    const float needed = background ? pixel.a : std::max({pixel.a, pixel.r, pixel.g, pixel.b});
-    const float alpha = clampUnit(needed);
-    for (int c = 0; c < 3; ++c) {
-      const float straight = alpha > 0.0f ? pixel[c] / alpha : 0.0f;
-      bytes.push_back(toSrgbByte(background ? pixel[c] + (1.0f - alpha) * (*background)[c] : straight));
-    }
-    if (!background) bytes.push_back(toByte(alpha));
+void toBytes(const glm::vec4& pixel, const glm::vec3* background, std::uint8_t* bytes) {
+  const float needed = background ? pixel.a : std::max({pixel.a, pixel.r, pixel.g, pixel.b});
+  const float alpha = clampUnit(needed);
+  for (int c = 0; c < 3; ++c) {
+    const float straight = alpha > 0.0f ? pixel[c] / alpha : 0.0f;
+    const float shown = background ? pixel[c] + (1.0f - alpha) * (*background)[c] : straight;
+    bytes[c] = srgbByteFromLinear(clampUnit(shown));
   }
+  if (!background) bytes[3] = byteFromUnit(alpha);
+}
+
+std::vector<std::uint8_t> toBytes(const Image& image, const glm::vec3* background) {
+  const std::size_t channels = background ? 3 : 4;
+  std::vector<std::uint8_t> bytes(image.pixels.size() * channels);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, image.pixels.size(), kPixelsATask),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i < range.end(); ++i)
+                        toBytes(image.pixels[i], background, bytes.data() + i * channels);
+                    });
   return bytes;
 }
 
@@ -205,6 +209,10 @@ class PngEncoder {
                  channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
+    // Trying all five filters in every row takes longer than deflating it, and saves nothing: what is drawn
+    // is smooth, or empty.
+    png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
+    png_set_compression_level(png_, kCompressionLevel);
     png_write_info(png_, info_);
     for (std::size_t y = 0; y < std::size_t(size.y); ++y)
       png_write_row(png_, bytes + y * std::size_t(size.x) * std::size_t(channels));

@@ -2,6 +2,8 @@
 #include <png.h>
 
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <limits>
@@ -9,6 +11,7 @@
 
 #include "engine/core/error.h"
 #include "engine/image/image.h"
+#include "engine/image/srgb.h"
 #include "tests/limited_disk.h"
 #include "tests/temporary_folder.h"
 
@@ -57,6 +60,17 @@ TEST(Png, EncodesLinearLightAsSrgb) {
   // = 6.6.
   EXPECT_EQ(writeAndRead({{0.5f, 0.18f, 0.002f, 1.0f}, {0.0f, 1.0f, 0.25f, 1.0f}}),
             (Bytes{188, 118, 7, 255, 0, 255, 137, 255}));
+}
+
+/// Of every 61st value, in all buckets of the table and on both sides of its steps.
+TEST(Png, LooksUpTheByteThatTheCurveGives) {
+  const auto last = std::bit_cast<std::uint32_t>(1.0f);
+  for (std::uint32_t bits = 0; bits <= last; bits += bits < 0x38000000u ? 99'991u : 61u) {
+    const float linear = std::bit_cast<float>(bits);
+    ASSERT_EQ(int(srgbByteFromLinear(linear)), int(std::lround(255.0f * srgbFromLinear(linear)))) << linear;
+    ASSERT_EQ(int(byteFromUnit(linear)), int(std::lround(255.0f * linear))) << linear;
+  }
+  EXPECT_EQ(int(srgbByteFromLinear(1.0f)), 255);
 }
 
 TEST(Png, StraightAlphaIsTheColourDividedByAlpha) {

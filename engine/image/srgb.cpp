@@ -1,0 +1,68 @@
+#include "engine/image/srgb.h"
+
+#include <array>
+#include <bit>
+
+namespace freevoxels {
+
+namespace {
+
+/// The byte of every linear value, exactly as the curve gives it. The values of a bucket share their exponent
+/// and the first bits of their mantissa. The curve climbs by at most 78 bytes an octave (at 1), so of the 128
+/// buckets of an octave none crosses more than one step from a byte to the next.
+class SrgbByteTable {
+ public:
+  SrgbByteTable() {
+    for (std::uint32_t i = 0; i < kBuckets; ++i) {
+      const std::uint32_t low = kFirst + (i << kDropped), high = low + (1u << kDropped);
+      const std::uint8_t byte = exactByte(low);
+      buckets_[i] = {std::bit_cast<float>(firstAbove(byte, low, high)), byte};
+    }
+  }
+
+  std::uint8_t at(float linear) const {
+    const auto bits = std::bit_cast<std::uint32_t>(linear);
+    if (bits < kFirst) return 0;
+    if (bits >= kEnd) return 255;
+    const Bucket& bucket = buckets_[(bits - kFirst) >> kDropped];
+    return std::uint8_t(bucket.byte + int(linear >= bucket.next));
+  }
+
+ private:
+  struct Bucket {
+    float next;  ///< the first value that is the next byte, or the bucket's end
+    std::uint8_t byte;
+  };
+  static constexpr std::uint32_t kDropped = 16;  ///< bits of the mantissa
+  /// Byte 0 is all up to half a byte on the straight part of the curve, 0.5 / 255 / 12.92 = 1.24 / 2^13.
+  static constexpr std::uint32_t kFirst = std::bit_cast<std::uint32_t>(0x1p-13f);
+  static constexpr std::uint32_t kEnd = std::bit_cast<std::uint32_t>(1.0f);
+  static constexpr std::uint32_t kBuckets = (kEnd - kFirst) >> kDropped;
+
+  static std::uint8_t exactByte(std::uint32_t bits) {
+    return byteFromUnit(srgbFromLinear(std::bit_cast<float>(bits)));
+  }
+
+  /// By bisection: positive floats are in the order of their bits.
+  static std::uint32_t firstAbove(std::uint8_t byte, std::uint32_t low, std::uint32_t high) {
+    while (low < high) {
+      const std::uint32_t middle = low + (high - low) / 2;
+      if (exactByte(middle) > byte)
+        high = middle;
+      else
+        low = middle + 1;
+    }
+    return low;
+  }
+
+  std::array<Bucket, kBuckets> buckets_;
+};
+
+}  // namespace
+
+std::uint8_t srgbByteFromLinear(float linear) {
+  static const SrgbByteTable table;
+  return table.at(linear);
+}
+
+}  // namespace freevoxels
