@@ -156,13 +156,41 @@ std::vector<Result> culling(const Device& device, QualityColor color, int resolu
   return results;
 }
 
+std::vector<Result> frames(const Device& device, std::string_view name, int resolution, int runs) {
+  const bool head = name == "head";
+  const QualityScene scene = makeQualityScene({head ? "head" : "cloud", head ? QualityColor::Bone : QualityColor::Cloud, false},
+                                              resolution, makeProcedural(std::string(name), resolution));
+  Renderer renderer(device, scene.volume, scene.classification, {});
+  const Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
+  std::vector<Result> results;
+  for (const bool lit : {false, true})
+    for (const Draw draw : {Draw::Gather, Draw::Splats}) {
+      FrameSettings settings{.size = {1024, 1024}, .draw = draw};
+      if (lit) settings.lighting = Lighting{.lights = {{}}};
+      renderer.render(camera, settings);  // what is made once
+      const double time = least(runs, [&] {
+        const auto start = std::chrono::steady_clock::now();
+        renderer.render(camera, settings);
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+      });
+      const std::string ratio = draw == Draw::Splats
+                                    ? fmt::format(": {:.1f} of the gather", time / results.back().milliseconds)
+                                    : "";
+      results.push_back({.name = fmt::format("frame of {} {}^3, {}, {}{}", name, resolution, lit ? "one light" : "unlit",
+                                             draw == Draw::Gather ? "gather" : "splats", ratio),
+                         .milliseconds = time});
+    }
+  return results;
+}
+
 std::vector<Result> lights(const Device& device, int resolution, int runs) {
   const Volume volume = makeProcedural("cloud", resolution);
   const Classification classification{.densityScale = automaticDensityScale(volume)};
   const Camera camera = framingCamera(volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
   std::vector<Result> results;
   const auto measure = [&](int count, LightAttenuation attenuation) {
-    FrameSettings settings{.size = {1024, 1024}, .lighting = Lighting{.attenuation = attenuation}};
+    FrameSettings settings{
+        .size = {1024, 1024}, .draw = Draw::Auto, .lighting = Lighting{.attenuation = attenuation}};
     for (int i = 0; i < count; ++i)
       settings.lighting->lights.push_back({.place = {std::cos(0.4 * i), 0.5, std::sin(0.4 * i)}});
     const double time = least(runs, [&] {
@@ -230,7 +258,7 @@ Result splats(const Device& device, double pixels, int runs) {
 Result wholeRender(const Device& device, const InputOptions& input, int runs) {
   const Volume volume = input.open(maximumVoxels(device));
   const Classification classification{.densityScale = automaticDensityScale(volume)};
-  const FrameSettings settings{.size = {1024, 1024}};
+  const FrameSettings settings{.size = {1024, 1024}, .draw = Draw::Auto};
   const double time = least(runs, [&] {
     const auto start = std::chrono::steady_clock::now();
     Renderer renderer(device, volume, classification, {});
@@ -248,7 +276,7 @@ std::vector<Result> flight(const Device& device, int resolution, int runs) {
   constexpr int kFrames = 12;
   const Volume volume = makeProcedural("cloud", resolution);
   Renderer renderer(device, volume, {.densityScale = automaticDensityScale(volume)}, {});
-  const FrameSettings settings{.size = {512, 512}};
+  const FrameSettings settings{.size = {512, 512}, .draw = Draw::Auto};
   double sum[2] = {0.0, 0.0};
   int frames[2] = {0, 0};
   for (const Camera& camera : flyThrough(volume, kFrames)) {

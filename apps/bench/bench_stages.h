@@ -29,6 +29,10 @@ std::vector<Result> zoom(const Device& device, int resolution, int runs);
 /// Choosing, setting up and drawing the voxels of a head of N³ voxels, all of them and culled.
 std::vector<Result> culling(const Device& device, QualityColor color, int resolution, int runs);
 
+/// A frame of a turntable of a head or a cloud of N³ voxels at 1024 x 1024 pixels, in memory, by gathering and by splats,
+/// without lights and with one. What is made once is made before.
+std::vector<Result> frames(const Device& device, std::string_view name, int resolution, int runs);
+
 /// A cloud of N³ voxels, from memory to a lit picture of 1024 x 1024 pixels in memory: with one light and 16
 /// that the table shadows, and with as many as Auto shadows exactly.
 std::vector<Result> lights(const Device& device, int resolution, int runs);

@@ -57,6 +57,14 @@ Results culling(const Device& device, const Extent& extent) {
   return results;
 }
 
+Results frames(const Device& device, const Extent& extent) {
+  Results results;
+  for (const std::string_view name : {"head", "cloud"})
+    std::ranges::move(bench::frames(device, name, extent.quick ? 128 : 256, extent.runs()),
+                      std::back_inserter(results));
+  return results;
+}
+
 Results lights(const Device& device, const Extent& extent) {
   return bench::lights(device, 128, extent.runs());
 }
@@ -91,8 +99,9 @@ struct Stage {
   Results (*measure)(const Device& device, const Extent& extent);
 };
 const std::vector<Stage> kStages{{"sweeps", sweeps},   {"octree", octree}, {"zoom", zoom},
-                                 {"culling", culling}, {"lights", lights}, {"list", list},
-                                 {"splats", splats},   {"flight", flight}, {"whole", whole}};
+                                 {"culling", culling}, {"frames", frames}, {"lights", lights},
+                                 {"list", list},       {"splats", splats}, {"flight", flight},
+                                 {"whole", whole}};
 
 std::vector<std::string> stageNames() {
   std::vector<std::string> names;

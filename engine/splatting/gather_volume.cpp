@@ -90,7 +90,16 @@ GatherVolume::GatherVolume(const Device& device, const BuiltVolume& built)
                kTexels),
       windowTexels_(device, windows_, VK_FORMAT_R32G32_UINT),
       skipTexels_(device, skipCells_, VK_FORMAT_R32_UINT),
-      sourceTexels_(device, sources_, VK_FORMAT_R32G32_UINT) {}
+      sourceTexels_(device, sources_, VK_FORMAT_R32G32_UINT) {
+  makeTowards(1);  // a binding needs a buffer
+}
+
+void GatherVolume::makeTowards(std::uint64_t blocks) {
+  const std::uint64_t bytes = blocks * sizeof(std::uint32_t);
+  if (towards_.bytes() >= bytes) return;
+  towards_ = Buffer(device_, bytes, MemoryUse::Device, "source directions", kTexels);
+  towardsTexels_ = TexelView(device_, towards_, VK_FORMAT_R8G8B8A8_SNORM);
+}
 
 void GatherVolume::recordOccupancy(Commands& commands) {
   const DeviceVolume& volume = built_.volume;
@@ -162,11 +171,7 @@ void GatherVolume::record(Commands& commands, const Shading& shading) {
       {.bindings = std::vector(12, kStorage), .pushConstantBytes = sizeof(shader::ShadePush)},
       {shader::kShadeThreads, 1, 1},
       {lit, volume.hasEmission(), volume.hasAlbedos, shading.frame.tinted, hasTowards()});
-  if (hasTowards() && towards_.bytes() == 0) {
-    towards_ = Buffer(device_, recordCount(volume.storedBlocks()) * sizeof(std::uint32_t), MemoryUse::Device,
-                      "source directions", kTexels);
-    towardsTexels_ = TexelView(device_, towards_, VK_FORMAT_R8G8B8A8_SNORM);
-  }
+  if (hasTowards()) makeTowards(recordCount(volume.storedBlocks()));
   commands.beginPass("shade blocks");
   commands.update(frame_, shading.frame.setup);
   for (int level = 0; level <= volume.hierarchy.top(); ++level)

@@ -36,7 +36,7 @@ class GatherVolume {
   /// By rank: source term and extinction.
   const TexelView& sources() const { return sourceTexels_; }
   /// By rank: how the source term depends on the direction to the eye; read where hasTowards() says so.
-  const TexelView& towards() const { return towards_.bytes() > 0 ? towardsTexels_ : sourceTexels_; }
+  const TexelView& towards() const { return towardsTexels_; }
   /// Fills in what the frame has of the volume: the units of what is stored, and the levels that it reads.
   void describe(shader::GatherFrame& frame) const;
   bool hasTowards() const { return lit_ && !viewDependent_; }
@@ -44,6 +44,7 @@ class GatherVolume {
  private:
   shader::GatherLevel level(int number) const;
   void recordOccupancy(Commands& commands);
+  void makeTowards(std::uint64_t blocks);
   void shade(Commands& commands, const Shading& shading, int level);
 
   const Device& device_;
@@ -53,7 +54,7 @@ class GatherVolume {
   Buffer frame_;  ///< shader::SetupFrame
   Buffer windows_, skipCells_;
   Buffer sources_;  ///< four halves
-  Buffer towards_;  ///< three signed normalised bytes; does not exist before a frame is lit
+  Buffer towards_;  ///< three signed normalised bytes; one block's before a frame needs them
   TexelView windowTexels_, skipTexels_, sourceTexels_, towardsTexels_;
   bool hasOccupancy_ = false;
   // What the source terms are of.
