@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <new>
 #include <string>
@@ -27,12 +28,22 @@ fs::path folderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// ".NAME.PID.tmp.EXT" beside `target`. Long names are cut, so that the temporary's fits where the target's
-/// does.
+/// The first bytes, at most so many, without a part of a UTF-8 character at the end.
+std::string cutUtf8(const std::string& text, std::size_t bytes) {
+  if (text.size() <= bytes) return text;
+  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) == 0x80u; };
+  while (bytes > 0 && continues(text[bytes])) --bytes;
+  return text.substr(0, bytes);
+}
+
+/// ".NAME.PID.NUMBER.tmp.EXT" beside `target`, another one each time: several threads may write files whose
+/// names begin alike. Long names are cut, so that the temporary's fits where the target's does.
 fs::path temporaryPath(const fs::path& target) {
   constexpr std::size_t kLongestStem = 100;
-  const std::string stem = target.stem().string().substr(0, kLongestStem);
-  return folderOf(target) / fmt::format(".{}.{}.tmp{}", stem, getpid(), target.extension().string());
+  static std::atomic<unsigned> number = 0;
+  const std::string stem = cutUtf8(target.stem().string(), kLongestStem);
+  return folderOf(target) /
+         fmt::format(".{}.{}.{}.tmp{}", stem, getpid(), number++, target.extension().string());
 }
 
 /// What a rename has to replace: the file behind a symbolic link, not the link.
@@ -80,9 +91,12 @@ const char* mendFor(int error) {
   fail(ExitCode::Output, "cannot write '{}': {}; {}", destination.string(), asClause(message), mendFor(0));
 }
 
+/// Unless `file` is null by then.
 struct RemoveOnExit {
-  const fs::path& file;
-  ~RemoveOnExit() { unlink(file.c_str()); }
+  const fs::path* file;
+  ~RemoveOnExit() {
+    if (file != nullptr) unlink(file->c_str());
+  }
 };
 
 /// Opens, flushes to the disk and closes. Returns 0 or the error number.
@@ -119,10 +133,11 @@ void writeAtomically(const std::filesystem::path& destination,
                      const std::function<void(const std::filesystem::path&)>& write) {
   const fs::path target = followLink(destination);
   const fs::path temporary = temporaryPath(target);
-  const RemoveOnExit remove{temporary};  // finds nothing to remove after the rename
+  RemoveOnExit remove{&temporary};
   callWriter(destination, temporary, write);
   if (const int error = flushToDisk(temporary)) failBecause(destination, error);
   if (std::rename(temporary.c_str(), target.c_str()) != 0) failBecause(destination, errno);
+  remove.file = nullptr;
   flushToDisk(folderOf(target));
 }
 

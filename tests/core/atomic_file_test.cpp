@@ -47,6 +47,32 @@ TEST(AtomicFile, KeepsTheOldFileUntilTheNewOneIsComplete) {
   EXPECT_EQ(temporary.filename().string().front(), '.');
 }
 
+/// As two threads do.
+TEST(AtomicFile, FilesOfOneNameHaveTemporariesOfTheirOwn) {
+  const TemporaryFolder folder;
+  writeAtomically(folder / "a.exr", [&](const fs::path& outer) {
+    writeBytes(outer, "outer");
+    writeAtomically(folder / "a.exr", [&](const fs::path& inner) {
+      EXPECT_NE(inner, outer);
+      writeBytes(inner, "inner");
+    });
+    EXPECT_EQ(readBytes(outer), "outer");
+    EXPECT_EQ(readBytes(folder / "a.exr"), "inner");
+  });
+  EXPECT_EQ(readBytes(folder / "a.exr"), "outer");
+  EXPECT_EQ(folder.fileCount(), 1u);
+}
+
+TEST(AtomicFile, LongNamesAreCutBetweenCharacters) {
+  const TemporaryFolder folder;
+  const std::string ascii(99, 'a');
+  writeAtomically(folder / (ascii + "\u00e9\u00e9.txt"), [&](const fs::path& file) {
+    EXPECT_TRUE(file.filename().string().starts_with("." + ascii + ".")) << file;
+    writeBytes(file, "new");
+  });
+  EXPECT_EQ(folder.fileCount(), 1u);
+}
+
 TEST(AtomicFile, LeavesNothingBehindAndTheOldFileWholeWhenTheWriterFails) {
   const TemporaryFolder folder;
   writeBytes(folder / "a.exr", "old");
