@@ -39,7 +39,8 @@ std::uint32_t findMemoryType(const Device& device, std::uint32_t allowedTypes, M
 }  // namespace
 
 DeviceMemory::DeviceMemory(const Device& device, const VkMemoryRequirements& needs, MemoryUse use,
-                           bool deviceAddress) {
+                           bool deviceAddress)
+    : claim_(device, needs.size) {
   const std::uint32_t type = findMemoryType(device, needs.memoryTypeBits, use);
   const VkMemoryAllocateFlagsInfo flags{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_FLAGS_INFO,
                                         .flags = VK_MEMORY_ALLOCATE_DEVICE_ADDRESS_BIT};
@@ -47,25 +48,10 @@ DeviceMemory::DeviceMemory(const Device& device, const VkMemoryRequirements& nee
                                   .pNext = deviceAddress ? &flags : nullptr,
                                   .allocationSize = needs.size,
                                   .memoryTypeIndex = type};
-  device.claim(needs.size);
-  device_ = &device;
-  bytes_ = needs.size;
   VkDeviceMemory memory = VK_NULL_HANDLE;
   VK_CHECK(vkAllocateMemory(device.handle(), &info, nullptr, &memory));
   memory_ = OwnedMemory(device.handle(), memory);
   hostCoherent_ = (device.memory().memoryTypes[type].propertyFlags & kVisible) == kVisible;
-}
-
-DeviceMemory& DeviceMemory::operator=(DeviceMemory&& other) noexcept {
-  std::swap(device_, other.device_);
-  std::swap(bytes_, other.bytes_);
-  std::swap(hostCoherent_, other.hostCoherent_);
-  memory_ = std::move(other.memory_);
-  return *this;
-}
-
-DeviceMemory::~DeviceMemory() {
-  if (device_ != nullptr) device_->release(bytes_);
 }
 
 Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const char* name,

@@ -2,7 +2,9 @@
 // Buffers, one allocation each, placed by what they are for.
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <utility>
 
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/owned.h"
@@ -15,23 +17,40 @@ enum class MemoryUse {
   Readback,  ///< written by the device, read by the host
 };
 
+/// Bytes that a device counts as allocated. Fails with ExitCode::OutOfMemory beyond the device's limit.
+class MemoryClaim {
+ public:
+  MemoryClaim() = default;
+  MemoryClaim(const Device& device, std::uint64_t bytes) : device_(&device), bytes_(bytes) {
+    device.claim(bytes);
+  }
+  MemoryClaim(MemoryClaim&& other) noexcept { *this = std::move(other); }
+  MemoryClaim& operator=(MemoryClaim&& other) noexcept {
+    std::swap(device_, other.device_);
+    std::swap(bytes_, other.bytes_);
+    return *this;
+  }
+  ~MemoryClaim() {
+    if (device_ != nullptr) device_->release(bytes_);
+  }
+
+ private:
+  const Device* device_ = nullptr;
+  std::uint64_t bytes_ = 0;
+};
+
 /// An allocation, which its device counts.
 class DeviceMemory {
  public:
   DeviceMemory() = default;
   /// Of the memory type that suits `use` best; with a device address if asked for.
   DeviceMemory(const Device& device, const VkMemoryRequirements& needs, MemoryUse use, bool deviceAddress);
-  DeviceMemory(DeviceMemory&& other) noexcept { *this = std::move(other); }
-  DeviceMemory& operator=(DeviceMemory&& other) noexcept;
-  ~DeviceMemory();
-
   VkDeviceMemory get() const { return memory_.get(); }
   /// Can be mapped, and needs no flushing.
   bool hostCoherent() const { return hostCoherent_; }
 
  private:
-  const Device* device_ = nullptr;
-  std::uint64_t bytes_ = 0;
+  MemoryClaim claim_;  // until the memory is freed, or could not be allocated
   bool hostCoherent_ = false;
   OwnedMemory memory_;
 };
