@@ -15,6 +15,10 @@ constexpr VkAccessFlags2 kAnyAccess = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_
 
 }  // namespace
 
+std::uint64_t ticksBetween(std::uint64_t first, std::uint64_t second, std::uint32_t bits) {
+  return (second - first) & (~std::uint64_t(0) >> (64 - bits));
+}
+
 Commands::Commands(const Device& device) : device_(device) {
   const VkCommandPoolCreateInfo poolInfo{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
                                          .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
@@ -200,6 +204,7 @@ void Commands::submitAndWait(const Progress& progress) {
 }
 
 void Commands::reportProgress(const Progress& progress) const {
+  if (passes_.empty()) return;
   struct Timestamp {
     std::uint64_t value, available;
   };
@@ -222,8 +227,8 @@ std::vector<StageTime> Commands::times() const {
                                  VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
   std::vector<StageTime> times;
   for (std::size_t i = 0; i < passes_.size(); ++i) {
-    const double milliseconds =
-        double(stamps[i + 1] - stamps[i]) * double(device_.limits().timestampPeriod) * 1e-6;
+    const std::uint64_t ticks = ticksBetween(stamps[i], stamps[i + 1], device_.timestampBits());
+    const double milliseconds = double(ticks) * double(device_.limits().timestampPeriod) * 1e-6;
     const auto same = std::ranges::find(times, passes_[i], &StageTime::name);
     if (same != times.end())
       same->milliseconds += milliseconds;

@@ -19,6 +19,9 @@ namespace freevoxels {
 /// texture with its sampler.
 using Binding = std::variant<const Buffer*, const TexelView*, const RenderTarget*, const Texture*>;
 
+/// Between two timestamps of so many bits, which may have started again from 0 meanwhile.
+std::uint64_t ticksBetween(std::uint64_t first, std::uint64_t second, std::uint32_t bits);
+
 class Commands {
  public:
   explicit Commands(const Device& device);

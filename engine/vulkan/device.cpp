@@ -88,15 +88,20 @@ std::vector<VkPhysicalDevice> physicalDevices(const Instance& instance) {
   return devices;
 }
 
+struct QueueFamily {
+  std::uint32_t index, timestampBits;
+};
+
 /// A queue family that can do everything, compute and graphics, with timestamps.
-std::optional<std::uint32_t> findQueueFamily(VkPhysicalDevice physical) {
+std::optional<QueueFamily> findQueueFamily(VkPhysicalDevice physical) {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
   constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
   for (std::uint32_t i = 0; i < count; ++i)
-    if ((families[i].queueFlags & kNeeded) == kNeeded && families[i].timestampValidBits > 0) return i;
+    if ((families[i].queueFlags & kNeeded) == kNeeded && families[i].timestampValidBits > 0)
+      return QueueFamily{i, families[i].timestampValidBits};
   return std::nullopt;
 }
 
@@ -223,7 +228,9 @@ Device::Device(const Instance& instance, std::string_view selector, std::uint64_
   properties_ = base.properties;
   maximumAllocation_ = vulkan11.maxMemoryAllocationSize;
   vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
-  queueFamily_ = *findQueueFamily(physical_);
+  const QueueFamily family = *findQueueFamily(physical_);
+  queueFamily_ = family.index;
+  timestampBits_ = family.timestampBits;
 
   Features features;
   for (const RequiredFeature& feature : kRequiredFeatures) feature.of(features) = VK_TRUE;

@@ -48,6 +48,8 @@ class Device {
   VkPhysicalDevice physical() const { return physical_; }
   VkQueue queue() const { return queue_; }
   std::uint32_t queueFamily() const { return queueFamily_; }
+  /// Bits that a timestamp of the queue has.
+  std::uint32_t timestampBits() const { return timestampBits_; }
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
   VkDeviceSize maximumAllocation() const { return maximumAllocation_; }
@@ -81,7 +83,7 @@ class Device {
   std::uint64_t memoryLimit_;
   bool mapsOwnMemory_;
   mutable std::atomic<std::uint64_t> allocated_ = 0, peak_ = 0;
-  std::uint32_t queueFamily_ = 0;
+  std::uint32_t queueFamily_ = 0, timestampBits_ = 0;
   VkDevice device_ = VK_NULL_HANDLE;
   VkQueue queue_ = VK_NULL_HANDLE;
   std::unique_ptr<PipelineStore> pipelines_;

@@ -8,6 +8,7 @@
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/commands.h"
 #include "tests/device/device_fixture.h"
+#include "tests/refusal.h"
 
 namespace freevoxels {
 namespace {
@@ -63,6 +64,31 @@ TEST_F(VulkanTest, PassesAreTimed) {
   ASSERT_EQ(times.size(), 2u);
   EXPECT_EQ(times[0].name, "first");
   EXPECT_GT(times[0].milliseconds + times[1].milliseconds, 0.0);
+}
+
+TEST(Timestamps, StartAgainFromZero) {
+  EXPECT_EQ(ticksBetween(100, 350, 64), 250u);
+  EXPECT_EQ(ticksBetween((std::uint64_t(1) << 36) - 100, 150, 36), 250u);
+  EXPECT_EQ(ticksBetween(~std::uint64_t(0) - 99, 150, 64), 250u);
+}
+
+TEST_F(VulkanTest, WithoutPassesThereIsNoProgress) {
+  const Buffer buffer(device(), 1 << 26, MemoryUse::Device, "test");
+  Commands commands(device());
+  for (int i = 0; i < 16; ++i) commands.clear(buffer);
+  commands.submitAndWait([](std::string_view, double) { ADD_FAILURE() << "of what?"; });
+  EXPECT_TRUE(commands.times().empty());
+}
+
+/// Without validation, which would not let the device be asked.
+TEST(Memory, WhatCouldNotBeAllocatedIsNotCounted) {
+  const Instance instance(false);
+  const Device device(instance, "");
+  const std::uint64_t available = device.availableBytes();
+  const VkMemoryRequirements tooMuch{.size = VkDeviceSize(1) << 60, .alignment = 256, .memoryTypeBits = ~0u};
+  const auto allocate = [&] { DeviceMemory(device, tooMuch, MemoryUse::Device, false); };
+  test::expectRefusal(allocate, ExitCode::OutOfMemory, {"the device is out of memory"});
+  EXPECT_EQ(device.availableBytes(), available);
 }
 
 TEST(Validation, NoticesAMistake) {
