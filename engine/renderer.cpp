@@ -197,6 +197,8 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
 SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& camera, const FrameSettings& wanted,
                                            const Progress& progress) {
   frameTimes.clear();
+  lastDrawn = nullptr;
+  lastLackedRays = false;
   FrameSettings settings = resolved(wanted);
   settings.attenuation = AttenuationLookup::Exact;
   FrameConstants constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);

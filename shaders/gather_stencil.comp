@@ -21,6 +21,7 @@ layout(binding = 6, r32f) writeonly uniform image2D distanceImage;
 #include "gather_resolve.glsl"
 
 const float kStencilStrength = 1.2;   // measured: higher than the missing variance, as the stencil is coarse
+const float kLeastTransmittance = 1e-6;  // that the stencil tells from 0
 const float kMostVariance = 0.8;      // beyond it the middle weight would come near to 0
 
 int placeOf(ivec2 index) {
@@ -63,11 +64,19 @@ void main() {
   const float cross = 0.25 * covariance.y;
   const float weights[9] = float[9](cross, 0.5 * covariance.z, -cross, 0.5 * covariance.x, 1.0 - covariance.x - covariance.z,
                                     0.5 * covariance.x, -cross, 0.5 * covariance.z, cross);
+  // Footprints add up optical depths, so that is what the stencil is about: E and with it the colour follow.
   vec4 color = vec4(0.0);
+  float depth = 0.0;
   distance = 0.0;
   [[unroll]] for (int i = 0; i < 9; ++i) {
     color += weights[i] * colors[i];
+    depth -= weights[i] * log(max(1.0 - colors[i].a, kLeastTransmittance));
     distance += weights[i] * weighted[i];
+  }
+  if (color.a > kLeastTransmittance) {
+    const float scale = (1.0 - exp(-max(depth, 0.0))) / color.a;
+    color *= scale;
+    distance *= scale;
   }
   if (kDirect) {
     resolvePixel(index, color, distance);

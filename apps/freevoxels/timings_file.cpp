@@ -30,6 +30,7 @@ void logCounts(const RunReport& report) {
       "at most {:.1f} MiB on the device",
       stored / 0x1p20, stored / double(std::max<std::uint64_t>(report.visibleVoxels, 1)),
       stored / double(report.voxels), double(report.devicePeak) / 0x1p20);
+  if (report.cut.considered == 0) return;  // the gather chooses none
   spdlog::debug(
       "{} blocks considered for the last frame, {} of them empty, {} outside of the image, {} hidden",
       report.cut.considered, report.cut.empty, report.cut.outside, report.cut.hidden);

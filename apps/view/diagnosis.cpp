@@ -39,7 +39,9 @@ Image sumsPicture(Shown shown, Renderer& renderer, const Camera& camera, const F
 
 Image blocksPicture(const std::optional<Camera>& chosenFor, Renderer& renderer, const Volume& volume,
                     const Camera& camera, const FrameSettings& settings) {
-  renderer.render(chosenFor.value_or(camera), settings);
+  FrameSettings splats = settings;
+  splats.draw = Draw::Splats;  // the gather chooses no blocks
+  renderer.render(chosenFor.value_or(camera), splats);
   const std::vector<Block> drawn = renderer.downloadDrawnBlocks();
   std::vector<PaintedBlock> painted;
   for (const Block& block : drawn) painted.push_back({block, levelColor(block.level)});

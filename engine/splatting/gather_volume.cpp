@@ -105,6 +105,8 @@ void GatherVolume::recordOccupancy(Commands& commands) {
   const DeviceVolume& volume = built_.volume;
   const auto windows = std::uint32_t(windowCount(volume.hierarchy));
   commands.beginPass("gather occupancy");
+  // Blocks of weight 0 are read whether or not they were shaded, and must be finite.
+  commands.clear(sources_);
   const std::array<Binding, 2> windowBindings{&volume.occupancy, &windows_};
   commands.dispatchLinear(windowsPass_, windowBindings, shader::WindowsPush{windows}, windows);
   const std::array<Binding, 2> skipBindings{&volume.occupancy, &skipCells_};

@@ -162,7 +162,7 @@ TEST_F(RenderCommand, SortedIsAnotherPictureWithoutTheTable) {
 
 TEST_F(RenderCommand, LevelOfDetailDrawsFewerBlocks) {
   const auto drawn = [&](const std::string& options) {
-    render(options + " --timings " + (folder / "t.json").string());
+    render(options + " --draw splats --timings " + (folder / "t.json").string());
     std::ifstream file(folder / "t.json");
     return nlohmann::json::parse(file).at("blocks").at("drawn").get<std::vector<std::uint64_t>>();
   };
@@ -170,7 +170,7 @@ TEST_F(RenderCommand, LevelOfDetailDrawsFewerBlocks) {
   EXPECT_EQ(voxels.size(), 1u);
   ASSERT_GT(blocks.size(), 1u);
   EXPECT_LT(blocks.back(), voxels[0]);
-  EXPECT_NE(render("--lod 64"), render("--lod 64 --hierarchy-filter arithmetic"));
+  EXPECT_NE(render("--draw splats --lod 64"), render("--draw splats --lod 64 --hierarchy-filter arithmetic"));
   EXPECT_EQ(exrAttribute(render("--hierarchy-filter arithmetic"), "freevoxels:hierarchy-filter"),
             "arithmetic");
 }

@@ -29,7 +29,7 @@ class PictureMakerTest : public DeviceTest {
   PictureMaker maker_{device(), volumes_};
 };
 
-TEST_F(PictureMakerTest, TurningALightKeepsTheVolumeAndItsTable) {
+TEST_F(PictureMakerTest, TurningALightKeepsTheVolumeAndItsOccupancy) {
   PictureRequest request = litCloud();
   const Picture first = maker_.make(request, {});
   request.scene.lighting.lights[0].light.place = {1.0, 0.0, 0.0};
@@ -37,15 +37,15 @@ TEST_F(PictureMakerTest, TurningALightKeepsTheVolumeAndItsTable) {
   EXPECT_NE(turned.image.pixels, first.image.pixels);
   ASSERT_EQ(timesOf(first, "upload").size(), 1u);
   EXPECT_EQ(timesOf(turned, "upload"), timesOf(first, "upload")) << "measured once";
-  EXPECT_EQ(timesOf(first, "attenuation sweeps").size(), 1u);
-  EXPECT_EQ(timesOf(turned, "attenuation sweeps").size(), 0u);
+  EXPECT_EQ(timesOf(first, "gather occupancy").size(), 1u);
+  EXPECT_EQ(timesOf(turned, "gather occupancy").size(), 0u);
 }
 
-TEST_F(PictureMakerTest, AnotherClassificationMakesAnotherTable) {
+TEST_F(PictureMakerTest, AnotherClassificationMakesAnotherOccupancy) {
   PictureRequest request = litCloud();
   maker_.make(request, {});
   request.scene.classification.transferFunction = R"({"opacity": [[0, 0], [1, 0.5]]})";
-  EXPECT_EQ(timesOf(maker_.make(request, {}), "attenuation sweeps").size(), 1u);
+  EXPECT_EQ(timesOf(maker_.make(request, {}), "gather occupancy").size(), 1u);
 }
 
 }  // namespace
