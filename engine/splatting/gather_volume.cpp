@@ -138,7 +138,7 @@ void GatherVolume::shade(Commands& commands, const Shading& shading, int level) 
                                          &volume.occupancy,
                                          shading.lights != nullptr ? shading.lights : &anyBuffer,
                                          volume.hasEmission() ? &volume.emission : &anyBuffer,
-                                         hasTowards() ? &towards_ : &anyBuffer};
+                                         &towards_};
   const shader::ShadePush push{
       .firstRank = volume.firstRank(level),
       .count = count,
@@ -146,6 +146,7 @@ void GatherVolume::shade(Commands& commands, const Shading& shading, int level) 
       .sourceScale = float(kStoredDepth * volume.voxelSize / sourceUnit_),
       .meanLayer = meanLayer(volume)};
   commands.dispatchLinear(shadePass_, bindings, push, count);
+  commands.barrier(kCompute, kCompute);
 }
 
 void GatherVolume::record(Commands& commands, const Shading& shading) {
@@ -178,7 +179,6 @@ void GatherVolume::record(Commands& commands, const Shading& shading) {
   commands.update(frame_, shading.frame.setup);
   for (int level = 0; level <= volume.hierarchy.top(); ++level)
     if (((wanted & ~shadedLevels_) >> level & 1u) != 0) shade(commands, shading, level);
-  commands.barrier(kCompute, kCompute);
   shadedLevels_ |= wanted;
 }
 

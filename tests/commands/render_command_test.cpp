@@ -150,7 +150,7 @@ TEST_F(RenderCommand, SortedIsAnotherPictureWithoutTheTable) {
     render(options + " --float --aov depth");
     return readExr(folder / "a.exr");
   };
-  const Image sorted = pixels("--composite sorted"), normalised = pixels("");
+  const Image sorted = pixels("--composite sorted"), normalised = pixels("--draw splats");
   EXPECT_NE(sorted.pixels, normalised.pixels);
   for (std::size_t i = 0; i < sorted.pixels.size(); ++i)
     ASSERT_LE(sorted.pixels[i].a, normalised.pixels[i].a + 0.01f) << "pixel " << i;
