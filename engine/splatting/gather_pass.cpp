@@ -37,10 +37,9 @@ bool isLatticeOfPixels(const shader::GatherFrame& frame) {
   return frame.pitch == 1.0f && frame.samples == frame.size;
 }
 
-/// Whether some ray of the image has this major axis: the image's corners and the places between them where the
-/// components are equal in size bound the pixels of an axis, so a grid of rays finds it unless it is a sliver.
+/// Whether some ray of the lattice may have this major axis: a grid of rays is looked at, with a margin for what lies
+/// between them.
 bool someRayHasAxis(const shader::GatherFrame& frame, int axis) {
-  // Components are affine in the position: of an axis that is the largest nowhere on a dense grid, none is a ray's.
   const glm::vec2 half = 0.5f * glm::vec2(frame.size) + 2.0f * frame.pitch;
   constexpr int kGrid = 16;
   for (int j = 0; j <= kGrid; ++j) {
@@ -48,7 +47,6 @@ bool someRayHasAxis(const shader::GatherFrame& frame, int axis) {
       const glm::vec3 position(1.0f, half * (2.0f * glm::vec2(float(i), float(j)) / float(kGrid) - 1.0f));
       glm::vec3 size;
       for (int a = 0; a < 3; ++a) size[a] = std::abs(glm::dot(frame.axes[a].along, position));
-      // With a margin for what lies between the grid's rays.
       if (size[axis] >= 0.8f * std::max({size.x, size.y, size.z})) return true;
     }
   }
