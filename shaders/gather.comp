@@ -200,7 +200,7 @@ void main() {
   const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);
   const vec3 alongAxes =
       vec3(dot(frame.axes[0].along, position), dot(frame.axes[1].along, position), dot(frame.axes[2].along, position));
-  if (rayAxis(alongAxes) != kAxis) return;
+  if (majorAxis(alongAxes) != kAxis) return;
 
   const float along = alongAxes[kAxis];
   const vec3 world = frame.worldRay[0] * position.x + frame.worldRay[1] * position.y + frame.worldRay[2] * position.z;

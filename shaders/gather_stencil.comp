@@ -31,7 +31,7 @@ int placeOf(ivec2 index) {
 
 // Covariance (xx, xy, yy) that the sums lack, in squares of the lattice's pitch.
 vec3 missingCovariance(vec3 position, float distance) {
-  const int axis = rayAxis(vec3(dot(frame.axes[0].along, position), dot(frame.axes[1].along, position),
+  const int axis = majorAxis(vec3(dot(frame.axes[0].along, position), dot(frame.axes[1].along, position),
                                 dot(frame.axes[2].along, position)));
   const float scale = frame.orthographic != 0 ? 1.0 : 1.0 / distance;
   const vec2 tilt = (frame.axes[axis].tilt - position.yz * frame.axes[axis].tiltDepth) * scale;

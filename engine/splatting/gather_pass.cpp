@@ -17,7 +17,6 @@ constexpr VkDescriptorType kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 constexpr VkDescriptorType kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 constexpr glm::ivec3 kTile{shader::kGatherTile, shader::kGatherTile, 1};
-constexpr std::uint64_t kSampleBytes = sizeof(glm::vec4) + sizeof(float);
 
 Pipeline makeGather(const Device& device, int axis, bool towards) {
   return makeComputePipeline(device, {gather_spv, "gather"},
@@ -54,12 +53,6 @@ bool someRayHasAxis(const shader::GatherFrame& frame, int axis) {
 }
 
 }  // namespace
-
-std::uint64_t latticeBytes(const shader::GatherFrame& frame) {
-  const std::uint64_t samples = std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y);
-  if (isLatticeOfPixels(frame)) return samples * kSampleBytes;
-  return (2 * samples + std::uint64_t(frame.size.x) * std::uint64_t(frame.samples.y)) * kSampleBytes;
-}
 
 GatherPass::GatherPass(const Device& device)
     : device_(device), frame_(device, sizeof(shader::GatherFrame), MemoryUse::Device, "gather frame",

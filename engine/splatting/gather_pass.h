@@ -13,9 +13,6 @@ namespace freevoxels {
 shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& camera, const FrameSettings& settings,
                                     const DetailRule& detail, double end);
 
-/// Bytes of device memory that the lattice of such a frame takes beside the image's sums.
-std::uint64_t latticeBytes(const shader::GatherFrame& frame);
-
 /// COMPUTE gather.comp, gather_stencil.comp and gather_upsample.comp: premultiplied RGBA in `targets.colorEnergy` and the
 /// mean distance in `targets.distance`, if that exists. Leaves the targets in layout GENERAL, visible to transfer.
 class GatherPass {

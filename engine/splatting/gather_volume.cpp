@@ -64,11 +64,6 @@ float meanLayer(const DeviceVolume& volume) {
 
 }  // namespace
 
-std::uint64_t gatherVolumeBytes(const HierarchyLayout& hierarchy, std::uint64_t storedBlocks) {
-  return windowCount(hierarchy) * sizeof(shader::OccupancyWord) + skipCellCount(hierarchy) * sizeof(std::uint32_t) +
-         recordCount(storedBlocks) * (sizeof(glm::uvec2) + sizeof(std::uint32_t));
-}
-
 GatherVolume::GatherVolume(const Device& device, const BuiltVolume& built)
     : device_(device),
       built_(built),

@@ -11,9 +11,6 @@
 
 namespace freevoxels {
 
-/// Bytes of device memory that a GatherVolume takes of such a volume.
-std::uint64_t gatherVolumeBytes(const HierarchyLayout& hierarchy, std::uint64_t storedBlocks);
-
 /// COMPUTE occupancy_windows.comp and skip_cells.comp once, shade_blocks.comp for the first frame and for every one
 /// whose light differs from the frame before. Belongs to one volume, which must outlive it.
 class GatherVolume {
