@@ -210,12 +210,21 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
     read = constants.detail.coarsest > 0 ? &tableWithLevels(progress) : &sweptTable(progress);
   if (settings.lighting)
     constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, frameTimes);
-  if (!gatherVolume) gatherVolume.emplace(device, built);
+  const GatherVolume::Shading shading{
+      .frame = constants,
+      .table = read,
+      .lighting = settings.lighting ? &*settings.lighting : nullptr,
+      .lights = settings.lighting ? &lights->lights() : nullptr,
+      .axes = {someRayHasAxis(lattice, 0), someRayHasAxis(lattice, 1), someRayHasAxis(lattice, 2)}};
+  try {
+    if (!gatherVolume) gatherVolume.emplace(device, built, frameTimes);
+    gatherVolume->prepare(shading);
+  } catch (const Error&) {
+    gatherVolume.reset();
+    throw;
+  }
   if (!gather) gather.emplace(device);
-  gatherVolume->record(commands, {.frame = constants,
-                                  .table = read,
-                                  .lighting = settings.lighting ? &*settings.lighting : nullptr,
-                                  .lights = settings.lighting ? &lights->lights() : nullptr});
+  gatherVolume->record(commands, shading);
   gatherVolume->describe(lattice);
   gather->record(commands, *gatherVolume, lattice, targets);
   return targets;
@@ -223,7 +232,13 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
 
 SplatTargets Renderer::State::recordImage(Commands& commands, const Camera& camera, const FrameSettings& settings,
                                           const Progress& progress) {
-  if (drawsByGathering(settings)) return recordGather(commands, camera, settings, progress);
+  if (drawsByGathering(settings)) {
+    try {
+      return recordGather(commands, camera, settings, progress);
+    } catch (const Error& error) {
+      if (settings.draw != Draw::Auto || error.code() != ExitCode::OutOfMemory) throw;  // splats need less memory
+    }
+  }
   Frame frame = recordSplats(commands, camera, settings, progress);
   if (settings.composite != Composite::Sorted || settings.depth)
     resolve->record(commands, frame.constants, frame.targets);

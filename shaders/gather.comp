@@ -7,20 +7,22 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "gather_interface.h"
 #include "gather_ray.glsl"
+#include "packed_light.glsl"
 
 layout(constant_id = 0) const int kAxis = 2;        // rays with another axis are left to other dispatches
 layout(constant_id = 1) const bool kTowards = false;  // whether the light of blocks depends on the direction to the eye
+layout(constant_id = 2) const bool kColored = true;   // whether blocks have source terms of their own
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 layout(scalar, binding = 0) uniform Frame { GatherFrame frame; };
-layout(binding = 1) uniform utextureBuffer windows;    // mask of 32 blocks, and how many occupied ones are before them
-layout(binding = 2) uniform utextureBuffer skipCells;  // 0: the cell and its next neighbours are empty
-layout(binding = 3) uniform utextureBuffer sources;    // by rank: source term and extinction, four halves
-layout(binding = 4) uniform textureBuffer towards;     // by rank, where kTowards says so
+layout(binding = 1) uniform utextureBuffer brickNumbers;
+// Quads: of two neighbours along the first side each, of this position and of the next one along the second side.
+layout(binding = 2) uniform utextureBuffer extinctionQuads;  // four halves
+layout(binding = 3) uniform utextureBuffer sourceQuads;      // four packed source terms, where kColored says so
+layout(binding = 4) uniform utextureBuffer towardsQuads;     // four times three bytes, where kTowards says so
 layout(binding = 5, rgba32f) writeonly uniform imageBuffer colorEnergy;  // C, E
 layout(binding = 6, r32f) writeonly uniform imageBuffer distances;       // sum of e times distance
 
-const bool kPaired = kAxis != 0;  // the first side is x: its neighbours share a window
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
 
@@ -35,11 +37,9 @@ struct Ray {
 // The level's geometry, read once a level.
 struct Slices {
   ivec2 dimensions;     // of the sides, blocks
-  ivec3 strides;        // of the sides and the axis, in addresses
-  uint firstWindow, firstRank;
-  ivec3 skipStrides;
-  int skipFirst, skipShift;
-  ivec2 skipLast;       // the last cells of the sides
+  int firstCell;
+  ivec3 cellStrides;    // of the sides and the axis
+  ivec2 lastCell;       // of the sides
 };
 
 struct Sums {
@@ -48,61 +48,42 @@ struct Sums {
   float transmittance;
 };
 
-// Weights of the two neighbours along a side; `low` becomes the first one that is inside, with its weight first.
+// Weights of the two neighbours of a quad along a side; `low` becomes the quad that has them.
 vec2 sideWeights(float position, int count, out int low) {
   const float first = floor(position);
   const float part = position - first;
   low = int(first);
-  vec2 weights = vec2(low < count ? 1.0 - part : 0.0, low + 1 < count ? part : 0.0);
-  if (low < 0) weights = vec2(low == -1 ? part : 0.0, 0.0);
+  const vec2 weights = low < 0 ? vec2(low == -1 ? part : 0.0, 0.0) : vec2(low < count ? 1.0 - part : 0.0, part);
   low = clamp(low, 0, count - 1);
   return weights;
 }
 
-// Adds a block's source term and extinction.
-void addBlock(inout vec4 slice, uint rank, float weight, vec3 toEye) {
-  const uvec2 halves = texelFetch(sources, int(rank)).xy;
-  vec4 source = vec4(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y));
-  if (kTowards) source.rgb *= 1.0 + dot(texelFetch(towards, int(rank)).xyz, toEye);
-  slice += weight * source;
-}
-
-// Two neighbours in x.
-void addPair(inout vec4 slice, Slices level, int address, vec2 weights, vec3 toEye) {
-  const uvec2 window = texelFetch(windows, int(level.firstWindow) + (address >> kWindowShift)).xy;
-  const int bit = address & (kWindowStep - 1);
-  const uint rank = level.firstRank + window.y + bitCount(window.x & ((1u << bit) - 1u));
-  const uint first = window.x >> bit & 1u, second = window.x >> (bit + 1) & 1u;
-  addBlock(slice, rank, first != 0 ? weights.x : 0.0, toEye);
-  addBlock(slice, rank + first, second != 0 ? weights.y : 0.0, toEye);
-}
-
-void addSingle(inout vec4 slice, Slices level, int address, float weight, vec3 toEye) {
-  const uvec2 window = texelFetch(windows, int(level.firstWindow) + (address >> kWindowShift)).xy;
-  const int bit = address & (kWindowStep - 1);
-  const uint rank = level.firstRank + window.y + bitCount(window.x & ((1u << bit) - 1u));
-  addBlock(slice, rank, (window.x >> bit & 1u) != 0 ? weight : 0.0, toEye);
-}
-
 // Source term and extinction, interpolated.
 vec4 sliceAt(Slices level, vec2 position, int slice, vec3 toEye) {
-  vec4 result = vec4(0.0);
   ivec2 low;
   const vec2 a = sideWeights(position.x, level.dimensions.x, low.x);
   const vec2 b = sideWeights(position.y, level.dimensions.y, low.y);
-  const int address = low.x * level.strides.x + low.y * level.strides.y + slice * level.strides.z;
-  const int next = b.y > 0.0 ? address + level.strides.y : address;
-  if (kPaired) {
-    addPair(result, level, address, a * b.x, toEye);
-    addPair(result, level, next, a * b.y, toEye);
-  } else {
-    const int aside = a.y > 0.0 ? level.strides.x : 0;
-    addSingle(result, level, address, a.x * b.x, toEye);
-    addSingle(result, level, address + aside, a.y * b.x, toEye);
-    addSingle(result, level, next, a.x * b.y, toEye);
-    addSingle(result, level, next + aside, a.y * b.y, toEye);
+  const vec4 weights = vec4(a * b.x, a * b.y);
+  const ivec3 place = ivec3(low, slice);
+  const ivec3 cell = place >> kSkipLevels;
+  const int cellNumber = level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
+                         cell.z * level.cellStrides.z;
+  const int brick = int(texelFetch(brickNumbers, cellNumber).x);
+  const ivec3 inBrick = place & (kGatherGroup - 1);
+  const int quad = ((brick << kSkipLevels | inBrick.y) << kSkipLevels | inBrick.x) << kSkipLevels | inBrick.z;
+  const uvec2 halves = texelFetch(extinctionQuads, quad).xy;
+  const vec4 extinctions = vec4(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y));
+  const float extinction = dot(weights, extinctions);
+  if (!kColored) return vec4(extinction * frame.color, extinction);
+  const uvec4 packed = texelFetch(sourceQuads, quad);
+  vec4 shares = weights;
+  if (kTowards) {
+    const uvec4 towards = texelFetch(towardsQuads, quad);
+    [[unroll]] for (int i = 0; i < 4; ++i) shares[i] *= 1.0 + dot(unpackSnorm4x8(towards[i]).xyz, toEye);
   }
-  return result;
+  vec3 source = vec3(0.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) source += shares[i] * unpackLight(packed[i]);
+  return vec4(source, extinction);
 }
 
 // The part of a slice's tent that is in front of the eye, which is `ahead` slices before it.
@@ -129,10 +110,10 @@ void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
 bool mayHold(Slices level, Ray ray, int slice) {
   const float last = float(slice) + ray.direction * float(kGatherGroup - 1);
   const vec2 low = min(ray.origin + ray.slope * float(slice), ray.origin + ray.slope * last);
-  const ivec2 cell = clamp(ivec2(floor(low)) >> level.skipShift, ivec2(0), level.skipLast);
-  const int plane = max(min(slice, int(last)), 0) >> level.skipShift;
-  return texelFetch(skipCells, level.skipFirst + cell.x * level.skipStrides.x + cell.y * level.skipStrides.y +
-                                   plane * level.skipStrides.z).x != 0;
+  const ivec2 cell = clamp(ivec2(floor(low)) >> kSkipLevels, ivec2(0), level.lastCell);
+  const int plane = max(min(slice, int(last)), 0) >> kSkipLevels;
+  return texelFetch(brickNumbers, level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
+                                      plane * level.cellStrides.z).x != 0;
 }
 
 // The slices from `slices.x` to `slices.y` - 1 that the ray meets within the volume and in front of the eye.
@@ -180,17 +161,11 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end) {
 
 Slices slicesOf(int number) {
   const GatherLevel level = frame.levels[number];
-  const ivec3 strides = ivec3(1, level.level.rowPitch, level.level.rowPitch * level.level.dimensions.y);
-  const ivec3 skipStrides = ivec3(1, level.skip.rowPitch, level.skip.rowPitch * level.skip.dimensions.y);
   Slices slices;
-  slices.dimensions = ivec2(level.level.dimensions[kSideA], level.level.dimensions[kSideB]);
-  slices.strides = ivec3(strides[kSideA], strides[kSideB], strides[kAxis]);
-  slices.firstWindow = level.firstWindow;
-  slices.firstRank = level.level.firstRank;
-  slices.skipStrides = ivec3(skipStrides[kSideA], skipStrides[kSideB], skipStrides[kAxis]);
-  slices.skipFirst = int(level.skip.first);
-  slices.skipShift = level.skipShift;
-  slices.skipLast = ivec2(level.skip.dimensions[kSideA], level.skip.dimensions[kSideB]) - 1;
+  slices.dimensions = ivec2(level.dimensions[kSideA], level.dimensions[kSideB]);
+  slices.firstCell = level.firstCell;
+  slices.cellStrides = ivec3(level.cellStrides[kSideA], level.cellStrides[kSideB], level.cellStrides[kAxis]);
+  slices.lastCell = ivec2(level.lastCell[kSideA], level.lastCell[kSideB]);
   return slices;
 }
 

@@ -9,13 +9,12 @@ namespace freevoxels::shader {
 
 FV_CONSTANT int kGatherTile = 8;          // samples along the edge of a workgroup of the passes over the lattice
 FV_CONSTANT int kShadeThreads = 64;
-// A word of occupancy windows covers 32 blocks from a multiple of this on, so that two neighbours in x share a word.
-FV_CONSTANT int kWindowShift = 4;
-FV_CONSTANT int kWindowStep = 1 << kWindowShift;
-// Slices that a ray tests for emptiness together: as many as the cells that they are tested in have blocks along an edge,
-// and how many octree levels these cells are above the blocks.
-FV_CONSTANT int kGatherGroup = 8;
+// The gather reads blocks in bricks of 8^3, which are cells of the octree so many levels above. A ray tests as many slices
+// as a brick has blocks along an edge for emptiness together.
 FV_CONSTANT int kSkipLevels = 3;
+FV_CONSTANT int kGatherGroup = 1 << kSkipLevels;
+FV_CONSTANT int kGatherBrickBlocks = kGatherGroup * kGatherGroup * kGatherGroup;
+FV_CONSTANT int kBrickQuadsThreads = 64;
 // Variance in voxels, squared, of the footprint's radial kernel along one axis; a slice's tent lacks it along the tilt.
 FV_CONSTANT float kFootprintVariance = 0.1624f;
 
@@ -32,12 +31,12 @@ struct GatherAxis {
   ivec2 slices[2][kMaximumLevels];  // by the ray's sign along the axis (0: descending) and level: first, end; ascending
 };
 
-// One level of the octree as the gather reads it.
+// One level of the octree as the gather reads it. Brick numbers are those of the quads; 0 is empty.
 struct GatherLevel {
-  BlockLevel level;
-  uint firstWindow;
-  BlockLevel skip;      // the level whose cells say what is empty
-  int skipShift;        // its level above this one
+  ivec3 dimensions;     // blocks
+  int firstCell;        // of the table of brick numbers
+  ivec3 cellStrides;    // in that table
+  ivec3 lastCell;
 };
 
 struct GatherFrame {
@@ -52,6 +51,7 @@ struct GatherFrame {
   float pixelsPerVoxel;   // at distance 1, or orthographic anywhere
   float extinctionUnit;   // per world unit that a stored extinction of 1 is
   float sourceUnit;       // radiance per stored source term over stored extinction
+  vec3 color;             // source term over extinction where all blocks have the same
   float end;              // transmittance at which rays end
   int orthographic;
 };
@@ -64,10 +64,14 @@ struct ShadePush {
   float meanLayer;   // world length that light crosses in a voxel, mean over directions
 };
 
-// occupancy_windows.comp and skip_cells.comp
-struct WindowsPush {
-  uint windowCount;
+// brick_quads.comp
+struct BrickQuadsPush {
+  BlockLevel level;
+  uint firstBrick;   // of the level
+  uint count;        // quads of the level
 };
+
+// skip_cells.comp
 struct SkipCellsPush {
   BlockLevel level;
   uint firstCell;    // address of the first block of the finest level with cells
@@ -76,7 +80,8 @@ struct SkipCellsPush {
 
 #ifdef __cplusplus
 static_assert(sizeof(GatherAxis) == 8 * 4 + 12 * 6 - 16 + 2 * kMaximumLevels * 8);
-static_assert(sizeof(GatherLevel) == 64);
+static_assert(sizeof(GatherLevel) == 40);
+static_assert(sizeof(BrickQuadsPush) == 36);
 static_assert(sizeof(GatherFrame) <= 16384);
 static_assert(sizeof(ShadePush) == 20);
 static_assert(sizeof(SkipCellsPush) == 36);

@@ -4,7 +4,8 @@
 
 vec3 unpackLight(uint bits) {
   const uvec3 parts = uvec3(bits, bits >> 9, bits >> 18) & 511u;
-  return ldexp(vec3(parts), ivec3(int(bits >> 27) - 24));
+  // 2^(exponent - 24), by its bits: ldexp is slow on lavapipe.
+  return uintBitsToFloat(((bits >> 27) + 103u) << 23) * vec3(parts);
 }
 
 // Not negative, and at most kBrightest.

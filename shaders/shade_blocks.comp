@@ -24,7 +24,7 @@ layout(scalar, binding = 3) readonly buffer Blocks { uint blocks[]; };  // addre
 layout(scalar, binding = 4) readonly buffer Scalars { float scalars[]; };
 layout(scalar, binding = 4) readonly buffer Albedos { uint albedos[]; };
 layout(scalar, binding = 5) readonly buffer Extinction { float extinction[]; };
-layout(scalar, binding = 6) writeonly buffer Sources { uvec2 sources[]; };  // source term and extinction, four halves
+layout(scalar, binding = 6) writeonly buffer Sources { uvec2 sources[]; };  // packed source term, extinction as a half
 layout(scalar, binding = 7) readonly buffer BlockColors { uvec2 blockColors[]; };
 layout(scalar, binding = 8) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 layout(scalar, binding = 9) readonly buffer Lights { Light lights[]; };
@@ -43,7 +43,7 @@ layout(scalar, binding = 11) writeonly buffer TowardsEye { uint towardsEye[]; };
 #include "lighting.glsl"
 #include "block_color.glsl"
 
-const float kLargestHalf = 65504.0;
+const float kLargestStored = 65280.0;  // that halves and packed light hold
 
 ScatteredLight scatteredBy(Block block, float sigma, uint rank) {
   if (kAnyView) return scatteredLight(block, sigma, rank, vec3(0.0), sigma * push.meanLayer * float(block.edge));
@@ -69,7 +69,7 @@ void main() {
     towards = luminanceOf(source) / max(luminanceOf(scattered.light), 1e-37) * scattered.towards;
   }
   if (kEmits) source += frame.emissionUnit * unpackLight(emission[rank]);
-  const vec4 stored = min(inside * vec4(push.sourceScale * source, push.extinctionScale * sigma), kLargestHalf);
-  sources[rank] = uvec2(packHalf2x16(stored.rg), packHalf2x16(stored.ba));
+  const vec4 stored = min(inside * vec4(push.sourceScale * source, push.extinctionScale * sigma), kLargestStored);
+  sources[rank] = uvec2(packLight(stored.rgb), packHalf2x16(vec2(stored.a, 0.0)));
   if (kLit && kAnyView) towardsEye[rank] = packSnorm4x8(vec4(towards / max(luminanceOf(source), 1e-37), 0.0));
 }

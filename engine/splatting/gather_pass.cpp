@@ -18,10 +18,10 @@ constexpr VkDescriptorType kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 constexpr glm::ivec3 kTile{shader::kGatherTile, shader::kGatherTile, 1};
 
-Pipeline makeGather(const Device& device, int axis, bool towards) {
+Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume) {
   return makeComputePipeline(device, {gather_spv, "gather"},
                              {.bindings = {kUniform, kTexels, kTexels, kTexels, kTexels, kTexelsOut, kTexelsOut}}, kTile,
-                             {std::uint32_t(axis), towards});
+                             {std::uint32_t(axis), volume.hasTowards(), volume.hasColors()});
 }
 
 /// Of the stencil and the upsampling, which have the same bindings.
@@ -36,8 +36,9 @@ bool isLatticeOfPixels(const shader::GatherFrame& frame) {
   return frame.pitch == 1.0f && frame.samples == frame.size;
 }
 
-/// Whether some ray of the lattice may have this major axis: a grid of rays is looked at, with a margin for what lies
-/// between them.
+}  // namespace
+
+/// A grid of rays is looked at, with a margin for what lies between them.
 bool someRayHasAxis(const shader::GatherFrame& frame, int axis) {
   const glm::vec2 half = 0.5f * glm::vec2(frame.size) + 2.0f * frame.pitch;
   constexpr int kGrid = 16;
@@ -51,8 +52,6 @@ bool someRayHasAxis(const shader::GatherFrame& frame, int axis) {
   }
   return false;
 }
-
-}  // namespace
 
 GatherPass::GatherPass(const Device& device)
     : device_(device), frame_(device, sizeof(shader::GatherFrame), MemoryUse::Device, "gather frame",
@@ -72,18 +71,20 @@ void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
 
 void GatherPass::recordGather(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
   makeRoom(gathered_, std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y));
-  const std::array<Binding, 7> bindings{&frame_,
-                                        &volume.windows(),
-                                        &volume.skipCells(),
-                                        &volume.sources(),
-                                        &volume.towards(),
-                                        &gathered_.colorEnergyTexels,
-                                        &gathered_.distanceTexels};
   commands.beginPass("gather");
   commands.update(frame_, frame);
-  for (int axis = 0; axis < 3; ++axis)
-    if (someRayHasAxis(frame, axis))
-      commands.dispatch(makeGather(device_, axis, volume.hasTowards()), bindings, glm::ivec3(frame.samples, 1));
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!someRayHasAxis(frame, axis)) continue;
+    const GatherVolume::Quads& quads = volume.quads(axis);
+    const std::array<Binding, 7> bindings{&frame_,
+                                          &volume.brickNumbers(),
+                                          &quads.extinctionTexels,
+                                          &quads.sourceTexels,
+                                          &quads.towardsTexels,
+                                          &gathered_.colorEnergyTexels,
+                                          &gathered_.distanceTexels};
+    commands.dispatch(makeGather(device_, axis, volume), bindings, glm::ivec3(frame.samples, 1));
+  }
   commands.barrier(kCompute, kCompute);
 }
 

@@ -13,6 +13,9 @@ namespace freevoxels {
 shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& camera, const FrameSettings& settings,
                                     const DetailRule& detail, double end);
 
+/// Whether some ray of the lattice may march along this axis.
+bool someRayHasAxis(const shader::GatherFrame& frame, int axis);
+
 /// COMPUTE gather.comp, gather_stencil.comp and gather_upsample.comp: premultiplied RGBA in `targets.colorEnergy` and the
 /// mean distance in `targets.distance`, if that exists. Leaves the targets in layout GENERAL, visible to transfer.
 class GatherPass {

@@ -4,10 +4,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
-#include "embedded/occupancy_windows.h"
+#include "embedded/brick_quads.h"
 #include "embedded/shade_blocks.h"
 #include "embedded/skip_cells.h"
+#include "engine/core/error.h"
 #include "engine/volume/packed_light.h"
 
 namespace freevoxels {
@@ -16,14 +18,12 @@ namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+constexpr VkDescriptorType kTexelsIn = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+constexpr VkDescriptorType kTexelsOut = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
 constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
 
 int firstSkipLevel(const HierarchyLayout& hierarchy) {
   return std::min(shader::kSkipLevels, hierarchy.top());
-}
-
-std::uint64_t windowCount(const HierarchyLayout& hierarchy) {
-  return hierarchy.paddedBlocks() / shader::kWindowStep;
 }
 
 std::uint64_t skipCellCount(const HierarchyLayout& hierarchy) {
@@ -44,13 +44,12 @@ double sourceUnit(const DeviceVolume& volume, const Lighting* lighting) {
       brightest += light.intensity * color / (4.0 * std::numbers::pi * nearest);
     }
   }
-  constexpr double kLargest = 65504.0;
-  return std::max(brightest * kStoredDepth / kLargest, 1.0);
+  return std::max(brightest * kStoredDepth / kBrightest, 1.0);
 }
 
-/// What there is of every occupied block. Two more: the second of two neighbours is read whether or not it is occupied.
+/// What there is of every occupied block. One more, as no buffer is empty.
 std::uint64_t recordCount(std::uint64_t storedBlocks) {
-  return storedBlocks + 2;
+  return storedBlocks + 1;
 }
 
 bool dependsOnView(const Lighting& lighting) {
@@ -64,56 +63,80 @@ float meanLayer(const DeviceVolume& volume) {
 
 }  // namespace
 
-GatherVolume::GatherVolume(const Device& device, const BuiltVolume& built)
+GatherVolume::GatherVolume(const Device& device, const BuiltVolume& built, std::vector<StageTime>& times)
     : device_(device),
       built_(built),
-      firstSkipLevel_(firstSkipLevel(built.volume.hierarchy)),
-      windowsPass_(makeComputePipeline(
-          device, {occupancy_windows_spv, "occupancy windows"},
-          {.bindings = {kStorage, kStorage}, .pushConstantBytes = sizeof(shader::WindowsPush)},
-          {shader::kOccupancyThreads, 1, 1})),
       skipPass_(makeComputePipeline(
           device, {skip_cells_spv, "skip cells"},
           {.bindings = {kStorage, kStorage}, .pushConstantBytes = sizeof(shader::SkipCellsPush)},
           {shader::kOccupancyThreads, 1, 1})),
       frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "shading frame"),
-      windows_(device, windowCount(built.volume.hierarchy) * sizeof(shader::OccupancyWord), MemoryUse::Device,
-               "occupancy windows", kTexels),
-      skipCells_(device, skipCellCount(built.volume.hierarchy) * sizeof(std::uint32_t), MemoryUse::Device, "skip cells",
-                 kTexels),
       sources_(device, recordCount(built.volume.storedBlocks()) * sizeof(glm::uvec2), MemoryUse::Device, "source terms",
                kTexels),
-      windowTexels_(device, windows_, VK_FORMAT_R32G32_UINT),
-      skipTexels_(device, skipCells_, VK_FORMAT_R32_UINT),
       sourceTexels_(device, sources_, VK_FORMAT_R32G32_UINT) {
   makeTowards(1);  // a binding needs a buffer
+  makeBricks(times);
+}
+
+/// Which cells of the octree are bricks: those that hold anything, or whose next neighbours do.
+void GatherVolume::makeBricks(std::vector<StageTime>& times) {
+  const DeviceVolume& volume = built_.volume;
+  const HierarchyLayout& hierarchy = volume.hierarchy;
+  const int firstLevel = firstSkipLevel(hierarchy);
+  std::vector<std::uint32_t> occupied(skipCellCount(hierarchy));
+  const Buffer cells(device_, occupied.size() * sizeof(std::uint32_t), MemoryUse::Device, "brick cells");
+  Commands commands(device_);
+  commands.beginPass("gather occupancy");
+  const std::array<Binding, 2> bindings{&volume.occupancy, &cells};
+  for (int level = firstLevel; level <= hierarchy.top(); ++level) {
+    const shader::SkipCellsPush push{.level = volume.onDevice(level),
+                                     .firstCell = hierarchy.first[std::size_t(firstLevel)],
+                                     .count = std::uint32_t(hierarchy.words(level)) * shader::kBlocksPerWord};
+    commands.dispatchLinear(skipPass_, bindings, push, push.count);
+  }
+  commands.barrier(kCompute, VK_PIPELINE_STAGE_2_TRANSFER_BIT | VK_PIPELINE_STAGE_2_HOST_BIT);
+  commands.submitAndWait();
+  addTimes(times, commands.times());
+  const StageTimer timer(times, "number bricks");
+  download(device_, cells, std::as_writable_bytes(std::span(occupied)));
+
+  std::vector<std::uint32_t> numbers;
+  constexpr int kOutside = 1 << 29;
+  std::vector<glm::ivec4> bricks{glm::ivec4(kOutside)};  // the empty one
+  for (int number = 0; number <= hierarchy.top(); ++number) {
+    const int cellLevel = std::min(number + shader::kSkipLevels, hierarchy.top());
+    const shader::BlockLevel layout = volume.onDevice(cellLevel);
+    const glm::ivec3 strides(1, layout.rowPitch, layout.rowPitch * layout.dimensions.y);
+    levels_.push_back({.dimensions = volume.onDevice(number).dimensions,
+                       .firstCell = int(numbers.size()),
+                       .cellStrides = strides,
+                       .lastCell = layout.dimensions - 1});
+    firstBricks_.push_back(std::uint32_t(bricks.size()));
+    const std::uint32_t firstCell = layout.first - hierarchy.first[std::size_t(firstLevel)];
+    numbers.resize(numbers.size() + std::size_t(strides.z) * std::size_t(layout.dimensions.z), 0);
+    for (int z = 0; z < layout.dimensions.z; ++z)
+      for (int y = 0; y < layout.dimensions.y; ++y)
+        for (int x = 0; x < layout.dimensions.x; ++x) {
+          const auto cell = std::size_t(x + strides.y * y + strides.z * z);
+          if (occupied[firstCell + cell] == 0) continue;
+          numbers[std::size_t(levels_.back().firstCell) + cell] = std::uint32_t(bricks.size());
+          bricks.emplace_back(glm::ivec3(x, y, z) * shader::kGatherGroup, 0);
+        }
+  }
+  firstBricks_.push_back(std::uint32_t(bricks.size()));
+  brickNumbers_ = Buffer(device_, numbers.size() * sizeof(std::uint32_t), MemoryUse::Device, "brick numbers", kTexels);
+  brickCells_ = Buffer(device_, bricks.size() * sizeof(glm::ivec4), MemoryUse::Device, "brick cells", kTexels);
+  upload(device_, brickNumbers_, std::as_bytes(std::span(numbers)));
+  upload(device_, brickCells_, std::as_bytes(std::span(bricks)));
+  brickNumberTexels_ = TexelView(device_, brickNumbers_, VK_FORMAT_R32_UINT);
+  brickCellTexels_ = TexelView(device_, brickCells_, VK_FORMAT_R32G32B32A32_UINT);
 }
 
 void GatherVolume::makeTowards(std::uint64_t blocks) {
   const std::uint64_t bytes = blocks * sizeof(std::uint32_t);
   if (towards_.bytes() >= bytes) return;
   towards_ = Buffer(device_, bytes, MemoryUse::Device, "source directions", kTexels);
-  towardsTexels_ = TexelView(device_, towards_, VK_FORMAT_R8G8B8A8_SNORM);
-}
-
-void GatherVolume::recordOccupancy(Commands& commands) {
-  const DeviceVolume& volume = built_.volume;
-  const auto windows = std::uint32_t(windowCount(volume.hierarchy));
-  commands.beginPass("gather occupancy");
-  // Blocks of weight 0 are read whether or not they were shaded, and must be finite.
-  commands.clear(sources_);
-  const std::array<Binding, 2> windowBindings{&volume.occupancy, &windows_};
-  commands.dispatchLinear(windowsPass_, windowBindings, shader::WindowsPush{windows}, windows);
-  const std::array<Binding, 2> skipBindings{&volume.occupancy, &skipCells_};
-  for (int level = firstSkipLevel_; level <= volume.hierarchy.top(); ++level) {
-    const shader::SkipCellsPush push{
-        .level = volume.onDevice(level),
-        .firstCell = volume.hierarchy.first[std::size_t(firstSkipLevel_)],
-        .count = std::uint32_t(volume.hierarchy.words(level)) * shader::kBlocksPerWord};
-    commands.dispatchLinear(skipPass_, skipBindings, push, push.count);
-  }
-  commands.barrier(kCompute, kCompute);
-  hasOccupancy_ = true;
+  towardsTexels_ = TexelView(device_, towards_, VK_FORMAT_R32_UINT);
 }
 
 void GatherVolume::shade(Commands& commands, const Shading& shading, int level) {
@@ -144,13 +167,15 @@ void GatherVolume::shade(Commands& commands, const Shading& shading, int level) 
   commands.barrier(kCompute, kCompute);
 }
 
-void GatherVolume::record(Commands& commands, const Shading& shading) {
-  if (!hasOccupancy_) recordOccupancy(commands);
+bool GatherVolume::hasColors() const {
+  return lit_ || built_.volume.hasColors() || built_.volume.hasEmission();
+}
+
+void GatherVolume::prepare(const Shading& shading) {
   const bool lit = shading.lighting != nullptr;
   const bool viewDependent = lit && dependsOnView(*shading.lighting);
   const bool sameLight =
       lit == lit_ && !viewDependent && !viewDependent_ && (!lit || lighting_ == *shading.lighting);
-  if (!sameLight) shadedLevels_ = 0;
   sourceUnit_ = sourceUnit(built_.volume, shading.lighting);
   lit_ = lit;
   viewDependent_ = viewDependent;
@@ -158,40 +183,103 @@ void GatherVolume::record(Commands& commands, const Shading& shading) {
     lighting_ = *shading.lighting;
   else
     lighting_.reset();
-  std::uint32_t wanted = 0;
+  wantedLevels_ = 0;
   for (int level = shading.frame.detail.finest; level <= shading.frame.detail.coarsest; ++level)
-    wanted |= 1u << level;
-  if ((wanted & ~shadedLevels_) == 0) return;
+    wantedLevels_ |= 1u << level;
+  if (!sameLight) shadedLevels_ = 0;
+  for (std::size_t axis = 0; axis < quads_.size(); ++axis)
+    if (!sameLight || !shading.axes[axis]) quads_[axis].levels = 0;
+  if (hasTowards()) makeTowards(recordCount(built_.volume.storedBlocks()));
+  for (std::size_t axis = 0; axis < quads_.size(); ++axis)
+    if (shading.axes[axis]) makeRoom(quads_[axis], shading.axes);
+  for (std::size_t axis = 0; axis < quads_.size(); ++axis)
+    if (!shading.axes[axis]) quads_[axis] = {};
+}
 
+/// Takes the memory of an axis that no ray marches along, where there is one.
+void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
+  const std::uint64_t count = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks;
+  if (count > device_.limits().maxTexelBufferElements)
+    fail(ExitCode::OutOfMemory, "the gather needs {} quads of voxels, and this device can bind {}: --draw splats has no such limit",
+         count, device_.limits().maxTexelBufferElements);
+  const auto fits = [&](const Quads& there) {
+    const auto holds = [&](const Buffer& buffer, bool needed, std::uint64_t bytes) {
+      return buffer.bytes() >= (needed ? count : 1) * bytes;
+    };
+    return holds(there.extinction, true, sizeof(glm::uvec2)) && holds(there.source, hasColors(), sizeof(glm::uvec4)) &&
+           holds(there.towards, hasTowards(), sizeof(glm::uvec4));
+  };
+  if (fits(quads)) return;
+  for (std::size_t other = 0; other < axes.size(); ++other) {
+    if (axes[other] || !fits(quads_[other])) continue;
+    quads = std::exchange(quads_[other], {});
+    return;
+  }
+  constexpr VkBufferUsageFlags kUsage = kTexels | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
+  quads = {};  // not both at once
+  const auto make = [&](Buffer& buffer, TexelView& view, bool needed, std::uint64_t bytes, VkFormat format,
+                        const char* name) {
+    buffer = Buffer(device_, (needed ? count : 1) * bytes, MemoryUse::Device, name, kUsage);
+    view = TexelView(device_, buffer, format);
+  };
+  make(quads.extinction, quads.extinctionTexels, true, sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "extinction quads");
+  make(quads.source, quads.sourceTexels, hasColors(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source quads");
+  make(quads.towards, quads.towardsTexels, hasTowards(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT,
+       "source direction quads");
+}
+
+void GatherVolume::record(Commands& commands, const Shading& shading) {
+  if ((wantedLevels_ & ~shadedLevels_) != 0) recordShading(commands, shading);
+  for (int axis = 0; axis < 3; ++axis)
+    if (shading.axes[std::size_t(axis)] && (wantedLevels_ & ~quads_[std::size_t(axis)].levels) != 0)
+      recordQuads(commands, axis);
+}
+
+void GatherVolume::recordQuads(Commands& commands, int axis) {
+  const DeviceVolume& volume = built_.volume;
+  Quads& quads = quads_[std::size_t(axis)];
+  const Pipeline pass = makeComputePipeline(
+      device_, {brick_quads_spv, "brick quads"},
+      {.bindings = {kTexelsIn, kTexelsIn, kTexelsIn, kTexelsIn, kTexelsOut, kTexelsOut, kTexelsOut},
+       .pushConstantBytes = sizeof(shader::BrickQuadsPush)},
+      {shader::kBrickQuadsThreads, 1, 1}, {std::uint32_t(axis), hasTowards(), hasColors()});
+  const std::array<Binding, 7> bindings{&brickCellTexels_,       &volume.occupancyTexels,  &sourceTexels_,      &towardsTexels_,
+                                        &quads.extinctionTexels, &quads.sourceTexels, &quads.towardsTexels};
+  const auto make = [&](int number, std::uint32_t first, std::uint32_t end) {
+    if (first == end) return;
+    const shader::BrickQuadsPush push{.level = volume.onDevice(number),
+                                      .firstBrick = first,
+                                      .count = (end - first) * shader::kGatherBrickBlocks};
+    commands.dispatchLinear(pass, bindings, push, push.count);
+  };
+  commands.beginPass("brick quads");
+  if (quads.levels == 0) make(0, 0, 1);  // the empty brick
+  for (int number = 0; number <= volume.hierarchy.top(); ++number)
+    if (((wantedLevels_ & ~quads.levels) >> number & 1u) != 0)
+      make(number, firstBricks_[std::size_t(number)], firstBricks_[std::size_t(number) + 1]);
+  commands.barrier(kCompute, kCompute);
+  quads.levels |= wantedLevels_;
+}
+
+void GatherVolume::recordShading(Commands& commands, const Shading& shading) {
   const DeviceVolume& volume = built_.volume;
   shadePass_ = makeComputePipeline(
       device_, {shade_blocks_spv, "shade blocks"},
       {.bindings = std::vector(12, kStorage), .pushConstantBytes = sizeof(shader::ShadePush)},
       {shader::kShadeThreads, 1, 1},
-      {lit, volume.hasEmission(), volume.hasAlbedos, shading.frame.tinted, hasTowards()});
-  if (hasTowards()) makeTowards(recordCount(volume.storedBlocks()));
+      {lit_, volume.hasEmission(), volume.hasAlbedos, shading.frame.tinted, hasTowards()});
   commands.beginPass("shade blocks");
   commands.update(frame_, shading.frame.setup);
   for (int level = 0; level <= volume.hierarchy.top(); ++level)
-    if (((wanted & ~shadedLevels_) >> level & 1u) != 0) shade(commands, shading, level);
-  shadedLevels_ |= wanted;
-}
-
-shader::GatherLevel GatherVolume::level(int number) const {
-  const HierarchyLayout& hierarchy = built_.volume.hierarchy;
-  const int skip = std::min(number + shader::kSkipLevels, hierarchy.top());
-  shader::GatherLevel level{.level = built_.volume.onDevice(number),
-                            .firstWindow = hierarchy.first[std::size_t(number)] / shader::kWindowStep,
-                            .skip = built_.volume.onDevice(skip),
-                            .skipShift = skip - number};
-  level.skip.first -= hierarchy.first[std::size_t(firstSkipLevel_)];
-  return level;
+    if (((wantedLevels_ & ~shadedLevels_) >> level & 1u) != 0) shade(commands, shading, level);
+  shadedLevels_ |= wantedLevels_;
 }
 
 void GatherVolume::describe(shader::GatherFrame& frame) const {
   frame.extinctionUnit = float(1.0 / (kStoredDepth * built_.volume.voxelSize));
   frame.sourceUnit = float(sourceUnit_);
-  for (int number = frame.finest; number <= frame.coarsest; ++number) frame.levels[number] = level(number);
+  frame.color = built_.volume.albedo;
+  for (int number = frame.finest; number <= frame.coarsest; ++number) frame.levels[number] = levels_[std::size_t(number)];
 }
 
 }  // namespace freevoxels

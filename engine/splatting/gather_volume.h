@@ -1,7 +1,8 @@
 #pragma once
-// What the gather keeps of a volume: overlapping words of occupancy, cells that say what is empty, and of every
-// occupied block its extinction and the light that it sends to the eye.
+// What the gather keeps of a volume: bricks of 8^3 blocks that are not empty, and in them, for the axis that rays march
+// along, quads of neighbouring blocks with their extinction and the light that they send to the eye.
 
+#include <array>
 #include <optional>
 
 #include "engine/attenuation/attenuation_table.h"
@@ -11,12 +12,12 @@
 
 namespace freevoxels {
 
-/// COMPUTE occupancy_windows.comp and skip_cells.comp once, shade_blocks.comp for the first frame and for every one
-/// whose light differs from the frame before. Belongs to one volume, which must outlive it.
+/// COMPUTE skip_cells.comp once; shade_blocks.comp and brick_quads.comp for the first frame and for every one whose light or
+/// axes differ from the frame before. Belongs to one volume, which must outlive it.
 class GatherVolume {
  public:
-  /// Fails with ExitCode::OutOfMemory.
-  GatherVolume(const Device& device, const BuiltVolume& built);
+  /// Finds the bricks, and adds how long that took to `times`. Fails with ExitCode::OutOfMemory.
+  GatherVolume(const Device& device, const BuiltVolume& built, std::vector<StageTime>& times);
 
   /// What a frame needs to be shaded. `lighting` and `lights` are null of a frame that is not lit.
   struct Shading {
@@ -24,38 +25,52 @@ class GatherVolume {
     const AttenuationTable* table;  ///< null where no light reads it
     const Lighting* lighting;
     const Buffer* lights;  ///< shader::Light
+    std::array<bool, 3> axes;  ///< that rays march along
   };
-  /// Shades the blocks of the levels that the frame reads, as far as what the frame before left does not serve.
+  /// Allocates what the frame needs. Fails with ExitCode::OutOfMemory.
+  void prepare(const Shading& shading);
+  /// Shades the blocks of the levels that the frame reads, as far as what the frame before left does not serve. After
+  /// prepare() with the same arguments.
   void record(Commands& commands, const Shading& shading);
 
-  const TexelView& windows() const { return windowTexels_; }
-  const TexelView& skipCells() const { return skipTexels_; }
-  /// By rank: source term and extinction.
-  const TexelView& sources() const { return sourceTexels_; }
-  /// By rank: how the source term depends on the direction to the eye; read where hasTowards() says so.
-  const TexelView& towards() const { return towardsTexels_; }
+  /// The quads of an axis.
+  struct Quads {
+    Buffer extinction, source, towards;
+    TexelView extinctionTexels, sourceTexels, towardsTexels;
+    std::uint32_t levels = 0;  ///< a bit for each level that is there
+  };
+  const TexelView& brickNumbers() const { return brickNumberTexels_; }
+  const Quads& quads(int axis) const { return quads_[std::size_t(axis)]; }
   /// Fills in what the frame has of the volume: the units of what is stored, and the levels that it reads.
   void describe(shader::GatherFrame& frame) const;
+  /// Whether source terms depend on the direction to the eye.
   bool hasTowards() const { return lit_ && !viewDependent_; }
+  /// Whether blocks have source terms of their own; else all have the same albedo.
+  bool hasColors() const;
 
  private:
-  shader::GatherLevel level(int number) const;
-  void recordOccupancy(Commands& commands);
+  void makeBricks(std::vector<StageTime>& times);
   void makeTowards(std::uint64_t blocks);
+  void makeRoom(Quads& quads, const std::array<bool, 3>& axes);
   void shade(Commands& commands, const Shading& shading, int level);
+  void recordShading(Commands& commands, const Shading& shading);
+  void recordQuads(Commands& commands, int axis);
 
   const Device& device_;
   const BuiltVolume& built_;
-  int firstSkipLevel_;
-  Pipeline windowsPass_, skipPass_, shadePass_;
+  Pipeline skipPass_, shadePass_;
   Buffer frame_;  ///< shader::SetupFrame
-  Buffer windows_, skipCells_;
-  Buffer sources_;  ///< four halves
-  Buffer towards_;  ///< three signed normalised bytes; one block's before a frame needs them
-  TexelView windowTexels_, skipTexels_, sourceTexels_, towardsTexels_;
-  bool hasOccupancy_ = false;
+  Buffer brickNumbers_;  ///< by level and cell; 0 is the empty brick
+  Buffer brickCells_;    ///< ivec4: each brick's first block
+  Buffer sources_;       ///< by rank: packed source term, extinction as a half
+  Buffer towards_;       ///< by rank: three signed normalised bytes; one block's before a frame needs them
+  TexelView brickNumberTexels_, brickCellTexels_, sourceTexels_, towardsTexels_;
+  std::vector<shader::GatherLevel> levels_;
+  std::vector<std::uint32_t> firstBricks_;  ///< of each level, and the number of all
+  std::array<Quads, 3> quads_;
   // What the source terms are of.
   std::uint32_t shadedLevels_ = 0;  ///< a bit for each level
+  std::uint32_t wantedLevels_ = 0;
   bool lit_ = false, viewDependent_ = false;
   double sourceUnit_ = 1.0;
   std::optional<Lighting> lighting_;
