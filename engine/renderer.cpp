@@ -31,7 +31,7 @@ struct Renderer::State {
   const VisibleVoxels* lastDrawn = nullptr;
   bool lastWasCut = false;  ///< lastDrawn is `cutter`'s
   int lastLevel = 0;        ///< otherwise: of all that was drawn
-  bool lastLackedRays = false;
+  bool lastLackedRays = false, lastLackedGather = false;
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
   std::unique_ptr<DepthSort> sort;
@@ -232,12 +232,14 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
 
 SplatTargets Renderer::State::recordImage(Commands& commands, const Camera& camera, const FrameSettings& settings,
                                           const Progress& progress) {
+  lastLackedGather = false;
   if (drawsByGathering(settings)) {
     try {
       return recordGather(commands, camera, settings, progress);
     } catch (const Error& error) {
-      if (settings.draw != Draw::Auto || error.code() != ExitCode::OutOfMemory) throw;  // splats need less memory
+      if (settings.draw != Draw::Auto || error.code() != ExitCode::OutOfMemory) throw;
     }
+    lastLackedGather = true;
   }
   Frame frame = recordSplats(commands, camera, settings, progress);
   if (settings.composite != Composite::Sorted || settings.depth)
@@ -304,6 +306,10 @@ std::uint64_t Renderer::visibleVoxelCount() const {
 
 bool Renderer::lackedRoomForRays() const {
   return state_->lastLackedRays;
+}
+
+bool Renderer::lackedRoomForGather() const {
+  return state_->lastLackedGather;
 }
 
 std::vector<float> Renderer::downloadExtinction() const {

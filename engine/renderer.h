@@ -51,6 +51,8 @@ class Renderer {
   /// Whether the last frame would have had rays from the eye, but for the device's memory: Auto is Bilinear
   /// then.
   bool lackedRoomForRays() const;
+  /// Whether the last frame would have been gathered, but for the device's memory: Draw::Auto is Splats then.
+  bool lackedRoomForGather() const;
   /// Per world unit, voxels x fastest without padding: for tests and validation, as all that follow.
   std::vector<float> downloadExtinction() const;
   /// The same of the light that voxels send out; empty where none does.

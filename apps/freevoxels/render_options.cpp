@@ -121,6 +121,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
     const std::vector<StageTime> times = renderer.timings();
     addTimes(report.stages, std::span(times).subspan(built.size()));
     report.lackedRoomForRays |= renderer.lackedRoomForRays();
+    report.lackedRoomForGather |= renderer.lackedRoomForGather();
 
     line.begin(prefix + "writing pictures");
     std::vector<StageTime> writing;

@@ -24,6 +24,7 @@ struct RunReport {
   std::uint64_t devicePeak = 0;    ///< bytes: the most that was ever allocated there
   CutCounts cut;                   ///< of the last frame
   bool lackedRoomForRays = false;  ///< some frame
+  bool lackedRoomForGather = false;
 };
 
 /// As messages of --verbose.
