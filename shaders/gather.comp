@@ -6,7 +6,6 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "gather_interface.h"
-#include "gather_ray.glsl"
 #include "packed_light.glsl"
 
 layout(constant_id = 0) const int kAxis = 2;        // rays with another axis are left to other dispatches
@@ -15,6 +14,7 @@ layout(constant_id = 2) const bool kColored = true;   // whether blocks have sou
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 layout(scalar, binding = 0) uniform Frame { GatherFrame frame; };
+#include "gather_ray.glsl"
 layout(binding = 1) uniform utextureBuffer brickNumbers;
 // Quads: of two neighbours along the first side each, of this position and of the next one along the second side.
 layout(binding = 2) uniform utextureBuffer extinctionQuads;  // four halves
@@ -29,6 +29,7 @@ const int kSideB = kAxis == 2 ? 1 : 2;
 struct Ray {
   vec2 origin, slope;   // positions on the sides: origin + slope * slice, in blocks of the level
   float direction;      // 1 or -1, of ascending or descending slices
+  int group;            // slices that are tested for emptiness together: no more than a brick's edge on any axis
   float eye;            // where the ray starts, slices of the level
   float layer;          // world length of a slice of the level on the ray, times the extinction's unit
   vec3 toEye;           // in the world, of length 1
@@ -106,9 +107,9 @@ void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
   sums.transmittance = rest;
 }
 
-// Whether the kGatherGroup slices from `slice` on in the ray's direction may hold anything.
+// Whether the ray.group slices from `slice` on in the ray's direction may hold anything.
 bool mayHold(Slices level, Ray ray, int slice) {
-  const float last = float(slice) + ray.direction * float(kGatherGroup - 1);
+  const float last = float(slice) + ray.direction * float(ray.group - 1);
   const vec2 low = min(ray.origin + ray.slope * float(slice), ray.origin + ray.slope * last);
   const ivec2 cell = clamp(ivec2(floor(low)) >> kSkipLevels, ivec2(0), level.lastCell);
   const int plane = max(min(slice, int(last)), 0) >> kSkipLevels;
@@ -144,12 +145,12 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end) {
     do {
       empty = !mayHold(level, ray, slice);
       if (empty) {
-        slice += direction * kGatherGroup;
-        left -= kGatherGroup;
+        slice += direction * ray.group;
+        left -= ray.group;
       }
     } while (empty && left > 0);
     if (left > 0) {
-      const int rest = left - min(left, kGatherGroup);
+      const int rest = left - min(left, ray.group);
       do {
         addSlice(sums, level, ray, slice);
         slice += direction;
@@ -173,11 +174,10 @@ void main() {
   const ivec2 index = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(index, frame.samples))) return;
   const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);
-  const vec3 alongAxes =
-      vec3(dot(frame.axes[0].along, position), dot(frame.axes[1].along, position), dot(frame.axes[2].along, position));
-  if (majorAxis(alongAxes) != kAxis) return;
+  const vec3 components = alongAxes(position);
+  if (marchAxis(position, components) != kAxis) return;
 
-  const float along = alongAxes[kAxis];
+  const float along = components[kAxis];
   const vec3 world = frame.worldRay[0] * position.x + frame.worldRay[1] * position.y + frame.worldRay[2] * position.z;
   const vec2 slope = vec2(dot(frame.axes[kAxis].slope[0], position), dot(frame.axes[kAxis].slope[1], position)) / along;
   const vec2 middle = vec2(dot(frame.axes[kAxis].middle[0], position), dot(frame.axes[kAxis].middle[1], position)) / along;
@@ -193,6 +193,7 @@ void main() {
     ray.origin = (middle + slope * (0.5 * edge - 0.5 - middlePlane) + 0.5) / edge - 0.5;
     ray.slope = slope;
     ray.direction = along > 0.0 ? 1.0 : -1.0;
+    ray.group = max(abs(slope.x), abs(slope.y)) > 1.0 ? kObliqueGroup : kGatherGroup;
     ray.eye = (eye + 0.5) / edge - 0.5;
     ray.layer = length(world) / abs(along) * edge * frame.extinctionUnit;
     ray.toEye = -normalize(world);

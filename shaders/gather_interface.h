@@ -18,6 +18,12 @@ FV_CONSTANT int kBrickQuadsThreads = 64;
 // Variance in voxels, squared, of the footprint's radial kernel along one axis; a slice's tent lacks it along the tilt.
 FV_CONSTANT float kFootprintVariance = 0.1624f;
 
+// Rays march along the major axis of the image's middle unless the component along it is less than this part of their
+// largest one: so that a frame mostly reads one axis. And how many slices such rays then test together, as they move by
+// more than a block a slice.
+FV_CONSTANT float kLeastAlong = 0.5f;
+FV_CONSTANT int kObliqueGroup = 4;
+
 // How rays meet the slices of blocks across one index axis. Pixel positions (x, y) are relative to the image's middle.
 // The sides are the other two axes in ascending order. All are affine: value . (1, x, y).
 struct GatherAxis {
@@ -54,6 +60,8 @@ struct GatherFrame {
   vec3 color;             // source term over extinction where all blocks have the same
   float end;              // transmittance at which rays end
   int orthographic;
+  int mainAxis;           // the major axis of the ray in the image's middle
+  vec2 seenLow, seenHigh; // positions between which all rays are that meet the volume
 };
 
 // shade_blocks.comp

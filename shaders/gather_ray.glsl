@@ -1,9 +1,22 @@
-// The ray of a lattice sample and how it meets the slices across an axis. Requires gather_interface.h.
+// The ray of a lattice sample. Include after gather_interface.h and the uniform block `frame`, a GatherFrame.
 #ifndef GATHER_RAY_GLSL
 #define GATHER_RAY_GLSL
 #include "major_axis.glsl"
 
 // The sample's position relative to the image's middle, in pixels: (1, x, y).
 vec3 samplePosition(vec2 firstSample, float pitch, ivec2 index) { return vec3(1.0, firstSample + pitch * vec2(index)); }
+
+// The component of a position's ray along each axis.
+vec3 alongAxes(vec3 position) {
+  return vec3(dot(frame.axes[0].along, position), dot(frame.axes[1].along, position), dot(frame.axes[2].along, position));
+}
+
+// The axis that a ray marches along; rays that miss the volume have the main one.
+int marchAxis(vec3 position, vec3 along) {
+  const vec3 size = abs(along);
+  const bool seen = all(greaterThanEqual(position.yz, frame.seenLow)) && all(lessThanEqual(position.yz, frame.seenHigh));
+  const bool isMain = size[frame.mainAxis] >= kLeastAlong * max(size.x, max(size.y, size.z));
+  return !seen || isMain ? frame.mainAxis : majorAxis(along);
+}
 
 #endif

@@ -5,13 +5,13 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "gather_interface.h"
-#include "gather_ray.glsl"
 
 layout(constant_id = 0) const bool kWithDistance = false;
 layout(constant_id = 1) const bool kDirect = false;  // the lattice is that of the pixels: write the image
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 layout(scalar, binding = 0) uniform Frame { GatherFrame frame; };
+#include "gather_ray.glsl"
 layout(binding = 1) uniform textureBuffer colorEnergy;  // C, E
 layout(binding = 2) uniform textureBuffer distances;    // sum of e times distance
 layout(binding = 3, rgba32f) writeonly uniform imageBuffer colorEnergyOut;
@@ -31,8 +31,7 @@ int placeOf(ivec2 index) {
 
 // Covariance (xx, xy, yy) that the sums lack, in squares of the lattice's pitch.
 vec3 missingCovariance(vec3 position, float distance) {
-  const int axis = majorAxis(vec3(dot(frame.axes[0].along, position), dot(frame.axes[1].along, position),
-                                dot(frame.axes[2].along, position)));
+  const int axis = marchAxis(position, alongAxes(position));
   const float scale = frame.orthographic != 0 ? 1.0 : 1.0 / distance;
   const vec2 tilt = (frame.axes[axis].tilt - position.yz * frame.axes[axis].tiltDepth) * scale;
   const float pixels = frame.pixelsPerVoxel * scale;

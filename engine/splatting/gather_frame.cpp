@@ -112,6 +112,23 @@ void setSlices(shader::GatherAxis& axis, int number, int sign, const HierarchyLa
   }
 }
 
+/// Pixel positions, relative to the image's middle, between which the volume is seen; with an eye in or near its planes
+/// the whole plane.
+std::array<glm::dvec2, 2> seenRectangle(const CentredRays& rays, const glm::dmat3& toPixel, glm::ivec3 dimensions,
+                                        bool orthographic) {
+  constexpr double kAll = 1e9;
+  std::array<glm::dvec2, 2> seen{glm::dvec2(kAll), glm::dvec2(-kAll)};
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+    // Interpolated slices reach a voxel beyond the outermost centres.
+    const glm::dvec3 pixel = toPixel * (side * glm::dvec3(dimensions + 1) - 1.0 - rays.origin);
+    if (!orthographic && !(pixel.z > 1e-6)) return {glm::dvec2(-kAll), glm::dvec2(kAll)};
+    const glm::dvec2 position = orthographic ? glm::dvec2(pixel) : glm::dvec2(pixel) / pixel.z;
+    seen = {glm::min(seen[0], position), glm::max(seen[1], position)};
+  }
+  return {seen[0] - 1.0, seen[1] + 1.0};
+}
+
 glm::ivec2 sampleCount(glm::ivec2 size, double pitch) {
   return glm::ivec2(glm::floor(glm::dvec2(size - 1) / pitch)) + 4;
 }
@@ -137,7 +154,11 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
                             .size = settings.size,
                             .pixelsPerVoxel = float(voxel),
                             .end = float(end),
-                            .orthographic = orthographic ? 1 : 0};
+                            .orthographic = orthographic ? 1 : 0,
+                            .mainAxis = majorAxis(rays.direction)};
+  const std::array<glm::dvec2, 2> seen = seenRectangle(rays, toPixel, dimensions, orthographic);
+  frame.seenLow = seen[0];
+  frame.seenHigh = seen[1];
   const bool coarse = pitch > kLeastPitch;
   // A lattice of at least a few samples, whatever is near.
   frame.pitch = coarse ? float(std::min(pitch, double(std::max(settings.size.x, settings.size.y)))) : 1.0f;

@@ -40,14 +40,19 @@ bool isLatticeOfPixels(const shader::GatherFrame& frame) {
 
 /// A grid of rays is looked at, with a margin for what lies between them.
 bool someRayHasAxis(const shader::GatherFrame& frame, int axis) {
+  if (axis == frame.mainAxis) return true;
+  constexpr int kGrid = 64;
+  constexpr float kMargin = 1.05f;
   const glm::vec2 half = 0.5f * glm::vec2(frame.size) + 2.0f * frame.pitch;
-  constexpr int kGrid = 16;
+  const glm::vec2 low = glm::max(frame.seenLow, -half), high = glm::min(frame.seenHigh, half);
+  if (low.x > high.x || low.y > high.y) return false;
   for (int j = 0; j <= kGrid; ++j) {
     for (int i = 0; i <= kGrid; ++i) {
-      const glm::vec3 position(1.0f, half * (2.0f * glm::vec2(float(i), float(j)) / float(kGrid) - 1.0f));
+      const glm::vec3 position(1.0f, glm::mix(low, high, glm::vec2(float(i), float(j)) / float(kGrid)));
       glm::vec3 size;
       for (int a = 0; a < 3; ++a) size[a] = std::abs(glm::dot(frame.axes[a].along, position));
-      if (size[axis] >= 0.8f * std::max({size.x, size.y, size.z})) return true;
+      const float largest = std::max({size.x, size.y, size.z});
+      if (size[frame.mainAxis] <= kMargin * shader::kLeastAlong * largest && kMargin * size[axis] >= largest) return true;
     }
   }
   return false;
