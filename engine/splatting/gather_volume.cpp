@@ -52,6 +52,9 @@ std::uint64_t recordCount(std::uint64_t storedBlocks) {
   return storedBlocks + 1;
 }
 
+/// Of the device's memory one part in so many may hold quads that the frame does not read.
+constexpr std::uint64_t kKeptShare = 4;
+
 bool dependsOnView(const Lighting& lighting) {
   return lighting.phaseG != 0.0 || lighting.surface > 0.0;
 }
@@ -188,15 +191,35 @@ void GatherVolume::prepare(const Shading& shading) {
     wantedLevels_ |= 1u << level;
   if (!sameLight) shadedLevels_ = 0;
   for (std::size_t axis = 0; axis < quads_.size(); ++axis)
-    if (!sameLight || !shading.axes[axis]) quads_[axis].levels = 0;
+    if (!sameLight) quads_[axis].levels = 0;
   if (hasTowards()) makeTowards(recordCount(built_.volume.storedBlocks()));
-  for (std::size_t axis = 0; axis < quads_.size(); ++axis)
-    if (shading.axes[axis]) makeRoom(quads_[axis], shading.axes);
-  for (std::size_t axis = 0; axis < quads_.size(); ++axis)
-    if (!shading.axes[axis]) quads_[axis] = {};
+  const auto makeRoomForAll = [&] {
+    for (std::size_t axis = 0; axis < quads_.size(); ++axis)
+      if (shading.axes[axis]) makeRoom(quads_[axis], shading.axes);
+  };
+  try {
+    makeRoomForAll();
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::OutOfMemory) throw;
+    dropOtherAxes(shading.axes, 0);
+    makeRoomForAll();
+  }
+  // A turntable comes back to the other axes.
+  dropOtherAxes(shading.axes, device_.memoryBytes() / kKeptShare);
 }
 
-/// Takes the memory of an axis that no ray marches along, where there is one.
+/// Frees quads that hold nothing of use, and those beyond `most` bytes.
+void GatherVolume::dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t most) {
+  std::uint64_t kept = 0;
+  for (std::size_t axis = 0; axis < quads_.size(); ++axis) {
+    Quads& quads = quads_[axis];
+    if (axes[axis]) continue;
+    kept += quads.extinction.bytes() + quads.source.bytes() + quads.towards.bytes();
+    if (quads.levels == 0 || kept > most) quads = {};
+  }
+}
+
+/// Takes the memory of an axis that holds nothing of use, where there is one.
 void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
   const std::uint64_t count = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks;
   if (count > device_.limits().maxTexelBufferElements)
@@ -211,7 +234,7 @@ void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
   };
   if (fits(quads)) return;
   for (std::size_t other = 0; other < axes.size(); ++other) {
-    if (axes[other] || !fits(quads_[other])) continue;
+    if (axes[other] || quads_[other].levels != 0 || !fits(quads_[other])) continue;
     quads = std::exchange(quads_[other], {});
     return;
   }

@@ -51,6 +51,7 @@ class GatherVolume {
  private:
   void makeBricks(std::vector<StageTime>& times);
   void makeTowards(std::uint64_t blocks);
+  void dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t most);
   void makeRoom(Quads& quads, const std::array<bool, 3>& axes);
   void shade(Commands& commands, const Shading& shading, int level);
   void recordShading(Commands& commands, const Shading& shading);
