@@ -67,8 +67,6 @@ struct SetupFrame {
   int gradient;            // 0: the transmittance to the eye is the same all over a footprint
   int code;                // kCode...
   int cells;               // that the table's directions divide the cube's half edge into
-  uint opacityPoints;      // 0 = physical
-  uint colorPoints;
   vec3 albedo;
   float emissionUnit;      // radiance per world unit that a stored 1 is
   RayFan fans[6];          // kLookupExact: from the eye, by fanIndex; orthographic six times the same

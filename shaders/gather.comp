@@ -11,25 +11,31 @@
 layout(constant_id = 0) const int kAxis = 2;        // rays with another axis are left to other dispatches
 layout(constant_id = 1) const bool kTowards = false;  // whether the light of blocks depends on the direction to the eye
 layout(constant_id = 2) const bool kColored = true;   // whether blocks have source terms of their own
+layout(constant_id = 3) const bool kScalars = false;  // whether voxels are classified after interpolation
+layout(constant_id = 4) const bool kLit = false;      // whether voxels then have light, in place of source terms
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 layout(scalar, binding = 0) uniform Frame { GatherFrame frame; };
 #include "gather_ray.glsl"
 layout(binding = 1) uniform utextureBuffer brickNumbers;
 // Quads: of two neighbours along the first side each, of this position and of the next one along the second side.
-layout(binding = 2) uniform utextureBuffer extinctionQuads;  // four halves
+layout(binding = 2) uniform utextureBuffer mediumQuads;      // extinctions, four halves; or four codes of scalars
 layout(binding = 3) uniform utextureBuffer sourceQuads;      // four packed source terms, where kColored says so
 layout(binding = 4) uniform utextureBuffer towardsQuads;     // four times three bytes, where kTowards says so
 layout(binding = 5, rgba32f) writeonly uniform imageBuffer colorEnergy;  // C, E
 layout(binding = 6, r32f) writeonly uniform imageBuffer distances;       // sum of e times distance
 
+layout(binding = 8) uniform utextureBuffer skipCells;
+layout(binding = 7) uniform textureBuffer transferTable;  // of each interval the integral up to it, and the mean
+
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
+const float kLeastChange = 16.0;  // of the scalar along a stretch, intervals, for its mean to be taken from integrals
 
 struct Ray {
   vec2 origin, slope;   // positions on the sides: origin + slope * slice, in blocks of the level
   float direction;      // 1 or -1, of ascending or descending slices
-  int group;            // slices that are tested for emptiness together: no more than a brick's edge on any axis
+  int group;            // slices that are tested for emptiness together: no more than a cell's edge on any axis
   float eye;            // where the ray starts, slices of the level
   float layer;          // world length of a slice of the level on the ray, times the extinction's unit
   vec3 toEye;           // in the world, of length 1
@@ -40,7 +46,9 @@ struct Slices {
   ivec2 dimensions;     // of the sides, blocks
   int firstCell;
   ivec3 cellStrides;    // of the sides and the axis
-  ivec2 lastCell;       // of the sides
+  int firstSkip;
+  ivec3 skipStrides;    // of the sides and the axis
+  ivec3 lastSkip;       // of the sides and the axis
 };
 
 struct Sums {
@@ -59,32 +67,40 @@ vec2 sideWeights(float position, int count, out int low) {
   return weights;
 }
 
-// Source term and extinction, interpolated.
-vec4 sliceAt(Slices level, vec2 position, int slice, vec3 toEye) {
+// The quad of four blocks around a position on a slice, and their weights.
+int quadAt(Slices level, vec2 position, int slice, out vec4 weights) {
   ivec2 low;
   const vec2 a = sideWeights(position.x, level.dimensions.x, low.x);
   const vec2 b = sideWeights(position.y, level.dimensions.y, low.y);
-  const vec4 weights = vec4(a * b.x, a * b.y);
+  weights = vec4(a * b.x, a * b.y);
   const ivec3 place = ivec3(low, slice);
-  const ivec3 cell = place >> kSkipLevels;
+  const ivec3 cell = place >> kBrickLevels;
   const int cellNumber = level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
                          cell.z * level.cellStrides.z;
   const int brick = int(texelFetch(brickNumbers, cellNumber).x);
-  const ivec3 inBrick = place & (kGatherGroup - 1);
-  const int quad = ((brick << kSkipLevels | inBrick.y) << kSkipLevels | inBrick.x) << kSkipLevels | inBrick.z;
-  const uvec2 halves = texelFetch(extinctionQuads, quad).xy;
-  const vec4 extinctions = vec4(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y));
-  const float extinction = dot(weights, extinctions);
-  if (!kColored) return vec4(extinction * frame.color, extinction);
-  const uvec4 packed = texelFetch(sourceQuads, quad);
-  vec4 shares = weights;
+  const ivec3 inBrick = place & (kGatherBrickEdge - 1);
+  return ((brick << kBrickLevels | inBrick.y) << kBrickLevels | inBrick.x) << kBrickLevels | inBrick.z;
+}
+
+// The sum of a quad's source terms.
+vec3 sourceAt(int quad, uvec4 packed, vec4 weights, vec3 toEye) {
   if (kTowards) {
     const uvec4 towards = texelFetch(towardsQuads, quad);
-    [[unroll]] for (int i = 0; i < 4; ++i) shares[i] *= 1.0 + dot(unpackSnorm4x8(towards[i]).xyz, toEye);
+    [[unroll]] for (int i = 0; i < 4; ++i) weights[i] *= 1.0 + dot(unpackSnorm4x8(towards[i]).xyz, toEye);
   }
   vec3 source = vec3(0.0);
-  [[unroll]] for (int i = 0; i < 4; ++i) source += shares[i] * unpackLight(packed[i]);
-  return vec4(source, extinction);
+  [[unroll]] for (int i = 0; i < 4; ++i) source += weights[i] * unpackLight(packed[i]);
+  return source;
+}
+
+// Source term and extinction, interpolated.
+vec4 sliceAt(Slices level, vec2 position, int slice, vec3 toEye) {
+  vec4 weights;
+  const int quad = quadAt(level, position, slice, weights);
+  const uvec2 halves = texelFetch(mediumQuads, quad).xy;
+  const float extinction = dot(weights, vec4(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y)));
+  if (!kColored) return vec4(extinction * frame.color, extinction);
+  return vec4(sourceAt(quad, texelFetch(sourceQuads, quad), weights, toEye), extinction);
 }
 
 // The part of a slice's tent that is in front of the eye, which is `ahead` slices before it.
@@ -93,28 +109,110 @@ float partInFront(float ahead) {
   return a >= 0.0 ? 0.5 + a - 0.5 * a * a : 0.5 * (1.0 + a) * (1.0 + a);
 }
 
-// The slice's light is constant over it; what leaves it is the mean of its own transmittance.
-void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
-  const vec4 found = sliceAt(level, ray.origin + ray.slope * float(slice), slice, ray.toEye);
-  const float ahead = (float(slice) - ray.eye) * ray.direction;
-  const float length = ray.layer * partInFront(ahead);
-  const float depth = length * found.a;
+// What a part of the ray of this length adds, with a constant source term (rgb) and extinction (a), `ahead` slices from
+// the eye; what leaves it is the mean of its own transmittance.
+void addPart(inout Sums sums, vec4 medium, float length, float ahead) {
+  const float depth = length * medium.a;
   const float through = exp(-depth);
   const float leaving = depth < 0.01 ? 1.0 - 0.5 * depth : (1.0 - through) / depth;
   const float rest = sums.transmittance * through;
-  sums.color += sums.transmittance * leaving * length * found.rgb;
+  sums.color += sums.transmittance * leaving * length * medium.rgb;
   sums.distance += (sums.transmittance - rest) * max(ahead, 0.0);
   sums.transmittance = rest;
 }
 
-// Whether the ray.group slices from `slice` on in the ray's direction may hold anything.
-bool mayHold(Slices level, Ray ray, int slice) {
+void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
+  const float ahead = (float(slice) - ray.eye) * ray.direction;
+  addPart(sums, sliceAt(level, ray.origin + ray.slope * float(slice), slice, ray.toEye), ray.layer * partInFront(ahead), ahead);
+}
+
+// What a ray found on a slice, for the stretch up to the next one.
+struct Found {
+  float coverage;  // by voxels with data, 0..1; with 0 nothing else counts
+  float scalar;    // intervals of the transfer function's table
+  float ahead;     // what the scalar, in its plane, is half a slice further on
+  float behind;    // and half a slice before
+  vec4 integral;   // of extinction times colour and of extinction over the scalar
+  vec4 medium;     // extinction times colour and extinction at the scalar
+  vec3 light;      // over that of a source term of 1
+};
+
+// The transfer function's integral up to a scalar, and its value there.
+void tableAt(float scalar, out vec4 integral, out vec4 medium) {
+  const int interval = clamp(int(scalar), 0, kTransferIntervals - 1);
+  medium = texelFetch(transferTable, 2 * interval + 1);
+  integral = texelFetch(transferTable, 2 * interval) + (scalar - float(interval)) * medium;
+}
+
+// `halfStep` is what the ray moves along the sides in half a slice.
+Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye) {
+  vec4 weights;
+  const int quad = quadAt(level, position, slice, weights);
+  const uvec2 pairs = texelFetch(mediumQuads, quad).xy;
+  const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
+  const bool whole = all(notEqual(codes, uvec4(0)));
+  [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = codes[i] != 0 ? weights[i] : 0.0;
+  Found found;
+  found.coverage = weights.x + weights.y + weights.z + weights.w;
+  const vec4 scalars = (vec4(codes) - 1.0) * (float(kTransferIntervals) / float(kScalarCodes));
+  found.scalar = max(dot(weights, scalars) / max(found.coverage, 1e-20), 0.0);
+  // The bilinear function of the quad, continued beyond it.
+  const float twist = scalars.x - scalars.y - scalars.z + scalars.w;
+  const vec2 change = vec2(mix(scalars.y - scalars.x, scalars.w - scalars.z, weights.z + weights.w),
+                           mix(scalars.z - scalars.x, scalars.w - scalars.y, weights.y + weights.w));
+  const float even = whole ? halfStep.x * halfStep.y * twist : 0.0, odd = whole ? dot(halfStep, change) : 0.0;
+  found.ahead = found.scalar + even + odd;
+  found.behind = found.scalar + even - odd;
+  tableAt(found.scalar, found.integral, found.medium);
+  found.light = vec3(1.0);
+  if (kLit) {
+    // Voxels that hold nothing have no light: that of the others counts.
+    const uvec4 packed = texelFetch(sourceQuads, quad);
+    [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = packed[i] != 0 ? weights[i] : 0.0;
+    found.light = sourceAt(quad, packed, weights, toEye) / max(weights.x + weights.y + weights.z + weights.w, 1e-20);
+  }
+  return found;
+}
+
+// The mean of the transfer function between two scalars. Small differences of integrals have few digits.
+vec4 meanBetween(float from, vec4 fromIntegral, vec4 fromMedium, float to, vec4 toIntegral, vec4 toMedium) {
+  const float change = to - from;
+  return abs(change) > kLeastChange ? (toIntegral - fromIntegral) / change : 0.5 * (fromMedium + toMedium);
+}
+
+// Scalars change linearly from a slice to the middle of the stretch and on to the next slice, so that integrals of the
+// transfer function give the means. In the middle both slices' functions count half.
+void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within) {
+  Found found = scalarAt(level, ray.origin + ray.slope * float(slice), slice, 0.5 * ray.direction * ray.slope, ray.toEye);
+  if (!within) found.coverage = 0.0;
+  const float coverage = 0.5 * (last.coverage + found.coverage);
+  Found first = last, second = found;
+  if (last.coverage == 0.0) first = found;
+  if (found.coverage == 0.0) second = last;
+  const bool both = last.coverage > 0.0 && found.coverage > 0.0;
+  const float middle = both ? clamp(0.5 * (first.ahead + second.behind), 0.0, float(kTransferIntervals)) : first.scalar;
+  vec4 integral, medium;
+  tableAt(middle, integral, medium);
+  vec4 near = meanBetween(first.scalar, first.integral, first.medium, middle, integral, medium);
+  vec4 far = meanBetween(middle, integral, medium, second.scalar, second.integral, second.medium);
+  if (kLit) {
+    near.rgb *= mix(first.light, second.light, 0.25);
+    far.rgb *= mix(first.light, second.light, 0.75);
+  }
+  const float ahead = (float(slice) - ray.eye) * ray.direction;
+  const float length = ray.layer * coverage;
+  addPart(sums, near, length * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75);
+  addPart(sums, far, length * clamp(ahead, 0.0, 0.5), ahead - 0.25);
+  last = found;
+}
+
+// How many groups of ray.group slices, from `slice` on in the ray's direction, hold nothing; 0 where the first may.
+int emptyGroups(Slices level, Ray ray, int slice) {
   const float last = float(slice) + ray.direction * float(ray.group - 1);
   const vec2 low = min(ray.origin + ray.slope * float(slice), ray.origin + ray.slope * last);
-  const ivec2 cell = clamp(ivec2(floor(low)) >> kSkipLevels, ivec2(0), level.lastCell);
-  const int plane = max(min(slice, int(last)), 0) >> kSkipLevels;
-  return texelFetch(brickNumbers, level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
-                                      plane * level.cellStrides.z).x != 0;
+  const ivec3 cell = clamp(ivec3(ivec2(floor(low)), min(slice, int(last))) >> kSkipLevels, ivec3(0), level.lastSkip);
+  return int(texelFetch(skipCells, level.firstSkip + cell.x * level.skipStrides.x + cell.y * level.skipStrides.y +
+                                       cell.z * level.skipStrides.z).x);
 }
 
 // The slices from `slices.x` to `slices.y` - 1 that the ray meets within the volume and in front of the eye.
@@ -134,25 +232,35 @@ ivec2 slicesOnRay(Slices level, Ray ray, ivec2 slices) {
   return ivec2(max(int(floor(range.x)), slices.x), min(int(ceil(range.y)), slices.y - 1));
 }
 
-void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end) {
+// Where scalars are marched, through a slice more, which ends the last stretch.
+void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool scalars) {
   const int direction = int(ray.direction);
+  const int final = direction > 0 ? slices.y : slices.x;
   int slice = direction > 0 ? slices.x : slices.y;
   int left = slices.y - slices.x + 1;
   if (left <= 0) return;
+  if (scalars) ++left;
+  Found last;
+  last.coverage = 0.0;
+  last.scalar = 0.0;
+  last.integral = last.medium = vec4(0.0);
+  last.light = vec3(0.0);
   // Loops that end with their conditions: lavapipe runs a body once more, masked, where a loop begins with one.
   do {
-    bool empty;
+    int empty;
     do {
-      empty = !mayHold(level, ray, slice);
-      if (empty) {
-        slice += direction * ray.group;
-        left -= ray.group;
-      }
-    } while (empty && left > 0);
+      empty = emptyGroups(level, ray, slice) * ray.group;
+      if (empty > 0) last.coverage = 0.0;
+      slice += direction * empty;
+      left -= empty;
+    } while (empty > 0 && left > 0);
     if (left > 0) {
       const int rest = left - min(left, ray.group);
       do {
-        addSlice(sums, level, ray, slice);
+        if (scalars)
+          addStretch(sums, last, level, ray, clamp(slice, slices.x, slices.y), slice != final + direction);
+        else
+          addSlice(sums, level, ray, slice);
         slice += direction;
         --left;
       } while (left > rest);
@@ -165,8 +273,11 @@ Slices slicesOf(int number) {
   Slices slices;
   slices.dimensions = ivec2(level.dimensions[kSideA], level.dimensions[kSideB]);
   slices.firstCell = level.firstCell;
-  slices.cellStrides = ivec3(level.cellStrides[kSideA], level.cellStrides[kSideB], level.cellStrides[kAxis]);
-  slices.lastCell = ivec2(level.lastCell[kSideA], level.lastCell[kSideB]);
+  const ivec3 cellStrides = ivec3(1, level.cellStrides), skipStrides = ivec3(1, level.skipStrides);
+  slices.cellStrides = ivec3(cellStrides[kSideA], cellStrides[kSideB], cellStrides[kAxis]);
+  slices.firstSkip = level.firstSkip;
+  slices.skipStrides = ivec3(skipStrides[kSideA], skipStrides[kSideB], skipStrides[kAxis]);
+  slices.lastSkip = ivec3(level.lastSkip[kSideA], level.lastSkip[kSideB], level.lastSkip[kAxis]);
   return slices;
 }
 
@@ -193,13 +304,13 @@ void main() {
     ray.origin = (middle + slope * (0.5 * edge - 0.5 - middlePlane) + 0.5) / edge - 0.5;
     ray.slope = slope;
     ray.direction = along > 0.0 ? 1.0 : -1.0;
-    ray.group = max(abs(slope.x), abs(slope.y)) > 1.0 ? kObliqueGroup : kGatherGroup;
+    ray.group = max(abs(slope.x), abs(slope.y)) > 1.0 ? kObliqueGroup : kSkipGroup;
     ray.eye = (eye + 0.5) / edge - 0.5;
     ray.layer = length(world) / abs(along) * edge * frame.extinctionUnit;
     ray.toEye = -normalize(world);
     const ivec2 slices = slicesOnRay(level, ray, frame.axes[kAxis].slices[along > 0.0 ? 1 : 0][number]);
     sums.distance = 0.0;
-    if (sums.transmittance > frame.end) march(sums, level, ray, slices, frame.end);
+    if (sums.transmittance > frame.end) march(sums, level, ray, slices, frame.end, kScalars && number == 0);
     distance += sums.distance * edge / abs(along);
   }
   // A ray that ended before the volume did: what is behind counts as what is in front of it.

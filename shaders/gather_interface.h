@@ -9,12 +9,19 @@ namespace freevoxels::shader {
 
 FV_CONSTANT int kGatherTile = 8;          // samples along the edge of a workgroup of the passes over the lattice
 FV_CONSTANT int kShadeThreads = 64;
-// The gather reads blocks in bricks of 8^3, which are cells of the octree so many levels above. A ray tests as many slices
-// as a brick has blocks along an edge for emptiness together.
-FV_CONSTANT int kSkipLevels = 3;
-FV_CONSTANT int kGatherGroup = 1 << kSkipLevels;
-FV_CONSTANT int kGatherBrickBlocks = kGatherGroup * kGatherGroup * kGatherGroup;
+// The gather reads blocks in bricks of 8^3, which are cells of the octree so many levels above.
+FV_CONSTANT int kBrickLevels = 3;
+FV_CONSTANT int kGatherBrickEdge = 1 << kBrickLevels;
+FV_CONSTANT int kGatherBrickBlocks = kGatherBrickEdge * kGatherBrickEdge * kGatherBrickEdge;
+// Where there is nothing rays skip cells, so many levels above; as many slices as a cell has blocks along an edge are
+// tested together.
+FV_CONSTANT int kSkipLevels = 2;
+FV_CONSTANT int kSkipGroup = 1 << kSkipLevels;
 FV_CONSTANT int kBrickQuadsThreads = 64;
+// Classification after interpolation: a transfer function's intervals of the scalar, and the codes of scalars, 1 and above.
+FV_CONSTANT int kTransferIntervals = 4096;
+FV_CONSTANT int kScalarCodes = 65534;
+
 // Variance in voxels, squared, of the footprint's radial kernel along one axis; a slice's tent lacks it along the tilt.
 FV_CONSTANT float kFootprintVariance = 0.1624f;
 
@@ -22,7 +29,7 @@ FV_CONSTANT float kFootprintVariance = 0.1624f;
 // largest one: so that a frame mostly reads one axis. And how many slices such rays then test together, as they move by
 // more than a block a slice.
 FV_CONSTANT float kLeastAlong = 0.5f;
-FV_CONSTANT int kObliqueGroup = 4;
+FV_CONSTANT int kObliqueGroup = kSkipGroup / 2;
 
 // How rays meet the slices of blocks across one index axis. Pixel positions (x, y) are relative to the image's middle.
 // The sides are the other two axes in ascending order. All are affine: value . (1, x, y).
@@ -41,8 +48,10 @@ struct GatherAxis {
 struct GatherLevel {
   ivec3 dimensions;     // blocks
   int firstCell;        // of the table of brick numbers
-  ivec3 cellStrides;    // in that table
-  ivec3 lastCell;
+  ivec2 cellStrides;    // in that table, of y and z
+  int firstSkip;        // of the table of cells to skip: 0, or how many groups of slices nothing is met in
+  ivec2 skipStrides;    // in that table, of y and z
+  ivec3 lastSkip;       // the last cell
 };
 
 struct GatherFrame {
@@ -70,6 +79,7 @@ struct ShadePush {
   uint count;
   float extinctionScale, sourceScale;  // from per world unit to what is stored
   float meanLayer;   // world length that light crosses in a voxel, mean over directions
+  int lightOnly;     // 1: the source term is that of extinction and colour 1
 };
 
 // brick_quads.comp
@@ -77,22 +87,16 @@ struct BrickQuadsPush {
   BlockLevel level;
   uint firstBrick;   // of the level
   uint count;        // quads of the level
-};
-
-// skip_cells.comp
-struct SkipCellsPush {
-  BlockLevel level;
-  uint firstCell;    // address of the first block of the finest level with cells
-  uint count;        // addresses of the level
+  ivec3 corner;      // place of the volume's first voxel in its brick of scalars
+  ivec3 cells;       // bricks of scalars along the axes
 };
 
 #ifdef __cplusplus
 static_assert(sizeof(GatherAxis) == 8 * 4 + 12 * 6 - 16 + 2 * kMaximumLevels * 8);
-static_assert(sizeof(GatherLevel) == 40);
-static_assert(sizeof(BrickQuadsPush) == 36);
+static_assert(sizeof(GatherLevel) == 48);
+static_assert(sizeof(BrickQuadsPush) == 60);
 static_assert(sizeof(GatherFrame) <= 16384);
-static_assert(sizeof(ShadePush) == 20);
-static_assert(sizeof(SkipCellsPush) == 36);
+static_assert(sizeof(ShadePush) == 24);
 }  // namespace freevoxels::shader
 #endif
 #endif

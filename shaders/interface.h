@@ -77,9 +77,6 @@ FV_CONSTANT float kMaximumDepth = 16.0f;  // optical depth that the code depth8 
 FV_CONSTANT float kOpaqueDepth = 32.0f;   // what the code linear8 means by a transmittance of 0; rays end there
 
 // Must be engine/volume/volume.h's kInactiveVoxel.
-FV_CONSTANT float kInactiveScalar = -3.402823466e38f;
-// Must be engine/volume/classification.h's kMaximumOpacity.
-FV_CONSTANT float kMaximumOpacity = 1.0f - 1.0f / 4096.0f;
 // Of a block that holds anything: one that is mostly empty may have less than 32-bit floats can say.
 FV_CONSTANT float kLeastExtinction = 1e-37f;
 // Must be engine/volume/classification.h's kMaximumExtinction.
@@ -118,9 +115,7 @@ struct BlockLevel {
 struct BricksPush {
   BlockLevel voxels;
   uint brickCount;
-  uint opacityPoints;    // of the transfer function; 0 = physical
-  float densityScale;    // physical: extinction per world unit at density 1
-  float unitDistance;    // transfer function: world length that opacities refer to
+  float densityScale;    // extinction per world unit at density 1
 };
 
 // The planes that a dispatch of a sweep marches through: engine/attenuation/slabs.h. In the order of the march.
@@ -198,7 +193,6 @@ struct MediumLevelPush {
   uint parentCount;    // blocks of the parent level that hold anything
   float childLength;   // world length of a child's edge
   uint firstColor;     // rank of the first block that has a colour: of level 1
-  uint opacityPoints, colorPoints;
 };
 
 // table_level.comp
@@ -315,7 +309,7 @@ static_assert(sizeof(CutPush) == 16);
 static_assert(sizeof(DepthKeyPush) == 80);
 static_assert(sizeof(ExpandPush) == 52);
 static_assert(sizeof(HalfSweepPush) == 84);
-static_assert(sizeof(MediumLevelPush) == 92);
+static_assert(sizeof(MediumLevelPush) == 84);
 static_assert(sizeof(RaySweepPush) == 128);  // what every device takes
 static_assert(sizeof(TableLevelPush) == 84);
 }  // namespace freevoxels::shader

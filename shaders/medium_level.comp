@@ -8,28 +8,23 @@
 #include "blocks.glsl"
 #include "opacity.glsl"
 #include "packed_light.glsl"
-#define TRANSFER_BINDING 1
-#include "transfer_function.glsl"
 
 layout(constant_id = 0) const bool kColors = false;      // there is more than one colour
 layout(constant_id = 1) const bool kFromVoxels = false;  // the children are voxels
 layout(constant_id = 2) const bool kEmits = false;
-layout(constant_id = 3) const bool kAlbedos = false;     // are kept of voxels, and no scalars
 
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { MediumLevelPush push; };
 layout(scalar, binding = 0) buffer Extinction { float extinction[]; };
-layout(scalar, binding = 2) readonly buffer Scalars { float scalars[]; };
-layout(scalar, binding = 2) readonly buffer Albedos { uint albedos[]; };
+layout(scalar, binding = 2) readonly buffer Colors { uint colors[]; };  // of voxels
 layout(scalar, binding = 3) buffer BlockColors { uvec2 blockColors[]; };
 layout(scalar, binding = 4) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 layout(scalar, binding = 5) readonly buffer Parents { uint parents[]; };
-layout(scalar, binding = 6) buffer Emission { uint emission[]; };
+layout(scalar, binding = 1) buffer Emission { uint emission[]; };
 #include "stored_block.glsl"
 
 vec3 childColor(uint rank) {
-  if (kFromVoxels && kAlbedos) return unpackLight(albedos[rank]);
-  if (kFromVoxels) return evaluatePoints(push.opacityPoints, push.colorPoints, scalars[rank]);
+  if (kFromVoxels) return unpackLight(colors[rank]);
   return unpackColor(blockColors[rank - push.firstColor]);
 }
 

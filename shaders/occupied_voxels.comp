@@ -5,7 +5,7 @@
 #include "blocks.glsl"
 #include "brick_row.glsl"
 
-layout(scalar, binding = 4) buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 3) buffer Occupancy { OccupancyWord occupancy[]; };
 
 void main() {
   const uint brick = brickOfThread();

@@ -1,21 +1,19 @@
 #version 460
-// The extinction, the scalars or albedos and the light of the voxels that hold anything, each at its rank, brick by brick.
+// The extinction, the colours and the light of the voxels that hold anything, each at its rank, brick by brick.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "blocks.glsl"
 #include "rank.glsl"
 #include "brick_row.glsl"
 
-layout(constant_id = 1) const bool kScalars = false;  // are kept, for their colours
-layout(constant_id = 2) const bool kAlbedos = false;  // in the place of them
+layout(constant_id = 1) const bool kColors = false;  // voxels have colours of their own
 
-layout(scalar, binding = 4) readonly buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 3) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 #include "occupancy.glsl"
-layout(scalar, binding = 5) writeonly buffer Extinction { float extinction[]; };
-layout(scalar, binding = 6) writeonly buffer AllScalars { float keptScalars[]; };
-layout(scalar, binding = 6) writeonly buffer AllAlbedos { uint keptAlbedos[]; };
-layout(scalar, binding = 7) writeonly buffer Emission { uint emission[]; };
-layout(scalar, binding = 8) readonly buffer Albedos { uint albedos[]; };  // as the scalars
+layout(scalar, binding = 4) writeonly buffer Extinction { float extinction[]; };
+layout(scalar, binding = 5) writeonly buffer Colors { uint colors[]; };
+layout(scalar, binding = 6) writeonly buffer Emission { uint emission[]; };
+layout(scalar, binding = 7) readonly buffer BrickColors { uint brickColors[]; };  // as the densities
 
 void main() {
   const uint brick = brickOfThread();
@@ -27,8 +25,7 @@ void main() {
   [[unroll]] for (int i = 0; i < kBrickEdge; ++i) {
     if ((row.holding >> i & 1u) == 0) continue;
     extinction[rank] = row.extinction[i];
-    if (kScalars) keptScalars[rank] = row.scalars[i];
-    if (kAlbedos) keptAlbedos[rank] = albedos[(brick * kBrickThreads + gl_LocalInvocationIndex) * kBrickEdge + i];
+    if (kColors) colors[rank] = brickColors[(brick * kBrickThreads + gl_LocalInvocationIndex) * kBrickEdge + i];
     if (kEmits) emission[rank] = row.emission[i];
     ++rank;
   }

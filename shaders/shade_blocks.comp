@@ -7,12 +7,10 @@
 #include "gather_interface.h"
 #include "attenuation_code.glsl"
 #include "blocks.glsl"
-#define TRANSFER_BINDING 1
-#include "transfer_function.glsl"
 
 layout(constant_id = 0) const bool kLit = false;  // else a voxel sends out its colour
 layout(constant_id = 1) const bool kEmits = false;
-layout(constant_id = 2) const bool kAlbedos = false;  // are kept of voxels, and no scalars
+layout(constant_id = 2) const bool kColors = false;  // voxels have colours of their own
 layout(constant_id = 3) const bool kTinted = false;   // whether every colour of light has an extinction of its own
 layout(constant_id = 4) const bool kAnyView = false;  // whether the source term is for all positions of the eye
 
@@ -21,15 +19,14 @@ layout(scalar, push_constant) uniform Push { ShadePush push; };
 layout(scalar, binding = 0) readonly buffer Frame { SetupFrame frame; };
 layout(scalar, binding = 2) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
 layout(scalar, binding = 3) readonly buffer Blocks { uint blocks[]; };  // addresses of the level's occupied ones
-layout(scalar, binding = 4) readonly buffer Scalars { float scalars[]; };
-layout(scalar, binding = 4) readonly buffer Albedos { uint albedos[]; };
+layout(scalar, binding = 4) readonly buffer Colors { uint colors[]; };  // of voxels
 layout(scalar, binding = 5) readonly buffer Extinction { float extinction[]; };
 layout(scalar, binding = 6) writeonly buffer Sources { uvec2 sources[]; };  // packed source term, extinction as a half
 layout(scalar, binding = 7) readonly buffer BlockColors { uvec2 blockColors[]; };
 layout(scalar, binding = 8) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 layout(scalar, binding = 9) readonly buffer Lights { Light lights[]; };
 layout(scalar, binding = 10) readonly buffer Emission { uint emission[]; };
-layout(scalar, binding = 11) writeonly buffer TowardsEye { uint towardsEye[]; };
+layout(scalar, binding = 1) writeonly buffer TowardsEye { uint towardsEye[]; };
 #define PLANE_ADDRESS(cell) planeAddresses[cell]
 #include "major_axis.glsl"
 #include "stored_block.glsl"
@@ -43,6 +40,7 @@ layout(scalar, binding = 11) writeonly buffer TowardsEye { uint towardsEye[]; };
 #include "lighting.glsl"
 #include "block_color.glsl"
 
+const float kLeastLight = 1e-4;  // that is stored
 const float kLargestStored = 65280.0;  // that halves and packed light hold
 
 ScatteredLight scatteredBy(Block block, float sigma, uint rank) {
@@ -61,7 +59,7 @@ void main() {
   const vec3 part = vec3(block.extent) / float(block.edge);
   const float inside = part.x * part.y * part.z;
   const float sigma = extinction[rank];
-  vec3 source = sigma * colorOf(block, rank);
+  vec3 source = push.lightOnly != 0 ? vec3(1.0) : sigma * colorOf(block, rank);
   vec3 towards = vec3(0.0);
   if (kLit) {
     const ScatteredLight scattered = scatteredBy(block, sigma, rank);
@@ -69,7 +67,9 @@ void main() {
     towards = luminanceOf(source) / max(luminanceOf(scattered.light), 1e-37) * scattered.towards;
   }
   if (kEmits) source += frame.emissionUnit * unpackLight(emission[rank]);
-  const vec4 stored = min(inside * vec4(push.sourceScale * source, push.extinctionScale * sigma), kLargestStored);
+  // Without any light a block would be one that has none.
+  if (push.lightOnly != 0) source = max(source, kLeastLight / push.sourceScale);
+  const vec4 stored = min(vec4(push.sourceScale * source, push.extinctionScale * sigma) * (push.lightOnly != 0 ? 1.0 : inside), kLargestStored);
   sources[rank] = uvec2(packLight(stored.rgb), packHalf2x16(vec2(stored.a, 0.0)));
   if (kLit && kAnyView) towardsEye[rank] = packSnorm4x8(vec4(towards / max(luminanceOf(source), 1e-37), 0.0));
 }

@@ -5,12 +5,10 @@
 #include "frame_interface.h"
 #include "attenuation_code.glsl"
 #include "blocks.glsl"
-#define TRANSFER_BINDING 1
-#include "transfer_function.glsl"
 
 layout(constant_id = 0) const bool kLit = false;  // else a voxel sends out its colour
 layout(constant_id = 1) const bool kEmits = false;
-layout(constant_id = 2) const bool kAlbedos = false;  // are kept of voxels, and no scalars
+layout(constant_id = 2) const bool kColors = false;  // voxels have colours of their own
 layout(constant_id = 3) const bool kTinted = false;   // whether every colour of light has an extinction of its own
 
 layout(local_size_x = kSplatThreads) in;
@@ -18,15 +16,14 @@ layout(scalar, push_constant) uniform Push { SetupPush push; };
 layout(scalar, binding = 0) readonly buffer Frame { SetupFrame frame; };
 layout(scalar, binding = 2) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
 layout(scalar, binding = 3) readonly buffer VisibleVoxels { uint visibleVoxels[]; };
-layout(scalar, binding = 4) readonly buffer Scalars { float scalars[]; };
-layout(scalar, binding = 4) readonly buffer Albedos { uint albedos[]; };
+layout(scalar, binding = 4) readonly buffer Colors { uint colors[]; };  // of voxels
 layout(scalar, binding = 5) readonly buffer Extinction { float extinction[]; };
 layout(scalar, binding = 6) readonly buffer Chunks { ChunkArguments chunks[]; };
 layout(scalar, binding = 7) writeonly buffer Splats { Splat splats[]; };
 layout(scalar, binding = 8) readonly buffer BlockColors { uvec2 blockColors[]; };
 layout(scalar, binding = 9) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 layout(scalar, binding = 10) readonly buffer Lights { Light lights[]; };
-layout(scalar, binding = 11) readonly buffer Emission { uint emission[]; };
+layout(scalar, binding = 1) readonly buffer Emission { uint emission[]; };
 #define PLANE_ADDRESS(cell) planeAddresses[cell]
 #include "major_axis.glsl"
 #include "stored_block.glsl"

@@ -24,6 +24,10 @@ void ClassificationOptions::add(CLI::App& app) {
       ->excludes(color)
       ->excludes(grid)
       ->group("Classification");
+  addWord(app, "--classification", kOrderWords, order,
+          "Whether a transfer function is applied to interpolated scalars, or to voxels; splats and volumes that shine are "
+          "pre whatever this is [post]")
+      ->group("Classification");
 }
 
 Classification ClassificationOptions::resolve(const Volume& volume) const {
@@ -32,6 +36,7 @@ Classification ClassificationOptions::resolve(const Volume& volume) const {
     classification.transferFunction = isInlineJson(*transferFunction)
                                           ? parseTransferFunction(*transferFunction, volume)
                                           : readTransferFunction(*transferFunction, volume);
+    classification.order = ClassificationOrder(order.value_or(0));
     return classification;
   }
   classification.densityScale = densityScale ? *densityScale : automaticDensityScale(volume);
@@ -42,6 +47,7 @@ Classification ClassificationOptions::resolve(const Volume& volume) const {
 void ClassificationOptions::describe(OptionList& options, const Classification& resolved) const {
   if (transferFunction) {
     options.emplace_back("--transfer-function", *transferFunction);
+    options.emplace_back("--classification", kOrderWords[std::size_t(resolved.order)]);
     return;
   }
   options.emplace_back("--density-scale", numberText(resolved.densityScale));

@@ -3,17 +3,22 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/freevoxels/option_values.h"
 #include "engine/volume/classification.h"
 
 namespace freevoxels {
 
+/// In the order of ClassificationOrder.
+inline const std::vector<std::string> kOrderWords{"post", "pre"};
+
 struct ClassificationOptions {
   std::optional<double> densityScale;
   std::optional<glm::dvec3> albedo;
   std::optional<std::string> transferFunction;
   std::optional<std::string> albedoGrid;
+  std::optional<int> order;  ///< ClassificationOrder
 
   void add(CLI::App& app);
   /// Reads the transfer function; the density scale defaults to the automatic one.

@@ -26,38 +26,35 @@ shader::MediumLevelPush mediumPush(const DeviceVolume& volume, int level) {
           .childEdge = childEdge,
           .parentCount = std::uint32_t(volume.stored[std::size_t(level)]),
           .childLength = float(volume.voxelSize * childEdge),
-          .firstColor = volume.firstRank(1),
-          .opacityPoints = volume.opacityPointCount,
-          .colorPoints = volume.colorPointCount};
+          .firstColor = volume.firstRank(1)};
 }
 
 }  // namespace
 
 MediumLevels::MediumLevels(const Device& device, const DeviceVolume& volume) {
-  const std::uint32_t colors = volume.hasColors(), emission = volume.hasEmission();
+  const std::uint32_t colors = volume.hasColors, emission = volume.hasEmission();
   for (const std::uint32_t fromVoxels : {0u, 1u})
     pipelines_[fromVoxels] =
         makeComputePipeline(device, {medium_level_spv, "medium level"},
-                            {.bindings = std::vector(7, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                            {.bindings = std::vector(6, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
                              .pushConstantBytes = sizeof(shader::MediumLevelPush)},
-                            {shader::kLevelThreads, 1, 1}, {colors, fromVoxels, emission, volume.hasAlbedos});
+                            {shader::kLevelThreads, 1, 1}, {colors, fromVoxels, emission});
 }
 
 void MediumLevels::record(Commands& commands, const DeviceVolume& volume,
                           std::span<const VisibleVoxels> coarse) const {
-  const Buffer& anyBuffer = volume.transferPoints;
-  const Buffer& scalars = volume.hasColors() ? volume.scalars : anyBuffer;
-  const Buffer& colors = volume.hasColors() ? volume.blockColors : anyBuffer;
+  const Buffer& anyBuffer = volume.occupancy;
+  const Buffer& voxelColors = volume.hasColors ? volume.colors : anyBuffer;
+  const Buffer& blockColors = volume.hasColors ? volume.blockColors : anyBuffer;
   commands.beginPass("octree");
   for (int level = 1; level <= volume.hierarchy.top(); ++level) {
     const shader::MediumLevelPush push = mediumPush(volume, level);
-    const std::array<Binding, 7> bindings{&volume.extinction,
-                                          &volume.transferPoints,
-                                          &scalars,
-                                          &colors,
+    const std::array<Binding, 6> bindings{&volume.extinction,
+                                          volume.hasEmission() ? &volume.emission : &anyBuffer,
+                                          &voxelColors,
+                                          &blockColors,
                                           &volume.occupancy,
-                                          &coarse[std::size_t(level) - 1].indices,
-                                          volume.hasEmission() ? &volume.emission : &anyBuffer};
+                                          &coarse[std::size_t(level) - 1].indices};
     commands.dispatchLinear(pipelines_[level == 1 ? 1 : 0], bindings, push, push.parentCount);
     commands.barrier(kCompute, kCompute);
   }
@@ -127,7 +124,7 @@ LevelData downloadMedium(const Device& device, const DeviceVolume& volume, int l
     for (const std::uint32_t bits : spreadOut(light, blocks, grid.voxels()))
       data.emission.push_back(volume.emissionUnit * unpackColor(bits));
   }
-  if (!volume.hasColors() || level == 0) return data;
+  if (!volume.hasColors || level == 0) return data;
   std::vector<glm::uvec2> colors(blocks.size());
   download(device, volume.blockColors, std::as_writable_bytes(std::span(colors)),
            (first - volume.firstRank(1)) * sizeof(glm::uvec2));

@@ -21,7 +21,7 @@ constexpr int kQuad = 4;  // voxels of a row that expand_voxels.comp takes toget
 OccupancyPass::OccupancyPass(const Device& device, bool emission)
     : voxels_(makeComputePipeline(
           device, {occupied_voxels_spv, "occupied voxels"},
-          {.bindings = std::vector(5, kStorage), .pushConstantBytes = sizeof(shader::BricksPush)},
+          {.bindings = std::vector(4, kStorage), .pushConstantBytes = sizeof(shader::BricksPush)},
           {shader::kBrickThreads, 1, 1}, {emission ? 1u : 0u})),
       blocks_(makeComputePipeline(
           device, {occupied_blocks_spv, "occupied blocks"},
@@ -32,8 +32,7 @@ void OccupancyPass::recordVoxels(Commands& commands, const DeviceVolume& volume,
                                  bool first) const {
   commands.beginPass("occupancy");
   if (first) commands.clear(volume.occupancy);
-  const std::array<Binding, 5> bindings{&bricks.scalars(), &bricks.firstVoxels(), &volume.transferPoints,
-                                        &bricks.emissions(), &volume.occupancy};
+  const std::array<Binding, 4> bindings{&bricks.scalars(), &bricks.firstVoxels(), &bricks.emissions(), &volume.occupancy};
   const shader::BricksPush push = bricks.push();
   commands.dispatchLinear(voxels_, bindings, push, std::uint64_t(push.brickCount) * shader::kBrickThreads);
   commands.barrier(kCompute, kCompute);

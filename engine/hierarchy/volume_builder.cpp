@@ -4,6 +4,7 @@
 #include <array>
 
 #include "embedded/pack_voxels.h"
+#include "engine/core/error.h"
 #include "engine/hierarchy/occupancy.h"
 #include "engine/hierarchy/volume_memory.h"
 #include "engine/volume/device_bricks.h"
@@ -18,21 +19,20 @@ class PackPass {
   PackPass(const Device& device, const DeviceVolume& volume)
       : pipeline_(makeComputePipeline(
             device, {pack_voxels_spv, "pack voxels"},
-            {.bindings = std::vector(9, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+            {.bindings = std::vector(8, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
              .pushConstantBytes = sizeof(shader::BricksPush)},
             {shader::kBrickThreads, 1, 1},
-            {volume.hasEmission(), volume.hasColors() && !volume.hasAlbedos, volume.hasAlbedos})) {}
+            {volume.hasEmission(), volume.hasColors})) {}
   void record(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks) const {
     const Buffer& anyBuffer = volume.extinction;
-    const std::array<Binding, 9> bindings{&bricks.scalars(),
+    const std::array<Binding, 8> bindings{&bricks.scalars(),
                                           &bricks.firstVoxels(),
-                                          &volume.transferPoints,
                                           &bricks.emissions(),
                                           &volume.occupancy,
                                           &volume.extinction,
-                                          volume.hasColors() ? &volume.scalars : &anyBuffer,
+                                          volume.hasColors ? &volume.colors : &anyBuffer,
                                           volume.hasEmission() ? &volume.emission : &anyBuffer,
-                                          &bricks.albedos()};
+                                          &bricks.colors()};
     const shader::BricksPush push = bricks.push();
     commands.beginPass("pack");
     commands.dispatchLinear(pipeline_, bindings, push,
@@ -55,8 +55,8 @@ void makeStores(const Device& device, DeviceVolume& volume) {
                              VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
   volume.extinctionQuads = TexelView(device, volume.extinction);
   if (volume.hasEmission()) volume.emission = makeStore(device, blocks, sizeof(std::uint32_t), "emission");
-  if (!volume.hasColors()) return;
-  volume.scalars = makeStore(device, voxels, sizeof(float), "scalars");
+  if (!volume.hasColors) return;
+  volume.colors = makeStore(device, voxels, sizeof(std::uint32_t), "colours");
   volume.blockColors = makeStore(device, blocks - voxels, sizeof(glm::uvec2), "block colours");
 }
 
@@ -68,6 +68,8 @@ class Builder {
         times_(times),
         progress_(progress),
         built_{.volume = makeDeviceVolume(device, volume, classification)},
+        volume_(volume),
+        classification_(classification),
         bricks_(device, built_.volume, volume, classification) {}
 
   BuiltVolume run() && {
@@ -75,6 +77,7 @@ class Builder {
     checkStoresFit(device_, built_.volume);
     makeStores(device_, built_.volume);
     if (built_.volume.stored.front() > 0) store();
+    if (classification_.isPost(volume_)) storeScalars();
     return std::move(built_);
   }
 
@@ -111,6 +114,19 @@ class Builder {
     submit(commands);
   }
 
+  /// Only the gather reads them, and says so where they are lacking.
+  void storeScalars() {
+    const StageTimer timer(times_, "scalars");
+    DeviceVolume& volume = built_.volume;
+    try {
+      volume.scalarBricks =
+          uploadScalars(device_, volume_, *classification_.transferFunction, kStoredDepth * volume.voxelSize);
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::OutOfMemory) throw;
+      volume.lacksScalarBricks = true;
+    }
+  }
+
   template <typename Record>
   void forEachBatch(const Record& record) {
     for (std::size_t batch = 0; batch < bricks_.batches(); ++batch) {
@@ -133,6 +149,8 @@ class Builder {
   std::vector<StageTime>& times_;
   const Progress& progress_;
   BuiltVolume built_;
+  const Volume& volume_;
+  const Classification& classification_;
   DeviceBricks bricks_;
 };
 

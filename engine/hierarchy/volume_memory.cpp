@@ -73,7 +73,7 @@ std::uint64_t occupancyBytes(const HierarchyLayout& hierarchy) {
 }  // namespace
 
 StoredKinds storedKinds(const DeviceVolume& volume) {
-  return {.colors = volume.hasColors(), .albedos = volume.hasAlbedos, .emission = volume.hasEmission()};
+  return {.colors = volume.hasColors, .emission = volume.hasEmission()};
 }
 
 VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std::uint64_t> stored,
@@ -91,7 +91,7 @@ VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std:
           // each that has children.
           .lists = (blocks + voxels) * sizeof(std::uint32_t) + blocks + 2 * coarse,
           .bricks = brickBytes(hierarchy.levels.front().dimensions) *
-                    (1u + (kinds.albedos ? 1u : 0u) + (kinds.emission ? 1u : 0u)),
+                    (1u + (kinds.colors ? 1u : 0u) + (kinds.emission ? 1u : 0u)),
           .sweep = planSweep(hierarchy.levels.front(), directions, style,
                              std::numeric_limits<std::uint64_t>::max())
                        .bytes(),

@@ -13,7 +13,7 @@ namespace freevoxels {
 
 /// What is kept of blocks besides extinction and table.
 struct StoredKinds {
-  bool colors = false, albedos = false, emission = false;  ///< albedos are colours
+  bool colors = false, emission = false;
 };
 StoredKinds storedKinds(const DeviceVolume& volume);
 

@@ -101,7 +101,7 @@ std::unique_ptr<LightMarch::Reaching> LightMarch::marchBrick(glm::ivec3 position
   };
   for (int cell = 0; cell < cells * cells * cells; ++cell) {
     const glm::ivec3 corner(cell % cells, cell / cells % cells, cell / cells / cells);
-    if (!ReferenceField::isFilled(*brick, corner)) continue;
+    if (!field_.isFilled(*brick, corner)) continue;
     for (int i = 0; i < 27; ++i) march(kPointsPerVoxel * corner + glm::ivec3(i % 3, i / 3 % 3, i / 9));
   }
   return reaching;

@@ -2,7 +2,7 @@
 // The picture as it should be: a converged ray march, on the CPU in double precision, that knows nothing of
 // splats or attenuation tables. README.md, section "How we know it is right".
 //
-// Every voxel is classified, the field interpolated trilinearly (reference_field.h), light emitted and
+// Voxels are classified and the field interpolated trilinearly, or scalars are interpolated and points classified (reference_field.h), light emitted and
 // absorbed along N x N rays a pixel (ray_march.h), N doubled until the picture no longer changes.
 
 #include <cstdint>

@@ -89,6 +89,37 @@ Cubic cubicAlong(const glm::vec4* corner, glm::dvec3 a, glm::dvec3 b) {
   return cubic;
 }
 
+/// The steps along a segment of a cell, from a to b, in local coordinates of the cell in 0..1, over which scalars change
+/// all but linearly, so that the transfer function's integral gives the means.
+struct ClassifiedSteps {
+  static constexpr double kStepsPerVoxel = 16.0;
+
+  const TransferIntegral& integral;
+  Cubic cubic;  ///< scalar times coverage (r), coverage (a)
+  int count;
+  double scalar;  ///< at the end of the step before
+
+  ClassifiedSteps(const TransferIntegral& of, const glm::vec4* corner, glm::dvec3 a, glm::dvec3 b, double atLeast)
+      : integral(of),
+        cubic(cubicAlong(corner, a, b)),
+        count(int(std::ceil(std::max(atLeast, kStepsPerVoxel * glm::length(b - a))))),
+        scalar(scalarAt(0.0)) {
+    count = std::max(count, 1);
+  }
+  /// Where nothing is covered, a step away from the segment's end something is.
+  double scalarAt(double s) const {
+    const glm::dvec4 value = cubic.at(std::clamp(s, 1e-9, 1.0 - 1e-9));
+    return value.a > 0.0 ? value.r / value.a : 0.0;
+  }
+  /// Extinction times colour, and extinction, mean over step i; to be asked for one after the other.
+  glm::dvec4 mean(int i) {
+    const double next = scalarAt(double(i + 1) / count);
+    const glm::dvec4 result = cubic.at((i + 0.5) / count).a * integral.mean(scalar, next);
+    scalar = next;
+    return result;
+  }
+};
+
 /// Of the field, at local coordinates of a cell in 0..1; `corner` is the cell's first.
 double extinctionAt(const glm::vec4* corner, glm::dvec3 local) {
   constexpr int n = ReferenceField::kBrickCorners;
@@ -148,7 +179,7 @@ void walkField(const ReferenceField& field, const MarchedRay& ray, double leave,
     bool goOn = true;
     const auto crossCell = [&](glm::ivec3 cell, double from, double to) {
       const glm::ivec3 local = cell - first;
-      if (!light && !ReferenceField::isFilled(*brick, local)) return true;
+      if (!light && !field.isFilled(*brick, local)) return true;
       const int corner = local.x + n * (local.y + n * local.z);
       goOn = visit(brick->data() + corner, light ? light->data() + corner : nullptr, cell, from, to);
       return goOn;
@@ -179,6 +210,7 @@ class March {
  private:
   bool crossCell(const glm::vec4* corner, const glm::vec4* light, glm::ivec3 cell, double enter,
                  double leave);
+  bool crossClassified(const glm::vec4* corner, glm::ivec3 cell, double enter, double leave);
   double absorb(double thickness);
   void addEvenly(double thickness);
   void addInterval(const Cubic& cubic, const Cubic* own, const Depth& depth, double begin, double end,
@@ -202,6 +234,7 @@ RaySum March::run() {
 
 bool March::crossCell(const glm::vec4* corner, const glm::vec4* light, glm::ivec3 cell, double enter,
                       double leave) {
+  if (field_.integral() != nullptr) return crossClassified(corner, cell, enter, leave);
   const Cubic cubic = cubicAlong(corner, localAt(ray_, cell, enter), localAt(ray_, cell, leave));
   std::optional<Cubic> own;
   if (light) own = cubicAlong(light, localAt(ray_, cell, enter), localAt(ray_, cell, leave));
@@ -218,6 +251,23 @@ bool March::crossCell(const glm::vec4* corner, const glm::vec4* light, glm::ivec
   for (int i = 0; i < count && transmittance_ >= kNegligibleTransmittance; ++i)
     addInterval(cubic, own ? &*own : nullptr, depth, double(i) / count, double(i + 1) / count, enter,
                 leave - enter);
+  return transmittance_ >= kNegligibleTransmittance;
+}
+
+bool March::crossClassified(const glm::vec4* corner, glm::ivec3 cell, double enter, double leave) {
+  ClassifiedSteps steps(*field_.integral(), corner, localAt(ray_, cell, enter), localAt(ray_, cell, leave),
+                        (leave - enter) * intervals_);
+  const double length = (leave - enter) * ray_.worldLength / steps.count;
+  for (int i = 0; i < steps.count && transmittance_ >= kNegligibleTransmittance; ++i) {
+    const glm::dvec4 medium = steps.mean(i);
+    if (!(medium.a > 0.0)) continue;
+    const double t = enter + (i + 0.5) / steps.count * (leave - enter);
+    const double energy = absorb(medium.a * length);
+    glm::dvec3 color = glm::dvec3(medium) / medium.a;
+    if (light_) color *= light_->scattered(ray_.origin + t * ray_.direction, toEye_);
+    sum_.color += energy * color;
+    sum_.distance += energy * t;
+  }
   return transmittance_ >= kNegligibleTransmittance;
 }
 
@@ -278,6 +328,12 @@ double marchDepth(const ReferenceField& field, const MarchedRay& ray, double end
               // Two Gauss points are exact of a cubic.
               const glm::dvec3 a = localAt(ray, cell, enter), b = localAt(ray, cell, leave);
               double sum = 0.0;
+              if (field.integral() != nullptr) {
+                ClassifiedSteps steps(*field.integral(), corner, a, b, 1.0);
+                for (int i = 0; i < steps.count; ++i) sum += steps.mean(i).a;
+                depth += sum / steps.count * (leave - enter) * ray.worldLength;
+                return depth < most;
+              }
               for (const double s : kTwoNodes) sum += extinctionAt(corner, glm::mix(a, b, s));
               depth += 0.5 * sum * (leave - enter) * ray.worldLength;
               return depth < most;

@@ -2,6 +2,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
 namespace freevoxels {
 
 namespace {
@@ -31,11 +33,25 @@ std::unique_ptr<Brick> makeBrick(glm::ivec3 dimensions, glm::ivec3 position, con
   return anything ? std::make_unique<Brick>(brick) : nullptr;
 }
 
+/// Whether some scalar between those of a cell's corners has extinction.
+bool mayHold(const TransferIntegral& integral, const glm::vec4* corner) {
+  constexpr int n = ReferenceField::kBrickCorners;
+  double low = 1e300, high = -1e300;
+  for (int i = 0; i < 8; ++i) {
+    const glm::vec4& value = corner[(i & 1) + n * ((i >> 1 & 1) + n * (i >> 2))];
+    if (value.a == 0.0f) continue;
+    low = std::min(low, double(value.r));
+    high = std::max(high, double(value.r));
+  }
+  return low <= high && integral.holdsAnything(low, high);
+}
+
 }  // namespace
 
-bool ReferenceField::isFilled(const Brick& brick, glm::ivec3 cell) {
+bool ReferenceField::isFilled(const Brick& brick, glm::ivec3 cell) const {
   constexpr int n = kBrickCorners;
   const glm::vec4* const corner = brick.data() + cell.x + n * (cell.y + n * cell.z);
+  if (integral_) return mayHold(*integral_, corner);
   float sum = 0.0f;
   for (int edge = 0; edge < 4; ++edge) {
     const glm::vec4* const start = corner + n * ((edge & 1) + n * (edge >> 1));
@@ -51,13 +67,20 @@ ReferenceField::ReferenceField(const Volume& volume, const Classification& class
       bricks_(std::size_t(brickCount_.x) * std::size_t(brickCount_.y) * std::size_t(brickCount_.z)) {
   if (!classification.transferFunction && !volume.albedo) evenColor_ = classification.albedo;
   if (brightestLight(classification, volume) > 0.0) light_.resize(bricks_.size());
+  if (classification.isPost(volume))
+    integral_.emplace(*classification.transferFunction, volume.minimum, volume.maximum);
+  const VoxelClassifier classifier(classification, volume);
   const auto medium = [&](glm::ivec3 voxel) {
-    const ClassifiedVoxel material = classifyVoxel(classification, volume, voxel);
+    if (integral_) {
+      const float scalar = volume.scalars.at(voxel);
+      return scalar == kInactiveVoxel ? glm::vec4(0.0f) : glm::vec4(scalar, 0.0f, 0.0f, 1.0f);
+    }
+    const ClassifiedVoxel material = classifier.at(voxel);
     return material.extinction > 0.0 ? glm::vec4(material.extinction * material.color, material.extinction)
                                      : glm::vec4(0.0f);
   };
   const auto light = [&](glm::ivec3 voxel) {
-    return glm::vec4(classifyVoxel(classification, volume, voxel).emission, 0.0);
+    return glm::vec4(classifier.at(voxel).emission, 0.0);
   };
   const std::size_t layer = std::size_t(brickCount_.x) * std::size_t(brickCount_.y);
   for (int z = 0; z < brickCount_.z; ++z) {

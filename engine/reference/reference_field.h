@@ -1,8 +1,9 @@
 #pragma once
-// The continuous field that the oracle marches through: every voxel classified first, then extinction,
-// extinction times colour and light of its own interpolated trilinearly between the voxel centres. Beyond the
-// outermost centres and at inactive voxels there is nothing, so that the field falls to 0 over one more
-// voxel.
+// The continuous field that the oracle marches through. Pre: every voxel classified first, then extinction,
+// extinction times colour and light of its own interpolated trilinearly between the voxel centres. Post: scalars
+// interpolated trilinearly, and the transfer function applied at every point. Beyond the outermost centres and at
+// inactive voxels there is nothing, so that the field falls to 0 over one more voxel: post, the extinction is that
+// of the mean scalar of the voxels that have one, times their share of the interpolation's weights.
 
 #include <array>
 #include <glm/glm.hpp>
@@ -13,6 +14,7 @@
 #include "engine/core/stages.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
+#include "engine/volume/voxel_classifier.h"
 
 namespace freevoxels {
 
@@ -26,11 +28,13 @@ class ReferenceField {
   static constexpr int kBrickCorners = kBrickCells + 1;
 
   /// Extinction times colour (rgb) and extinction (a), per world unit, at the corners of a brick's cells, x
-  /// fastest: classified in double precision, kept to 24 bits.
+  /// fastest: classified in double precision, kept to 24 bits. Post: the scalar (r) and 1 (a), or 0 without data.
   using Brick = std::array<glm::vec4, kBrickCorners * kBrickCorners * kBrickCorners>;
 
-  /// Whether any corner of a brick's cell has extinction. `cell` counts from the brick's first.
-  static bool isFilled(const Brick& brick, glm::ivec3 cell);
+  /// Whether there is extinction in a brick's cell. `cell` counts from the brick's first.
+  bool isFilled(const Brick& brick, glm::ivec3 cell) const;
+  /// Post: the transfer function's integral; null of a field of classified voxels.
+  const TransferIntegral* integral() const { return integral_ ? &*integral_ : nullptr; }
 
   ReferenceField(const Volume& volume, const Classification& classification, const Progress& progress = {});
 
@@ -54,6 +58,7 @@ class ReferenceField {
 
   glm::ivec3 dimensions_, brickCount_;
   std::optional<glm::dvec3> evenColor_;
+  std::optional<TransferIntegral> integral_;
   std::vector<std::unique_ptr<Brick>> bricks_, light_;  ///< `light_` is empty where no voxel sends out any
 };
 

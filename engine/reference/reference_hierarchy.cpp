@@ -8,6 +8,7 @@
 
 #include "engine/attenuation/directions.h"
 #include "engine/hierarchy/detail_rule.h"
+#include "engine/volume/voxel_classifier.h"
 
 namespace freevoxels {
 
@@ -79,11 +80,11 @@ LevelData referenceVoxelLevel(const Volume& volume, const Classification& classi
                   .emission = std::move(emission),
                   .table = std::move(table)};
   if (!classification.transferFunction && !volume.albedo) return level;
+  const VoxelClassifier classifier(classification, volume);
   const glm::ivec3 n = volume.dimensions;
   for (int z = 0; z < n.z; ++z)
     for (int y = 0; y < n.y; ++y)
-      for (int x = 0; x < n.x; ++x)
-        level.colors.push_back(classifyVoxel(classification, volume, {x, y, z}).color);
+      for (int x = 0; x < n.x; ++x) level.colors.push_back(classifier.at({x, y, z}).color);
   return level;
 }
 

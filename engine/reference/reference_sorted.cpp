@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "engine/reference/projected_splats.h"
+#include "engine/volume/voxel_classifier.h"
 
 namespace freevoxels {
 
@@ -46,10 +47,11 @@ Image referenceSortedPicture(const Volume& volume, const Classification& classif
                              const ReferenceLight* light) {
   const SplatProjector projector(volume, camera, settings.size);
   std::vector<BlendedPixel> blended(std::size_t(settings.size.x) * std::size_t(settings.size.y));
+  const VoxelClassifier classifier(classification, volume);
   for (const std::uint32_t voxel : referenceBackToFront(volume, camera, voxels)) {
     const std::optional<ProjectedSplat> splat = projector.project(projector.voxel(voxel));
     if (!splat) continue;
-    const ClassifiedVoxel material = classifyVoxel(classification, volume, projector.voxel(voxel).cell);
+    const ClassifiedVoxel material = classifier.at(projector.voxel(voxel).cell);
     const double opacity = projector.opacity(*splat, material.extinction);
     const glm::dvec3 sent = projector.leaving(*splat, material.extinction) * material.emission;
     const glm::dvec3 lit = light ? light->scattered(projector.voxel(voxel), splat->toEye) : glm::dvec3(1.0);

@@ -17,6 +17,7 @@
 #include "engine/reference/reference_depth.h"
 #include "engine/reference/reference_light.h"
 #include "engine/reference/reference_rays.h"
+#include "engine/volume/voxel_classifier.h"
 
 namespace freevoxels {
 
@@ -55,6 +56,7 @@ class SplatSummer {
               const Camera& camera, const FrameSettings& settings)
       : volume_(volume),
         classification_(classification),
+        classifier_(classification, volume),
         inputs_(inputs),
         settings_(settings),
         projector_(volume, camera, settings.size),
@@ -92,6 +94,7 @@ class SplatSummer {
 
   const Volume& volume_;
   const Classification& classification_;
+  const VoxelClassifier classifier_;
   const SplatInputs& inputs_;
   const FrameSettings& settings_;
   const SplatProjector projector_;
@@ -127,7 +130,7 @@ std::unique_ptr<ReferenceLight> SplatSummer::lightFor() const {
 }
 
 glm::dvec3 SplatSummer::colorOf(const Block& block) const {
-  if (block.level == 0) return classifyVoxel(classification_, volume_, block.cell).color;
+  if (block.level == 0) return classifier_.at(block.cell).color;
   const LevelData& level = inputs_.coarser[std::size_t(block.level) - 1];
   return level.colors.empty() ? glm::dvec3(classification_.albedo) : level.colors[level.at(block.cell)];
 }

@@ -9,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "engine/core/error.h"
+#include "engine/volume/voxel_classifier.h"
 
 namespace freevoxels {
 
@@ -50,8 +51,11 @@ class Field {
 std::vector<double> referenceExtinction(const Volume& volume, const Classification& classification) {
   std::vector<double> extinction;
   extinction.reserve(volume.voxelCount());
-  for (const float value : denseScalars(volume))
-    extinction.push_back(classify(classification, value).extinction);
+  const VoxelClassifier classifier(classification, volume);
+  const glm::ivec3 n = volume.dimensions;
+  for (int z = 0; z < n.z; ++z)
+    for (int y = 0; y < n.y; ++y)
+      for (int x = 0; x < n.x; ++x) extinction.push_back(classifier.at({x, y, z}).extinction);
   return extinction;
 }
 

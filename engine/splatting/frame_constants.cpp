@@ -117,8 +117,6 @@ shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& t
       .gradient = settings.gradient && lookup != shader::kLookupNone ? 1 : 0,
       .code = int(table.code),
       .cells = int(table.directions),
-      .opacityPoints = volume.opacityPointCount,
-      .colorPoints = volume.colorPointCount,
       .albedo = volume.albedo,
       .emissionUnit = float(volume.emissionUnit)};
   for (int level = 0; level < setup.levelCount; ++level) setup.levels[level] = volume.onDevice(level);

@@ -20,8 +20,9 @@ constexpr glm::ivec3 kTile{shader::kGatherTile, shader::kGatherTile, 1};
 
 Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume) {
   return makeComputePipeline(device, {gather_spv, "gather"},
-                             {.bindings = {kUniform, kTexels, kTexels, kTexels, kTexels, kTexelsOut, kTexelsOut}}, kTile,
-                             {std::uint32_t(axis), volume.hasTowards(), volume.hasColors()});
+                             {.bindings = {kUniform, kTexels, kTexels, kTexels, kTexels, kTexelsOut, kTexelsOut, kTexels, kTexels}}, kTile,
+                             {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.hasScalars(),
+                              volume.isLit()});
 }
 
 /// Of the stencil and the upsampling, which have the same bindings.
@@ -81,13 +82,15 @@ void GatherPass::recordGather(Commands& commands, const GatherVolume& volume, co
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
     const GatherVolume::Quads& quads = volume.quads(axis);
-    const std::array<Binding, 7> bindings{&frame_,
+    const std::array<Binding, 9> bindings{&frame_,
                                           &volume.brickNumbers(),
                                           &quads.extinctionTexels,
                                           &quads.sourceTexels,
                                           &quads.towardsTexels,
                                           &gathered_.colorEnergyTexels,
-                                          &gathered_.distanceTexels};
+                                          &gathered_.distanceTexels,
+                                          &volume.transferTable(),
+                                          &volume.skips()};
     commands.dispatch(makeGather(device_, axis, volume), bindings, glm::ivec3(frame.samples, 1));
   }
   commands.barrier(kCompute, kCompute);

@@ -8,7 +8,6 @@
 
 #include "embedded/brick_quads.h"
 #include "embedded/shade_blocks.h"
-#include "embedded/skip_cells.h"
 #include "engine/core/error.h"
 #include "engine/volume/packed_light.h"
 
@@ -22,16 +21,73 @@ constexpr VkDescriptorType kTexelsIn = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 constexpr VkDescriptorType kTexelsOut = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
 constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
 
-int firstSkipLevel(const HierarchyLayout& hierarchy) {
-  return std::min(shader::kSkipLevels, hierarchy.top());
+/// Groups of slices that are skipped at a time, at most.
+constexpr int kMostSkipped = 8;
+
+/// A byte for each cell of a level of the octree, x fastest.
+struct Cells {
+  glm::ivec3 dimensions{0};
+  std::vector<std::uint8_t> values;
+
+  explicit Cells(glm::ivec3 size)
+      : dimensions(size), values(std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z)) {}
+  glm::ivec2 strides() const { return {dimensions.x, dimensions.x * dimensions.y}; }
+  std::uint8_t& at(int x, int y, int z) {
+    return values[std::size_t(x) + std::size_t(dimensions.x) * (std::size_t(y) + std::size_t(dimensions.y) * std::size_t(z))];
+  }
+  std::uint8_t at(int x, int y, int z) const { return const_cast<Cells&>(*this).at(x, y, z); }
+};
+
+template <typename Visit>
+void forEachCell(glm::ivec3 dimensions, const Visit& visit) {
+  for (int z = 0; z < dimensions.z; ++z)
+    for (int y = 0; y < dimensions.y; ++y)
+      for (int x = 0; x < dimensions.x; ++x) visit(x, y, z);
 }
 
-std::uint64_t skipCellCount(const HierarchyLayout& hierarchy) {
-  return hierarchy.paddedBlocks() - hierarchy.first[std::size_t(firstSkipLevel(hierarchy))];
+/// 1 where the cell holds anything.
+Cells occupiedCells(std::span<const shader::OccupancyWord> words, const GridLayout& grid) {
+  Cells cells(grid.dimensions);
+  forEachCell(grid.dimensions, [&](int x, int y, int z) {
+    const auto index = std::size_t(x) + std::size_t(grid.rowPitch) * (std::size_t(y) + std::size_t(grid.dimensions.y) * std::size_t(z));
+    cells.at(x, y, z) = words[index / shader::kBlocksPerWord].mask >> (index % shader::kBlocksPerWord) & 1u;
+  });
+  return cells;
 }
 
-/// Stored extinction of an optical depth of 1 a voxel: halves then hold 1e-9 to 1000 of it.
-constexpr double kStoredDepth = 64.0;
+/// 1 where the cell, or one of its neighbours from `low` to `high` along each axis, is.
+Cells spread(const Cells& cells, int low, int high) {
+  Cells result = cells;
+  const glm::ivec3 n = cells.dimensions;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Cells from = result;
+    const glm::ivec3 step(axis == 0, axis == 1, axis == 2);
+    const int stride = axis == 0 ? 1 : cells.strides()[axis - 1];
+    for (int by = low; by <= high; ++by) {
+      if (by == 0) continue;
+      const glm::ivec3 begin = glm::max(-by * step, 0), end = glm::min(n - by * step, n);
+      for (int z = begin.z; z < end.z; ++z)
+        for (int y = begin.y; y < end.y; ++y) {
+          std::uint8_t* const to = &result.values[std::size_t(n.x) * (std::size_t(y) + std::size_t(n.y) * std::size_t(z))];
+          const std::uint8_t* const neighbours = from.values.data() + (to - result.values.data()) + by * stride;
+          for (int x = begin.x; x < end.x; ++x) to[x] |= neighbours[x];
+        }
+    }
+  }
+  return result;
+}
+
+/// Groups of slices, from a position in a cell or its next neighbours on, in which no cell is met; 0 where `met` is 1.
+/// Such a ray moves by a cell a group and is in two at first.
+Cells groupsToSkip(const Cells& met) {
+  Cells skips(met.dimensions), near = met;
+  for (std::size_t i = 0; i < met.values.size(); ++i) skips.values[i] = met.values[i] ? 0 : 1;
+  for (int groups = 1; groups <= kMostSkipped; ++groups) {
+    near = spread(near, -1, 1);
+    for (std::size_t i = 0; i < met.values.size(); ++i) skips.values[i] = near.values[i] ? skips.values[i] : std::uint8_t(groups);
+  }
+  return skips;
+}
 
 /// Radiance that a stored source term equal to the stored extinction means: 1, or more where halves would not hold the
 /// brightest voxel. Lights are as bright as they are at the least distance that counts.
@@ -69,10 +125,6 @@ float meanLayer(const DeviceVolume& volume) {
 GatherVolume::GatherVolume(const Device& device, const BuiltVolume& built, std::vector<StageTime>& times)
     : device_(device),
       built_(built),
-      skipPass_(makeComputePipeline(
-          device, {skip_cells_spv, "skip cells"},
-          {.bindings = {kStorage, kStorage}, .pushConstantBytes = sizeof(shader::SkipCellsPush)},
-          {shader::kOccupancyThreads, 1, 1})),
       frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "shading frame"),
       sources_(device, recordCount(built.volume.storedBlocks()) * sizeof(glm::uvec2), MemoryUse::Device, "source terms",
                kTexels),
@@ -81,58 +133,51 @@ GatherVolume::GatherVolume(const Device& device, const BuiltVolume& built, std::
   makeBricks(times);
 }
 
-/// Which cells of the octree are bricks: those that hold anything, or whose next neighbours do.
+/// Which cells of the octree are bricks, and which are skipped. A position in a cell stays in that and its next neighbours
+/// along the axes upwards for an edge more, so that these decide.
 void GatherVolume::makeBricks(std::vector<StageTime>& times) {
-  const DeviceVolume& volume = built_.volume;
-  const HierarchyLayout& hierarchy = volume.hierarchy;
-  const int firstLevel = firstSkipLevel(hierarchy);
-  std::vector<std::uint32_t> occupied(skipCellCount(hierarchy));
-  const Buffer cells(device_, occupied.size() * sizeof(std::uint32_t), MemoryUse::Device, "brick cells");
-  Commands commands(device_);
-  commands.beginPass("gather occupancy");
-  const std::array<Binding, 2> bindings{&volume.occupancy, &cells};
-  for (int level = firstLevel; level <= hierarchy.top(); ++level) {
-    const shader::SkipCellsPush push{.level = volume.onDevice(level),
-                                     .firstCell = hierarchy.first[std::size_t(firstLevel)],
-                                     .count = std::uint32_t(hierarchy.words(level)) * shader::kBlocksPerWord};
-    commands.dispatchLinear(skipPass_, bindings, push, push.count);
+  const StageTimer timer(times, "bricks");
+  const HierarchyLayout& hierarchy = built_.volume.hierarchy;
+  const int top = hierarchy.top(), finest = std::min(shader::kSkipLevels, top);
+  std::vector<shader::OccupancyWord> words((hierarchy.paddedBlocks() - hierarchy.first[std::size_t(finest)]) / shader::kBlocksPerWord);
+  download(device_, built_.volume.occupancy, std::as_writable_bytes(std::span(words)),
+           hierarchy.first[std::size_t(finest)] / shader::kBlocksPerWord * sizeof(shader::OccupancyWord));
+  std::vector<Cells> met;  // by level above the finest
+  for (int level = finest; level <= top; ++level) {
+    const auto firstWord = (hierarchy.first[std::size_t(level)] - hierarchy.first[std::size_t(finest)]) / shader::kBlocksPerWord;
+    met.push_back(spread(occupiedCells(std::span(words).subspan(firstWord), hierarchy.levels[std::size_t(level)]), 0, 1));
   }
-  commands.barrier(kCompute, VK_PIPELINE_STAGE_2_TRANSFER_BIT | VK_PIPELINE_STAGE_2_HOST_BIT);
-  commands.submitAndWait();
-  addTimes(times, commands.times());
-  const StageTimer timer(times, "number bricks");
-  download(device_, cells, std::as_writable_bytes(std::span(occupied)));
 
   std::vector<std::uint32_t> numbers;
+  std::vector<std::uint8_t> skips;
   constexpr int kOutside = 1 << 29;
   std::vector<glm::ivec4> bricks{glm::ivec4(kOutside)};  // the empty one
-  for (int number = 0; number <= hierarchy.top(); ++number) {
-    const int cellLevel = std::min(number + shader::kSkipLevels, hierarchy.top());
-    const shader::BlockLevel layout = volume.onDevice(cellLevel);
-    const glm::ivec3 strides(1, layout.rowPitch, layout.rowPitch * layout.dimensions.y);
-    levels_.push_back({.dimensions = volume.onDevice(number).dimensions,
+  for (int number = 0; number <= top; ++number) {
+    const Cells& brickCells = met[std::size_t(std::min(number + shader::kBrickLevels, top) - finest)];
+    const Cells skipCells = groupsToSkip(met[std::size_t(std::min(number + shader::kSkipLevels, top) - finest)]);
+    levels_.push_back({.dimensions = hierarchy.levels[std::size_t(number)].dimensions,
                        .firstCell = int(numbers.size()),
-                       .cellStrides = strides,
-                       .lastCell = layout.dimensions - 1});
+                       .cellStrides = brickCells.strides(),
+                       .firstSkip = int(skips.size()),
+                       .skipStrides = skipCells.strides(),
+                       .lastSkip = skipCells.dimensions - 1});
     firstBricks_.push_back(std::uint32_t(bricks.size()));
-    const std::uint32_t firstCell = layout.first - hierarchy.first[std::size_t(firstLevel)];
-    numbers.resize(numbers.size() + std::size_t(strides.z) * std::size_t(layout.dimensions.z), 0);
-    for (int z = 0; z < layout.dimensions.z; ++z)
-      for (int y = 0; y < layout.dimensions.y; ++y)
-        for (int x = 0; x < layout.dimensions.x; ++x) {
-          const auto cell = std::size_t(x + strides.y * y + strides.z * z);
-          if (occupied[firstCell + cell] == 0) continue;
-          numbers[std::size_t(levels_.back().firstCell) + cell] = std::uint32_t(bricks.size());
-          bricks.emplace_back(glm::ivec3(x, y, z) * shader::kGatherGroup, 0);
-        }
+    forEachCell(brickCells.dimensions, [&](int x, int y, int z) {
+      const bool isBrick = brickCells.at(x, y, z) != 0;
+      numbers.push_back(isBrick ? std::uint32_t(bricks.size()) : 0);
+      if (isBrick) bricks.emplace_back(glm::ivec3(x, y, z) * shader::kGatherBrickEdge, 0);
+    });
+    skips.insert(skips.end(), skipCells.values.begin(), skipCells.values.end());
   }
   firstBricks_.push_back(std::uint32_t(bricks.size()));
-  brickNumbers_ = Buffer(device_, numbers.size() * sizeof(std::uint32_t), MemoryUse::Device, "brick numbers", kTexels);
-  brickCells_ = Buffer(device_, bricks.size() * sizeof(glm::ivec4), MemoryUse::Device, "brick cells", kTexels);
-  upload(device_, brickNumbers_, std::as_bytes(std::span(numbers)));
-  upload(device_, brickCells_, std::as_bytes(std::span(bricks)));
-  brickNumberTexels_ = TexelView(device_, brickNumbers_, VK_FORMAT_R32_UINT);
-  brickCellTexels_ = TexelView(device_, brickCells_, VK_FORMAT_R32G32B32A32_UINT);
+  const auto make = [&](Buffer& buffer, TexelView& view, std::span<const std::byte> bytes, VkFormat format, const char* name) {
+    buffer = Buffer(device_, bytes.size(), MemoryUse::Device, name, kTexels);
+    upload(device_, buffer, bytes);
+    view = TexelView(device_, buffer, format);
+  };
+  make(brickNumbers_, brickNumberTexels_, std::as_bytes(std::span(numbers)), VK_FORMAT_R32_UINT, "brick numbers");
+  make(brickCells_, brickCellTexels_, std::as_bytes(std::span(bricks)), VK_FORMAT_R32G32B32A32_UINT, "brick cells");
+  make(skips_, skipTexels_, std::as_bytes(std::span(skips)), VK_FORMAT_R8_UINT, "cells to skip");
 }
 
 void GatherVolume::makeTowards(std::uint64_t blocks) {
@@ -147,34 +192,47 @@ void GatherVolume::shade(Commands& commands, const Shading& shading, int level) 
   const auto count = std::uint32_t(volume.stored[std::size_t(level)]);
   if (count == 0) return;
   const Buffer& anyBuffer = frame_;
-  const bool colors = volume.hasColors();
-  const std::array<Binding, 12> bindings{&frame_,
-                                         &volume.transferPoints,
+  const bool colors = volume.hasColors, lightOnly = level == 0 && hasScalars();
+  const std::array<Binding, 11> bindings{&frame_,
+                                         &towards_,
                                          shading.table != nullptr ? &shading.table->planeAddresses : &anyBuffer,
                                          &built_.lists.of(level, built_.visible).indices,
-                                         colors ? &volume.scalars : &anyBuffer,
+                                         colors ? &volume.colors : &anyBuffer,
                                          &volume.extinction,
                                          &sources_,
                                          colors ? &volume.blockColors : &anyBuffer,
                                          &volume.occupancy,
                                          shading.lights != nullptr ? shading.lights : &anyBuffer,
-                                         volume.hasEmission() ? &volume.emission : &anyBuffer,
-                                         &towards_};
+                                         volume.hasEmission() ? &volume.emission : &anyBuffer};
   const shader::ShadePush push{
       .firstRank = volume.firstRank(level),
       .count = count,
       .extinctionScale = float(kStoredDepth * volume.voxelSize),
-      .sourceScale = float(kStoredDepth * volume.voxelSize / sourceUnit_),
-      .meanLayer = meanLayer(volume)};
+      .sourceScale = float((lightOnly ? 1.0 : kStoredDepth * volume.voxelSize) / sourceUnit_),
+      .meanLayer = meanLayer(volume),
+      .lightOnly = lightOnly ? 1 : 0};
   commands.dispatchLinear(shadePass_, bindings, push, count);
   commands.barrier(kCompute, kCompute);
 }
 
 bool GatherVolume::hasColors() const {
-  return lit_ || built_.volume.hasColors() || built_.volume.hasEmission();
+  const bool onlyScalars = hasScalars() && wantedLevels_ == 1u;  // which have their colours in the transfer function
+  return lit_ || (built_.volume.hasColors && !onlyScalars) || built_.volume.hasEmission();
+}
+
+bool GatherVolume::hasScalars() const {
+  return built_.volume.scalarBricks.has_value();
+}
+
+const TexelView& GatherVolume::transferTable() const {
+  return hasScalars() ? built_.volume.scalarBricks->tableTexels : built_.volume.extinctionQuads;
 }
 
 void GatherVolume::prepare(const Shading& shading) {
+  if (built_.volume.lacksScalarBricks)
+    fail(ExitCode::OutOfMemory,
+         "the volume's scalars take more memory than there is, which classification after interpolation needs: "
+         "--classification pre does without");
   const bool lit = shading.lighting != nullptr;
   const bool viewDependent = lit && dependsOnView(*shading.lighting);
   const bool sameLight =
@@ -261,18 +319,29 @@ void GatherVolume::record(Commands& commands, const Shading& shading) {
 void GatherVolume::recordQuads(Commands& commands, int axis) {
   const DeviceVolume& volume = built_.volume;
   Quads& quads = quads_[std::size_t(axis)];
-  const Pipeline pass = makeComputePipeline(
-      device_, {brick_quads_spv, "brick quads"},
-      {.bindings = {kTexelsIn, kTexelsIn, kTexelsIn, kTexelsIn, kTexelsOut, kTexelsOut, kTexelsOut},
-       .pushConstantBytes = sizeof(shader::BrickQuadsPush)},
-      {shader::kBrickQuadsThreads, 1, 1}, {std::uint32_t(axis), hasTowards(), hasColors()});
-  const std::array<Binding, 7> bindings{&brickCellTexels_,       &volume.occupancyTexels,  &sourceTexels_,      &towardsTexels_,
-                                        &quads.extinctionTexels, &quads.sourceTexels, &quads.towardsTexels};
+  const DeviceScalars* const scalars = hasScalars() ? &*volume.scalarBricks : nullptr;
+  const std::array<Binding, 9> bindings{&brickCellTexels_,
+                                        &volume.occupancyTexels,
+                                        &sourceTexels_,
+                                        &towardsTexels_,
+                                        &quads.extinctionTexels,
+                                        &quads.sourceTexels,
+                                        &quads.towardsTexels,
+                                        scalars ? &scalars->brickNumberTexels : &brickNumberTexels_,
+                                        scalars ? &scalars->codeTexels : &brickNumberTexels_};
   const auto make = [&](int number, std::uint32_t first, std::uint32_t end) {
     if (first == end) return;
+    const bool codes = scalars && number == 0;
+    const Pipeline pass = makeComputePipeline(
+        device_, {brick_quads_spv, "brick quads"},
+        {.bindings = {kTexelsIn, kTexelsIn, kTexelsIn, kTexelsIn, kTexelsOut, kTexelsOut, kTexelsOut, kTexelsIn, kTexelsIn},
+         .pushConstantBytes = sizeof(shader::BrickQuadsPush)},
+        {shader::kBrickQuadsThreads, 1, 1}, {std::uint32_t(axis), hasTowards(), hasColors() && (lit_ || !codes), codes});
     const shader::BrickQuadsPush push{.level = volume.onDevice(number),
                                       .firstBrick = first,
-                                      .count = (end - first) * shader::kGatherBrickBlocks};
+                                      .count = (end - first) * shader::kGatherBrickBlocks,
+                                      .corner = scalars ? scalars->corner : glm::ivec3(0),
+                                      .cells = scalars ? scalars->cells : glm::ivec3(0)};
     commands.dispatchLinear(pass, bindings, push, push.count);
   };
   commands.beginPass("brick quads");
@@ -288,13 +357,14 @@ void GatherVolume::recordShading(Commands& commands, const Shading& shading) {
   const DeviceVolume& volume = built_.volume;
   shadePass_ = makeComputePipeline(
       device_, {shade_blocks_spv, "shade blocks"},
-      {.bindings = std::vector(12, kStorage), .pushConstantBytes = sizeof(shader::ShadePush)},
+      {.bindings = std::vector(11, kStorage), .pushConstantBytes = sizeof(shader::ShadePush)},
       {shader::kShadeThreads, 1, 1},
-      {lit_, volume.hasEmission(), volume.hasAlbedos, shading.frame.tinted, hasTowards()});
+      {lit_, volume.hasEmission(), volume.hasColors, shading.frame.tinted, hasTowards()});
   commands.beginPass("shade blocks");
   commands.update(frame_, shading.frame.setup);
   for (int level = 0; level <= volume.hierarchy.top(); ++level)
-    if (((wantedLevels_ & ~shadedLevels_) >> level & 1u) != 0) shade(commands, shading, level);
+    if (((wantedLevels_ & ~shadedLevels_) >> level & 1u) != 0 && (lit_ || level > 0 || !hasScalars()))
+      shade(commands, shading, level);
   shadedLevels_ |= wantedLevels_;
 }
 

@@ -12,7 +12,7 @@
 
 namespace freevoxels {
 
-/// COMPUTE skip_cells.comp once; shade_blocks.comp and brick_quads.comp for the first frame and for every one whose light or
+/// COMPUTE shade_blocks.comp and brick_quads.comp for the first frame and for every one whose light or
 /// axes differ from the frame before. Belongs to one volume, which must outlive it.
 class GatherVolume {
  public:
@@ -39,6 +39,7 @@ class GatherVolume {
     TexelView extinctionTexels, sourceTexels, towardsTexels;
     std::uint32_t levels = 0;  ///< a bit for each level that is there
   };
+  const TexelView& skips() const { return skipTexels_; }
   const TexelView& brickNumbers() const { return brickNumberTexels_; }
   const Quads& quads(int axis) const { return quads_[std::size_t(axis)]; }
   /// Fills in what the frame has of the volume: the units of what is stored, and the levels that it reads.
@@ -47,6 +48,11 @@ class GatherVolume {
   bool hasTowards() const { return lit_ && !viewDependent_; }
   /// Whether blocks have source terms of their own; else all have the same albedo.
   bool hasColors() const;
+  /// Whether voxels are classified after interpolation: quads of the finest level then hold codes of scalars.
+  bool hasScalars() const;
+  bool isLit() const { return lit_; }
+  /// TransferTable::texels(); any texels where there are no scalars.
+  const TexelView& transferTable() const;
 
  private:
   void makeBricks(std::vector<StageTime>& times);
@@ -59,13 +65,14 @@ class GatherVolume {
 
   const Device& device_;
   const BuiltVolume& built_;
-  Pipeline skipPass_, shadePass_;
+  Pipeline shadePass_;
   Buffer frame_;  ///< shader::SetupFrame
   Buffer brickNumbers_;  ///< by level and cell; 0 is the empty brick
+  Buffer skips_;         ///< bytes by level and cell: groups of slices to skip
   Buffer brickCells_;    ///< ivec4: each brick's first block
   Buffer sources_;       ///< by rank: packed source term, extinction as a half
   Buffer towards_;       ///< by rank: three signed normalised bytes; one block's before a frame needs them
-  TexelView brickNumberTexels_, brickCellTexels_, sourceTexels_, towardsTexels_;
+  TexelView brickNumberTexels_, skipTexels_, brickCellTexels_, sourceTexels_, towardsTexels_;
   std::vector<shader::GatherLevel> levels_;
   std::vector<std::uint32_t> firstBricks_;  ///< of each level, and the number of all
   std::array<Quads, 3> quads_;

@@ -15,6 +15,7 @@
 #include "engine/validation/lattice_steps.h"
 #include "engine/validation/worst.h"
 #include "engine/volume/packed_light.h"
+#include "engine/volume/voxel_classifier.h"
 
 namespace freevoxels {
 
@@ -109,12 +110,13 @@ Check checkEmission(const Outcome& outcome) {
   const Volume& volume = outcome.scene.volume;
   const Classification& classification = outcome.scene.classification;
   const double faintest = brightestLight(classification, volume) * kFaintest / kBrightest;
+  const VoxelClassifier classifier(classification, volume);
   Worst worst;
   std::size_t voxel = 0;
   for (int z = 0; z < volume.dimensions.z; ++z)
     for (int y = 0; y < volume.dimensions.y; ++y)
       for (int x = 0; x < volume.dimensions.x; ++x, ++voxel) {
-        const glm::dvec3 expected = classifyVoxel(classification, volume, {x, y, z}).emission;
+        const glm::dvec3 expected = classifier.at({x, y, z}).emission;
         if (largestComponent(expected) < faintest && outcome.emission[voxel] == glm::dvec3(0.0)) continue;
         worst.take(
             largestComponent(glm::abs(outcome.emission[voxel] - expected)) / largestComponent(expected),

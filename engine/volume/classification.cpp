@@ -93,6 +93,10 @@ LightSums totalLight(const Volume& volume, const Classification& classification,
 
 }  // namespace
 
+bool Classification::isPost(const Volume& volume) const {
+  return transferFunction && order == ClassificationOrder::Post && !(brightestLight(*this, volume) > 0.0);
+}
+
 ClassifiedVoxel classify(const Classification& classification, float scalar) {
   if (scalar == kInactiveVoxel) return {};
   ClassifiedVoxel voxel = classification.transferFunction
@@ -101,14 +105,6 @@ ClassifiedVoxel classify(const Classification& classification, float scalar) {
                                                 glm::dvec3(classification.albedo)};
   voxel.extinction = std::min(voxel.extinction, kMaximumExtinction);
   return voxel;
-}
-
-ClassifiedVoxel classifyVoxel(const Classification& classification, const Volume& volume, glm::ivec3 voxel) {
-  ClassifiedVoxel result = classify(classification, volume.scalars.at(voxel));
-  if (volume.albedo) result.color = albedoOf(classification, *volume.albedo, voxel);
-  if (classification.emission && volume.temperature)
-    result.emission = emittedLight(*classification.emission, volume.temperature->values.at(voxel));
-  return result;
 }
 
 glm::dvec3 emittedLight(const Emission& emission, float temperature) {

@@ -39,11 +39,19 @@ struct Emission {
   double temperatureScale = 1.0, temperatureOffset = 0.0;
 };
 
+/// What a transfer function is applied to. Post: scalars interpolated at samples, as far as they are gathered one by one;
+/// pre: voxels, whose extinction and colour are interpolated. Without a transfer function the two are the same.
+enum class ClassificationOrder : int { Post = 0, Pre = 1 };
+
 struct Classification {
   std::optional<TransferFunction> transferFunction;  ///< when set, the two below are not used
   double densityScale = 1.0;                         ///< extinction per world unit at density 1
   glm::vec3 albedo{0.9f};  ///< linear Rec.709; the volume's grid of them has precedence where it is active
   std::optional<Emission> emission = std::nullopt;  ///< of the volume's temperatures, if it has any
+  ClassificationOrder order = ClassificationOrder::Post;  ///< Pre of volumes that shine, whatever this is
+
+  /// Whether samples of the volume are classified after interpolation.
+  bool isPost(const Volume& volume) const;
 };
 
 struct ClassifiedVoxel {
@@ -52,12 +60,9 @@ struct ClassifiedVoxel {
   glm::dvec3 emission{0.0};  ///< per world unit
 };
 
-/// The reference for what the shaders do, in double precision. kInactiveVoxel gives extinction 0. A negative
+/// Of a single scalar, in double precision: voxel_classifier.h has the voxels'. kInactiveVoxel gives extinction 0. A negative
 /// scalar counts as 0 in the physical way, as data with a transfer function.
 ClassifiedVoxel classify(const Classification& classification, float scalar);
-
-/// Of a voxel of the volume, with its temperature and albedo.
-ClassifiedVoxel classifyVoxel(const Classification& classification, const Volume& volume, glm::ivec3 voxel);
 
 /// Per world unit, linear Rec.709; 0 of kInactiveVoxel and of what is colder than kColdestLight, at most
 /// kMaximumExtinction.

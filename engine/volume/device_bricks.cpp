@@ -14,8 +14,9 @@ namespace {
 
 using Brick = ScalarBricks::Brick;
 
-static_assert(shader::kInactiveScalar == kInactiveVoxel);
-static_assert(shader::kMaximumOpacity == float(kMaximumOpacity));
+/// Bytes of classified voxels that are kept from one upload of their batch to the next, at most.
+constexpr std::uint64_t kMostKept = std::uint64_t(256) << 20;
+
 static_assert(shader::kMaximumExtinction == float(kMaximumExtinction));
 
 }  // namespace
@@ -31,11 +32,13 @@ DeviceBricks::DeviceBricks(const Device& device, const DeviceVolume& target, con
           (bricks_.bricks().size() * sizeof(Brick) + kBatchBytes - 1) / kBatchBytes, 1)),
       bricksPerBatch_(std::clamp<std::size_t>(bricks_.bricks().size(), 1, kBatchBytes / sizeof(Brick))),
       uploaded_(std::numeric_limits<std::size_t>::max()),
+      classifier_(classification, volume),
       scalars_(device, bricksPerBatch_ * sizeof(Brick), MemoryUse::Device, "bricks"),
       firstVoxels_(device, bricksPerBatch_ * sizeof(glm::ivec3), MemoryUse::Device, "places of bricks") {
   if (target.hasEmission())
     emissions_ = Buffer(device, scalars_.bytes(), MemoryUse::Device, "emission of bricks");
-  if (target.hasAlbedos) albedos_ = Buffer(device, scalars_.bytes(), MemoryUse::Device, "albedos of bricks");
+  if (classification.transferFunction && 2 * batches_ * kBatchBytes <= kMostKept) kept_.resize(batches_);
+  if (target.hasColors) colors_ = Buffer(device, scalars_.bytes(), MemoryUse::Device, "colours of bricks");
 }
 
 std::span<const Brick> DeviceBricks::batchOf(std::size_t batch) const {
@@ -60,6 +63,27 @@ void DeviceBricks::uploadPacked(const Buffer& buffer, std::size_t batch,
   freevoxels::upload(device_, buffer, std::as_bytes(std::span(values)));
 }
 
+DeviceBricks::Classified DeviceBricks::classify(std::size_t batch) const {
+  constexpr std::size_t size = std::tuple_size_v<Brick>;
+  const std::size_t values = batchOf(batch).size() * size;
+  Classified result{.extinctions = std::vector<float>(values), .colors = std::vector<std::uint32_t>(values)};
+  tbb::parallel_for(std::size_t(0), batchOf(batch).size(), [&](std::size_t i) {
+    classifier_.classifyBrick(batch * bricksPerBatch_ + i, std::span(result.extinctions).subspan(i * size, size),
+                              std::span(result.colors).subspan(i * size, size));
+  });
+  return result;
+}
+
+void DeviceBricks::uploadClassified(std::size_t batch) {
+  const auto upload = [&](const Classified& values) {
+    freevoxels::upload(device_, scalars_, std::as_bytes(std::span(values.extinctions)));
+    freevoxels::upload(device_, colors_, std::as_bytes(std::span(values.colors)));
+  };
+  if (kept_.empty()) return upload(classify(batch));
+  if (kept_[batch].extinctions.empty()) kept_[batch] = classify(batch);
+  upload(kept_[batch]);
+}
+
 void DeviceBricks::upload(std::size_t batch) {
   if (uploaded_ == batch) return;
   uploaded_ = batch;
@@ -67,7 +91,10 @@ void DeviceBricks::upload(std::size_t batch) {
   std::vector<glm::ivec3> places;
   for (std::size_t i = 0; i < bricks.size(); ++i)
     places.push_back(bricks_.firstVoxel(batch * bricksPerBatch_ + i));
-  freevoxels::upload(device_, scalars_, std::as_bytes(bricks));
+  if (classification_.transferFunction)
+    uploadClassified(batch);
+  else
+    freevoxels::upload(device_, scalars_, std::as_bytes(bricks));
   freevoxels::upload(device_, firstVoxels_, std::as_bytes(std::span(places)));
   brickCount_ = std::uint32_t(bricks.size());
   if (target_.hasEmission())
@@ -75,8 +102,8 @@ void DeviceBricks::upload(std::size_t batch) {
       const float temperature = volume_.temperature->values.at(voxel);
       return packLight(emittedLight(*classification_.emission, temperature) / target_.emissionUnit);
     });
-  if (target_.hasAlbedos)
-    uploadPacked(albedos_, batch, [this](glm::ivec3 voxel) {
+  if (target_.hasColors && !classification_.transferFunction)
+    uploadPacked(colors_, batch, [this](glm::ivec3 voxel) {
       return packColor(albedoOf(classification_, *volume_.albedo, voxel));
     });
 }
@@ -84,11 +111,9 @@ void DeviceBricks::upload(std::size_t batch) {
 shader::BricksPush DeviceBricks::push() const {
   return {.voxels = target_.onDevice(0),
           .brickCount = brickCount_,
-          .opacityPoints = target_.opacityPointCount,
-          .densityScale = float(std::min(classification_.densityScale, kMaximumExtinction)),
-          .unitDistance = classification_.transferFunction
-                              ? float(classification_.transferFunction->unitDistance)
-                              : 1.0f};
+          .densityScale = classification_.transferFunction
+                              ? 1.0f
+                              : float(std::min(classification_.densityScale, kMaximumExtinction))};
 }
 
 }  // namespace freevoxels

@@ -1,5 +1,5 @@
 #pragma once
-// The bricks of a volume's scalars, with their light and albedos, on their way to the device, a batch at a
+// The bricks of a volume's scalars, or with a transfer function their extinctions, with light and colours, on their way to the device, a batch at a
 // time: what the volume is built from.
 
 #include <cstdint>
@@ -9,6 +9,7 @@
 #include "engine/volume/classification.h"
 #include "engine/volume/device_volume.h"
 #include "engine/volume/scalar_bricks.h"
+#include "engine/volume/voxel_classifier.h"
 #include "engine/vulkan/buffer.h"
 
 namespace freevoxels {
@@ -31,11 +32,18 @@ class DeviceBricks {
   const Buffer& scalars() const { return scalars_; }
   /// packed_light.h, as the scalars; any buffer where there are none.
   const Buffer& emissions() const { return target_.hasEmission() ? emissions_ : scalars_; }
-  const Buffer& albedos() const { return target_.hasAlbedos ? albedos_ : scalars_; }
+  const Buffer& colors() const { return target_.hasColors ? colors_ : scalars_; }
   const Buffer& firstVoxels() const { return firstVoxels_; }
 
  private:
   std::span<const ScalarBricks::Brick> batchOf(std::size_t batch) const;
+  /// Extinctions and packed colours of a batch.
+  struct Classified {
+    std::vector<float> extinctions;
+    std::vector<std::uint32_t> colors;
+  };
+  Classified classify(std::size_t batch) const;
+  void uploadClassified(std::size_t batch);
   void uploadPacked(const Buffer& buffer, std::size_t batch,
                     const std::function<std::uint32_t(glm::ivec3 voxel)>& valueAt) const;
 
@@ -46,8 +54,10 @@ class DeviceBricks {
   const ScalarBricks& bricks_;
   std::size_t batches_, bricksPerBatch_, uploaded_;
   std::uint32_t brickCount_ = 0;
-  Buffer scalars_;              ///< float
-  Buffer emissions_, albedos_;  ///< uint
+  VoxelClassifier classifier_;
+  std::vector<Classified> kept_;  ///< batches are uploaded twice; empty where they would take too much memory
+  Buffer scalars_;             ///< float; extinctions with a transfer function
+  Buffer emissions_, colors_;  ///< uint
   Buffer firstVoxels_;          ///< ivec3
 };
 

@@ -8,27 +8,6 @@
 
 namespace freevoxels {
 
-namespace {
-
-void uploadTransferFunction(const Device& device, const Classification& classification,
-                            DeviceVolume& target) {
-  std::vector<glm::vec4> points;
-  if (classification.transferFunction) {
-    const TransferFunction& function = *classification.transferFunction;
-    for (const auto& point : function.opacity) points.emplace_back(point.scalar, point.opacity, 0.0f, 0.0f);
-    for (const auto& point : function.color) points.emplace_back(point.scalar, point.color);
-    target.opacityPointCount = std::uint32_t(function.opacity.size());
-    target.colorPointCount = std::uint32_t(function.color.size());
-  } else {
-    points.emplace_back(0.0f);  // a binding needs a buffer
-  }
-  target.transferPoints =
-      Buffer(device, points.size() * sizeof(glm::vec4), MemoryUse::Device, "transfer function");
-  upload(device, target.transferPoints, std::as_bytes(std::span(points)));
-}
-
-}  // namespace
-
 std::uint64_t DeviceVolume::storedBlocks() const {
   return std::accumulate(stored.begin(), stored.end(), std::uint64_t(0));
 }
@@ -58,7 +37,7 @@ DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
                       .hierarchy = HierarchyLayout(volume.dimensions),
                       .indexToWorld = volume.indexToWorld,
                       .albedo = classification.albedo,
-                      .hasAlbedos = volume.albedo.has_value() && !classification.transferFunction,
+                      .hasColors = volume.albedo.has_value() || classification.transferFunction.has_value(),
                       .emissionUnit = brightestLight(classification, volume) / kBrightest,
                       .voxelSize = volume.voxelSize(),
                       .activeVoxels = volume.activeVoxels};
@@ -67,7 +46,6 @@ DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
   result.occupancy = Buffer(device, words * sizeof(shader::OccupancyWord), MemoryUse::Device, "occupancy",
                             VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
   result.occupancyTexels = TexelView(device, result.occupancy, VK_FORMAT_R32G32_UINT);
-  uploadTransferFunction(device, classification, result);
   return result;
 }
 

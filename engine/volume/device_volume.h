@@ -3,15 +3,20 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "engine/hierarchy/hierarchy_layout.h"
 #include "engine/volume/classification.h"
+#include "engine/volume/device_scalars.h"
 #include "engine/volume/grid_layout.h"
 #include "engine/volume/volume.h"
 #include "engine/vulkan/buffer.h"
 
 namespace freevoxels {
+
+/// What a gathered extinction of 1 is: an optical depth of 1 / 64 a voxel, so that halves hold depths of 1e-9 to 1000.
+inline constexpr double kStoredDepth = 64.0;
 
 /// A block holds something where its extinction is above 0 or it sends out light. What is kept of such blocks
 /// is kept at their ranks: in the order of HierarchyLayout, level by level.
@@ -24,19 +29,20 @@ struct DeviceVolume {
   Buffer extinction;                  ///< float, per world unit, of all levels
   TexelView extinctionQuads;          ///< four of them a texel
   Buffer emission;                    ///< packed_light.h, of all levels; does not exist where there is none
-  Buffer scalars;  ///< float, or packed albedos, of the voxels; does not exist where there is one colour
+  Buffer colors;  ///< packed_light.h, of the voxels; does not exist where there is one colour
   Buffer
       blockColors;  ///< four halves, of the levels above the voxels; does not exist where there is one colour
-  Buffer transferPoints;  ///< vec4: opacity points, then colour points (transfer_function.glsl)
-  std::uint32_t opacityPointCount = 0, colorPointCount = 0;  ///< 0 = physical
   glm::dmat4 indexToWorld{1.0};
   glm::vec3 albedo{0.0f};
-  bool hasAlbedos = false;    ///< a grid of them
+  bool hasColors = false;     ///< voxels have colours of their own: a transfer function's or a grid's
   double emissionUnit = 0.0;  ///< radiance per world unit that a stored 1 is; 0: no voxel sends out light
   double voxelSize = 0.0;
   std::uint64_t activeVoxels = 0;  ///< no more than this many can be visible
 
-  bool hasColors() const { return opacityPointCount > 0 || hasAlbedos; }
+  /// Where samples are classified after interpolation, and there is memory for it.
+  std::optional<DeviceScalars> scalarBricks;
+  bool lacksScalarBricks = false;  ///< for want of memory
+
   bool hasEmission() const { return emissionUnit > 0.0; }
   /// Of all levels that hold anything.
   std::uint64_t storedBlocks() const;

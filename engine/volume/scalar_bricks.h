@@ -37,6 +37,10 @@ class ScalarBricks {
   }
 
   const glm::ivec3& dimensions() const { return dimensions_; }
+  /// Bricks along the axes, whether or not they are there.
+  const glm::ivec3& cells() const { return cellCount_; }
+  /// Place of the box's voxel (0,0,0) in its brick.
+  const glm::ivec3& corner() const { return corner_; }
   float at(glm::ivec3 voxel) const {
     const glm::ivec3 place = voxel + corner_;
     const std::int32_t number = numbers_[cellIndex(place / kEdge)];

@@ -9,14 +9,15 @@
 #include "engine/validation/level_checks.h"
 #include "engine/validation/stage_checks.h"
 #include "engine/volume/packed_light.h"
+#include "engine/volume/voxel_classifier.h"
 #include "tests/device/splat_fixture.h"
 
 namespace freevoxels {
 namespace {
 
 /// Hot here and there, also where there is no density: each of both, of one, or of nothing.
-Volume hotVolume(bool sheared, glm::ivec3 size = {11, 14, 9}) {
-  Volume volume = randomVolume(size, sheared ? shearedTransform(size) : cubeTransform(size), 0.6, 1.0);
+Volume hotVolume(bool sheared, glm::ivec3 size = {11, 14, 9}, double dense = 0.6) {
+  Volume volume = randomVolume(size, sheared ? shearedTransform(size) : cubeTransform(size), dense, 1.0);
   std::mt19937 generator(3);
   std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
   volume.temperature = TemperatureGrid{.name = "t", .values = ScalarBricks(volume.dimensions)};
@@ -76,17 +77,18 @@ class EmissionTest : public SplatTest {
 };
 
 TEST_F(EmissionTest, EveryVoxelWithExtinctionOrLightIsKept) {
-  const Volume volume = hotVolume(true);
+  const Volume volume = hotVolume(true, {11, 14, 9}, 0.1);
   const Classification classification = hot(volume);
   Renderer renderer(device(), volume, classification, {});
   const auto emission = renderer.downloadEmission();
   ASSERT_EQ(emission.size(), volume.voxelCount());
   const double faintest = brightestLight(classification, volume) * kFaintest / kBrightest;
+  const VoxelClassifier classifier(classification, volume);
   std::size_t voxel = 0, alone = 0;
   for (int z = 0; z < volume.dimensions.z; ++z)
     for (int y = 0; y < volume.dimensions.y; ++y)
       for (int x = 0; x < volume.dimensions.x; ++x, ++voxel) {
-        const ClassifiedVoxel expected = classifyVoxel(classification, volume, {x, y, z});
+        const ClassifiedVoxel expected = classifier.at({x, y, z});
         const double largest = std::max({expected.emission.r, expected.emission.g, expected.emission.b});
         if (largest < faintest) {
           EXPECT_EQ(emission[voxel], glm::dvec3(0.0));

@@ -4,6 +4,7 @@
 
 #include "engine/reference/oracle.h"
 #include "engine/validation/quality_scenes.h"
+#include "engine/volume/voxel_classifier.h"
 #include "tests/device/splat_fixture.h"
 
 namespace freevoxels {
@@ -62,18 +63,20 @@ TEST_F(GatherTest, HomogeneousBoxIsTheLawOfBeerAndLambert) {
 TEST_F(GatherTest, MatchesTheSumAlongAnAxis) {
   const glm::ivec3 n(17, 13, 21);
   const Volume volume = randomVolume(n, cubeTransform(n), 0.6, 1.0);
-  const Classification classification = coloured(volume, 0.5f);
+  Classification classification = coloured(volume, 0.5f);
+  classification.order = ClassificationOrder::Pre;
   Renderer renderer(device(), volume, classification, {});
   const glm::ivec2 size(n.x, n.y);
   const Image image = renderer.render(alongZ(volume, size, 1.0), gathering(size));
   const std::vector<double> extinction = referenceExtinction(volume, classification);
+  const VoxelClassifier classifier(classification, volume);
   const double layer = glm::length(glm::dvec3(volume.indexToWorld[2]));
   for (int y = 0; y < n.y; ++y)
     for (int x = 0; x < n.x; ++x) {
       glm::dvec4 sum(0.0);
       for (int z = n.z - 1; z >= 0; --z) {
         const double opacity = 1.0 - std::exp(-layer * extinction[std::size_t(x + n.x * (y + n.y * z))]);
-        const glm::dvec3 color(classifyVoxel(classification, volume, {x, y, z}).color);
+        const glm::dvec3 color(classifier.at({x, y, z}).color);
         sum += (1.0 - sum.a) * opacity * glm::dvec4(color, 1.0);
       }
       const glm::vec4 pixel = image.pixels[std::size_t(x + size.x * (n.y - 1 - y))];
@@ -84,7 +87,8 @@ TEST_F(GatherTest, MatchesTheSumAlongAnAxis) {
 TEST_F(GatherTest, ComesNearerToTheOracleThanSplats) {
   const QualityScene head =
       makeQualityScene({"head", QualityColor::Bone, false}, 48, makeProcedural("head", 48));
-  const Scene scene{.volume = head.volume, .classification = head.classification};
+  Scene scene{.volume = head.volume, .classification = head.classification};
+  scene.classification.order = ClassificationOrder::Pre;
   Camera orthographic;
   orthographic.orthographic = true;
   for (const Camera& base : {Camera{}, orthographic})
@@ -95,6 +99,70 @@ TEST_F(GatherTest, ComesNearerToTheOracleThanSplats) {
       EXPECT_GE(gather, splats - 0.3) << angles.x << ' ' << angles.y;
       EXPECT_GE(gather, 40.0) << angles.x << ' ' << angles.y;
     }
+}
+
+/// A ramp of the scalar along z passes a peak of the transfer function between two voxels, neither of which is in it.
+TEST_F(GatherTest, AThinPeakBetweenVoxelsHasItsWholeArea) {
+  const Volume ramp = makeVolume({20, 20, 12}, cubeTransform({20, 20, 12}), [](int, int, int z) { return z; });
+  const double voxel = glm::length(glm::dvec3(ramp.indexToWorld[2]));
+  Classification classification;
+  classification.transferFunction = TransferFunction{.opacity = {{5.3f, 0.0f}, {5.5f, 0.6f}, {5.7f, 0.0f}},
+                                                     .color = {{0.0f, {1.0f, 0.0f, 0.0f}}, {11.0f, {0.0f, 1.0f, 0.0f}}},
+                                                     .unitDistance = 0.1 * voxel};
+  // Of -log(1 - 0.6 x) over x from 0 to 1, twice 0.2 voxels.
+  const double depth = 0.4 * 10.0 * (1.0 + 0.4 / 0.6 * std::log(0.4));
+  const glm::ivec2 size(31, 31);
+  Renderer renderer(device(), ramp, classification, {});
+  const glm::vec4 middle = renderer.render(alongZ(ramp, size, 3.0), gathering(size)).pixels[15 + 15 * 31];
+  const double alpha = 1.0 - std::exp(-depth);
+  EXPECT_NEAR(middle.a, alpha, 5e-3 * alpha);
+  EXPECT_NEAR(middle.g, 5.5 / 11.0 * alpha, 1e-2 * alpha);
+}
+
+TEST_F(GatherTest, ClassifyingAfterInterpolationComesNearerToTheOracle) {
+  const QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 48, makeProcedural("head", 48));
+  const Camera camera = framingCamera(head.volume, 80.0, 10.0, 1.0, {});
+  const FrameSettings settings = gathering({128, 128});
+  const Oracle oracle =
+      renderOracle(head.volume, head.classification, camera, {.size = settings.size, .tolerance = 4e-3});
+  const auto qualityOf = [&](ClassificationOrder order) {
+    Classification classification = head.classification;
+    classification.order = order;
+    Renderer renderer(device(), head.volume, classification, {});
+    return psnr(renderer.render(camera, settings), oracle.image);
+  };
+  const double post = qualityOf(ClassificationOrder::Post);
+  EXPECT_GE(post, 42.0);
+  EXPECT_GE(post, qualityOf(ClassificationOrder::Pre) + 6.0);
+}
+
+/// Sparse, sheared, lit, with coarse levels and the eye inside: all that classification after interpolation has to
+/// agree with.
+TEST_F(GatherTest, InterpolatedScalarsMatchTheOracleWhereverTheyAreRead) {
+  const glm::ivec3 n(30, 26, 34);
+  const auto blob = [](int x, int y, int z) {
+    const double r = glm::length(glm::dvec3(x, y, z) - glm::dvec3(14.3, 12.1, 17.2)) / 12.0;
+    return r > 1.0 ? double(kInactiveVoxel) : (1.0 - r) * (1.0 + 0.2 * std::sin(0.9 * x + 0.5 * y));
+  };
+  Scene scene{.volume = makeVolume(n, shearedTransform(n), blob), .classification = {}};
+  scene.classification.transferFunction = TransferFunction{.opacity = {{0.1f, 0.0f}, {0.2f, 0.1f}, {0.5f, 0.05f}, {0.6f, 0.5f}},
+                                                           .color = {{0.1f, {0.9f, 0.5f, 0.3f}}, {0.6f, {0.4f, 0.6f, 0.9f}}},
+                                                           .unitDistance = scene.volume.voxelSize()};
+  const Camera far = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
+  EXPECT_GE(qualityOf(scene, far, gathering({96, 96})), 42.0);
+  FrameSettings lit = gathering({64, 64});
+  lit.lighting = Lighting{.lights = {{}}};
+  EXPECT_GE(qualityOf(scene, far, lit), 30.0);
+  Camera inside;
+  inside.position = glm::dvec3(scene.volume.indexToWorld * glm::dvec4(5.3, 12.1, 17.7, 1.0));
+  inside.lookAt = glm::dvec3(scene.volume.indexToWorld * glm::dvec4(25.0, 12.0, 16.0, 1.0));
+  inside.verticalFov = 70.0;
+  EXPECT_GE(qualityOf(scene, inside, gathering({96, 96})), 38.0);
+  Camera distant = far;
+  distant.position = far.lookAt + 6.0 * (far.position - far.lookAt);
+  FrameSettings coarse = gathering({96, 96});
+  coarse.lod = 1.0f;
+  EXPECT_GE(qualityOf(scene, distant, coarse), 38.0);
 }
 
 TEST_F(GatherTest, EyeInsideMatchesTheOracle) {

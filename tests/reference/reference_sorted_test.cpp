@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/splatting/footprint.h"
+#include "engine/volume/voxel_classifier.h"
 #include "tests/reference/reference_scene.h"
 
 namespace freevoxels {
@@ -49,12 +50,14 @@ TEST(ReferenceSorted, TwoLayersOfTwoVoxelsComposeAsEquation9) {
   const Scene scene(
       makeVolume({2, 1, 2}, glm::dmat4(1.0), [](int x, int, int z) { return double(x + 2 * z); }),
       classification);
+  const VoxelClassifier classifier(scene.classification, scene.volume);
   for (const double x : {0.0, 0.2, 0.5, 0.9}) {
     glm::dvec4 expected(0.0);
     double distance = 0.0;
     for (std::size_t i = 0; i < 4; ++i) {
-      const double a = opacity[i] * footprint({x - double(i % 2), 0.0});
-      expected = a * glm::dvec4(glm::dvec3(colors[i].color), 1.0) + (1.0 - a) * expected;
+      const ClassifiedVoxel voxel = classifier.at({int(i) % 2, 0, int(i) / 2});
+      const double a = -std::expm1(-voxel.extinction) * footprint({x - double(i % 2), 0.0});
+      expected = a * glm::dvec4(voxel.color, 1.0) + (1.0 - a) * expected;
       distance = a * (i < 2 ? 20.0 : 19.0) + (1.0 - a) * distance;  // the eye is at z = 20
     }
     const Image image = sortedAt(scene, {x, 0.0});

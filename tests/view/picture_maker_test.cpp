@@ -37,15 +37,15 @@ TEST_F(PictureMakerTest, TurningALightKeepsTheVolumeAndItsOccupancy) {
   EXPECT_NE(turned.image.pixels, first.image.pixels);
   ASSERT_EQ(timesOf(first, "upload").size(), 1u);
   EXPECT_EQ(timesOf(turned, "upload"), timesOf(first, "upload")) << "measured once";
-  EXPECT_EQ(timesOf(first, "gather occupancy").size(), 1u);
-  EXPECT_EQ(timesOf(turned, "gather occupancy").size(), 0u);
+  EXPECT_EQ(timesOf(first, "bricks").size(), 1u);
+  EXPECT_EQ(timesOf(turned, "bricks").size(), 0u);
 }
 
 TEST_F(PictureMakerTest, AnotherClassificationMakesAnotherOccupancy) {
   PictureRequest request = litCloud();
   maker_.make(request, {});
   request.scene.classification.transferFunction = R"({"opacity": [[0, 0], [1, 0.5]]})";
-  EXPECT_EQ(timesOf(maker_.make(request, {}), "gather occupancy").size(), 1u);
+  EXPECT_EQ(timesOf(maker_.make(request, {}), "bricks").size(), 1u);
 }
 
 }  // namespace

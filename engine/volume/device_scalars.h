@@ -1,0 +1,26 @@
+#pragma once
+// A volume's scalars on the device, for classification after interpolation.
+
+#include <glm/glm.hpp>
+
+#include "engine/volume/classification.h"
+#include "engine/volume/volume.h"
+#include "engine/vulkan/buffer.h"
+
+namespace freevoxels {
+
+/// Codes of TransferTable, in the bricks of Volume::scalars; brick 0 is one without data.
+struct DeviceScalars {
+  Buffer codes;         ///< 16 bits a voxel
+  Buffer brickNumbers;  ///< uint32 of each cell of `cells`, x fastest
+  Buffer table;         ///< TransferTable::texels()
+  TexelView codeTexels, brickNumberTexels, tableTexels;
+  glm::ivec3 cells{0};   ///< bricks along the axes
+  glm::ivec3 corner{0};  ///< place of the box's voxel (0,0,0) in its brick
+};
+
+/// Extinctions in the table are per world unit, times `extinctionScale`. Fails with ExitCode::OutOfMemory.
+DeviceScalars uploadScalars(const Device& device, const Volume& volume, const TransferFunction& function,
+                            double extinctionScale);
+
+}  // namespace freevoxels

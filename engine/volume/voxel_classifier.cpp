@@ -1,0 +1,166 @@
+#include "engine/volume/voxel_classifier.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/core/error.h"
+#include "engine/volume/packed_light.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr std::size_t kIntervals = 1 << 14;
+constexpr float kNoData = -1.0f;  // in place of a scalar's place
+
+}  // namespace
+
+TransferIntegral::TransferIntegral(const TransferFunction& function, float minimum, float maximum)
+    : lowest_(minimum), sums_(1, glm::dvec4(0.0)) {
+  const double extent = double(maximum) - double(minimum);
+  perScalar_ = extent > 0.0 ? double(kIntervals) / extent : 0.0;
+  const Classification classification{.transferFunction = function};
+  for (std::size_t i = 0; i < kIntervals; ++i) {
+    const ClassifiedVoxel middle =
+        classify(classification, float(lowest_ + (double(i) + 0.5) / double(kIntervals) * extent));
+    sums_.push_back(sums_.back() + middle.extinction * glm::dvec4(middle.color, 1.0));
+  }
+}
+
+double TransferIntegral::place(double scalar) const {
+  return std::clamp((scalar - lowest_) * perScalar_, 0.0, double(kIntervals));
+}
+
+glm::dvec4 TransferIntegral::upTo(double place) const {
+  const std::size_t i = std::min(std::size_t(place), kIntervals - 1);
+  return sums_[i] + (place - double(i)) * (sums_[i + 1] - sums_[i]);
+}
+
+double TransferIntegral::extinctionUpTo(double place) const {
+  const std::size_t i = std::min(std::size_t(place), kIntervals - 1);
+  return sums_[i].a + (place - double(i)) * (sums_[i + 1].a - sums_[i].a);
+}
+
+glm::dvec4 TransferIntegral::meanAt(double from, double to) const {
+  if (std::abs(to - from) > kLeastChange) return glm::max((upTo(to) - upTo(from)) / (to - from), 0.0);
+  const std::size_t i = std::min(std::size_t(from), kIntervals - 1);
+  return sums_[i + 1] - sums_[i];
+}
+
+bool TransferIntegral::holdsAnythingAt(double low, double high) const {
+  const std::size_t first = std::min(std::size_t(low), kIntervals - 1);
+  const std::size_t last = std::min(std::size_t(high), kIntervals - 1);
+  return sums_[last + 1].a > sums_[first].a;
+}
+
+VoxelClassifier::VoxelClassifier(const Classification& classification, const Volume& volume)
+    : classification_(classification), volume_(volume) {
+  if (classification.transferFunction) integral_.emplace(*classification.transferFunction, volume.minimum, volume.maximum);
+}
+
+/// Places of TransferIntegral; half-way to the neighbours. The colour is the mean over the range of all of them, weighted
+/// by extinction.
+ClassifiedVoxel VoxelClassifier::meanOver(float place, const std::array<float, 6>& halfWay) const {
+  const auto [low, high] = std::ranges::minmax(halfWay);
+  const float first = std::min(place, low), last = std::max(place, high);
+  if (!integral_->holdsAnythingAt(first, last)) return {};
+  const double own = integral_->extinctionUpTo(place);
+  const double there = integral_->meanAt(place, place).a;
+  double extinction = 0.0;
+  for (const float other : halfWay) {
+    const double change = double(other) - double(place);
+    extinction += std::abs(change) > TransferIntegral::kLeastChange ? (integral_->extinctionUpTo(other) - own) / change : there;
+  }
+  const glm::dvec4 range = integral_->meanAt(first, last);
+  return {std::clamp(extinction / 6.0, 0.0, kMaximumExtinction), range.a > 0.0 ? glm::dvec3(range) / range.a : glm::dvec3(0.0)};
+}
+
+ClassifiedVoxel VoxelClassifier::at(glm::ivec3 voxel) const {
+  const float scalar = volume_.scalars.at(voxel);
+  ClassifiedVoxel result;
+  if (integral_ && scalar != kInactiveVoxel) {
+    std::array<float, 6> neighbours;
+    for (int i = 0; i < 6; ++i) {
+      glm::ivec3 neighbour = voxel;
+      neighbour[i / 2] += i % 2 == 0 ? -1 : 1;
+      const bool inside = neighbour[i / 2] >= 0 && neighbour[i / 2] < volume_.dimensions[i / 2];
+      neighbours[std::size_t(i)] = inside ? placeOf(volume_.scalars.at(neighbour)) : kNoData;
+    }
+    result = withNeighbours(scalar, placeOf(scalar), neighbours);
+  } else if (!integral_) {
+    result = classify(classification_, scalar);
+    if (volume_.albedo) result.color = albedoOf(classification_, *volume_.albedo, voxel);
+  }
+  if (classification_.emission && volume_.temperature)
+    result.emission = emittedLight(*classification_.emission, volume_.temperature->values.at(voxel));
+  return result;
+}
+
+/// A neighbour without data counts as the voxel does. Of one scalar all over this is what the function says, exactly.
+ClassifiedVoxel VoxelClassifier::withNeighbours(float scalar, float place, const std::array<float, 6>& neighbours) const {
+  std::array<float, 6> halfWay;
+  bool even = true;
+  for (std::size_t i = 0; i < 6; ++i) {
+    halfWay[i] = neighbours[i] == kNoData ? place : 0.5f * (place + neighbours[i]);
+    even = even && halfWay[i] == place;
+  }
+  ClassifiedVoxel result = even ? classify(classification_, scalar) : meanOver(place, halfWay);
+  result.color = unpackColor(packColor(result.color));
+  return result;
+}
+
+float VoxelClassifier::placeOf(float scalar) const {
+  return scalar == kInactiveVoxel ? kNoData : float(integral_->place(scalar));
+}
+
+void VoxelClassifier::classifyBrick(std::size_t brick, std::span<float> extinction, std::span<std::uint32_t> colors) const {
+  FV_CHECK_EQ(integral_.has_value(), true);
+  constexpr int n = ScalarBricks::kEdge, m = n + 2;
+  constexpr std::array<int, 3> kStrides{1, m, m * m};
+  const ScalarBricks& scalars = volume_.scalars;
+  std::ranges::fill(extinction, 0.0f);
+  std::ranges::fill(colors, 0u);
+  // Places, with a layer of the bricks beside it.
+  std::array<float, std::size_t(m) * m * m> around;
+  around.fill(kNoData);
+  const auto copy = [&](const ScalarBricks::Brick* from, glm::ivec3 begin, glm::ivec3 end, glm::ivec3 to) {
+    if (from == nullptr) return;
+    for (int z = begin.z; z < end.z; ++z)
+      for (int y = begin.y; y < end.y; ++y)
+        for (int x = begin.x; x < end.x; ++x)
+          around[std::size_t(x + to.x + m * (y + to.y + m * (z + to.z)))] =
+              placeOf((*from)[ScalarBricks::indexInBrick({x, y, z})]);
+  };
+  copy(&scalars.bricks()[brick], glm::ivec3(0), glm::ivec3(n), glm::ivec3(1));
+  for (int axis = 0; axis < 3; ++axis)
+    for (const bool up : {false, true}) {
+      glm::ivec3 cell = scalars.cell(brick), begin(0), end(n), to(1);
+      cell[axis] += up ? 1 : -1;
+      if (cell[axis] < 0 || cell[axis] >= scalars.cells()[axis]) continue;
+      (up ? end : begin)[axis] = up ? 1 : n - 1;
+      to[axis] = up ? n + 1 : 1 - n;
+      copy(scalars.brickAt(cell), begin, end, to);
+    }
+  // Most bricks hold nothing.
+  float low = std::numeric_limits<float>::max(), high = kNoData;
+  for (const float place : around) {
+    low = std::min(low, place == kNoData ? low : place);
+    high = std::max(high, place);
+  }
+  if (low > high || !integral_->holdsAnythingAt(low, high)) return;
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        const float* const own = &around[std::size_t(x + 1 + m * (y + 1 + m * (z + 1)))];
+        if (*own == kNoData) continue;
+        std::array<float, 6> neighbours;
+        for (std::size_t i = 0; i < 6; ++i) neighbours[i] = own[i % 2 == 0 ? -kStrides[i / 2] : kStrides[i / 2]];
+        const std::size_t voxel = ScalarBricks::indexInBrick({x, y, z});
+        const ClassifiedVoxel result = withNeighbours(scalars.bricks()[brick][voxel], *own, neighbours);
+        extinction[voxel] = float(result.extinction);
+        if (result.extinction > 0.0) colors[voxel] = packColor(result.color);
+      }
+}
+
+}  // namespace freevoxels
