@@ -332,11 +332,13 @@ void GatherVolume::recordQuads(Commands& commands, int axis) {
   const auto make = [&](int number, std::uint32_t first, std::uint32_t end) {
     if (first == end) return;
     const bool codes = scalars && number == 0;
+    const bool isEmptyBrick = first == 0;  // which all levels read
+    const bool colored = hasColors() && (lit_ || !codes || isEmptyBrick);
     const Pipeline pass = makeComputePipeline(
         device_, {brick_quads_spv, "brick quads"},
         {.bindings = {kTexelsIn, kTexelsIn, kTexelsIn, kTexelsIn, kTexelsOut, kTexelsOut, kTexelsOut, kTexelsIn, kTexelsIn},
          .pushConstantBytes = sizeof(shader::BrickQuadsPush)},
-        {shader::kBrickQuadsThreads, 1, 1}, {std::uint32_t(axis), hasTowards(), hasColors() && (lit_ || !codes), codes});
+        {shader::kBrickQuadsThreads, 1, 1}, {std::uint32_t(axis), hasTowards(), colored, codes});
     const shader::BrickQuadsPush push{.level = volume.onDevice(number),
                                       .firstBrick = first,
                                       .count = (end - first) * shader::kGatherBrickBlocks,

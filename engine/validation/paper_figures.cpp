@@ -129,6 +129,7 @@ struct LitHead {
 
   LitHead(const StageMaker& make, int edge) : volume(makeProcedural("head", edge)) {
     classification.transferFunction = qualityTransferFunction(QualityColor::Bone, volume);
+    classification.order = ClassificationOrder::Pre;  // as splats have it
     outputs = make(volume, classification, {});
   }
   Camera camera() const { return viewCamera(volume, kLitView); }

@@ -105,6 +105,7 @@ QualityScene makeQualityScene(const QualitySubject& subject, int resolution, Vol
   TransferFunction function = qualityTransferFunction(subject.color, scene.volume);
   function.unitDistance *= resolution / kUnitResolution;
   scene.classification.transferFunction = std::move(function);
+  scene.classification.order = ClassificationOrder::Pre;  // as splats have it
   return scene;
 }
 

@@ -122,7 +122,7 @@ TEST_F(CullingTest, AHoleThatNoDirectionOfTheTableSeesShows) {
   const Outcome outcome = expectSamePicture(renderer, camera, settings, "hole");
   EXPECT_GT(outcome.counts.hidden, 100u);
   const glm::vec4 middle = renderer.render(camera, settings).pixels[80 * 161 + 80];
-  EXPECT_GT(middle.r, 0.04f);
+  EXPECT_GT(middle.r, 0.03f);  // the bottom's voxels have some of the walls' blue
   EXPECT_LT(renderer.renderSums(camera, settings)[80 * 161 + 80].energy, settings.cullThreshold);
 }
 

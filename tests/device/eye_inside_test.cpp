@@ -172,13 +172,14 @@ TEST_F(EyeInsideTest, InAnOpaqueCavityOnlyItsInnerWallShows) {
   const glm::ivec3 dimensions(24);
   const Volume v = makeVolume(dimensions, cubeTransform(dimensions), [](int x, int y, int z) {
     const int deep = std::min({x, y, z, 23 - x, 23 - y, 23 - z});
-    return deep >= 8 ? 0.0 : deep >= 4 ? 1.0 : 0.5;
+    return deep >= 8 ? 0.0 : deep >= 4 ? 0.5 : 1.0;
   });
   Classification classification;
   classification.transferFunction =
       TransferFunction{.opacity = {{0.0f, 0.0f}, {0.4f, 0.98f}, {1.0f, 0.98f}},
-                       .color = {{0.5f, {0.0f, 0.1f, 0.9f}}, {1.0f, {0.9f, 0.1f, 0.0f}}},
+                       .color = {{0.5f, {0.9f, 0.1f, 0.0f}}, {1.0f, {0.0f, 0.1f, 0.9f}}},
                        .unitDistance = v.voxelSize()};
+  classification.order = ClassificationOrder::Pre;
   Renderer renderer(device(), v, classification, {});
   const glm::ivec2 size(40);
   for (const glm::dvec3 direction : {glm::dvec3(1.0, 0.2, 0.1), {-0.5, -1.0, 0.6}}) {

@@ -87,8 +87,7 @@ TEST_F(GatherTest, MatchesTheSumAlongAnAxis) {
 TEST_F(GatherTest, ComesNearerToTheOracleThanSplats) {
   const QualityScene head =
       makeQualityScene({"head", QualityColor::Bone, false}, 48, makeProcedural("head", 48));
-  Scene scene{.volume = head.volume, .classification = head.classification};
-  scene.classification.order = ClassificationOrder::Pre;
+  const Scene scene{.volume = head.volume, .classification = head.classification};
   Camera orthographic;
   orthographic.orthographic = true;
   for (const Camera& base : {Camera{}, orthographic})
@@ -120,7 +119,8 @@ TEST_F(GatherTest, AThinPeakBetweenVoxelsHasItsWholeArea) {
 }
 
 TEST_F(GatherTest, ClassifyingAfterInterpolationComesNearerToTheOracle) {
-  const QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 48, makeProcedural("head", 48));
+  QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 48, makeProcedural("head", 48));
+  head.classification.order = ClassificationOrder::Post;
   const Camera camera = framingCamera(head.volume, 80.0, 10.0, 1.0, {});
   const FrameSettings settings = gathering({128, 128});
   const Oracle oracle =
