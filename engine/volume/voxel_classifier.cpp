@@ -17,7 +17,7 @@ constexpr float kNoData = -1.0f;  // in place of a scalar's place
 }  // namespace
 
 TransferIntegral::TransferIntegral(const TransferFunction& function, float minimum, float maximum)
-    : lowest_(minimum), sums_(1, glm::dvec4(0.0)) {
+    : lowest_(minimum), sums_(1, glm::dvec4(0.0)), extinctions_(1, 0.0) {
   const double extent = double(maximum) - double(minimum);
   perScalar_ = extent > 0.0 ? double(kIntervals) / extent : 0.0;
   const Classification classification{.transferFunction = function};
@@ -25,6 +25,7 @@ TransferIntegral::TransferIntegral(const TransferFunction& function, float minim
     const ClassifiedVoxel middle =
         classify(classification, float(lowest_ + (double(i) + 0.5) / double(kIntervals) * extent));
     sums_.push_back(sums_.back() + middle.extinction * glm::dvec4(middle.color, 1.0));
+    extinctions_.push_back(sums_.back().a);
   }
 }
 
@@ -39,7 +40,7 @@ glm::dvec4 TransferIntegral::upTo(double place) const {
 
 double TransferIntegral::extinctionUpTo(double place) const {
   const std::size_t i = std::min(std::size_t(place), kIntervals - 1);
-  return sums_[i].a + (place - double(i)) * (sums_[i + 1].a - sums_[i].a);
+  return extinctions_[i] + (place - double(i)) * (extinctions_[i + 1] - extinctions_[i]);
 }
 
 glm::dvec4 TransferIntegral::meanAt(double from, double to) const {
@@ -51,7 +52,7 @@ glm::dvec4 TransferIntegral::meanAt(double from, double to) const {
 bool TransferIntegral::holdsAnythingAt(double low, double high) const {
   const std::size_t first = std::min(std::size_t(low), kIntervals - 1);
   const std::size_t last = std::min(std::size_t(high), kIntervals - 1);
-  return sums_[last + 1].a > sums_[first].a;
+  return extinctions_[last + 1] > extinctions_[first];
 }
 
 VoxelClassifier::VoxelClassifier(const Classification& classification, const Volume& volume)
@@ -105,6 +106,7 @@ ClassifiedVoxel VoxelClassifier::withNeighbours(float scalar, float place, const
     halfWay[i] = neighbours[i] == kNoData ? place : 0.5f * (place + neighbours[i]);
     even = even && halfWay[i] == place;
   }
+  if (even && !integral_->holdsAnythingAt(place, place)) return {};
   ClassifiedVoxel result = even ? classify(classification_, scalar) : meanOver(place, halfWay);
   result.color = unpackColor(packColor(result.color));
   return result;

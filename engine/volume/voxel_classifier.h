@@ -38,7 +38,8 @@ class TransferIntegral {
 
  private:
   double lowest_ = 0.0, perScalar_ = 0.0;
-  std::vector<glm::dvec4> sums_;  ///< up to the beginning of each interval, and to the end of the last one
+  std::vector<glm::dvec4> sums_;     ///< up to the beginning of each interval, and to the end of the last one
+  std::vector<double> extinctions_;  ///< the last component alone, which is asked for most
 };
 
 class VoxelClassifier {

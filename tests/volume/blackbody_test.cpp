@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <random>
 
 #include "engine/volume/classification.h"
 #include "engine/volume/packed_light.h"
@@ -101,6 +102,16 @@ TEST(Emission, PackedLightKeepsNineBits) {
   }
   EXPECT_EQ(packLight(glm::dvec3(0.9 * kFaintest)), 0u);
   EXPECT_EQ(unpackColor(packColor(glm::dvec3(1.0, 0.5, 0.25))), glm::dvec3(1.0, 0.5, 0.25));
+}
+
+TEST(PackedLight, BitsAreThoseOfTheSharedExponentFormat) {
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<float> part(0.0f, 1.0f), power(-26.0f, 15.0f);
+  for (int i = 0; i < 100000; ++i) {
+    const float scale = i == 0 ? 0.0f : std::exp2(power(generator));
+    const glm::vec3 color = scale * glm::vec3(part(generator), part(generator), i % 7 == 0 ? 1.0f : part(generator));
+    ASSERT_EQ(packColor(color), glm::packF3x9_E1x5(color)) << color.r << ' ' << color.g << ' ' << color.b;
+  }
 }
 
 }  // namespace
