@@ -1,5 +1,5 @@
-// A drawn block. Include after stored_block.glsl and packed_light.glsl; `frame` is the SetupFrame, `emission` the light of
-// blocks, by rank, where kEmits says that there is any.
+// A drawn block. Include after stored_block.glsl and packed_light.glsl; `frame` is the SetupFrame; kEmits says
+// whether blocks send out light.
 
 struct Block {
   int level;
@@ -29,7 +29,7 @@ Block blockAt(uint address) {
 float brightnessOf(BlockLevel level, ivec3 cell) {
   const uint address = blockAddress(level, cell);
   if (!kEmits || !holdsAnything(address)) return 0.0;
-  const vec3 light = unpackLight(emission[rankAt(level, address)]);
+  const vec3 light = unpackLight(storedEmission(rankAt(level, address)));
   return max(light.r, max(light.g, light.b));
 }
 

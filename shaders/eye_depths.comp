@@ -9,8 +9,8 @@
 layout(local_size_x = kEyeThreads) in;
 layout(scalar, push_constant) uniform Push { EyeDepthsPush push; };
 layout(scalar, binding = 0) readonly buffer Occupancy { OccupancyWord occupancy[]; };
-layout(scalar, binding = 1) readonly buffer Extinction { float extinction[]; };
-layout(scalar, binding = 2) writeonly buffer EyeDepths { float eyeDepths[]; };
+layout(scalar, binding = 1) writeonly buffer EyeDepths { float eyeDepths[]; };
+#define STORES push.stores
 #include "stored_block.glsl"
 
 float extinctionAt(vec3 place) {

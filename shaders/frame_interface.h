@@ -57,6 +57,7 @@ struct SetupFrame {
   int orthographic;
   ivec3 dimensions;
   BlockLevel levels[kMaximumLevels];
+  BlockStores stores;
   int levelCount;
   float voxelSize;         // edge of the cube with a voxel's volume, world units
   int lookup;              // kLookup...
@@ -80,6 +81,7 @@ struct SetupPush {
 // eye_depths.comp
 struct EyeDepthsPush {
   BlockLevel voxels;
+  BlockStores stores;
   vec3 place;        // of the eye, index space, in the box of the voxels' centres
   int cells;         // that the table's directions divide the cube's half edge into
   int first;         // of the depths, by cell number from here on

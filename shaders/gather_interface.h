@@ -75,6 +75,9 @@ struct GatherFrame {
 
 // shade_blocks.comp
 struct ShadePush {
+  uvec2 blocks;      // device addresses: of the level's list of occupied blocks,
+  uvec2 sources;     // and by rank, of packed source term and extinction as a half,
+  uvec2 towards;     // and of what depends on the direction to the eye
   uint firstRank;
   uint count;
   float extinctionScale, sourceScale;  // from per world unit to what is stored
@@ -96,7 +99,7 @@ static_assert(sizeof(GatherAxis) == 8 * 4 + 12 * 6 - 16 + 2 * kMaximumLevels * 8
 static_assert(sizeof(GatherLevel) == 48);
 static_assert(sizeof(BrickQuadsPush) == 60);
 static_assert(sizeof(GatherFrame) <= 16384);
-static_assert(sizeof(ShadePush) == 24);
+static_assert(sizeof(ShadePush) == 48);
 }  // namespace freevoxels::shader
 #endif
 #endif

@@ -111,9 +111,15 @@ struct BlockLevel {
   ivec3 dimensions;
 };
 
+// Device addresses of what is kept of blocks that hold anything: engine/volume/device_volume.h. 0 where there is nothing.
+struct BlockStores {
+  uvec2 extinction, emission, colors, blockColors;
+};
+
 // occupied_voxels.comp and pack_voxels.comp
 struct BricksPush {
   BlockLevel voxels;
+  BlockStores stores;
   uint brickCount;
   float densityScale;    // extinction per world unit at density 1
 };
@@ -188,6 +194,7 @@ struct RaySweepPush {
 // medium_level.comp
 struct MediumLevelPush {
   BlockLevel child, parent;
+  BlockStores stores;
   ivec3 voxels;        // the volume's dimensions
   int childEdge;       // voxels along a child's edge
   uint parentCount;    // blocks of the parent level that hold anything
@@ -274,6 +281,7 @@ struct VisiblePush {
   uint groupCount;   // workgroups of the count and write passes
   uint firstChunk;   // visible_scan.comp writes the arguments of chunkCount draw chunks from here on
   uint chunkCount;
+  uvec2 blocks;      // device address of the list that visible_write.comp writes
 };
 
 // Arguments of one chunk, in the order that vkCmdDispatchIndirect and vkCmdDrawIndirect want them.
@@ -309,7 +317,7 @@ static_assert(sizeof(CutPush) == 16);
 static_assert(sizeof(DepthKeyPush) == 80);
 static_assert(sizeof(ExpandPush) == 52);
 static_assert(sizeof(HalfSweepPush) == 84);
-static_assert(sizeof(MediumLevelPush) == 84);
+static_assert(sizeof(MediumLevelPush) == 116);
 static_assert(sizeof(RaySweepPush) == 128);  // what every device takes
 static_assert(sizeof(TableLevelPush) == 84);
 }  // namespace freevoxels::shader

@@ -15,17 +15,14 @@ layout(constant_id = 2) const bool kEmits = false;
 
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { MediumLevelPush push; };
-layout(scalar, binding = 0) buffer Extinction { float extinction[]; };
-layout(scalar, binding = 2) readonly buffer Colors { uint colors[]; };  // of voxels
-layout(scalar, binding = 3) buffer BlockColors { uvec2 blockColors[]; };
-layout(scalar, binding = 4) readonly buffer Occupancy { OccupancyWord occupancy[]; };
-layout(scalar, binding = 5) readonly buffer Parents { uint parents[]; };
-layout(scalar, binding = 1) buffer Emission { uint emission[]; };
+layout(scalar, binding = 0) readonly buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 1) readonly buffer Parents { uint parents[]; };
+#define STORES push.stores
 #include "stored_block.glsl"
 
 vec3 childColor(uint rank) {
-  if (kFromVoxels) return unpackLight(colors[rank]);
-  return unpackColor(blockColors[rank - push.firstColor]);
+  if (kFromVoxels) return unpackLight(storedColor(rank));
+  return unpackColor(storedBlockColor(rank - push.firstColor));
 }
 
 void main() {
@@ -43,9 +40,9 @@ void main() {
     const uint address = blockAddress(push.child, child);
     if (!holdsAnything(address)) continue;
     const uint rank = rankAt(push.child, address);
-    const float sigma = extinction[rank];
+    const float sigma = storedExtinction(rank);
     mean += share * sigma;
-    if (kEmits) light += share * unpackLight(emission[rank]);
+    if (kEmits) light += share * unpackLight(storedEmission(rank));
     if (kColors) {
       const float weight = share * opacityOf(sigma * push.childLength);
       opacity += weight;
@@ -53,7 +50,8 @@ void main() {
     }
   }
   const uint rank = push.parent.firstRank + i;
-  extinction[rank] = kEmits && mean == 0.0 ? 0.0 : max(mean, kLeastExtinction);
-  if (kEmits) emission[rank] = packLight(light);
-  if (kColors) blockColors[rank - push.firstColor] = packColor(opacity > 0.0 ? color / opacity : vec3(0.0));
+  FloatStore(push.stores.extinction).values[rank] = kEmits && mean == 0.0 ? 0.0 : max(mean, kLeastExtinction);
+  if (kEmits) WordStore(push.stores.emission).values[rank] = packLight(light);
+  if (kColors)
+    PairStore(push.stores.blockColors).values[rank - push.firstColor] = packColor(opacity > 0.0 ? color / opacity : vec3(0.0));
 }

@@ -10,10 +10,9 @@ layout(constant_id = 1) const bool kColors = false;  // voxels have colours of t
 
 layout(scalar, binding = 3) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 #include "occupancy.glsl"
-layout(scalar, binding = 4) writeonly buffer Extinction { float extinction[]; };
-layout(scalar, binding = 5) writeonly buffer Colors { uint colors[]; };
-layout(scalar, binding = 6) writeonly buffer Emission { uint emission[]; };
-layout(scalar, binding = 7) readonly buffer BrickColors { uint brickColors[]; };  // as the densities
+#define STORES push.stores
+#include "stores.glsl"
+layout(scalar, binding = 4) readonly buffer BrickColors { uint brickColors[]; };  // as the densities
 
 void main() {
   const uint brick = brickOfThread();
@@ -24,9 +23,9 @@ void main() {
   uint rank = rankAt(push.voxels, blockAddress(push.voxels, row.first + ivec3(findLSB(row.holding), 0, 0)));
   [[unroll]] for (int i = 0; i < kBrickEdge; ++i) {
     if ((row.holding >> i & 1u) == 0) continue;
-    extinction[rank] = row.extinction[i];
-    if (kColors) colors[rank] = brickColors[(brick * kBrickThreads + gl_LocalInvocationIndex) * kBrickEdge + i];
-    if (kEmits) emission[rank] = row.emission[i];
+    FloatStore(push.stores.extinction).values[rank] = row.extinction[i];
+    if (kColors) WordStore(push.stores.colors).values[rank] = brickColors[(brick * kBrickThreads + gl_LocalInvocationIndex) * kBrickEdge + i];
+    if (kEmits) WordStore(push.stores.emission).values[rank] = row.emission[i];
     ++rank;
   }
 }

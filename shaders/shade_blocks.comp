@@ -17,16 +17,10 @@ layout(constant_id = 4) const bool kAnyView = false;  // whether the source term
 layout(local_size_x = kShadeThreads) in;
 layout(scalar, push_constant) uniform Push { ShadePush push; };
 layout(scalar, binding = 0) readonly buffer Frame { SetupFrame frame; };
-layout(scalar, binding = 2) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
-layout(scalar, binding = 3) readonly buffer Blocks { uint blocks[]; };  // addresses of the level's occupied ones
-layout(scalar, binding = 4) readonly buffer Colors { uint colors[]; };  // of voxels
-layout(scalar, binding = 5) readonly buffer Extinction { float extinction[]; };
-layout(scalar, binding = 6) writeonly buffer Sources { uvec2 sources[]; };  // packed source term, extinction as a half
-layout(scalar, binding = 7) readonly buffer BlockColors { uvec2 blockColors[]; };
-layout(scalar, binding = 8) readonly buffer Occupancy { OccupancyWord occupancy[]; };
-layout(scalar, binding = 9) readonly buffer Lights { Light lights[]; };
-layout(scalar, binding = 10) readonly buffer Emission { uint emission[]; };
-layout(scalar, binding = 1) writeonly buffer TowardsEye { uint towardsEye[]; };
+layout(scalar, binding = 1) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
+layout(scalar, binding = 2) readonly buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 3) readonly buffer Lights { Light lights[]; };
+#define STORES frame.stores
 #define PLANE_ADDRESS(cell) planeAddresses[cell]
 #include "major_axis.glsl"
 #include "stored_block.glsl"
@@ -54,11 +48,11 @@ void main() {
   const uint number = gl_LocalInvocationID.x + kShadeThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
   if (number >= push.count) return;
   const uint rank = push.firstRank + number;
-  const Block block = blockAt(blocks[number]);
+  const Block block = blockAt(WordStore(push.blocks).values[number]);
   // What of the block is outside of the volume is empty.
   const vec3 part = vec3(block.extent) / float(block.edge);
   const float inside = part.x * part.y * part.z;
-  const float sigma = extinction[rank];
+  const float sigma = storedExtinction(rank);
   vec3 source = push.lightOnly != 0 ? vec3(1.0) : sigma * colorOf(block, rank);
   vec3 towards = vec3(0.0);
   if (kLit) {
@@ -66,10 +60,11 @@ void main() {
     source *= scattered.light;
     towards = luminanceOf(source) / max(luminanceOf(scattered.light), 1e-37) * scattered.towards;
   }
-  if (kEmits) source += frame.emissionUnit * unpackLight(emission[rank]);
+  if (kEmits) source += frame.emissionUnit * unpackLight(storedEmission(rank));
   // Without any light a block would be one that has none.
   if (push.lightOnly != 0) source = max(source, kLeastLight / push.sourceScale);
   const vec4 stored = min(vec4(push.sourceScale * source, push.extinctionScale * sigma) * (push.lightOnly != 0 ? 1.0 : inside), kLargestStored);
-  sources[rank] = uvec2(packLight(stored.rgb), packHalf2x16(vec2(stored.a, 0.0)));
-  if (kLit && kAnyView) towardsEye[rank] = packSnorm4x8(vec4(towards / max(luminanceOf(source), 1e-37), 0.0));
+  PairStore(push.sources).values[rank] = uvec2(packLight(stored.rgb), packHalf2x16(vec2(stored.a, 0.0)));
+  if (kLit && kAnyView)
+    WordStore(push.towards).values[rank] = packSnorm4x8(vec4(towards / max(luminanceOf(source), 1e-37), 0.0));
 }

@@ -16,14 +16,11 @@ layout(scalar, push_constant) uniform Push { SetupPush push; };
 layout(scalar, binding = 0) readonly buffer Frame { SetupFrame frame; };
 layout(scalar, binding = 2) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
 layout(scalar, binding = 3) readonly buffer VisibleVoxels { uint visibleVoxels[]; };
-layout(scalar, binding = 4) readonly buffer Colors { uint colors[]; };  // of voxels
-layout(scalar, binding = 5) readonly buffer Extinction { float extinction[]; };
-layout(scalar, binding = 6) readonly buffer Chunks { ChunkArguments chunks[]; };
-layout(scalar, binding = 7) writeonly buffer Splats { Splat splats[]; };
-layout(scalar, binding = 8) readonly buffer BlockColors { uvec2 blockColors[]; };
-layout(scalar, binding = 9) readonly buffer Occupancy { OccupancyWord occupancy[]; };
-layout(scalar, binding = 10) readonly buffer Lights { Light lights[]; };
-layout(scalar, binding = 1) readonly buffer Emission { uint emission[]; };
+layout(scalar, binding = 4) readonly buffer Chunks { ChunkArguments chunks[]; };
+layout(scalar, binding = 5) writeonly buffer Splats { Splat splats[]; };
+layout(scalar, binding = 6) readonly buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 1) readonly buffer Lights { Light lights[]; };
+#define STORES frame.stores
 #define PLANE_ADDRESS(cell) planeAddresses[cell]
 #include "major_axis.glsl"
 #include "stored_block.glsl"
@@ -54,7 +51,7 @@ void main() {
     return;
   }
   const uint rank = rankAt(frame.levels[block.level], address);
-  const float sigma = extinction[rank];
+  const float sigma = storedExtinction(rank);
   const DepthToEye toEye = depthToEye(block, sigma);
   const vec3 direction = directionToEye(block.center);
   const float depth = sigma * layerLength(direction) * float(layersOf(block, direction));
@@ -67,7 +64,7 @@ void main() {
   vec3 color = colorOf(block, rank);
   if (kLit) color *= scatteredLight(block, sigma, rank, normalize(frame.indexToWorld * direction), depth).light;
   splat.colorEnergy = vec4(energy * color, energy);
-  if (kEmits) splat.colorEnergy.rgb += leaving * peak * frame.emissionUnit * unpackLight(emission[rank]);
+  if (kEmits) splat.colorEnergy.rgb += leaving * peak * frame.emissionUnit * unpackLight(storedEmission(rank));
   splat.center = footprint.center;
   splat.halfExtent = footprint.halfExtent;
   splat.conic = footprint.conic;

@@ -1,5 +1,6 @@
 // The extinction of blocks, which is kept of those that hold anything. Include after blocks.glsl; `occupancy` is the
-// buffer of words and `extinction` that of all blocks, by rank.
+// buffer of words, STORES the BlockStores.
+#include "stores.glsl"
 #include "rank.glsl"
 #include "occupancy.glsl"
 
@@ -7,5 +8,5 @@
 float extinctionOf(BlockLevel level, ivec3 cell) {
   if (!isInside(level, cell)) return 0.0;
   const uint address = blockAddress(level, cell);
-  return holdsAnything(address) ? extinction[rankAt(level, address)] : 0.0;
+  return holdsAnything(address) ? storedExtinction(rankAt(level, address)) : 0.0;
 }

@@ -3,13 +3,15 @@
 // ascending order, so that the splats, and the rounding of their sums, come in the same order every time. A block's
 // place in the list is its rank in the level.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #include "interface.h"
 
 layout(local_size_x = kOccupancyThreads) in;
 layout(scalar, push_constant) uniform Push { VisiblePush push; };
 layout(scalar, binding = 0) buffer Occupancy { OccupancyWord occupancy[]; };
 layout(scalar, binding = 1) readonly buffer GroupOffsets { uint groupOffsets[]; };
-layout(scalar, binding = 2) writeonly buffer Blocks { uint blocks[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Blocks { uint values[]; };
 
 shared uint counts[kOccupancyThreads];
 
@@ -26,5 +28,5 @@ void main() {
   for (uint i = 0; i < thread; ++i) offset += counts[i];
   occupancy[push.firstWord + word].before = offset;
   for (; mask != 0; mask &= mask - 1)
-    blocks[offset++] = (push.firstWord + word) * kBlocksPerWord + uint(findLSB(mask));
+    Blocks(push.blocks).values[offset++] = (push.firstWord + word) * kBlocksPerWord + uint(findLSB(mask));
 }

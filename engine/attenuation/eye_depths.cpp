@@ -9,7 +9,7 @@ namespace freevoxels {
 
 EyeDepthsPass::EyeDepthsPass(const Device& device)
     : pipeline_(makeComputePipeline(device, {eye_depths_spv, "eye depths"},
-                                    {.bindings = std::vector(3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                                    {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
                                      .pushConstantBytes = sizeof(shader::EyeDepthsPush)},
                                     {shader::kEyeThreads, 1, 1})) {}
 
@@ -17,10 +17,11 @@ void EyeDepthsPass::record(Commands& commands, const DeviceVolume& volume, Direc
                            const RaySource& source, const Buffer& depths, int slot) const {
   const glm::dvec3 last(volume.layout.dimensions - 1);
   const shader::EyeDepthsPush push{.voxels = volume.onDevice(0),
+                                   .stores = volume.stores(),
                                    .place = glm::clamp(source.place, glm::dvec3(0.0), last),
                                    .cells = int(set),
                                    .first = slot * shader::kMaximumCells};
-  const std::array<Binding, 3> bindings{&volume.occupancy, &volume.extinction, &depths};
+  const std::array<Binding, 2> bindings{&volume.occupancy, &depths};
   const int edge = 2 * int(set) + 1;
   commands.beginPass("eye depths");
   commands.dispatchLinear(pipeline_, bindings, push, std::uint64_t(edge * edge * edge));

@@ -26,7 +26,7 @@ shader::RayFan deviceFan(const RayFan& fan, VkDeviceAddress depths) {
           .convergence = float(fan.convergence),
           .farthest = float(fan.farthest),
           .spacing = float(fan.spacing),
-          .depths = {std::uint32_t(depths), std::uint32_t(depths >> 32)}};
+          .depths = addressWords(depths)};
 }
 
 /// Bytes of the extinction of a slab, which the caches of processors hold: of more only where four planes

@@ -22,6 +22,7 @@ shader::MediumLevelPush mediumPush(const DeviceVolume& volume, int level) {
   const int childEdge = Block{.level = level - 1}.edge();
   return {.child = volume.onDevice(level - 1),
           .parent = volume.onDevice(level),
+          .stores = volume.stores(),
           .voxels = volume.layout.dimensions,
           .childEdge = childEdge,
           .parentCount = std::uint32_t(volume.stored[std::size_t(level)]),
@@ -36,25 +37,17 @@ MediumLevels::MediumLevels(const Device& device, const DeviceVolume& volume) {
   for (const std::uint32_t fromVoxels : {0u, 1u})
     pipelines_[fromVoxels] =
         makeComputePipeline(device, {medium_level_spv, "medium level"},
-                            {.bindings = std::vector(6, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                            {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
                              .pushConstantBytes = sizeof(shader::MediumLevelPush)},
                             {shader::kLevelThreads, 1, 1}, {colors, fromVoxels, emission});
 }
 
 void MediumLevels::record(Commands& commands, const DeviceVolume& volume,
                           std::span<const VisibleVoxels> coarse) const {
-  const Buffer& anyBuffer = volume.occupancy;
-  const Buffer& voxelColors = volume.hasColors ? volume.colors : anyBuffer;
-  const Buffer& blockColors = volume.hasColors ? volume.blockColors : anyBuffer;
   commands.beginPass("octree");
   for (int level = 1; level <= volume.hierarchy.top(); ++level) {
     const shader::MediumLevelPush push = mediumPush(volume, level);
-    const std::array<Binding, 6> bindings{&volume.extinction,
-                                          volume.hasEmission() ? &volume.emission : &anyBuffer,
-                                          &voxelColors,
-                                          &blockColors,
-                                          &volume.occupancy,
-                                          &coarse[std::size_t(level) - 1].indices};
+    const std::array<Binding, 2> bindings{&volume.occupancy, &coarse[std::size_t(level) - 1].indices};
     commands.dispatchLinear(pipelines_[level == 1 ? 1 : 0], bindings, push, push.parentCount);
     commands.barrier(kCompute, kCompute);
   }

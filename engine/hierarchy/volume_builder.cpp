@@ -19,19 +19,12 @@ class PackPass {
   PackPass(const Device& device, const DeviceVolume& volume)
       : pipeline_(makeComputePipeline(
             device, {pack_voxels_spv, "pack voxels"},
-            {.bindings = std::vector(8, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+            {.bindings = std::vector(5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
              .pushConstantBytes = sizeof(shader::BricksPush)},
             {shader::kBrickThreads, 1, 1},
             {volume.hasEmission(), volume.hasColors})) {}
   void record(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks) const {
-    const Buffer& anyBuffer = volume.extinction;
-    const std::array<Binding, 8> bindings{&bricks.scalars(),
-                                          &bricks.firstVoxels(),
-                                          &bricks.emissions(),
-                                          &volume.occupancy,
-                                          &volume.extinction,
-                                          volume.hasColors ? &volume.colors : &anyBuffer,
-                                          volume.hasEmission() ? &volume.emission : &anyBuffer,
+    const std::array<Binding, 5> bindings{&bricks.scalars(), &bricks.firstVoxels(), &bricks.emissions(), &volume.occupancy,
                                           &bricks.colors()};
     const shader::BricksPush push = bricks.push();
     commands.beginPass("pack");

@@ -12,10 +12,6 @@ namespace {
 static_assert(shader::kHighlight == float(kHighlight));
 static_assert(shader::kHighlightExponent == float(kHighlightExponent));
 
-glm::uvec2 halves(VkDeviceAddress address) {
-  return {std::uint32_t(address), std::uint32_t(address >> 32)};
-}
-
 shader::Light deviceLight(const Light& light, const RaySource& source, glm::dvec3 middle) {
   const glm::dvec3 size = glm::abs(source.place);
   return {
@@ -69,7 +65,7 @@ void LightPass::setBeyond(Commands& commands, const DeviceVolume& volume, Direct
     const RaySource source = lightSource(lighting.lights[i], volume.indexToWorld);
     if (!isInside(source, volume.layout.dimensions)) continue;
     beyond_.record(commands, volume, set, source, beyondDepths_, slot);
-    lights[i].beyond = halves(beyondDepths_.address() + VkDeviceSize(slot++) * kEyeDepthsBytes);
+    lights[i].beyond = addressWords(beyondDepths_.address() + VkDeviceSize(slot++) * kEyeDepthsBytes);
   }
 }
 

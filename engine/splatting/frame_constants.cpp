@@ -108,6 +108,7 @@ shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& t
       .imageSize = settings.size,
       .orthographic = rays.orthographic ? 1 : 0,
       .dimensions = volume.layout.dimensions,
+      .stores = volume.stores(),
       .levelCount = int(volume.hierarchy.levels.size()),
       .voxelSize = float(volume.voxelSize),
       .lookup = lookup,

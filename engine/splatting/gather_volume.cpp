@@ -192,19 +192,13 @@ void GatherVolume::shade(Commands& commands, const Shading& shading, int level) 
   const auto count = std::uint32_t(volume.stored[std::size_t(level)]);
   if (count == 0) return;
   const Buffer& anyBuffer = frame_;
-  const bool colors = volume.hasColors, lightOnly = level == 0 && hasScalars();
-  const std::array<Binding, 11> bindings{&frame_,
-                                         &towards_,
-                                         shading.table != nullptr ? &shading.table->planeAddresses : &anyBuffer,
-                                         &built_.lists.of(level, built_.visible).indices,
-                                         colors ? &volume.colors : &anyBuffer,
-                                         &volume.extinction,
-                                         &sources_,
-                                         colors ? &volume.blockColors : &anyBuffer,
-                                         &volume.occupancy,
-                                         shading.lights != nullptr ? shading.lights : &anyBuffer,
-                                         volume.hasEmission() ? &volume.emission : &anyBuffer};
+  const bool lightOnly = level == 0 && hasScalars();
+  const std::array<Binding, 4> bindings{&frame_, shading.table != nullptr ? &shading.table->planeAddresses : &anyBuffer,
+                                        &volume.occupancy, shading.lights != nullptr ? shading.lights : &anyBuffer};
   const shader::ShadePush push{
+      .blocks = addressWords(built_.lists.of(level, built_.visible).indices.address()),
+      .sources = addressWords(sources_.address()),
+      .towards = addressWords(towards_.address()),
       .firstRank = volume.firstRank(level),
       .count = count,
       .extinctionScale = float(kStoredDepth * volume.voxelSize),
@@ -359,7 +353,7 @@ void GatherVolume::recordShading(Commands& commands, const Shading& shading) {
   const DeviceVolume& volume = built_.volume;
   shadePass_ = makeComputePipeline(
       device_, {shade_blocks_spv, "shade blocks"},
-      {.bindings = std::vector(11, kStorage), .pushConstantBytes = sizeof(shader::ShadePush)},
+      {.bindings = std::vector(4, kStorage), .pushConstantBytes = sizeof(shader::ShadePush)},
       {shader::kShadeThreads, 1, 1},
       {lit_, volume.hasEmission(), volume.hasColors, shading.frame.tinted, hasTowards()});
   commands.beginPass("shade blocks");

@@ -31,7 +31,7 @@ ShaderCode fragmentShader(bool withDistance, bool sorted) {
 
 Pipeline makeSetupPipeline(const Device& device, const DeviceVolume& volume, bool lit, bool tinted) {
   return makeComputePipeline(device, {splat_setup_spv, "splat set-up"},
-                             {.bindings = std::vector(11, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                             {.bindings = std::vector(7, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
                               .pushConstantBytes = sizeof(shader::SetupPush)},
                              {shader::kSplatThreads, 1, 1},
                              {lit, volume.hasEmission(), volume.hasColors, tinted});
@@ -137,7 +137,7 @@ void SplatPass::recordFrame(Commands& commands, const DeviceVolume& volume, cons
   }
   if (frame.eyeReadsTable() && frame.eyeInside) {
     eyeDepthsPass_.record(commands, volume, DirectionSet(setup.cells), frame.eye, eyeDepths_);
-    setup.beyondEye = {std::uint32_t(eyeDepths_.address()), std::uint32_t(eyeDepths_.address() >> 32)};
+    setup.beyondEye = addressWords(eyeDepths_.address());
   }
   commands.beginPass("splat set-up");
   commands.update(frame_, setup);
@@ -150,18 +150,13 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
   if (splats_.bytes() < count * sizeof(shader::Splat))
     splats_ = Buffer(device_, count * sizeof(shader::Splat), MemoryUse::Device, "splats");
   const Buffer& anyBuffer = frame_;
-  const bool colors = inputs.volume.hasColors;
-  const std::array<Binding, 11> setup{&frame_,
-                                      inputs.volume.hasEmission() ? &inputs.volume.emission : &anyBuffer,
-                                      inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
-                                      inputs.order ? inputs.order : &inputs.visible->indices,
-                                      colors ? &inputs.volume.colors : &anyBuffer,
-                                      &inputs.volume.extinction,
-                                      &inputs.visible->chunks,
-                                      &splats_,
-                                      colors ? &inputs.volume.blockColors : &anyBuffer,
-                                      &inputs.volume.occupancy,
-                                      frame.lit ? inputs.lights : &anyBuffer};
+  const std::array<Binding, 7> setup{&frame_,
+                                     frame.lit ? inputs.lights : &anyBuffer,
+                                     inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
+                                     inputs.order ? inputs.order : &inputs.visible->indices,
+                                     &inputs.visible->chunks,
+                                     &splats_,
+                                     &inputs.volume.occupancy};
   const std::array<Binding, 1> draw{&splats_};
   Pipeline& setUp = setups_[std::size_t(frame.lit) + std::size_t(frame.tinted)];
   if (setUp.handle() == VK_NULL_HANDLE)

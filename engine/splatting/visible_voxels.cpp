@@ -46,7 +46,7 @@ CompactionPass::CompactionPass(const Device& device)
     : count_(makePass(device, {visible_count_spv, "visible count"}, {kStorage, kStorage},
                       shader::kOccupancyThreads)),
       scan_(makePass(device, {visible_scan_spv, "visible scan"}, {kStorage, kStorage}, shader::kScanThreads)),
-      write_(makePass(device, {visible_write_spv, "visible write"}, {kStorage, kStorage, kStorage},
+      write_(makePass(device, {visible_write_spv, "visible write"}, {kStorage, kStorage},
                       shader::kOccupancyThreads)) {}
 
 void CompactionPass::record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible,
@@ -56,10 +56,11 @@ void CompactionPass::record(Commands& commands, const DeviceVolume& volume, cons
       .firstWord = volume.hierarchy.first[std::size_t(level)] / shader::kBlocksPerWord,
       .wordCount = words,
       .groupCount = groups,
-      .chunkCount = visible.chunkCount};
+      .chunkCount = visible.chunkCount,
+      .blocks = addressWords(visible.indices.address())};
   const std::array<Binding, 2> count{&volume.occupancy, &visible.groupOffsets};
   const std::array<Binding, 2> scan{&visible.groupOffsets, &visible.chunks};
-  const std::array<Binding, 3> write{&volume.occupancy, &visible.groupOffsets, &visible.indices};
+  const std::array<Binding, 2> write{&volume.occupancy, &visible.groupOffsets};
   constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   const std::uint64_t threads = std::uint64_t(groups) * shader::kOccupancyThreads;
   commands.beginPass("visible voxels");

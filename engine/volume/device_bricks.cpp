@@ -110,6 +110,7 @@ void DeviceBricks::upload(std::size_t batch) {
 
 shader::BricksPush DeviceBricks::push() const {
   return {.voxels = target_.onDevice(0),
+          .stores = target_.stores(),
           .brickCount = brickCount_,
           .densityScale = classification_.transferFunction
                               ? 1.0f

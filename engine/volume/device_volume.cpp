@@ -31,6 +31,13 @@ shader::BlockLevel DeviceVolume::onDevice(int level) const {
           .dimensions = grid.dimensions};
 }
 
+shader::BlockStores DeviceVolume::stores() const {
+  return {.extinction = addressWords(extinction.address()),
+          .emission = addressWords(emission.address()),
+          .colors = addressWords(colors.address()),
+          .blockColors = addressWords(blockColors.address())};
+}
+
 DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
                               const Classification& classification) {
   DeviceVolume result{.layout = GridLayout(volume.dimensions),

@@ -57,6 +57,7 @@ struct DeviceVolume {
   /// Of a direction of the table.
   std::uint64_t planeBytes() const { return firstBound(int(stored.size())); }
   shader::BlockLevel onDevice(int level) const;
+  shader::BlockStores stores() const;
 };
 
 /// Of so many blocks that hold anything, in texels of four, and two beyond the last whole one:

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 #include <utility>
 
@@ -75,6 +76,11 @@ class Buffer {
   VkDeviceAddress address_ = 0;
   std::byte* mapped_ = nullptr;
 };
+
+/// A device address as shaders take it: the low word and the high word.
+inline glm::uvec2 addressWords(VkDeviceAddress address) {
+  return {std::uint32_t(address), std::uint32_t(address >> 32)};
+}
 
 /// A buffer seen as texels, of four floats or of another format: loads through the texture
 /// path, which lavapipe gathers for all lanes at once where storage-buffer loads go lane by lane (sweeps take
