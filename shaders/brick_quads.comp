@@ -8,6 +8,8 @@
 #include "gather_interface.h"
 #include "blocks.glsl"
 #include "rank.glsl"
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 
 layout(constant_id = 0) const int kAxis = 2;
 layout(constant_id = 1) const bool kTowards = false;
@@ -18,13 +20,10 @@ layout(local_size_x = kBrickQuadsThreads) in;
 layout(scalar, push_constant) uniform Push { BrickQuadsPush push; };
 layout(binding = 0) uniform utextureBuffer brickCells;  // of each brick, in blocks: x, y, z of its first one
 layout(binding = 1) uniform utextureBuffer occupancy;   // OccupancyWord
-layout(binding = 2) uniform utextureBuffer sources;     // by rank: packed source term, extinction as a half
-layout(binding = 3) uniform utextureBuffer towards;    // by rank, where kTowards says so
-layout(binding = 7) uniform utextureBuffer scalarBricks;  // numbers, by cell
-layout(binding = 8) uniform utextureBuffer scalarCodes;   // in bricks
-layout(binding = 4, rg32ui) writeonly uniform uimageBuffer extinctionQuads;
-layout(binding = 5, rgba32ui) writeonly uniform uimageBuffer sourceQuads;
-layout(binding = 6, rgba32ui) writeonly uniform uimageBuffer towardsQuads;
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Words { uint values[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Sources { uvec2 values[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer MediumQuads { uvec2 values[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) writeonly buffer SourceQuads { uvec4 values[]; };
 
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
@@ -35,39 +34,55 @@ uint codeAt(ivec3 voxel) {
   const ivec3 place = voxel + push.corner;
   const ivec3 cell = place / kBrickEdge, local = place % kBrickEdge;
   const bool inside = all(lessThan(voxel, push.level.dimensions));
-  const int brick = inside ? int(texelFetch(scalarBricks, cell.x + push.cells.x * (cell.y + push.cells.y * cell.z)).x) : 0;
-  return texelFetch(scalarCodes, ((brick * kBrickEdge + local.z) * kBrickEdge + local.y) * kBrickEdge + local.x).x;
+  const uint brick = inside ? Words(push.scalarBricks).values[cell.x + push.cells.x * (cell.y + push.cells.y * cell.z)] : 0;
+  const uint index = ((brick * kBrickEdge + local.z) * kBrickEdge + local.y) * kBrickEdge + local.x;
+  return bitfieldExtract(Words(push.scalarCodes).values[index / 2], int(index % 2) * 16, 16);
 }
 
-void main() {
-  const uint number = gl_LocalInvocationID.x + kBrickQuadsThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
-  if (number >= push.count) return;
-  const int quad = int(push.firstBrick) * kGatherBrickBlocks + int(number);
-  const int inBrick = int(number);
-  ivec3 first = ivec3(texelFetch(brickCells, quad >> (3 * kBrickLevels)).xyz);
-  first[kAxis] += inBrick & kEdgeMask;
-  first[kSideA] += inBrick >> kBrickLevels & kEdgeMask;
-  first[kSideB] += inBrick >> (2 * kBrickLevels) & kEdgeMask;
-  const ivec3 strides = ivec3(1, push.level.rowPitch, push.level.rowPitch * push.level.dimensions.y);
-  const int firstAddress = int(blockAddress(push.level, first)), stepA = strides[kSideA], stepB = strides[kSideB];
-  uvec4 extinctions;  // halves, or codes
-  uvec4 packed = uvec4(0), directions = uvec4(0);
-  [[unroll]] for (int i = 0; i < 4; ++i) {
+// What is kept of two blocks, neighbours along the second side.
+struct Pair {
+  uvec2 medium;  // halves of extinctions, or codes
+  uvec2 source, towards;
+};
+
+Pair pairAt(ivec3 first) {
+  Pair pair = Pair(uvec2(0), uvec2(0), uvec2(0));
+  [[unroll]] for (int i = 0; i < 2; ++i) {
     ivec3 cell = first;
-    cell[kSideA] += i & 1;
-    cell[kSideB] += i >> 1;
+    cell[kSideB] += i;
     const bool inside = all(lessThan(cell, push.level.dimensions));
-    const int address = inside ? firstAddress + (i & 1) * stepA + (i >> 1) * stepB : 0;
+    if (kScalars) pair.medium[i] = codeAt(cell);
+    if (kScalars && !kColored) continue;
+    const int address = inside ? int(blockAddress(push.level, cell)) : 0;
     const uvec2 word = texelFetch(occupancy, address >> 5).xy;
     const int bit = address & 31;
     const bool occupied = inside && (word.x >> bit & 1u) != 0;
-    const int rank = occupied ? int(push.level.firstRank + rankIn(word, bit)) : 0;
-    const uvec2 source = texelFetch(sources, rank).xy;
-    extinctions[i] = kScalars ? codeAt(cell) : occupied ? source.y : 0;
-    if (kColored) packed[i] = occupied ? source.x : 0;
-    if (kTowards) directions[i] = texelFetch(towards, rank).x;
+    const uint rank = occupied ? push.level.firstRank + rankIn(word, bit) : 0;
+    const uvec2 source = Sources(push.sources).values[rank];
+    if (!kScalars) pair.medium[i] = occupied ? source.y : 0;
+    pair.source[i] = occupied ? source.x : 0;
+    if (kTowards) pair.towards[i] = Words(push.towardsEye).values[rank];
   }
-  imageStore(extinctionQuads, quad, uvec4(extinctions.x | extinctions.y << 16, extinctions.z | extinctions.w << 16, 0, 0));
-  if (kColored) imageStore(sourceQuads, quad, packed);
-  if (kTowards) imageStore(towardsQuads, quad, directions);
+  return pair;
+}
+
+// A workgroup a brick, a thread a row of quads along the first side.
+void main() {
+  const uint brick = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+  if (brick >= push.count) return;
+  const int slice = int(gl_LocalInvocationIndex) & kEdgeMask, row = int(gl_LocalInvocationIndex) >> kBrickLevels;
+  ivec3 cell = ivec3(texelFetch(brickCells, int(push.firstBrick + brick)).xyz);
+  cell[kAxis] += slice;
+  cell[kSideB] += row;
+  uint quad = push.firstQuad + brick * kGatherBrickBlocks + slice + (row << (2 * kBrickLevels));
+  Pair pair = pairAt(cell);
+  for (int i = 0; i < kGatherBrickEdge; ++i) {
+    ++cell[kSideA];
+    const Pair next = pairAt(cell);
+    MediumQuads(push.medium).values[quad] = pair.medium | next.medium << 16;
+    if (kColored) SourceQuads(push.source).values[quad] = uvec4(pair.source.x, next.source.x, pair.source.y, next.source.y);
+    if (kTowards) SourceQuads(push.towards).values[quad] = uvec4(pair.towards.x, next.towards.x, pair.towards.y, next.towards.y);
+    quad += kGatherBrickEdge;
+    pair = next;
+  }
 }

@@ -6,6 +6,8 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "gather_interface.h"
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #include "packed_light.glsl"
 
 layout(constant_id = 0) const int kAxis = 2;        // rays with another axis are left to other dispatches
@@ -13,6 +15,7 @@ layout(constant_id = 1) const bool kTowards = false;  // whether the light of bl
 layout(constant_id = 2) const bool kColored = true;   // whether blocks have source terms of their own
 layout(constant_id = 3) const bool kScalars = false;  // whether voxels are classified after interpolation
 layout(constant_id = 4) const bool kLit = false;      // whether voxels then have light, in place of source terms
+layout(constant_id = 5) const bool kPieces = false;   // whether quads are in more than one piece
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 layout(scalar, binding = 0) uniform Frame { GatherFrame frame; };
@@ -25,12 +28,33 @@ layout(binding = 4) uniform utextureBuffer towardsQuads;     // four times three
 layout(binding = 5, rgba32f) writeonly uniform imageBuffer colorEnergy;  // C, E
 layout(binding = 6, r32f) writeonly uniform imageBuffer distances;       // sum of e times distance
 
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MediumPiece { uvec2 values[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SourcePiece { uvec4 values[]; };
 layout(binding = 8) uniform utextureBuffer skipCells;
 layout(binding = 7) uniform textureBuffer transferTable;  // of each interval the integral up to it, and the mean
 
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
 const float kLeastChange = 16.0;  // of the scalar along a stretch, intervals, for its mean to be taken from integrals
+
+const int kPieceLog2 = kPieceBricksLog2 + 3 * kBrickLevels;  // quads
+const int kPieceMask = (1 << kPieceLog2) - 1;
+
+// Texels are faster than addresses on lavapipe.
+uvec2 mediumQuad(int quad) {
+  if (!kPieces) return texelFetch(mediumQuads, quad).xy;
+  return MediumPiece(frame.axes[kAxis].mediumPieces[quad >> kPieceLog2]).values[quad & kPieceMask];
+}
+
+uvec4 sourceQuad(int quad) {
+  if (!kPieces) return texelFetch(sourceQuads, quad);
+  return SourcePiece(frame.axes[kAxis].sourcePieces[quad >> kPieceLog2]).values[quad & kPieceMask];
+}
+
+uvec4 towardsQuad(int quad) {
+  if (!kPieces) return texelFetch(towardsQuads, quad);
+  return SourcePiece(frame.axes[kAxis].towardsPieces[quad >> kPieceLog2]).values[quad & kPieceMask];
+}
 
 struct Ray {
   vec2 origin, slope;   // positions on the sides: origin + slope * slice, in blocks of the level
@@ -85,7 +109,7 @@ int quadAt(Slices level, vec2 position, int slice, out vec4 weights) {
 // The sum of a quad's source terms.
 vec3 sourceAt(int quad, uvec4 packed, vec4 weights, vec3 toEye) {
   if (kTowards) {
-    const uvec4 towards = texelFetch(towardsQuads, quad);
+    const uvec4 towards = towardsQuad(quad);
     [[unroll]] for (int i = 0; i < 4; ++i) weights[i] *= 1.0 + dot(unpackSnorm4x8(towards[i]).xyz, toEye);
   }
   vec3 source = vec3(0.0);
@@ -97,10 +121,10 @@ vec3 sourceAt(int quad, uvec4 packed, vec4 weights, vec3 toEye) {
 vec4 sliceAt(Slices level, vec2 position, int slice, vec3 toEye) {
   vec4 weights;
   const int quad = quadAt(level, position, slice, weights);
-  const uvec2 halves = texelFetch(mediumQuads, quad).xy;
+  const uvec2 halves = mediumQuad(quad);
   const float extinction = dot(weights, vec4(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y)));
   if (!kColored) return vec4(extinction * frame.color, extinction);
-  return vec4(sourceAt(quad, texelFetch(sourceQuads, quad), weights, toEye), extinction);
+  return vec4(sourceAt(quad, sourceQuad(quad), weights, toEye), extinction);
 }
 
 // The part of a slice's tent that is in front of the eye, which is `ahead` slices before it.
@@ -148,7 +172,7 @@ void tableAt(float scalar, out vec4 integral, out vec4 medium) {
 Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye) {
   vec4 weights;
   const int quad = quadAt(level, position, slice, weights);
-  const uvec2 pairs = texelFetch(mediumQuads, quad).xy;
+  const uvec2 pairs = mediumQuad(quad);
   const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
   const bool whole = all(notEqual(codes, uvec4(0)));
   [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = codes[i] != 0 ? weights[i] : 0.0;
@@ -167,7 +191,7 @@ Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye
   found.light = vec3(1.0);
   if (kLit) {
     // Voxels that hold nothing have no light: that of the others counts.
-    const uvec4 packed = texelFetch(sourceQuads, quad);
+    const uvec4 packed = sourceQuad(quad);
     [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = packed[i] != 0 ? weights[i] : 0.0;
     found.light = sourceAt(quad, packed, weights, toEye) / max(weights.x + weights.y + weights.z + weights.w, 1e-20);
   }

@@ -17,7 +17,10 @@ FV_CONSTANT int kGatherBrickBlocks = kGatherBrickEdge * kGatherBrickEdge * kGath
 // tested together.
 FV_CONSTANT int kSkipLevels = 2;
 FV_CONSTANT int kSkipGroup = 1 << kSkipLevels;
-FV_CONSTANT int kBrickQuadsThreads = 64;
+FV_CONSTANT int kBrickQuadsThreads = kGatherBrickEdge * kGatherBrickEdge;
+// Quads of more bricks than one texel buffer or allocation holds are in pieces of so many.
+FV_CONSTANT int kPieceBricksLog2 = 17;
+FV_CONSTANT int kMostPieces = 32;
 // Classification after interpolation: a transfer function's intervals of the scalar, and the codes of scalars, 1 and above.
 FV_CONSTANT int kTransferIntervals = 4096;
 FV_CONSTANT int kScalarCodes = 65534;
@@ -41,6 +44,7 @@ struct GatherAxis {
   vec2 tilt;           // what a step along the axis is on the image, in pixels times distance, at the image's middle
   float tiltDepth;     // change of the distance by that step
   float middlePlane;   // voxels
+  uvec2 mediumPieces[kMostPieces], sourcePieces[kMostPieces], towardsPieces[kMostPieces];  // device addresses of quads
   ivec2 slices[2][kMaximumLevels];  // by the ray's sign along the axis (0: descending) and level: first, end; ascending
 };
 
@@ -88,16 +92,20 @@ struct ShadePush {
 // brick_quads.comp
 struct BrickQuadsPush {
   BlockLevel level;
-  uint firstBrick;   // of the level
-  uint count;        // quads of the level
+  uint firstBrick;
+  uint count;        // of bricks
+  uint firstQuad;    // where they begin at the addresses
+  uvec2 medium, source, towards;  // device addresses of quads
+  uvec2 sources, towardsEye;        // device addresses: what shade_blocks.comp made, by rank
+  uvec2 scalarBricks, scalarCodes;  // of scalars: device addresses of the bricks' numbers by cell, and of 16 bits a voxel
   ivec3 corner;      // place of the volume's first voxel in its brick of scalars
   ivec3 cells;       // bricks of scalars along the axes
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(GatherAxis) == 8 * 4 + 12 * 6 - 16 + 2 * kMaximumLevels * 8);
+static_assert(sizeof(GatherAxis) == 8 * 4 + 12 * 6 - 16 + 3 * kMostPieces * 8 + 2 * kMaximumLevels * 8);
 static_assert(sizeof(GatherLevel) == 48);
-static_assert(sizeof(BrickQuadsPush) == 60);
+static_assert(sizeof(BrickQuadsPush) == 120);
 static_assert(sizeof(GatherFrame) <= 16384);
 static_assert(sizeof(ShadePush) == 48);
 }  // namespace freevoxels::shader

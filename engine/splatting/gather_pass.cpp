@@ -22,7 +22,7 @@ Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume) 
   return makeComputePipeline(device, {gather_spv, "gather"},
                              {.bindings = {kUniform, kTexels, kTexels, kTexels, kTexels, kTexelsOut, kTexelsOut, kTexels, kTexels}}, kTile,
                              {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.hasScalars(),
-                              volume.isLit()});
+                              volume.isLit(), volume.inPieces()});
 }
 
 /// Of the stencil and the upsampling, which have the same bindings.
@@ -84,9 +84,9 @@ void GatherPass::recordGather(Commands& commands, const GatherVolume& volume, co
     const GatherVolume::Quads& quads = volume.quads(axis);
     const std::array<Binding, 9> bindings{&frame_,
                                           &volume.brickNumbers(),
-                                          &quads.extinctionTexels,
-                                          &quads.sourceTexels,
-                                          &quads.towardsTexels,
+                                          &quads.medium.texels,
+                                          &quads.source.texels,
+                                          &quads.towards.texels,
                                           &gathered_.colorEnergyTexels,
                                           &gathered_.distanceTexels,
                                           &volume.transferTable(),

@@ -18,7 +18,6 @@ namespace {
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 constexpr VkDescriptorType kTexelsIn = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-constexpr VkDescriptorType kTexelsOut = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
 constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
 
 /// Groups of slices that are skipped at a time, at most.
@@ -103,11 +102,6 @@ double sourceUnit(const DeviceVolume& volume, const Lighting* lighting) {
   return std::max(brightest * kStoredDepth / kBrightest, 1.0);
 }
 
-/// What there is of every occupied block. One more, as no buffer is empty.
-std::uint64_t recordCount(std::uint64_t storedBlocks) {
-  return storedBlocks + 1;
-}
-
 /// Of the device's memory one part in so many may hold quads that the frame does not read.
 constexpr std::uint64_t kKeptShare = 4;
 
@@ -125,12 +119,15 @@ float meanLayer(const DeviceVolume& volume) {
 GatherVolume::GatherVolume(const Device& device, const BuiltVolume& built, std::vector<StageTime>& times)
     : device_(device),
       built_(built),
-      frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "shading frame"),
-      sources_(device, recordCount(built.volume.storedBlocks()) * sizeof(glm::uvec2), MemoryUse::Device, "source terms",
-               kTexels),
-      sourceTexels_(device, sources_, VK_FORMAT_R32G32_UINT) {
-  makeTowards(1);  // a binding needs a buffer
+      frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "shading frame") {
   makeBricks(times);
+  const std::uint32_t bricks = firstBricks_.back();
+  const std::uint64_t quads = std::uint64_t(bricks) * shader::kGatherBrickBlocks;
+  const bool inOne = quads <= device.limits().maxTexelBufferElements && quads * sizeof(glm::uvec4) <= device.maximumAllocation();
+  bricksPerPiece_ = inOne ? bricks : 1u << shader::kPieceBricksLog2;
+  if (bricks > std::uint64_t(bricksPerPiece_) * shader::kMostPieces)
+    fail(ExitCode::OutOfMemory, "the gather needs {} quads of voxels, more than the {} that it can number: use --draw splats", quads,
+         std::uint64_t(bricksPerPiece_) * shader::kMostPieces * shader::kGatherBrickBlocks);
 }
 
 /// Which cells of the octree are bricks, and which are skipped. A position in a cell stays in that and its next neighbours
@@ -180,11 +177,15 @@ void GatherVolume::makeBricks(std::vector<StageTime>& times) {
   make(skips_, skipTexels_, std::as_bytes(std::span(skips)), VK_FORMAT_R8_UINT, "cells to skip");
 }
 
-void GatherVolume::makeTowards(std::uint64_t blocks) {
-  const std::uint64_t bytes = blocks * sizeof(std::uint32_t);
-  if (towards_.bytes() >= bytes) return;
-  towards_ = Buffer(device_, bytes, MemoryUse::Device, "source directions", kTexels);
-  towardsTexels_ = TexelView(device_, towards_, VK_FORMAT_R32_UINT);
+/// Scalars without light need none for the voxels.
+void GatherVolume::makeSources() {
+  const std::uint64_t blocks = built_.volume.storedBlocks() + 1;  // no buffer is empty
+  if (shadesLevel(0) || wantedLevels_ != 1u) {
+    if (sources_.bytes() == 0)
+      sources_ = Buffer(device_, blocks * sizeof(glm::uvec2), MemoryUse::Device, "source terms");
+  }
+  if (hasTowards() && towards_.bytes() == 0)
+    towards_ = Buffer(device_, blocks * sizeof(std::uint32_t), MemoryUse::Device, "source directions");
 }
 
 void GatherVolume::shade(Commands& commands, const Shading& shading, int level) {
@@ -212,6 +213,10 @@ void GatherVolume::shade(Commands& commands, const Shading& shading, int level) 
 bool GatherVolume::hasColors() const {
   const bool onlyScalars = hasScalars() && wantedLevels_ == 1u;  // which have their colours in the transfer function
   return lit_ || (built_.volume.hasColors && !onlyScalars) || built_.volume.hasEmission();
+}
+
+bool GatherVolume::shadesLevel(int level) const {
+  return lit_ || level > 0 || !hasScalars();
 }
 
 bool GatherVolume::hasScalars() const {
@@ -244,7 +249,7 @@ void GatherVolume::prepare(const Shading& shading) {
   if (!sameLight) shadedLevels_ = 0;
   for (std::size_t axis = 0; axis < quads_.size(); ++axis)
     if (!sameLight) quads_[axis].levels = 0;
-  if (hasTowards()) makeTowards(recordCount(built_.volume.storedBlocks()));
+  makeSources();
   const auto makeRoomForAll = [&] {
     for (std::size_t axis = 0; axis < quads_.size(); ++axis)
       if (shading.axes[axis]) makeRoom(quads_[axis], shading.axes);
@@ -266,22 +271,37 @@ void GatherVolume::dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t 
   for (std::size_t axis = 0; axis < quads_.size(); ++axis) {
     Quads& quads = quads_[axis];
     if (axes[axis]) continue;
-    kept += quads.extinction.bytes() + quads.source.bytes() + quads.towards.bytes();
+    kept += quads.medium.bytes() + quads.source.bytes() + quads.towards.bytes();
     if (quads.levels == 0 || kept > most) quads = {};
   }
+}
+
+std::uint64_t GatherVolume::QuadStore::bytes() const {
+  std::uint64_t sum = 0;
+  for (const Buffer& piece : pieces) sum += piece.bytes();
+  return sum;
+}
+
+/// Of a quad where there is no need, as a binding needs a buffer.
+GatherVolume::QuadStore GatherVolume::makeStore(bool needed, std::uint64_t quadBytes, VkFormat format, const char* name) const {
+  QuadStore store;
+  const std::uint32_t bricks = firstBricks_.back();
+  for (std::uint32_t first = 0; first == 0 || (needed && first < bricks); first += bricksPerPiece_) {
+    const std::uint64_t quads = std::uint64_t(std::min(bricksPerPiece_, bricks - first)) * shader::kGatherBrickBlocks;
+    store.pieces.emplace_back(device_, (needed ? quads : 1) * quadBytes, MemoryUse::Device, name, kTexels);
+  }
+  store.texels = TexelView(device_, store.pieces.front(), format);
+  return store;
 }
 
 /// Takes the memory of an axis that holds nothing of use, where there is one.
 void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
   const std::uint64_t count = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks;
-  if (count > device_.limits().maxTexelBufferElements)
-    fail(ExitCode::OutOfMemory, "the gather needs {} quads of voxels, and this device can bind {}: --draw splats has no such limit",
-         count, device_.limits().maxTexelBufferElements);
   const auto fits = [&](const Quads& there) {
-    const auto holds = [&](const Buffer& buffer, bool needed, std::uint64_t bytes) {
-      return buffer.bytes() >= (needed ? count : 1) * bytes;
+    const auto holds = [&](const QuadStore& store, bool needed, std::uint64_t bytes) {
+      return store.bytes() >= (needed ? count : 1) * bytes;
     };
-    return holds(there.extinction, true, sizeof(glm::uvec2)) && holds(there.source, hasColors(), sizeof(glm::uvec4)) &&
+    return holds(there.medium, true, sizeof(glm::uvec2)) && holds(there.source, hasColors(), sizeof(glm::uvec4)) &&
            holds(there.towards, hasTowards(), sizeof(glm::uvec4));
   };
   if (fits(quads)) return;
@@ -290,17 +310,10 @@ void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
     quads = std::exchange(quads_[other], {});
     return;
   }
-  constexpr VkBufferUsageFlags kUsage = kTexels | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
   quads = {};  // not both at once
-  const auto make = [&](Buffer& buffer, TexelView& view, bool needed, std::uint64_t bytes, VkFormat format,
-                        const char* name) {
-    buffer = Buffer(device_, (needed ? count : 1) * bytes, MemoryUse::Device, name, kUsage);
-    view = TexelView(device_, buffer, format);
-  };
-  make(quads.extinction, quads.extinctionTexels, true, sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "extinction quads");
-  make(quads.source, quads.sourceTexels, hasColors(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source quads");
-  make(quads.towards, quads.towardsTexels, hasTowards(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT,
-       "source direction quads");
+  quads.medium = makeStore(true, sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "medium quads");
+  quads.source = makeStore(hasColors(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source quads");
+  quads.towards = makeStore(hasTowards(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source direction quads");
 }
 
 void GatherVolume::record(Commands& commands, const Shading& shading) {
@@ -313,40 +326,47 @@ void GatherVolume::record(Commands& commands, const Shading& shading) {
 void GatherVolume::recordQuads(Commands& commands, int axis) {
   const DeviceVolume& volume = built_.volume;
   Quads& quads = quads_[std::size_t(axis)];
-  const DeviceScalars* const scalars = hasScalars() ? &*volume.scalarBricks : nullptr;
-  const std::array<Binding, 9> bindings{&brickCellTexels_,
-                                        &volume.occupancyTexels,
-                                        &sourceTexels_,
-                                        &towardsTexels_,
-                                        &quads.extinctionTexels,
-                                        &quads.sourceTexels,
-                                        &quads.towardsTexels,
-                                        scalars ? &scalars->brickNumberTexels : &brickNumberTexels_,
-                                        scalars ? &scalars->codeTexels : &brickNumberTexels_};
-  const auto make = [&](int number, std::uint32_t first, std::uint32_t end) {
-    if (first == end) return;
-    const bool codes = scalars && number == 0;
-    const bool isEmptyBrick = first == 0;  // which all levels read
-    const bool colored = hasColors() && (lit_ || !codes || isEmptyBrick);
-    const Pipeline pass = makeComputePipeline(
-        device_, {brick_quads_spv, "brick quads"},
-        {.bindings = {kTexelsIn, kTexelsIn, kTexelsIn, kTexelsIn, kTexelsOut, kTexelsOut, kTexelsOut, kTexelsIn, kTexelsIn},
-         .pushConstantBytes = sizeof(shader::BrickQuadsPush)},
-        {shader::kBrickQuadsThreads, 1, 1}, {std::uint32_t(axis), hasTowards(), colored, codes});
-    const shader::BrickQuadsPush push{.level = volume.onDevice(number),
-                                      .firstBrick = first,
-                                      .count = (end - first) * shader::kGatherBrickBlocks,
-                                      .corner = scalars ? scalars->corner : glm::ivec3(0),
-                                      .cells = scalars ? scalars->cells : glm::ivec3(0)};
-    commands.dispatchLinear(pass, bindings, push, push.count);
-  };
   commands.beginPass("brick quads");
-  if (quads.levels == 0) make(0, 0, 1);  // the empty brick
-  for (int number = 0; number <= volume.hierarchy.top(); ++number)
-    if (((wantedLevels_ & ~quads.levels) >> number & 1u) != 0)
-      make(number, firstBricks_[std::size_t(number)], firstBricks_[std::size_t(number) + 1]);
+  if (quads.levels == 0) recordBricks(commands, axis, 0, 0, 1);  // the empty one
+  for (int level = 0; level <= volume.hierarchy.top(); ++level)
+    if (((wantedLevels_ & ~quads.levels) >> level & 1u) != 0)
+      recordBricks(commands, axis, level, firstBricks_[std::size_t(level)], firstBricks_[std::size_t(level) + 1]);
   commands.barrier(kCompute, kCompute);
   quads.levels |= wantedLevels_;
+}
+
+/// The quads of bricks of a level, piece by piece.
+void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::uint32_t first, std::uint32_t end) {
+  const DeviceVolume& volume = built_.volume;
+  const Quads& quads = quads_[std::size_t(axis)];
+  const DeviceScalars* const scalars = hasScalars() ? &*volume.scalarBricks : nullptr;
+  const bool codes = scalars && level == 0;
+  const bool isEmptyBrick = first == 0;  // which all levels read
+  const bool colored = hasColors() && (lit_ || !codes || isEmptyBrick);
+  const Pipeline pass = makeComputePipeline(
+      device_, {brick_quads_spv, "brick quads"},
+      {.bindings = {kTexelsIn, kTexelsIn}, .pushConstantBytes = sizeof(shader::BrickQuadsPush)},
+      {shader::kBrickQuadsThreads, 1, 1}, {std::uint32_t(axis), hasTowards(), colored, codes});
+  const std::array<Binding, 2> bindings{&brickCellTexels_, &volume.occupancyTexels};
+  for (std::uint32_t next = first; next < end;) {
+    const std::uint32_t piece = next / bricksPerPiece_;
+    const std::uint32_t bricks = std::min(end, (piece + 1) * bricksPerPiece_) - next;
+    const shader::BrickQuadsPush push{.level = volume.onDevice(level),
+                                      .firstBrick = next,
+                                      .count = bricks,
+                                      .firstQuad = next % bricksPerPiece_ * shader::kGatherBrickBlocks,
+                                      .medium = addressWords(quads.medium.address(piece)),
+                                      .source = addressWords(quads.source.address(piece)),
+                                      .towards = addressWords(quads.towards.address(piece)),
+                                      .sources = addressWords(sources_.address()),
+                                      .towardsEye = addressWords(towards_.address()),
+                                      .scalarBricks = addressWords(scalars ? scalars->brickNumbers.address() : 0),
+                                      .scalarCodes = addressWords(scalars ? scalars->codes.address() : 0),
+                                      .corner = scalars ? scalars->corner : glm::ivec3(0),
+                                      .cells = scalars ? scalars->cells : glm::ivec3(0)};
+    commands.dispatchLinear(pass, bindings, push, std::uint64_t(bricks) * shader::kBrickQuadsThreads);
+    next += bricks;
+  }
 }
 
 void GatherVolume::recordShading(Commands& commands, const Shading& shading) {
@@ -359,12 +379,21 @@ void GatherVolume::recordShading(Commands& commands, const Shading& shading) {
   commands.beginPass("shade blocks");
   commands.update(frame_, shading.frame.setup);
   for (int level = 0; level <= volume.hierarchy.top(); ++level)
-    if (((wantedLevels_ & ~shadedLevels_) >> level & 1u) != 0 && (lit_ || level > 0 || !hasScalars()))
+    if (((wantedLevels_ & ~shadedLevels_) >> level & 1u) != 0 && shadesLevel(level))
       shade(commands, shading, level);
   shadedLevels_ |= wantedLevels_;
 }
 
 void GatherVolume::describe(shader::GatherFrame& frame) const {
+  for (std::size_t axis = 0; axis < quads_.size(); ++axis) {
+    const Quads& quads = quads_[axis];
+    const auto setPieces = [](const QuadStore& store, glm::uvec2* addresses) {
+      for (std::size_t i = 0; i < store.pieces.size(); ++i) addresses[i] = addressWords(store.pieces[i].address());
+    };
+    setPieces(quads.medium, frame.axes[axis].mediumPieces);
+    setPieces(quads.source, frame.axes[axis].sourcePieces);
+    setPieces(quads.towards, frame.axes[axis].towardsPieces);
+  }
   frame.extinctionUnit = float(1.0 / (kStoredDepth * built_.volume.voxelSize));
   frame.sourceUnit = float(sourceUnit_);
   frame.color = built_.volume.albedo;

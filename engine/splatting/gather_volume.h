@@ -2,6 +2,7 @@
 // What the gather keeps of a volume: bricks of 8^3 blocks that are not empty, and in them, for the axis that rays march
 // along, quads of neighbouring blocks with their extinction and the light that they send to the eye.
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -33,10 +34,16 @@ class GatherVolume {
   /// prepare() with the same arguments.
   void record(Commands& commands, const Shading& shading);
 
+  /// An array of quads: as many pieces as it takes, and texels where it is one.
+  struct QuadStore {
+    std::vector<Buffer> pieces;
+    TexelView texels;
+    std::uint64_t bytes() const;
+    VkDeviceAddress address(std::uint32_t piece) const { return pieces[std::min<std::size_t>(piece, pieces.size() - 1)].address(); }
+  };
   /// The quads of an axis.
   struct Quads {
-    Buffer extinction, source, towards;
-    TexelView extinctionTexels, sourceTexels, towardsTexels;
+    QuadStore medium, source, towards;
     std::uint32_t levels = 0;  ///< a bit for each level that is there
   };
   const TexelView& skips() const { return skipTexels_; }
@@ -51,17 +58,23 @@ class GatherVolume {
   /// Whether voxels are classified after interpolation: quads of the finest level then hold codes of scalars.
   bool hasScalars() const;
   bool isLit() const { return lit_; }
+  /// Whether quads are in more than one piece, of shader::kPieceBricksLog2 each.
+  bool inPieces() const { return bricksPerPiece_ < firstBricks_.back(); }
   /// TransferTable::texels(); any texels where there are no scalars.
   const TexelView& transferTable() const;
 
  private:
   void makeBricks(std::vector<StageTime>& times);
-  void makeTowards(std::uint64_t blocks);
+  void makeSources();
   void dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t most);
   void makeRoom(Quads& quads, const std::array<bool, 3>& axes);
+  QuadStore makeStore(bool needed, std::uint64_t quadBytes, VkFormat format, const char* name) const;
   void shade(Commands& commands, const Shading& shading, int level);
   void recordShading(Commands& commands, const Shading& shading);
+  /// Whether the level's blocks have source terms: scalars without light have their colours in the transfer function.
+  bool shadesLevel(int level) const;
   void recordQuads(Commands& commands, int axis);
+  void recordBricks(Commands& commands, int axis, int level, std::uint32_t first, std::uint32_t end);
 
   const Device& device_;
   const BuiltVolume& built_;
@@ -71,10 +84,11 @@ class GatherVolume {
   Buffer skips_;         ///< bytes by level and cell: groups of slices to skip
   Buffer brickCells_;    ///< ivec4: each brick's first block
   Buffer sources_;       ///< by rank: packed source term, extinction as a half
-  Buffer towards_;       ///< by rank: three signed normalised bytes; one block's before a frame needs them
-  TexelView brickNumberTexels_, skipTexels_, brickCellTexels_, sourceTexels_, towardsTexels_;
+  Buffer towards_;       ///< by rank: three signed normalised bytes
+  TexelView brickNumberTexels_, skipTexels_, brickCellTexels_;
   std::vector<shader::GatherLevel> levels_;
   std::vector<std::uint32_t> firstBricks_;  ///< of each level, and the number of all
+  std::uint32_t bricksPerPiece_ = 0;
   std::array<Quads, 3> quads_;
   // What the source terms are of.
   std::uint32_t shadedLevels_ = 0;  ///< a bit for each level

@@ -12,7 +12,6 @@ namespace freevoxels {
 
 DeviceScalars uploadScalars(const Device& device, const Volume& volume, const TransferFunction& function,
                             double extinctionScale) {
-  constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
   constexpr std::size_t kVoxels = std::tuple_size_v<ScalarBricks::Brick>;
   const ScalarBricks& scalars = volume.scalars;
   const std::span<const ScalarBricks::Brick> bricks = scalars.bricks();
@@ -31,16 +30,15 @@ DeviceScalars uploadScalars(const Device& device, const Volume& volume, const Tr
   });
   const std::vector<glm::vec4> texels = table.texels(extinctionScale);
 
-  const auto make = [&](Buffer& buffer, TexelView& view, std::span<const std::byte> bytes, VkFormat format, const char* name) {
-    buffer = Buffer(device, bytes.size(), MemoryUse::Device, name, kTexels);
+  const auto make = [&](std::span<const std::byte> bytes, const char* name) {
+    Buffer buffer(device, bytes.size(), MemoryUse::Device, name, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     upload(device, buffer, bytes);
-    view = TexelView(device, buffer, format);
+    return buffer;
   };
-  make(result.codes, result.codeTexels, std::as_bytes(std::span(codes)), VK_FORMAT_R16_UINT, "scalar codes");
-  make(result.brickNumbers, result.brickNumberTexels, std::as_bytes(std::span(numbers)), VK_FORMAT_R32_UINT,
-       "scalar brick numbers");
-  make(result.table, result.tableTexels, std::as_bytes(std::span(texels)), VK_FORMAT_R32G32B32A32_SFLOAT,
-       "transfer function table");
+  result.codes = make(std::as_bytes(std::span(codes)), "scalar codes");
+  result.brickNumbers = make(std::as_bytes(std::span(numbers)), "scalar brick numbers");
+  result.table = make(std::as_bytes(std::span(texels)), "transfer function table");
+  result.tableTexels = TexelView(device, result.table);
   return result;
 }
 

@@ -14,7 +14,7 @@ struct DeviceScalars {
   Buffer codes;         ///< 16 bits a voxel
   Buffer brickNumbers;  ///< uint32 of each cell of `cells`, x fastest
   Buffer table;         ///< TransferTable::texels()
-  TexelView codeTexels, brickNumberTexels, tableTexels;
+  TexelView tableTexels;
   glm::ivec3 cells{0};   ///< bricks along the axes
   glm::ivec3 corner{0};  ///< place of the box's voxel (0,0,0) in its brick
 };
