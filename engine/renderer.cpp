@@ -171,6 +171,7 @@ FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSet
 Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const Camera& camera,
                                                      const FrameSettings& wanted, const Progress& progress) {
   frameTimes.clear();
+  checkSplatsFit(device, built.volume);
   const FrameSettings settings = resolved(wanted);
   const bool sorted = settings.composite == Composite::Sorted;
   if (!splats || !splats->draws(settings)) {

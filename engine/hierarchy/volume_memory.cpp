@@ -27,7 +27,7 @@ void checkBinds(const Device& device, glm::ivec3 box, std::uint64_t bytes, std::
   if (bytes > most)
     fail(ExitCode::OutOfMemory,
          "a volume of {}x{}x{} voxels needs a buffer of {} MiB and {} binds at most {} MiB: crop or resample "
-         "it",
+         "it, or draw it without the attenuation table (--draw gather, no ambient light)",
          box.x, box.y, box.z, bytes >> 20, device.description().name, most >> 20);
 }
 
@@ -120,12 +120,21 @@ void checkBoxFits(const Device& device, const HierarchyLayout& hierarchy) {
     fail(ExitCode::OutOfMemory,
          "a volume of {}x{}x{} voxels has more than the {} that can be numbered: crop or resample it", box.x,
          box.y, box.z, kMostNumbered);
-  checkSweepBinds(device, hierarchy, DirectionSet::Directions26);
   checkHolds(device, hierarchy, emptyMemory(device, hierarchy), DirectionSet::Directions26, "");
 }
 
 void checkStoresFit(const Device& device, const DeviceVolume& volume) {
-  checkBinds(device, volume.layout.dimensions, extinctionBytes(volume.storedBlocks()), sizeof(glm::vec4));
+  const std::uint64_t bytes = extinctionBytes(volume.storedBlocks());
+  const std::uint64_t most = std::min<std::uint64_t>(device.limits().maxTexelBufferElements * sizeof(glm::vec4), device.maximumAllocation());
+  const glm::ivec3 box = volume.layout.dimensions;
+  if (bytes > most)
+    fail(ExitCode::OutOfMemory,
+         "a volume of {}x{}x{} voxels needs {} MiB in one piece for its extinction and {} has at most {} MiB: crop or resample it",
+         box.x, box.y, box.z, bytes >> 20, device.description().name, most >> 20);
+}
+
+void checkSplatsFit(const Device& device, const DeviceVolume& volume) {
+  checkBinds(device, volume.layout.dimensions, volume.activeVoxels * sizeof(std::uint32_t), sizeof(std::uint32_t));
 }
 
 void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions) {

@@ -53,6 +53,7 @@ std::uint64_t maximumVoxels(const Device& device);
 /// holds anything; its table.
 void checkBoxFits(const Device& device, const HierarchyLayout& hierarchy);
 void checkStoresFit(const Device& device, const DeviceVolume& volume);
+void checkSplatsFit(const Device& device, const DeviceVolume& volume);
 void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions);
 
 }  // namespace freevoxels

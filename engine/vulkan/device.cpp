@@ -1,6 +1,7 @@
 #include "engine/vulkan/device.h"
 
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -146,6 +147,11 @@ std::vector<std::string> findRejections(VkPhysicalDevice physical,
   return reasons;
 }
 
+/// Software Vulkan allocates from it, whatever the size of the heap that it reports: lavapipe says 2 GiB.
+std::uint64_t hostMemoryBytes() {
+  return std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE));
+}
+
 DeviceDescription describe(int index, VkPhysicalDevice physical) {
   VkPhysicalDeviceVulkan12Properties vulkan12{.sType =
                                                   VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES};
@@ -166,6 +172,8 @@ DeviceDescription describe(int index, VkPhysicalDevice physical) {
   for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
     if (memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
       description.memoryBytes = std::max<std::uint64_t>(description.memoryBytes, memory.memoryHeaps[i].size);
+  if (base.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU)
+    description.memoryBytes = std::max(description.memoryBytes, hostMemoryBytes() / 4 * 3);
   return description;
 }
 

@@ -25,7 +25,7 @@ struct DeviceDescription {
   std::string type;  ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
   std::string uuid;  ///< 8-4-4-4-12 hexadecimal digits
   std::string driver;
-  std::uint64_t memoryBytes = 0;        ///< of the largest device-local heap
+  std::uint64_t memoryBytes = 0;        ///< of the largest device-local heap; of a CPU three quarters of its memory
   std::vector<std::string> rejections;  ///< why it cannot be used; empty if it can
 };
 
