@@ -23,6 +23,8 @@ namespace freevoxels {
 
 struct Renderer::State {
   const Device& device;
+  const Volume& hostVolume;
+  Classification classification;
   TableSettings tableSettings;
   BuiltVolume built;
   std::optional<AttenuationTable> table;
@@ -45,6 +47,7 @@ struct Renderer::State {
     SplatTargets targets;
   };
   VolumeMemory memoryOfVolume() const;
+  const BuiltVolume& builtWithBlocks(const Progress& progress = {});
   const AttenuationTable& sweptTable(const Progress& progress = {});
   const AttenuationTable& tableWithLevels(const Progress& progress = {});
   void recordDrawing(Commands& commands, const Frame& frame, const AttenuationTable* read,
@@ -61,15 +64,23 @@ struct Renderer::State {
 
 VolumeMemory Renderer::State::memoryOfVolume() const {
   const DeviceVolume& volume = built.volume;
-  VolumeMemory memory = volumeMemory(volume.hierarchy, volume.stored, tableSettings.directions,
-                                     storedKinds(volume), sweepStyle(device));
+  const std::vector<std::uint64_t> nothing(volume.hierarchy.levels.size(), 0);
+  VolumeMemory memory = volumeMemory(volume.hierarchy, built.hasBlocks() ? volume.stored : nothing,
+                                     tableSettings.directions, storedKinds(volume), sweepStyle(device));
   if (table) memory.unseen = memory.table - std::min(memory.table, table->bytes());
   return memory;
+}
+
+/// Made, if they are not there, when a frame needs them first; their time is that frame's.
+const BuiltVolume& Renderer::State::builtWithBlocks(const Progress& progress) {
+  if (!built.hasBlocks()) buildBlocks(device, hostVolume, classification, built, frameTimes, progress);
+  return built;
 }
 
 /// Made when a frame reads it first; its time is that frame's.
 const AttenuationTable& Renderer::State::sweptTable(const Progress& progress) {
   if (table) return *table;
+  builtWithBlocks(progress);
   AttenuationTable made = makeTable(device, built.volume, tableSettings);
   AttenuationSweep sweep(device, tableSettings);
   Commands commands(device);
@@ -172,6 +183,7 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
                                                      const FrameSettings& wanted, const Progress& progress) {
   frameTimes.clear();
   checkSplatsFit(device, built.volume);
+  builtWithBlocks(progress);
   const FrameSettings settings = resolved(wanted);
   const bool sorted = settings.composite == Composite::Sorted;
   if (!splats || !splats->draws(settings)) {
@@ -200,9 +212,14 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
   frameTimes.clear();
   lastDrawn = nullptr;
   lastLackedRays = false;
+  if (wanted.lighting) builtWithBlocks(progress);
   FrameSettings settings = resolved(wanted);
   settings.attenuation = AttenuationLookup::Exact;
   FrameConstants constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
+  if (constants.detail.coarsest > 0 && !built.hasBlocks()) {
+    builtWithBlocks(progress);
+    constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
+  }
   SplatTargets targets = makeImageTargets(device, settings);
   shader::GatherFrame lattice =
       makeGatherFrame(built.volume, camera, settings, constants.detail, constants.hiddenTransmittance);
@@ -218,7 +235,7 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
       .lights = settings.lighting ? &lights->lights() : nullptr,
       .axes = {someRayHasAxis(lattice, 0), someRayHasAxis(lattice, 1), someRayHasAxis(lattice, 2)}};
   try {
-    if (!gatherVolume) gatherVolume.emplace(device, built, frameTimes);
+    if (!gatherVolume) gatherVolume.emplace(device, hostVolume, classification, built, frameTimes);
     gatherVolume->prepare(shading);
   } catch (const Error&) {
     gatherVolume.reset();
@@ -250,7 +267,8 @@ SplatTargets Renderer::State::recordImage(Commands& commands, const Camera& came
 
 Renderer::Renderer(const Device& device, const Volume& volume, const Classification& classification,
                    const TableSettings& table, const Progress& progress) {
-  state_ = std::make_unique<State>(State{.device = device, .tableSettings = table});
+  state_ = std::make_unique<State>(State{
+      .device = device, .hostVolume = volume, .classification = classification, .tableSettings = table});
   state_->built = buildVolume(device, volume, classification, state_->buildTimes, progress);
 }
 
@@ -301,7 +319,8 @@ std::vector<StageTime> Renderer::timings() const {
   return times;
 }
 
-std::uint64_t Renderer::visibleVoxelCount() const {
+std::optional<std::uint64_t> Renderer::visibleVoxelCount() const {
+  if (!state_->built.hasBlocks()) return {};
   return state_->built.volume.stored.front();
 }
 
@@ -314,21 +333,21 @@ bool Renderer::lackedRoomForGather() const {
 }
 
 std::vector<float> Renderer::downloadExtinction() const {
-  const LevelData voxels = downloadMedium(state_->device, state_->built.volume, 0);
+  const LevelData voxels = downloadMedium(state_->device, state_->builtWithBlocks().volume, 0);
   return {voxels.extinction.begin(), voxels.extinction.end()};
 }
 
 std::vector<glm::dvec3> Renderer::downloadEmission() const {
-  return downloadMedium(state_->device, state_->built.volume, 0).emission;
+  return downloadMedium(state_->device, state_->builtWithBlocks().volume, 0).emission;
 }
 
 std::vector<std::vector<std::uint8_t>> Renderer::downloadTable() const {
-  return freevoxels::downloadTable(state_->device, state_->built.volume, state_->sweptTable());
+  return freevoxels::downloadTable(state_->device, state_->builtWithBlocks().volume, state_->sweptTable());
 }
 
 RayCodes Renderer::downloadRays(const Camera& camera) const {
   RaySweep sweep(state_->device);
-  return sweep.sweep(state_->built.volume, eyeSource(camera, state_->built.volume.indexToWorld));
+  return sweep.sweep(state_->builtWithBlocks().volume, eyeSource(camera, state_->built.volume.indexToWorld));
 }
 
 CutCounts Renderer::cutCounts() const {
@@ -362,7 +381,7 @@ std::vector<LevelData> Renderer::downloadLevels() const {
 
 std::vector<std::uint32_t> Renderer::downloadVisibleVoxels() const {
   std::vector<std::uint32_t> voxels =
-      freevoxels::downloadVisibleVoxels(state_->device, state_->built.visible);
+      freevoxels::downloadVisibleVoxels(state_->device, state_->builtWithBlocks().visible);
   for (std::uint32_t& voxel : voxels) voxel = state_->built.volume.layout.unpaddedIndex(voxel);
   return voxels;
 }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "engine/attenuation/ray_fans.h"
@@ -26,12 +27,14 @@ void checkFrameFits(const Device& device, const FrameSettings& settings);
 
 class Renderer {
  public:
-  /// Uploads the volume and makes what every frame needs: extinction and the list of visible voxels. The
-  /// attenuation table is made for the first frame that reads it, its levels for the first that may draw
-  /// blocks or leave some out. Fails with ExitCode::OutOfMemory, before allocating, where the device's limits
+  /// Uploads the volume, which must outlive the renderer, and makes what every frame needs: classified blocks and their
+  /// lists, or of a volume that is classified after interpolation its scalars; the blocks then are made for the first frame
+  /// with lights, levels of detail or splats. The attenuation table is made for the first frame that reads it, its levels
+  /// for the first that may draw blocks or leave some out. Fails with ExitCode::OutOfMemory, before allocating, where the device's limits
   /// are too small.
   Renderer(const Device& device, const Volume& volume, const Classification& classification,
            const TableSettings& table, const Progress& progress = {});
+  Renderer(const Device&, Volume&&, const Classification&, const TableSettings&, const Progress& = {}) = delete;
   ~Renderer();
 
   Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
@@ -44,8 +47,8 @@ class Renderer {
   VolumeMemory memory() const;
   /// Of the constructor and of the last frame, in order.
   std::vector<StageTime> timings() const;
-  /// How many voxels hold anything.
-  std::uint64_t visibleVoxelCount() const;
+  /// How many voxels have extinction or emission; unknown while no frame needed their blocks.
+  std::optional<std::uint64_t> visibleVoxelCount() const;
   /// Of the last frame.
   CutCounts cutCounts() const;
   /// Whether the last frame would have had rays from the eye, but for the device's memory: Auto is Bilinear

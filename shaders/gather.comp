@@ -230,11 +230,12 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
   last = found;
 }
 
-// How many groups of ray.group slices, from `slice` on in the ray's direction, hold nothing; 0 where the first may.
-int emptyGroups(Slices level, Ray ray, int slice) {
-  const float last = float(slice) + ray.direction * float(ray.group - 1);
-  const vec2 low = min(ray.origin + ray.slope * float(slice), ray.origin + ray.slope * last);
-  const ivec3 cell = clamp(ivec3(ivec2(floor(low)), min(slice, int(last))) >> kSkipLevels, ivec3(0), level.lastSkip);
+// How many groups of ray.group slices, from `slice` on in the ray's direction, hold nothing; 0 where the first may, or the
+// `before` slices in front of it.
+int emptyGroups(Slices level, Ray ray, int slice, int before) {
+  const float first = float(slice) - ray.direction * float(before), last = float(slice) + ray.direction * float(ray.group - 1);
+  const vec2 low = min(ray.origin + ray.slope * first, ray.origin + ray.slope * last);
+  const ivec3 cell = clamp(ivec3(floor(vec3(low, min(first, last)))) >> kSkipLevels, ivec3(0), level.lastSkip);
   return int(texelFetch(skipCells, level.firstSkip + cell.x * level.skipStrides.x + cell.y * level.skipStrides.y +
                                        cell.z * level.skipStrides.z).x);
 }
@@ -273,7 +274,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
   do {
     int empty;
     do {
-      empty = emptyGroups(level, ray, slice) * ray.group;
+      empty = emptyGroups(level, ray, slice, last.coverage > 0.0 ? 1 : 0) * ray.group;
       if (empty > 0) last.coverage = 0.0;
       slice += direction * empty;
       left -= empty;

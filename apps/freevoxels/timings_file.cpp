@@ -25,13 +25,14 @@ void logCounts(const RunReport& report) {
         "exact transmittance needs more memory than the device has: looked up in the table instead");
   if (report.lackedRoomForGather)
     spdlog::debug("gathering needs more memory than the device has: drawn by splats instead");
-  spdlog::debug("{} voxels, {} of them empty", report.voxels, report.voxels - report.visibleVoxels);
-  const auto stored = double(report.memory.stored());
-  spdlog::debug(
-      "{:.1f} MiB kept of the volume: {:.1f} bytes a voxel that holds anything, {:.1f} a voxel of the box; "
-      "at most {:.1f} MiB on the device",
-      stored / 0x1p20, stored / double(std::max<std::uint64_t>(report.visibleVoxels, 1)),
-      stored / double(report.voxels), double(report.devicePeak) / 0x1p20);
+  spdlog::debug("{} voxels; at most {:.1f} MiB on the device", report.voxels, double(report.devicePeak) / 0x1p20);
+  if (report.visibleVoxels) {
+    const auto stored = double(report.memory.stored());
+    spdlog::debug("{} of them empty; blocks and attenuation table: {:.1f} MiB, {:.1f} bytes a voxel that holds anything, {:.1f} "
+                  "a voxel of the box",
+                  report.voxels - *report.visibleVoxels, stored / 0x1p20,
+                  stored / double(std::max<std::uint64_t>(*report.visibleVoxels, 1)), stored / double(report.voxels));
+  }
   if (report.cut.considered == 0) return;  // the gather chooses none
   spdlog::debug(
       "{} blocks considered for the last frame, {} of them empty, {} outside of the image, {} hidden",
@@ -74,7 +75,7 @@ void writeTimings(const std::filesystem::path& file, const RunReport& report) {
     json["stages"].push_back(
         {{"name", stage.name}, {"milliseconds", stage.milliseconds}, {"on_device", stage.onDevice}});
   json["voxels"] = report.voxels;
-  json["visible_voxels"] = report.visibleVoxels;
+  if (report.visibleVoxels) json["visible_voxels"] = *report.visibleVoxels;
   json["memory_bytes"] = {{"stored", report.memory.stored()}, {"peak", report.devicePeak}};
   json["blocks"] = {{"considered", report.cut.considered}, {"empty", report.cut.empty},
                     {"outside", report.cut.outside},       {"hidden", report.cut.hidden},

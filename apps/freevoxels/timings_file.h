@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "apps/freevoxels/option_values.h"
@@ -18,7 +19,7 @@ struct RunReport {
   DeviceDescription device;
   std::vector<StageTime> stages;
   double totalMilliseconds = 0.0;
-  std::uint64_t visibleVoxels = 0;
+  std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::visibleVoxelCount
   std::uint64_t voxels = 0;  ///< of the volume's box
   VolumeMemory memory;
   std::uint64_t devicePeak = 0;    ///< bytes: the most that was ever allocated there
@@ -32,7 +33,7 @@ void logOptions(const OptionList& options);
 void logStages(const RunReport& report);
 
 /// {"version", "device": {"name", "type", "uuid", "driver"}, "options": {NAME: VALUE},
-///  "stages": [{"name", "milliseconds", "on_device"}], "voxels", "visible_voxels",
+///  "stages": [{"name", "milliseconds", "on_device"}], "voxels", "visible_voxels" (where they were counted),
 ///  "memory_bytes": {"stored", "peak"},
 ///  "blocks": {"considered", "empty", "outside", "hidden", "opened", "drawn": [by level, voxels first]},
 ///  "total_milliseconds"}.

@@ -107,14 +107,14 @@ const std::vector<std::vector<std::uint8_t>>& Diagnoser::codes(Renderer& rendere
 Image Diagnoser::drawTable(int direction, Renderer& renderer, const Volume& volume,
                            const TableSettings& table, const Camera& camera, glm::ivec2 size) {
   if (!tableRenderer_ || tableDirection_ != direction) {
-    const Volume shown = transmittances(volume, codes(renderer)[std::size_t(direction)], table.code);
     Classification classification;
     classification.transferFunction =
         TransferFunction{.opacity = {{0.0f, kShownOpacity}},
                          .color = {{0.0f, glm::vec3(0.0f)}, {1.0f, glm::vec3(1.0f)}},
                          .unitDistance = volume.voxelSize()};
     tableRenderer_ = nullptr;  // not both at once
-    tableRenderer_ = std::make_unique<Renderer>(device_, shown, classification, table);
+    tableVolume_ = transmittances(volume, codes(renderer)[std::size_t(direction)], table.code);
+    tableRenderer_ = std::make_unique<Renderer>(device_, tableVolume_, classification, table);
     tableDirection_ = direction;
   }
   Image image = tableRenderer_->render(camera, {.size = size});

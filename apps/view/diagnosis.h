@@ -47,6 +47,7 @@ class Diagnoser {
   const Device& device_;
   std::vector<std::vector<std::uint8_t>> codes_;
   int tableDirection_ = -1;
+  Volume tableVolume_;  ///< the table's transmittances; of tableRenderer_
   std::unique_ptr<Renderer> tableRenderer_;
 };
 

@@ -37,7 +37,7 @@ struct Picture {
   double milliseconds = 0.0;  ///< in all, but for reading files
   VolumeMemory memory;
   CutCounts cut;
-  std::uint64_t visibleVoxels = 0;
+  std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::visibleVoxelCount
 };
 
 /// Different for tables that are made differently.

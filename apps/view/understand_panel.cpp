@@ -175,7 +175,7 @@ void drawFigures(const Picture& picture) {
   line("colours, light", megabytes(memory.colors + memory.emission));
   line("lists, splats", megabytes(memory.lists + memory.splats));
   ImGui::Separator();
-  line("voxels", fmt::format("{}", picture.visibleVoxels));
+  if (picture.visibleVoxels) line("voxels", fmt::format("{}", *picture.visibleVoxels));
   line("considered", fmt::format("{}", picture.cut.considered));
   line("empty", fmt::format("{}", picture.cut.empty));
   line("outside", fmt::format("{}", picture.cut.outside));

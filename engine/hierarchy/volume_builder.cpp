@@ -53,25 +53,21 @@ void makeStores(const Device& device, DeviceVolume& volume) {
   volume.blockColors = makeStore(device, blocks - voxels, sizeof(glm::uvec2), "block colours");
 }
 
-class Builder {
+class BlockBuilder {
  public:
-  Builder(const Device& device, const Volume& volume, const Classification& classification,
-          std::vector<StageTime>& times, const Progress& progress)
+  BlockBuilder(const Device& device, const Volume& volume, const Classification& classification, BuiltVolume& built,
+               std::vector<StageTime>& times, const Progress& progress)
       : device_(device),
         times_(times),
         progress_(progress),
-        built_{.volume = makeDeviceVolume(device, volume, classification)},
-        volume_(volume),
-        classification_(classification),
+        built_(built),
         bricks_(device, built_.volume, volume, classification) {}
 
-  BuiltVolume run() && {
+  void run() {
     findOccupancy();
     checkStoresFit(device_, built_.volume);
     makeStores(device_, built_.volume);
     if (built_.volume.stored.front() > 0) store();
-    if (classification_.isPost(volume_)) storeScalars();
-    return std::move(built_);
   }
 
  private:
@@ -92,8 +88,10 @@ class Builder {
       compaction.record(commands, volume, built_.lists.coarse.back(), level);
     }
     submit(commands);
+    std::vector<std::uint64_t> stored;
     for (int level = 0; level <= volume.hierarchy.top(); ++level)
-      built_.volume.stored.push_back(downloadVisibleCount(device_, built_.lists.of(level, built_.visible)));
+      stored.push_back(downloadVisibleCount(device_, built_.lists.of(level, built_.visible)));
+    built_.volume.stored = std::move(stored);
   }
 
   /// What is kept of every block that holds anything.
@@ -105,19 +103,6 @@ class Builder {
     Commands commands(device_);
     levels.record(commands, volume, built_.lists.coarse);
     submit(commands);
-  }
-
-  /// Only the gather reads them, and says so where they are lacking.
-  void storeScalars() {
-    const StageTimer timer(times_, "scalars");
-    DeviceVolume& volume = built_.volume;
-    try {
-      volume.scalarBricks =
-          uploadScalars(device_, volume_, *classification_.transferFunction, kStoredDepth * volume.voxelSize);
-    } catch (const Error& error) {
-      if (error.code() != ExitCode::OutOfMemory) throw;
-      volume.lacksScalarBricks = true;
-    }
   }
 
   template <typename Record>
@@ -141,9 +126,7 @@ class Builder {
   const Device& device_;
   std::vector<StageTime>& times_;
   const Progress& progress_;
-  BuiltVolume built_;
-  const Volume& volume_;
-  const Classification& classification_;
+  BuiltVolume& built_;
   DeviceBricks bricks_;
 };
 
@@ -152,7 +135,31 @@ class Builder {
 BuiltVolume buildVolume(const Device& device, const Volume& volume, const Classification& classification,
                         std::vector<StageTime>& times, const Progress& progress) {
   checkBoxFits(device, HierarchyLayout(volume.dimensions));
-  return Builder(device, volume, classification, times, progress).run();
+  BuiltVolume built{.volume = makeDeviceVolume(device, volume, classification)};
+  if (classification.isPost(volume)) {
+    const StageTimer timer(times, "scalars");
+    try {
+      built.volume.scalarBricks =
+          uploadScalars(device, volume, *classification.transferFunction, kStoredDepth * built.volume.voxelSize);
+    } catch (const Error& error) {  // only the gather reads them, and says that they are lacking
+      if (error.code() != ExitCode::OutOfMemory) throw;
+      built.volume.lacksScalarBricks = true;
+    }
+  } else {
+    buildBlocks(device, volume, classification, built, times, progress);
+  }
+  return built;
+}
+
+void buildBlocks(const Device& device, const Volume& volume, const Classification& classification, BuiltVolume& built,
+                 std::vector<StageTime>& times, const Progress& progress) {
+  try {
+    BlockBuilder(device, volume, classification, built, times, progress).run();
+  } catch (const Error&) {
+    built.volume.stored.clear();
+    built.lists.coarse.clear();
+    throw;
+  }
 }
 
 }  // namespace freevoxels

@@ -22,11 +22,19 @@ struct BuiltVolume {
   DeviceVolume volume;
   VisibleVoxels visible;  ///< the voxels
   LevelLists lists;
+
+  /// Whether there is anything but the scalars for classification after interpolation: see buildBlocks.
+  bool hasBlocks() const { return !volume.stored.empty(); }
 };
 
-/// Waits. Adds the times of its passes to `times`. Fails with ExitCode::OutOfMemory, where the box is too
-/// large before allocating.
+/// Scalars, if voxels are classified after interpolation, else blocks too. Waits. Adds the times of its passes to `times`.
+/// Fails with ExitCode::OutOfMemory, where the box is too large before allocating.
 BuiltVolume buildVolume(const Device& device, const Volume& volume, const Classification& classification,
                         std::vector<StageTime>& times, const Progress& progress = {});
+
+/// What lights, levels of detail, splats and the table need of a volume that has scalars: its classified voxels and blocks,
+/// their ranks and lists. Waits. Fails with ExitCode::OutOfMemory.
+void buildBlocks(const Device& device, const Volume& volume, const Classification& classification, BuiltVolume& built,
+                 std::vector<StageTime>& times, const Progress& progress = {});
 
 }  // namespace freevoxels

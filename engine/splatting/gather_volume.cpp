@@ -9,6 +9,7 @@
 #include "embedded/brick_quads.h"
 #include "embedded/shade_blocks.h"
 #include "engine/core/error.h"
+#include "engine/splatting/gather_cells.h"
 #include "engine/volume/packed_light.h"
 
 namespace freevoxels {
@@ -19,74 +20,6 @@ constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BI
 constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 constexpr VkDescriptorType kTexelsIn = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
-
-/// Groups of slices that are skipped at a time, at most.
-constexpr int kMostSkipped = 8;
-
-/// A byte for each cell of a level of the octree, x fastest.
-struct Cells {
-  glm::ivec3 dimensions{0};
-  std::vector<std::uint8_t> values;
-
-  explicit Cells(glm::ivec3 size)
-      : dimensions(size), values(std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z)) {}
-  glm::ivec2 strides() const { return {dimensions.x, dimensions.x * dimensions.y}; }
-  std::uint8_t& at(int x, int y, int z) {
-    return values[std::size_t(x) + std::size_t(dimensions.x) * (std::size_t(y) + std::size_t(dimensions.y) * std::size_t(z))];
-  }
-  std::uint8_t at(int x, int y, int z) const { return const_cast<Cells&>(*this).at(x, y, z); }
-};
-
-template <typename Visit>
-void forEachCell(glm::ivec3 dimensions, const Visit& visit) {
-  for (int z = 0; z < dimensions.z; ++z)
-    for (int y = 0; y < dimensions.y; ++y)
-      for (int x = 0; x < dimensions.x; ++x) visit(x, y, z);
-}
-
-/// 1 where the cell holds anything.
-Cells occupiedCells(std::span<const shader::OccupancyWord> words, const GridLayout& grid) {
-  Cells cells(grid.dimensions);
-  forEachCell(grid.dimensions, [&](int x, int y, int z) {
-    const auto index = std::size_t(x) + std::size_t(grid.rowPitch) * (std::size_t(y) + std::size_t(grid.dimensions.y) * std::size_t(z));
-    cells.at(x, y, z) = words[index / shader::kBlocksPerWord].mask >> (index % shader::kBlocksPerWord) & 1u;
-  });
-  return cells;
-}
-
-/// 1 where the cell, or one of its neighbours from `low` to `high` along each axis, is.
-Cells spread(const Cells& cells, int low, int high) {
-  Cells result = cells;
-  const glm::ivec3 n = cells.dimensions;
-  for (int axis = 0; axis < 3; ++axis) {
-    const Cells from = result;
-    const glm::ivec3 step(axis == 0, axis == 1, axis == 2);
-    const int stride = axis == 0 ? 1 : cells.strides()[axis - 1];
-    for (int by = low; by <= high; ++by) {
-      if (by == 0) continue;
-      const glm::ivec3 begin = glm::max(-by * step, 0), end = glm::min(n - by * step, n);
-      for (int z = begin.z; z < end.z; ++z)
-        for (int y = begin.y; y < end.y; ++y) {
-          std::uint8_t* const to = &result.values[std::size_t(n.x) * (std::size_t(y) + std::size_t(n.y) * std::size_t(z))];
-          const std::uint8_t* const neighbours = from.values.data() + (to - result.values.data()) + by * stride;
-          for (int x = begin.x; x < end.x; ++x) to[x] |= neighbours[x];
-        }
-    }
-  }
-  return result;
-}
-
-/// Groups of slices, from a position in a cell or its next neighbours on, in which no cell is met; 0 where `met` is 1.
-/// Such a ray moves by a cell a group and is in two at first.
-Cells groupsToSkip(const Cells& met) {
-  Cells skips(met.dimensions), near = met;
-  for (std::size_t i = 0; i < met.values.size(); ++i) skips.values[i] = met.values[i] ? 0 : 1;
-  for (int groups = 1; groups <= kMostSkipped; ++groups) {
-    near = spread(near, -1, 1);
-    for (std::size_t i = 0; i < met.values.size(); ++i) skips.values[i] = near.values[i] ? skips.values[i] : std::uint8_t(groups);
-  }
-  return skips;
-}
 
 /// Radiance that a stored source term equal to the stored extinction means: 1, or more where halves would not hold the
 /// brightest voxel. Lights are as bright as they are at the least distance that counts.
@@ -116,11 +49,12 @@ float meanLayer(const DeviceVolume& volume) {
 
 }  // namespace
 
-GatherVolume::GatherVolume(const Device& device, const BuiltVolume& built, std::vector<StageTime>& times)
+GatherVolume::GatherVolume(const Device& device, const Volume& volume, const Classification& classification,
+                           const BuiltVolume& built, std::vector<StageTime>& times)
     : device_(device),
       built_(built),
       frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "shading frame") {
-  makeBricks(times);
+  makeBricks(volume, classification, times);
   const std::uint32_t bricks = firstBricks_.back();
   const std::uint64_t quads = std::uint64_t(bricks) * shader::kGatherBrickBlocks;
   const bool inOne = quads <= device.limits().maxTexelBufferElements && quads * sizeof(glm::uvec4) <= device.maximumAllocation();
@@ -132,17 +66,15 @@ GatherVolume::GatherVolume(const Device& device, const BuiltVolume& built, std::
 
 /// Which cells of the octree are bricks, and which are skipped. A position in a cell stays in that and its next neighbours
 /// along the axes upwards for an edge more, so that these decide.
-void GatherVolume::makeBricks(std::vector<StageTime>& times) {
+void GatherVolume::makeBricks(const Volume& volume, const Classification& classification, std::vector<StageTime>& times) {
   const StageTimer timer(times, "bricks");
   const HierarchyLayout& hierarchy = built_.volume.hierarchy;
   const int top = hierarchy.top(), finest = std::min(shader::kSkipLevels, top);
-  std::vector<shader::OccupancyWord> words((hierarchy.paddedBlocks() - hierarchy.first[std::size_t(finest)]) / shader::kBlocksPerWord);
-  download(device_, built_.volume.occupancy, std::as_writable_bytes(std::span(words)),
-           hierarchy.first[std::size_t(finest)] / shader::kBlocksPerWord * sizeof(shader::OccupancyWord));
   std::vector<Cells> met;  // by level above the finest
+  Cells cells = metCells(volume, classification, 1 << finest);
   for (int level = finest; level <= top; ++level) {
-    const auto firstWord = (hierarchy.first[std::size_t(level)] - hierarchy.first[std::size_t(finest)]) / shader::kBlocksPerWord;
-    met.push_back(spread(occupiedCells(std::span(words).subspan(firstWord), hierarchy.levels[std::size_t(level)]), 0, 1));
+    met.push_back(spread(cells, 0, 1));
+    cells = coarserCells(cells);
   }
 
   std::vector<std::uint32_t> numbers;
@@ -159,11 +91,14 @@ void GatherVolume::makeBricks(std::vector<StageTime>& times) {
                        .skipStrides = skipCells.strides(),
                        .lastSkip = skipCells.dimensions - 1});
     firstBricks_.push_back(std::uint32_t(bricks.size()));
-    forEachCell(brickCells.dimensions, [&](int x, int y, int z) {
-      const bool isBrick = brickCells.at(x, y, z) != 0;
-      numbers.push_back(isBrick ? std::uint32_t(bricks.size()) : 0);
-      if (isBrick) bricks.emplace_back(glm::ivec3(x, y, z) * shader::kGatherBrickEdge, 0);
-    });
+    glm::ivec3 cell;
+    for (cell.z = 0; cell.z < brickCells.dimensions.z; ++cell.z)
+      for (cell.y = 0; cell.y < brickCells.dimensions.y; ++cell.y)
+        for (cell.x = 0; cell.x < brickCells.dimensions.x; ++cell.x) {
+          const bool isBrick = brickCells.at(cell) != 0;
+          numbers.push_back(isBrick ? std::uint32_t(bricks.size()) : 0);
+          if (isBrick) bricks.emplace_back(cell * shader::kGatherBrickEdge, 0);
+        }
     skips.insert(skips.end(), skipCells.values.begin(), skipCells.values.end());
   }
   firstBricks_.push_back(std::uint32_t(bricks.size()));

@@ -17,8 +17,9 @@ namespace freevoxels {
 /// axes differ from the frame before. Belongs to one volume, which must outlive it.
 class GatherVolume {
  public:
-  /// Finds the bricks, and adds how long that took to `times`. Fails with ExitCode::OutOfMemory.
-  GatherVolume(const Device& device, const BuiltVolume& built, std::vector<StageTime>& times);
+  /// Finds the bricks, and adds how long that took to `times`. Keeps `device` and `built`. Fails with ExitCode::OutOfMemory.
+  GatherVolume(const Device& device, const Volume& volume, const Classification& classification, const BuiltVolume& built,
+               std::vector<StageTime>& times);
 
   /// What a frame needs to be shaded. `lighting` and `lights` are null of a frame that is not lit.
   struct Shading {
@@ -64,7 +65,7 @@ class GatherVolume {
   const TexelView& transferTable() const;
 
  private:
-  void makeBricks(std::vector<StageTime>& times);
+  void makeBricks(const Volume& volume, const Classification& classification, std::vector<StageTime>& times);
   void makeSources();
   void dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t most);
   void makeRoom(Quads& quads, const std::array<bool, 3>& axes);

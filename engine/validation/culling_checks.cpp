@@ -77,7 +77,7 @@ ReportSection cullingChecks(const Device& device, const QualityScene& scene, int
     const Image inImage = renderer.render(view.camera, clipped);
     worstClipped.take(largestDifference(inImage, expected).figure(), [&] { return view.name; });
     const Image picture = renderer.render(view.camera, culled);
-    table.rows.push_back(countsRow(view.name, renderer.cutCounts(), renderer.visibleVoxelCount()));
+    table.rows.push_back(countsRow(view.name, renderer.cutCounts(), *renderer.visibleVoxelCount()));
     const double psnr = std::min(compareImages(picture, expected).psnr, 200.0);
     if (psnr < leastPsnr) {
       leastPsnr = psnr;

@@ -81,8 +81,8 @@ void checkBall(const Device& device, int resolution, ReportSection& section) {
   const glm::dvec3 direction(1.0, 0.4, 0.2);
   const glm::dvec2 way = glm::normalize(glm::dvec2(direction));
   const Classification medium{.densityScale = 1.0};
-  Renderer fog(device, foggyBall(resolution, false), medium, {}),
-      ball(device, foggyBall(resolution, true), medium, {});
+  const Volume fogAlone = foggyBall(resolution, false), fogAndBall = foggyBall(resolution, true);
+  Renderer fog(device, fogAlone, medium, {}), ball(device, fogAndBall, medium, {});
   ReportPictures pictures{.caption = "A ball in fog", .pictures = {}};
   for (const Shadows& shadows : kShadows) {
     FrameSettings settings{.size = glm::ivec2(4 * resolution)};

@@ -36,6 +36,7 @@ SteppedVolume prepareSteps(const Device& device, const Volume& volume, const Cla
                            const TableSettings& table) {
   std::vector<StageTime> times;
   BuiltVolume built = buildVolume(device, volume, classification, times);
+  if (!built.hasBlocks()) buildBlocks(device, volume, classification, built, times);
   SteppedVolume steps{.volume = std::move(built.volume), .visible = std::move(built.visible)};
   steps.table = makeTable(device, steps.volume, table);
   AttenuationSweep sweep(device, table);

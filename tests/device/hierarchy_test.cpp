@@ -215,7 +215,7 @@ TEST_F(HierarchyTest, VoxelsAreDrawnWhereTheyAreLargeOrSorted) {
         FrameSettings{.size = {16, 16}, .composite = Composite::Sorted, .lod = 9.0f}}) {
     settings.culling = false;
     renderer.render(camera, settings);
-    EXPECT_EQ(renderer.cutCounts().drawn, std::vector{renderer.visibleVoxelCount()});
+    EXPECT_EQ(renderer.cutCounts().drawn, std::vector{*renderer.visibleVoxelCount()});
     for (const StageTime& stage : renderer.timings()) EXPECT_NE(stage.name, "octree table");
   }
 }

@@ -100,7 +100,6 @@ TEST_F(OccupancyTest, AVolumeThatHoldsNothingIsAnEmptyPicture) {
       .transferFunction = TransferFunction{
           .opacity = {{0.0f, 0.0f}, {1.0f, 0.0f}}, .color = {{0.0f, glm::vec3(1.0f)}}, .unitDistance = 1.0}};
   Renderer renderer(device(), volume, classification, {});
-  EXPECT_EQ(renderer.visibleVoxelCount(), 0u);
   for (const AttenuationLookup lookup : {AttenuationLookup::Bilinear, AttenuationLookup::Exact})
     for (const float lod : {0.0f, 8.0f})
       for (const Composite composite : {Composite::Normalised, Composite::Sorted}) {
@@ -109,6 +108,7 @@ TEST_F(OccupancyTest, AVolumeThatHoldsNothingIsAnEmptyPicture) {
                             {.size = {24, 24}, .composite = composite, .attenuation = lookup, .lod = lod});
         for (const glm::vec4& pixel : picture.pixels) EXPECT_EQ(pixel, glm::vec4(0.0f));
       }
+  EXPECT_EQ(renderer.visibleVoxelCount(), 0u);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ TEST_F(RendererTest, MoreSplatsThanOneChunkAreAllDrawn) {
   const double sigma = 3.0;
   const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [](int, int, int) { return 1.0; });
   Renderer renderer(device(), volume, {.densityScale = sigma}, {});
-  EXPECT_EQ(renderer.visibleVoxelCount(), volume.voxelCount());
+  EXPECT_EQ(*renderer.visibleVoxelCount(), volume.voxelCount());
   const Camera camera = framingCamera(volume, 0.0, 0.0, 1.0, {});
   const glm::ivec2 size(128);
   EXPECT_GE(psnr(renderer.render(camera, {.size = size}),
