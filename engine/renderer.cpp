@@ -197,7 +197,7 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
   if (frame.constants.readsTable())
     read = frame.constants.readsLevels() ? &tableWithLevels(progress) : &sweptTable(progress);
   if (settings.lighting)
-    frame.constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, frameTimes);
+    frame.constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, false, frameTimes);
   CullRule& cull = frame.constants.cull;
   if (cull.hiddenDepth > 0.0 &&
       !canHide(tableSettings, largestDepths, glm::dmat3(built.volume.indexToWorld), cull.hiddenDepth))
@@ -212,22 +212,25 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
   frameTimes.clear();
   lastDrawn = nullptr;
   lastLackedRays = false;
-  if (wanted.lighting) builtWithBlocks(progress);
   FrameSettings settings = resolved(wanted);
   settings.attenuation = AttenuationLookup::Exact;
   FrameConstants constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
-  if (constants.detail.coarsest > 0 && !built.hasBlocks()) {
+  const bool shadesVoxels =
+      settings.lighting && !GatherVolume::lightsSamples(built.volume, &*settings.lighting);
+  if ((shadesVoxels || constants.detail.coarsest > 0) && !built.hasBlocks()) {
     builtWithBlocks(progress);
     constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
   }
   SplatTargets targets = makeImageTargets(device, settings);
   shader::GatherFrame lattice =
       makeGatherFrame(built.volume, camera, settings, constants.detail, constants.hiddenTransmittance);
+  const bool ofScalars = built.volume.scalarBricks.has_value() &&
+                         GatherVolume::lightsSamples(built.volume, settings.lighting ? &*settings.lighting : nullptr);
   const AttenuationTable* read = nullptr;
   if (constants.lightsReadTable)
     read = constants.detail.coarsest > 0 ? &tableWithLevels(progress) : &sweptTable(progress);
   if (settings.lighting)
-    constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, frameTimes);
+    constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, ofScalars, frameTimes);
   const GatherVolume::Shading shading{
       .frame = constants,
       .table = read,

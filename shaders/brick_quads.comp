@@ -14,7 +14,7 @@
 layout(constant_id = 0) const int kAxis = 2;
 layout(constant_id = 1) const bool kTowards = false;
 layout(constant_id = 2) const bool kColored = true;
-layout(constant_id = 3) const bool kScalars = false;  // codes of scalars in place of extinctions
+layout(constant_id = 3) const bool kCodes = false;  // codes of 16 bits in place of extinctions: of scalars, or depths towards a light
 
 layout(local_size_x = kBrickQuadsThreads) in;
 layout(scalar, push_constant) uniform Push { BrickQuadsPush push; };
@@ -34,9 +34,9 @@ uint codeAt(ivec3 voxel) {
   const ivec3 place = voxel + push.corner;
   const ivec3 cell = place / kBrickEdge, local = place % kBrickEdge;
   const bool inside = all(lessThan(voxel, push.level.dimensions));
-  const uint brick = inside ? Words(push.scalarBricks).values[cell.x + push.cells.x * (cell.y + push.cells.y * cell.z)] : 0;
+  const uint brick = inside ? Words(push.codeBricks).values[cell.x + push.cells.x * (cell.y + push.cells.y * cell.z)] : 0;
   const uint index = ((brick * kBrickEdge + local.z) * kBrickEdge + local.y) * kBrickEdge + local.x;
-  return bitfieldExtract(Words(push.scalarCodes).values[index / 2], int(index % 2) * 16, 16);
+  return bitfieldExtract(Words(push.codes).values[index / 2], int(index % 2) * 16, 16);
 }
 
 // What is kept of two blocks, neighbours along the second side.
@@ -51,15 +51,15 @@ Pair pairAt(ivec3 first) {
     ivec3 cell = first;
     cell[kSideB] += i;
     const bool inside = all(lessThan(cell, push.level.dimensions));
-    if (kScalars) pair.medium[i] = codeAt(cell);
-    if (kScalars && !kColored) continue;
+    if (kCodes) pair.medium[i] = codeAt(cell);
+    if (kCodes && !kColored) continue;
     const int address = inside ? int(blockAddress(push.level, cell)) : 0;
     const uvec2 word = texelFetch(occupancy, address >> 5).xy;
     const int bit = address & 31;
     const bool occupied = inside && (word.x >> bit & 1u) != 0;
     const uint rank = occupied ? push.level.firstRank + rankIn(word, bit) : 0;
     const uvec2 source = Sources(push.sources).values[rank];
-    if (!kScalars) pair.medium[i] = occupied ? source.y : 0;
+    if (!kCodes) pair.medium[i] = occupied ? source.y : 0;
     pair.source[i] = occupied ? source.x : 0;
     if (kTowards) pair.towards[i] = Words(push.towardsEye).values[rank];
   }

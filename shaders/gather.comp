@@ -15,6 +15,9 @@ layout(constant_id = 1) const bool kTowards = false;  // whether the light of bl
 layout(constant_id = 2) const bool kColored = true;   // whether blocks have source terms of their own
 layout(constant_id = 3) const bool kScalars = false;  // whether voxels are classified after interpolation
 layout(constant_id = 4) const bool kLit = false;      // whether voxels then have light, in place of source terms
+layout(constant_id = 6) const int kLights = 0;        // whose transmittance is found at samples
+layout(constant_id = 7) const bool kTinted = false;   // whether every colour of light has an extinction of its own
+layout(constant_id = 8) const bool kSurfaces = false;
 layout(constant_id = 5) const bool kPieces = false;   // whether quads are in more than one piece
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
@@ -28,14 +31,20 @@ layout(binding = 4) uniform utextureBuffer towardsQuads;     // four times three
 layout(binding = 5, rgba32f) writeonly uniform imageBuffer colorEnergy;  // C, E
 layout(binding = 6, r32f) writeonly uniform imageBuffer distances;       // sum of e times distance
 
+layout(binding = 9) uniform utextureBuffer depthQuads0;  // optical depths towards each light, four halves
+layout(binding = 10) uniform utextureBuffer depthQuads1;
+layout(binding = 11) uniform utextureBuffer depthQuads2;
+layout(binding = 12) uniform utextureBuffer depthQuads3;
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MediumPiece { uvec2 values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SourcePiece { uvec4 values[]; };
 layout(binding = 8) uniform utextureBuffer skipCells;
 layout(binding = 7) uniform textureBuffer transferTable;  // of each interval the integral up to it, and the mean
+#include "transfer_table.glsl"
 
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
-const float kLeastChange = 16.0;  // of the scalar along a stretch, intervals, for its mean to be taken from integrals
+const float kPi = 3.14159265358979;
+const float kMostLightDepth = 0.99 * kOpaqueDepth;  // about the end of the code of rays
 
 const int kPieceLog2 = kPieceBricksLog2 + 3 * kBrickLevels;  // quads
 const int kPieceMask = (1 << kPieceLog2) - 1;
@@ -56,6 +65,16 @@ uvec4 towardsQuad(int quad) {
   return SourcePiece(frame.axes[kAxis].towardsPieces[quad >> kPieceLog2]).values[quad & kPieceMask];
 }
 
+uvec2 depthQuad(int light, int quad) {
+  if (kPieces) return MediumPiece(frame.axes[kAxis].depthPieces[light][quad >> kPieceLog2]).values[quad & kPieceMask];
+  switch (light) {
+    case 0: return texelFetch(depthQuads0, quad).xy;
+    case 1: return texelFetch(depthQuads1, quad).xy;
+    case 2: return texelFetch(depthQuads2, quad).xy;
+    default: return texelFetch(depthQuads3, quad).xy;
+  }
+}
+
 struct Ray {
   vec2 origin, slope;   // positions on the sides: origin + slope * slice, in blocks of the level
   float direction;      // 1 or -1, of ascending or descending slices
@@ -63,6 +82,7 @@ struct Ray {
   float eye;            // where the ray starts, slices of the level
   float layer;          // world length of a slice of the level on the ray, times the extinction's unit
   vec3 toEye;           // in the world, of length 1
+  float edge;           // of a block, voxels
 };
 
 // The level's geometry, read once a level.
@@ -117,37 +137,90 @@ vec3 sourceAt(int quad, uvec4 packed, vec4 weights, vec3 toEye) {
   return source;
 }
 
-// Source term and extinction, interpolated.
-vec4 sliceAt(Slices level, vec2 position, int slice, vec3 toEye) {
-  vec4 weights;
-  const int quad = quadAt(level, position, slice, weights);
-  const uvec2 halves = mediumQuad(quad);
-  const float extinction = dot(weights, vec4(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y)));
-  if (!kColored) return vec4(extinction * frame.color, extinction);
-  return vec4(sourceAt(quad, sourceQuad(quad), weights, toEye), extinction);
-}
-
 // The part of a slice's tent that is in front of the eye, which is `ahead` slices before it.
 float partInFront(float ahead) {
   const float a = clamp(ahead, -1.0, 1.0);
   return a >= 0.0 ? 0.5 + a - 0.5 * a * a : 0.5 * (1.0 + a) * (1.0 + a);
 }
 
+// The mean of exp(-depth) over a part along which the depth grows from 0 to x, of either sign.
+float meanTransmittance(float x) { return abs(x) < 0.02 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(-x)) / x; }
+
+// Of Henyey and Greenstein, per steradian. 1 + g² - 2 g cos without the difference of large terms.
+float phaseFunction(float g, vec3 before, vec3 after) {
+  const vec3 apart = after - sign(g) * before;
+  const float width = (1.0 - abs(g)) * (1.0 - abs(g)) + abs(g) * dot(apart, apart);
+  return (1.0 - g * g) / (4.0 * kPi * width * sqrt(width));
+}
+
+// In the place of the phase function, after Blinn; both sides are alike.
+float surfaceScattering(vec3 normal, vec3 toLight, vec3 toEye) {
+  const vec3 between = toLight + toEye;
+  const float facing = min(abs(dot(normal, between)) / max(length(between), 1e-6), 1.0);
+  const float highlight = (kHighlightExponent + 1.0) / (8.0 * kPi) * pow(facing, kHighlightExponent);
+  return (1.0 - kHighlight) * abs(dot(normal, toLight)) / (2.0 * kPi) + kHighlight * highlight;
+}
+
+// What a part of the ray is lit by: optical depths towards the lights at its beginning, and how they change along it.
+struct Lit {
+  vec4 begin, change;
+  vec3 position;        // of its middle, index space
+  vec3 normal;          // of a surface there, in the world, of length 1
+  float surface;        // how much of one it is
+};
+
+// The mean over the part of what a light sends to the eye per albedo, times the transmittance of what is in front of it in the
+// part, whose optical depth is `depth`.
+vec3 lightOf(int light, Lit lit, float depth, vec3 toEye) {
+  const SampleLight source = frame.lights[light];
+  vec3 way = source.place;
+  float distance2 = 1.0;
+  if (source.atInfinity == 0) {
+    way = frame.indexToWorld * (source.place - lit.position);
+    distance2 = max(dot(way, way), frame.nearestLight2);
+    way *= inversesqrt(max(dot(way, way), 1e-30));
+  }
+  float phase = frame.phaseG == 0.0 ? 1.0 / (4.0 * kPi) : phaseFunction(frame.phaseG, -way, toEye);
+  if (kSurfaces) phase = mix(phase, surfaceScattering(lit.normal, way, toEye), lit.surface);
+  const vec3 color = source.color * (phase / distance2);
+  const float begin = lit.begin[light], change = lit.change[light];
+  if (!kTinted) return color * (exp(-begin) * meanTransmittance(depth + change));
+  // At the end of its code a depth may be any larger one, and a tint would let light through.
+  if (begin + max(change, 0.0) >= kMostLightDepth) return vec3(0.0);
+  vec3 through;
+  [[unroll]] for (int c = 0; c < 3; ++c)
+    through[c] = exp(-frame.tint[c] * begin) * meanTransmittance(depth + frame.tint[c] * change);
+  return color * through;
+}
+
 // What a part of the ray of this length adds, with a constant source term (rgb) and extinction (a), `ahead` slices from
 // the eye; what leaves it is the mean of its own transmittance.
-void addPart(inout Sums sums, vec4 medium, float length, float ahead) {
+void addPart(inout Sums sums, vec4 medium, float length, float ahead, Lit lit, vec3 toEye) {
   const float depth = length * medium.a;
   const float through = exp(-depth);
-  const float leaving = depth < 0.01 ? 1.0 - 0.5 * depth : (1.0 - through) / depth;
   const float rest = sums.transmittance * through;
-  sums.color += sums.transmittance * leaving * length * medium.rgb;
+  vec3 leaving;
+  if (kLights == 0) {
+    leaving = vec3(depth < 0.01 ? 1.0 - 0.5 * depth : (1.0 - through) / depth);
+  } else {
+    leaving = vec3(0.0);
+    [[unroll]] for (int i = 0; i < kMostSampleLights; ++i)
+      if (i < kLights) leaving += lightOf(i, lit, depth, toEye);
+  }
+  sums.color += sums.transmittance * length * leaving * medium.rgb;
   sums.distance += (sums.transmittance - rest) * max(ahead, 0.0);
   sums.transmittance = rest;
 }
 
-void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
-  const float ahead = (float(slice) - ray.eye) * ray.direction;
-  addPart(sums, sliceAt(level, ray.origin + ray.slope * float(slice), slice, ray.toEye), ray.layer * partInFront(ahead), ahead);
+vec4 depthsTowardsLights(int quad, vec4 weights) {
+  vec4 depths = vec4(0.0);
+  [[unroll]] for (int i = 0; i < kMostSampleLights; ++i)
+    if (i < kLights) {
+      const uvec2 halves = depthQuad(i, quad);
+      const float root = dot(weights, vec4(unpackUnorm2x16(halves.x), unpackUnorm2x16(halves.y)));
+      depths[i] = root * root * kOpaqueDepth;
+    }
+  return depths;
 }
 
 // What a ray found on a slice, for the stretch up to the next one.
@@ -159,13 +232,77 @@ struct Found {
   vec4 integral;   // of extinction times colour and of extinction over the scalar
   vec4 medium;     // extinction times colour and extinction at the scalar
   vec3 light;      // over that of a source term of 1
+  vec2 change;     // of the scalar per voxel along the sides
+  vec4 depths;     // optical depths towards the lights; less than 0: nothing was found
 };
 
-// The transfer function's integral up to a scalar, and its value there.
-void tableAt(float scalar, out vec4 integral, out vec4 medium) {
-  const int interval = clamp(int(scalar), 0, kTransferIntervals - 1);
-  medium = texelFetch(transferTable, 2 * interval + 1);
-  integral = texelFetch(transferTable, 2 * interval) + (scalar - float(interval)) * medium;
+vec3 voxelPosition(Ray ray, float slice) {
+  const vec2 sides = ray.origin + ray.slope * slice;
+  vec3 position;
+  position[kAxis] = slice;
+  position[kSideA] = sides.x;
+  position[kSideB] = sides.y;
+  return (position + 0.5) * ray.edge - 0.5;
+}
+
+// From the change of a value per block along the sides and along the ray from slice to slice. `relative` is how much the
+// extinction changes by a block, over the extinction.
+void setSurface(inout Lit lit, Ray ray, vec2 change, float alongRay, float relative) {
+  vec3 gradient;
+  gradient[kAxis] = alongRay - dot(ray.slope, change);
+  gradient[kSideA] = change.x;
+  gradient[kSideB] = change.y;
+  const vec3 normal = frame.gradientToWorld * gradient;
+  lit.normal = normal * inversesqrt(max(dot(normal, normal), 1e-30));
+  lit.surface = frame.surface * min(2.0 * relative, 1.0);
+}
+
+// Source term and extinction, interpolated.
+vec4 mediumAt(int quad, vec4 weights, vec4 extinctions, vec3 toEye) {
+  const float extinction = dot(weights, extinctions);
+  return vec4(kColored ? sourceAt(quad, sourceQuad(quad), weights, toEye) : extinction * frame.color, extinction);
+}
+
+vec4 extinctionsOf(int quad) {
+  const uvec2 halves = mediumQuad(quad);
+  return vec4(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y));
+}
+
+// Of blocks that are classified: source term and extinction are the same all over a slice's layer.
+void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
+  vec4 weights;
+  const int quad = quadAt(level, ray.origin + ray.slope * float(slice), slice, weights);
+  const float ahead = (float(slice) - ray.eye) * ray.direction;
+  Lit lit;
+  addPart(sums, mediumAt(quad, weights, extinctionsOf(quad), ray.toEye), ray.layer * partInFront(ahead), ahead, lit, ray.toEye);
+}
+
+// Of blocks that are classified and lit at samples: the stretch from the slice before. Along it the depth towards a light
+// changes as the depth towards the eye does, both being integrals of the same extinction.
+void addLitStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within) {
+  vec4 weights;
+  const int quad = quadAt(level, ray.origin + ray.slope * float(slice), slice, weights);
+  const vec4 extinctions = extinctionsOf(quad);
+  Found found = last;
+  found.medium = within ? mediumAt(quad, weights, extinctions, ray.toEye) : vec4(0.0);
+  found.depths = depthsTowardsLights(quad, weights);
+  found.coverage = found.medium.a > 0.0 ? 1.0 : 0.0;
+  const vec4 medium = 0.5 * (last.medium + found.medium);
+  const float ahead = (float(slice) - ray.eye) * ray.direction;
+  Lit lit;
+  lit.begin = last.depths.x < 0.0 ? max(found.depths - ray.layer * medium.a, vec4(0.0)) : last.depths;
+  lit.change = found.depths - lit.begin;
+  lit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
+  if (kSurfaces) {
+    found.change = vec2(mix(extinctions.y - extinctions.x, extinctions.w - extinctions.z, weights.z + weights.w),
+                        mix(extinctions.z - extinctions.x, extinctions.w - extinctions.y, weights.y + weights.w));
+    const vec2 change = 0.5 * (last.change + found.change);
+    const float alongRay = (found.medium.a - last.medium.a) * ray.direction;
+    const float across = alongRay - dot(ray.slope, change);
+    setSurface(lit, ray, change, alongRay, sqrt(dot(change, change) + across * across) / max(medium.a, 1e-20));
+  }
+  addPart(sums, medium, ray.layer * clamp(ahead, 0.0, 1.0), ahead - 0.5, lit, ray.toEye);
+  last = found;
 }
 
 // `halfStep` is what the ray moves along the sides in half a slice.
@@ -175,8 +312,9 @@ Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye
   const uvec2 pairs = mediumQuad(quad);
   const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
   const bool whole = all(notEqual(codes, uvec4(0)));
-  [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = codes[i] != 0 ? weights[i] : 0.0;
   Found found;
+  if (kLights > 0) found.depths = depthsTowardsLights(quad, weights);
+  [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = codes[i] != 0 ? weights[i] : 0.0;
   found.coverage = weights.x + weights.y + weights.z + weights.w;
   const vec4 scalars = (vec4(codes) - 1.0) * (float(kTransferIntervals) / float(kScalarCodes));
   found.scalar = max(dot(weights, scalars) / max(found.coverage, 1e-20), 0.0);
@@ -187,6 +325,7 @@ Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye
   const float even = whole ? halfStep.x * halfStep.y * twist : 0.0, odd = whole ? dot(halfStep, change) : 0.0;
   found.ahead = found.scalar + even + odd;
   found.behind = found.scalar + even - odd;
+  found.change = whole ? change : vec2(0.0);
   tableAt(found.scalar, found.integral, found.medium);
   found.light = vec3(1.0);
   if (kLit) {
@@ -198,10 +337,29 @@ Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye
   return found;
 }
 
-// The mean of the transfer function between two scalars. Small differences of integrals have few digits.
-vec4 meanBetween(float from, vec4 fromIntegral, vec4 fromMedium, float to, vec4 toIntegral, vec4 toMedium) {
-  const float change = to - from;
-  return abs(change) > kLeastChange ? (toIntegral - fromIntegral) / change : 0.5 * (fromMedium + toMedium);
+// Depths towards lights from a voxel further on, where they are known, to the two ends of a stretch: along the way the scalar
+// changes as its gradient says.
+void addTowardsLights(inout vec4 begin, inout vec4 end, Ray ray, Found first, Found second, vec2 change, float alongRay, vec3 position) {
+  vec3 gradient;
+  gradient[kAxis] = alongRay - dot(ray.slope, change);
+  gradient[kSideA] = change.x;
+  gradient[kSideB] = change.y;
+  [[unroll]] for (int i = 0; i < kMostSampleLights; ++i) {
+    if (i >= kLights) continue;
+    vec3 way = frame.lights[i].across;
+    if (frame.lights[i].atInfinity == 0) {
+      way = frame.lights[i].place - position;
+      way /= max(max(abs(way.x), max(abs(way.y), abs(way.z))), 1e-6);
+    }
+    const float layer = length(frame.indexToWorld * way) * frame.extinctionUnit;
+    const float further = dot(gradient, way);
+    vec4 integral, medium;
+    const float a = clamp(first.scalar + further, 0.0, float(kTransferIntervals)), b = clamp(second.scalar + further, 0.0, float(kTransferIntervals));
+    tableAt(a, integral, medium);
+    begin[i] += layer * meanBetween(first.scalar, first.integral, first.medium, a, integral, medium).a;
+    tableAt(b, integral, medium);
+    end[i] += layer * meanBetween(second.scalar, second.integral, second.medium, b, integral, medium).a;
+  }
 }
 
 // Scalars change linearly from a slice to the middle of the stretch and on to the next slice, so that integrals of the
@@ -225,8 +383,32 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
   }
   const float ahead = (float(slice) - ray.eye) * ray.direction;
   const float length = ray.layer * coverage;
-  addPart(sums, near, length * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75);
-  addPart(sums, far, length * clamp(ahead, 0.0, 0.5), ahead - 0.25);
+  Lit nearLit, farLit;
+  if (kLights > 0) {
+    // Along a stretch the depth towards a light changes as the depth towards the eye does, both being integrals of the same
+    // extinction.
+    nearLit.position = farLit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
+    const vec2 change = 0.5 * (first.change + second.change);
+    const float alongRay = (second.scalar - first.scalar) * ray.direction;
+    vec4 begin = first.depths, end = second.depths;
+    if (near.a + far.a > 0.0) addTowardsLights(begin, end, ray, first, second, change, alongRay, nearLit.position);
+    nearLit.change = (end - begin) * (near.a + far.a > 0.0 ? near.a / (near.a + far.a) : 0.5);
+    farLit.change = end - begin - nearLit.change;
+    nearLit.begin = begin;
+    farLit.begin = begin + nearLit.change;
+    if (kSurfaces) {
+      const float across = alongRay - dot(ray.slope, change);
+      const float reach = 0.5 * sqrt(dot(change, change) + across * across);
+      vec4 above, below;
+      tableAt(min(middle + reach, float(kTransferIntervals)), integral, above);
+      tableAt(max(middle - reach, 0.0), integral, below);
+      setSurface(nearLit, ray, change, alongRay, abs(above.a - below.a) / max(max(near.a, far.a), 1e-20));
+      farLit.normal = nearLit.normal;
+      farLit.surface = nearLit.surface;
+    }
+  }
+  addPart(sums, near, length * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75, nearLit, ray.toEye);
+  addPart(sums, far, length * clamp(ahead, 0.0, 0.5), ahead - 0.25, farLit, ray.toEye);
   last = found;
 }
 
@@ -264,25 +446,33 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
   int slice = direction > 0 ? slices.x : slices.y;
   int left = slices.y - slices.x + 1;
   if (left <= 0) return;
-  if (scalars) ++left;
+  if (scalars || kLights > 0) ++left;
   Found last;
   last.coverage = 0.0;
   last.scalar = 0.0;
   last.integral = last.medium = vec4(0.0);
   last.light = vec3(0.0);
+  last.change = vec2(0.0);
+  last.depths = vec4(-1.0);
   // Loops that end with their conditions: lavapipe runs a body once more, masked, where a loop begins with one.
   do {
     int empty;
     do {
       empty = emptyGroups(level, ray, slice, last.coverage > 0.0 ? 1 : 0) * ray.group;
-      if (empty > 0) last.coverage = 0.0;
+      if (empty > 0) {
+        last.coverage = 0.0;
+        last.depths = vec4(-1.0);
+        last.medium = vec4(0.0);
+      }
       slice += direction * empty;
       left -= empty;
     } while (empty > 0 && left > 0);
     if (left > 0) {
       const int rest = left - min(left, ray.group);
       do {
-        if (scalars)
+        if (!scalars && kLights > 0)
+          addLitStretch(sums, last, level, ray, clamp(slice, slices.x, slices.y), slice != final + direction);
+        else if (scalars)
           addStretch(sums, last, level, ray, clamp(slice, slices.x, slices.y), slice != final + direction);
         else
           addSlice(sums, level, ray, slice);
@@ -333,6 +523,7 @@ void main() {
     ray.eye = (eye + 0.5) / edge - 0.5;
     ray.layer = length(world) / abs(along) * edge * frame.extinctionUnit;
     ray.toEye = -normalize(world);
+    ray.edge = edge;
     const ivec2 slices = slicesOnRay(level, ray, frame.axes[kAxis].slices[along > 0.0 ? 1 : 0][number]);
     sums.distance = 0.0;
     if (sums.transmittance > frame.end) march(sums, level, ray, slices, frame.end, kScalars && number == 0);

@@ -21,6 +21,8 @@ FV_CONSTANT int kBrickQuadsThreads = kGatherBrickEdge * kGatherBrickEdge;
 // Quads of more bricks than one texel buffer or allocation holds are in pieces of so many.
 FV_CONSTANT int kPieceBricksLog2 = 17;
 FV_CONSTANT int kMostPieces = 32;
+// Lights whose transmittance is found at samples, from quads of optical depths towards them: kMostExactLights.
+FV_CONSTANT int kMostSampleLights = 4;
 // Classification after interpolation: a transfer function's intervals of the scalar, and the codes of scalars, 1 and above.
 FV_CONSTANT int kTransferIntervals = 4096;
 FV_CONSTANT int kScalarCodes = 65534;
@@ -45,6 +47,7 @@ struct GatherAxis {
   float tiltDepth;     // change of the distance by that step
   float middlePlane;   // voxels
   uvec2 mediumPieces[kMostPieces], sourcePieces[kMostPieces], towardsPieces[kMostPieces];  // device addresses of quads
+  uvec2 depthPieces[kMostSampleLights][kMostPieces];
   ivec2 slices[2][kMaximumLevels];  // by the ray's sign along the axis (0: descending) and level: first, end; ascending
 };
 
@@ -58,7 +61,22 @@ struct GatherLevel {
   ivec3 lastSkip;       // the last cell
 };
 
+// A light whose transmittance is found at samples.
+struct SampleLight {
+  vec3 place;          // at infinity the direction towards it, in the world and of length 1; else index space
+  int atInfinity;
+  vec3 color;          // times the irradiance, of a position at distance 1
+  vec3 across;         // at infinity the direction towards it in index space, across a layer of voxels
+};
+
 struct GatherFrame {
+  SampleLight lights[kMostSampleLights];
+  vec3 tint;              // of the extinction, on the way of the light
+  float phaseG;
+  float surface;          // how much of the lights is scattered as by surfaces
+  float nearestLight2;    // squared distance, world units, that a light has at least
+  mat3 indexToWorld;      // linear part
+  mat3 gradientToWorld;
   GatherAxis axes[3];
   GatherLevel levels[kMaximumLevels];
   int finest, coarsest;   // levels that are read
@@ -89,6 +107,29 @@ struct ShadePush {
   int lightOnly;     // 1: the source term is that of extinction and colour 1
 };
 
+// expand_scalars.comp
+struct ExpandScalarsPush {
+  ivec3 first;       // voxel, whose x is a multiple of 4; may be before those of the volume
+  ivec3 extent;      // in quads along x
+  ivec3 dimensions;  // of the volume
+  ivec3 corner;      // place of the volume's first voxel in its brick of scalars
+  ivec3 cells;       // bricks of scalars along the axes
+  uvec2 bricks, codes;  // device addresses of the bricks' numbers by cell, and of 16 bits a voxel
+};
+
+// light_depths.comp
+struct LightDepthsPush {
+  BlockLevel level;
+  uint firstBrick;
+  uint count;        // of bricks
+  int light;         // among all
+  int edge;          // of a block, voxels
+  ivec3 voxels;      // the volume's dimensions
+  mat3 indexToWorld; // linear part
+  uvec2 extinction;  // device addresses: by rank, and of the depths, 16 bits a block in bricks, x fastest
+  uvec2 depths;
+};
+
 // brick_quads.comp
 struct BrickQuadsPush {
   BlockLevel level;
@@ -97,16 +138,18 @@ struct BrickQuadsPush {
   uint firstQuad;    // where they begin at the addresses
   uvec2 medium, source, towards;  // device addresses of quads
   uvec2 sources, towardsEye;        // device addresses: what shade_blocks.comp made, by rank
-  uvec2 scalarBricks, scalarCodes;  // of scalars: device addresses of the bricks' numbers by cell, and of 16 bits a voxel
-  ivec3 corner;      // place of the volume's first voxel in its brick of scalars
-  ivec3 cells;       // bricks of scalars along the axes
+  uvec2 codeBricks, codes;          // of codes: device addresses of the bricks' numbers by cell, and of 16 bits a block
+  ivec3 corner;      // place of the first block in its brick of codes
+  ivec3 cells;       // bricks of codes along the axes
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(GatherAxis) == 8 * 4 + 12 * 6 - 16 + 3 * kMostPieces * 8 + 2 * kMaximumLevels * 8);
+static_assert(sizeof(GatherAxis) == 8 * 4 + 12 * 6 - 16 + (3 + kMostSampleLights) * kMostPieces * 8 + 2 * kMaximumLevels * 8);
 static_assert(sizeof(GatherLevel) == 48);
 static_assert(sizeof(BrickQuadsPush) == 120);
 static_assert(sizeof(GatherFrame) <= 16384);
+static_assert(sizeof(LightDepthsPush) == 108);
+static_assert(sizeof(ExpandScalarsPush) == 76);
 static_assert(sizeof(ShadePush) == 48);
 }  // namespace freevoxels::shader
 #endif

@@ -5,11 +5,18 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
-#include "interface.h"
+#extension GL_EXT_samplerless_texture_functions : require
+#include "gather_interface.h"
+
+// Classification after interpolation: depths are those up to the planes themselves, from scalars that change linearly between
+// planes. Else they are those in front of the planes' layers, each with the extinction of its plane.
+layout(constant_id = 0) const bool kScalars = false;
 
 layout(local_size_x = kRaySweepThreads) in;
 layout(scalar, push_constant) uniform Push { RaySweepPush push; };
-layout(binding = 0) uniform samplerBuffer extinction;  // of the slab's voxels, with 0 around the volume
+layout(binding = 0) uniform samplerBuffer extinction;  // of the slab's voxels, with 0 around the volume; or scalars
+layout(binding = 2) uniform textureBuffer transferTable;
+#include "transfer_table.glsl"
 layout(scalar, binding = 1) buffer Carried { float carried[]; };  // from slab to slab, by ray
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Depths { uint pairs[]; };
 
@@ -23,6 +30,43 @@ float interpolated(int plane, vec2 position) {
   const int first = push.slab.origin + plane * push.slab.planeStride + int(low.x) * a + int(low.y) * b;
   return mix(mix(texelFetch(extinction, first).x, texelFetch(extinction, first + a).x, w.x),
              mix(texelFetch(extinction, first + b).x, texelFetch(extinction, first + a + b).x, w.x), w.y);
+}
+
+// What a ray found on a plane of scalars.
+struct Found {
+  float coverage, scalar;
+  vec4 integral, medium;
+};
+
+Found scalarAt(int plane, vec2 position) {
+  const vec2 near = clamp(position, vec2(-1.0), vec2(push.sides));
+  const vec2 low = min(floor(near), vec2(push.sides - 1));
+  const vec2 w = near - low;
+  const int a = push.slab.strideA, b = push.slab.strideB;
+  const int first = push.slab.origin + plane * push.slab.planeStride + int(low.x) * a + int(low.y) * b;
+  const vec4 scalars = vec4(texelFetch(extinction, first).x, texelFetch(extinction, first + a).x,
+                            texelFetch(extinction, first + b).x, texelFetch(extinction, first + a + b).x);
+  vec4 weights = vec4((1.0 - w.x) * (1.0 - w.y), w.x * (1.0 - w.y), (1.0 - w.x) * w.y, w.x * w.y);
+  weights *= vec4(greaterThanEqual(scalars, vec4(0.0)));
+  Found found;
+  found.coverage = weights.x + weights.y + weights.z + weights.w;
+  found.scalar = max(dot(weights, scalars) / max(found.coverage, 1e-20), 0.0);
+  tableAt(found.scalar, found.integral, found.medium);
+  return found;
+}
+
+// The mean extinction between two planes.
+float meanOf(Found before, Found after) {
+  if (before.coverage == 0.0) before = after;
+  if (after.coverage == 0.0) after = before;
+  return 0.5 * (before.coverage + after.coverage) *
+         meanBetween(before.scalar, before.integral, before.medium, after.scalar, after.integral, after.medium).a;
+}
+
+// How many layers of the stretch before the first plane a ray goes through.
+float layersToFirst() {
+  const RayFan fan = push.fan;
+  return fan.convergence == 0.0 ? 1.0 : min(abs(float(fan.firstPlane) - fan.farthest + 1.0 / fan.convergence), 1.0);
 }
 
 // The planes, counted from the first, between which the ray is near enough to the volume to be looked up: x
@@ -76,15 +120,22 @@ void main() {
   float depth = 0.0;
   if (planes.x / 2 < begin)
     depth = carried[ray];
-  else if (planes.x == 0)
+  else if (planes.x == 0 && !kScalars)
     depth = layer * sourceCut(atFirst, perPlane);
+  Found last;
+  if (kScalars) last = scalarAt(2 * pair - 1, atFirst + perPlane * float(2 * pair - 1));
   // Software Vulkan runs the body of a loop that ends with its condition once less.
   do {
     vec2 planeDepths;
     [[unroll]] for (int i = 0; i < 2; ++i) {
       const int plane = 2 * pair + i;
+      if (kScalars) {
+        const Found found = scalarAt(plane, atFirst + perPlane * float(plane));
+        depth += layer * (plane == 0 ? layersToFirst() : 1.0) * meanOf(last, found);
+        last = found;
+      }
       planeDepths[i] = depth;
-      depth += layer * interpolated(plane, atFirst + perPlane * float(plane));
+      if (!kScalars) depth += layer * interpolated(plane, atFirst + perPlane * float(plane));
     }
     depths.pairs[uint(pair) * rays + ray] = packUnorm2x16(sqrt(clamp(planeDepths / kOpaqueDepth, 0.0, 1.0)));
   } while (++pair < behind);

@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <limits>
 
+#include "embedded/expand_scalars.h"
 #include "embedded/ray_sweep.h"
 #include "engine/core/error.h"
+#include "shaders/gather_interface.h"
 
 namespace freevoxels {
 
@@ -46,12 +48,11 @@ struct SlabBox {
   }
 };
 
-/// The planes of a fan from `begin` on and before `end`, rounded up to even, and before the fan's first the
-/// one on the other side of the source.
+/// The planes of a fan from `begin` on and before `end`, rounded up to even, and the one before.
 SlabBox slabBox(const RayFan& fan, glm::ivec3 dimensions, int begin, int end) {
   SlabBox box{.first = glm::ivec3(-kQuad, -1, -1),
               .extent = {quadsUp(dimensions.x) + 2 * kQuad, dimensions.y + 2, dimensions.z + 2}};
-  const int near = fan.firstPlane + fan.direction * (begin == 0 ? -1 : begin);
+  const int near = fan.firstPlane + fan.direction * (begin - 1);
   const int far = fan.firstPlane + fan.direction * (end + end % 2 - 1);
   int low = std::min(near, far), high = std::max(near, far) + 1;
   if (fan.axis == 0) {
@@ -117,12 +118,7 @@ std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source) {
 RaySweep::RaySweep(const Device& device, const char* name)
     : device_(device),
       name_(name),
-      expand_(device),
-      pipeline_(makeComputePipeline(
-          device, {ray_sweep_spv, "ray sweep"},
-          {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-           .pushConstantBytes = sizeof(shader::RaySweepPush)},
-          {shader::kRaySweepThreads, 1, 1})) {}
+      expand_(device) {}
 
 void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source, std::uint64_t mostBytes) {
   const RayRoom room = roomFor(rayFans(dimensions, source), dimensions);
@@ -140,21 +136,42 @@ void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source, std::uin
     slabTexels_ = TexelView(device_, slab_, VK_FORMAT_R32_SFLOAT);
 }
 
+/// Of a box of voxels.
+void RaySweep::recordScalars(Commands& commands, const DeviceVolume& volume, glm::ivec3 first, glm::ivec3 extent) const {
+  const DeviceScalars& scalars = *volume.scalarBricks;
+  const glm::ivec3 quads(extent.x / kQuad, extent.y, extent.z);
+  const shader::ExpandScalarsPush push{.first = first,
+                                       .extent = quads,
+                                       .dimensions = volume.layout.dimensions,
+                                       .corner = scalars.corner,
+                                       .cells = scalars.cells,
+                                       .bricks = addressWords(scalars.brickNumbers.address()),
+                                       .codes = addressWords(scalars.codes.address())};
+  const std::array<Binding, 1> bindings{&slab_};
+  commands.dispatch(expandScalars_, bindings, push, quads);
+  commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+}
+
 void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const RayFan& fan,
-                         const shader::RayFan& onDevice) const {
+                         const shader::RayFan& onDevice, bool scalars) const {
   const glm::ivec3 dimensions = volume.layout.dimensions;
+  // The table's extinctions are in another unit.
+  const double unit = scalars ? 1.0 / (kStoredDepth * volume.voxelSize) : 1.0;
   const int sideA = (fan.axis + 1) % 3, sideB = (fan.axis + 2) % 3;
   const int planes = planesPerSlab(fan, dimensions);
   for (int begin = 0; begin < fan.planeCount; begin += planes) {
     const int end = std::min(begin + planes, fan.planeCount);
     const SlabBox box = slabBox(fan, dimensions, begin, end);
-    expand_.recordBox(commands, volume, box.first, box.extent, slab_);
+    if (scalars)
+      recordScalars(commands, volume, box.first, box.extent);
+    else
+      expand_.recordBox(commands, volume, box.first, box.extent, slab_);
     const glm::ivec3 strides(1, box.extent.x, box.extent.x * box.extent.y);
     glm::ivec3 origin = -box.first;
     origin[fan.axis] += fan.firstPlane;
     const glm::ivec3 offsets = origin * strides;
     const shader::RaySweepPush push{.fan = onDevice,
-                                    .indexToWorld = glm::dmat3(volume.indexToWorld),
+                                    .indexToWorld = unit * glm::dmat3(volume.indexToWorld),
                                     .sides = {dimensions[sideA], dimensions[sideB]},
                                     .slab = {.begin = begin,
                                              .end = end,
@@ -162,22 +179,31 @@ void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const R
                                              .planeStride = fan.direction * strides[fan.axis],
                                              .strideA = strides[sideA],
                                              .strideB = strides[sideB]}};
-    const std::array<Binding, 2> bindings{&slabTexels_, &carried_};
-    commands.dispatchLinear(pipeline_, bindings, push, fan.rays());
+    const std::array<Binding, 3> bindings{&slabTexels_, &carried_, scalars ? &volume.scalarBricks->tableTexels : &slabTexels_};
+    commands.dispatchLinear(pipelines_[scalars ? 1 : 0], bindings, push, fan.rays());
     commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
   }
 }
 
-void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RaySource& source) {
+void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars) {
   const std::array<RayFan, 6> fans = rayFans(volume.layout.dimensions, source);
   makeRoom(volume.layout.dimensions, source);
+  constexpr VkDescriptorType kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  pipelines_[scalars ? 1 : 0] = makeComputePipeline(
+      device_, {ray_sweep_spv, "ray sweep"},
+      {.bindings = {kTexels, kStorage, kTexels}, .pushConstantBytes = sizeof(shader::RaySweepPush)},
+      {shader::kRaySweepThreads, 1, 1}, {scalars});
+  if (scalars)
+    expandScalars_ = makeComputePipeline(device_, {expand_scalars_spv, "expand scalars"},
+                                         {.bindings = {kStorage}, .pushConstantBytes = sizeof(shader::ExpandScalarsPush)},
+                                         {shader::kExpandTile, shader::kExpandTile, 1});
 
   commands.beginPass(name_);
   VkDeviceAddress address = depths_.address();
   for (std::size_t i = 0; i < fans.size(); ++i) {
     fans_[i] = deviceFan(fans[i], address);
     if (fans[i].planeCount == 0) continue;
-    recordFan(commands, volume, fans[i], fans_[i]);
+    recordFan(commands, volume, fans[i], fans_[i], scalars);
     address += depthBytes(fans[i]);
     if (source.atInfinity) {
       fans_.fill(fans_[i]);

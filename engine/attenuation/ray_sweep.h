@@ -27,8 +27,10 @@ class RaySweep {
   /// ExitCode::OutOfMemory where there is none. No work may be under way on those of the last source.
   void makeRoom(glm::ivec3 dimensions, const RaySource& source,
                 std::uint64_t mostBytes = std::numeric_limits<std::uint64_t>::max());
-  /// Sweeps the volume for this source; the depths replace those of the last one. Makes room if need be.
-  void record(Commands& commands, const DeviceVolume& volume, const RaySource& source);
+  /// Sweeps the volume for this source; the depths replace those of the last one. Makes room if need be. With `scalars` from
+  /// the volume's scalars, classified after interpolation; depths then are those up to the planes of voxels, not those in
+  /// front of their layers.
+  void record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars = false);
   /// Of the last source, for look-ups: index 2 axis + (direction > 0). Parallel rays have one fan, which is
   /// in all six places, so that no look-up has to choose it with the same rounding.
   const std::array<shader::RayFan, 6>& fans() const { return fans_; }
@@ -37,12 +39,14 @@ class RaySweep {
 
  private:
   void recordFan(Commands& commands, const DeviceVolume& volume, const RayFan& fan,
-                 const shader::RayFan& onDevice) const;
+                 const shader::RayFan& onDevice, bool scalars) const;
+  void recordScalars(Commands& commands, const DeviceVolume& volume, glm::ivec3 first, glm::ivec3 extent) const;
 
   const Device& device_;
   const char* name_;
   ExpandPass expand_;
-  Pipeline pipeline_;
+  std::array<Pipeline, 2> pipelines_;  ///< by whether of scalars
+  Pipeline expandScalars_;
   Buffer slab_;  ///< float: extinction of its voxels
   TexelView slabTexels_;
   Buffer carried_;  ///< float, by ray: depth between slabs

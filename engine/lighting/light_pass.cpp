@@ -69,26 +69,26 @@ void LightPass::setBeyond(Commands& commands, const DeviceVolume& volume, Direct
   }
 }
 
-void LightPass::setRays(Commands& commands, const DeviceVolume& volume, const Lighting& lighting,
+void LightPass::setRays(Commands& commands, const DeviceVolume& volume, const Lighting& lighting, bool scalars,
                         std::vector<shader::Light>& lights) {
   const std::vector<RaySource> sources = sourcesOf(lighting, volume);
   checkRaysFit(device_, rayMemory(volume.layout.dimensions, sources));
   for (std::size_t i = 0; i < lights.size(); ++i) {
     RaySweep& sweep = rays_.emplace_back(device_, "light sweep");
-    sweep.record(commands, volume, sources[i]);
+    sweep.record(commands, volume, sources[i], scalars);
     std::ranges::copy(sweep.fans(), lights[i].fans);
   }
 }
 
 std::vector<shader::Light> LightPass::place(Commands& commands, const DeviceVolume& volume, DirectionSet set,
-                                            const Lighting& lighting) {
+                                            const Lighting& lighting, bool scalars) {
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
   std::vector<shader::Light> lights;
   for (const Light& light : lighting.lights)
     lights.push_back(deviceLight(light, lightSource(light, volume.indexToWorld), middle));
   rays_.clear();
   if (lighting.attenuation == LightAttenuation::Exact)
-    setRays(commands, volume, lighting, lights);
+    setRays(commands, volume, lighting, scalars, lights);
   else
     setBeyond(commands, volume, set, lighting, lights);
   return lights;
@@ -112,17 +112,17 @@ LightAttenuation LightPass::resolve(const DeviceVolume& volume, const FrameSetti
 }
 
 shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const TableSettings& table,
-                                         const FrameSettings& settings, std::vector<StageTime>& times) {
+                                         const FrameSettings& settings, bool scalars, std::vector<StageTime>& times) {
   const Lighting& lighting = *settings.lighting;
   const DirectionSet set = table.directions;
   if (!placed_ || placed_->ambient != lighting.ambient || placed_->environment != lighting.environment)
     fromAll_ = directionLight(lighting, set, volume.indexToWorld);
   const bool stand =
-      placed_ && placed_->lights == lighting.lights && placed_->attenuation == lighting.attenuation;
+      placed_ && placed_->lights == lighting.lights && placed_->attenuation == lighting.attenuation && placedScalars_ == scalars;
   if (!stand) {
     placed_.reset();  // until there is room for all of these
     Commands commands(device_);
-    const std::vector<shader::Light> lights = place(commands, volume, set, lighting);
+    const std::vector<shader::Light> lights = place(commands, volume, set, lighting, scalars);
     commands.submitAndWait();
     addTimes(times, commands.times());
     const auto bytes = std::as_bytes(std::span(lights));
@@ -130,6 +130,7 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
     upload(device_, lights_, bytes);
   }
   placed_ = lighting;
+  placedScalars_ = scalars;
   const int ofTable =
       settings.attenuation == AttenuationLookup::Nearest ? shader::kLookupNearest : shader::kLookupBilinear;
   shader::FrameLighting frame{

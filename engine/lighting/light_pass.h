@@ -27,23 +27,24 @@ class LightPass {
                            std::uint64_t others) const;
   /// On the device, of lighting that is not Auto.
   static std::uint64_t rayBytes(const DeviceVolume& volume, const Lighting& lighting);
-  /// Of settings whose lighting is not Auto. Waits for what it has to make; no frame may be under way. Adds
+  /// Of settings whose lighting is not Auto; the rays of lights are of the volume's `scalars`, or of its classified voxels. Waits for what it has to make; no frame may be under way. Adds
   /// the times of that to `times`.
   shader::FrameLighting prepare(const DeviceVolume& volume, const TableSettings& table,
-                                const FrameSettings& settings, std::vector<StageTime>& times);
+                                const FrameSettings& settings, bool scalars, std::vector<StageTime>& times);
   /// shader::Light, of the last frame.
   const Buffer& lights() const { return lights_; }
 
  private:
   std::vector<shader::Light> place(Commands& commands, const DeviceVolume& volume, DirectionSet set,
-                                   const Lighting& lighting);
+                                   const Lighting& lighting, bool scalars);
   void setBeyond(Commands& commands, const DeviceVolume& volume, DirectionSet set, const Lighting& lighting,
                  std::vector<shader::Light>& lights);
-  void setRays(Commands& commands, const DeviceVolume& volume, const Lighting& lighting,
+  void setRays(Commands& commands, const DeviceVolume& volume, const Lighting& lighting, bool scalars,
                std::vector<shader::Light>& lights);
 
   const Device& device_;
   EyeDepthsPass beyond_;
+  bool placedScalars_ = false;
   std::optional<Lighting> placed_;   ///< whose light the buffers and `fromAll_` are of
   std::vector<glm::dvec3> fromAll_;  ///< directionLight
   Buffer lights_;                    ///< shader::Light

@@ -20,9 +20,11 @@ constexpr glm::ivec3 kTile{shader::kGatherTile, shader::kGatherTile, 1};
 
 Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume) {
   return makeComputePipeline(device, {gather_spv, "gather"},
-                             {.bindings = {kUniform, kTexels, kTexels, kTexels, kTexels, kTexelsOut, kTexelsOut, kTexels, kTexels}}, kTile,
+                             {.bindings = {kUniform, kTexels, kTexels, kTexels, kTexels, kTexelsOut, kTexelsOut, kTexels, kTexels,
+                                           kTexels, kTexels, kTexels, kTexels}}, kTile,
                              {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.hasScalars(),
-                              volume.isLit(), volume.inPieces()});
+                              volume.isLit(), volume.inPieces(), std::uint32_t(volume.sampleLights()), volume.isTinted(),
+                              volume.hasSurfaces()});
 }
 
 /// Of the stencil and the upsampling, which have the same bindings.
@@ -82,7 +84,7 @@ void GatherPass::recordGather(Commands& commands, const GatherVolume& volume, co
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
     const GatherVolume::Quads& quads = volume.quads(axis);
-    const std::array<Binding, 9> bindings{&frame_,
+    const std::array<Binding, 13> bindings{&frame_,
                                           &volume.brickNumbers(),
                                           &quads.medium.texels,
                                           &quads.source.texels,
@@ -90,7 +92,11 @@ void GatherPass::recordGather(Commands& commands, const GatherVolume& volume, co
                                           &gathered_.colorEnergyTexels,
                                           &gathered_.distanceTexels,
                                           &volume.transferTable(),
-                                          &volume.skips()};
+                                          &volume.skips(),
+                                          &quads.depths[0].texels,
+                                          &quads.depths[1].texels,
+                                          &quads.depths[2].texels,
+                                          &quads.depths[3].texels};
     commands.dispatch(makeGather(device_, axis, volume), bindings, glm::ivec3(frame.samples, 1));
   }
   commands.barrier(kCompute, kCompute);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "embedded/brick_quads.h"
+#include "embedded/light_depths.h"
 #include "embedded/shade_blocks.h"
 #include "engine/core/error.h"
 #include "engine/splatting/gather_cells.h"
@@ -167,17 +168,19 @@ void GatherVolume::prepare(const Shading& shading) {
     fail(ExitCode::OutOfMemory,
          "the volume's scalars take more memory than there is, which classification after interpolation needs: "
          "--classification pre does without");
-  const bool lit = shading.lighting != nullptr;
+  const bool samples = lightsSamples(built_.volume, shading.lighting);
+  const bool lit = shading.lighting != nullptr && !samples;
   const bool viewDependent = lit && dependsOnView(*shading.lighting);
   const bool sameLight =
       lit == lit_ && !viewDependent && !viewDependent_ && (!lit || lighting_ == *shading.lighting);
-  sourceUnit_ = sourceUnit(built_.volume, shading.lighting);
+  sourceUnit_ = sourceUnit(built_.volume, lit ? shading.lighting : nullptr);
   lit_ = lit;
   viewDependent_ = viewDependent;
-  if (lit)
+  if (shading.lighting != nullptr)
     lighting_ = *shading.lighting;
   else
     lighting_.reset();
+  prepareSampled(samples ? std::span<const Light>(shading.lighting->lights) : std::span<const Light>());
   wantedLevels_ = 0;
   for (int level = shading.frame.detail.finest; level <= shading.frame.detail.coarsest; ++level)
     wantedLevels_ |= 1u << level;
@@ -200,13 +203,43 @@ void GatherVolume::prepare(const Shading& shading) {
   dropOtherAxes(shading.axes, device_.memoryBytes() / kKeptShare);
 }
 
+bool GatherVolume::lightsSamples(const DeviceVolume& volume, const Lighting* lighting) {
+  return lighting != nullptr && !lighting->lights.empty() && lighting->lights.size() <= std::size_t(shader::kMostSampleLights) &&
+         lighting->attenuation == LightAttenuation::Exact && !lighting->comesFromEverywhere() && !volume.hasEmission();
+}
+
+/// Depths stay where the lights do.
+void GatherVolume::prepareSampled(std::span<const Light> lights) {
+  const bool stand = std::ranges::equal(lights, sampled_, [](const Light& a, const Light& b) {
+    return a.place == b.place && a.atInfinity == b.atInfinity;
+  });
+  if (!stand) {
+    depthLevels_ = 0;
+    for (Quads& quads : quads_) quads.depthLevels = 0;
+  }
+  sampled_.assign(lights.begin(), lights.end());
+  const std::uint64_t bytes = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks * sizeof(std::uint16_t);
+  for (std::size_t i = 0; i < lightDepths_.size(); ++i) {
+    if (i >= sampled_.size())
+      lightDepths_[i] = {};
+    else if (lightDepths_[i].bytes() == 0)
+      lightDepths_[i] = Buffer(device_, bytes, MemoryUse::Device, "depths towards a light");
+  }
+}
+
+std::uint64_t GatherVolume::Quads::bytes() const {
+  std::uint64_t sum = medium.bytes() + source.bytes() + towards.bytes();
+  for (const QuadStore& store : depths) sum += store.bytes();
+  return sum;
+}
+
 /// Frees quads that hold nothing of use, and those beyond `most` bytes.
 void GatherVolume::dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t most) {
   std::uint64_t kept = 0;
   for (std::size_t axis = 0; axis < quads_.size(); ++axis) {
     Quads& quads = quads_[axis];
     if (axes[axis]) continue;
-    kept += quads.medium.bytes() + quads.source.bytes() + quads.towards.bytes();
+    kept += quads.bytes();
     if (quads.levels == 0 || kept > most) quads = {};
   }
 }
@@ -236,6 +269,8 @@ void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
     const auto holds = [&](const QuadStore& store, bool needed, std::uint64_t bytes) {
       return store.bytes() >= (needed ? count : 1) * bytes;
     };
+    for (std::size_t i = 0; i < there.depths.size(); ++i)
+      if (!holds(there.depths[i], i < sampled_.size(), sizeof(glm::uvec2))) return false;
     return holds(there.medium, true, sizeof(glm::uvec2)) && holds(there.source, hasColors(), sizeof(glm::uvec4)) &&
            holds(there.towards, hasTowards(), sizeof(glm::uvec4));
   };
@@ -249,40 +284,101 @@ void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
   quads.medium = makeStore(true, sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "medium quads");
   quads.source = makeStore(hasColors(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source quads");
   quads.towards = makeStore(hasTowards(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source direction quads");
+  for (std::size_t i = 0; i < quads.depths.size(); ++i)
+    quads.depths[i] = makeStore(i < sampled_.size(), sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "light depth quads");
 }
 
 void GatherVolume::record(Commands& commands, const Shading& shading) {
   if ((wantedLevels_ & ~shadedLevels_) != 0) recordShading(commands, shading);
-  for (int axis = 0; axis < 3; ++axis)
-    if (shading.axes[std::size_t(axis)] && (wantedLevels_ & ~quads_[std::size_t(axis)].levels) != 0)
-      recordQuads(commands, axis);
+  if (!sampled_.empty() && (wantedLevels_ & ~depthLevels_) != 0) recordLightDepths(commands, shading);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!shading.axes[std::size_t(axis)]) continue;
+    Quads& quads = quads_[std::size_t(axis)];
+    if ((wantedLevels_ & ~quads.levels) != 0) recordQuads(commands, axis);
+    if (!sampled_.empty() && (wantedLevels_ & ~quads.depthLevels) != 0) recordDepthQuads(commands, axis);
+  }
+}
+
+std::optional<GatherVolume::Codes> GatherVolume::scalarCodes(int level) const {
+  if (!hasScalars() || level != 0) return {};
+  const DeviceScalars& scalars = *built_.volume.scalarBricks;
+  return Codes{.brickNumbers = scalars.brickNumbers.address(), .codes = scalars.codes.address(), .corner = scalars.corner, .cells = scalars.cells};
 }
 
 void GatherVolume::recordQuads(Commands& commands, int axis) {
-  const DeviceVolume& volume = built_.volume;
   Quads& quads = quads_[std::size_t(axis)];
   commands.beginPass("brick quads");
-  if (quads.levels == 0) recordBricks(commands, axis, 0, 0, 1);  // the empty one
-  for (int level = 0; level <= volume.hierarchy.top(); ++level)
+  if (quads.levels == 0) recordBricks(commands, axis, 0, 0, 1, scalarCodes(0), quads.medium, hasColors());  // the empty one
+  for (int level = 0; level <= built_.volume.hierarchy.top(); ++level)
     if (((wantedLevels_ & ~quads.levels) >> level & 1u) != 0)
-      recordBricks(commands, axis, level, firstBricks_[std::size_t(level)], firstBricks_[std::size_t(level) + 1]);
+      recordBricks(commands, axis, level, firstBricks_[std::size_t(level)], firstBricks_[std::size_t(level) + 1],
+                   scalarCodes(level), quads.medium, hasColors() && (lit_ || !scalarCodes(level)));
   commands.barrier(kCompute, kCompute);
   quads.levels |= wantedLevels_;
 }
 
+/// Of all blocks of bricks, whether or not they hold anything.
+void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading) {
+  const DeviceVolume& volume = built_.volume;
+  const Pipeline pass = makeComputePipeline(device_, {light_depths_spv, "light depths"},
+                                            {.bindings = {kTexelsIn, kTexelsIn, kStorage}, .pushConstantBytes = sizeof(shader::LightDepthsPush)},
+                                            {shader::kBrickQuadsThreads, 1, 1}, {hasScalars()});
+  const std::array<Binding, 3> bindings{&brickCellTexels_, &volume.occupancyTexels, shading.lights};
+  commands.beginPass("light depths");
+  for (std::size_t light = 0; light < sampled_.size(); ++light) {
+    if (depthLevels_ == 0) commands.clear(lightDepths_[light]);  // of the empty brick
+    for (int level = 0; level <= volume.hierarchy.top(); ++level) {
+      if (((wantedLevels_ & ~depthLevels_) >> level & 1u) == 0) continue;
+      const std::uint32_t first = firstBricks_[std::size_t(level)], end = firstBricks_[std::size_t(level) + 1];
+      const shader::LightDepthsPush push{.level = volume.onDevice(level),
+                                         .firstBrick = first,
+                                         .count = end - first,
+                                         .light = int(light),
+                                         .edge = 1 << level,
+                                         .voxels = volume.layout.dimensions,
+                                         .indexToWorld = glm::dmat3(volume.indexToWorld),
+                                         .extinction = addressWords(volume.extinction.address()),
+                                         .depths = addressWords(lightDepths_[light].address())};
+      if (first < end) commands.dispatchLinear(pass, bindings, push, std::uint64_t(push.count) * shader::kBrickQuadsThreads);
+    }
+  }
+  commands.barrier(kCompute, kCompute);
+  depthLevels_ |= wantedLevels_;
+}
+
+void GatherVolume::recordDepthQuads(Commands& commands, int axis) {
+  Quads& quads = quads_[std::size_t(axis)];
+  commands.beginPass("brick quads");
+  for (std::size_t light = 0; light < sampled_.size(); ++light) {
+    const auto make = [&](int level, std::uint32_t first, std::uint32_t end) {
+      const shader::GatherLevel& cells = levels_[std::size_t(level)];
+      const Codes codes{.brickNumbers = brickNumbers_.address() + VkDeviceAddress(cells.firstCell) * sizeof(std::uint32_t),
+                        .codes = lightDepths_[light].address(),
+                        .cells = {cells.cellStrides.x, cells.cellStrides.y / cells.cellStrides.x, 0}};
+      recordBricks(commands, axis, level, first, end, codes, quads.depths[light], false);
+    };
+    if (quads.depthLevels == 0) make(0, 0, 1);
+    for (int level = 0; level <= built_.volume.hierarchy.top(); ++level)
+      if (((wantedLevels_ & ~quads.depthLevels) >> level & 1u) != 0)
+        make(level, firstBricks_[std::size_t(level)], firstBricks_[std::size_t(level) + 1]);
+  }
+  commands.barrier(kCompute, kCompute);
+  quads.depthLevels |= wantedLevels_;
+}
+
 /// The quads of bricks of a level, piece by piece.
-void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::uint32_t first, std::uint32_t end) {
+void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::uint32_t first, std::uint32_t end,
+                                const std::optional<Codes>& codes, const QuadStore& medium, bool colored) {
+  if (first == end) return;
   const DeviceVolume& volume = built_.volume;
   const Quads& quads = quads_[std::size_t(axis)];
-  const DeviceScalars* const scalars = hasScalars() ? &*volume.scalarBricks : nullptr;
-  const bool codes = scalars && level == 0;
-  const bool isEmptyBrick = first == 0;  // which all levels read
-  const bool colored = hasColors() && (lit_ || !codes || isEmptyBrick);
+  const bool towards = hasTowards() && colored;
   const Pipeline pass = makeComputePipeline(
       device_, {brick_quads_spv, "brick quads"},
       {.bindings = {kTexelsIn, kTexelsIn}, .pushConstantBytes = sizeof(shader::BrickQuadsPush)},
-      {shader::kBrickQuadsThreads, 1, 1}, {std::uint32_t(axis), hasTowards(), colored, codes});
+      {shader::kBrickQuadsThreads, 1, 1}, {std::uint32_t(axis), towards, colored, codes.has_value()});
   const std::array<Binding, 2> bindings{&brickCellTexels_, &volume.occupancyTexels};
+  const Codes from = codes.value_or(Codes());
   for (std::uint32_t next = first; next < end;) {
     const std::uint32_t piece = next / bricksPerPiece_;
     const std::uint32_t bricks = std::min(end, (piece + 1) * bricksPerPiece_) - next;
@@ -290,15 +386,15 @@ void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::ui
                                       .firstBrick = next,
                                       .count = bricks,
                                       .firstQuad = next % bricksPerPiece_ * shader::kGatherBrickBlocks,
-                                      .medium = addressWords(quads.medium.address(piece)),
+                                      .medium = addressWords(medium.address(piece)),
                                       .source = addressWords(quads.source.address(piece)),
                                       .towards = addressWords(quads.towards.address(piece)),
                                       .sources = addressWords(sources_.address()),
                                       .towardsEye = addressWords(towards_.address()),
-                                      .scalarBricks = addressWords(scalars ? scalars->brickNumbers.address() : 0),
-                                      .scalarCodes = addressWords(scalars ? scalars->codes.address() : 0),
-                                      .corner = scalars ? scalars->corner : glm::ivec3(0),
-                                      .cells = scalars ? scalars->cells : glm::ivec3(0)};
+                                      .codeBricks = addressWords(from.brickNumbers),
+                                      .codes = addressWords(from.codes),
+                                      .corner = from.corner,
+                                      .cells = from.cells};
     commands.dispatchLinear(pass, bindings, push, std::uint64_t(bricks) * shader::kBrickQuadsThreads);
     next += bricks;
   }
@@ -328,11 +424,34 @@ void GatherVolume::describe(shader::GatherFrame& frame) const {
     setPieces(quads.medium, frame.axes[axis].mediumPieces);
     setPieces(quads.source, frame.axes[axis].sourcePieces);
     setPieces(quads.towards, frame.axes[axis].towardsPieces);
+    for (std::size_t i = 0; i < quads.depths.size(); ++i) setPieces(quads.depths[i], frame.axes[axis].depthPieces[i]);
   }
   frame.extinctionUnit = float(1.0 / (kStoredDepth * built_.volume.voxelSize));
   frame.sourceUnit = float(sourceUnit_);
   frame.color = built_.volume.albedo;
+  describeLights(frame);
   for (int number = frame.finest; number <= frame.coarsest; ++number) frame.levels[number] = levels_[std::size_t(number)];
+}
+
+void GatherVolume::describeLights(shader::GatherFrame& frame) const {
+  if (sampled_.empty()) return;
+  const DeviceVolume& volume = built_.volume;
+  const glm::dmat3 linear(volume.indexToWorld);
+  for (std::size_t i = 0; i < sampled_.size(); ++i) {
+    const Light& light = sampled_[i];
+    const glm::dvec3 place = light.atInfinity ? glm::normalize(light.place) : lightSource(light, volume.indexToWorld).place;
+    frame.lights[i] = {.place = place, .atInfinity = light.atInfinity ? 1 : 0, .color = light.intensity * light.color};
+    if (light.atInfinity) {
+      const glm::dvec3 way = lightSource(light, volume.indexToWorld).place, size = glm::abs(way);
+      frame.lights[i].across = way / std::max({size.x, size.y, size.z});
+    }
+  }
+  frame.tint = lighting_->tint;
+  frame.phaseG = float(lighting_->phaseG);
+  frame.surface = float(lighting_->surface);
+  frame.nearestLight2 = float(double(shader::kNearestLight2) * volume.voxelSize * volume.voxelSize);
+  frame.indexToWorld = linear;
+  frame.gradientToWorld = glm::transpose(glm::inverse(linear));
 }
 
 }  // namespace freevoxels

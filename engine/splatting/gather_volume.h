@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/hierarchy/volume_builder.h"
@@ -29,6 +30,9 @@ class GatherVolume {
     const Buffer* lights;  ///< shader::Light
     std::array<bool, 3> axes;  ///< that rays march along
   };
+  /// Whether the transmittance of all lights is found at the gather's samples, from their rays. Ambient light, emission and
+  /// more lights are shaded by voxel.
+  static bool lightsSamples(const DeviceVolume& volume, const Lighting* lighting);
   /// Allocates what the frame needs. Fails with ExitCode::OutOfMemory.
   void prepare(const Shading& shading);
   /// Shades the blocks of the levels that the frame reads, as far as what the frame before left does not serve. After
@@ -45,7 +49,10 @@ class GatherVolume {
   /// The quads of an axis.
   struct Quads {
     QuadStore medium, source, towards;
+    std::array<QuadStore, shader::kMostSampleLights> depths;  ///< optical depths towards lights
     std::uint32_t levels = 0;  ///< a bit for each level that is there
+    std::uint32_t depthLevels = 0;
+    std::uint64_t bytes() const;
   };
   const TexelView& skips() const { return skipTexels_; }
   const TexelView& brickNumbers() const { return brickNumberTexels_; }
@@ -59,6 +66,9 @@ class GatherVolume {
   /// Whether voxels are classified after interpolation: quads of the finest level then hold codes of scalars.
   bool hasScalars() const;
   bool isLit() const { return lit_; }
+  int sampleLights() const { return int(sampled_.size()); }
+  bool isTinted() const { return lighting_ && lighting_->tint != glm::dvec3(1.0); }
+  bool hasSurfaces() const { return lighting_ && lighting_->surface > 0.0; }
   /// Whether quads are in more than one piece, of shader::kPieceBricksLog2 each.
   bool inPieces() const { return bricksPerPiece_ < firstBricks_.back(); }
   /// TransferTable::texels(); any texels where there are no scalars.
@@ -67,6 +77,8 @@ class GatherVolume {
  private:
   void makeBricks(const Volume& volume, const Classification& classification, std::vector<StageTime>& times);
   void makeSources();
+  void prepareSampled(std::span<const Light> lights);
+  void describeLights(shader::GatherFrame& frame) const;
   void dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t most);
   void makeRoom(Quads& quads, const std::array<bool, 3>& axes);
   QuadStore makeStore(bool needed, std::uint64_t quadBytes, VkFormat format, const char* name) const;
@@ -74,8 +86,17 @@ class GatherVolume {
   void recordShading(Commands& commands, const Shading& shading);
   /// Whether the level's blocks have source terms: scalars without light have their colours in the transfer function.
   bool shadesLevel(int level) const;
+  /// Codes of 16 bits, in bricks: of scalars, or of depths towards a light.
+  struct Codes {
+    VkDeviceAddress brickNumbers = 0, codes = 0;
+    glm::ivec3 corner{0}, cells{0};
+  };
+  std::optional<Codes> scalarCodes(int level) const;
   void recordQuads(Commands& commands, int axis);
-  void recordBricks(Commands& commands, int axis, int level, std::uint32_t first, std::uint32_t end);
+  void recordBricks(Commands& commands, int axis, int level, std::uint32_t first, std::uint32_t end,
+                    const std::optional<Codes>& codes, const QuadStore& medium, bool colored);
+  void recordLightDepths(Commands& commands, const Shading& shading);
+  void recordDepthQuads(Commands& commands, int axis);
 
   const Device& device_;
   const BuiltVolume& built_;
@@ -97,6 +118,9 @@ class GatherVolume {
   bool lit_ = false, viewDependent_ = false;
   double sourceUnit_ = 1.0;
   std::optional<Lighting> lighting_;
+  std::vector<Light> sampled_;  ///< lights whose transmittance is found at samples
+  std::array<Buffer, shader::kMostSampleLights> lightDepths_;  ///< 16 bits a block, in bricks
+  std::uint32_t depthLevels_ = 0;
 };
 
 }  // namespace freevoxels

@@ -195,6 +195,59 @@ TEST_F(GatherTest, LitVolumesAreAsNearToTheOracleAsSplats) {
   }
 }
 
+/// Lit from the eye's side a column of optical depth D scatters (1 - exp(-(1 + tint) D)) / (1 + tint), from behind with a tint
+/// of 1 D exp(-D), of what a light is without shadow.
+TEST_F(GatherTest, LightThroughAHomogeneousBoxIsItsIntegral) {
+  const Volume box = makeVolume({20, 20, 12}, cubeTransform({20, 20, 12}), [](int, int, int) { return 1.0; });
+  const glm::ivec2 size(15, 15);
+  const Camera camera = alongZ(box, size, 1.0);
+  const double length = 12.0 * glm::length(glm::dvec3(box.indexToWorld[2]));
+  for (const double depth : {0.3, 2.0, 6.0}) {
+    Renderer renderer(device(), box, {.densityScale = depth / length, .albedo = glm::vec3(1.0f)}, {});
+    FrameSettings settings = gathering(size);
+    settings.lighting = Lighting{.lights = {{.place = {0.0, 0.0, 1.0}}}, .tint = {1.0, 0.5, 2.0}};
+    const glm::vec4 front = renderer.render(camera, settings).pixels[7 + 7 * 15];
+    for (int c = 0; c < 3; ++c) {
+      const double both = 1.0 + settings.lighting->tint[c], expected = (1.0 - std::exp(-both * depth)) / both;
+      EXPECT_NEAR(front[c], expected, 0.01 * expected) << depth << ' ' << c;
+    }
+    settings.lighting = Lighting{.lights = {{.place = {0.0, 0.0, -1.0}}}};
+    const glm::vec4 behind = renderer.render(camera, settings).pixels[7 + 7 * 15];
+    EXPECT_NEAR(behind.r, depth * std::exp(-depth), 0.02 * depth * std::exp(-depth)) << depth;
+  }
+}
+
+/// On opaque skin light changes within a voxel by more than what reaches the voxel's middle says.
+TEST_F(GatherTest, LightOnOpaqueSkinComesNearerToTheOracleThanThatOfSplats) {
+  QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 32, makeProcedural("head", 32));
+  const Scene scene{.volume = head.volume, .classification = head.classification};
+  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
+  FrameSettings settings{.size = {64, 64}, .lighting = Lighting{.lights = {{.place = {1.0, 1.0, 1.0}}}}};
+  settings.lod = 0.0f;
+  const double splats = qualityOf(scene, camera, settings);
+  settings.draw = Draw::Gather;
+  EXPECT_GE(qualityOf(scene, camera, settings), splats + 5.0);
+}
+
+TEST_F(GatherTest, LightsOfAllKindsMatchTheOracle) {
+  Scene scene = cloud(32);
+  scene.classification.densityScale *= 5.0;
+  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
+  const glm::dvec3 inside(scene.volume.indexToWorld * glm::dvec4(20.2, 21.4, 9.7, 1.0));
+  FrameSettings settings = gathering({48, 48});
+  settings.lighting = Lighting{.lights = {{.place = {0.3, 1.0, 0.2}, .color = {1.0, 0.8, 0.5}},
+                                          {.place = {1.0, 0.7, 0.9}, .atInfinity = false, .intensity = 6.0},
+                                          {.place = inside, .atInfinity = false, .color = {0.1, 0.2, 0.3}, .intensity = 0.1},
+                                          {.place = {-1.0, 0.1, -0.2}, .intensity = 2.0}},
+                               .tint = {0.5, 1.0, 2.0},
+                               .phaseG = 0.4};
+  EXPECT_GE(qualityOf(scene, camera, settings), 38.0);
+  settings.lod = 1.0f;
+  Camera distant = camera;
+  distant.position = camera.lookAt + 5.0 * (camera.position - camera.lookAt);
+  EXPECT_GE(qualityOf(scene, distant, settings), 33.0);  // as without lights: some ten pixels
+}
+
 TEST_F(GatherTest, CoarseLevelsLookLikeVoxels) {
   const Volume volume = makeProcedural("cloud", 96);
   const Classification classification{.densityScale = automaticDensityScale(volume)};
