@@ -215,8 +215,8 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
   FrameSettings settings = resolved(wanted);
   settings.attenuation = AttenuationLookup::Exact;
   FrameConstants constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
-  const bool shadesVoxels =
-      settings.lighting && !GatherVolume::lightsSamples(built.volume, &*settings.lighting);
+  const bool lightsSamples = GatherVolume::lightsSamples(built.volume, settings.lighting ? &*settings.lighting : nullptr);
+  const bool shadesVoxels = settings.lighting && !lightsSamples;
   if ((shadesVoxels || constants.detail.coarsest > 0) && !built.hasBlocks()) {
     builtWithBlocks(progress);
     constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
@@ -224,10 +224,9 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
   SplatTargets targets = makeImageTargets(device, settings);
   shader::GatherFrame lattice =
       makeGatherFrame(built.volume, camera, settings, constants.detail, constants.hiddenTransmittance);
-  const bool ofScalars = built.volume.scalarBricks.has_value() &&
-                         GatherVolume::lightsSamples(built.volume, settings.lighting ? &*settings.lighting : nullptr);
+  const bool ofScalars = built.volume.scalarBricks.has_value() && lightsSamples;
   const AttenuationTable* read = nullptr;
-  if (constants.lightsReadTable)
+  if (constants.lightsReadTable && !lightsSamples)
     read = constants.detail.coarsest > 0 ? &tableWithLevels(progress) : &sweptTable(progress);
   if (settings.lighting)
     constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, ofScalars, frameTimes);
@@ -239,7 +238,7 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
       .axes = {someRayHasAxis(lattice, 0), someRayHasAxis(lattice, 1), someRayHasAxis(lattice, 2)}};
   try {
     if (!gatherVolume) gatherVolume.emplace(device, hostVolume, classification, built, frameTimes);
-    gatherVolume->prepare(shading);
+    gatherVolume->prepare(shading, frameTimes);
   } catch (const Error&) {
     gatherVolume.reset();
     throw;

@@ -16,6 +16,7 @@ layout(constant_id = 2) const bool kColored = true;   // whether blocks have sou
 layout(constant_id = 3) const bool kScalars = false;  // whether voxels are classified after interpolation
 layout(constant_id = 4) const bool kLit = false;      // whether voxels then have light, in place of source terms
 layout(constant_id = 6) const int kLights = 0;        // whose transmittance is found at samples
+layout(constant_id = 9) const int kAmbient = 0;       // channels of light from everywhere that is found at samples
 layout(constant_id = 7) const bool kTinted = false;   // whether every colour of light has an extinction of its own
 layout(constant_id = 8) const bool kSurfaces = false;
 layout(constant_id = 5) const bool kPieces = false;   // whether quads are in more than one piece
@@ -31,10 +32,14 @@ layout(binding = 4) uniform utextureBuffer towardsQuads;     // four times three
 layout(binding = 5, rgba32f) writeonly uniform imageBuffer colorEnergy;  // C, E
 layout(binding = 6, r32f) writeonly uniform imageBuffer distances;       // sum of e times distance
 
-layout(binding = 9) uniform utextureBuffer depthQuads0;  // optical depths towards each light, four halves
-layout(binding = 10) uniform utextureBuffer depthQuads1;
-layout(binding = 11) uniform utextureBuffer depthQuads2;
-layout(binding = 12) uniform utextureBuffer depthQuads3;
+// Codes of optical depths, 16 bits each: towards each light, then by channel of what ambient light has passed.
+layout(binding = 9) uniform utextureBuffer lightQuads0;
+layout(binding = 10) uniform utextureBuffer lightQuads1;
+layout(binding = 11) uniform utextureBuffer lightQuads2;
+layout(binding = 12) uniform utextureBuffer lightQuads3;
+layout(binding = 13) uniform utextureBuffer lightQuads4;
+layout(binding = 14) uniform utextureBuffer lightQuads5;
+layout(binding = 15) uniform utextureBuffer lightQuads6;
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MediumPiece { uvec2 values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SourcePiece { uvec4 values[]; };
 layout(binding = 8) uniform utextureBuffer skipCells;
@@ -43,6 +48,7 @@ layout(binding = 7) uniform textureBuffer transferTable;  // of each interval th
 
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
+const bool kSampled = kLights > 0 || kAmbient > 0;
 const float kPi = 3.14159265358979;
 const float kMostLightDepth = 0.99 * kOpaqueDepth;  // about the end of the code of rays
 
@@ -65,13 +71,16 @@ uvec4 towardsQuad(int quad) {
   return SourcePiece(frame.axes[kAxis].towardsPieces[quad >> kPieceLog2]).values[quad & kPieceMask];
 }
 
-uvec2 depthQuad(int light, int quad) {
-  if (kPieces) return MediumPiece(frame.axes[kAxis].depthPieces[light][quad >> kPieceLog2]).values[quad & kPieceMask];
-  switch (light) {
-    case 0: return texelFetch(depthQuads0, quad).xy;
-    case 1: return texelFetch(depthQuads1, quad).xy;
-    case 2: return texelFetch(depthQuads2, quad).xy;
-    default: return texelFetch(depthQuads3, quad).xy;
+uvec2 lightQuad(int slot, int quad) {
+  if (kPieces) return MediumPiece(frame.axes[kAxis].lightPieces[slot][quad >> kPieceLog2]).values[quad & kPieceMask];
+  switch (slot) {
+    case 0: return texelFetch(lightQuads0, quad).xy;
+    case 1: return texelFetch(lightQuads1, quad).xy;
+    case 2: return texelFetch(lightQuads2, quad).xy;
+    case 3: return texelFetch(lightQuads3, quad).xy;
+    case 4: return texelFetch(lightQuads4, quad).xy;
+    case 5: return texelFetch(lightQuads5, quad).xy;
+    default: return texelFetch(lightQuads6, quad).xy;
   }
 }
 
@@ -164,6 +173,7 @@ float surfaceScattering(vec3 normal, vec3 toLight, vec3 toEye) {
 // What a part of the ray is lit by: optical depths towards the lights at its beginning, and how they change along it.
 struct Lit {
   vec4 begin, change;
+  vec3 ambientBegin, ambientChange;  // the same of what ambient light has passed, by channel
   vec3 position;        // of its middle, index space
   vec3 normal;          // of a surface there, in the world, of length 1
   float surface;        // how much of one it is
@@ -199,11 +209,12 @@ void addPart(inout Sums sums, vec4 medium, float length, float ahead, Lit lit, v
   const float depth = length * medium.a;
   const float through = exp(-depth);
   const float rest = sums.transmittance * through;
-  vec3 leaving;
-  if (kLights == 0) {
-    leaving = vec3(depth < 0.01 ? 1.0 - 0.5 * depth : (1.0 - through) / depth);
-  } else {
+  vec3 leaving = vec3(depth < 0.01 ? 1.0 - 0.5 * depth : (1.0 - through) / depth);
+  if (kSampled) {
     leaving = vec3(0.0);
+    [[unroll]] for (int c = 0; c < 3; ++c)
+      if (c < kAmbient) leaving[c] = exp(-lit.ambientBegin[c]) * meanTransmittance(depth + lit.ambientChange[c]);
+    leaving = frame.ambient * (kAmbient == 1 ? leaving.rrr : leaving);
     [[unroll]] for (int i = 0; i < kMostSampleLights; ++i)
       if (i < kLights) leaving += lightOf(i, lit, depth, toEye);
   }
@@ -212,14 +223,23 @@ void addPart(inout Sums sums, vec4 medium, float length, float ahead, Lit lit, v
   sums.transmittance = rest;
 }
 
+float lightDepth(int slot, int quad, vec4 weights) {
+  const uvec2 pairs = lightQuad(slot, quad);
+  const float root = dot(weights, vec4(unpackUnorm2x16(pairs.x), unpackUnorm2x16(pairs.y)));
+  return root * root * kOpaqueDepth;
+}
+
 vec4 depthsTowardsLights(int quad, vec4 weights) {
   vec4 depths = vec4(0.0);
   [[unroll]] for (int i = 0; i < kMostSampleLights; ++i)
-    if (i < kLights) {
-      const uvec2 halves = depthQuad(i, quad);
-      const float root = dot(weights, vec4(unpackUnorm2x16(halves.x), unpackUnorm2x16(halves.y)));
-      depths[i] = root * root * kOpaqueDepth;
-    }
+    if (i < kLights) depths[i] = lightDepth(i, quad, weights);
+  return depths;
+}
+
+vec3 ambientAt(int quad, vec4 weights) {
+  vec3 depths = vec3(0.0);
+  [[unroll]] for (int c = 0; c < 3; ++c)
+    if (c < kAmbient) depths[c] = lightDepth(kLights + c, quad, weights);
   return depths;
 }
 
@@ -234,6 +254,7 @@ struct Found {
   vec3 light;      // over that of a source term of 1
   vec2 change;     // of the scalar per voxel along the sides
   vec4 depths;     // optical depths towards the lights; less than 0: nothing was found
+  vec3 ambient;    // optical depths that ambient light has passed, by channel
 };
 
 vec3 voxelPosition(Ray ray, float slice) {
@@ -286,12 +307,15 @@ void addLitStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int
   Found found = last;
   found.medium = within ? mediumAt(quad, weights, extinctions, ray.toEye) : vec4(0.0);
   found.depths = depthsTowardsLights(quad, weights);
+  found.ambient = ambientAt(quad, weights);
   found.coverage = found.medium.a > 0.0 ? 1.0 : 0.0;
   const vec4 medium = 0.5 * (last.medium + found.medium);
   const float ahead = (float(slice) - ray.eye) * ray.direction;
   Lit lit;
   lit.begin = last.depths.x < 0.0 ? max(found.depths - ray.layer * medium.a, vec4(0.0)) : last.depths;
   lit.change = found.depths - lit.begin;
+  lit.ambientBegin = last.depths.x < 0.0 ? found.ambient : last.ambient;
+  lit.ambientChange = found.ambient - lit.ambientBegin;
   lit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
   if (kSurfaces) {
     found.change = vec2(mix(extinctions.y - extinctions.x, extinctions.w - extinctions.z, weights.z + weights.w),
@@ -313,7 +337,10 @@ Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye
   const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
   const bool whole = all(notEqual(codes, uvec4(0)));
   Found found;
-  if (kLights > 0) found.depths = depthsTowardsLights(quad, weights);
+  if (kSampled) {
+    found.depths = depthsTowardsLights(quad, weights);
+    found.ambient = ambientAt(quad, weights);
+  }
   [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = codes[i] != 0 ? weights[i] : 0.0;
   found.coverage = weights.x + weights.y + weights.z + weights.w;
   const vec4 scalars = (vec4(codes) - 1.0) * (float(kTransferIntervals) / float(kScalarCodes));
@@ -384,7 +411,12 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
   const float ahead = (float(slice) - ray.eye) * ray.direction;
   const float length = ray.layer * coverage;
   Lit nearLit, farLit;
-  if (kLights > 0) {
+  if (kSampled) {
+    const float nearPart = near.a + far.a > 0.0 ? near.a / (near.a + far.a) : 0.5;
+    nearLit.ambientChange = (second.ambient - first.ambient) * nearPart;
+    nearLit.ambientBegin = first.ambient;
+    farLit.ambientChange = second.ambient - first.ambient - nearLit.ambientChange;
+    farLit.ambientBegin = first.ambient + nearLit.ambientChange;
     // Along a stretch the depth towards a light changes as the depth towards the eye does, both being integrals of the same
     // extinction.
     nearLit.position = farLit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
@@ -446,7 +478,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
   int slice = direction > 0 ? slices.x : slices.y;
   int left = slices.y - slices.x + 1;
   if (left <= 0) return;
-  if (scalars || kLights > 0) ++left;
+  if (scalars || kSampled) ++left;
   Found last;
   last.coverage = 0.0;
   last.scalar = 0.0;
@@ -454,6 +486,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
   last.light = vec3(0.0);
   last.change = vec2(0.0);
   last.depths = vec4(-1.0);
+  last.ambient = vec3(0.0);
   // Loops that end with their conditions: lavapipe runs a body once more, masked, where a loop begins with one.
   do {
     int empty;
@@ -470,7 +503,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
     if (left > 0) {
       const int rest = left - min(left, ray.group);
       do {
-        if (!scalars && kLights > 0)
+        if (!scalars && kSampled)
           addLitStretch(sums, last, level, ray, clamp(slice, slices.x, slices.y), slice != final + direction);
         else if (scalars)
           addStretch(sums, last, level, ray, clamp(slice, slices.x, slices.y), slice != final + direction);

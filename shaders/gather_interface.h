@@ -23,6 +23,9 @@ FV_CONSTANT int kPieceBricksLog2 = 17;
 FV_CONSTANT int kMostPieces = 32;
 // Lights whose transmittance is found at samples, from quads of optical depths towards them: kMostExactLights.
 FV_CONSTANT int kMostSampleLights = 4;
+// Quads of codes of light: a slot a light, then one for each channel of light from everywhere.
+FV_CONSTANT int kMostLightSlots = kMostSampleLights + 3;
+FV_CONSTANT int kAmbientThreads = 64;
 // Classification after interpolation: a transfer function's intervals of the scalar, and the codes of scalars, 1 and above.
 FV_CONSTANT int kTransferIntervals = 4096;
 FV_CONSTANT int kScalarCodes = 65534;
@@ -47,7 +50,7 @@ struct GatherAxis {
   float tiltDepth;     // change of the distance by that step
   float middlePlane;   // voxels
   uvec2 mediumPieces[kMostPieces], sourcePieces[kMostPieces], towardsPieces[kMostPieces];  // device addresses of quads
-  uvec2 depthPieces[kMostSampleLights][kMostPieces];
+  uvec2 lightPieces[kMostLightSlots][kMostPieces];
   ivec2 slices[2][kMaximumLevels];  // by the ray's sign along the axis (0: descending) and level: first, end; ascending
 };
 
@@ -75,6 +78,7 @@ struct GatherFrame {
   float phaseG;
   float surface;          // how much of the lights is scattered as by surfaces
   float nearestLight2;    // squared distance, world units, that a light has at least
+  vec3 ambient;           // mean radiance over all directions
   mat3 indexToWorld;      // linear part
   mat3 gradientToWorld;
   GatherAxis axes[3];
@@ -130,6 +134,27 @@ struct LightDepthsPush {
   uvec2 depths;
 };
 
+// ambient_sweep.comp
+struct AmbientSweepPush {
+  ivec3 cells;
+  ivec3 axes;        // two across the march, and that of the march
+  ivec3 step;        // from cell to cell, the way of the light
+  float stepLength;  // world units
+  vec3 share;        // of the unshadowed light that comes from this direction, by channel
+  vec3 tint;         // of the extinction, by channel
+};
+
+// ambient_codes.comp
+struct AmbientCodesPush {
+  ivec3 cells;
+  int cellEdge;      // voxels
+  int blockEdge;     // voxels
+  int firstLight;    // of the channel
+  uint firstBrick;
+  uint count;        // of bricks
+  uvec2 codes;       // device address: 16 bits a block in bricks, x fastest
+};
+
 // brick_quads.comp
 struct BrickQuadsPush {
   BlockLevel level;
@@ -144,13 +169,15 @@ struct BrickQuadsPush {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(GatherAxis) == 8 * 4 + 12 * 6 - 16 + (3 + kMostSampleLights) * kMostPieces * 8 + 2 * kMaximumLevels * 8);
+static_assert(sizeof(GatherAxis) == 8 * 4 + 12 * 6 - 16 + (3 + kMostLightSlots) * kMostPieces * 8 + 2 * kMaximumLevels * 8);
 static_assert(sizeof(GatherLevel) == 48);
 static_assert(sizeof(BrickQuadsPush) == 120);
 static_assert(sizeof(GatherFrame) <= 16384);
 static_assert(sizeof(LightDepthsPush) == 108);
 static_assert(sizeof(ExpandScalarsPush) == 76);
 static_assert(sizeof(ShadePush) == 48);
+static_assert(sizeof(AmbientSweepPush) == 64);
+static_assert(sizeof(AmbientCodesPush) == 40);
 }  // namespace freevoxels::shader
 #endif
 #endif

@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <cstring>
 #include <limits>
 #include <optional>
 
@@ -25,23 +24,6 @@ struct Range {
   }
 };
 
-/// The voxels of a row, in the order of x.
-void copyRow(const ScalarBricks& scalars, int y, int z, std::vector<float>& row) {
-  constexpr int n = ScalarBricks::kEdge;
-  const glm::ivec3 corner = scalars.corner(), place(0, y + corner.y, z + corner.z);
-  const int width = scalars.dimensions().x;
-  for (int cell = 0; cell < scalars.cells().x; ++cell) {
-    const int begin = std::max(cell * n - corner.x, 0), end = std::min((cell + 1) * n - corner.x, width);
-    const ScalarBricks::Brick* const brick = scalars.brickAt({cell, place.y / n, place.z / n});
-    if (brick == nullptr) {
-      std::fill(row.begin() + begin, row.begin() + end, kInactiveVoxel);
-      continue;
-    }
-    const glm::ivec3 first((begin + corner.x) % n, place.y % n, place.z % n);
-    std::memcpy(&row[std::size_t(begin)], &(*brick)[ScalarBricks::indexInBrick(first)], std::size_t(end - begin) * sizeof(float));
-  }
-}
-
 /// Of the voxels from x on, before `end` or the row's end.
 Range rangeOf(const std::vector<float>& row, int x, int end) {
   Range range;
@@ -62,7 +44,7 @@ void markCells(Cells& cells, const ScalarBricks& scalars, int edge, int reach, c
     std::vector<float> row(std::size_t(n.x));
     for (int z = plane * edge; z < std::min((plane + 1) * edge + reach, n.z); ++z)
       for (int y = 0; y < n.y; ++y) {
-        copyRow(scalars, y, z, row);
+        scalars.copyRow(y, z, row);
         const int cellY = y / edge;
         for (int x = 0; x < cells.dimensions.x; ++x) {
           const Range range = rangeOf(row, x * edge, (x + 1) * edge + reach);

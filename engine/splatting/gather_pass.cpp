@@ -19,12 +19,12 @@ constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
 constexpr glm::ivec3 kTile{shader::kGatherTile, shader::kGatherTile, 1};
 
 Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume) {
-  return makeComputePipeline(device, {gather_spv, "gather"},
-                             {.bindings = {kUniform, kTexels, kTexels, kTexels, kTexels, kTexelsOut, kTexelsOut, kTexels, kTexels,
-                                           kTexels, kTexels, kTexels, kTexels}}, kTile,
-                             {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.hasScalars(),
-                              volume.isLit(), volume.inPieces(), std::uint32_t(volume.sampleLights()), volume.isTinted(),
-                              volume.hasSurfaces()});
+  PipelineInterface interface{.bindings = {kUniform, kTexels, kTexels, kTexels, kTexels, kTexelsOut, kTexelsOut, kTexels, kTexels}};
+  interface.bindings.insert(interface.bindings.end(), shader::kMostLightSlots, kTexels);
+  return makeComputePipeline(device, {gather_spv, "gather"}, interface, kTile,
+                             {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.hasScalars(), volume.isLit(),
+                              volume.inPieces(), std::uint32_t(volume.sampleLights()), volume.isTinted(), volume.hasSurfaces(),
+                              std::uint32_t(volume.ambientChannels())});
 }
 
 /// Of the stencil and the upsampling, which have the same bindings.
@@ -84,19 +84,16 @@ void GatherPass::recordGather(Commands& commands, const GatherVolume& volume, co
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
     const GatherVolume::Quads& quads = volume.quads(axis);
-    const std::array<Binding, 13> bindings{&frame_,
-                                          &volume.brickNumbers(),
-                                          &quads.medium.texels,
-                                          &quads.source.texels,
-                                          &quads.towards.texels,
-                                          &gathered_.colorEnergyTexels,
-                                          &gathered_.distanceTexels,
-                                          &volume.transferTable(),
-                                          &volume.skips(),
-                                          &quads.depths[0].texels,
-                                          &quads.depths[1].texels,
-                                          &quads.depths[2].texels,
-                                          &quads.depths[3].texels};
+    std::vector<Binding> bindings{&frame_,
+                                  &volume.brickNumbers(),
+                                  &quads.medium.texels,
+                                  &quads.source.texels,
+                                  &quads.towards.texels,
+                                  &gathered_.colorEnergyTexels,
+                                  &gathered_.distanceTexels,
+                                  &volume.transferTable(),
+                                  &volume.skips()};
+    for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
     commands.dispatch(makeGather(device_, axis, volume), bindings, glm::ivec3(frame.samples, 1));
   }
   commands.barrier(kCompute, kCompute);

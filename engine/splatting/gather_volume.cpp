@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "embedded/ambient_codes.h"
 #include "embedded/brick_quads.h"
 #include "embedded/light_depths.h"
 #include "embedded/shade_blocks.h"
@@ -53,9 +54,11 @@ float meanLayer(const DeviceVolume& volume) {
 GatherVolume::GatherVolume(const Device& device, const Volume& volume, const Classification& classification,
                            const BuiltVolume& built, std::vector<StageTime>& times)
     : device_(device),
+      volume_(volume),
+      classification_(classification),
       built_(built),
       frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "shading frame") {
-  makeBricks(volume, classification, times);
+  makeBricks(times);
   const std::uint32_t bricks = firstBricks_.back();
   const std::uint64_t quads = std::uint64_t(bricks) * shader::kGatherBrickBlocks;
   const bool inOne = quads <= device.limits().maxTexelBufferElements && quads * sizeof(glm::uvec4) <= device.maximumAllocation();
@@ -67,12 +70,12 @@ GatherVolume::GatherVolume(const Device& device, const Volume& volume, const Cla
 
 /// Which cells of the octree are bricks, and which are skipped. A position in a cell stays in that and its next neighbours
 /// along the axes upwards for an edge more, so that these decide.
-void GatherVolume::makeBricks(const Volume& volume, const Classification& classification, std::vector<StageTime>& times) {
+void GatherVolume::makeBricks(std::vector<StageTime>& times) {
   const StageTimer timer(times, "bricks");
   const HierarchyLayout& hierarchy = built_.volume.hierarchy;
   const int top = hierarchy.top(), finest = std::min(shader::kSkipLevels, top);
   std::vector<Cells> met;  // by level above the finest
-  Cells cells = metCells(volume, classification, 1 << finest);
+  Cells cells = metCells(volume_, classification_, 1 << finest);
   for (int level = finest; level <= top; ++level) {
     met.push_back(spread(cells, 0, 1));
     cells = coarserCells(cells);
@@ -163,7 +166,7 @@ const TexelView& GatherVolume::transferTable() const {
   return hasScalars() ? built_.volume.scalarBricks->tableTexels : built_.volume.extinctionQuads;
 }
 
-void GatherVolume::prepare(const Shading& shading) {
+void GatherVolume::prepare(const Shading& shading, std::vector<StageTime>& times) {
   if (built_.volume.lacksScalarBricks)
     fail(ExitCode::OutOfMemory,
          "the volume's scalars take more memory than there is, which classification after interpolation needs: "
@@ -180,7 +183,7 @@ void GatherVolume::prepare(const Shading& shading) {
     lighting_ = *shading.lighting;
   else
     lighting_.reset();
-  prepareSampled(samples ? std::span<const Light>(shading.lighting->lights) : std::span<const Light>());
+  prepareSampled(samples ? shading.lighting : nullptr, times);
   wantedLevels_ = 0;
   for (int level = shading.frame.detail.finest; level <= shading.frame.detail.coarsest; ++level)
     wantedLevels_ |= 1u << level;
@@ -204,32 +207,43 @@ void GatherVolume::prepare(const Shading& shading) {
 }
 
 bool GatherVolume::lightsSamples(const DeviceVolume& volume, const Lighting* lighting) {
-  return lighting != nullptr && !lighting->lights.empty() && lighting->lights.size() <= std::size_t(shader::kMostSampleLights) &&
-         lighting->attenuation == LightAttenuation::Exact && !lighting->comesFromEverywhere() && !volume.hasEmission();
+  if (lighting == nullptr || volume.hasEmission()) return false;
+  if (lighting->lights.empty()) return lighting->comesFromEverywhere();
+  return lighting->lights.size() <= std::size_t(shader::kMostSampleLights) && lighting->attenuation == LightAttenuation::Exact;
 }
 
-/// Depths stay where the lights do.
-void GatherVolume::prepareSampled(std::span<const Light> lights) {
-  const bool stand = std::ranges::equal(lights, sampled_, [](const Light& a, const Light& b) {
+/// Codes stay as long as the lights stand where they are.
+void GatherVolume::prepareSampled(const Lighting* lighting, std::vector<StageTime>& times) {
+  const std::vector<Light> lights = lighting != nullptr ? lighting->lights : std::vector<Light>();
+  const int channels = lighting != nullptr && lighting->comesFromEverywhere() ? AmbientPass::channelCount(*lighting) : 0;
+  const bool stand = channels == ambientChannels_ && std::ranges::equal(lights, sampled_, [](const Light& a, const Light& b) {
     return a.place == b.place && a.atInfinity == b.atInfinity;
   });
-  if (!stand) {
-    depthLevels_ = 0;
-    for (Quads& quads : quads_) quads.depthLevels = 0;
+  if (!stand) dropLightCodes();
+  sampled_ = lights;
+  ambientChannels_ = channels;
+  if (channels > 0 && !ambient_) {
+    const StageTimer timer(times, "ambient cells");
+    ambient_.emplace(device_, volume_, classification_);
   }
-  sampled_.assign(lights.begin(), lights.end());
   const std::uint64_t bytes = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks * sizeof(std::uint16_t);
-  for (std::size_t i = 0; i < lightDepths_.size(); ++i) {
-    if (i >= sampled_.size())
-      lightDepths_[i] = {};
-    else if (lightDepths_[i].bytes() == 0)
-      lightDepths_[i] = Buffer(device_, bytes, MemoryUse::Device, "depths towards a light");
+  for (int slot = 0; slot < shader::kMostLightSlots; ++slot) {
+    Buffer& codes = lightCodes_[std::size_t(slot)];
+    if (slot >= lightSlots())
+      codes = {};
+    else if (codes.bytes() == 0)
+      codes = Buffer(device_, bytes, MemoryUse::Device, "codes of light");
   }
+}
+
+void GatherVolume::dropLightCodes() {
+  lightLevels_ = 0;
+  for (Quads& quads : quads_) quads.lightLevels = 0;
 }
 
 std::uint64_t GatherVolume::Quads::bytes() const {
   std::uint64_t sum = medium.bytes() + source.bytes() + towards.bytes();
-  for (const QuadStore& store : depths) sum += store.bytes();
+  for (const QuadStore& store : light) sum += store.bytes();
   return sum;
 }
 
@@ -269,8 +283,8 @@ void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
     const auto holds = [&](const QuadStore& store, bool needed, std::uint64_t bytes) {
       return store.bytes() >= (needed ? count : 1) * bytes;
     };
-    for (std::size_t i = 0; i < there.depths.size(); ++i)
-      if (!holds(there.depths[i], i < sampled_.size(), sizeof(glm::uvec2))) return false;
+    for (std::size_t i = 0; i < there.light.size(); ++i)
+      if (!holds(there.light[i], i < std::size_t(lightSlots()), sizeof(glm::uvec2))) return false;
     return holds(there.medium, true, sizeof(glm::uvec2)) && holds(there.source, hasColors(), sizeof(glm::uvec4)) &&
            holds(there.towards, hasTowards(), sizeof(glm::uvec4));
   };
@@ -284,18 +298,18 @@ void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
   quads.medium = makeStore(true, sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "medium quads");
   quads.source = makeStore(hasColors(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source quads");
   quads.towards = makeStore(hasTowards(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source direction quads");
-  for (std::size_t i = 0; i < quads.depths.size(); ++i)
-    quads.depths[i] = makeStore(i < sampled_.size(), sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "light depth quads");
+  for (std::size_t i = 0; i < quads.light.size(); ++i)
+    quads.light[i] = makeStore(i < std::size_t(lightSlots()), sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "light quads");
 }
 
 void GatherVolume::record(Commands& commands, const Shading& shading) {
   if ((wantedLevels_ & ~shadedLevels_) != 0) recordShading(commands, shading);
-  if (!sampled_.empty() && (wantedLevels_ & ~depthLevels_) != 0) recordLightDepths(commands, shading);
+  if (lightSlots() > 0) recordLightCodes(commands, shading);
   for (int axis = 0; axis < 3; ++axis) {
     if (!shading.axes[std::size_t(axis)]) continue;
     Quads& quads = quads_[std::size_t(axis)];
     if ((wantedLevels_ & ~quads.levels) != 0) recordQuads(commands, axis);
-    if (!sampled_.empty() && (wantedLevels_ & ~quads.depthLevels) != 0) recordDepthQuads(commands, axis);
+    if (lightSlots() > 0) recordLightQuads(commands, axis);
   }
 }
 
@@ -318,52 +332,83 @@ void GatherVolume::recordQuads(Commands& commands, int axis) {
 }
 
 /// Of all blocks of bricks, whether or not they hold anything.
-void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading) {
+void GatherVolume::recordLightCodes(Commands& commands, const Shading& shading) {
+  if (ambientChannels_ > 0 && ambient_->record(commands, *shading.lighting)) dropLightCodes();
+  if ((wantedLevels_ & ~lightLevels_) == 0) return;
+  commands.beginPass("light depths");
+  if (lightLevels_ == 0)
+    for (int slot = 0; slot < lightSlots(); ++slot) commands.clear(lightCodes_[std::size_t(slot)]);  // of the empty brick
+  for (int level = 0; level <= built_.volume.hierarchy.top(); ++level) {
+    if (((wantedLevels_ & ~lightLevels_) >> level & 1u) == 0 || firstBricks_[std::size_t(level)] == firstBricks_[std::size_t(level) + 1])
+      continue;
+    recordLightDepths(commands, shading, level);
+    recordAmbientCodes(commands, level);
+  }
+  commands.barrier(kCompute, kCompute);
+  lightLevels_ |= wantedLevels_;
+}
+
+void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading, int level) {
   const DeviceVolume& volume = built_.volume;
   const Pipeline pass = makeComputePipeline(device_, {light_depths_spv, "light depths"},
                                             {.bindings = {kTexelsIn, kTexelsIn, kStorage}, .pushConstantBytes = sizeof(shader::LightDepthsPush)},
                                             {shader::kBrickQuadsThreads, 1, 1}, {hasScalars()});
   const std::array<Binding, 3> bindings{&brickCellTexels_, &volume.occupancyTexels, shading.lights};
-  commands.beginPass("light depths");
-  for (std::size_t light = 0; light < sampled_.size(); ++light) {
-    if (depthLevels_ == 0) commands.clear(lightDepths_[light]);  // of the empty brick
-    for (int level = 0; level <= volume.hierarchy.top(); ++level) {
-      if (((wantedLevels_ & ~depthLevels_) >> level & 1u) == 0) continue;
-      const std::uint32_t first = firstBricks_[std::size_t(level)], end = firstBricks_[std::size_t(level) + 1];
-      const shader::LightDepthsPush push{.level = volume.onDevice(level),
-                                         .firstBrick = first,
-                                         .count = end - first,
-                                         .light = int(light),
-                                         .edge = 1 << level,
-                                         .voxels = volume.layout.dimensions,
-                                         .indexToWorld = glm::dmat3(volume.indexToWorld),
-                                         .extinction = addressWords(volume.extinction.address()),
-                                         .depths = addressWords(lightDepths_[light].address())};
-      if (first < end) commands.dispatchLinear(pass, bindings, push, std::uint64_t(push.count) * shader::kBrickQuadsThreads);
-    }
+  const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
+  for (int light = 0; light < sampleLights(); ++light) {
+    const shader::LightDepthsPush push{.level = volume.onDevice(level),
+                                       .firstBrick = first,
+                                       .count = count,
+                                       .light = light,
+                                       .edge = 1 << level,
+                                       .voxels = volume.layout.dimensions,
+                                       .indexToWorld = glm::dmat3(volume.indexToWorld),
+                                       .extinction = addressWords(volume.extinction.address()),
+                                       .depths = addressWords(lightCodes_[std::size_t(light)].address())};
+    commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
   }
-  commands.barrier(kCompute, kCompute);
-  depthLevels_ |= wantedLevels_;
 }
 
-void GatherVolume::recordDepthQuads(Commands& commands, int axis) {
+void GatherVolume::recordAmbientCodes(Commands& commands, int level) {
+  if (ambientChannels_ == 0) return;
+  const Pipeline pass = makeComputePipeline(
+      device_, {ambient_codes_spv, "ambient codes"},
+      {.bindings = {kTexelsIn, kStorage}, .pushConstantBytes = sizeof(shader::AmbientCodesPush)},
+      {shader::kBrickQuadsThreads, 1, 1});
+  const std::array<Binding, 2> bindings{&brickCellTexels_, &ambient_->light()};
+  const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
+  const glm::ivec3 cells = ambient_->cells();
+  for (int channel = 0; channel < ambientChannels_; ++channel) {
+    const shader::AmbientCodesPush push{.cells = cells,
+                                        .cellEdge = ambient_->edge(),
+                                        .blockEdge = 1 << level,
+                                        .firstLight = channel * cells.x * cells.y * cells.z,
+                                        .firstBrick = first,
+                                        .count = count,
+                                        .codes = addressWords(lightCodes_[std::size_t(sampleLights() + channel)].address())};
+    commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
+  }
+}
+
+void GatherVolume::recordLightQuads(Commands& commands, int axis) {
   Quads& quads = quads_[std::size_t(axis)];
+  if ((wantedLevels_ & ~quads.lightLevels) == 0) return;
   commands.beginPass("brick quads");
-  for (std::size_t light = 0; light < sampled_.size(); ++light) {
+  for (std::size_t slot = 0; slot < std::size_t(lightSlots()); ++slot) {
     const auto make = [&](int level, std::uint32_t first, std::uint32_t end) {
       const shader::GatherLevel& cells = levels_[std::size_t(level)];
       const Codes codes{.brickNumbers = brickNumbers_.address() + VkDeviceAddress(cells.firstCell) * sizeof(std::uint32_t),
-                        .codes = lightDepths_[light].address(),
+                        .codes = lightCodes_[slot].address(),
                         .cells = {cells.cellStrides.x, cells.cellStrides.y / cells.cellStrides.x, 0}};
-      recordBricks(commands, axis, level, first, end, codes, quads.depths[light], false);
+      recordBricks(commands, axis, level, first, end, codes, quads.light[slot], false);
     };
-    if (quads.depthLevels == 0) make(0, 0, 1);
+    if (quads.lightLevels == 0) make(0, 0, 1);
     for (int level = 0; level <= built_.volume.hierarchy.top(); ++level)
-      if (((wantedLevels_ & ~quads.depthLevels) >> level & 1u) != 0)
+      if (((wantedLevels_ & ~quads.lightLevels) >> level & 1u) != 0)
         make(level, firstBricks_[std::size_t(level)], firstBricks_[std::size_t(level) + 1]);
   }
   commands.barrier(kCompute, kCompute);
-  quads.depthLevels |= wantedLevels_;
+  quads.lightLevels |= wantedLevels_;
 }
 
 /// The quads of bricks of a level, piece by piece.
@@ -424,7 +469,7 @@ void GatherVolume::describe(shader::GatherFrame& frame) const {
     setPieces(quads.medium, frame.axes[axis].mediumPieces);
     setPieces(quads.source, frame.axes[axis].sourcePieces);
     setPieces(quads.towards, frame.axes[axis].towardsPieces);
-    for (std::size_t i = 0; i < quads.depths.size(); ++i) setPieces(quads.depths[i], frame.axes[axis].depthPieces[i]);
+    for (std::size_t i = 0; i < quads.light.size(); ++i) setPieces(quads.light[i], frame.axes[axis].lightPieces[i]);
   }
   frame.extinctionUnit = float(1.0 / (kStoredDepth * built_.volume.voxelSize));
   frame.sourceUnit = float(sourceUnit_);
@@ -434,7 +479,7 @@ void GatherVolume::describe(shader::GatherFrame& frame) const {
 }
 
 void GatherVolume::describeLights(shader::GatherFrame& frame) const {
-  if (sampled_.empty()) return;
+  if (lightSlots() == 0) return;
   const DeviceVolume& volume = built_.volume;
   const glm::dmat3 linear(volume.indexToWorld);
   for (std::size_t i = 0; i < sampled_.size(); ++i) {
@@ -446,6 +491,7 @@ void GatherVolume::describeLights(shader::GatherFrame& frame) const {
       frame.lights[i].across = way / std::max({size.x, size.y, size.z});
     }
   }
+  if (ambientChannels_ > 0) frame.ambient = ambient_->unshadowed();
   frame.tint = lighting_->tint;
   frame.phaseG = float(lighting_->phaseG);
   frame.surface = float(lighting_->surface);

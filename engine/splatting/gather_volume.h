@@ -9,6 +9,7 @@
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/hierarchy/volume_builder.h"
+#include "engine/lighting/ambient_pass.h"
 #include "engine/splatting/splat_pass.h"
 #include "shaders/gather_interface.h"
 
@@ -18,7 +19,7 @@ namespace freevoxels {
 /// axes differ from the frame before. Belongs to one volume, which must outlive it.
 class GatherVolume {
  public:
-  /// Finds the bricks, and adds how long that took to `times`. Keeps `device` and `built`. Fails with ExitCode::OutOfMemory.
+  /// Finds the bricks, and adds how long that took to `times`. Keeps references to all others. Fails with ExitCode::OutOfMemory.
   GatherVolume(const Device& device, const Volume& volume, const Classification& classification, const BuiltVolume& built,
                std::vector<StageTime>& times);
 
@@ -30,11 +31,12 @@ class GatherVolume {
     const Buffer* lights;  ///< shader::Light
     std::array<bool, 3> axes;  ///< that rays march along
   };
-  /// Whether the transmittance of all lights is found at the gather's samples, from their rays. Ambient light, emission and
-  /// more lights are shaded by voxel.
+  /// Whether the transmittance of all lights is found at the gather's samples: of few from their rays, and of light from
+  /// everywhere. More lights, and lit volumes with emission, are shaded by voxel.
   static bool lightsSamples(const DeviceVolume& volume, const Lighting* lighting);
-  /// Allocates what the frame needs. Fails with ExitCode::OutOfMemory.
-  void prepare(const Shading& shading);
+  /// Allocates what the frame needs, and adds the time of what it makes on the host to `times`. Fails with
+  /// ExitCode::OutOfMemory.
+  void prepare(const Shading& shading, std::vector<StageTime>& times);
   /// Shades the blocks of the levels that the frame reads, as far as what the frame before left does not serve. After
   /// prepare() with the same arguments.
   void record(Commands& commands, const Shading& shading);
@@ -49,9 +51,9 @@ class GatherVolume {
   /// The quads of an axis.
   struct Quads {
     QuadStore medium, source, towards;
-    std::array<QuadStore, shader::kMostSampleLights> depths;  ///< optical depths towards lights
+    std::array<QuadStore, shader::kMostLightSlots> light;  ///< codes of light: see lightCodes_
     std::uint32_t levels = 0;  ///< a bit for each level that is there
-    std::uint32_t depthLevels = 0;
+    std::uint32_t lightLevels = 0;
     std::uint64_t bytes() const;
   };
   const TexelView& skips() const { return skipTexels_; }
@@ -67,6 +69,7 @@ class GatherVolume {
   bool hasScalars() const;
   bool isLit() const { return lit_; }
   int sampleLights() const { return int(sampled_.size()); }
+  int ambientChannels() const { return ambientChannels_; }
   bool isTinted() const { return lighting_ && lighting_->tint != glm::dvec3(1.0); }
   bool hasSurfaces() const { return lighting_ && lighting_->surface > 0.0; }
   /// Whether quads are in more than one piece, of shader::kPieceBricksLog2 each.
@@ -75,9 +78,10 @@ class GatherVolume {
   const TexelView& transferTable() const;
 
  private:
-  void makeBricks(const Volume& volume, const Classification& classification, std::vector<StageTime>& times);
+  void makeBricks(std::vector<StageTime>& times);
   void makeSources();
-  void prepareSampled(std::span<const Light> lights);
+  void prepareSampled(const Lighting* lighting, std::vector<StageTime>& times);
+  int lightSlots() const { return sampleLights() + ambientChannels_; }
   void describeLights(shader::GatherFrame& frame) const;
   void dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t most);
   void makeRoom(Quads& quads, const std::array<bool, 3>& axes);
@@ -95,10 +99,15 @@ class GatherVolume {
   void recordQuads(Commands& commands, int axis);
   void recordBricks(Commands& commands, int axis, int level, std::uint32_t first, std::uint32_t end,
                     const std::optional<Codes>& codes, const QuadStore& medium, bool colored);
-  void recordLightDepths(Commands& commands, const Shading& shading);
-  void recordDepthQuads(Commands& commands, int axis);
+  void dropLightCodes();
+  void recordLightCodes(Commands& commands, const Shading& shading);
+  void recordLightDepths(Commands& commands, const Shading& shading, int level);
+  void recordAmbientCodes(Commands& commands, int level);
+  void recordLightQuads(Commands& commands, int axis);
 
   const Device& device_;
+  const Volume& volume_;
+  const Classification& classification_;
   const BuiltVolume& built_;
   Pipeline shadePass_;
   Buffer frame_;  ///< shader::SetupFrame
@@ -119,8 +128,12 @@ class GatherVolume {
   double sourceUnit_ = 1.0;
   std::optional<Lighting> lighting_;
   std::vector<Light> sampled_;  ///< lights whose transmittance is found at samples
-  std::array<Buffer, shader::kMostSampleLights> lightDepths_;  ///< 16 bits a block, in bricks
-  std::uint32_t depthLevels_ = 0;
+  int ambientChannels_ = 0;     ///< of light from everywhere that is found at samples; 0: there is none
+  std::optional<AmbientPass> ambient_;
+  /// 16 bits a block, in bricks: sqrt(optical depth / kOpaqueDepth) towards each light, and for each ambient channel of
+  /// -log of what part of the unshadowed light reaches it.
+  std::array<Buffer, shader::kMostLightSlots> lightCodes_;
+  std::uint32_t lightLevels_ = 0;
 };
 
 }  // namespace freevoxels

@@ -1,5 +1,7 @@
 #include "engine/volume/scalar_bricks.h"
 
+#include <algorithm>
+
 namespace freevoxels {
 
 ScalarBricks::ScalarBricks(glm::ivec3 dimensions, glm::ivec3 corner)
@@ -34,6 +36,20 @@ ScalarBricks ScalarBricks::cropped(glm::ivec3 low, glm::ivec3 high) const {
       result.makeBrick(cell) = bricks_[i];
   }
   return result;
+}
+
+void ScalarBricks::copyRow(int y, int z, std::span<float> row) const {
+  const glm::ivec3 place(0, y + corner_.y, z + corner_.z);
+  for (int cell = 0; cell < cellCount_.x; ++cell) {
+    const int begin = std::max(cell * kEdge - corner_.x, 0), end = std::min((cell + 1) * kEdge - corner_.x, dimensions_.x);
+    const Brick* const brick = brickAt({cell, place.y / kEdge, place.z / kEdge});
+    if (brick == nullptr) {
+      std::fill(row.begin() + begin, row.begin() + end, kInactiveVoxel);
+      continue;
+    }
+    const glm::ivec3 first((begin + corner_.x) % kEdge, place.y % kEdge, place.z % kEdge);
+    std::copy_n(&(*brick)[indexInBrick(first)], end - begin, row.begin() + begin);
+  }
 }
 
 }  // namespace freevoxels

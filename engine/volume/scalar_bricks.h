@@ -68,6 +68,8 @@ class ScalarBricks {
     const std::int32_t number = numbers_.empty() ? -1 : numbers_[cellIndex(cell)];
     return number < 0 ? nullptr : &bricks_[std::size_t(number)];
   }
+  /// The voxels of a row, in the order of x; `row` has as many.
+  void copyRow(int y, int z, std::span<float> row) const;
   /// The same voxels in the box from `low` to `high`, beyond which there is no data.
   ScalarBricks cropped(glm::ivec3 low, glm::ivec3 high) const;
   /// On the host.

@@ -4,6 +4,7 @@
 
 #include "engine/reference/oracle.h"
 #include "engine/validation/quality_scenes.h"
+#include "engine/validation/sky_environment.h"
 #include "engine/volume/voxel_classifier.h"
 #include "tests/device/splat_fixture.h"
 
@@ -246,6 +247,44 @@ TEST_F(GatherTest, LightsOfAllKindsMatchTheOracle) {
   Camera distant = camera;
   distant.position = camera.lookAt + 5.0 * (camera.position - camera.lookAt);
   EXPECT_GE(qualityOf(scene, distant, settings), 33.0);  // as without lights: some ten pixels
+}
+
+/// With a tint, and of an environment, which have a channel for each colour; beside a light, and of scalars.
+TEST_F(GatherTest, LightFromEverywhereMatchesTheOracle) {
+  Scene scene = cloud(20);
+  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
+  const Lighting uniform{.ambient = {0.9, 0.7, 0.5}};
+  Lighting tinted = uniform, sky;
+  tinted.tint = {0.5, 1.0, 2.0};
+  sky.environment = std::make_shared<Environment>(makeSky(16));
+  sky.lights = {{.place = {1.0, 0.2, 0.4}}};
+  FrameSettings settings = gathering({32, 32});
+  for (const Lighting& lighting : {tinted, sky}) {
+    settings.lighting = lighting;
+    EXPECT_GE(qualityOf(scene, camera, settings), 42.0);
+  }
+  QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 20, makeProcedural("head", 20));
+  head.classification.order = ClassificationOrder::Post;
+  settings.lighting = uniform;
+  EXPECT_GE(qualityOf({.volume = head.volume, .classification = head.classification}, framingCamera(head.volume, 35.0, 25.0, 1.0, {}), settings), 30.0);
+}
+
+/// What was found for one light from everywhere is not shown with another, and its colour alone changes nothing else.
+TEST_F(GatherTest, ChangedLightFromEverywhereIsFoundAgain) {
+  const Scene scene = cloud(32);
+  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
+  Renderer renderer(device(), scene.volume, scene.classification, {});
+  FrameSettings settings = gathering({64, 64});
+  settings.lighting = Lighting{.ambient = glm::dvec3(0.5)};
+  const Image half = renderer.render(camera, settings);
+  settings.lighting->ambient = glm::dvec3(1.0);
+  const Image whole = renderer.render(camera, settings);
+  for (std::size_t i = 0; i < half.pixels.size(); ++i)
+    EXPECT_TRUE(glm::all(glm::lessThan(glm::abs(glm::vec3(2.0f * half.pixels[i] - whole.pixels[i])), glm::vec3(1e-5f)))) << i;
+  settings.lighting->tint = {0.5, 1.0, 2.0};
+  EXPECT_LT(psnr(renderer.render(camera, settings), whole), 45.0);
+  settings.lighting = Lighting{.ambient = glm::dvec3(0.5)};
+  EXPECT_TRUE(renderer.render(camera, settings).pixels == half.pixels);
 }
 
 TEST_F(GatherTest, CoarseLevelsLookLikeVoxels) {

@@ -1,0 +1,127 @@
+#include "engine/lighting/ambient_pass.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <span>
+
+#include "embedded/ambient_sweep.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+constexpr DirectionSet kDirections = DirectionSet::Directions26;
+
+/// Extinction by scalar: exactly without a transfer function, else from a table.
+class ExtinctionTable {
+ public:
+  ExtinctionTable(const Volume& volume, const Classification& classification)
+      : scale_(float(classification.densityScale)), low_(volume.minimum) {
+    if (!classification.transferFunction) return;
+    perScalar_ = volume.maximum > volume.minimum ? float(kIntervals) / (volume.maximum - volume.minimum) : 0.0f;
+    for (int i = 0; i <= kIntervals; ++i) {
+      const double scalar = std::lerp(double(volume.minimum), double(volume.maximum), double(i) / kIntervals);
+      values_.push_back(float(classify(classification, float(scalar)).extinction));
+    }
+  }
+  float at(float scalar) const {
+    if (scalar == kInactiveVoxel) return 0.0f;
+    if (values_.empty()) return std::min(std::max(scalar, 0.0f) * scale_, float(kMaximumExtinction));
+    return values_[std::size_t((scalar - low_) * perScalar_ + 0.5f)];
+  }
+
+ private:
+  static constexpr int kIntervals = 4096;
+  float scale_, low_, perScalar_ = 0.0f;
+  std::vector<float> values_;
+};
+
+std::size_t countOf(glm::ivec3 cells) {
+  return std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z);
+}
+
+}  // namespace
+
+int ambientCellEdge(glm::ivec3 dimensions) {
+  int edge = 1;
+  while (countOf((dimensions + edge - 1) / edge) > kMostAmbientCells) edge *= 2;
+  return edge;
+}
+
+std::vector<float> cellExtinctions(const Volume& volume, const Classification& classification, int edge) {
+  const ExtinctionTable table(volume, classification);
+  const glm::ivec3 n = volume.dimensions, cells = (n + edge - 1) / edge;
+  std::vector<float> result(countOf(cells), 0.0f);
+  const float share = 1.0f / float(edge * edge * edge);
+  tbb::parallel_for(0, cells.z, [&](int plane) {
+    std::vector<float> row(std::size_t(n.x));
+    for (int z = plane * edge; z < std::min((plane + 1) * edge, n.z); ++z)
+      for (int y = 0; y < n.y; ++y) {
+        volume.scalars.copyRow(y, z, row);
+        float* const to = &result[std::size_t(cells.x) * (std::size_t(y / edge) + std::size_t(cells.y) * std::size_t(plane))];
+        for (int x = 0; x < n.x; ++x) to[x / edge] += share * table.at(row[std::size_t(x)]);
+      }
+  });
+  return result;
+}
+
+AmbientPass::AmbientPass(const Device& device, const Volume& volume, const Classification& classification)
+    : device_(device),
+      indexToWorld_(volume.indexToWorld),
+      edge_(ambientCellEdge(volume.dimensions)),
+      cells_((volume.dimensions + edge_ - 1) / edge_) {
+  const std::vector<float> extinctions = cellExtinctions(volume, classification, edge_);
+  const auto bytes = std::as_bytes(std::span(extinctions));
+  extinction_ = Buffer(device, bytes.size(), MemoryUse::Device, "extinctions of cells");
+  upload(device, extinction_, bytes);
+}
+
+int AmbientPass::channelCount(const Lighting& lighting) {
+  return lighting.environment || lighting.isTinted() ? 3 : 1;
+}
+
+bool AmbientPass::record(Commands& commands, const Lighting& lighting) {
+  const int channels = channelCount(lighting);
+  const std::vector<glm::dvec3> light = directionLight(lighting, kDirections, indexToWorld_);
+  unshadowed_ = std::accumulate(light.begin(), light.end(), glm::dvec3(0.0));
+  std::vector<glm::dvec3> parts;
+  for (const double share : directionShares(kDirections, indexToWorld_)) parts.emplace_back(share);
+  if (channels > 1)
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      for (int c = 0; c < 3; ++c)
+        if (unshadowed_[c] > 0.0) parts[i][c] = light[i][c] / unshadowed_[c];
+  if (parts == parts_ && lighting.tint == tint_) return false;
+  parts_ = std::move(parts);
+  tint_ = lighting.tint;
+
+  const VkDeviceSize bytes = extinction_.bytes() * VkDeviceSize(channels);
+  if (light_.bytes() != bytes) light_ = Buffer(device_, bytes, MemoryUse::Device, "ambient light of cells");
+  pipeline_ = makeComputePipeline(device_, {ambient_sweep_spv, "ambient sweep"},
+                                  {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                                   .pushConstantBytes = sizeof(shader::AmbientSweepPush)},
+                                  {shader::kAmbientThreads, 1, 1}, {std::uint32_t(channels)});
+  commands.beginPass("ambient sweep");
+  commands.clear(light_);
+  const std::array<Binding, 2> bindings{&extinction_, &light_};
+  for (int i = 0; i < directionCount(kDirections); ++i) {
+    const glm::ivec3 step = -directionCell(kDirections, i);
+    const glm::ivec3 axes = step.z != 0 ? glm::ivec3(0, 1, 2) : step.y != 0 ? glm::ivec3(0, 2, 1) : glm::ivec3(1, 2, 0);
+    const shader::AmbientSweepPush push{.cells = cells_,
+                                        .axes = axes,
+                                        .step = step,
+                                        .stepLength = float(edge_ * glm::length(glm::dmat3(indexToWorld_) * glm::dvec3(step))),
+                                        .share = parts_[std::size_t(i)],
+                                        .tint = lighting.tint};
+    if (i > 0) commands.barrier(kCompute, kCompute);
+    commands.dispatchLinear(pipeline_, bindings, push, std::uint64_t(cells_[axes.x]) * std::uint64_t(cells_[axes.y]));
+  }
+  commands.barrier(kCompute, kCompute);
+  return true;
+}
+
+}  // namespace freevoxels

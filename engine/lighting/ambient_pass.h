@@ -1,0 +1,55 @@
+#pragma once
+// Light from everywhere for the gather: what of it reaches cells of a volume, by sweeps along the 26 directions of Subr et
+// al. 2007, Section 3.1, that add up light in place of keeping depths.
+
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "engine/attenuation/directions.h"
+#include "engine/lighting/lighting.h"
+#include "engine/volume/classification.h"
+#include "engine/vulkan/commands.h"
+#include "shaders/gather_interface.h"
+
+namespace freevoxels {
+
+/// Ambient light is smooth: a volume has no more cells than these, which are cubes of voxels with a power of two of them
+/// along an edge.
+inline constexpr std::uint64_t kMostAmbientCells = 4u << 20;
+int ambientCellEdge(glm::ivec3 dimensions);
+
+/// The mean extinction, per world unit, of the voxels of each cell, x fastest; what of a cell is beyond the volume is empty.
+std::vector<float> cellExtinctions(const Volume& volume, const Classification& classification, int edge);
+
+/// COMPUTE ambient_sweep.comp: a dispatch a direction. Belongs to one volume.
+class AmbientPass {
+ public:
+  /// Looks at all voxels. Fails with ExitCode::OutOfMemory.
+  AmbientPass(const Device& device, const Volume& volume, const Classification& classification);
+
+  /// Uniform light without a tint is one channel, else each colour is one.
+  static int channelCount(const Lighting& lighting);
+  /// Records the sweeps for light that differs from that of the call before; whether it did. `lighting` comes from everywhere.
+  bool record(Commands& commands, const Lighting& lighting);
+  /// The mean radiance over all directions where nothing is in the way.
+  glm::dvec3 unshadowed() const { return unshadowed_; }
+
+  /// Of each cell and channel, what part of the unshadowed light reaches it. float, cells of a channel after each other.
+  const Buffer& light() const { return light_; }
+  glm::ivec3 cells() const { return cells_; }
+  int edge() const { return edge_; }
+
+ private:
+  const Device& device_;
+  glm::dmat4 indexToWorld_;
+  int edge_;
+  glm::ivec3 cells_;
+  Buffer extinction_;  ///< cellExtinctions()
+  Buffer light_;
+  Pipeline pipeline_;
+  std::vector<glm::dvec3> parts_;  ///< of the unshadowed light, by direction: what `light_` was made of
+  glm::dvec3 tint_{0.0}, unshadowed_{0.0};
+};
+
+}  // namespace freevoxels

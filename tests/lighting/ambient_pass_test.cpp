@@ -1,0 +1,42 @@
+// The cells that ambient light is found in.
+#include "engine/lighting/ambient_pass.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/volume/procedural.h"
+
+namespace freevoxels {
+namespace {
+
+TEST(AmbientCells, AreNoMoreThanThereMayBe) {
+  EXPECT_EQ(ambientCellEdge({128, 128, 128}), 1);
+  EXPECT_EQ(ambientCellEdge({256, 256, 256}), 2);
+  EXPECT_EQ(ambientCellEdge({512, 512, 512}), 4);
+  EXPECT_EQ(ambientCellEdge({455, 602, 493}), 4);
+  EXPECT_EQ(ambientCellEdge({2, 3, 4'000'000}), 2);
+}
+
+/// Beyond the box, and where there is no data, cells are empty.
+TEST(AmbientCells, HaveTheMeanExtinctionOfTheirVoxels) {
+  const auto ramp = [](int x, int y, int z) { return x == 2 ? double(kInactiveVoxel) : x + 10.0 * y + 100.0 * z; };
+  const Volume volume = makeVolume(glm::ivec3(3, 2, 2), glm::dmat4(1.0), ramp);
+  const std::vector<float> cells = cellExtinctions(volume, {.densityScale = 2.0}, 2);
+  ASSERT_EQ(cells.size(), 2u);
+  EXPECT_FLOAT_EQ(cells[0], 2.0f * (0.5f + 5.0f + 50.0f));
+  EXPECT_EQ(cells[1], 0.0f);
+}
+
+TEST(AmbientCells, OfATransferFunctionHaveItsExtinctions) {
+  const Volume volume = makeVolume(glm::ivec3(4, 1, 1), glm::dmat4(1.0), [](int x, int, int) { return double(x); });
+  Classification classification;
+  classification.transferFunction = TransferFunction{.opacity = {{1.0f, 0.0f}, {2.0f, 0.5f}}, .color = {{0.0f, glm::vec3(1.0f)}}};
+  const std::vector<float> cells = cellExtinctions(volume, classification, 1);
+  ASSERT_EQ(cells.size(), 4u);
+  EXPECT_EQ(cells[0], 0.0f);
+  EXPECT_EQ(cells[1], 0.0f);
+  EXPECT_NEAR(cells[2], std::log(2.0), 1e-3);
+  EXPECT_NEAR(cells[3], std::log(2.0), 1e-3);
+}
+
+}  // namespace
+}  // namespace freevoxels
