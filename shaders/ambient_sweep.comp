@@ -26,7 +26,14 @@ void main() {
   for (int k = 0; k < count; ++k) {
     const int place = side.x * strides[axes.x] + side.y * strides[axes.y] + plane * strides[axes.z];
     const float own = extinctions[place] * push.stepLength, middle = depth + 0.5 * own;
-    [[unroll]] for (int c = 0; c < kChannels; ++c) light[place + c * ofChannel] += push.share[c] * exp(-push.tint[c] * middle);
+    [[unroll]] for (int c = 0; c < kChannels; ++c) {
+      float scale = 1.0, sum = 0.0;
+      for (int octave = 0; octave < push.octaves; ++octave) {
+        sum += scale * exp(-scale * push.tint[c] * middle);
+        scale *= push.octaveScale;
+      }
+      light[place + c * ofChannel] += push.share[c] * sum;
+    }
     depth += own;
     plane += step.z;
     side += step.xy;

@@ -39,6 +39,8 @@ struct FrameLighting {
   vec3 tint;                     // of the extinction, on the way of the light
   float phaseG;
   float surface;                 // how much of the lights is scattered as by surfaces
+  int octaves;                   // of scattering
+  float octaveScale;             // of each to the one before
   mat3 gradientToWorld;
   vec3 fromAll[kMaximumCells];   // by cell number: radiance from there times its part of the sphere
 };

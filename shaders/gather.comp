@@ -16,6 +16,7 @@ layout(constant_id = 2) const bool kColored = true;   // whether blocks have sou
 layout(constant_id = 3) const bool kScalars = false;  // whether voxels are classified after interpolation
 layout(constant_id = 4) const bool kLit = false;      // whether voxels then have light, in place of source terms
 layout(constant_id = 6) const int kLights = 0;        // whose transmittance is found at samples
+layout(constant_id = 10) const int kOctaves = 1;      // of scattering
 layout(constant_id = 9) const int kAmbient = 0;       // channels of light from everywhere that is found at samples
 layout(constant_id = 7) const bool kTinted = false;   // whether every colour of light has an extinction of its own
 layout(constant_id = 8) const bool kSurfaces = false;
@@ -190,17 +191,24 @@ vec3 lightOf(int light, Lit lit, float depth, vec3 toEye) {
     distance2 = max(dot(way, way), frame.nearestLight2);
     way *= inversesqrt(max(dot(way, way), 1e-30));
   }
-  float phase = frame.phaseG == 0.0 ? 1.0 / (4.0 * kPi) : phaseFunction(frame.phaseG, -way, toEye);
-  if (kSurfaces) phase = mix(phase, surfaceScattering(lit.normal, way, toEye), lit.surface);
-  const vec3 color = source.color * (phase / distance2);
   const float begin = lit.begin[light], change = lit.change[light];
-  if (!kTinted) return color * (exp(-begin) * meanTransmittance(depth + change));
   // At the end of its code a depth may be any larger one, and a tint would let light through.
-  if (begin + max(change, 0.0) >= kMostLightDepth) return vec3(0.0);
-  vec3 through;
-  [[unroll]] for (int c = 0; c < 3; ++c)
-    through[c] = exp(-frame.tint[c] * begin) * meanTransmittance(depth + frame.tint[c] * change);
-  return color * through;
+  if (kTinted && begin + max(change, 0.0) >= kMostLightDepth) return vec3(0.0);
+  vec3 sum = vec3(0.0);
+  float scale = 1.0;
+  for (int octave = 0; octave < kOctaves; ++octave) {
+    float phase = frame.phaseG == 0.0 ? 1.0 / (4.0 * kPi) : phaseFunction(scale * frame.phaseG, -way, toEye);
+    if (kSurfaces) phase = mix(phase, octave == 0 ? surfaceScattering(lit.normal, way, toEye) : 0.0, lit.surface);
+    vec3 through;
+    if (kTinted)
+      [[unroll]] for (int c = 0; c < 3; ++c)
+        through[c] = exp(-scale * frame.tint[c] * begin) * meanTransmittance(depth + scale * frame.tint[c] * change);
+    else
+      through = vec3(exp(-scale * begin) * meanTransmittance(depth + scale * change));
+    sum += scale * phase * through;
+    scale *= frame.octaveScale;
+  }
+  return source.color / distance2 * sum;
 }
 
 // What a part of the ray of this length adds, with a constant source term (rgb) and extinction (a), `ahead` slices from

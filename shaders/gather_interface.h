@@ -78,7 +78,8 @@ struct GatherFrame {
   float phaseG;
   float surface;          // how much of the lights is scattered as by surfaces
   float nearestLight2;    // squared distance, world units, that a light has at least
-  vec3 ambient;           // mean radiance over all directions
+  vec3 ambient;           // mean radiance over all directions, and all octaves of scattering
+  float octaveScale;      // of an octave to the one before
   mat3 indexToWorld;      // linear part
   mat3 gradientToWorld;
   GatherAxis axes[3];
@@ -141,6 +142,8 @@ struct AmbientSweepPush {
   ivec3 step;        // from cell to cell, the way of the light
   float stepLength;  // world units
   vec3 share;        // of the unshadowed light that comes from this direction, by channel
+  int octaves;       // of scattering
+  float octaveScale;
   vec3 tint;         // of the extinction, by channel
 };
 
@@ -176,7 +179,7 @@ static_assert(sizeof(GatherFrame) <= 16384);
 static_assert(sizeof(LightDepthsPush) == 108);
 static_assert(sizeof(ExpandScalarsPush) == 76);
 static_assert(sizeof(ShadePush) == 48);
-static_assert(sizeof(AmbientSweepPush) == 64);
+static_assert(sizeof(AmbientSweepPush) == 72);
 static_assert(sizeof(AmbientCodesPush) == 40);
 }  // namespace freevoxels::shader
 #endif

@@ -61,13 +61,14 @@ vec2 meansSeen(SeenBlock seen, float own) {
   return vec2(sameSide, otherSide) / selfAttenuation(seen.own);
 }
 
-// What of the light from a direction reaches what is seen of the block. `depth` and `falling` as depthTowards has them.
-Sides reaching(SeenBlock seen, vec3 direction, float depth, float falling) {
+// What of the light from a direction reaches what is seen of the block, in an octave of scattering that multiplies optical
+// depths by `scale`. `depth` and `falling` as depthTowards has them.
+Sides reaching(SeenBlock seen, vec3 direction, float depth, float falling, float scale) {
   const float layer = layerLength(direction);
   const bool inFull = frame.lighting.lookup == kLookupExact || frame.pathLengthCorrection != 0;
   const float counted = inFull ? layer : frame.voxelSize;
-  const float inFront = depthInFront(seen.block, direction, depth, falling * seen.sigma * counted);
-  const float own = seen.sigma * layer * float(layersOf(seen.block, direction));
+  const float inFront = scale * depthInFront(seen.block, direction, depth, falling * seen.sigma * counted);
+  const float own = scale * seen.sigma * layer * float(layersOf(seen.block, direction));
   if (!kTinted) {
     const vec2 means = exp(-inFront) * meansSeen(seen, own);
     return Sides(vec3(means.x), vec3(means.y));
@@ -120,9 +121,15 @@ void addScattered(inout ScatteredLight sum, int light, SeenBlock seen) {
   else
     depth = depthTowards(towardsSource(toLight, frame.lighting.lookup, lights[light].beyond), seen.rank, falling);
   const vec3 way = normalize(frame.indexToWorld * toLight);
-  float phase = kAnyView ? 1.0 / (4.0 * kPi) : phaseFunction(frame.lighting.phaseG, -way, seen.toEye);
-  if (seen.surface > 0.0) phase = mix(phase, surfaceScattering(seen.normal, way, seen.toEye), seen.surface);
-  addLight(sum, seen, lights[light].color * (phase / distance2), reaching(seen, toLight, depth, falling), way);
+  float scale = 1.0;
+  for (int octave = 0; octave < frame.lighting.octaves; ++octave) {
+    float phase = kAnyView ? 1.0 / (4.0 * kPi) : phaseFunction(scale * frame.lighting.phaseG, -way, seen.toEye);
+    if (seen.surface > 0.0)
+      phase = mix(phase, octave == 0 ? surfaceScattering(seen.normal, way, seen.toEye) : 0.0, seen.surface);
+    const vec3 arriving = lights[light].color * (scale * phase / distance2);
+    addLight(sum, seen, arriving, reaching(seen, toLight, depth, falling, scale), way);
+    scale *= frame.lighting.octaveScale;
+  }
 }
 
 // The mean of the radiance that reaches the block from all directions: what is dark from everywhere is dark in ambient light.
@@ -137,7 +144,11 @@ void addFromEverywhere(inout ScatteredLight sum, SeenBlock seen) {
     const float falling = isAtEnd(towards, cell, place) ? 0.0 : 1.0;
     const vec3 direction = vec3(cell) / float(frame.cells);
     const vec3 way = normalize(frame.indexToWorld * direction);
-    addLight(sum, seen, frame.lighting.fromAll[i], reaching(seen, direction, depth, falling), way);
+    float scale = 1.0;
+    for (int octave = 0; octave < frame.lighting.octaves; ++octave) {
+      addLight(sum, seen, scale * frame.lighting.fromAll[i], reaching(seen, direction, depth, falling, scale), way);
+      scale *= frame.lighting.octaveScale;
+    }
   }
 }
 

@@ -110,7 +110,7 @@ Result octree(const Device& device, std::string_view name, AttenuationCode code,
 
 std::vector<Result> zoom(const Device& device, int resolution, int runs) {
   Volume volume = makeProcedural("cloud", resolution);
-  Renderer renderer(device, volume, {.densityScale = automaticDensityScale(volume)}, {});
+  Renderer renderer(device, volume, {.densityScale = automaticDensityScale(volume, 2.0)}, {});
   const glm::ivec2 size(1024);
   Camera camera = framingCamera(volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
   const glm::dvec3 toEye = glm::normalize(camera.position - camera.lookAt);
@@ -185,7 +185,7 @@ std::vector<Result> frames(const Device& device, std::string_view name, int reso
 
 std::vector<Result> lights(const Device& device, int resolution, int runs) {
   const Volume volume = makeProcedural("cloud", resolution);
-  const Classification classification{.densityScale = automaticDensityScale(volume)};
+  const Classification classification{.densityScale = automaticDensityScale(volume, 2.0)};
   const Camera camera = framingCamera(volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
   std::vector<Result> results;
   const auto measure = [&](int count, LightAttenuation attenuation) {
@@ -257,7 +257,7 @@ Result splats(const Device& device, double pixels, int runs) {
 
 Result wholeRender(const Device& device, const InputOptions& input, int runs) {
   const Volume volume = input.open(maximumVoxels(device));
-  const Classification classification{.densityScale = automaticDensityScale(volume)};
+  const Classification classification{.densityScale = automaticDensityScale(volume, 2.0)};
   const FrameSettings settings{.size = {1024, 1024}, .draw = Draw::Auto};
   const double time = least(runs, [&] {
     const auto start = std::chrono::steady_clock::now();
@@ -275,7 +275,7 @@ Result wholeRender(const Device& device, const InputOptions& input, int runs) {
 std::vector<Result> flight(const Device& device, int resolution, int runs) {
   constexpr int kFrames = 12;
   const Volume volume = makeProcedural("cloud", resolution);
-  Renderer renderer(device, volume, {.densityScale = automaticDensityScale(volume)}, {});
+  Renderer renderer(device, volume, {.densityScale = automaticDensityScale(volume, 2.0)}, {});
   const FrameSettings settings{.size = {512, 512}, .draw = Draw::Auto};
   double sum[2] = {0.0, 0.0};
   int frames[2] = {0, 0};

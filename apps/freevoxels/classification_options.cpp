@@ -30,7 +30,7 @@ void ClassificationOptions::add(CLI::App& app) {
       ->group("Classification");
 }
 
-Classification ClassificationOptions::resolve(const Volume& volume) const {
+Classification ClassificationOptions::resolve(const Volume& volume, bool shines) const {
   Classification classification;
   if (transferFunction) {
     classification.transferFunction = isInlineJson(*transferFunction)
@@ -39,7 +39,8 @@ Classification ClassificationOptions::resolve(const Volume& volume) const {
     classification.order = ClassificationOrder(order.value_or(0));
     return classification;
   }
-  classification.densityScale = densityScale ? *densityScale : automaticDensityScale(volume);
+  classification.densityScale =
+      densityScale ? *densityScale : automaticDensityScale(volume, shines ? kShiningOpticalDepth : kAutomaticOpticalDepth);
   if (albedo) classification.albedo = glm::vec3(*albedo);
   return classification;
 }

@@ -21,8 +21,8 @@ struct ClassificationOptions {
   std::optional<int> order;  ///< ClassificationOrder
 
   void add(CLI::App& app);
-  /// Reads the transfer function; the density scale defaults to the automatic one.
-  Classification resolve(const Volume& volume) const;
+  /// Reads the transfer function; the density scale defaults to the automatic one of volumes that shine, or do not.
+  Classification resolve(const Volume& volume, bool shines) const;
   void describe(OptionList& options, const Classification& resolved) const;
 };
 

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <numbers>
 
 #include "engine/core/error.h"
 
@@ -43,6 +44,13 @@ LightingOptions::GivenLight readLight(const std::string& text) {
   return given;
 }
 
+std::string lightText(const Light& light) {
+  return fmt::format("{}={},color={},intensity={}", light.atInfinity ? "direction" : "position",
+                     numberText(light.place), numberText(light.color), numberText(light.intensity));
+}
+
+}  // namespace
+
 double defaultIntensity(const Light& light, const Volume& volume) {
   if (light.atInfinity) return kDefaultIrradiance;
   const glm::dvec3 size(volume.dimensions), middle = 0.5 * (size - 1.0);
@@ -51,15 +59,15 @@ double defaultIntensity(const Light& light, const Volume& volume) {
   return kDefaultIrradiance * std::max(glm::dot(toLight, toLight), glm::dot(diagonal, diagonal));
 }
 
-std::string lightText(const Light& light) {
-  return fmt::format("{}={},color={},intensity={}", light.atInfinity ? "direction" : "position",
-                     numberText(light.place), numberText(light.color), numberText(light.intensity));
+Lighting defaultLights(const Camera& camera) {
+  constexpr double kKeyIrradiance = 2.2, kAmbientRadiance = 0.12;
+  const glm::dvec3 towardsKey = glm::transpose(glm::dmat3(worldToCamera(camera))) * glm::normalize(glm::dvec3(-0.5, 0.7, 0.5));
+  return {.lights = {{.place = towardsKey, .intensity = kKeyIrradiance * std::numbers::pi}}, .ambient = glm::dvec3(kAmbientRadiance)};
 }
-
-}  // namespace
 
 void LightingOptions::add(CLI::App& app) {
   const char* const group = "Light";
+  app.add_flag("--unlit", unlit, "No light: every voxel sends out its colour, whatever is around it")->group(group);
   app.add_option_function<std::vector<std::string>>(
          "--light",
          [this](const std::vector<std::string>& texts) {
@@ -69,7 +77,8 @@ void LightingOptions::add(CLI::App& app) {
          "A light, of which there may be any number: the direction from the volume towards it, or where it "
          "is "
          "in the world; its linear colour [1,1,1]; its irradiance, of a position at distance 1 "
-         "[4 pi in the middle of the volume]")
+         "[4 pi in the middle of the volume]. Without any light, ambient light or environment: a key light from the upper "
+         "left of the first view and some ambient light; none of a volume that shines")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("direction|position=X,Y,Z[,color=R,G,B][,intensity=I]")
@@ -100,6 +109,16 @@ void LightingOptions::add(CLI::App& app) {
             "How much of the lights is scattered forwards, from -1 to 1 (Henyey and Greenstein) [0]",
             {-kMostPhaseG, kMostPhaseG})
       ->group(group);
+  addWholeNumber(app, "--scattering", "N", scattering,
+                 fmt::format("How many orders of scattering there are: 1 is single, more brighten what light gets deep into; each "
+                             "takes --scattering-scale of the one before [{}]", kDefaultScattering),
+                 {1.0, double(kMostOctaves)})
+      ->group(group);
+  addNumber(app, "--scattering-scale", "S", scatteringScale,
+            fmt::format("What optical depth towards the light, phase function's g and light are multiplied by from one order of "
+                        "scattering to the next [{}]", Lighting{}.scatteringScale),
+            {0.0, 1.0})
+      ->group(group);
   app.add_option_function<std::string>(
          "--extinction-tint",
          [this](const std::string& text) {
@@ -114,6 +133,7 @@ void LightingOptions::add(CLI::App& app) {
 }
 
 void LightingOptions::addMethod(CLI::App& app) {
+  knowsMethod = true;
   addWord(app, "--light-attenuation", kLightAttenuationWords, attenuation,
           fmt::format(
               "Whether the shadows of lights are looked up in the table, or exact, along rays that are swept "
@@ -122,40 +142,42 @@ void LightingOptions::addMethod(CLI::App& app) {
               kMostExactLights))
       ->group("Light");
   addWord(app, "--shading", kShadingWords, shading,
-          "What a voxel does with lights: scatters them as fog does, or as a surface across the change of "
-          "its extinction, "
-          "or nothing: it sends out its colour [scatter]")
+          "What a voxel does with lights: scatters them as fog does, or as a surface across the change of its extinction; "
+          "auto is as a surface with a transfer function [auto]")
       ->group("Light");
   addNumber(app, "--surface-share", "S", surface,
-            "Of --shading gradient, how much is that of a surface, from 0 to 1; the rest is as scatter [1]",
+            "Of surfaces, how much is scattered by them, from 0 to 1; the rest is as by fog [1]",
             {.minimum = 0.0, .maximum = 1.0})
       ->group("Light");
 }
 
 void LightingOptions::check() const {
-  if (attenuation && lights.empty())
+  const bool withoutLights = lights.empty() && hasLight();
+  if (attenuation && withoutLights)
     fail(ExitCode::Usage,
          "--light-attenuation is how lights are shadowed, and there is none: give a --light");
-  if (shading == int(Shading::Gradient) && lights.empty())
+  if (shading == int(Shading::Gradient) && withoutLights)
     fail(ExitCode::Usage,
          "--shading gradient is how lights are scattered, and there is none: give a --light");
-  if (surface && shading != int(Shading::Gradient))
-    fail(ExitCode::Usage, "--surface-share is of --shading gradient: give that as well");
+  if (surface && shading == int(Shading::Scatter))
+    fail(ExitCode::Usage, "--surface-share is of surfaces: give --shading gradient as well");
   if ((environmentRotation || environmentIntensity) && !environment)
     fail(ExitCode::Usage, "{} is of an environment, and there is none: give an --environment",
          environmentRotation ? "--environment-rotation" : "--environment-intensity");
-  if (tint && lights.empty() && !ambient && !environment)
-    fail(ExitCode::Usage, "--extinction-tint is of the way of light, and there is none: give a --light");
-  if (phaseG && lights.empty())
+  if (phaseG && withoutLights)
     fail(ExitCode::Usage, "--phase-g is how lights are scattered, and there is none: give a --light");
 }
 
-std::optional<Lighting> LightingOptions::resolve(const Volume& volume) const {
-  if ((lights.empty() && !ambient && !environment) || shading == int(Shading::None)) return std::nullopt;
-  Lighting lighting{.ambient = ambient.value_or(glm::dvec3(0.0)),
-                    .tint = tint.value_or(glm::dvec3(1.0)),
-                    .phaseG = phaseG.value_or(0.0)};
-  if (shading == int(Shading::Gradient)) lighting.surface = surface.value_or(1.0);
+std::optional<Lighting> LightingOptions::resolve(const Volume& volume, const Classification& classification,
+                                                 const Camera& camera) const {
+  if (unlit || (!hasLight() && classification.emission)) return std::nullopt;
+  Lighting lighting;
+  if (!hasLight()) lighting = defaultLights(camera);
+  if (ambient) lighting.ambient = *ambient;
+  lighting.tint = tint.value_or(lighting.tint);
+  lighting.phaseG = phaseG.value_or(lighting.phaseG);
+  lighting.scattering = scattering.value_or(kDefaultScattering);
+  lighting.scatteringScale = scatteringScale.value_or(lighting.scatteringScale);
   lighting.attenuation = LightAttenuation(attenuation.value_or(int(LightAttenuation::Auto)));
   if (environment) {
     auto around = std::make_shared<Environment>(readEnvironment(*environment));
@@ -167,17 +189,25 @@ std::optional<Lighting> LightingOptions::resolve(const Volume& volume) const {
     lighting.lights.push_back(given.light);
     if (!given.hasIntensity) lighting.lights.back().intensity = defaultIntensity(given.light, volume);
   }
+  const Shading wanted = Shading(shading.value_or(int(Shading::Auto)));
+  const bool surfaces = wanted == Shading::Gradient || (wanted == Shading::Auto && classification.transferFunction);
+  if (surfaces && knowsMethod && !lighting.lights.empty()) lighting.surface = surface.value_or(1.0);
   return lighting;
 }
 
 void LightingOptions::describe(OptionList& options, const std::optional<Lighting>& resolved) const {
-  if (!resolved) return;
+  if (!resolved) {
+    options.emplace_back("--unlit", "");
+    return;
+  }
   if (attenuation)
     options.emplace_back("--light-attenuation", kLightAttenuationWords[std::size_t(*attenuation)]);
-  if (shading == int(Shading::Gradient)) {
-    options.emplace_back("--shading", kShadingWords[std::size_t(*shading)]);
-    options.emplace_back("--surface-share", numberText(resolved->surface));
+  if (!resolved->lights.empty() && knowsMethod) {
+    options.emplace_back("--shading", kShadingWords[std::size_t(resolved->surface > 0.0 ? Shading::Gradient : Shading::Scatter)]);
+    if (resolved->surface > 0.0) options.emplace_back("--surface-share", numberText(resolved->surface));
   }
+  options.emplace_back("--scattering", fmt::format("{}", resolved->scattering));
+  options.emplace_back("--scattering-scale", numberText(resolved->scatteringScale));
   for (const Light& light : resolved->lights) options.emplace_back("--light", lightText(light));
   options.emplace_back("--ambient", numberText(resolved->ambient));
   if (resolved->environment) {

@@ -66,12 +66,12 @@ Volume SceneOptions::readVolume(std::uint64_t maximumVoxels) const {
 
 Scene SceneOptions::resolve(std::shared_ptr<const Volume> volume) const {
   Scene scene{.volume = std::move(volume)};
-  scene.classification = classification.resolve(*scene.volume);
+  scene.classification = classification.resolve(*scene.volume, emission.grid().has_value());
   scene.classification.emission = emission.resolve(*scene.volume, scene.classification);
   if (scene.classification.emission && !classification.albedo)
     scene.classification.albedo = glm::vec3(kSootAlbedo);
   scene.camera = camera.resolve(*scene.volume);
-  scene.lighting = lighting.resolve(*scene.volume);
+  scene.lighting = lighting.resolve(*scene.volume, scene.classification, scene.camera);
   return scene;
 }
 

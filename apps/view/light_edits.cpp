@@ -19,8 +19,9 @@ void dropIdleOptions(LightingOptions& options) {
     options.attenuation.reset();
     options.phaseG.reset();
     options.shading.reset();
+    options.surface.reset();
   }
-  if (options.shading != int(Shading::Gradient)) options.surface.reset();
+  if (options.shading == int(Shading::Scatter)) options.surface.reset();
   if (!options.environment) {
     options.environmentRotation.reset();
     options.environmentIntensity.reset();
@@ -63,12 +64,6 @@ LightingOptions::GivenLight newLight(const Camera& camera, const Volume& volume,
                                   kBeyondCorners * halfDiagonal(volume) * fromUpperLeft,
                               steps);
   return given;
-}
-
-double usualIntensity(const Light& light, const Volume& volume) {
-  LightingOptions one;
-  one.lights.push_back({.light = light});
-  return one.resolve(volume)->lights[0].intensity;
 }
 
 double halfDiagonal(const Volume& volume) {

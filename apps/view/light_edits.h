@@ -23,9 +23,6 @@ glm::dvec3 directionOnBall(glm::dvec2 place);
 /// A light from the upper left of the camera: at infinity, or outside of the volume's box.
 LightingOptions::GivenLight newLight(const Camera& camera, const Volume& volume, bool atInfinity);
 
-/// Of one without an intensity of its own.
-double usualIntensity(const Light& light, const Volume& volume);
-
 /// From the middle of the volume's box to its corners.
 double halfDiagonal(const Volume& volume);
 

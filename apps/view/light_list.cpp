@@ -51,7 +51,7 @@ bool drawIntensity(LightingOptions::GivenLight& given, const Volume& volume) {
   if (given.hasIntensity) intensity = given.light.intensity;
   const bool changed =
       AutomaticSlider().draw("intensity", given.light.atInfinity ? "Irradiance" : "Irradiance at distance 1",
-                             intensity, usualIntensity(given.light, volume));
+                             intensity, defaultIntensity(given.light, volume));
   given.hasIntensity = intensity.has_value();
   given.light.intensity = intensity.value_or(Light{}.intensity);
   return changed;

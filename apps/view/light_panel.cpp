@@ -26,9 +26,9 @@ bool editRadiance(glm::dvec3& radiance) {
 }
 
 bool drawScattering(LightingOptions& options) {
-  bool changed = choose("shading", kShadingWords, options.shading, int(Shading::Scatter));
-  hint("As fog, or as surfaces across the gradient; none: lights off");
-  if (options.shading == int(Shading::Gradient)) {
+  bool changed = choose("shading", kShadingWords, options.shading, int(Shading::Auto));
+  hint("As fog, or as surfaces across the gradient; auto: with a transfer function");
+  if (options.shading != int(Shading::Scatter)) {
     changed |= slideOptional("surface share", options.surface, 1.0, 0.0, 1.0);
     hint("How much of it is surface; the rest is fog");
   }
@@ -58,7 +58,7 @@ void LightPanel::draw(ViewState& state) {
   ImGui::PushID("light");
   const LabelRoom room;
   LightingOptions& options = state.scene.lighting;
-  const bool lit = !options.lights.empty() || options.ambient || options.environment;
+  const bool lit = options.hasLight() && !options.unlit;
   if (!lit) ImGui::TextDisabled("No light: voxels send out their colour.");
   bool changed = drawLights(options, *state.camera, *state.latest->scene.volume);
   ImGui::Separator();
@@ -71,6 +71,7 @@ void LightPanel::draw(ViewState& state) {
   ImGui::PopID();
   if (!changed) return;
   dropIdleOptions(options);
+  options.unlit = !options.hasLight();
   state.changed = true;
 }
 

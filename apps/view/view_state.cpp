@@ -37,6 +37,14 @@ void ViewState::look(const Camera& from) {
   changed = true;
 }
 
+void ViewState::begin(const Scene& first) {
+  camera = first.camera;
+  LightingOptions& lighting = scene.lighting;
+  if (lighting.hasLight() || !first.lighting) return;
+  for (const Light& light : first.lighting->lights) lighting.lights.push_back({.light = light, .hasIntensity = true});
+  lighting.ambient = first.lighting->ambient;
+}
+
 void ViewState::show(const SceneOptions& other, const std::optional<Sequence>& frames) {
   scene = other;
   sequence = frames;

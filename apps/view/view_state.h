@@ -37,6 +37,8 @@ struct ViewState {
 
   /// The method that is shown beside this one.
   std::optional<MethodOptions> comparedMethod() const;
+  /// Takes from the first picture the camera and lights that its options do not say, so that they stay where they are.
+  void begin(const Scene& first);
   /// Looks from there, unless nothing is seen from there: `problem` says why.
   void look(const Camera& from);
   /// Another volume, as the scene has it; of a sequence where it is one of its frames.

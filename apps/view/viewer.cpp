@@ -66,7 +66,7 @@ void Viewer::show(const std::shared_ptr<const Picture>& picture) {
                 picture->image.size.x, picture->image.size.y, picture->milliseconds,
                 state_.picturesPerSecond);
   const bool isAsked = picture->request.number == lastRequest_ && !state_.changed;
-  if (!state_.camera && isAsked) state_.camera = picture->scene.camera;
+  if (!state_.camera && isAsked) state_.begin(picture->scene);
   upload(picture->diagnosis ? *picture->diagnosis : picture->image, texture_);
   if (picture->compared)
     upload(*picture->compared, comparedTexture_);

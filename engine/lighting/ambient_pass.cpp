@@ -88,16 +88,20 @@ int AmbientPass::channelCount(const Lighting& lighting) {
 bool AmbientPass::record(Commands& commands, const Lighting& lighting) {
   const int channels = channelCount(lighting);
   const std::vector<glm::dvec3> light = directionLight(lighting, kDirections, indexToWorld_);
-  unshadowed_ = std::accumulate(light.begin(), light.end(), glm::dvec3(0.0));
+  const glm::dvec3 whole = std::accumulate(light.begin(), light.end(), glm::dvec3(0.0));
+  double octaves = 0.0;  // without anything in the way
+  for (int octave = 0; octave < lighting.scattering; ++octave) octaves += lighting.octaveScale(octave);
+  unshadowed_ = octaves * whole;
   std::vector<glm::dvec3> parts;
-  for (const double share : directionShares(kDirections, indexToWorld_)) parts.emplace_back(share);
+  for (const double share : directionShares(kDirections, indexToWorld_)) parts.emplace_back(share / octaves);
   if (channels > 1)
     for (std::size_t i = 0; i < parts.size(); ++i)
       for (int c = 0; c < 3; ++c)
-        if (unshadowed_[c] > 0.0) parts[i][c] = light[i][c] / unshadowed_[c];
-  if (parts == parts_ && lighting.tint == tint_) return false;
+        if (whole[c] > 0.0) parts[i][c] = light[i][c] / unshadowed_[c];
+  const Lighting like{.tint = lighting.tint, .scattering = lighting.scattering, .scatteringScale = lighting.scatteringScale};
+  if (parts == parts_ && like == like_) return false;
   parts_ = std::move(parts);
-  tint_ = lighting.tint;
+  like_ = like;
 
   const VkDeviceSize bytes = extinction_.bytes() * VkDeviceSize(channels);
   if (light_.bytes() != bytes) light_ = Buffer(device_, bytes, MemoryUse::Device, "ambient light of cells");
@@ -116,6 +120,8 @@ bool AmbientPass::record(Commands& commands, const Lighting& lighting) {
                                         .step = step,
                                         .stepLength = float(edge_ * glm::length(glm::dmat3(indexToWorld_) * glm::dvec3(step))),
                                         .share = parts_[std::size_t(i)],
+                                        .octaves = lighting.scattering,
+                                        .octaveScale = float(lighting.scatteringScale),
                                         .tint = lighting.tint};
     if (i > 0) commands.barrier(kCompute, kCompute);
     commands.dispatchLinear(pipeline_, bindings, push, std::uint64_t(cells_[axes.x]) * std::uint64_t(cells_[axes.y]));

@@ -32,7 +32,7 @@ class AmbientPass {
   static int channelCount(const Lighting& lighting);
   /// Records the sweeps for light that differs from that of the call before; whether it did. `lighting` comes from everywhere.
   bool record(Commands& commands, const Lighting& lighting);
-  /// The mean radiance over all directions where nothing is in the way.
+  /// The mean radiance over all directions where nothing is in the way, of all octaves of scattering.
   glm::dvec3 unshadowed() const { return unshadowed_; }
 
   /// Of each cell and channel, what part of the unshadowed light reaches it. float, cells of a channel after each other.
@@ -49,7 +49,8 @@ class AmbientPass {
   Buffer light_;
   Pipeline pipeline_;
   std::vector<glm::dvec3> parts_;  ///< of the unshadowed light, by direction: what `light_` was made of
-  glm::dvec3 tint_{0.0}, unshadowed_{0.0};
+  Lighting like_;                  ///< its tint and octaves of scattering
+  glm::dvec3 unshadowed_{0.0};
 };
 
 }  // namespace freevoxels

@@ -140,6 +140,8 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
       .tint = lighting.tint,
       .phaseG = float(lighting.phaseG),
       .surface = float(lighting.surface),
+      .octaves = lighting.scattering,
+      .octaveScale = float(lighting.scatteringScale),
       .gradientToWorld = glm::transpose(glm::inverse(glm::dmat3(volume.indexToWorld)))};
   for (int i = 0; i < directionCount(set); ++i)
     frame.fromAll[cellNumber(set, directionCell(set, i))] = glm::vec3(fromAll_[std::size_t(i)]);

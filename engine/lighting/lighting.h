@@ -5,6 +5,7 @@
 // light's irradiance there, A the transmittance between the two, ambient the mean of radiance times A over
 // all directions, that of the environment included.
 
+#include <cmath>
 #include <glm/glm.hpp>
 #include <memory>
 #include <numbers>
@@ -24,6 +25,8 @@ inline constexpr double kHighlight = 0.2, kHighlightExponent = 40.0;
 
 /// Where a depth ends its code nothing is known of what comes through, and a small tint shows that.
 inline constexpr double kLeastTint = 0.2, kMostTint = 5.0;
+
+inline constexpr int kMostOctaves = 8;
 
 /// As narrow a phase function as 32-bit floats have.
 inline constexpr double kMostPhaseG = 0.99;
@@ -65,6 +68,13 @@ struct Lighting {
   /// where the extinction changes most; the rest as fog.
   double surface = 0.0;
   LightAttenuation attenuation = LightAttenuation::Auto;  ///< of the lights; what is ambient is the table's
+  /// Multiple scattering is approximated by octaves (Wrenninge, Kulla and Lundqvist 2013): octave i is lit as by single
+  /// scattering, but with the optical depth towards the light, the phase function's g and the light itself all multiplied
+  /// by scatteringScale^i. 1 octave is single scattering. Surfaces scatter in the first one only.
+  int scattering = 1;           ///< octaves, 1..kMostOctaves
+  double scatteringScale = 0.5;  ///< in 0..1
+
+  double octaveScale(int octave) const { return std::pow(scatteringScale, octave); }
 
   bool comesFromEverywhere() const { return ambient != glm::dvec3(0.0) || environment; }
   /// Whether a frame has to have the table; of Auto only what it comes to says that.

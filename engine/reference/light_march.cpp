@@ -79,8 +79,23 @@ glm::dvec3 LightMarch::scatteredFrom(std::size_t i, glm::dvec3 position, glm::dv
   if (!(length > 0.0)) return glm::dvec3(0.0);
   const double end = source.atInfinity ? std::numeric_limits<double>::infinity() : 1.0;
   const double irradiance = light.intensity / (source.atInfinity ? 1.0 : length * length);
-  const double phase = phaseFunction(lighting_.phaseG, glm::dot(-worldWay / length, toEye));
-  return light.color * (irradiance * phase) * transmittance(position, way, end);
+  const glm::dvec3 through = transmittance(position, way, end);
+  glm::dvec3 sum(0.0);
+  for (int octave = 0; octave < lighting_.scattering; ++octave) {
+    const double scale = lighting_.octaveScale(octave);
+    sum += scale * phaseFunction(scale * lighting_.phaseG, glm::dot(-worldWay / length, toEye)) * glm::pow(through, glm::dvec3(scale));
+  }
+  return light.color * irradiance * sum;
+}
+
+/// The sum over all octaves of scattering.
+glm::dvec3 LightMarch::octaves(glm::dvec3 transmittance) const {
+  glm::dvec3 sum(0.0);
+  for (int octave = 0; octave < lighting_.scattering; ++octave) {
+    const double scale = lighting_.octaveScale(octave);
+    sum += scale * glm::pow(transmittance, glm::dvec3(scale));
+  }
+  return sum;
 }
 
 std::unique_ptr<LightMarch::Reaching> LightMarch::marchBrick(glm::ivec3 position,
@@ -96,7 +111,7 @@ std::unique_ptr<LightMarch::Reaching> LightMarch::marchBrick(glm::ivec3 position
     const glm::dvec3 at = first + glm::dvec3(point) / double(kPointsPerVoxel);
     glm::dvec3 sum(0.0);
     for (const Ray& ray : rays)
-      sum += ray.light * transmittance(at, ray.direction, std::numeric_limits<double>::infinity());
+      sum += ray.light * octaves(transmittance(at, ray.direction, std::numeric_limits<double>::infinity()));
     for (int c = 0; c < channels_; ++c) parts[c] = float(sum[c]);
   };
   for (int cell = 0; cell < cells * cells * cells; ++cell) {

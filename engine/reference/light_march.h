@@ -35,6 +35,7 @@ class LightMarch {
   using Reaching = std::vector<float>;
 
   glm::dvec3 transmittance(glm::dvec3 position, glm::dvec3 direction, double end) const;
+  glm::dvec3 octaves(glm::dvec3 transmittance) const;
   glm::dvec3 scatteredFrom(std::size_t light, glm::dvec3 position, glm::dvec3 toEye) const;
   static std::vector<Ray> evenRays(int count);
   static std::vector<Ray> environmentRays(const Lighting& lighting, int count);

@@ -54,7 +54,7 @@ glm::dvec3 ReferenceLight::toLight(const RaySource& source, glm::dvec3 position)
 }
 
 glm::dvec3 ReferenceLight::reaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth,
-                                    double falling, double counted) const {
+                                    double falling, double counted, double scale) const {
   const double sigma = extinctionOf(block, inputs_.volume, inputs_.extinction, inputs_.coarser);
   const auto layersOf = [&](glm::dvec3 way) {
     return boxOf(block, inputs_.volume.dimensions).extent[majorAxis(way)];
@@ -71,10 +71,10 @@ glm::dvec3 ReferenceLight::reaching(const Block& block, glm::dvec3 toEye, glm::d
   for (int c = 0; c < 3; ++c) {
     // The integral of exp(-e t) times exp(-l t), or where the light comes from the other side exp(-l (1 -
     // t)), over t from 0 to 1.
-    const double l = lighting_.tint[c] * own(direction);
+    const double tint = scale * lighting_.tint[c], l = tint * own(direction);
     const double sameSide = meanOver(e + l);
     const double otherSide = std::exp(-std::min(e, l)) * meanOver(std::abs(e - l));
-    part[c] = std::exp(-lighting_.tint[c] * inFront) *
+    part[c] = std::exp(-tint * inFront) *
               (0.5 * (1.0 + cosine) * sameSide + 0.5 * (1.0 - cosine) * otherSide) / meanOver(e);
   }
   return part;
@@ -91,9 +91,12 @@ glm::dvec3 ReferenceLight::reachingFromAll(const Block& block, glm::dvec3 toEye)
   for (int d = 0; d < int(table.size()); ++d) {
     const int byte = table[std::size_t(d)][index];
     const glm::dvec3 direction = directionAt(settings.directions, d);
-    sum += fromAll_[std::size_t(d)] *
-           reaching(block, toEye, direction, decodeOpticalDepth(settings.code, byte), byte == end ? 0.0 : 1.0,
-                    stepLength(inputs_.volume.indexToWorld, direction, settings.pathLengthCorrection));
+    for (int octave = 0; octave < lighting_.scattering; ++octave) {
+      const double scale = lighting_.octaveScale(octave);
+      sum += scale * fromAll_[std::size_t(d)] *
+             reaching(block, toEye, direction, decodeOpticalDepth(settings.code, byte), byte == end ? 0.0 : 1.0,
+                      stepLength(inputs_.volume.indexToWorld, direction, settings.pathLengthCorrection), scale);
+    }
   }
   return sum;
 }
@@ -130,14 +133,17 @@ glm::dvec3 ReferenceLight::scattered(const Block& block, glm::dvec3 toEye) const
     const glm::dvec3 across = way / std::abs(way[majorAxis(way)]);
     const ReferenceDepth& depth = *depths_[i];
     const double counted = depth.countedLength(glm::length(toWorld_ * across));
-    const glm::dvec3 reached = reaching(block, toEye, way, depth.at(block), depth.falling(block), counted);
     const glm::dvec3 before = -glm::normalize(toWorld_ * way);
     const glm::dvec3 apart = toWorld_ * (sources_[i].place - centre);
     const double distance2 = std::max(glm::dot(apart, apart), kNearestLight2 * edge * edge);
-    double phase = phaseFunction(lighting_.phaseG, glm::dot(before, after));
-    if (surface > 0.0) phase += surface * (surfaceScattering(normal, -before, after) - phase);
     const double irradiance = light.intensity / (light.atInfinity ? 1.0 : distance2);
-    sum += light.color * (irradiance * phase) * reached;
+    for (int octave = 0; octave < lighting_.scattering; ++octave) {
+      const double scale = lighting_.octaveScale(octave);
+      double phase = (1.0 - surface) * phaseFunction(scale * lighting_.phaseG, glm::dot(before, after));
+      if (octave == 0 && surface > 0.0) phase += surface * surfaceScattering(normal, -before, after);
+      sum += light.color * (scale * irradiance * phase) *
+             reaching(block, toEye, way, depth.at(block), depth.falling(block), counted, scale);
+    }
   }
   return sum + reachingFromAll(block, toEye);
 }

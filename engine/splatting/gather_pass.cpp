@@ -24,7 +24,7 @@ Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume) 
   return makeComputePipeline(device, {gather_spv, "gather"}, interface, kTile,
                              {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.hasScalars(), volume.isLit(),
                               volume.inPieces(), std::uint32_t(volume.sampleLights()), volume.isTinted(), volume.hasSurfaces(),
-                              std::uint32_t(volume.ambientChannels())});
+                              std::uint32_t(volume.ambientChannels()), std::uint32_t(volume.octaves())});
 }
 
 /// Of the stencil and the upsampling, which have the same bindings.

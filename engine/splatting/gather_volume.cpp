@@ -495,6 +495,7 @@ void GatherVolume::describeLights(shader::GatherFrame& frame) const {
   frame.tint = lighting_->tint;
   frame.phaseG = float(lighting_->phaseG);
   frame.surface = float(lighting_->surface);
+  frame.octaveScale = float(lighting_->scatteringScale);
   frame.nearestLight2 = float(double(shader::kNearestLight2) * volume.voxelSize * volume.voxelSize);
   frame.indexToWorld = linear;
   frame.gradientToWorld = glm::transpose(glm::inverse(linear));

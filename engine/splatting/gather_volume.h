@@ -70,6 +70,7 @@ class GatherVolume {
   bool isLit() const { return lit_; }
   int sampleLights() const { return int(sampled_.size()); }
   int ambientChannels() const { return ambientChannels_; }
+  int octaves() const { return lighting_ ? lighting_->scattering : 1; }
   bool isTinted() const { return lighting_ && lighting_->tint != glm::dvec3(1.0); }
   bool hasSurfaces() const { return lighting_ && lighting_->surface > 0.0; }
   /// Whether quads are in more than one piece, of shader::kPieceBricksLog2 each.

@@ -36,7 +36,7 @@ constexpr std::array<Method, 2> kMethods{
     {{"default", AttenuationLookup::Auto}, {"exact", AttenuationLookup::Exact}}};
 
 Classification burning(const Volume& volume, double densityScale) {
-  Classification classification{.densityScale = densityScale * automaticDensityScale(volume),
+  Classification classification{.densityScale = densityScale * automaticDensityScale(volume, 2.0),
                                 .albedo = glm::vec3(kSootAlbedo)};
   classification.emission = Emission{.strength = automaticEmissionStrength(volume, classification, {})};
   return classification;

@@ -62,7 +62,7 @@ ValidationScene makeValidationScene(Volume volume, SceneColor color, int maximum
   scene.classification =
       color == SceneColor::TransferFunction
           ? colourful(volume)
-          : Classification{.densityScale = automaticDensityScale(volume), .albedo = {0.9f, 0.6f, 0.3f}};
+          : Classification{.densityScale = automaticDensityScale(volume, 2.0), .albedo = {0.9f, 0.6f, 0.3f}};
   if (volume.temperature) {
     Emission emission;
     emission.strength = automaticEmissionStrength(volume, scene.classification, emission);

@@ -146,12 +146,12 @@ double automaticEmissionStrength(const Volume& volume, const Classification& cla
   return kAutomaticRadiance / (all.light / voxels * edge * leaving);
 }
 
-double automaticDensityScale(const Volume& volume) {
+double automaticDensityScale(const Volume& volume, double opticalDepth) {
   const double total = totalDensity(volume);  // kInactiveVoxel is negative and adds nothing
   if (!(total > 0.0)) return 1.0;
   const double mean = total / double(volume.activeVoxels);
   const double edge = std::cbrt(double(volume.activeVoxels)) * volume.voxelSize();
-  return kAutomaticOpticalDepth / (mean * edge);
+  return opticalDepth / (mean * edge);
 }
 
 }  // namespace freevoxels

@@ -80,10 +80,10 @@ TransferFunction readTransferFunction(const std::filesystem::path& file, const V
 /// The same of the JSON itself.
 TransferFunction parseTransferFunction(const std::string& json, const Volume& volume);
 
-/// The density scale used when none is given: the one at which a cube that holds the volume of the active
-/// voxels at their mean density has optical depth kAutomaticOpticalDepth.
-inline constexpr double kAutomaticOpticalDepth = 2.0;
-double automaticDensityScale(const Volume& volume);
+/// The density scale at which a cube that holds the volume of the active voxels at their mean density has this optical depth.
+/// Where none is given it is kAutomaticOpticalDepth, of volumes that shine kShiningOpticalDepth, so that flames are seen.
+inline constexpr double kAutomaticOpticalDepth = 6.0, kShiningOpticalDepth = 2.0;
+double automaticDensityScale(const Volume& volume, double opticalDepth);
 
 /// Of the smoke of a fire, where no albedo is given: soot.
 inline constexpr float kSootAlbedo = 0.1f;

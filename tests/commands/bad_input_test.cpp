@@ -136,8 +136,11 @@ TEST_F(BadInput, BadLights) {
   expectBadLight("--ambient 1,2", "--ambient");
   expectBadLight("--ambient -1", "--ambient");
   expectBadLight("--phase-g 1 --light direction=1,0,0", "--phase-g");
-  expectBadLight("--phase-g 0.5", "--phase-g");
-  for (const char* option : {"--light-attenuation exact", "--shading gradient", "--surface-share 0.5"})
+  expectBadLight("--phase-g 0.5 --ambient 1", "--phase-g");
+  expectBadLight("--scattering 0", "--scattering");
+  expectBadLight("--scattering 9", "--scattering");
+  expectBadLight("--scattering-scale 1.5", "--scattering-scale");
+  for (const char* option : {"--light-attenuation exact --ambient 1", "--shading gradient --ambient 1", "--surface-share 0.5 --shading scatter"})
     expectCleanRefusal(fmt::format("render procedural:cube @a.png {}{}", option, kSmall), ExitCode::Usage,
                        std::string(option).substr(0, std::string(option).find(' ')));
 }

@@ -52,7 +52,7 @@ TEST_F(EmissionCommand, TheHeaderRepeatsThePicture) {
 }
 
 TEST_F(EmissionCommand, ColoursAreAlbedosAndClippedWithOneWarning) {
-  const ProgramResult result = run(std::string("render @fire.vdb @a.exr --albedo-grid Cd --size 40x40"));
+  const ProgramResult result = run(std::string("render @fire.vdb @a.exr --albedo-grid Cd --unlit --size 40x40"));
   EXPECT_EQ(result.exitCode, 0) << result.err;
   EXPECT_NE(result.err.find("512 voxels of grid 'Cd'"), std::string::npos) << result.err;
   const glm::vec4 middle = readPicture(folder / "a.exr").pixels[20 * 40 + 20];

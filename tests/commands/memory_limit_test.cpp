@@ -21,7 +21,7 @@ class MemoryLimit : public CommandTest {
 }  // namespace
 
 TEST_F(MemoryLimit, IsKeptOrTheRunSaysWhatItNeeds) {
-  const std::string command = "render procedural:cloud --resolution 72 --size 200x150 --quiet --timings @t.json @";
+  const std::string command = "render procedural:cloud --unlit --resolution 72 --size 200x150 --quiet --timings @t.json @";
   expectSuccess(run(command + "free.exr"));
   const std::uint64_t free = devicePeak();
   int refused = 0, drawn = 0;
@@ -52,7 +52,7 @@ TEST_F(MemoryLimit, BadValuesAreRefused) {
 /// A box of which a twentieth is smoke.
 TEST_F(MemoryLimit, SparseSmokeIn512CubedTakesLessThanAGibibyteOfHostAndDevice) {
   const ProgramResult result =
-      run("render procedural:plume --resolution 640 --size 160x160 --timings @t.json @a.exr");
+      run("render procedural:plume --unlit --resolution 640 --size 160x160 --timings @t.json @a.exr");
   expectSuccess(result);
   const auto report = nlohmann::json::parse(readBytes(folder / "t.json"));
   const double voxels = report["voxels"], visible = report["visible_voxels"];

@@ -54,6 +54,23 @@ TEST_F(RenderCommand, EveryProceduralVolumeShows) {
   }
 }
 
+/// From the upper left of the first view, and no more than one option says it.
+TEST_F(RenderCommand, WithoutLightOptionsThereIsAKeyLightAndAmbientLight) {
+  const std::string lit = render("--orbit 0,0");
+  EXPECT_EQ(exrAttribute(lit, "freevoxels:ambient"), "0.12,0.12,0.12");
+  EXPECT_EQ(exrAttribute(lit, "freevoxels:scattering"), "3");
+  const Image image = readExr(folder / "a.exr");
+  const auto brightness = [&](int x, int y) { return image.pixels[std::size_t(x + 64 * y)].g; };
+  EXPECT_GT(brightness(26, 18), 1.2f * brightness(38, 30));
+  const std::string light = exrAttribute(lit, "freevoxels:light");
+  EXPECT_NE(exrAttribute(render("--orbit 90,0"), "freevoxels:light"), light);
+  expectSuccess(run(std::string("render procedural:cloud @b.exr --orbit 0,0 --ambient 0.12 --light ") + light + kSmall));
+  EXPECT_EQ(readExr(folder / "b.exr").pixels, image.pixels);
+  const std::string unlit = render("--unlit");
+  EXPECT_EQ(exrAttribute(unlit, "freevoxels:unlit"), "yes");
+  EXPECT_EQ(exrAttribute(unlit, "freevoxels:light"), "");
+}
+
 TEST_F(RenderCommand, TheSameCommandGivesTheSameBytes) {
   const std::string first = render("--aov depth", "a.exr");
   EXPECT_EQ(first, render("--aov depth", "b.exr"));
@@ -147,7 +164,7 @@ TEST_F(RenderCommand, PaperIsEightOptionsAndYieldsToEach) {
 /// It leaks, so that it is another picture, and has no use for the table.
 TEST_F(RenderCommand, SortedIsAnotherPictureWithoutTheTable) {
   const auto pixels = [&](const std::string& options) {
-    render(options + " --float --aov depth");
+    render(options + " --unlit --float --aov depth");
     return readExr(folder / "a.exr");
   };
   const Image sorted = pixels("--composite sorted"), normalised = pixels("--draw splats");

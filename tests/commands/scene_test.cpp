@@ -88,7 +88,7 @@ TEST_F(SceneCommand, TheCommandLineWins) {
   EXPECT_EQ(attribute("environment-rotation"), "30");
   EXPECT_EQ(attribute("light"), "direction=0,1,0,color=1,1,1,intensity=2");
 
-  render("@a.exr --orthographic 2 --camera-position 1,2,3 --paper --shading none");
+  render("@a.exr --orthographic 2 --camera-position 1,2,3 --paper --unlit");
   EXPECT_EQ(attribute("fov"), "");
   EXPECT_EQ(attribute("camera-position"), "1,2,3");
   EXPECT_EQ(attribute("directions"), "26");  // one of the eight, in the scene too

@@ -31,7 +31,7 @@ class GatherTest : public SplatTest {
   };
   static Scene cloud(int resolution) {
     Scene scene{.volume = makeProcedural("cloud", resolution), .classification = {}};
-    scene.classification.densityScale = automaticDensityScale(scene.volume);
+    scene.classification.densityScale = automaticDensityScale(scene.volume, 2.0);
     return scene;
   }
   static double qualityOf(const Scene& scene, const Camera& camera, const FrameSettings& settings) {
@@ -180,7 +180,7 @@ TEST_F(GatherTest, EyeInsideMatchesTheOracle) {
 TEST_F(GatherTest, ShearedGridMatchesTheOracle) {
   Scene scene = cloud(32);
   scene.volume.indexToWorld = shearedTransform(scene.volume.dimensions);
-  scene.classification.densityScale = automaticDensityScale(scene.volume);
+  scene.classification.densityScale = automaticDensityScale(scene.volume, 2.0);
   const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
   EXPECT_GE(qualityOf(scene, camera, gathering({96, 96})), 40.0);
 }
@@ -197,7 +197,7 @@ TEST_F(GatherTest, LitVolumesAreAsNearToTheOracleAsSplats) {
 }
 
 /// Lit from the eye's side a column of optical depth D scatters (1 - exp(-(1 + tint) D)) / (1 + tint), from behind with a tint
-/// of 1 D exp(-D), of what a light is without shadow.
+/// of 1 D exp(-D), of what a light is without shadow; an octave scales depth as a tint does.
 TEST_F(GatherTest, LightThroughAHomogeneousBoxIsItsIntegral) {
   const Volume box = makeVolume({20, 20, 12}, cubeTransform({20, 20, 12}), [](int, int, int) { return 1.0; });
   const glm::ivec2 size(15, 15);
@@ -215,6 +215,10 @@ TEST_F(GatherTest, LightThroughAHomogeneousBoxIsItsIntegral) {
     settings.lighting = Lighting{.lights = {{.place = {0.0, 0.0, -1.0}}}};
     const glm::vec4 behind = renderer.render(camera, settings).pixels[7 + 7 * 15];
     EXPECT_NEAR(behind.r, depth * std::exp(-depth), 0.02 * depth * std::exp(-depth)) << depth;
+    settings.lighting = Lighting{.lights = {{.place = {0.0, 0.0, 1.0}}}, .scattering = 3, .scatteringScale = 0.4};
+    double octaves = 0.0;
+    for (const double scale : {1.0, 0.4, 0.16}) octaves += scale * (1.0 - std::exp(-(1.0 + scale) * depth)) / (1.0 + scale);
+    EXPECT_NEAR(renderer.render(camera, settings).pixels[7 + 7 * 15].r, octaves, 0.01 * octaves) << depth;
   }
 }
 
@@ -241,9 +245,11 @@ TEST_F(GatherTest, LightsOfAllKindsMatchTheOracle) {
                                           {.place = inside, .atInfinity = false, .color = {0.1, 0.2, 0.3}, .intensity = 0.1},
                                           {.place = {-1.0, 0.1, -0.2}, .intensity = 2.0}},
                                .tint = {0.5, 1.0, 2.0},
-                               .phaseG = 0.4};
+                               .phaseG = 0.4,
+                               .scattering = 2};
   EXPECT_GE(qualityOf(scene, camera, settings), 38.0);
   settings.lod = 1.0f;
+  settings.lighting->scattering = 1;
   Camera distant = camera;
   distant.position = camera.lookAt + 5.0 * (camera.position - camera.lookAt);
   EXPECT_GE(qualityOf(scene, distant, settings), 33.0);  // as without lights: some ten pixels
@@ -256,8 +262,13 @@ TEST_F(GatherTest, LightFromEverywhereMatchesTheOracle) {
   const Lighting uniform{.ambient = {0.9, 0.7, 0.5}};
   Lighting tinted = uniform, sky;
   tinted.tint = {0.5, 1.0, 2.0};
-  sky.environment = std::make_shared<Environment>(makeSky(16));
   sky.lights = {{.place = {1.0, 0.2, 0.4}}};
+  sky.scattering = 3;
+  constexpr double kOctaves = 1.75;  // times as bright
+  sky.lights[0].intensity /= kOctaves;
+  auto around = std::make_shared<Environment>(makeSky(16));
+  around->intensity /= kOctaves;
+  sky.environment = around;
   FrameSettings settings = gathering({32, 32});
   for (const Lighting& lighting : {tinted, sky}) {
     settings.lighting = lighting;
@@ -289,7 +300,7 @@ TEST_F(GatherTest, ChangedLightFromEverywhereIsFoundAgain) {
 
 TEST_F(GatherTest, CoarseLevelsLookLikeVoxels) {
   const Volume volume = makeProcedural("cloud", 96);
-  const Classification classification{.densityScale = automaticDensityScale(volume)};
+  const Classification classification{.densityScale = automaticDensityScale(volume, 2.0)};
   Renderer renderer(device(), volume, classification, {});
   Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
   camera.position = camera.lookAt + 4.0 * (camera.position - camera.lookAt);
@@ -315,7 +326,7 @@ TEST_F(GatherTest, DistanceIsTheMeanOfWhatIsSeen) {
 
 TEST_F(GatherTest, IsTheSameToTheBitEveryTime) {
   const Volume volume = makeProcedural("cloud", 40);
-  const Classification classification{.densityScale = automaticDensityScale(volume)};
+  const Classification classification{.densityScale = automaticDensityScale(volume, 2.0)};
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
   FrameSettings settings = gathering({120, 90});
   settings.lighting = Lighting{.lights = {{}}};
@@ -328,7 +339,7 @@ TEST_F(GatherTest, IsTheSameToTheBitEveryTime) {
 /// What was shaded for one light or for none is not shown with another.
 TEST_F(GatherTest, ChangedLightsAreShadedAgain) {
   const Volume volume = makeProcedural("cloud", 32);
-  const Classification classification{.densityScale = automaticDensityScale(volume)};
+  const Classification classification{.densityScale = automaticDensityScale(volume, 2.0)};
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
   Renderer renderer(device(), volume, classification, {});
   FrameSettings settings = gathering({64, 64});

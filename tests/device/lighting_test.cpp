@@ -69,13 +69,15 @@ TEST_F(LightingTest, SurfacesMatchTheReference) {
   expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
 }
 
-/// Of every look-up, surfaces and an environment.
+/// Of every look-up, surfaces and an environment, scattered several times.
 TEST_F(LightingTest, TintsMatchTheReference) {
   const Volume v = volume(true);
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
   Lighting lighting = everything();
   lighting.tint = {0.4, 1.0, 2.5};
   lighting.surface = 0.5;
+  lighting.scattering = 3;
+  lighting.scatteringScale = 0.6;
   lighting.environment = std::make_shared<Environment>(makeSky(64));
   expectSamePicture(v, camera, {.size = {50, 50}, .lighting = lighting});
   expectSamePicture(v, camera, {.size = {50, 50}, .lighting = lighting}, {.code = AttenuationCode::Linear8});

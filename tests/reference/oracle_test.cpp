@@ -361,7 +361,7 @@ TEST(Oracle, IsTheSameOnAnyNumberOfCores) {
 TEST(Oracle, SplatsOfASmoothVolumeComeClose) {
   Volume volume = makeProcedural("cloud", 48);
   cropToActive(volume);
-  const Classification classification = physical(automaticDensityScale(volume), glm::vec3(0.9f));
+  const Classification classification = physical(automaticDensityScale(volume, 2.0), glm::vec3(0.9f));
   const Scene scene(volume, classification);
   FrameSettings frame = frameOf({120, 120});
   frame.depth = true;

@@ -73,9 +73,9 @@ TEST(LightEdits, ANewLightComesFromTheUpperLeftOfTheCamera) {
     if (!atInfinity) {
       EXPECT_GT(glm::length(given.light.place), halfDiagonal(cube));
     }
-    EXPECT_GT(usualIntensity(given.light, cube), 0.0);
+    EXPECT_GT(defaultIntensity(given.light, cube), 0.0);
   }
-  EXPECT_EQ(usualIntensity({}, cube), kDefaultIrradiance);
+  EXPECT_EQ(defaultIntensity({}, cube), kDefaultIrradiance);
 }
 
 }  // namespace

@@ -64,13 +64,13 @@ TEST(Classification, FullOpacityStaysFinite) {
 TEST(Classification, TheAutomaticScaleGivesAUniformCubeItsOpticalDepth) {
   for (const int resolution : {8, 32}) {
     Volume cube = makeProcedural("cube", resolution);  // edge 1
-    EXPECT_NEAR(automaticDensityScale(cube), kAutomaticOpticalDepth, 1e-9);
+    EXPECT_NEAR(automaticDensityScale(cube, 3.0), 3.0, 1e-9);
     for (ScalarBricks::Brick& brick : cube.scalars.bricks())
       for (float& value : brick) value *= 0.25f;
-    EXPECT_NEAR(automaticDensityScale(cube), 4.0 * kAutomaticOpticalDepth, 1e-9);
+    EXPECT_NEAR(automaticDensityScale(cube, 3.0), 4.0 * 3.0, 1e-9);
   }
   const Volume empty = makeVolume({2, 2, 2}, glm::dmat4(1.0), [](int, int, int) { return -1.0f; });
-  EXPECT_EQ(automaticDensityScale(empty), 1.0);
+  EXPECT_EQ(automaticDensityScale(empty, 3.0), 1.0);
 }
 
 class TransferFunctionFile : public testing::Test {
