@@ -155,7 +155,7 @@ void writeDifference(const std::string& file, const Image& test, const Image& re
   if (isExr(file))
     writeExr(file, absoluteDifference(test, reference), {.fullFloat = true});
   else
-    writePng(file, magmaPicture(map), nullptr);
+    writePng(file, magmaPicture(map));
 }
 
 }  // namespace

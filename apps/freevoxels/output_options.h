@@ -16,9 +16,15 @@ namespace freevoxels {
 bool isExr(const std::string& file);
 bool isPng(const std::string& file);
 
+/// In the order of ToneMap.
+inline const std::vector<std::string> kToneMapWords{"none", "filmic", "aces"};
+
 struct OutputOptions {
   std::vector<std::string> files;
-  std::optional<glm::dvec3> background;
+  std::optional<glm::dvec3> background;  ///< none: a dark gradient, unless `transparent`
+  bool transparent = false;
+  std::optional<double> exposure;
+  std::optional<int> toneMap;  ///< ToneMap
   bool fullFloat = false;
   std::optional<int> aov;
 
@@ -32,6 +38,8 @@ struct OutputOptions {
   /// Before any work: extensions, options that no output can honour (ExitCode::Usage), folders
   /// (ExitCode::Output).
   void check() const;
+  /// How a .png is made of a picture.
+  PngLook look() const;
   bool wantsDepth() const { return aov.has_value(); }
   void describe(OptionList& options) const;
   /// Writes each file completely or not at all.

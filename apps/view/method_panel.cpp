@@ -93,14 +93,18 @@ void drawBackgroundPanel(ViewState& state) {
   if (!ImGui::CollapsingHeader("Background")) return;
   ImGui::PushID("background");
   const LabelRoom room;
-  std::optional<glm::dvec3>& background = state.scene.output.background;
-  bool transparent = !background;
-  if (ImGui::Checkbox("transparent", &transparent)) {
-    background.reset();
-    if (!transparent) background = glm::dvec3(0.0);
+  OutputOptions& output = state.scene.output;
+  const std::vector<std::string> words{"dark", "transparent", "colour"};
+  int kind = output.transparent ? 1 : output.background ? 2 : 0;
+  if (choose("behind", words, kind)) {
+    output.transparent = kind == 1;
+    output.background.reset();
+    if (kind == 2) output.background = glm::dvec3(0.0);
     state.changed = true;
   }
-  if (background) state.changed |= editColor("colour", *background);
+  if (output.background) state.changed |= editColor("colour", *output.background);
+  state.changed |= slideOptional("exposure", output.exposure, 0.0, -8.0, 8.0, "%.1f EV");
+  state.changed |= choose("tone map", kToneMapWords, output.toneMap, int(ToneMap::None));
   ImGui::PopID();
 }
 

@@ -75,11 +75,9 @@ void Viewer::show(const std::shared_ptr<const Picture>& picture) {
 }
 
 void Viewer::upload(const Image& image, std::unique_ptr<Texture>& texture) const {
-  const std::optional<glm::dvec3>& background = state_.scene.output.background;
-  const glm::vec3 color(background.value_or(glm::dvec3(0.0)));
   if (!texture || texture->size() != image.size)
     texture = std::make_unique<Texture>(device_, image.size, "picture");
-  texture->upload(device_, srgbTexels(image, background ? &color : nullptr));
+  texture->upload(device_, srgbTexels(image, state_.scene.output.look()));
 }
 
 PictureRequest Viewer::request() const {

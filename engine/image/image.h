@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -39,17 +40,31 @@ Image readPng(const std::filesystem::path& file);
 /// readExr or readPng, by what the file begins with, not by its name. Fails with ExitCode::Input.
 Image readPicture(const std::filesystem::path& file);
 
-/// 8-bit sRGB. Straight alpha without a background; composited over `background` (linear Rec.709) and opaque
-/// with one. Atomic. Fails with ExitCode::Output.
-void writePng(const std::filesystem::path& file, const Image& image, const glm::vec3* background);
+/// What is behind a picture, linear Rec.709: changes linearly from the top edge to the bottom edge.
+struct Background {
+  glm::vec3 top{0.0f}, bottom{0.0f};
+};
+
+/// How light of any brightness becomes 0..1. Filmic: Hable's curve (2010), white at 11.2; Aces: Narkowicz's fit (2015).
+enum class ToneMap : int { None = 0, Filmic = 1, Aces = 2 };
+
+struct PngLook {
+  std::optional<Background> background;  ///< none: straight alpha
+  double exposure = 0.0;                 ///< stops that the picture, not the background, is brightened by
+  ToneMap toneMap = ToneMap::None;       ///< after that, of each channel
+};
+
+/// 8-bit sRGB. Straight alpha without a background; composited over it and opaque with one. Atomic. Fails with
+/// ExitCode::Output.
+void writePng(const std::filesystem::path& file, const Image& image, const PngLook& look = {});
 
 /// What writePng's file shows, 4 bytes a pixel.
-std::vector<std::uint8_t> srgbTexels(const Image& image, const glm::vec3* background);
+std::vector<std::uint8_t> srgbTexels(const Image& image, const PngLook& look = {});
 
 /// Such texels as an opaque picture, whatever their alpha is. Atomic. Fails with ExitCode::Output.
 void writePngTexels(const std::filesystem::path& file, glm::ivec2 size, std::span<const std::uint8_t> texels);
 
 /// The bytes of writePng's file.
-std::vector<std::uint8_t> encodePng(const Image& image, const glm::vec3* background);
+std::vector<std::uint8_t> encodePng(const Image& image, const PngLook& look = {});
 
 }  // namespace freevoxels

@@ -166,7 +166,7 @@ class HtmlWriter {
       add("<figure style=\"max-width: max(8rem, {}px)\"><img{} width=\"{}\" height=\"{}\" alt=\"{}\" "
           "src=\"data:image/png;base64,",
           scale * size.x, scale > 1 ? " class=\"small\"" : "", scale * size.x, scale * size.y, caption);
-      html_ += base64(encodePng(picture.image, &pictures.background));
+      html_ += base64(encodePng(picture.image, {.background = Background{pictures.background, pictures.background}}));
       add("\"><figcaption>{}</figcaption></figure>\n", caption);
     }
     add("</div>\n<figcaption>{}</figcaption>\n</figure>\n", escapeHtml(pictures.caption));

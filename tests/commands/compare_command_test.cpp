@@ -17,7 +17,7 @@ class CompareCommand : public CommandTest {
     if (name.ends_with(".exr"))
       writeExr(folder / name, image, {.fullFloat = true});
     else
-      writePng(folder / name, image, nullptr);
+      writePng(folder / name, image);
   }
   nlohmann::json compare(const std::string& text) const {
     const ProgramResult result = run("compare --json " + text);

@@ -213,11 +213,29 @@ TEST_F(RenderCommand, TransferFunctionColoursThePicture) {
 
 TEST_F(RenderCommand, BackgroundIsOfPngAlone) {
   const std::string exr = render("", "a.exr");
-  const std::string transparent = render("", "a.png");
+  const std::string dark = render("", "a.png");
   expectSuccess(run(std::string("render procedural:cloud @b.exr @b.png --background 0.2,0.1,0") + kSmall));
   const Image plain = readExr(folder / "a.exr"), withBackground = readExr(folder / "b.exr");
   EXPECT_EQ(plain.pixels, withBackground.pixels);
-  EXPECT_NE(transparent, readBytes(folder / "b.png"));
+  EXPECT_NE(dark, readBytes(folder / "b.png"));
+}
+
+TEST_F(RenderCommand, PngIsOverADarkGradientUnlessItIsToBeTransparent) {
+  render("", "a.png");
+  const Image dark = readPng(folder / "a.png");
+  for (const glm::vec4& pixel : dark.pixels) ASSERT_EQ(pixel.a, 1.0f);
+  EXPECT_GT(dark.pixels.front().b, dark.pixels.back().b);
+  EXPECT_GT(dark.pixels.back().b, 0.0f);
+  render("--background transparent", "a.png");
+  EXPECT_EQ(readPng(folder / "a.png").pixels.front().a, 0.0f);
+}
+
+TEST_F(RenderCommand, ExposureAndToneMapChangeThePngAlone) {
+  render("", "a.png");
+  expectSuccess(run(std::string("render procedural:cloud @b.exr @b.png --exposure 1.5 --tone-map filmic") + kSmall));
+  expectSuccess(run(std::string("render procedural:cloud @c.exr") + kSmall));
+  EXPECT_EQ(readExr(folder / "b.exr").pixels, readExr(folder / "c.exr").pixels);
+  EXPECT_NE(readBytes(folder / "a.png"), readBytes(folder / "b.png"));
 }
 
 TEST_F(RenderCommand, QuietPrintsNothing) {

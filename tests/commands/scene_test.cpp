@@ -51,7 +51,7 @@ constexpr const char* kEverything = R"({
             "ambient": 0.25, "environment": "sky.exr", "environment-rotation": 30,
             "extinction-tint": [0.5, 1, 2], "phase-g": 0.3, "light-attenuation": "exact"},
   "method": {"directions": 98, "gradient": false, "lod": 1.5, "composite": "additive"},
-  "output": {"background": [0.1, 0.2, 0.3], "float": true, "aov": "depth"}
+  "output": {"background": [0.1, 0.2, 0.3], "exposure": 1, "tone-map": "aces", "float": true, "aov": "depth"}
 })";
 
 constexpr const char* kTheSame =

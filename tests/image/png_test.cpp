@@ -41,15 +41,19 @@ Png readStored(const std::filesystem::path& file) {
   return png;
 }
 
+PngLook over(glm::vec3 color) {
+  return {.background = Background{color, color}};
+}
+
 std::vector<std::uint8_t> writeAndRead(const std::vector<glm::vec4>& pixels,
-                                       const glm::vec3* background = nullptr) {
+                                       const PngLook& look = {}) {
   const TemporaryFolder folder;
   Image image;
   image.size = {int(pixels.size()), 1};
   image.pixels = pixels;
-  writePng(folder / "a.png", image, background);
+  writePng(folder / "a.png", image, look);
   const Png png = readStored(folder / "a.png");
-  EXPECT_EQ(png.channels, background ? 3 : 4);
+  EXPECT_EQ(png.channels, look.background ? 3 : 4);
   return png.bytes;
 }
 
@@ -84,13 +88,13 @@ TEST(Png, LightTakesAsMuchAlphaAsItNeeds) {
   const std::vector<glm::vec4> flame{{0.25f, 0.1f, 0.0f, 0.0f}, {3.0f, 0.5f, 0.18f, 0.2f}};
   EXPECT_EQ(writeAndRead(flame), (Bytes{255, 170, 0, 64, 255, 188, 118, 255}));
   const glm::vec3 background(0.25f, 0.08f, 0.0f);
-  EXPECT_EQ(writeAndRead({flame[0]}, &background), (Bytes{188, 118, 0}));
+  EXPECT_EQ(writeAndRead({flame[0]}, over(background)), (Bytes{188, 118, 0}));
 }
 
 TEST(Png, BackgroundShowsThroughAndMakesThePictureOpaque) {
   const glm::vec3 background(1.0f, 0.0f, 0.36f);
   // 0.25 + 0.5 * 1 = 0.75 is byte 225; 0.5 * 0.36 = 0.18; an empty pixel is the background.
-  EXPECT_EQ(writeAndRead({{0.25f, 0.5f, 0.0f, 0.5f}, {0.0f, 0.0f, 0.0f, 0.0f}}, &background),
+  EXPECT_EQ(writeAndRead({{0.25f, 0.5f, 0.0f, 0.5f}, {0.0f, 0.0f, 0.0f, 0.0f}}, over(background)),
             (Bytes{225, 188, 118, 255, 0, 162}));
 }
 
@@ -98,7 +102,35 @@ TEST(Png, ClampsAndMakesNanBlack) {
   EXPECT_EQ(writeAndRead({{7.0f, -1.0f, kNan, 1.0f}, {0.5f, 0.5f, 0.5f, kNan}, {0.5f, 0.18f, 0.0f, 3.0f}}),
             (Bytes{255, 0, 0, 255, 0, 0, 0, 0, 188, 118, 0, 255}));
   const glm::vec3 background(0.5f);
-  EXPECT_EQ(writeAndRead({{0.25f, kNan, 2.0f, 2.0f}}, &background), (Bytes{137, 0, 255}));
+  EXPECT_EQ(writeAndRead({{0.25f, kNan, 2.0f, 2.0f}}, over(background)), (Bytes{137, 0, 255}));
+}
+
+TEST(Png, BackgroundChangesLinearlyFromTheTopEdgeToTheBottomEdge) {
+  const TemporaryFolder folder;
+  Image image;
+  image.size = {1, 2};
+  image.pixels.assign(2, glm::vec4(0.0f));
+  writePng(folder / "a.png", image, {.background = Background{glm::vec3(0.0f, 1.0f, 0.5f), glm::vec3(1.0f, 0.0f, 0.5f)}});
+  EXPECT_EQ(readStored(folder / "a.png").bytes, (Bytes{137, 225, 188, 225, 137, 188}));
+}
+
+TEST(Png, ExposureBrightensThePictureButNotTheBackground) {
+  EXPECT_EQ(writeAndRead({{0.125f, 0.045f, 0.0f, 1.0f}}, {.exposure = 2.0}), (Bytes{188, 118, 0, 255}));
+  PngLook look = over(glm::vec3(0.5f));
+  look.exposure = -1.0;
+  EXPECT_EQ(writeAndRead({{1.0f, 0.36f, 0.0f, 1.0f}, glm::vec4(0.0f)}, look), (Bytes{188, 118, 0, 188, 188, 188}));
+}
+
+TEST(Png, ToneMapsBringBrightLightIntoRange) {
+  for (const ToneMap map : {ToneMap::Filmic, ToneMap::Aces}) {
+    const Bytes bytes = writeAndRead({{0.0f, 0.18f, 0.5f, 1.0f}, {1.0f, 2.0f, 4.0f, 1.0f}}, {.toneMap = map});
+    EXPECT_EQ(bytes[0], 0);
+    for (const std::size_t i : {1u, 2u, 4u, 5u}) EXPECT_GT(bytes[i], bytes[i == 4 ? 2 : i - 1]) << i;
+    EXPECT_LT(bytes[4], 255) << "a white surface is not clipped";
+  }
+  // Narkowicz's fit of 0.5 is 0.6163; Hable's of 0.5 is 0.2193 / 0.7338 = 0.2988.
+  EXPECT_EQ(writeAndRead({glm::vec4(glm::vec3(0.5f), 1.0f)}, {.toneMap = ToneMap::Aces})[0], 206);
+  EXPECT_EQ(writeAndRead({glm::vec4(glm::vec3(5.6f), 1.0f)}, {.toneMap = ToneMap::Filmic})[0], 255);
 }
 
 TEST(Png, InMemoryIsWhatTheFileHolds) {
@@ -106,10 +138,9 @@ TEST(Png, InMemoryIsWhatTheFileHolds) {
   Image image;
   image.size = {2, 1};
   image.pixels = {{0.5f, 0.18f, 0.002f, 1.0f}, {0.1f, 0.0f, 0.0f, 0.5f}};
-  const glm::vec3 color(0.25f);
-  for (const glm::vec3* background : {static_cast<const glm::vec3*>(nullptr), &color}) {
-    writePng(folder / "a.png", image, background);
-    const Bytes bytes = encodePng(image, background);
+  for (const PngLook& look : {PngLook{}, over(glm::vec3(0.25f))}) {
+    writePng(folder / "a.png", image, look);
+    const Bytes bytes = encodePng(image, look);
     EXPECT_EQ(readBytes(folder / "a.png"), std::string(bytes.begin(), bytes.end()));
   }
 }
@@ -120,7 +151,7 @@ TEST(Png, RowZeroIsTheTopAndSrgbIsDeclared) {
   image.size = {3, 2};
   image.pixels.assign(6, glm::vec4(0, 0, 0, 1));
   image.pixels[2] = {1, 0, 0, 1};  // top right
-  writePng(folder / "a.png", image, nullptr);
+  writePng(folder / "a.png", image);
   const Png png = readStored(folder / "a.png");
   ASSERT_EQ(png.width, 3u);
   ASSERT_EQ(png.height, 2u);
@@ -128,7 +159,7 @@ TEST(Png, RowZeroIsTheTopAndSrgbIsDeclared) {
   EXPECT_EQ(png.bytes[4 * 5], 0);
   const std::string bytes = readBytes(folder / "a.png");
   EXPECT_NE(bytes.find("sRGB"), std::string::npos);
-  writePng(folder / "b.png", image, nullptr);
+  writePng(folder / "b.png", image);
   EXPECT_EQ(readBytes(folder / "b.png"), bytes);
 }
 
@@ -212,7 +243,7 @@ TEST(PngInput, WhatWasReadIsWrittenAsTheSameBytes) {
   for (int i = 0; i < 256; ++i)
     for (const int value : {i, 255 - i, i / 2, 255}) bytes.push_back(std::uint8_t(value));
   writeStored(folder / "a.png", {16, 16}, 8, PNG_COLOR_TYPE_RGB_ALPHA, bytes);
-  writePng(folder / "b.png", readPng(folder / "a.png"), nullptr);
+  writePng(folder / "b.png", readPng(folder / "a.png"));
   EXPECT_EQ(readStored(folder / "b.png").bytes, bytes);
 }
 
@@ -246,7 +277,7 @@ TEST(PictureFile, IsReadByWhatItIsNotByItsName) {
   Image image;
   image.size = {2, 1};
   image.pixels = {{1, 0, 0, 1}, {0, 1, 0, 1}};
-  writePng(folder / "a.png", image, nullptr);
+  writePng(folder / "a.png", image);
   std::filesystem::rename(folder / "a.png", folder / "picture.exr");
   EXPECT_EQ(readPicture(folder / "picture.exr").pixels, image.pixels);
   writeExr(folder / "b.exr", image, {});
@@ -266,7 +297,7 @@ TEST(PngDeathTest, FullDiskIsOneSentenceAndLeavesNoFile) {
     for (int i = 0; i < 512 * 512; ++i)
       image.pixels.emplace_back(glm::vec3(float((state = state * 1664525u + 1013904223u) >> 8) / 16777216.0f),
                                 1.0f);
-    writePng(disk / "a.png", image, nullptr);
+    writePng(disk / "a.png", image);
   };
   EXPECT_EXIT(test::exitWithErrorOnLimitedDisk(folder.path(), 65536, write),
               testing::ExitedWithCode(int(ExitCode::Output)),
