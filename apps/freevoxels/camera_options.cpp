@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine/splatting/content.h"
 #include "engine/splatting/orbit.h"
 
 namespace freevoxels {
@@ -12,13 +13,13 @@ void CameraOptions::add(CLI::App& app) {
   CLI::Option* around =
       addPair(app, "--orbit", "AZIMUTH,ELEVATION", orbit,
               fmt::format(
-                  "Eye in degrees around the volume: azimuth about +y from +z, elevation above the xz plane "
+                  "Eye in degrees around the volume: azimuth about the up direction (with +y up, from +z towards +x), elevation "
                   "[{},{}]",
                   kDefaultAzimuth, kDefaultElevation))
           ->excludes(from);
   CLI::Option* at =
-      addTriple(app, "--look-at", "X,Y,Z", lookAt, "Point in the middle of the image [centre of the volume]");
-  CLI::Option* upwards = addTriple(app, "--up", "X,Y,Z", up, "Direction that is up in the image [0,1,0]");
+      addTriple(app, "--look-at", "X,Y,Z", lookAt, "Point in the middle of the image [the middle of what is seen]");
+  CLI::Option* upwards = addTriple(app, "--up", "X,Y,Z", up, "Direction that is up in the image [0,1,0; 0,0,1 of what Blender wrote]");
   CLI::Option* fov = addNumber(app, "--fov", "DEG", verticalFov,
                                fmt::format("Vertical field of view [{}]", Camera{}.verticalFov));
   CLI::Option* flat = addNumber(app, "--orthographic", "HEIGHT", orthographicHeight,
@@ -38,8 +39,8 @@ void CameraOptions::look(const Camera& from) {
     verticalFov = from.verticalFov;
 }
 
-Camera CameraOptions::given() const {
-  Camera camera;
+Camera CameraOptions::given(glm::dvec3 upwards) const {
+  Camera camera{.up = upwards};
   if (lookAt) camera.lookAt = *lookAt;
   if (position) camera.position = *position;
   if (up) camera.up = *up;
@@ -65,27 +66,28 @@ glm::dvec2 CameraOptions::angles() const {
   return orbit.value_or(glm::dvec2(kDefaultAzimuth, kDefaultElevation));
 }
 
-Camera CameraOptions::resolve(const Volume& volume) const {
-  return resolveOrbit(volume, 1).front();
-}
-
-std::vector<Camera> CameraOptions::resolveOrbit(const Volume& volume, int frames) const {
-  const double aspect = double(size.x) / double(size.y);
-  const auto framing = [&](int count) {
-    return framingOrbit(volume, angles().x, angles().y, count, aspect, given());
-  };
+std::vector<Camera> CameraOptions::resolve(const Volume& volume, const Classification& classification, int frames) const {
+  const Camera base = given(volume.up);
+  if (position && lookAt) {
+    checkCamera(base);
+    return orbitAboutUp(base, frames);
+  }
+  Subject subject = contentOf(volume, classification);
   if (position) {
-    Camera start = given();
-    if (!lookAt) start.lookAt = framing(1).front().lookAt;
+    Camera start = base;
+    start.lookAt = subject.centre;
     checkCamera(start);
     return orbitAboutUp(start, frames);
   }
-  std::vector<Camera> cameras = framing(frames);
+  const double aspect = double(size.x) / double(size.y);
+  if (frames == 1 && !lookAt)
+    subject.centre = imageCentre(framingCamera(subject, angles().x, angles().y, aspect, base), subject);
+  std::vector<Camera> cameras = framingOrbit(subject, angles().x, angles().y, frames, aspect, base);
   for (Camera& camera : cameras) {
     const glm::dvec3 at = lookAt.value_or(camera.lookAt);
     camera.position = at + (camera.position - camera.lookAt);
     camera.lookAt = at;
-    camera.orthographicHeight = given().orthographicHeight;
+    camera.orthographicHeight = base.orthographicHeight;
     checkCamera(camera);
   }
   return cameras;

@@ -6,6 +6,7 @@
 
 #include "apps/freevoxels/option_values.h"
 #include "engine/splatting/camera.h"
+#include "engine/volume/classification.h"
 
 namespace freevoxels {
 
@@ -23,21 +24,17 @@ struct CameraOptions {
   void look(const Camera& from);
   /// Refuses what is wrong with any volume, before one is read: ExitCode::Usage.
   void check() const;
-  /// What is not given frames the volume: the position orbits the look-at point, which is the centre of the
-  /// box.
-  Camera resolve(const Volume& volume) const;
-  /// The cameras of a full turn, the first being `resolve`'s but for its distance. A position that was given
-  /// turns about the axis through the look-at point along `up`; the framing orbit turns about +y, with one
-  /// distance for all frames.
-  std::vector<Camera> resolveOrbit(const Volume& volume, int frames) const;
+  /// The cameras of a full turn, of equal steps about the axis through the look-at point along `up`. What is not given frames
+  /// what is seen of the volume, from one distance for all frames, upright as the volume says.
+  std::vector<Camera> resolve(const Volume& volume, const Classification& classification, int frames = 1) const;
   void describe(OptionList& options, const Camera& resolved) const;
-  /// Of what `describe` said, makes of the eye's place the orbit that it turns in, where it does: with
-  /// another up than +y that is another turn than the place's.
+  /// Of what `describe` said, makes of the eye's place the orbit that it turns in, unless it was given: a turn has another
+  /// distance than its first frame.
   void describeTurn(OptionList& options) const;
 
  private:
   glm::dvec2 angles() const;
-  Camera given() const;
+  Camera given(glm::dvec3 upwards = {0.0, 1.0, 0.0}) const;
 };
 
 }  // namespace freevoxels

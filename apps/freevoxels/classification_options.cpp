@@ -2,13 +2,15 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine/volume/scan.h"
+
 namespace freevoxels {
 
 void ClassificationOptions::add(CLI::App& app) {
   CLI::Option* scale =
       addNumber(
           app, "--density-scale", "S", densityScale,
-          "Extinction per world unit at density 1 [so that the volume's mean optical depth suits a picture]",
+          "Extinction per world unit at density 1 [so that the volume's mean optical depth suits a picture; level sets are opaque]",
           {.minimum = 0.0})
           ->group("Classification");
   CLI::Option* color =
@@ -19,7 +21,8 @@ void ClassificationOptions::add(CLI::App& app) {
       addText(app, "--albedo-grid", "NAME", albedoGrid, "Grid of vectors of the file: colours, linear, 0..1")
           ->group("Classification");
   addText(app, "--transfer-function", "FILE.json", transferFunction,
-          "Colour and opacity over the scalar instead; the JSON itself will do, where it begins with {")
+          "Colour and opacity over the scalar instead [of scans: one from the histogram]; the JSON itself will do, where it "
+          "begins with {")
       ->excludes(scale)
       ->excludes(color)
       ->excludes(grid)
@@ -39,15 +42,25 @@ Classification ClassificationOptions::resolve(const Volume& volume, bool shines)
     classification.order = ClassificationOrder(order.value_or(0));
     return classification;
   }
-  classification.densityScale =
-      densityScale ? *densityScale : automaticDensityScale(volume, shines ? kShiningOpticalDepth : kAutomaticOpticalDepth);
+  if (!densityScale && !albedo && !albedoGrid && !shines && looksLikeScan(volume)) {
+    classification.transferFunction = scanTransferFunction(volume);
+    classification.order = ClassificationOrder(order.value_or(0));
+    return classification;
+  }
+  if (densityScale)
+    classification.densityScale = *densityScale;
+  else if (volume.isLevelSet)
+    classification.densityScale = kLevelSetOpticalDepth / volume.voxelSize();
+  else
+    classification.densityScale = automaticDensityScale(volume, shines ? kShiningOpticalDepth : kAutomaticOpticalDepth);
   if (albedo) classification.albedo = glm::vec3(*albedo);
   return classification;
 }
 
 void ClassificationOptions::describe(OptionList& options, const Classification& resolved) const {
-  if (transferFunction) {
-    options.emplace_back("--transfer-function", *transferFunction);
+  if (resolved.transferFunction) {
+    options.emplace_back("--transfer-function",
+                         transferFunction ? *transferFunction : transferFunctionJson(*resolved.transferFunction));
     options.emplace_back("--classification", kOrderWords[std::size_t(resolved.order)]);
     return;
   }

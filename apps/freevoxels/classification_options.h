@@ -21,7 +21,8 @@ struct ClassificationOptions {
   std::optional<int> order;  ///< ClassificationOrder
 
   void add(CLI::App& app);
-  /// Reads the transfer function; the density scale defaults to the automatic one of volumes that shine, or do not.
+  /// Reads the transfer function. Without options scans have scanTransferFunction, level sets are opaque, and others have the
+  /// automatic density scale of volumes that shine, or do not.
   Classification resolve(const Volume& volume, bool shines) const;
   void describe(OptionList& options, const Classification& resolved) const;
 };

@@ -190,7 +190,7 @@ std::optional<Lighting> LightingOptions::resolve(const Volume& volume, const Cla
     if (!given.hasIntensity) lighting.lights.back().intensity = defaultIntensity(given.light, volume);
   }
   const Shading wanted = Shading(shading.value_or(int(Shading::Auto)));
-  const bool surfaces = wanted == Shading::Gradient || (wanted == Shading::Auto && classification.transferFunction);
+  const bool surfaces = wanted == Shading::Gradient || (wanted == Shading::Auto && (classification.transferFunction || volume.isLevelSet));
   if (surfaces && knowsMethod && !lighting.lights.empty()) lighting.surface = surface.value_or(1.0);
   return lighting;
 }

@@ -97,7 +97,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
 
   ProgressLine line(!messages.quiet);
   Scene view = open(opened, line, report);
-  const std::vector<Camera> cameras = scene.camera.resolveOrbit(*view.volume, int(outputs.size()));
+  const std::vector<Camera> cameras = scene.camera.resolve(*view.volume, view.classification, int(outputs.size()));
   view.camera = cameras.front();
   settings.lighting = view.lighting;
   report.device = opened.description();

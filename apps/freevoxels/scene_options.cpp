@@ -1,5 +1,7 @@
 #include "apps/freevoxels/scene_options.h"
 
+#include <spdlog/spdlog.h>
+
 #include "apps/freevoxels/program.h"
 #include "engine/core/error.h"
 
@@ -70,7 +72,7 @@ Scene SceneOptions::resolve(std::shared_ptr<const Volume> volume) const {
   scene.classification.emission = emission.resolve(*scene.volume, scene.classification);
   if (scene.classification.emission && !classification.albedo)
     scene.classification.albedo = glm::vec3(kSootAlbedo);
-  scene.camera = camera.resolve(*scene.volume);
+  scene.camera = camera.resolve(*scene.volume, scene.classification).front();
   scene.lighting = lighting.resolve(*scene.volume, scene.classification, scene.camera);
   return scene;
 }
@@ -81,6 +83,12 @@ Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
 
 void SceneOptions::warn(const Scene& scene) const {
   warnAboutValues(*scene.volume, !scene.classification.transferFunction);
+  if (scene.classification.transferFunction && !classification.transferFunction)
+    spdlog::info("{} looks like a scan: the transfer function is made from its histogram; change it with --transfer-function, or "
+                 "show densities with --density-scale",
+                 scene.volume->source);
+  if (!camera.up && !camera.position && !scene.volume->upReason.empty())
+    spdlog::info("up is {}, as {}; change it with --up", numberText(scene.volume->up), scene.volume->upReason);
   EmissionOptions::warn(*scene.volume, scene.classification);
 }
 

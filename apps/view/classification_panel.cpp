@@ -62,6 +62,8 @@ void ClassificationPanel::drawKind(ViewState& state) {
   if (!choose("look by", {"density", "transfer function"}, kind)) return;
   if (kind == 0) {
     options = density_;
+    if (!options.densityScale)  // else a scan has a transfer function again
+      options.densityScale = automaticDensityScale(*state.latest->scene.volume, kAutomaticOpticalDepth);
   } else {
     density_ = options;
     if (modelText_.empty()) {

@@ -9,6 +9,7 @@
 
 #include "apps/view/navigation.h"
 #include "apps/view/ui_painter.h"
+#include "engine/splatting/content.h"
 
 namespace freevoxels {
 
@@ -29,16 +30,6 @@ double longestEdge(const Volume& volume) {
   for (int axis = 0; axis < 3; ++axis)
     longest = std::max(longest, glm::length(axes[axis]) * volume.dimensions[axis]);
   return longest;
-}
-
-/// From where it looks from now.
-Camera framed(const Camera& camera, const Volume& volume, double aspect) {
-  const glm::dvec3 arm = glm::normalize(camera.position - camera.lookAt);
-  const double azimuth = glm::degrees(std::atan2(arm.x, arm.z));
-  const double elevation = glm::degrees(std::asin(std::clamp(arm.y, -1.0, 1.0)));
-  constexpr double kMostElevation = 89.0;  // beyond, +y is along the view
-  return framingCamera(volume, azimuth, std::clamp(elevation, -kMostElevation, kMostElevation), aspect,
-                       {.orthographic = camera.orthographic, .verticalFov = camera.verticalFov});
 }
 
 /// What is transparent shows as squares.
@@ -115,8 +106,11 @@ void PictureArea::fly(ViewState& state) {
 
 void PictureArea::keys(ViewState& state) const {
   const double aspect = double(state.scene.camera.size.x) / double(state.scene.camera.size.y);
-  if (ImGui::IsKeyPressed(GLFW_KEY_F, false) && state.latest)
-    state.look(framed(*state.camera, *state.latest->scene.volume, aspect));
+  if (ImGui::IsKeyPressed(GLFW_KEY_F, false) && state.latest) {
+    Subject subject = contentOf(*state.latest->scene.volume, state.latest->scene.classification);
+    subject.centre = imageCentre(*state.camera, subject);
+    state.look(framed(*state.camera, subject, aspect));
+  }
   if (ImGui::IsKeyPressed(GLFW_KEY_O, false)) state.look(withOtherProjection(*state.camera));
   for (int axis = 0; axis < 6; ++axis)
     if (ImGui::IsKeyPressed(GLFW_KEY_1 + axis, false)) state.look(alongAxis(*state.camera, axis));

@@ -70,7 +70,8 @@ void saveTurn(const Instance& instance, const DeviceOptions& device, const Pictu
   PictureRequest request = picture.request;
   request.scene = sceneInto(picture, files);
   request.scene.check();
-  const std::vector<Camera> cameras = request.scene.camera.resolveOrbit(*picture.scene.volume, frames);
+  const std::vector<Camera> cameras =
+      request.scene.camera.resolve(*picture.scene.volume, picture.scene.classification, frames);
 
   const std::unique_ptr<Device> opened = device.open(instance);
   VolumeCache volumes(request.scene, picture.scene.volume);

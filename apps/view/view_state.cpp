@@ -39,6 +39,8 @@ void ViewState::look(const Camera& from) {
 
 void ViewState::begin(const Scene& first) {
   camera = first.camera;
+  if (const auto& function = first.classification.transferFunction; function && !scene.classification.transferFunction)
+    scene.classification.transferFunction = transferFunctionJson(*function);
   LightingOptions& lighting = scene.lighting;
   if (lighting.hasLight() || !first.lighting) return;
   for (const Light& light : first.lighting->lights) lighting.lights.push_back({.light = light, .hasIntensity = true});

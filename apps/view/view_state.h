@@ -37,7 +37,7 @@ struct ViewState {
 
   /// The method that is shown beside this one.
   std::optional<MethodOptions> comparedMethod() const;
-  /// Takes from the first picture the camera and lights that its options do not say, so that they stay where they are.
+  /// Takes from the first picture the camera, the transfer function and the lights that its options do not say, so that they stay where they are.
   void begin(const Scene& first);
   /// Looks from there, unless nothing is seen from there: `problem` says why.
   void look(const Camera& from);

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
 #include <numbers>
 
 #include "engine/core/error.h"
@@ -15,8 +17,6 @@ namespace freevoxels {
 
 namespace {
 
-/// Room between the volume's box and the edge of the image, as a part of half the image.
-constexpr double kFramingMargin = 0.03;
 /// Sine of the smallest angle between the view and `up`.
 constexpr double kSmallestUpAngle = 1e-6;
 
@@ -42,6 +42,16 @@ Axes cameraAxes(const Camera& camera) {
 /// orthographic one.
 double halfHeight(const Camera& camera) {
   return camera.orthographic ? camera.orthographicHeight / 2.0 : std::tan(radians(camera.verticalFov) / 2.0);
+}
+
+/// Turns +y to `up`, on the shortest way.
+glm::dmat3 fromYUp(glm::dvec3 up) {
+  const glm::dvec3 y(0.0, 1.0, 0.0), to = glm::normalize(up);
+  if (glm::length(glm::cross(y, to)) < kSmallestUpAngle) {
+    const double side = to.y < 0.0 ? -1.0 : 1.0;
+    return glm::dmat3({1.0, 0.0, 0.0}, {0.0, side, 0.0}, {0.0, 0.0, side});
+  }
+  return glm::dmat3(glm::rotate(glm::dmat4(1.0), std::acos(std::clamp(to.y, -1.0, 1.0)), glm::cross(y, to)));
 }
 
 }  // namespace
@@ -101,37 +111,66 @@ glm::dmat4 worldToNdc(const Camera& camera, double aspect) {
   return projection * worldToCamera(camera);
 }
 
-Camera framingCamera(const Volume& volume, double azimuth, double elevation, double aspect,
-                     const Camera& base) {
+Subject boxOf(const Volume& volume) {
+  const auto toWorld = [&](glm::dvec3 index) { return glm::dvec3(volume.indexToWorld * glm::dvec4(index, 1.0)); };
   const glm::dvec3 extent(volume.dimensions);
-  const auto toWorld = [&](glm::dvec3 index) {
-    return glm::dvec3(volume.indexToWorld * glm::dvec4(index, 1.0));
-  };
-  const glm::dvec3 centre = toWorld((extent - 1.0) / 2.0);
-  const double az = radians(azimuth), el = radians(elevation);
-  const glm::dvec3 toEye(std::sin(az) * std::cos(el), std::sin(el), std::cos(az) * std::cos(el));
-  Camera camera = base;
-  camera.lookAt = centre;
-  camera.position = centre + toEye;
-  // Straight from above or below `up` says nothing about the roll: the limit of lower elevations does.
-  if (glm::length(glm::cross(glm::normalize(base.up), toEye)) < kSmallestUpAngle)
-    camera.up = {-std::sin(az) * std::sin(el), std::cos(el), -std::cos(az) * std::sin(el)};
+  Subject subject{.centre = toWorld((extent - 1.0) / 2.0)};
+  for (int corner = 0; corner < 8; ++corner)
+    subject.points.push_back(toWorld(glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2) * extent - 0.5));
+  return subject;
+}
 
+glm::dvec3 orbitDirection(glm::dvec3 up, double azimuth, double elevation) {
+  const double az = radians(azimuth), el = radians(elevation);
+  return fromYUp(up) * glm::dvec3(std::sin(az) * std::cos(el), std::sin(el), std::cos(az) * std::cos(el));
+}
+
+Camera framed(const Camera& camera, const Subject& subject, double aspect) {
   const Axes axes = cameraAxes(camera);
-  double radius = 0.0, halfImage = 0.0,
-         distance = 0.0;  // of the box; half the image's height; from the centre to the eye
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
-    const glm::dvec3 offset = toWorld(side * extent - 0.5) - centre;
-    const double needed = (1.0 + kFramingMargin) * std::max(std::abs(glm::dot(offset, axes.up)),
-                                                            std::abs(glm::dot(offset, axes.right)) / aspect);
+  double radius = 0.0, halfImage = 0.0, distance = 0.0;  // of the points; half the image's height; from the centre to the eye
+  for (const glm::dvec3& point : subject.points) {
+    const glm::dvec3 offset = point - subject.centre;
+    const double needed = (1.0 + subject.margin) *
+                          std::max(std::abs(glm::dot(offset, axes.up)), std::abs(glm::dot(offset, axes.right)) / aspect);
     radius = std::max(radius, glm::length(offset));
     halfImage = std::max(halfImage, needed);
-    distance = std::max(distance, glm::dot(offset, toEye) + needed / halfHeight(base));
+    distance = std::max(distance, needed / halfHeight(camera) - glm::dot(offset, axes.forward));
   }
-  camera.orthographicHeight = camera.orthographic ? 2.0 * halfImage : base.orthographicHeight;
-  camera.position = centre + (camera.orthographic ? 2.0 * radius : distance) * toEye;
-  return camera;
+  Camera moved = camera;
+  if (camera.orthographic) moved.orthographicHeight = 2.0 * halfImage;
+  moved.lookAt = subject.centre;
+  moved.position = subject.centre - (camera.orthographic ? 2.0 * radius : distance) * axes.forward;
+  return moved;
+}
+
+glm::dvec3 imageCentre(const Camera& camera, const Subject& subject) {
+  const Axes axes = cameraAxes(camera);
+  // A point beside the axis by x and nearer to the eye by z is seen at x / (d - z) from the distance d: the axis is moved to
+  // where the largest x + t z is that of -x + t z, t being the tangent of half the field of view.
+  const double tangent = camera.orthographic ? 0.0 : halfHeight(camera);
+  glm::dvec3 centre = subject.centre;
+  for (const glm::dvec3& axis : {axes.right, axes.up}) {
+    double low = std::numeric_limits<double>::max(), high = -low;
+    for (const glm::dvec3& point : subject.points) {
+      const glm::dvec3 offset = point - subject.centre;
+      const double across = glm::dot(offset, axis), nearer = -tangent * glm::dot(offset, axes.forward);
+      low = std::min(low, across - nearer);
+      high = std::max(high, across + nearer);
+    }
+    if (low <= high) centre += 0.5 * (low + high) * axis;
+  }
+  return centre;
+}
+
+Camera framingCamera(const Subject& subject, double azimuth, double elevation, double aspect, const Camera& base) {
+  const glm::dvec3 toEye = orbitDirection(base.up, azimuth, elevation);
+  Camera camera = base;
+  camera.lookAt = glm::dvec3(0.0);
+  camera.position = toEye;
+  // Straight from above or below, `up` says nothing about the roll: the limit of lower elevations does.
+  if (glm::length(glm::cross(glm::normalize(base.up), toEye)) < kSmallestUpAngle)
+    camera.up = orbitDirection(base.up, azimuth, elevation + 90.0);
+  return framed(camera, subject, aspect);
 }
 
 RaySource eyeSource(const Camera& camera, const glm::dmat4& indexToWorld) {

@@ -2,6 +2,7 @@
 // Cameras in world space, and the pixel rays they make in a volume's index space.
 
 #include <glm/glm.hpp>
+#include <vector>
 
 #include "engine/attenuation/ray_fans.h"
 #include "engine/splatting/render_settings.h"
@@ -31,10 +32,33 @@ glm::dmat4 worldToCamera(const Camera& camera);
 /// height).
 glm::dmat4 worldToNdc(const Camera& camera, double aspect);
 
-/// A camera that looks at the centre of the volume's box from `azimuth` (degrees about +y, 0 = from +z) and
-/// `elevation` (degrees above the xz plane), as near as the box's corners still fit the image.
-Camera framingCamera(const Volume& volume, double azimuth, double elevation, double aspect,
-                     const Camera& base);
+/// What an image is to show, in world space.
+struct Subject {
+  glm::dvec3 centre{0.0};          ///< in the middle of the image
+  std::vector<glm::dvec3> points;  ///< all of them are in the image
+  double margin = 0.03;            ///< around the points, relative to their extent
+};
+
+/// The volume's box.
+Subject boxOf(const Volume& volume);
+
+/// The unit vector towards the eye. Azimuth, in degrees, turns about `up` counterclockwise seen from its tip; elevation rises
+/// from the plane across it. Azimuth 0 is +z where +y is up and -y where +z is up: of the shortest turn from +y to `up`.
+glm::dvec3 orbitDirection(glm::dvec3 up, double azimuth, double elevation);
+
+/// `camera` moved without being turned: it looks at the subject's centre, as near as the points and the margin fit the image.
+Camera framed(const Camera& camera, const Subject& subject, double aspect);
+
+/// The centre for which the points have equal margins to opposite sides of a perspective image too, so that such a camera
+/// comes nearest. As deep in the image as the subject's.
+glm::dvec3 imageCentre(const Camera& camera, const Subject& subject);
+
+/// A framed camera that looks from `orbitDirection(base.up, azimuth, elevation)`. Straight from above or below, its up is the
+/// limit of that of lower elevations.
+Camera framingCamera(const Subject& subject, double azimuth, double elevation, double aspect, const Camera& base);
+inline Camera framingCamera(const Volume& volume, double azimuth, double elevation, double aspect, const Camera& base) {
+  return framingCamera(boxOf(volume), azimuth, elevation, aspect, base);
+}
 
 inline constexpr double kDefaultAzimuth = 35.0, kDefaultElevation = 25.0;
 

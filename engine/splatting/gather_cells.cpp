@@ -61,13 +61,13 @@ void markCells(Cells& cells, const ScalarBricks& scalars, int edge, int reach, c
 
 }  // namespace
 
-Cells metCells(const Volume& volume, const Classification& classification, int edge) {
+Cells metCells(const Volume& volume, const Classification& classification, int edge, float density) {
   Cells cells((volume.dimensions + edge - 1) / edge);
   if (classification.transferFunction) {
     const TransferIntegral integral(*classification.transferFunction, volume.minimum, volume.maximum);
     markCells(cells, volume.scalars, edge, 1, [&](float low, float high) { return integral.holdsAnything(low, high); });
   } else {
-    markCells(cells, volume.scalars, edge, 0, [](float, float high) { return high > 0.0f; });
+    markCells(cells, volume.scalars, edge, 0, [&](float, float high) { return high > density; });
   }
   if (classification.emission && volume.temperature) {
     const auto shines = [&](float, float high) { return emittedLight(*classification.emission, high) != glm::dvec3(0.0); };

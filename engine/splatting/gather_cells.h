@@ -26,10 +26,10 @@ struct Cells {
   std::uint8_t at(glm::ivec3 cell) const { return values[index(cell)]; }
 };
 
-/// 1 where the cell of `edge` voxels along each axis has a voxel with extinction or emission. With a transfer function, where
+/// 1 where the cell of `edge` voxels along each axis has a voxel with a density above `density`, or with emission. With a transfer function, where
 /// a scalar interpolated from c * edge to (c + 1) * edge, both included, may have extinction: such scalars lie between those
 /// of the voxels there.
-Cells metCells(const Volume& volume, const Classification& classification, int edge);
+Cells metCells(const Volume& volume, const Classification& classification, int edge, float density = 0.0f);
 
 /// Cells of twice the edge: 1 where any of the eight is.
 Cells coarserCells(const Cells& cells);

@@ -15,14 +15,14 @@ double degreesOfFrame(int frame, int frames) {
 
 }  // namespace
 
-std::vector<Camera> framingOrbit(const Volume& volume, double azimuth, double elevation, int frames,
-                                 double aspect, const Camera& base) {
+std::vector<Camera> framingOrbit(const Subject& subject, double azimuth, double elevation, int frames, double aspect,
+                                 const Camera& base) {
   FV_CHECK_LT(0, frames);
   std::vector<Camera> orbit;
   double distance = 0.0, height = 0.0;
   for (int frame = 0; frame < frames; ++frame) {
     const Camera camera =
-        framingCamera(volume, azimuth + degreesOfFrame(frame, frames), elevation, aspect, base);
+        framingCamera(subject, azimuth + degreesOfFrame(frame, frames), elevation, aspect, base);
     distance = std::max(distance, glm::length(camera.position - camera.lookAt));
     height = std::max(height, camera.orthographicHeight);
     orbit.push_back(camera);

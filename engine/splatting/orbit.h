@@ -7,14 +7,18 @@
 
 namespace freevoxels {
 
-/// framingCamera from the azimuths `azimuth` + 360 i / frames, all from one distance and with one
-/// orthographic height: the largest that any of them needs, so that nothing of the box is ever cut and
-/// nothing seems to grow or shrink. One frame is framingCamera's.
-std::vector<Camera> framingOrbit(const Volume& volume, double azimuth, double elevation, int frames,
-                                 double aspect, const Camera& base);
+/// framingCamera from the azimuths `azimuth` + 360 i / frames, all from one distance and with one orthographic height: the
+/// largest that any of them needs, so that nothing of the subject is ever cut and nothing seems to grow or shrink. One frame
+/// is framingCamera's.
+std::vector<Camera> framingOrbit(const Subject& subject, double azimuth, double elevation, int frames, double aspect,
+                                 const Camera& base);
+inline std::vector<Camera> framingOrbit(const Volume& volume, double azimuth, double elevation, int frames, double aspect,
+                                        const Camera& base) {
+  return framingOrbit(boxOf(volume), azimuth, elevation, frames, aspect, base);
+}
 
-/// `start`, which checkCamera accepts, turned about the axis through its look-at point along its `up`:
-/// counterclockwise for somebody whom `up` points at, as azimuth turns about +y. Frame 0 is `start`.
+/// `start`, which checkCamera accepts, turned about the axis through its look-at point along its `up`, as azimuth turns.
+/// Frame 0 is `start`.
 std::vector<Camera> orbitAboutUp(const Camera& start, int frames);
 
 }  // namespace freevoxels

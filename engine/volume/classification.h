@@ -79,11 +79,15 @@ glm::vec3 albedoOf(const Classification& classification, const AlbedoGrid& grid,
 TransferFunction readTransferFunction(const std::filesystem::path& file, const Volume& volume);
 /// The same of the JSON itself.
 TransferFunction parseTransferFunction(const std::string& json, const Volume& volume);
+/// JSON that is read as the same function, in one line.
+std::string transferFunctionJson(const TransferFunction& function);
 
 /// The density scale at which a cube that holds the volume of the active voxels at their mean density has this optical depth.
 /// Where none is given it is kAutomaticOpticalDepth, of volumes that shine kShiningOpticalDepth, so that flames are seen.
 inline constexpr double kAutomaticOpticalDepth = 6.0, kShiningOpticalDepth = 2.0;
 double automaticDensityScale(const Volume& volume, double opticalDepth);
+/// Of a level set: the optical depth of a voxel inside.
+inline constexpr double kLevelSetOpticalDepth = 3.0;
 
 /// Of the smoke of a fire, where no albedo is given: soot.
 inline constexpr float kSootAlbedo = 0.1f;

@@ -122,6 +122,11 @@ TransferFunction makeTransferFunction(const fs::path& file, const Json& root, co
   return transfer;
 }
 
+/// The double of fewest digits that is read as this float.
+double shortest(float value) {
+  return std::stod(fmt::format("{}", value));
+}
+
 }  // namespace
 
 TransferFunction readTransferFunction(const std::filesystem::path& file, const Volume& volume) {
@@ -130,6 +135,20 @@ TransferFunction readTransferFunction(const std::filesystem::path& file, const V
 
 TransferFunction parseTransferFunction(const std::string& json, const Volume& volume) {
   return makeTransferFunction("inline", parseJson("transfer function", "inline", json), volume);
+}
+
+std::string transferFunctionJson(const TransferFunction& function) {
+  const double low = std::min(function.opacity.front().scalar, function.color.front().scalar);
+  const double high = std::max(function.opacity.back().scalar, function.color.back().scalar);
+  const double width = high > low ? high - low : 1.0;
+  nlohmann::ordered_json root;
+  root["range"] = {low, low + width};
+  for (const TransferFunction::OpacityPoint& point : function.opacity)
+    root["opacity"].push_back({(point.scalar - low) / width, shortest(point.opacity)});
+  for (const TransferFunction::ColorPoint& point : function.color)
+    root["color"].push_back({(point.scalar - low) / width, shortest(point.color.r), shortest(point.color.g), shortest(point.color.b)});
+  root["unit_distance"] = function.unitDistance;
+  return root.dump();
 }
 
 }  // namespace freevoxels

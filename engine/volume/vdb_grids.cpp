@@ -220,6 +220,19 @@ GridBase::Ptr VdbFile::readMetadata(const Entry& entry) {
   return guarded(fmt::format("grid '{}'", entry.name), [&] { return file_.readGridMetadata(entry.key); });
 }
 
+bool VdbFile::isOfBlender(const Entry& entry) {
+  const GridBase::Ptr grid = readMetadata(entry);
+  const auto creatorIsBlender = [](const openvdb::MetaMap& metadata) {
+    const auto creator = metadata.getMetadata<openvdb::StringMetadata>("creator");
+    return creator && creator->value().starts_with("Blender");
+  };
+  const openvdb::MetaMap::Ptr ofFile = streamed_.empty() ? file_.getMetadata() : nullptr;
+  const auto isLocal = grid->getMetadata<openvdb::BoolMetadata>(GridBase::META_IS_LOCAL_SPACE);
+  // Grids of its smoke caches are the only ones that are said to be in local space; those of its fluids have a base resolution.
+  return (ofFile && creatorIsBlender(*ofFile)) || creatorIsBlender(*grid) || (isLocal && isLocal->value()) ||
+         (*grid)["file_base_resolution"] != nullptr;
+}
+
 GridBase::Ptr VdbFile::read(const Entry& entry) {
   const auto index = std::size_t(&entry - entries_.data());
   if (!streamed_.empty()) return streamed_[index];

@@ -39,6 +39,8 @@ class VdbFile {
   /// Everything of the grid but its tree.
   openvdb::GridBase::Ptr readMetadata(const Entry& entry);
   openvdb::GridBase::Ptr read(const Entry& entry);
+  /// Whether the metadata of the file or of the grid say so: Blender's world has +z up.
+  bool isOfBlender(const Entry& entry);
 
  private:
   void listGrids();

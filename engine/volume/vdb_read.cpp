@@ -3,6 +3,7 @@
 #include <new>
 
 #include "engine/core/error.h"
+#include "engine/volume/scan.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/vdb_bricks.h"
 #include "engine/volume/vdb_channels.h"
@@ -83,6 +84,12 @@ Volume readVdb(const std::filesystem::path& path, const std::string& gridName, s
       return toVolume(*floats, toDensity, source, channels.bounds(), maximumVoxels);
     });
     channels.addTo(volume);
+    volume.isLevelSet = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
+    if (file.isOfBlender(entry))
+      volume.upReason = "Blender wrote the file";
+    else if (looksLikeScan(volume))
+      volume.upReason = "it looks like a scan";
+    if (!volume.upReason.empty()) volume.up = {0.0, 0.0, 1.0};
     return volume;
   } catch (const std::bad_alloc&) {
     fail(ExitCode::OutOfMemory, "not enough memory for {}; free some, or resample or crop the volume",

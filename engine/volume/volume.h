@@ -33,6 +33,9 @@ struct Volume {
   glm::ivec3 indexOrigin{0};  ///< of voxel (0,0,0) in the file's own index space
   /// Affine. Maps (i,j,k) of this box, 0 <= i < dimensions.x, to the world position of that voxel's centre.
   glm::dmat4 indexToWorld{1.0};
+  glm::dvec3 up{0.0, 1.0, 0.0};  ///< of the world, as far as the file says
+  std::string upReason;          ///< why it is not +y, as a clause: "Blender wrote the file"
+  bool isLevelSet = false;       ///< scalars are 1 inside of a level set and fall to 0 across its surface
   ScalarBricks scalars;  ///< of the same dimensions. Finite, or kInactiveVoxel
 
   std::uint64_t activeVoxels = 0;

@@ -1,6 +1,7 @@
 // freevoxels render, done well.
 
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetSphere.h>
 
 #include <algorithm>
 #include <cmath>
@@ -56,17 +57,29 @@ TEST_F(RenderCommand, EveryProceduralVolumeShows) {
 
 /// From the upper left of the first view, and no more than one option says it.
 TEST_F(RenderCommand, WithoutLightOptionsThereIsAKeyLightAndAmbientLight) {
-  const std::string lit = render("--orbit 0,0");
+  const auto shells = [&](const std::string& options, const std::string& file) {
+    expectSuccess(run("render procedural:shells @" + file + kSmall + options));
+    return readBytes(folder / file);
+  };
+  const std::string lit = shells("--orbit 0,0", "a.exr");
   EXPECT_EQ(exrAttribute(lit, "freevoxels:ambient"), "0.12,0.12,0.12");
   EXPECT_EQ(exrAttribute(lit, "freevoxels:scattering"), "3");
   const Image image = readExr(folder / "a.exr");
-  const auto brightness = [&](int x, int y) { return image.pixels[std::size_t(x + 64 * y)].g; };
-  EXPECT_GT(brightness(26, 18), 1.2f * brightness(38, 30));
+  float upperLeft = 0.0f, lowerRight = 0.0f;  // of opaque pixels
+  int pixels[2] = {0, 0};
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const glm::vec4 pixel = image.pixels[std::size_t(x + 64 * y)];
+      if (pixel.a < 0.95f || (x < 32) != (y < 24)) continue;
+      (x < 32 ? upperLeft : lowerRight) += pixel.g;
+      ++pixels[x < 32 ? 0 : 1];
+    }
+  EXPECT_GT(upperLeft / float(pixels[0]), 1.2f * lowerRight / float(pixels[1]));
   const std::string light = exrAttribute(lit, "freevoxels:light");
-  EXPECT_NE(exrAttribute(render("--orbit 90,0"), "freevoxels:light"), light);
-  expectSuccess(run(std::string("render procedural:cloud @b.exr --orbit 0,0 --ambient 0.12 --light ") + light + kSmall));
+  EXPECT_NE(exrAttribute(shells("--orbit 90,0", "b.exr"), "freevoxels:light"), light);
+  expectSuccess(run("render procedural:shells @b.exr --orbit 0,0 --ambient 0.12 --light " + light + kSmall));
   EXPECT_EQ(readExr(folder / "b.exr").pixels, image.pixels);
-  const std::string unlit = render("--unlit");
+  const std::string unlit = shells("--unlit", "b.exr");
   EXPECT_EQ(exrAttribute(unlit, "freevoxels:unlit"), "yes");
   EXPECT_EQ(exrAttribute(unlit, "freevoxels:light"), "");
 }
@@ -280,6 +293,36 @@ TEST_F(RenderCommand, ProgressIsForTerminalsAndErased) {
       runFreevoxelsOnTerminal(words(std::string("render procedural:cloud @a.png --quiet") + kSmall)).err, "");
 }
 
+TEST_F(RenderCommand, ScansGetATransferFunctionThatTheExrRepeats) {
+  const std::string volume = "render procedural:marschner-lobb @";
+  const ProgramResult first = run(volume + "a.exr" + kSmall);
+  expectSuccess(first);
+  EXPECT_NE(first.err.find("marschner-lobb looks like a scan"), std::string::npos) << first.err;
+  const std::string function = exrAttribute(readBytes(folder / "a.exr"), "freevoxels:transfer-function");
+  ASSERT_TRUE(function.starts_with("{")) << function;
+  writeBytes(folder / "t.json", function);
+  const ProgramResult again = run(volume + "b.exr --transfer-function @t.json" + kSmall);
+  expectSuccess(again);
+  EXPECT_EQ(again.err.find("looks like a scan"), std::string::npos) << again.err;
+  EXPECT_EQ(readExr(folder / "a.exr").pixels, readExr(folder / "b.exr").pixels);
+
+  const ProgramResult fog = run(volume + "b.exr --density-scale 2" + kSmall);
+  expectSuccess(fog);
+  EXPECT_EQ(fog.err.find("looks like a scan"), std::string::npos) << fog.err;
+  EXPECT_EQ(exrAttribute(readBytes(folder / "b.exr"), "freevoxels:transfer-function"), "");
+}
+
+TEST_F(RenderCommand, ALevelSetIsAnOpaqueSurface) {
+  openvdb::initialize();
+  const auto sphere = openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(1.0f, {}, 0.05f);
+  openvdb::io::File((folder / "sphere.vdb").string()).write(openvdb::GridCPtrVec{sphere});
+  const ProgramResult result = run("render @sphere.vdb @a.exr --size 64x48");
+  expectSuccess(result);
+  EXPECT_EQ(result.err.find("looks like a scan"), std::string::npos) << result.err;
+  EXPECT_NEAR(std::stod(exrAttribute(readBytes(folder / "a.exr"), "freevoxels:density-scale")), 60.0, 1e-4);
+  EXPECT_GT(readExr(folder / "a.exr").pixels[64 * 24 + 32].a, 0.999f);
+}
+
 TEST_F(RenderCommand, WarnsOnceOfBadValues) {
   openvdb::initialize();
   const auto grid = openvdb::FloatGrid::create();
@@ -295,7 +338,7 @@ TEST_F(RenderCommand, WarnsOnceOfBadValues) {
       ++count;
     return count;
   };
-  const ProgramResult physical = run("render @bad.vdb @a.png --size 32x32");
+  const ProgramResult physical = run("render @bad.vdb @a.png --size 32x32 --density-scale 1");
   expectSuccess(physical);
   EXPECT_EQ(warnings(physical.err), 2u) << physical.err;
   EXPECT_NE(physical.err.find("warning: 1 voxel"), std::string::npos) << physical.err;

@@ -116,6 +116,46 @@ TEST(Camera, AzimuthTurnsFromPlusZTowardsPlusXAndElevationRises) {
   EXPECT_GT(direction(35, 25).y, 0.4);
 }
 
+TEST(Camera, OrbitsAboutTheUpDirection) {
+  const auto expectNear = [](glm::dvec3 a, glm::dvec3 b) { EXPECT_LT(glm::length(a - b), 1e-12) << a.x << " " << a.y << " " << a.z; };
+  const glm::dvec3 z(0.0, 0.0, 2.0);
+  expectNear(orbitDirection(z, 0, 0), {0, -1, 0});
+  expectNear(orbitDirection(z, 90, 0), {1, 0, 0});
+  expectNear(orbitDirection(z, 0, 90), {0, 0, 1});
+  expectNear(orbitDirection({0, -1, 0}, 0, 90), {0, -1, 0});
+  for (const glm::dvec3 up : {glm::dvec3(1, 2, 3), glm::dvec3(-1, 0, 0), glm::dvec3(0.3, -5, 0.1)})
+    for (const double azimuth : {-100.0, 0.0, 35.0}) {
+      EXPECT_NEAR(glm::dot(orbitDirection(up, azimuth, 30.0), glm::normalize(up)), 0.5, 1e-12);
+      const glm::dvec3 before = orbitDirection(up, azimuth, 0.0), after = orbitDirection(up, azimuth + 90.0, 0.0);
+      expectNear(glm::cross(before, after), glm::normalize(up));
+    }
+}
+
+TEST(Camera, ImageCentreMakesOppositeMarginsEqual) {
+  Subject subject{.centre = {1.0, 2.0, 3.0}, .margin = 0.1};
+  for (const glm::dvec3 offset : {glm::dvec3(4, 0, 0), glm::dvec3(-1, 0.5, 2), glm::dvec3(0, -3, 1), glm::dvec3(1, 1, -5)})
+    subject.points.push_back(subject.centre + offset);
+  for (const bool orthographic : {false, true}) {
+    Camera base;
+    base.orthographic = orthographic;
+    const Camera before = framingCamera(subject, 40.0, 20.0, 1.0, base);
+    Subject centred = subject;
+    centred.centre = imageCentre(before, subject);
+    const Camera camera = framed(before, centred, 1.0);
+    EXPECT_LT(glm::length(glm::normalize(before.lookAt - before.position) - glm::normalize(camera.lookAt - camera.position)), 1e-12);
+    glm::dvec2 low(1e9), high(-1e9);
+    for (const glm::dvec3& point : subject.points) {
+      const glm::dvec2 ndc(transformed(worldToNdc(camera, 1.0), point));
+      low = glm::min(low, ndc);
+      high = glm::max(high, ndc);
+    }
+    EXPECT_NEAR(std::max(high.x, high.y), orthographic ? 1.0 / 1.1 : std::max(high.x, high.y), 1e-9);
+    EXPECT_LE(std::max(high.x, high.y), 1.0 / 1.1 + 1e-9);
+    EXPECT_NEAR(std::max(-low.x, -low.y), std::max(high.x, high.y), orthographic ? 1e-9 : 0.03);
+    EXPECT_LT(glm::length(camera.position - camera.lookAt), glm::length(before.position - before.lookAt) + (orthographic ? 9.0 : 0.0));
+  }
+}
+
 TEST(Camera, KeepsFieldOfViewAndUpOfTheBaseCamera) {
   Camera base;
   base.verticalFov = 12.0;

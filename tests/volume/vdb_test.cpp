@@ -103,6 +103,7 @@ TEST_F(Vdb, ALevelSetBecomesFogOfTheSameVolume) {
   for (const double radius : {0.31, 1.0, 4.0}) {  // the largest has inactive interior tiles of two levels
     write({openvdb::tools::createLevelSetSphere<FloatGrid>(float(radius), {0.3f, 0.2f, -0.1f}, kVoxelSize)});
     const Volume volume = read();
+    EXPECT_TRUE(volume.isLevelSet);
     double sum = 0.0;
     for (const float value : denseScalars(volume))
       if (value != kInactiveVoxel) sum += value;
@@ -177,6 +178,31 @@ TEST_F(Vdb, AGridWithoutAClassIsFog) {
   write({grid});
   EXPECT_EQ(read().minimum, -0.5f);
   EXPECT_EQ(describeVdb(file)[0].gridClass, "unknown");
+}
+
+TEST_F(Vdb, UpIsPlusZWhereTheMetadataAreThoseOfBlender) {
+  const auto upOf = [&](const std::function<void(openvdb::FloatGrid&)>& mark) {
+    const openvdb::FloatGrid::Ptr grid = makeGrid("density");
+    mark(*grid);
+    write({grid});
+    const Volume volume = read();
+    EXPECT_EQ(volume.upReason.empty(), volume.up == glm::dvec3(0, 1, 0));
+    return volume.up;
+  };
+  const glm::dvec3 y(0, 1, 0), z(0, 0, 1);
+  EXPECT_EQ(upOf([](openvdb::FloatGrid&) {}), y);
+  EXPECT_EQ(upOf([](openvdb::FloatGrid& grid) { grid.setCreator("Houdini 19.5/GEO_VDBTranslator"); }), y);
+  EXPECT_EQ(upOf([](openvdb::FloatGrid& grid) { grid.setIsInWorldSpace(true); }), y);
+  EXPECT_EQ(upOf([](openvdb::FloatGrid& grid) { grid.setCreator("Blender/Smoke"); }), z);
+  EXPECT_EQ(upOf([](openvdb::FloatGrid& grid) { grid.setIsInWorldSpace(false); }), z);
+  EXPECT_EQ(upOf([](openvdb::FloatGrid& grid) {
+              grid.insertMeta("file_base_resolution", openvdb::Vec3IMetadata(openvdb::Vec3i(27, 21, 32)));
+            }),
+            z);
+  openvdb::MetaMap ofFile;
+  ofFile.insertMeta("creator", openvdb::StringMetadata("Blender/Smoke"));
+  openvdb::io::File(file.string()).write({makeGrid("density")}, ofFile);
+  EXPECT_EQ(read().up, z);
 }
 
 TEST_F(Vdb, BadValuesAreCountedAndNaNBecomesZero) {

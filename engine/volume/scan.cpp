@@ -1,0 +1,172 @@
+#include "engine/volume/scan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+
+#include "engine/core/error.h"
+#include "engine/volume/histogram.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr int kClasses = 4;
+constexpr std::size_t kBins = 64;
+constexpr int kFineBins = 4096;
+constexpr double kOutliers = 0.0005;  // part of the voxels, above the values that are told apart
+
+/// Per 1/128 of the box's longest side, by the distance from the transparent class.
+constexpr std::array<float, kClasses> kOpacities{0.0f, 0.03f, 0.12f, 0.6f};
+constexpr double kLengthsAlongBox = 128.0;
+/// Half the width of the ramp at a threshold, in distances from it to the nearer of the two classes' means.
+constexpr double kRamp = 0.25;
+
+constexpr float kHuge = std::numeric_limits<float>::max();
+
+const std::array<glm::vec3, kClasses> kColors{glm::vec3(0.30f, 0.45f, 0.75f), glm::vec3(0.85f, 0.42f, 0.28f),
+                                              glm::vec3(0.95f, 0.72f, 0.42f), glm::vec3(0.98f, 0.94f, 0.85f)};
+
+/// A class of values: means and thresholds in bins.
+struct Classes {
+  std::array<double, kClasses> means{};
+  std::array<double, kClasses - 1> thresholds{};
+};
+
+/// The classes whose values differ least from their means, by dynamic programming: `best[k][end]` is the largest sum of
+/// weight x mean^2 with which k classes make up the bins before `end`.
+Classes classesOf(std::span<const double> weights) {
+  const std::size_t n = weights.size();
+  FV_CHECK_LE(std::size_t(kClasses), n);
+  std::vector<double> sums(n + 1), moments(n + 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    sums[i + 1] = sums[i] + weights[i];
+    moments[i + 1] = moments[i] + weights[i] * (double(i) + 0.5);
+  }
+  const auto meanOf = [&](std::size_t begin, std::size_t end) {
+    const double weight = sums[end] - sums[begin];
+    return weight > 0.0 ? (moments[end] - moments[begin]) / weight : 0.5 * double(begin + end);
+  };
+  const auto gain = [&](std::size_t begin, std::size_t end) {
+    const double mean = meanOf(begin, end);
+    return (sums[end] - sums[begin]) * mean * mean;
+  };
+  std::vector<double> best(n + 1, 0.0);
+  for (std::size_t end = 1; end <= n; ++end) best[end] = gain(0, end);
+  std::array<std::vector<std::size_t>, kClasses> begins;
+  for (std::size_t k = 1; k < kClasses; ++k) {
+    std::vector<double> next(n + 1, 0.0);
+    begins[k].resize(n + 1);
+    for (std::size_t end = k + 1; end <= n; ++end)
+      for (std::size_t begin = k; begin < end; ++begin) {
+        const double value = best[begin] + gain(begin, end);
+        if (begins[k][end] != 0 && value <= next[end]) continue;
+        next[end] = value;
+        begins[k][end] = begin;
+      }
+    best = std::move(next);
+  }
+  Classes classes;
+  std::size_t end = n;
+  for (std::size_t k = kClasses - 1; k > 0; --k) {
+    const std::size_t begin = begins[k][end];
+    classes.means[k] = meanOf(begin, end);
+    classes.thresholds[k - 1] = double(begin);
+    end = begin;
+  }
+  classes.means[0] = meanOf(0, end);
+  return classes;
+}
+
+/// The values of the active voxels on the box's six sides.
+std::vector<float> valuesOnSides(const Volume& volume) {
+  std::vector<float> values;
+  std::vector<float> row(std::size_t(volume.dimensions.x));
+  const glm::ivec3 last = volume.dimensions - 1;
+  const auto add = [&](float value) {
+    if (value != kInactiveVoxel) values.push_back(value);
+  };
+  for (int z = 0; z <= last.z; ++z)
+    for (int y = 0; y <= last.y; ++y) {
+      volume.scalars.copyRow(y, z, row);
+      if (z == 0 || z == last.z || y == 0 || y == last.y)
+        std::ranges::for_each(row, add);
+      else
+        for (const float value : {row.front(), row.back()}) add(value);
+    }
+  return values;
+}
+
+/// The class that most values are of; the lowest where none has half of them.
+int commonClass(std::span<const float> values, std::span<const double> thresholds) {
+  std::array<std::size_t, kClasses> counts{};
+  for (const float value : values)
+    ++counts[std::size_t(std::ranges::count_if(thresholds, [&](double threshold) { return threshold <= value; }))];
+  const auto most = std::ranges::max_element(counts);
+  return 2 * *most > values.size() ? int(most - counts.begin()) : 0;
+}
+
+/// The value below which all but the outliers are.
+double highestUsual(const Histogram& histogram) {
+  std::uint64_t all = 0, below = 0;
+  for (const std::uint64_t count : histogram.counts) all += count;
+  std::size_t bins = 0;
+  while (bins < histogram.counts.size() && double(below) < (1.0 - kOutliers) * double(all)) below += histogram.counts[bins++];
+  const double range = double(histogram.maximum) - double(histogram.minimum);
+  return histogram.minimum + range * double(bins) / double(histogram.counts.size());
+}
+
+}  // namespace
+
+bool looksLikeScan(const Volume& volume) {
+  if (volume.isLevelSet || !(volume.minimum < volume.maximum)) return false;
+  return double(volume.negativeVoxels) > 0.01 * double(volume.activeVoxels) ||
+         double(volume.activeVoxels) >= 0.95 * double(volume.voxelCount());
+}
+
+TransferFunction scanTransferFunction(const Volume& volume) {
+  const Histogram fine = histogramOf(volume, kFineBins);
+  const double low = volume.minimum, high = highestUsual(fine), width = (high - low) / double(kBins);
+  const double fineWidth = (double(volume.maximum) - low) / kFineBins;
+  std::array<double, kBins> weights{};
+  for (std::size_t i = 0; i < fine.counts.size(); ++i) {
+    const double value = low + (double(i) + 0.5) * fineWidth;
+    if (value < high) weights[std::min(std::size_t((value - low) / width), kBins - 1)] += double(fine.counts[i]);
+  }
+  std::ranges::transform(weights, weights.begin(), [](double count) { return std::sqrt(count); });
+  const Classes classes = classesOf(weights);
+  const auto valueOf = [&](double bin) { return low + bin * width; };
+
+  std::array<double, kClasses - 1> thresholds{};
+  std::ranges::transform(classes.thresholds, thresholds.begin(), valueOf);
+  const int transparent = commonClass(valuesOnSides(volume), thresholds);
+  const auto opacityOf = [&](int number) { return kOpacities[std::size_t(std::abs(number - transparent))]; };
+
+  TransferFunction function;
+  const glm::dvec3 extent = glm::dvec3(volume.dimensions) *
+                            glm::dvec3(glm::length(volume.indexToWorld[0]), glm::length(volume.indexToWorld[1]),
+                                       glm::length(volume.indexToWorld[2]));
+  function.unitDistance = std::max({extent.x, extent.y, extent.z}) / kLengthsAlongBox;
+  const auto addOpacity = [&](double bin, float opacity) {
+    const auto value = float(valueOf(bin));
+    const float least = function.opacity.empty() ? value : std::nextafter(function.opacity.back().scalar, kHuge);
+    function.opacity.push_back({std::max(value, least), opacity});
+  };
+  for (int i = 0; i + 1 < kClasses; ++i) {
+    const double threshold = classes.thresholds[std::size_t(i)];
+    const double ramp =
+        kRamp * std::min(threshold - classes.means[std::size_t(i)], classes.means[std::size_t(i + 1)] - threshold);
+    addOpacity(threshold - ramp, opacityOf(i));
+    addOpacity(threshold + ramp, opacityOf(i + 1));
+  }
+  for (std::size_t i = 0; i < kClasses; ++i) {
+    const auto value = float(valueOf(classes.means[i]));
+    const float least = function.color.empty() ? value : std::nextafter(function.color.back().scalar, kHuge);
+    function.color.push_back({std::max(value, least), kColors[i]});
+  }
+  return function;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,114 @@
+#include "engine/volume/scan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/volume/procedural.h"
+
+namespace freevoxels {
+namespace {
+
+/// Boxes in one another, a quarter, a half and all of the edge, of these values from the outside in; values differ by +-2 % of
+/// the range, as measured ones do.
+Volume nested(float outer, float middle, float inner, float core) {
+  return makeVolume({32, 32, 32}, glm::dmat4(1.0), [=](int x, int y, int z) {
+    const int ring = std::min({x, 31 - x, y, 31 - y, z, 31 - z});
+    const float noise = 0.02f * std::abs(core - outer) * std::sin(float(7 * x + 13 * y + 29 * z));
+    return noise + (ring < 6 ? outer : ring < 10 ? middle : ring < 13 ? inner : core);
+  });
+}
+
+float opacityAt(const TransferFunction& function, float scalar) {
+  const auto& points = function.opacity;
+  if (scalar <= points.front().scalar) return points.front().opacity;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    if (scalar > points[i].scalar) continue;
+    const float part = (scalar - points[i - 1].scalar) / (points[i].scalar - points[i - 1].scalar);
+    return points[i - 1].opacity + part * (points[i].opacity - points[i - 1].opacity);
+  }
+  return points.back().opacity;
+}
+
+void expectValid(const Volume& volume) {
+  const TransferFunction function = scanTransferFunction(volume);
+  for (std::size_t i = 1; i < function.opacity.size(); ++i)
+    EXPECT_LT(function.opacity[i - 1].scalar, function.opacity[i].scalar);
+  for (std::size_t i = 1; i < function.color.size(); ++i) EXPECT_LT(function.color[i - 1].scalar, function.color[i].scalar);
+  const TransferFunction again = parseTransferFunction(transferFunctionJson(function), volume);
+  ASSERT_EQ(again.opacity.size(), function.opacity.size());
+  for (std::size_t i = 0; i < function.opacity.size(); ++i) {
+    EXPECT_EQ(again.opacity[i].scalar, function.opacity[i].scalar);
+    EXPECT_EQ(again.opacity[i].opacity, function.opacity[i].opacity);
+  }
+  ASSERT_EQ(again.color.size(), function.color.size());
+  for (std::size_t i = 0; i < function.color.size(); ++i) {
+    EXPECT_EQ(again.color[i].scalar, function.color[i].scalar);
+    EXPECT_EQ(again.color[i].color, function.color[i].color);
+  }
+  EXPECT_EQ(again.unitDistance, function.unitDistance);
+}
+
+TEST(Scan, FullBoxesAndNegativeValuesLookLikeOne) {
+  EXPECT_TRUE(looksLikeScan(nested(0.0f, 40.0f, 90.0f, 255.0f)));
+  EXPECT_TRUE(looksLikeScan(makeVolume({20, 20, 20}, glm::dmat4(1.0), [](int x, int y, int) {
+    return x > 5 ? kInactiveVoxel : float(y) - 10.0f;
+  })));
+}
+
+TEST(Scan, FogUniformVolumesAndLevelSetsAreNone) {
+  EXPECT_FALSE(looksLikeScan(makeVolume({20, 20, 20}, glm::dmat4(1.0), [](int x, int y, int) {
+    return x > 15 ? kInactiveVoxel : float(y);
+  })));
+  EXPECT_FALSE(looksLikeScan(makeVolume({20, 20, 20}, glm::dmat4(1.0), [](int, int, int) { return 1.0f; })));
+  Volume levelSet = nested(0.0f, 0.3f, 0.6f, 1.0f);
+  levelSet.isLevelSet = true;
+  EXPECT_FALSE(looksLikeScan(levelSet));
+}
+
+TEST(Scan, TransferFunctionIsTransparentOutsideAndMoreOpaqueFromClassToClass) {
+  const TransferFunction function = scanTransferFunction(nested(-1000.0f, -100.0f, 60.0f, 1200.0f));
+  EXPECT_EQ(opacityAt(function, -1000.0f), 0.0f);
+  EXPECT_EQ(opacityAt(function, -100.0f), 0.03f);
+  EXPECT_EQ(opacityAt(function, 60.0f), 0.12f);
+  EXPECT_EQ(opacityAt(function, 1200.0f), 0.6f);
+  EXPECT_EQ(function.unitDistance, 32.0 / 128.0);
+}
+
+TEST(Scan, TransferFunctionOfDarkThingsInBrightOnesIsTransparentOutsideToo) {
+  const TransferFunction function = scanTransferFunction(nested(255.0f, 200.0f, 90.0f, 0.0f));
+  EXPECT_EQ(opacityAt(function, 255.0f), 0.0f);
+  EXPECT_EQ(opacityAt(function, 200.0f), 0.03f);
+  EXPECT_EQ(opacityAt(function, 90.0f), 0.12f);
+  EXPECT_EQ(opacityAt(function, 0.0f), 0.6f);
+}
+
+TEST(Scan, TransferFunctionOfSidesOfAllClassesIsTransparentAtTheLowest) {
+  const Volume ramp = makeVolume({64, 8, 8}, glm::dmat4(1.0), [](int x, int, int) { return float(x); });
+  const TransferFunction function = scanTransferFunction(ramp);
+  EXPECT_EQ(opacityAt(function, 2.0f), 0.0f);
+  EXPECT_EQ(opacityAt(function, 62.0f), 0.6f);
+}
+
+TEST(Scan, TransferFunctionLeavesOutliersAside) {
+  const Volume usual = nested(0.0f, 40.0f, 90.0f, 200.0f);
+  const Volume volume = makeVolume({32, 32, 32}, glm::dmat4(1.0), [&](int x, int y, int z) {
+    std::vector<float> row(32);
+    usual.scalars.copyRow(y, z, row);
+    return x == 16 && y == 16 && z == 16 ? 1e4f : row[std::size_t(x)];
+  });
+  const TransferFunction function = scanTransferFunction(volume);
+  EXPECT_EQ(opacityAt(function, 0.0f), 0.0f);
+  EXPECT_EQ(opacityAt(function, 90.0f), 0.12f);
+  EXPECT_EQ(opacityAt(function, 200.0f), 0.6f);
+}
+
+TEST(Scan, TransferFunctionIsValidForFewOrNearlyEqualValues) {
+  expectValid(nested(-1000.0f, -100.0f, 60.0f, 1200.0f));
+  expectValid(nested(0.0f, 0.0f, 1.0f, 1.0f));
+  expectValid(makeVolume({9, 9, 9}, glm::dmat4(1.0), [](int x, int, int) { return x == 4 ? 1.0f : 0.0f; }));
+  expectValid(makeVolume({9, 9, 9}, glm::dmat4(1.0), [](int x, int, int) { return x == 4 ? std::nextafter(1.0f, 2.0f) : 1.0f; }));
+}
+
+}  // namespace
+}  // namespace freevoxels
