@@ -20,6 +20,7 @@ layout(local_size_x = kBrickQuadsThreads) in;
 layout(scalar, push_constant) uniform Push { BrickQuadsPush push; };
 layout(binding = 0) uniform utextureBuffer brickCells;  // of each brick, in blocks: x, y, z of its first one
 layout(binding = 1) uniform utextureBuffer occupancy;   // OccupancyWord
+#include "code_bricks.glsl"
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Words { uint values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Sources { uvec2 values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer MediumQuads { uvec2 values[]; };
@@ -28,16 +29,6 @@ layout(buffer_reference, scalar, buffer_reference_align = 16) writeonly buffer S
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
 const int kEdgeMask = kGatherBrickEdge - 1;
-
-// 0 beyond the volume, and of voxels without data.
-uint codeAt(ivec3 voxel) {
-  const ivec3 place = voxel + push.corner;
-  const ivec3 cell = place / kBrickEdge, local = place % kBrickEdge;
-  const bool inside = all(lessThan(voxel, push.level.dimensions));
-  const uint brick = inside ? Words(push.codeBricks).values[cell.x + push.cells.x * (cell.y + push.cells.y * cell.z)] : 0;
-  const uint index = ((brick * kBrickEdge + local.z) * kBrickEdge + local.y) * kBrickEdge + local.x;
-  return bitfieldExtract(Words(push.codes).values[index / 2], int(index % 2) * 16, 16);
-}
 
 // What is kept of two blocks, neighbours along the second side.
 struct Pair {
@@ -51,7 +42,7 @@ Pair pairAt(ivec3 first) {
     ivec3 cell = first;
     cell[kSideB] += i;
     const bool inside = all(lessThan(cell, push.level.dimensions));
-    if (kCodes) pair.medium[i] = codeAt(cell);
+    if (kCodes) pair.medium[i] = codeAt(push.codes, push.level.dimensions, cell);
     if (kCodes && !kColored) continue;
     const int address = inside ? int(blockAddress(push.level, cell)) : 0;
     const uvec2 word = texelFetch(occupancy, address >> 5).xy;

@@ -9,6 +9,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 #include "packed_light.glsl"
+#include "packed_gradient.glsl"
 
 layout(constant_id = 0) const int kAxis = 2;        // rays with another axis are left to other dispatches
 layout(constant_id = 1) const bool kTowards = false;  // whether the light of blocks depends on the direction to the eye
@@ -42,6 +43,7 @@ layout(binding = 13) uniform utextureBuffer lightQuads4;
 layout(binding = 14) uniform utextureBuffer lightQuads5;
 layout(binding = 15) uniform utextureBuffer lightQuads6;
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MediumPiece { uvec2 values[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Gradients { uint values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SourcePiece { uvec4 values[]; };
 layout(binding = 8) uniform utextureBuffer skipCells;
 layout(binding = 7) uniform textureBuffer transferTable;  // of each interval the integral up to it, and the mean
@@ -51,6 +53,8 @@ const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
 const bool kSampled = kLights > 0 || kAmbient > 0;
 const float kPi = 3.14159265358979;
+const float kLeastShaded = 1.0 / 512.0;  // part of a pixel from which on the normal of a surface counts
+const float kOutside = 2.5;               // blocks
 const float kMostLightDepth = 0.99 * kOpaqueDepth;  // about the end of the code of rays
 
 const int kPieceLog2 = kPieceBricksLog2 + 3 * kBrickLevels;  // quads
@@ -98,6 +102,7 @@ struct Ray {
 // The level's geometry, read once a level.
 struct Slices {
   ivec2 dimensions;     // of the sides, blocks
+  int count;
   int firstCell;
   ivec3 cellStrides;    // of the sides and the axis
   int firstSkip;
@@ -121,6 +126,13 @@ vec2 sideWeights(float position, int count, out int low) {
   return weights;
 }
 
+// Of a block on the sides and the axis.
+int brickAt(Slices level, ivec3 place) {
+  const ivec3 cell = place >> kBrickLevels;
+  return int(texelFetch(brickNumbers, level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
+                                          cell.z * level.cellStrides.z).x);
+}
+
 // The quad of four blocks around a position on a slice, and their weights.
 int quadAt(Slices level, vec2 position, int slice, out vec4 weights) {
   ivec2 low;
@@ -128,10 +140,7 @@ int quadAt(Slices level, vec2 position, int slice, out vec4 weights) {
   const vec2 b = sideWeights(position.y, level.dimensions.y, low.y);
   weights = vec4(a * b.x, a * b.y);
   const ivec3 place = ivec3(low, slice);
-  const ivec3 cell = place >> kBrickLevels;
-  const int cellNumber = level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
-                         cell.z * level.cellStrides.z;
-  const int brick = int(texelFetch(brickNumbers, cellNumber).x);
+  const int brick = brickAt(level, place);
   const ivec3 inBrick = place & (kGatherBrickEdge - 1);
   return ((brick << kBrickLevels | inBrick.y) << kBrickLevels | inBrick.x) << kBrickLevels | inBrick.z;
 }
@@ -176,9 +185,20 @@ struct Lit {
   vec4 begin, change;
   vec3 ambientBegin, ambientChange;  // the same of what ambient light has passed, by channel
   vec3 position;        // of its middle, index space
-  vec3 normal;          // of a surface there, in the world, of length 1
+  vec3 normal;          // of a surface there, outwards, in the world, of length 1
   float surface;        // how much of one it is
+  vec4 outside;         // optical depths towards the lights from outside of it
 };
+
+// What a surface adds to the sum of lightOf(). Where it faces the light its own voxels do not shadow it, which on average takes half.
+vec3 surfaceLight(Lit lit, int light, vec3 way, float depth, vec3 toEye) {
+  const bool facing = dot(lit.normal, way) > 0.0;
+  const float begin = facing ? lit.outside[light] : lit.begin[light], change = facing ? 0.0 : lit.change[light];
+  const vec3 tint = kTinted ? frame.tint : vec3(1.0);
+  vec3 through;
+  [[unroll]] for (int c = 0; c < 3; ++c) through[c] = exp(-tint[c] * begin) * meanTransmittance(depth + tint[c] * change);
+  return lit.surface * (facing ? 0.5 : 1.0) * surfaceScattering(lit.normal, way, toEye) * through;
+}
 
 // The mean over the part of what a light sends to the eye per albedo, times the transmittance of what is in front of it in the
 // part, whose optical depth is `depth`.
@@ -198,7 +218,7 @@ vec3 lightOf(int light, Lit lit, float depth, vec3 toEye) {
   float scale = 1.0;
   for (int octave = 0; octave < kOctaves; ++octave) {
     float phase = frame.phaseG == 0.0 ? 1.0 / (4.0 * kPi) : phaseFunction(scale * frame.phaseG, -way, toEye);
-    if (kSurfaces) phase = mix(phase, octave == 0 ? surfaceScattering(lit.normal, way, toEye) : 0.0, lit.surface);
+    if (kSurfaces) phase *= 1.0 - lit.surface;
     vec3 through;
     if (kTinted)
       [[unroll]] for (int c = 0; c < 3; ++c)
@@ -208,6 +228,7 @@ vec3 lightOf(int light, Lit lit, float depth, vec3 toEye) {
     sum += scale * phase * through;
     scale *= frame.octaveScale;
   }
+  if (kSurfaces && lit.surface > 0.0) sum += surfaceLight(lit, light, way, depth, toEye);
   return source.color / distance2 * sum;
 }
 
@@ -261,6 +282,8 @@ struct Found {
   vec4 medium;     // extinction times colour and extinction at the scalar
   vec3 light;      // over that of a source term of 1
   vec2 change;     // of the scalar per voxel along the sides
+  vec3 gradient;   // of the scalar, or of the extinction, per block, index space
+  bool hasGradient;
   vec4 depths;     // optical depths towards the lights; less than 0: nothing was found
   vec3 ambient;    // optical depths that ambient light has passed, by channel
 };
@@ -274,27 +297,80 @@ vec3 voxelPosition(Ray ray, float slice) {
   return (position + 0.5) * ray.edge - 0.5;
 }
 
-// From the change of a value per block along the sides and along the ray from slice to slice. `relative` is how much the
-// extinction changes by a block, over the extinction.
-void setSurface(inout Lit lit, Ray ray, vec2 change, float alongRay, float relative) {
-  vec3 gradient;
-  gradient[kAxis] = alongRay - dot(ray.slope, change);
-  gradient[kSideA] = change.x;
-  gradient[kSideB] = change.y;
+vec4 extinctionsOf(int quad) {
+  const uvec2 halves = mediumQuad(quad);
+  return vec4(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y));
+}
+
+// The gradient at a position on a slice.
+vec3 gradientAt(Slices level, vec2 position, int slice) {
+  ivec2 low;
+  const vec2 a = sideWeights(position.x, level.dimensions.x, low.x);
+  const vec2 b = sideWeights(position.y, level.dimensions.y, low.y);
+  const vec4 weights = vec4(a * b.x, a * b.y);
+  vec3 gradient = vec3(0.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    const ivec3 place = min(ivec3(low + ivec2(i & 1, i >> 1), slice), ivec3(level.dimensions, slice + 1) - 1);
+    const int brick = brickAt(level, place);
+    const ivec3 inBrick = place & (kGatherBrickEdge - 1);
+    ivec3 block;
+    block[kAxis] = inBrick.z;
+    block[kSideA] = inBrick.x;
+    block[kSideB] = inBrick.y;
+    const int index = ((brick << kBrickLevels | block.z) << kBrickLevels | block.y) << kBrickLevels | block.x;
+    gradient += weights[i] * unpackGradient(Gradients(frame.gradients).values[index]);
+  }
+  return gradient;
+}
+
+// Of both ends of a stretch.
+void findGradients(inout Found last, inout Found found, Slices level, Ray ray, int slice) {
+  for (int i = last.hasGradient ? 1 : 0; i < 2; ++i) {
+    const int at = clamp(i == 1 ? slice : slice - int(ray.direction), 0, level.count - 1);
+    const vec3 gradient = gradientAt(level, ray.origin + ray.slope * float(at), at);
+    if (i == 1) found.gradient = gradient; else last.gradient = gradient;
+  }
+  last.hasGradient = found.hasGradient = true;
+}
+
+vec3 normalOf(vec3 gradient) {
   const vec3 normal = frame.gradientToWorld * gradient;
+  return normal * inversesqrt(max(dot(normal, normal), 1e-30));
+}
+
+// `decrease` is how much the extinction decreases along a gradient, from a block before to a block behind, over the larger of
+// the two.
+void setSurface(inout Lit lit, vec3 gradient, float decrease) {
+  const vec3 normal = frame.gradientToWorld * (sign(decrease) * gradient);
   lit.normal = normal * inversesqrt(max(dot(normal, normal), 1e-30));
-  lit.surface = frame.surface * min(2.0 * relative, 1.0);
+  lit.surface = frame.surface * min(2.0 * abs(decrease), 1.0);
+}
+
+// What lights a surface comes to it from outside: its own voxels, whose shadow on themselves is that of a staircase, are left
+// to the normal.
+struct Outside {
+  vec4 depths;
+  vec3 ambient;
+};
+
+Outside outsideOf(Slices level, Ray ray, float slice, vec3 outwards) {
+  const vec3 way = kOutside * outwards * inversesqrt(max(dot(outwards, outwards), 1e-30));
+  const vec2 position = ray.origin + ray.slope * slice + vec2(way[kSideA], way[kSideB]);
+  vec4 weights;
+  const int quad = quadAt(level, position, clamp(int(floor(slice + way[kAxis] + 0.5)), 0, level.count - 1), weights);
+  return Outside(depthsTowardsLights(quad, weights), ambientAt(quad, weights));
+}
+
+void lightFrom(inout Lit lit, Outside outside) {
+  lit.outside = outside.depths;
+  lit.ambientBegin = mix(lit.ambientBegin, outside.ambient, lit.surface);
+  lit.ambientChange *= 1.0 - lit.surface;
 }
 
 // Source term and extinction, interpolated.
 vec4 mediumAt(int quad, vec4 weights, vec4 extinctions, vec3 toEye) {
   const float extinction = dot(weights, extinctions);
   return vec4(kColored ? sourceAt(quad, sourceQuad(quad), weights, toEye) : extinction * frame.color, extinction);
-}
-
-vec4 extinctionsOf(int quad) {
-  const uvec2 halves = mediumQuad(quad);
-  return vec4(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y));
 }
 
 // Of blocks that are classified: source term and extinction are the same all over a slice's layer.
@@ -326,12 +402,16 @@ void addLitStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int
   lit.ambientChange = found.ambient - lit.ambientBegin;
   lit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
   if (kSurfaces) {
-    found.change = vec2(mix(extinctions.y - extinctions.x, extinctions.w - extinctions.z, weights.z + weights.w),
-                        mix(extinctions.z - extinctions.x, extinctions.w - extinctions.y, weights.y + weights.w));
-    const vec2 change = 0.5 * (last.change + found.change);
-    const float alongRay = (found.medium.a - last.medium.a) * ray.direction;
-    const float across = alongRay - dot(ray.slope, change);
-    setSurface(lit, ray, change, alongRay, sqrt(dot(change, change) + across * across) / max(medium.a, 1e-20));
+    found.hasGradient = false;
+    found.gradient = vec3(0.0);
+    lit.surface = 0.0;
+    if (sums.transmittance * ray.layer * medium.a > kLeastShaded) {
+      findGradients(last, found, level, ray, slice);
+      const vec3 gradient = 0.5 * (last.gradient + found.gradient);
+      const float reach = length(gradient) / frame.extinctionUnit;
+      setSurface(lit, gradient, -min(2.0 * reach / max(medium.a + reach, 1e-20), 1.0));
+      lightFrom(lit, outsideOf(level, ray, float(slice) - 0.5 * ray.direction, -gradient));
+    }
   }
   addPart(sums, medium, ray.layer * clamp(ahead, 0.0, 1.0), ahead - 0.5, lit, ray.toEye);
   last = found;
@@ -397,6 +477,14 @@ void addTowardsLights(inout vec4 begin, inout vec4 end, Ray ray, Found first, Fo
   }
 }
 
+// Of the extinction, over its larger value, from a scalar less `reach` to that and `reach` more.
+float changeAcross(float scalar, float reach) {
+  vec4 integral, above, below;
+  tableAt(min(scalar + reach, float(kTransferIntervals)), integral, above);
+  tableAt(max(scalar - reach, 0.0), integral, below);
+  return (above.a - below.a) / max(max(above.a, below.a), 1e-20);
+}
+
 // Scalars change linearly from a slice to the middle of the stretch and on to the next slice, so that integrals of the
 // transfer function give the means. In the middle both slices' functions count half.
 void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within) {
@@ -417,7 +505,7 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
     far.rgb *= mix(first.light, second.light, 0.75);
   }
   const float ahead = (float(slice) - ray.eye) * ray.direction;
-  const float length = ray.layer * coverage;
+  const float layer = ray.layer * coverage;
   Lit nearLit, farLit;
   if (kSampled) {
     const float nearPart = near.a + far.a > 0.0 ? near.a / (near.a + far.a) : 0.5;
@@ -437,18 +525,25 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
     nearLit.begin = begin;
     farLit.begin = begin + nearLit.change;
     if (kSurfaces) {
-      const float across = alongRay - dot(ray.slope, change);
-      const float reach = 0.5 * sqrt(dot(change, change) + across * across);
-      vec4 above, below;
-      tableAt(min(middle + reach, float(kTransferIntervals)), integral, above);
-      tableAt(max(middle - reach, 0.0), integral, below);
-      setSurface(nearLit, ray, change, alongRay, abs(above.a - below.a) / max(max(near.a, far.a), 1e-20));
-      farLit.normal = nearLit.normal;
-      farLit.surface = nearLit.surface;
+      found.hasGradient = false;
+      found.gradient = vec3(0.0);
+      nearLit.surface = farLit.surface = 0.0;
+      if (sums.transmittance * layer * (near.a + far.a) > 2.0 * kLeastShaded) {
+        findGradients(last, found, level, ray, slice);
+        const vec3 nearGradient = mix(last.gradient, found.gradient, 0.25), farGradient = mix(last.gradient, found.gradient, 0.75);
+        const float nearChange = changeAcross(mix(first.scalar, second.scalar, 0.25), length(nearGradient));
+        const float farChange = changeAcross(mix(first.scalar, second.scalar, 0.75), length(farGradient));
+        setSurface(nearLit, nearGradient, -nearChange);
+        setSurface(farLit, farGradient, -farChange);
+        const vec3 outwards = -sign(nearChange + farChange) * (nearGradient + farGradient);
+        const Outside outside = outsideOf(level, ray, float(slice) - 0.5 * ray.direction, outwards);
+        lightFrom(nearLit, outside);
+        lightFrom(farLit, outside);
+      }
     }
   }
-  addPart(sums, near, length * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75, nearLit, ray.toEye);
-  addPart(sums, far, length * clamp(ahead, 0.0, 0.5), ahead - 0.25, farLit, ray.toEye);
+  addPart(sums, near, layer * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75, nearLit, ray.toEye);
+  addPart(sums, far, layer * clamp(ahead, 0.0, 0.5), ahead - 0.25, farLit, ray.toEye);
   last = found;
 }
 
@@ -493,6 +588,8 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
   last.integral = last.medium = vec4(0.0);
   last.light = vec3(0.0);
   last.change = vec2(0.0);
+  last.gradient = vec3(0.0);
+  last.hasGradient = false;
   last.depths = vec4(-1.0);
   last.ambient = vec3(0.0);
   // Loops that end with their conditions: lavapipe runs a body once more, masked, where a loop begins with one.
@@ -502,6 +599,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
       empty = emptyGroups(level, ray, slice, last.coverage > 0.0 ? 1 : 0) * ray.group;
       if (empty > 0) {
         last.coverage = 0.0;
+        last.hasGradient = false;
         last.depths = vec4(-1.0);
         last.medium = vec4(0.0);
       }
@@ -528,6 +626,7 @@ Slices slicesOf(int number) {
   const GatherLevel level = frame.levels[number];
   Slices slices;
   slices.dimensions = ivec2(level.dimensions[kSideA], level.dimensions[kSideB]);
+  slices.count = level.dimensions[kAxis];
   slices.firstCell = level.firstCell;
   const ivec3 cellStrides = ivec3(1, level.cellStrides), skipStrides = ivec3(1, level.skipStrides);
   slices.cellStrides = ivec3(cellStrides[kSideA], cellStrides[kSideB], cellStrides[kAxis]);

@@ -82,6 +82,7 @@ struct GatherFrame {
   float octaveScale;      // of an octave to the one before
   mat3 indexToWorld;      // linear part
   mat3 gradientToWorld;
+  uvec2 gradients;        // device address: of surface_gradients.comp
   GatherAxis axes[3];
   GatherLevel levels[kMaximumLevels];
   int finest, coarsest;   // levels that are read
@@ -120,6 +121,23 @@ struct ExpandScalarsPush {
   ivec3 corner;      // place of the volume's first voxel in its brick of scalars
   ivec3 cells;       // bricks of scalars along the axes
   uvec2 bricks, codes;  // device addresses of the bricks' numbers by cell, and of 16 bits a voxel
+};
+
+// Codes of 16 bits a block, in bricks: of scalars, or of depths towards a light.
+struct CodeBricks {
+  uvec2 numbers, codes;  // device addresses: of the bricks' numbers by cell, of which 0 is empty, and of the codes
+  ivec3 corner;          // place of the first block in its brick
+  ivec3 cells;           // bricks along the axes
+};
+
+// surface_gradients.comp
+struct SurfaceGradientsPush {
+  BlockLevel level;
+  uint firstBrick;
+  uint count;         // of bricks
+  uvec2 extinction;   // device addresses: by rank, and of the gradients, 4 bytes a block in bricks, x fastest
+  uvec2 gradients;
+  CodeBricks scalars; // of the finest level
 };
 
 // light_depths.comp
@@ -166,9 +184,7 @@ struct BrickQuadsPush {
   uint firstQuad;    // where they begin at the addresses
   uvec2 medium, source, towards;  // device addresses of quads
   uvec2 sources, towardsEye;        // device addresses: what shade_blocks.comp made, by rank
-  uvec2 codeBricks, codes;          // of codes: device addresses of the bricks' numbers by cell, and of 16 bits a block
-  ivec3 corner;      // place of the first block in its brick of codes
-  ivec3 cells;       // bricks of codes along the axes
+  CodeBricks codes;
 };
 
 #ifdef __cplusplus
@@ -176,6 +192,7 @@ static_assert(sizeof(GatherAxis) == 8 * 4 + 12 * 6 - 16 + (3 + kMostLightSlots) 
 static_assert(sizeof(GatherLevel) == 48);
 static_assert(sizeof(BrickQuadsPush) == 120);
 static_assert(sizeof(GatherFrame) <= 16384);
+static_assert(sizeof(SurfaceGradientsPush) <= 128);
 static_assert(sizeof(LightDepthsPush) == 108);
 static_assert(sizeof(ExpandScalarsPush) == 76);
 static_assert(sizeof(ShadePush) == 48);

@@ -143,7 +143,7 @@ void LightingOptions::addMethod(CLI::App& app) {
       ->group("Light");
   addWord(app, "--shading", kShadingWords, shading,
           "What a voxel does with lights: scatters them as fog does, or as a surface across the change of its extinction; "
-          "auto is as a surface with a transfer function [auto]")
+          "auto is as a surface with a transfer function and of level sets [auto]")
       ->group("Light");
   addNumber(app, "--surface-share", "S", surface,
             "Of surfaces, how much is scattered by them, from 0 to 1; the rest is as by fog [1]",

@@ -10,6 +10,7 @@
 #include "embedded/brick_quads.h"
 #include "embedded/light_depths.h"
 #include "embedded/shade_blocks.h"
+#include "embedded/surface_gradients.h"
 #include "engine/core/error.h"
 #include "engine/splatting/gather_cells.h"
 #include "engine/volume/packed_light.h"
@@ -69,15 +70,17 @@ GatherVolume::GatherVolume(const Device& device, const Volume& volume, const Cla
 }
 
 /// Which cells of the octree are bricks, and which are skipped. A position in a cell stays in that and its next neighbours
-/// along the axes upwards for an edge more, so that these decide.
+/// along the axes upwards for an edge more, so that these decide. What lights a surface is looked up up to two blocks outside
+/// of it, so that bricks reach a cell to skip further.
 void GatherVolume::makeBricks(std::vector<StageTime>& times) {
   const StageTimer timer(times, "bricks");
   const HierarchyLayout& hierarchy = built_.volume.hierarchy;
   const int top = hierarchy.top(), finest = std::min(shader::kSkipLevels, top);
-  std::vector<Cells> met;  // by level above the finest
   Cells cells = metCells(volume_, classification_, 1 << finest);
+  std::vector<Cells> met, around{spread(cells, 0, 1)};  // by level above the finest
   for (int level = finest; level <= top; ++level) {
     met.push_back(spread(cells, 0, 1));
+    around.push_back(spread(coarserCells(spread(cells, -1, 0)), 0, 1));
     cells = coarserCells(cells);
   }
 
@@ -86,7 +89,7 @@ void GatherVolume::makeBricks(std::vector<StageTime>& times) {
   constexpr int kOutside = 1 << 29;
   std::vector<glm::ivec4> bricks{glm::ivec4(kOutside)};  // the empty one
   for (int number = 0; number <= top; ++number) {
-    const Cells& brickCells = met[std::size_t(std::min(number + shader::kBrickLevels, top) - finest)];
+    const Cells& brickCells = around[std::size_t(std::min(number + shader::kBrickLevels, top) - finest)];
     const Cells skipCells = groupsToSkip(met[std::size_t(std::min(number + shader::kSkipLevels, top) - finest)]);
     levels_.push_back({.dimensions = hierarchy.levels[std::size_t(number)].dimensions,
                        .firstCell = int(numbers.size()),
@@ -305,6 +308,7 @@ void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
 void GatherVolume::record(Commands& commands, const Shading& shading) {
   if ((wantedLevels_ & ~shadedLevels_) != 0) recordShading(commands, shading);
   if (lightSlots() > 0) recordLightCodes(commands, shading);
+  if (hasSurfaces()) recordGradients(commands);
   for (int axis = 0; axis < 3; ++axis) {
     if (!shading.axes[std::size_t(axis)]) continue;
     Quads& quads = quads_[std::size_t(axis)];
@@ -313,10 +317,13 @@ void GatherVolume::record(Commands& commands, const Shading& shading) {
   }
 }
 
-std::optional<GatherVolume::Codes> GatherVolume::scalarCodes(int level) const {
+std::optional<shader::CodeBricks> GatherVolume::scalarCodes(int level) const {
   if (!hasScalars() || level != 0) return {};
   const DeviceScalars& scalars = *built_.volume.scalarBricks;
-  return Codes{.brickNumbers = scalars.brickNumbers.address(), .codes = scalars.codes.address(), .corner = scalars.corner, .cells = scalars.cells};
+  return shader::CodeBricks{.numbers = addressWords(scalars.brickNumbers.address()),
+                            .codes = addressWords(scalars.codes.address()),
+                            .corner = scalars.corner,
+                            .cells = scalars.cells};
 }
 
 void GatherVolume::recordQuads(Commands& commands, int axis) {
@@ -390,6 +397,37 @@ void GatherVolume::recordAmbientCodes(Commands& commands, int level) {
   }
 }
 
+void GatherVolume::recordGradients(Commands& commands) {
+  const std::uint32_t levels = wantedLevels_ & ~gradientLevels_;
+  if (levels == 0) return;
+  if (gradients_.bytes() == 0) {
+    const std::uint64_t blocks = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks;
+    gradients_ = Buffer(device_, blocks * sizeof(std::uint32_t), MemoryUse::Device, "gradients of surfaces");
+  }
+  commands.beginPass("surface gradients");
+  if (gradientLevels_ == 0) commands.clear(gradients_);  // of the empty brick
+  const DeviceVolume& volume = built_.volume;
+  const std::array<Binding, 2> bindings{&brickCellTexels_, &volume.occupancyTexels};
+  for (int level = 0; level <= volume.hierarchy.top(); ++level) {
+    const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
+    if ((levels >> level & 1u) == 0 || count == 0) continue;
+    const auto scalars = scalarCodes(level);
+    const Pipeline pass = makeComputePipeline(
+        device_, {surface_gradients_spv, "surface gradients"},
+        {.bindings = {kTexelsIn, kTexelsIn}, .pushConstantBytes = sizeof(shader::SurfaceGradientsPush)},
+        {shader::kBrickQuadsThreads, 1, 1}, {scalars.has_value()});
+    const shader::SurfaceGradientsPush push{.level = volume.onDevice(level),
+                                            .firstBrick = first,
+                                            .count = count,
+                                            .extinction = addressWords(volume.extinction.address()),
+                                            .gradients = addressWords(gradients_.address()),
+                                            .scalars = scalars.value_or(shader::CodeBricks())};
+    commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
+  }
+  commands.barrier(kCompute, kCompute);
+  gradientLevels_ |= levels;
+}
+
 void GatherVolume::recordLightQuads(Commands& commands, int axis) {
   Quads& quads = quads_[std::size_t(axis)];
   if ((wantedLevels_ & ~quads.lightLevels) == 0) return;
@@ -397,9 +435,11 @@ void GatherVolume::recordLightQuads(Commands& commands, int axis) {
   for (std::size_t slot = 0; slot < std::size_t(lightSlots()); ++slot) {
     const auto make = [&](int level, std::uint32_t first, std::uint32_t end) {
       const shader::GatherLevel& cells = levels_[std::size_t(level)];
-      const Codes codes{.brickNumbers = brickNumbers_.address() + VkDeviceAddress(cells.firstCell) * sizeof(std::uint32_t),
-                        .codes = lightCodes_[slot].address(),
-                        .cells = {cells.cellStrides.x, cells.cellStrides.y / cells.cellStrides.x, 0}};
+      const shader::CodeBricks codes{
+          .numbers = addressWords(brickNumbers_.address() + VkDeviceAddress(cells.firstCell) * sizeof(std::uint32_t)),
+          .codes = addressWords(lightCodes_[slot].address()),
+          .corner = glm::ivec3(0),
+          .cells = {cells.cellStrides.x, cells.cellStrides.y / cells.cellStrides.x, 0}};
       recordBricks(commands, axis, level, first, end, codes, quads.light[slot], false);
     };
     if (quads.lightLevels == 0) make(0, 0, 1);
@@ -413,7 +453,7 @@ void GatherVolume::recordLightQuads(Commands& commands, int axis) {
 
 /// The quads of bricks of a level, piece by piece.
 void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::uint32_t first, std::uint32_t end,
-                                const std::optional<Codes>& codes, const QuadStore& medium, bool colored) {
+                                const std::optional<shader::CodeBricks>& codes, const QuadStore& medium, bool colored) {
   if (first == end) return;
   const DeviceVolume& volume = built_.volume;
   const Quads& quads = quads_[std::size_t(axis)];
@@ -423,7 +463,6 @@ void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::ui
       {.bindings = {kTexelsIn, kTexelsIn}, .pushConstantBytes = sizeof(shader::BrickQuadsPush)},
       {shader::kBrickQuadsThreads, 1, 1}, {std::uint32_t(axis), towards, colored, codes.has_value()});
   const std::array<Binding, 2> bindings{&brickCellTexels_, &volume.occupancyTexels};
-  const Codes from = codes.value_or(Codes());
   for (std::uint32_t next = first; next < end;) {
     const std::uint32_t piece = next / bricksPerPiece_;
     const std::uint32_t bricks = std::min(end, (piece + 1) * bricksPerPiece_) - next;
@@ -436,10 +475,7 @@ void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::ui
                                       .towards = addressWords(quads.towards.address(piece)),
                                       .sources = addressWords(sources_.address()),
                                       .towardsEye = addressWords(towards_.address()),
-                                      .codeBricks = addressWords(from.brickNumbers),
-                                      .codes = addressWords(from.codes),
-                                      .corner = from.corner,
-                                      .cells = from.cells};
+                                      .codes = codes.value_or(shader::CodeBricks())};
     commands.dispatchLinear(pass, bindings, push, std::uint64_t(bricks) * shader::kBrickQuadsThreads);
     next += bricks;
   }
@@ -498,6 +534,7 @@ void GatherVolume::describeLights(shader::GatherFrame& frame) const {
   frame.octaveScale = float(lighting_->scatteringScale);
   frame.nearestLight2 = float(double(shader::kNearestLight2) * volume.voxelSize * volume.voxelSize);
   frame.indexToWorld = linear;
+  frame.gradients = addressWords(gradients_.address());
   frame.gradientToWorld = glm::transpose(glm::inverse(linear));
 }
 

@@ -72,7 +72,8 @@ class GatherVolume {
   int ambientChannels() const { return ambientChannels_; }
   int octaves() const { return lighting_ ? lighting_->scattering : 1; }
   bool isTinted() const { return lighting_ && lighting_->tint != glm::dvec3(1.0); }
-  bool hasSurfaces() const { return lighting_ && lighting_->surface > 0.0; }
+  /// Whether lights are scattered by surfaces at samples.
+  bool hasSurfaces() const { return sampleLights() > 0 && lighting_->surface > 0.0; }
   /// Whether quads are in more than one piece, of shader::kPieceBricksLog2 each.
   bool inPieces() const { return bricksPerPiece_ < firstBricks_.back(); }
   /// TransferTable::texels(); any texels where there are no scalars.
@@ -91,20 +92,16 @@ class GatherVolume {
   void recordShading(Commands& commands, const Shading& shading);
   /// Whether the level's blocks have source terms: scalars without light have their colours in the transfer function.
   bool shadesLevel(int level) const;
-  /// Codes of 16 bits, in bricks: of scalars, or of depths towards a light.
-  struct Codes {
-    VkDeviceAddress brickNumbers = 0, codes = 0;
-    glm::ivec3 corner{0}, cells{0};
-  };
-  std::optional<Codes> scalarCodes(int level) const;
+  std::optional<shader::CodeBricks> scalarCodes(int level) const;
   void recordQuads(Commands& commands, int axis);
   void recordBricks(Commands& commands, int axis, int level, std::uint32_t first, std::uint32_t end,
-                    const std::optional<Codes>& codes, const QuadStore& medium, bool colored);
+                    const std::optional<shader::CodeBricks>& codes, const QuadStore& medium, bool colored);
   void dropLightCodes();
   void recordLightCodes(Commands& commands, const Shading& shading);
   void recordLightDepths(Commands& commands, const Shading& shading, int level);
   void recordAmbientCodes(Commands& commands, int level);
   void recordLightQuads(Commands& commands, int axis);
+  void recordGradients(Commands& commands);
 
   const Device& device_;
   const Volume& volume_;
@@ -135,6 +132,8 @@ class GatherVolume {
   /// -log of what part of the unshadowed light reaches it.
   std::array<Buffer, shader::kMostLightSlots> lightCodes_;
   std::uint32_t lightLevels_ = 0;
+  Buffer gradients_;  ///< 4 bytes a block, in bricks; empty until surfaces are lit at samples
+  std::uint32_t gradientLevels_ = 0;
 };
 
 }  // namespace freevoxels

@@ -16,16 +16,19 @@ namespace freevoxels {
 
 /// What a voxel of a fog volume becomes in the box.
 struct FogToDensity {
+  static constexpr int kMargin = 0;
   float operator()(float value, bool active) const { return active ? value : kInactiveVoxel; }
 };
 
-/// What a voxel of a level set becomes: 1 inside, 0 outside, linear over the one voxel at the surface. Inside
-/// is inactive in OpenVDB, so the value alone decides.
+/// What a voxel of a level set becomes: 1 inside, 0 outside, linear over three voxels at the surface, so that gradients have
+/// its direction. Deep inside is inactive in OpenVDB.
 struct LevelSetToDensity {
+  static constexpr int kMargin = 2;  // voxels around it: light comes to its surface from outside
   float voxelSize;
   float operator()(float distance, bool active) const {
     if (active && std::isnan(distance)) return distance;  // counted, and then 0, like every NaN
-    const float density = std::clamp(0.5f - distance / voxelSize, 0.0f, 1.0f);
+    constexpr float kRamp = 3.0f;  // voxels
+    const float density = active ? std::clamp(0.5f - distance / (kRamp * voxelSize), 0.0f, 1.0f) : distance < 0.0f ? 1.0f : 0.0f;
     return density > 0.0f ? density : kInactiveVoxel;
   }
 };
@@ -47,7 +50,7 @@ bool holdsData(const openvdb::FloatTree::LeafNodeType& leaf, const ToDensity& to
   return false;
 }
 
-/// The smallest box around the voxels that `toDensity` keeps.
+/// The smallest box around the voxels that `toDensity` keeps, and its margin; empty where it keeps none.
 template <typename ToDensity>
 openvdb::CoordBBox boundsOf(const openvdb::FloatTree& tree,
                             const std::vector<const openvdb::FloatTree::LeafNodeType*>& leaves,
@@ -70,6 +73,7 @@ openvdb::CoordBBox boundsOf(const openvdb::FloatTree& tree,
   visitTiles(tree, [&](const openvdb::CoordBBox& box, float value, bool active) {
     if (toDensity(value, active) != kInactiveVoxel) bounds.expand(box);
   });
+  if (!bounds.empty()) bounds.expand(ToDensity::kMargin);
   return bounds;
 }
 

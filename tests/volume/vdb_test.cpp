@@ -107,14 +107,15 @@ TEST_F(Vdb, ALevelSetBecomesFogOfTheSameVolume) {
     double sum = 0.0;
     for (const float value : denseScalars(volume))
       if (value != kInactiveVoxel) sum += value;
-    const double expected = 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
+    constexpr double kRamp = 3.0 * kVoxelSize;  // mean volume of spheres whose radii are as much apart
+    const double expected = 4.0 / 3.0 * std::numbers::pi * (radius * radius * radius + radius * kRamp * kRamp / 4.0);
     EXPECT_NEAR(sum * std::pow(kVoxelSize, 3) / expected, 1.0, radius < 0.5 ? 2e-2 : 2e-3) << radius;
     EXPECT_GT(volume.minimum, 0.0f);
     EXPECT_EQ(volume.maximum, 1.0f);
     const glm::ivec3 middle = volume.dimensions / 2;
     EXPECT_EQ(volume.scalar(middle.x, middle.y, middle.z), 1.0f);
     const double diameter = 2.0 * radius / kVoxelSize;
-    EXPECT_NEAR(volume.dimensions.x, diameter, 2.0) << "the box ends where the density does";
+    EXPECT_NEAR(volume.dimensions.x, diameter + 3.0 + 2.0 * 2.0, 2.0) << "the box ends two voxels beyond the density";
   }
 }
 
@@ -125,7 +126,10 @@ TEST_F(Vdb, DensityFallsLinearlyOverTheSurfaceOfALevelSet) {
   for (int x = 0; x < 5; ++x) grid->tree().setValueOn(Coord(x, 0, 0), float(x) - 1.5f);
   write({grid});
   const Volume volume = read();
-  EXPECT_EQ(denseScalars(volume), (std::vector<float>{1.0f, 0.75f, 0.25f}));  // distances -1.5, -0.5, 0.5
+  ASSERT_EQ(volume.dimensions, glm::ivec3(9, 5, 5)) << "with a margin of two voxels";
+  for (int x = 0; x < 5; ++x)  // distances of -0.75 voxels and on, over three
+    EXPECT_FLOAT_EQ(volume.scalar(x + 2, 2, 2), 0.5f - (0.5f * float(x) - 0.75f) / 3.0f);
+  EXPECT_EQ(volume.scalar(7, 2, 2), kInactiveVoxel);
 }
 
 TEST_F(Vdb, HalfAndDoubleGridsAreRead) {
@@ -316,8 +320,7 @@ TEST_F(Vdb, InfoGivesTheBoxThatIsRendered) {
   write({named<FloatGrid>(sphere, "sphere"), makeGrid("fog"), outside});
   const std::vector<GridInfo> infos = describeVdb(file);
   EXPECT_EQ(infos.at(0).renderDimensions, read("sphere").dimensions);
-  EXPECT_LT(infos.at(0).renderDimensions.x, infos.at(0).dimensions.x)
-      << "the band reaches beyond the surface";
+  EXPECT_EQ(infos.at(0).renderDimensions.x, infos.at(0).dimensions.x + 2) << "of the band of three voxels half counts, and a margin";
   EXPECT_EQ(infos.at(1).renderDimensions, infos.at(1).dimensions);
   EXPECT_EQ(infos.at(2).renderDimensions, glm::ivec3(0));
   EXPECT_NE(infos.at(2).unusable.find("no voxel is inside"), std::string::npos);

@@ -1,0 +1,12 @@
+// Codes of 16 bits a block, in bricks of kBrickEdge^3, x fastest: include after the extension of buffer references.
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer CodeWords { uint values[]; };
+
+// 0 of blocks without data, which are all that are beyond the volume.
+uint codeAt(CodeBricks bricks, ivec3 dimensions, ivec3 block) {
+  const ivec3 place = block + bricks.corner;
+  const ivec3 cell = place / kBrickEdge, local = place % kBrickEdge;
+  const bool inside = all(greaterThanEqual(block, ivec3(0))) && all(lessThan(block, dimensions));
+  const uint brick = inside ? CodeWords(bricks.numbers).values[cell.x + bricks.cells.x * (cell.y + bricks.cells.y * cell.z)] : 0;
+  const uint index = inside ? ((brick * kBrickEdge + local.z) * kBrickEdge + local.y) * kBrickEdge + local.x : 0;
+  return bitfieldExtract(CodeWords(bricks.codes).values[index / 2], int(index % 2) * 16, 16);
+}

@@ -1,0 +1,15 @@
+// Gradients in 4 bytes: three signed components of 9 bits, and the exponent that they share.
+const float kMantissas = 255.0;
+const int kLeastExponent = -16;  // of what is less nothing is kept
+
+uint packGradient(vec3 gradient) {
+  const float most = max(max(abs(gradient.x), abs(gradient.y)), abs(gradient.z));
+  const int exponent = most > 0.0 ? clamp(int(ceil(log2(most))), kLeastExponent, kLeastExponent + 31) : kLeastExponent;
+  const ivec3 parts = ivec3(round(clamp(gradient * exp2(float(-exponent)), -1.0, 1.0) * kMantissas)) & 0x1ff;
+  return uint(parts.x | parts.y << 9 | parts.z << 18 | (exponent - kLeastExponent) << 27);
+}
+
+vec3 unpackGradient(uint bits) {
+  const ivec3 parts = ivec3(bitfieldExtract(int(bits), 0, 9), bitfieldExtract(int(bits), 9, 9), bitfieldExtract(int(bits), 18, 9));
+  return vec3(parts) * (exp2(float(int(bits >> 27) + kLeastExponent)) / kMantissas);
+}
