@@ -33,7 +33,7 @@ constexpr int kQuickCube = 40, kWholeCube = 64;
 constexpr int kQuickQuality = 48;  ///< voxels along an edge where pictures meet the oracle
 constexpr int kQuickQualityPicture = 96, kWholeQualityPicture = 160, kLargeQualityPicture = 256;
 /// Where a voxel is as large as the parts of a volume, no method has to reach anything.
-constexpr int kLeastResolutionWithGoals = kMedium;
+constexpr int kLeastResolutionWithGoals = kLarge;
 constexpr int kQuickLightPicture = 64;
 constexpr int kQuickSky = 24;  ///< voxels along an edge, where the oracle takes its time for each
 constexpr int kDetailResolution = kMedium;
@@ -130,7 +130,7 @@ void addDetail(std::vector<SectionJob>& jobs, const Device& device, bool quick) 
 }
 
 void addFlight(std::vector<SectionJob>& jobs, const Device& device, const Extent& extent) {
-  const int resolution = extent.quick ? kQuickQuality : kLeastResolutionWithGoals;
+  const int resolution = extent.quick ? kQuickQuality : kMedium;
   const int frames = extent.quick ? kQuickFlightFrames : kWholeFlightFrames;
   jobs.push_back({"picture quality within the cloud", [=, &device] {
                     return flyThroughQuality(

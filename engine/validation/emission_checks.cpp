@@ -37,7 +37,7 @@ constexpr std::array<Method, 2> kMethods{
 
 Classification burning(const Volume& volume, double densityScale) {
   Classification classification{.densityScale = densityScale * automaticDensityScale(volume, 2.0),
-                                .albedo = glm::vec3(kSootAlbedo)};
+                                .albedo = glm::vec3(0.1f)};
   classification.emission = Emission{.strength = automaticEmissionStrength(volume, classification, {})};
   return classification;
 }

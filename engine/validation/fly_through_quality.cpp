@@ -23,7 +23,9 @@ std::vector<QualityMethod> methods() {
   QualityMethod table{.name = "table alone", .table = {}, .frame = {}, .goals = {}};
   table.frame.attenuation = AttenuationLookup::Bilinear;
   const std::vector<QualityMethod>& all = qualityMethods();
-  return {all.front(), table, all[sortedMethod(all)]};
+  QualityMethod first = all.front();
+  first.order = ClassificationOrder::Pre;  // far away both look at blocks that are classified
+  return {first, table, all[sortedMethod(all)]};
 }
 
 ReportPlot::Series psnrSeries(const std::string& name, const std::vector<Image>& pictures,

@@ -129,7 +129,7 @@ std::vector<Check> sceneChecks(const QualityFigures& scene, const std::vector<Qu
   std::vector<Check> checks;
   if (!scene.hasGoals) return checks;
   for (std::size_t method = 0; method < methods.size(); ++method) {
-    const auto& [name, table, frame, goals] = methods[method];
+    const auto& [name, table, frame, order, goals] = methods[method];
     const auto least = scene.thin ? goals.leastThin : goals.least;
     if (least && !(scene.thin && scene.resolution > goals.thinResolution))
       checks.push_back(leastPsnr(scene, method, name, *least));

@@ -9,6 +9,7 @@
 
 #include "engine/attenuation/table_settings.h"
 #include "engine/splatting/render_settings.h"
+#include "engine/volume/classification.h"
 
 namespace freevoxels {
 
@@ -27,6 +28,7 @@ struct QualityMethod {
   std::string name;
   TableSettings table;
   FrameSettings frame;  ///< apart from the size
+  ClassificationOrder order = ClassificationOrder::Pre;  ///< that of the oracle is Post
   QualityGoals goals;
 };
 

@@ -19,7 +19,9 @@ std::vector<Image> methodPictures(const StageMaker& make, const QualityScene& sc
                                   glm::ivec2 size) {
   FrameSettings settings = method.frame;
   settings.size = size;
-  const auto outputs = make(scene.volume, scene.classification, method.table);
+  Classification classification = scene.classification;
+  classification.order = method.order;
+  const auto outputs = make(scene.volume, classification, method.table);
   std::vector<Image> pictures;
   for (const Camera& camera : cameras) pictures.push_back(outputs->picture(camera, settings));
   return pictures;
