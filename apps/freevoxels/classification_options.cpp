@@ -15,7 +15,7 @@ void ClassificationOptions::add(CLI::App& app) {
           ->group("Classification");
   CLI::Option* color =
       addTriple(app, "--albedo", "R,G,B", albedo,
-                "Colour, linear [0.9,0.9,0.9; with --emission 0.1,0.1,0.1: soot]", {0.0, 1.0})
+                "Colour, linear [0.9,0.9,0.9; with --emission 0.5,0.5,0.5]", {0.0, 1.0})
           ->group("Classification");
   CLI::Option* grid =
       addText(app, "--albedo-grid", "NAME", albedoGrid, "Grid of vectors of the file: colours, linear, 0..1")

@@ -59,10 +59,13 @@ double defaultIntensity(const Light& light, const Volume& volume) {
   return kDefaultIrradiance * std::max(glm::dot(toLight, toLight), glm::dot(diagonal, diagonal));
 }
 
-Lighting defaultLights(const Camera& camera) {
+/// Of volumes that shine: for their own light to show.
+constexpr double kBesideFlames = 0.4;
+
+Lighting defaultLights(const Camera& camera, double part) {
   constexpr double kKeyIrradiance = 2.2, kAmbientRadiance = 0.12;
   const glm::dvec3 towardsKey = glm::transpose(glm::dmat3(worldToCamera(camera))) * glm::normalize(glm::dvec3(-0.5, 0.7, 0.5));
-  return {.lights = {{.place = towardsKey, .intensity = kKeyIrradiance * std::numbers::pi}}, .ambient = glm::dvec3(kAmbientRadiance)};
+  return {.lights = {{.place = towardsKey, .intensity = part * kKeyIrradiance * std::numbers::pi}}, .ambient = glm::dvec3(part * kAmbientRadiance)};
 }
 
 void LightingOptions::add(CLI::App& app) {
@@ -78,7 +81,7 @@ void LightingOptions::add(CLI::App& app) {
          "is "
          "in the world; its linear colour [1,1,1]; its irradiance, of a position at distance 1 "
          "[4 pi in the middle of the volume]. Without any light, ambient light or environment: a key light from the upper "
-         "left of the first view and some ambient light; none of a volume that shines")
+         "left of the first view and some ambient light, dimmer for a volume that shines")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("direction|position=X,Y,Z[,color=R,G,B][,intensity=I]")
@@ -170,9 +173,9 @@ void LightingOptions::check() const {
 
 std::optional<Lighting> LightingOptions::resolve(const Volume& volume, const Classification& classification,
                                                  const Camera& camera) const {
-  if (unlit || (!hasLight() && classification.emission)) return std::nullopt;
+  if (unlit) return std::nullopt;
   Lighting lighting;
-  if (!hasLight()) lighting = defaultLights(camera);
+  if (!hasLight()) lighting = defaultLights(camera, classification.emission ? kBesideFlames : 1.0);
   if (ambient) lighting.ambient = *ambient;
   lighting.tint = tint.value_or(lighting.tint);
   lighting.phaseG = phaseG.value_or(lighting.phaseG);

@@ -4,6 +4,7 @@
 
 #include "apps/freevoxels/program.h"
 #include "engine/core/error.h"
+#include "engine/volume/emission_light.h"
 
 namespace freevoxels {
 
@@ -71,9 +72,11 @@ Scene SceneOptions::resolve(std::shared_ptr<const Volume> volume) const {
   scene.classification = classification.resolve(*scene.volume, emission.grid().has_value());
   scene.classification.emission = emission.resolve(*scene.volume, scene.classification);
   if (scene.classification.emission && !classification.albedo)
-    scene.classification.albedo = glm::vec3(kSootAlbedo);
+    scene.classification.albedo = glm::vec3(kSmokeAlbedo);
   scene.camera = camera.resolve(*scene.volume, scene.classification).front();
   scene.lighting = lighting.resolve(*scene.volume, scene.classification, scene.camera);
+  if (scene.classification.emission && scene.lighting)
+    scene.classification.emissionLight = std::make_shared<const EmissionLight>(*scene.volume, scene.classification);
   return scene;
 }
 

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,11 +44,14 @@ struct Emission {
 /// pre: voxels, whose extinction and colour are interpolated. Without a transfer function the two are the same.
 enum class ClassificationOrder : int { Post = 0, Pre = 1 };
 
+class EmissionLight;
+
 struct Classification {
   std::optional<TransferFunction> transferFunction;  ///< when set, the two below are not used
   double densityScale = 1.0;                         ///< extinction per world unit at density 1
   glm::vec3 albedo{0.9f};  ///< linear Rec.709; the volume's grid of them has precedence where it is active
   std::optional<Emission> emission = std::nullopt;  ///< of the volume's temperatures, if it has any
+  std::shared_ptr<const EmissionLight> emissionLight = nullptr;  ///< lights the medium with the emission; null: it lights nothing
   ClassificationOrder order = ClassificationOrder::Post;  ///< Pre of volumes that shine, whatever this is
 
   /// Whether samples of the volume are classified after interpolation.
@@ -89,8 +93,8 @@ double automaticDensityScale(const Volume& volume, double opticalDepth);
 /// Of a level set: the optical depth of a voxel inside.
 inline constexpr double kLevelSetOpticalDepth = 3.0;
 
-/// Of the smoke of a fire, where no albedo is given: soot.
-inline constexpr float kSootAlbedo = 0.1f;
+/// Of the smoke of a fire, where no albedo is given.
+inline constexpr float kSmokeAlbedo = 0.5f;
 
 /// How temperatures become kelvin where that is not given. Grids of which no value is above
 /// kLeastKelvinMaximum are in no kelvin: 0 is kEmberTemperature and the largest kReferenceTemperature.

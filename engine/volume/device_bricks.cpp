@@ -99,8 +99,7 @@ void DeviceBricks::upload(std::size_t batch) {
   brickCount_ = std::uint32_t(bricks.size());
   if (target_.hasEmission())
     uploadPacked(emissions_, batch, [this](glm::ivec3 voxel) {
-      const float temperature = volume_.temperature->values.at(voxel);
-      return packLight(emittedLight(*classification_.emission, temperature) / target_.emissionUnit);
+      return packLight(classifier_.at(voxel).emission / target_.emissionUnit);
     });
   if (target_.hasColors && !classification_.transferFunction)
     uploadPacked(colors_, batch, [this](glm::ivec3 voxel) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <numeric>
 
+#include "engine/volume/emission_light.h"
 #include "engine/volume/packed_light.h"
 #include "shaders/interface.h"
 
@@ -38,6 +39,20 @@ shader::BlockStores DeviceVolume::stores() const {
           .blockColors = addressWords(blockColors.address())};
 }
 
+namespace {
+
+/// At least the largest component of what any voxel emits, and scatters of that.
+double brightestSource(const Classification& classification, const Volume& volume) {
+  double extinction = classify(classification, volume.maximum).extinction;
+  if (classification.transferFunction)
+    for (const TransferFunction::OpacityPoint& point : classification.transferFunction->opacity)
+      extinction = std::max(extinction, classify(classification, point.scalar).extinction);
+  const double light = classification.emissionLight ? classification.emissionLight->brightest() : 0.0;
+  return brightestLight(classification, volume) + extinction * light;
+}
+
+}  // namespace
+
 DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
                               const Classification& classification) {
   DeviceVolume result{.layout = GridLayout(volume.dimensions),
@@ -45,7 +60,7 @@ DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
                       .indexToWorld = volume.indexToWorld,
                       .albedo = classification.albedo,
                       .hasColors = volume.albedo.has_value() || classification.transferFunction.has_value(),
-                      .emissionUnit = brightestLight(classification, volume) / kBrightest,
+                      .emissionUnit = brightestSource(classification, volume) / kBrightest,
                       .voxelSize = volume.voxelSize(),
                       .activeVoxels = volume.activeVoxels};
   if (result.hasEmission()) result.activeVoxels += volume.temperature->activeVoxels;

@@ -34,7 +34,7 @@ TEST_F(EmissionCommand, TheHeaderRepeatsThePicture) {
   const std::string made = readBytes(folder / "a.exr");
   const std::string command = exrAttribute(made, "freevoxels:command");
   for (const char* part : {"--temperature-grid heat", "--temperature-scale 2000", "--emission ",
-                           "--temperature-offset 1000", "--albedo 0.1,0.1,0.1"})
+                           "--temperature-offset 1000", "--albedo 0.5,0.5,0.5"})
     EXPECT_NE(command.find(part), std::string::npos) << part << " in " << command;
   Arguments arguments = words(command.substr(std::string("freevoxels ").size()));
   arguments.push_back((folder / "b.exr").string());

@@ -1,0 +1,151 @@
+#include "engine/volume/emission_light.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace freevoxels {
+
+namespace {
+
+constexpr int kMostCells = 48;             // along the longest edge
+constexpr std::size_t kMostSources = 128;
+
+/// Squared radius, in edges of a cube, at which a source of the cube's emission is as bright as in the middle of a sphere of
+/// the same volume and emission.
+const double kCore2 = std::pow(3.0 / (4.0 * std::numbers::pi), 2.0 / 3.0) / 3.0;
+
+struct Cell {
+  double extinction = 0.0;     // mean
+  glm::dvec3 power{0.0};       // emission times the cell's volume
+};
+
+struct Cells {
+  glm::ivec3 size{0};
+  int edge = 1;  // voxels
+  std::vector<Cell> values;
+
+  std::size_t index(glm::ivec3 cell) const {
+    return std::size_t(cell.x) + std::size_t(size.x) * (std::size_t(cell.y) + std::size_t(size.y) * std::size_t(cell.z));
+  }
+};
+
+struct Source {
+  glm::dvec3 place{0.0};  // cells
+  glm::dvec3 power{0.0};
+  double core2 = 0.0;     // squared world length
+};
+
+double luminance(const glm::dvec3& color) { return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722)); }
+
+Cells cellsOf(const Volume& volume, const Classification& classification) {
+  const glm::ivec3 n = volume.dimensions;
+  Cells cells;
+  cells.edge = (std::max({n.x, n.y, n.z}) + kMostCells - 1) / kMostCells;
+  cells.size = (n + cells.edge - 1) / cells.edge;
+  cells.values.resize(std::size_t(cells.size.x) * std::size_t(cells.size.y) * std::size_t(cells.size.z));
+  const double share = 1.0 / (double(cells.edge) * cells.edge * cells.edge);
+  const double voxel = std::abs(glm::determinant(glm::dmat3(volume.indexToWorld)));
+  tbb::parallel_for(0, cells.size.z, [&](int plane) {
+    std::vector<float> scalars(std::size_t(n.x)), temperatures(std::size_t(n.x));
+    for (int z = plane * cells.edge; z < std::min((plane + 1) * cells.edge, n.z); ++z)
+      for (int y = 0; y < n.y; ++y) {
+        volume.scalars.copyRow(y, z, scalars);
+        volume.temperature->values.copyRow(y, z, temperatures);
+        Cell* const row = &cells.values[cells.index({0, y / cells.edge, plane})];
+        for (int x = 0; x < n.x; ++x) {
+          Cell& cell = row[x / cells.edge];
+          cell.extinction += share * classify(classification, scalars[std::size_t(x)]).extinction;
+          cell.power += voxel * emittedLight(*classification.emission, temperatures[std::size_t(x)]);
+        }
+      }
+  });
+  return cells;
+}
+
+/// Of groups of cells, cubes of as few as give no more than kMostSources of them.
+std::vector<Source> sourcesOf(const Cells& cells, double cellEdge) {
+  for (int group = 1;; group *= 2) {
+    const glm::ivec3 groups = (cells.size + group - 1) / group;
+    std::vector<Source> sums(std::size_t(groups.x) * std::size_t(groups.y) * std::size_t(groups.z));
+    glm::ivec3 cell;
+    for (cell.z = 0; cell.z < cells.size.z; ++cell.z)
+      for (cell.y = 0; cell.y < cells.size.y; ++cell.y)
+        for (cell.x = 0; cell.x < cells.size.x; ++cell.x) {
+          const glm::dvec3& power = cells.values[cells.index(cell)].power;
+          if (power == glm::dvec3(0.0)) continue;
+          const glm::ivec3 at = cell / group;
+          Source& sum = sums[std::size_t(at.x) + std::size_t(groups.x) * (std::size_t(at.y) + std::size_t(groups.y) * std::size_t(at.z))];
+          sum.power += power;
+          sum.place += luminance(power) * glm::dvec3(cell);
+        }
+    std::erase_if(sums, [](const Source& source) { return source.power == glm::dvec3(0.0); });
+    if (sums.size() > kMostSources && groups != glm::ivec3(1)) continue;
+    for (Source& source : sums) {
+      source.place /= luminance(source.power);
+      source.core2 = kCore2 * group * group * cellEdge * cellEdge;
+    }
+    return sums;
+  }
+}
+
+/// Of the cells between the middles of two, world length `length` apart.
+double depthBetween(const Cells& cells, const glm::dvec3& from, const glm::dvec3& to, double length) {
+  const int steps = std::max(1, int(std::ceil(glm::length(to - from))));
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const glm::dvec3 place = glm::mix(from, to, (i + 0.5) / steps);
+    sum += cells.values[cells.index(glm::clamp(glm::ivec3(glm::round(place)), glm::ivec3(0), cells.size - 1))].extinction;
+  }
+  return sum * length / steps;
+}
+
+}  // namespace
+
+EmissionLight::EmissionLight(const Volume& volume, const Classification& classification) {
+  if (!(brightestLight(classification, volume) > 0.0)) return;
+  const Cells cells = cellsOf(volume, classification);
+  cells_ = cells.size;
+  const glm::dmat4 scaled = glm::dmat4(glm::dvec4(cells.edge, 0, 0, 0), glm::dvec4(0, cells.edge, 0, 0),
+                                       glm::dvec4(0, 0, cells.edge, 0), glm::dvec4(glm::dvec3(0.5 * (cells.edge - 1)), 1));
+  const glm::dmat4 cellsToWorld = volume.indexToWorld * scaled;
+  worldToCells_ = glm::inverse(cellsToWorld);
+  const std::vector<Source> sources = sourcesOf(cells, cells.edge * volume.voxelSize());
+  radiance_.resize(cells.values.size());
+  const glm::dmat3 linear(cellsToWorld);
+  tbb::parallel_for(0, cells_.z, [&](int z) {
+    for (int y = 0; y < cells_.y; ++y)
+      for (int x = 0; x < cells_.x; ++x) {
+        const glm::dvec3 here(x, y, z);
+        glm::dvec3 sum(0.0);
+        for (const Source& source : sources) {
+          const double length = glm::length(linear * (source.place - here));
+          const double through = std::exp(-depthBetween(cells, here, source.place, length));
+          sum += source.power * (through / (length * length + source.core2));
+        }
+        radiance_[cells.index({x, y, z})] = sum / (4.0 * std::numbers::pi);
+      }
+  });
+  for (const glm::vec3& radiance : radiance_)
+    brightest_ = std::max({brightest_, double(radiance.r), double(radiance.g), double(radiance.b)});
+}
+
+glm::dvec3 EmissionLight::at(const glm::dvec3& world) const {
+  if (radiance_.empty()) return glm::dvec3(0.0);
+  const glm::dvec3 place = glm::clamp(glm::dvec3(worldToCells_ * glm::dvec4(world, 1.0)), glm::dvec3(0.0), glm::dvec3(cells_ - 1));
+  const glm::ivec3 low(place);
+  const glm::dvec3 part = place - glm::dvec3(low);
+  glm::dvec3 sum(0.0);
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::ivec3 upper(corner & 1, corner >> 1 & 1, corner >> 2);
+    const glm::dvec3 shares = glm::mix(1.0 - part, part, glm::dvec3(upper));
+    const glm::ivec3 cell = glm::min(low + upper, cells_ - 1);
+    sum += shares.x * shares.y * shares.z *
+           glm::dvec3(radiance_[std::size_t(cell.x) + std::size_t(cells_.x) * (std::size_t(cell.y) + std::size_t(cells_.y) * std::size_t(cell.z))]);
+  }
+  return sum;
+}
+
+}  // namespace freevoxels
