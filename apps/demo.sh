@@ -18,7 +18,6 @@ if [ $# -eq 0 ]; then
 else
   input="$1"
   shift
-  set -- --background 0.004,0.006,0.012 "$@"
 fi
 
 name="$(basename "${input#procedural:}")"
