@@ -1,6 +1,7 @@
 #version 460
 // What part of the light from everywhere reaches the middles of all blocks of bricks, interpolated between cells
-// (ambient_sweep.comp), as the optical depth that a single light would have passed: so it changes as fast into what is opaque. A workgroup a brick, a thread a row of blocks.
+// (ambient_sweep.comp), as the optical depth that a single light would have passed: so it changes as fast into what is opaque.
+// A workgroup a brick, a thread a row of blocks.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -15,14 +16,16 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Co
 
 float lightAt(ivec3 block) {
   const vec3 position = ((vec3(block) + 0.5) * float(push.blockEdge)) / float(push.cellEdge) - 0.5;
-  const vec3 low = floor(position), part = position - low;
+  const vec3 low = floor(position), upperShare = position - low;
   float sum = 0.0;
   [[unroll]] for (int corner = 0; corner < 8; ++corner) {
     const ivec3 upper = ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
     const ivec3 cell = clamp(ivec3(low) + upper, ivec3(0), push.cells - 1);
-    const vec3 shares = mix(1.0 - part, part, vec3(upper));
+    const vec3 shares = mix(1.0 - upperShare, upperShare, vec3(upper));
     const int place = cell.x + push.cells.x * (cell.y + push.cells.y * cell.z);
-    sum += shares.x * shares.y * shares.z * light[place + push.firstLight];
+    float part = light[place + push.firstLight];
+    if (push.firstWeight >= 0) part /= light[place + push.firstWeight];
+    sum += shares.x * shares.y * shares.z * part;
   }
   return sum;
 }

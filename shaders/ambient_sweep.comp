@@ -1,20 +1,31 @@
 #version 460
 // Adds to every cell of a volume what reaches it of the light from a direction: Subr et al. 2007, Section 3.1. A thread marches
-// through all planes across an axis; where it leaves the volume at a side it goes on at the other one, on the line that enters
+// through all planes across the last axis of the step; where it leaves the volume at a side it goes on at the other one, on the line that enters
 // there, so that all lines are marched and every cell is met once.
 #extension GL_GOOGLE_include_directive : require
 #include "gather_interface.h"
+#include "phase_function.glsl"
 
 layout(constant_id = 0) const int kChannels = 1;
+layout(constant_id = 1) const bool kPhase = false;  // whether the light is weighted by the phase function towards the eye
 
 layout(local_size_x = kAmbientThreads) in;
 layout(scalar, push_constant) uniform Push { AmbientSweepPush push; };
 layout(scalar, binding = 0) readonly buffer Extinctions { float extinctions[]; };
-layout(scalar, binding = 1) buffer CellLight { float light[]; };
+layout(scalar, binding = 1) buffer CellLight { float light[]; };  // channels, and with kPhase the sum of weights, after each other
+
+// Of an octave of scattering over that of light that is scattered alike in all directions.
+float phaseAt(ivec3 cell, float g) {
+  const vec3 toEye = push.orthographic != 0 ? push.eye : push.eye - vec3(cell);
+  const vec3 towards = push.cellToWorld * toEye;
+  const float length2 = dot(towards, towards);
+  if (length2 == 0.0) return 1.0;
+  return 4.0 * kPi * phaseFunction(g, normalize(push.cellToWorld * vec3(push.step)), towards * inversesqrt(length2));
+}
 
 void main() {
   const int number = int(gl_LocalInvocationID.x + kAmbientThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x));
-  const ivec3 axes = push.axes;
+  const ivec3 axes = push.step.z != 0 ? ivec3(0, 1, 2) : push.step.y != 0 ? ivec3(0, 2, 1) : ivec3(1, 2, 0);
   const ivec2 sides = ivec2(push.cells[axes.x], push.cells[axes.y]);
   if (number >= sides.x * sides.y) return;
   const ivec3 strides = ivec3(1, push.cells.x, push.cells.x * push.cells.y);
@@ -26,14 +37,20 @@ void main() {
   for (int k = 0; k < count; ++k) {
     const int place = side.x * strides[axes.x] + side.y * strides[axes.y] + plane * strides[axes.z];
     const float own = extinctions[place] * push.stepLength, middle = depth + 0.5 * own;
-    [[unroll]] for (int c = 0; c < kChannels; ++c) {
-      float scale = 1.0, sum = 0.0;
-      for (int octave = 0; octave < push.octaves; ++octave) {
-        sum += scale * exp(-scale * push.tint[c] * middle);
-        scale *= push.octaveScale;
-      }
-      light[place + c * ofChannel] += push.share[c] * sum;
+    ivec3 cell;
+    cell[axes.x] = side.x;
+    cell[axes.y] = side.y;
+    cell[axes.z] = plane;
+    vec3 sums = vec3(0.0);
+    float scale = 1.0, weights = 0.0;
+    for (int octave = 0; octave < push.octaves; ++octave) {
+      const float weight = kPhase ? scale * phaseAt(cell, scale * push.phaseG) : scale;
+      [[unroll]] for (int c = 0; c < kChannels; ++c) sums[c] += weight * exp(-scale * push.tint[c] * middle);
+      weights += weight;
+      scale *= push.octaveScale;
     }
+    [[unroll]] for (int c = 0; c < kChannels; ++c) light[place + c * ofChannel] += push.share[c] * sums[c];
+    if (kPhase) light[place + kChannels * ofChannel] += push.weight * weights;
     depth += own;
     plane += step.z;
     side += step.xy;

@@ -42,7 +42,7 @@ struct FrameLighting {
   int octaves;                   // of scattering
   float octaveScale;             // of each to the one before
   mat3 gradientToWorld;
-  vec3 fromAll[kMaximumCells];   // by cell number: radiance from there times its part of the sphere
+  vec4 fromAll[kMaximumCells];   // by cell number: radiance from there times its part of the sphere, and that part
 };
 
 // The frame, as splat_setup.comp needs it. Index space is relative to the middle of the volume, so that

@@ -10,6 +10,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 #include "packed_light.glsl"
 #include "packed_gradient.glsl"
+#include "phase_function.glsl"
 
 layout(constant_id = 0) const int kAxis = 2;        // rays with another axis are left to other dispatches
 layout(constant_id = 1) const bool kTowards = false;  // whether the light of blocks depends on the direction to the eye
@@ -52,7 +53,6 @@ layout(binding = 7) uniform textureBuffer transferTable;  // of each interval th
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
 const bool kSampled = kLights > 0 || kAmbient > 0;
-const float kPi = 3.14159265358979;
 const float kLeastShaded = 1.0 / 512.0;  // part of a pixel from which on the normal of a surface counts
 const float kOutside = 2.5;               // blocks
 const float kMostLightDepth = 0.99 * kOpaqueDepth;  // about the end of the code of rays
@@ -164,13 +164,6 @@ float partInFront(float ahead) {
 
 // The mean of exp(-depth) over a part along which the depth grows from 0 to x, of either sign.
 float meanTransmittance(float x) { return abs(x) < 0.02 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(-x)) / x; }
-
-// Of Henyey and Greenstein, per steradian. 1 + g² - 2 g cos without the difference of large terms.
-float phaseFunction(float g, vec3 before, vec3 after) {
-  const vec3 apart = after - sign(g) * before;
-  const float width = (1.0 - abs(g)) * (1.0 - abs(g)) + abs(g) * dot(apart, apart);
-  return (1.0 - g * g) / (4.0 * kPi * width * sqrt(width));
-}
 
 // In the place of the phase function, after Blinn; both sides are alike.
 float surfaceScattering(vec3 normal, vec3 toLight, vec3 toEye) {

@@ -156,12 +156,16 @@ struct LightDepthsPush {
 // ambient_sweep.comp
 struct AmbientSweepPush {
   ivec3 cells;
-  ivec3 axes;        // two across the march, and that of the march
   ivec3 step;        // from cell to cell, the way of the light
   float stepLength;  // world units
   vec3 share;        // of the unshadowed light that comes from this direction, by channel
+  float weight;      // part of the sphere that the direction stands for, over the sum of all octaves
   int octaves;       // of scattering
   float octaveScale;
+  float phaseG;
+  mat3 cellToWorld;  // linear part
+  vec3 eye;          // cells; orthographic the direction towards it
+  int orthographic;
   vec3 tint;         // of the extinction, by channel
 };
 
@@ -171,6 +175,7 @@ struct AmbientCodesPush {
   int cellEdge;      // voxels
   int blockEdge;     // voxels
   int firstLight;    // of the channel
+  int firstWeight;   // of what the light is divided by; -1: of nothing
   uint firstBrick;
   uint count;        // of bricks
   uvec2 codes;       // device address: 16 bits a block in bricks, x fastest
@@ -196,8 +201,8 @@ static_assert(sizeof(SurfaceGradientsPush) <= 128);
 static_assert(sizeof(LightDepthsPush) == 108);
 static_assert(sizeof(ExpandScalarsPush) == 76);
 static_assert(sizeof(ShadePush) == 48);
-static_assert(sizeof(AmbientSweepPush) == 72);
-static_assert(sizeof(AmbientCodesPush) == 40);
+static_assert(sizeof(AmbientSweepPush) == 120);
+static_assert(sizeof(AmbientCodesPush) == 44);
 }  // namespace freevoxels::shader
 #endif
 #endif

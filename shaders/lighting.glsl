@@ -3,16 +3,9 @@
 // light is wanted for all positions of the eye, to first order in the direction towards it: then there must be neither a
 // phase function nor surfaces.
 
-const float kPi = 3.14159265358979;
-const float kMostRayDepth = 0.9999 * kOpaqueDepth;  // the end of the code of rays
+#include "phase_function.glsl"
 
-// Of Henyey and Greenstein, per steradian, from `before` to `after`, both of length 1. 1 + g² - 2 g cos without the
-// difference of large terms.
-float phaseFunction(float g, vec3 before, vec3 after) {
-  const vec3 apart = after - sign(g) * before;
-  const float width = (1.0 - abs(g)) * (1.0 - abs(g)) + abs(g) * dot(apart, apart);
-  return (1.0 - g * g) / (4.0 * kPi * width * sqrt(width));
-}
+const float kMostRayDepth = 0.9999 * kOpaqueDepth;  // the end of the code of rays
 
 // A block as the eye sees it.
 struct SeenBlock {
@@ -132,13 +125,18 @@ void addScattered(inout ScatteredLight sum, int light, SeenBlock seen) {
   }
 }
 
-// The mean of the radiance that reaches the block from all directions: what is dark from everywhere is dark in ambient light.
-void addFromEverywhere(inout ScatteredLight sum, SeenBlock seen) {
+// The mean of the radiance that reaches the block from all directions, weighted by the phase function: what is dark from
+// everywhere is dark in ambient light. The weights of a narrow phase function at a few directions do not add up to 1, so the
+// sum is divided by theirs.
+void addFromEverywhere(inout ScatteredLight total, SeenBlock seen) {
+  ScatteredLight sum = ScatteredLight(vec3(0.0), vec3(0.0));
+  float weights = 0.0, parts = 0.0;
   const Towards towards = towardsSource(vec3(0.0, 0.0, 1.0), kLookupBilinear, uvec2(0));
   const int edge = 2 * frame.cells + 1;
   const uint place = codePlace(frame.cells, seen.rank);
   for (int i = 0; i < edge * edge * edge; ++i) {
-    if (frame.lighting.fromAll[i] == vec3(0.0)) continue;  // dark, or no direction: inside of the cube
+    const vec4 fromThere = frame.lighting.fromAll[i];
+    if (fromThere.w == 0.0) continue;  // no direction: inside of the cube
     const ivec3 cell = ivec3(i % edge, i / edge % edge, i / edge / edge) - frame.cells;
     const float depth = decodeDepth(frame.code, storedCode(towards, cell, place));
     const float falling = isAtEnd(towards, cell, place) ? 0.0 : 1.0;
@@ -146,10 +144,16 @@ void addFromEverywhere(inout ScatteredLight sum, SeenBlock seen) {
     const vec3 way = normalize(frame.indexToWorld * direction);
     float scale = 1.0;
     for (int octave = 0; octave < frame.lighting.octaves; ++octave) {
-      addLight(sum, seen, scale * frame.lighting.fromAll[i], reaching(seen, direction, depth, falling, scale), way);
+      const float phase =
+          kAnyView || frame.lighting.phaseG == 0.0 ? 1.0 : 4.0 * kPi * phaseFunction(scale * frame.lighting.phaseG, -way, seen.toEye);
+      weights += fromThere.w * scale * phase;
+      parts += fromThere.w * scale;
+      addLight(sum, seen, scale * phase * fromThere.rgb, reaching(seen, direction, depth, falling, scale), way);
       scale *= frame.lighting.octaveScale;
     }
   }
+  total.light += parts / weights * sum.light;
+  total.towards += parts / weights * sum.towards;
 }
 
 // Per albedo. `towardsEye` is the world's direction of length 1 in which the light is sent, `own` the block's optical

@@ -109,7 +109,7 @@ void LightingOptions::add(CLI::App& app) {
             "What the environment's radiance is multiplied by [1]", {.minimum = 0.0})
       ->group(group);
   addNumber(app, "--phase-g", "G", phaseG,
-            "How much of the lights is scattered forwards, from -1 to 1 (Henyey and Greenstein) [0]",
+            "How much of the light is scattered forwards, from -1 to 1 (Henyey and Greenstein) [0]",
             {-kMostPhaseG, kMostPhaseG})
       ->group(group);
   addWholeNumber(app, "--scattering", "N", scattering,
@@ -138,11 +138,8 @@ void LightingOptions::add(CLI::App& app) {
 void LightingOptions::addMethod(CLI::App& app) {
   knowsMethod = true;
   addWord(app, "--light-attenuation", kLightAttenuationWords, attenuation,
-          fmt::format(
-              "Whether the shadows of lights are looked up in the table, or exact, along rays that are swept "
-              "once for each light: auto is exact for up to {} lights where memory is plenty, not with "
-              "--attenuation nearest [auto]",
-              kMostExactLights))
+          "Whether the shadows of lights are looked up in the table, or exact, along rays that are swept once for each light: "
+          "auto is exact where memory is plenty, not with --attenuation nearest [auto]")
       ->group("Light");
   addWord(app, "--shading", kShadingWords, shading,
           "What a voxel does with lights: scatters them as fog does, or as a surface across the change of its extinction; "
@@ -167,8 +164,6 @@ void LightingOptions::check() const {
   if ((environmentRotation || environmentIntensity) && !environment)
     fail(ExitCode::Usage, "{} is of an environment, and there is none: give an --environment",
          environmentRotation ? "--environment-rotation" : "--environment-intensity");
-  if (phaseG && withoutLights)
-    fail(ExitCode::Usage, "--phase-g is how lights are scattered, and there is none: give a --light");
 }
 
 std::optional<Lighting> LightingOptions::resolve(const Volume& volume, const Classification& classification,
@@ -219,7 +214,7 @@ void LightingOptions::describe(OptionList& options, const std::optional<Lighting
     options.emplace_back("--environment-intensity", numberText(resolved->environment->intensity));
   }
   options.emplace_back("--extinction-tint", numberText(resolved->tint));
-  if (!resolved->lights.empty()) options.emplace_back("--phase-g", numberText(resolved->phaseG));
+  options.emplace_back("--phase-g", numberText(resolved->phaseG));
 }
 
 }  // namespace freevoxels

@@ -56,7 +56,8 @@ void MethodOptions::add(CLI::App& app) {
       ->group(group);
   app.add_flag("--paper", paper,
                "As the paper: additive, nearest, 26 directions, linear8, no path-length correction, no "
-               "gradient, lod 0, no culling; any of the eight that is given wins")
+               "gradient, lod 0, no culling; any of the eight that is given wins. To compare with: 1 to 25 dB worse than the default, and "
+               "opaque parts burn out")
       ->group(group);
 }
 

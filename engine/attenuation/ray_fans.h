@@ -19,6 +19,7 @@ namespace freevoxels {
 struct RaySource {
   glm::dvec3 place{0.0};    ///< a position, or at infinity the direction towards the source
   bool atInfinity = false;  ///< all rays are parallel
+  bool operator==(const RaySource&) const = default;
 };
 
 /// Whether it is within the volume's box, faces included. Never at infinity.

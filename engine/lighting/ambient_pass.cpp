@@ -47,9 +47,9 @@ std::size_t countOf(glm::ivec3 cells) {
 
 }  // namespace
 
-int ambientCellEdge(glm::ivec3 dimensions) {
+int ambientCellEdge(glm::ivec3 dimensions, bool hasPhase) {
   int edge = 1;
-  while (countOf((dimensions + edge - 1) / edge) > kMostAmbientCells) edge *= 2;
+  while (countOf((dimensions + edge - 1) / edge) > (hasPhase ? kMostPhaseCells : kMostAmbientCells)) edge *= 2;
   return edge;
 }
 
@@ -70,10 +70,10 @@ std::vector<float> cellExtinctions(const Volume& volume, const Classification& c
   return result;
 }
 
-AmbientPass::AmbientPass(const Device& device, const Volume& volume, const Classification& classification)
+AmbientPass::AmbientPass(const Device& device, const Volume& volume, const Classification& classification, int edge)
     : device_(device),
       indexToWorld_(volume.indexToWorld),
-      edge_(ambientCellEdge(volume.dimensions)),
+      edge_(edge),
       cells_((volume.dimensions + edge_ - 1) / edge_) {
   const std::vector<float> extinctions = cellExtinctions(volume, classification, edge_);
   const auto bytes = std::as_bytes(std::span(extinctions));
@@ -85,46 +85,59 @@ int AmbientPass::channelCount(const Lighting& lighting) {
   return lighting.environment || lighting.isTinted() ? 3 : 1;
 }
 
-bool AmbientPass::record(Commands& commands, const Lighting& lighting) {
+bool AmbientPass::record(Commands& commands, const Lighting& lighting, const RaySource& eye) {
   const int channels = channelCount(lighting);
+  const bool hasPhase = lighting.phaseG != 0.0;
   const std::vector<glm::dvec3> light = directionLight(lighting, kDirections, indexToWorld_);
-  const glm::dvec3 whole = std::accumulate(light.begin(), light.end(), glm::dvec3(0.0));
+  const std::vector<double> shares = directionShares(kDirections, indexToWorld_);
   double octaves = 0.0;  // without anything in the way
   for (int octave = 0; octave < lighting.scattering; ++octave) octaves += lighting.octaveScale(octave);
-  unshadowed_ = octaves * whole;
+  unshadowed_ = octaves * std::accumulate(light.begin(), light.end(), glm::dvec3(0.0));
+  if (hasPhase)
+    for (std::size_t i = 0; i < light.size(); ++i) unshadowed_ = glm::max(unshadowed_, octaves / shares[i] * light[i]);
   std::vector<glm::dvec3> parts;
-  for (const double share : directionShares(kDirections, indexToWorld_)) parts.emplace_back(share / octaves);
-  if (channels > 1)
-    for (std::size_t i = 0; i < parts.size(); ++i)
-      for (int c = 0; c < 3; ++c)
-        if (whole[c] > 0.0) parts[i][c] = light[i][c] / unshadowed_[c];
-  const Lighting like{.tint = lighting.tint, .scattering = lighting.scattering, .scatteringScale = lighting.scatteringScale};
-  if (parts == parts_ && like == like_) return false;
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    parts.emplace_back(shares[i] / octaves);
+    for (int c = 0; c < 3 && channels > 1; ++c)
+      if (unshadowed_[c] > 0.0) parts[i][c] = light[i][c] / unshadowed_[c];
+  }
+  const Lighting like{.tint = lighting.tint,
+                      .phaseG = lighting.phaseG,
+                      .scattering = lighting.scattering,
+                      .scatteringScale = lighting.scatteringScale};
+  if (parts == parts_ && like == like_ && (!hasPhase || eye == eye_)) return false;
   parts_ = std::move(parts);
   like_ = like;
+  eye_ = eye;
 
-  const VkDeviceSize bytes = extinction_.bytes() * VkDeviceSize(channels);
+  const VkDeviceSize bytes = extinction_.bytes() * VkDeviceSize(channels + (hasPhase ? 1 : 0));
   if (light_.bytes() != bytes) light_ = Buffer(device_, bytes, MemoryUse::Device, "ambient light of cells");
   pipeline_ = makeComputePipeline(device_, {ambient_sweep_spv, "ambient sweep"},
                                   {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
                                    .pushConstantBytes = sizeof(shader::AmbientSweepPush)},
-                                  {shader::kAmbientThreads, 1, 1}, {std::uint32_t(channels)});
+                                  {shader::kAmbientThreads, 1, 1}, {std::uint32_t(channels), hasPhase ? 1u : 0u});
   commands.beginPass("ambient sweep");
   commands.clear(light_);
   const std::array<Binding, 2> bindings{&extinction_, &light_};
   for (int i = 0; i < directionCount(kDirections); ++i) {
     const glm::ivec3 step = -directionCell(kDirections, i);
-    const glm::ivec3 axes = step.z != 0 ? glm::ivec3(0, 1, 2) : step.y != 0 ? glm::ivec3(0, 2, 1) : glm::ivec3(1, 2, 0);
-    const shader::AmbientSweepPush push{.cells = cells_,
-                                        .axes = axes,
-                                        .step = step,
-                                        .stepLength = float(edge_ * glm::length(glm::dmat3(indexToWorld_) * glm::dvec3(step))),
-                                        .share = parts_[std::size_t(i)],
-                                        .octaves = lighting.scattering,
-                                        .octaveScale = float(lighting.scatteringScale),
-                                        .tint = lighting.tint};
+    const shader::AmbientSweepPush push{
+        .cells = cells_,
+        .step = step,
+        .stepLength = float(edge_ * glm::length(glm::dmat3(indexToWorld_) * glm::dvec3(step))),
+        .share = parts_[std::size_t(i)],
+        .weight = float(shares[std::size_t(i)] / octaves),
+        .octaves = lighting.scattering,
+        .octaveScale = float(lighting.scatteringScale),
+        .phaseG = float(lighting.phaseG),
+        .cellToWorld = glm::dmat3(indexToWorld_) * double(edge_),
+        .eye = eye.atInfinity ? glm::normalize(eye.place) : (eye.place + 0.5) / double(edge_) - 0.5,
+        .orthographic = eye.atInfinity ? 1 : 0,
+        .tint = lighting.tint};
+    const int planes = step.z != 0 ? cells_.z : step.y != 0 ? cells_.y : cells_.x;
+    const std::uint64_t lines = std::uint64_t(cells_.x) * std::uint64_t(cells_.y) * std::uint64_t(cells_.z) / std::uint64_t(planes);
     if (i > 0) commands.barrier(kCompute, kCompute);
-    commands.dispatchLinear(pipeline_, bindings, push, std::uint64_t(cells_[axes.x]) * std::uint64_t(cells_[axes.y]));
+    commands.dispatchLinear(pipeline_, bindings, push, lines);
   }
   commands.barrier(kCompute, kCompute);
   return true;

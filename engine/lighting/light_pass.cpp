@@ -54,6 +54,14 @@ std::vector<RaySource> sourcesOf(const Lighting& lighting, const DeviceVolume& v
   return sources;
 }
 
+std::vector<glm::dvec4> lightAndShares(const Lighting& lighting, DirectionSet set, const glm::dmat4& indexToWorld) {
+  const std::vector<glm::dvec3> light = directionLight(lighting, set, indexToWorld);
+  const std::vector<double> shares = directionShares(set, indexToWorld);
+  std::vector<glm::dvec4> result;
+  for (std::size_t i = 0; i < light.size(); ++i) result.emplace_back(light[i], shares[i]);
+  return result;
+}
+
 }  // namespace
 
 void LightPass::setBeyond(Commands& commands, const DeviceVolume& volume, DirectionSet set,
@@ -116,7 +124,7 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
   const Lighting& lighting = *settings.lighting;
   const DirectionSet set = table.directions;
   if (!placed_ || placed_->ambient != lighting.ambient || placed_->environment != lighting.environment)
-    fromAll_ = directionLight(lighting, set, volume.indexToWorld);
+    fromAll_ = lightAndShares(lighting, set, volume.indexToWorld);
   const bool stand =
       placed_ && placed_->lights == lighting.lights && placed_->attenuation == lighting.attenuation && placedScalars_ == scalars;
   if (!stand) {
@@ -144,7 +152,7 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
       .octaveScale = float(lighting.scatteringScale),
       .gradientToWorld = glm::transpose(glm::inverse(glm::dmat3(volume.indexToWorld)))};
   for (int i = 0; i < directionCount(set); ++i)
-    frame.fromAll[cellNumber(set, directionCell(set, i))] = glm::vec3(fromAll_[std::size_t(i)]);
+    frame.fromAll[cellNumber(set, directionCell(set, i))] = glm::vec4(fromAll_[std::size_t(i)]);
   return frame;
 }
 

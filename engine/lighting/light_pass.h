@@ -46,7 +46,7 @@ class LightPass {
   EyeDepthsPass beyond_;
   bool placedScalars_ = false;
   std::optional<Lighting> placed_;   ///< whose light the buffers and `fromAll_` are of
-  std::vector<glm::dvec3> fromAll_;  ///< directionLight
+  std::vector<glm::dvec4> fromAll_;  ///< directionLight, and directionShares
   Buffer lights_;                    ///< shader::Light
   Buffer beyondDepths_;              ///< kEyeDepthsBytes a light that is inside of the volume
   std::deque<RaySweep> rays_;        ///< of the lights; empty where they are looked up in the table

@@ -2,8 +2,8 @@
 // Lights, and how a volume scatters what it gets of them, once: Subr et al. 2007, Section 4.3.
 //
 // A voxel of albedo a sends the radiance a (sum over lights of E A phase + ambient) towards the eye, E the
-// light's irradiance there, A the transmittance between the two, ambient the mean of radiance times A over
-// all directions, that of the environment included.
+// light's irradiance there, A the transmittance between the two, ambient the integral of radiance times A times
+// phase over all directions, that of the environment included.
 
 #include <cmath>
 #include <glm/glm.hpp>
@@ -47,11 +47,8 @@ struct Light {
 enum class LightAttenuation : int {
   Table = 0,  ///< as the table says: nothing is made for a light
   Exact = 1,  ///< along rays of its own (ray_fans.h), swept once for as long as the lights stay as they are
-  Auto = 2,   ///< Exact of a few lights, where memory is plenty: lightAttenuationFor, LightPass::resolve
+  Auto = 2,   ///< Exact where memory is plenty: lightAttenuationFor, LightPass::resolve
 };
-
-/// With Auto more lights than these are the table's, which answers for each in the time of a look-up.
-inline constexpr std::size_t kMostExactLights = 4;
 
 struct Lighting {
   std::vector<Light> lights;
@@ -61,8 +58,7 @@ struct Lighting {
   /// What the extinction is multiplied by for each colour on the way of the light, ambient light too, up to
   /// where it is scattered; not from there to the eye. In kLeastTint..kMostTint.
   glm::dvec3 tint{1.0};
-  /// Of the phase function of the lights, up to kMostPhaseG either way: 0 scatters alike in all directions,
-  /// more forwards. What comes from everywhere is scattered alike in all directions.
+  /// Of the phase function, up to kMostPhaseG either way: 0 scatters alike in all directions, more forwards.
   double phaseG = 0.0;
   /// How much of what a voxel does to the lights it does as a piece of surface (surfaceScattering), in 0..1,
   /// where the extinction changes most; the rest as fog.

@@ -53,10 +53,11 @@ std::vector<LightMarch::Ray> LightMarch::environmentRays(const Lighting& lightin
 }
 
 LightMarch::LightMarch(const ReferenceField& field, const glm::dmat4& indexToWorld, const Lighting& lighting,
-                       int ambientRays, const Progress& progress)
+                       const RaySource& eye, int ambientRays, const Progress& progress)
     : field_(field),
       toWorld_(indexToWorld),
       lighting_(lighting),
+      eye_(eye),
       channels_(lighting.environment || lighting.isTinted() ? 3 : 1) {
   for (const Light& light : lighting.lights) sources_.push_back(lightSource(light, indexToWorld));
   if (!lighting.comesFromEverywhere()) return;
@@ -79,21 +80,15 @@ glm::dvec3 LightMarch::scatteredFrom(std::size_t i, glm::dvec3 position, glm::dv
   if (!(length > 0.0)) return glm::dvec3(0.0);
   const double end = source.atInfinity ? std::numeric_limits<double>::infinity() : 1.0;
   const double irradiance = light.intensity / (source.atInfinity ? 1.0 : length * length);
-  const glm::dvec3 through = transmittance(position, way, end);
-  glm::dvec3 sum(0.0);
-  for (int octave = 0; octave < lighting_.scattering; ++octave) {
-    const double scale = lighting_.octaveScale(octave);
-    sum += scale * phaseFunction(scale * lighting_.phaseG, glm::dot(-worldWay / length, toEye)) * glm::pow(through, glm::dvec3(scale));
-  }
-  return light.color * irradiance * sum;
+  return light.color * irradiance * octaves(transmittance(position, way, end), glm::dot(-worldWay / length, toEye));
 }
 
-/// The sum over all octaves of scattering.
-glm::dvec3 LightMarch::octaves(glm::dvec3 transmittance) const {
+/// The sum over all octaves of scattering, with the phase function of the cosine between the ways before and after.
+glm::dvec3 LightMarch::octaves(glm::dvec3 transmittance, double cosine) const {
   glm::dvec3 sum(0.0);
   for (int octave = 0; octave < lighting_.scattering; ++octave) {
     const double scale = lighting_.octaveScale(octave);
-    sum += scale * glm::pow(transmittance, glm::dvec3(scale));
+    sum += scale * phaseFunction(scale * lighting_.phaseG, cosine) * glm::pow(transmittance, glm::dvec3(scale));
   }
   return sum;
 }
@@ -109,10 +104,13 @@ std::unique_ptr<LightMarch::Reaching> LightMarch::marchBrick(glm::ivec3 position
     float* const parts = &(*reaching)[std::size_t((point.x + n * (point.y + n * point.z)) * channels_)];
     if (parts[0] >= 0.0f) return;
     const glm::dvec3 at = first + glm::dvec3(point) / double(kPointsPerVoxel);
+    const glm::dvec3 toEye = glm::normalize(toWorld_ * (eye_.atInfinity ? eye_.place : eye_.place - at));
     glm::dvec3 sum(0.0);
-    for (const Ray& ray : rays)
-      sum += ray.light * octaves(transmittance(at, ray.direction, std::numeric_limits<double>::infinity()));
-    for (int c = 0; c < channels_; ++c) parts[c] = float(sum[c]);
+    for (const Ray& ray : rays) {
+      const glm::dvec3 way = glm::normalize(toWorld_ * ray.direction);
+      sum += ray.light * octaves(transmittance(at, ray.direction, std::numeric_limits<double>::infinity()), -glm::dot(way, toEye));
+    }
+    for (int c = 0; c < channels_; ++c) parts[c] = float(4.0 * std::numbers::pi * sum[c]);
   };
   for (int cell = 0; cell < cells * cells * cells; ++cell) {
     const glm::ivec3 corner(cell % cells, cell / cells % cells, cell / cells / cells);

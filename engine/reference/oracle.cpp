@@ -37,7 +37,7 @@ class Sampler {
         indexToWorld_(volume.indexToWorld),
         light_(settings.lighting
                    ? std::make_unique<LightMarch>(field_, volume.indexToWorld, *settings.lighting,
-                                                  settings.ambientRays, progress)
+                                                  eyeSource(camera, volume.indexToWorld), settings.ambientRays, progress)
                    : nullptr),
         pixels_(std::size_t(settings.size.x) * std::size_t(settings.size.y)) {}
 

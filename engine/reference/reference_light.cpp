@@ -27,7 +27,8 @@ ReferenceLight::ReferenceLight(const LightInputs& inputs, const FrameSettings& s
     : inputs_(inputs),
       lighting_(*settings.lighting),
       toWorld_(inputs.volume.indexToWorld),
-      fromAll_(directionLight(lighting_, inputs.tableSettings.directions, inputs.volume.indexToWorld)) {
+      fromAll_(directionLight(lighting_, inputs.tableSettings.directions, inputs.volume.indexToWorld)),
+      shares_(directionShares(inputs.tableSettings.directions, inputs.volume.indexToWorld)) {
   const AttenuationLookup lookup = settings.attenuation == AttenuationLookup::Nearest
                                        ? AttenuationLookup::Nearest
                                        : AttenuationLookup::Bilinear;
@@ -87,18 +88,24 @@ glm::dvec3 ReferenceLight::reachingFromAll(const Block& block, glm::dvec3 toEye)
   const std::size_t index =
       level == nullptr ? inputs_.volume.at(block.cell.x, block.cell.y, block.cell.z) : level->at(block.cell);
   const int end = settings.code == AttenuationCode::Linear8 ? 0 : 255;
+  const glm::dvec3 after = glm::normalize(toWorld_ * toEye);
   glm::dvec3 sum(0.0);
+  double weights = 0.0, parts = 0.0;
   for (int d = 0; d < int(table.size()); ++d) {
     const int byte = table[std::size_t(d)][index];
     const glm::dvec3 direction = directionAt(settings.directions, d);
     for (int octave = 0; octave < lighting_.scattering; ++octave) {
       const double scale = lighting_.octaveScale(octave);
-      sum += scale * fromAll_[std::size_t(d)] *
+      const double phase = 4.0 * std::numbers::pi *
+                           phaseFunction(scale * lighting_.phaseG, -glm::dot(glm::normalize(toWorld_ * direction), after));
+      weights += shares_[std::size_t(d)] * scale * phase;
+      parts += shares_[std::size_t(d)] * scale;
+      sum += scale * phase * fromAll_[std::size_t(d)] *
              reaching(block, toEye, direction, decodeOpticalDepth(settings.code, byte), byte == end ? 0.0 : 1.0,
                       stepLength(inputs_.volume.indexToWorld, direction, settings.pathLengthCorrection), scale);
     }
   }
-  return sum;
+  return parts / weights * sum;
 }
 
 glm::dvec3 ReferenceLight::extinctionGradient(const Block& block) const {

@@ -45,6 +45,7 @@ class ReferenceLight {
   std::vector<RaySource> sources_;
   std::vector<std::unique_ptr<ReferenceDepth>> depths_;  ///< towards each light
   const std::vector<glm::dvec3> fromAll_;                ///< directionLight
+  const std::vector<double> shares_;                     ///< directionShares
 };
 
 }  // namespace freevoxels

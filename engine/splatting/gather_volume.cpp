@@ -225,9 +225,11 @@ void GatherVolume::prepareSampled(const Lighting* lighting, std::vector<StageTim
   if (!stand) dropLightCodes();
   sampled_ = lights;
   ambientChannels_ = channels;
-  if (channels > 0 && !ambient_) {
+  const int edge = channels > 0 ? ambientCellEdge(volume_.dimensions, lighting->phaseG != 0.0) : 0;
+  if (edge > 0 && (!ambient_ || ambient_->edge() != edge)) {
     const StageTimer timer(times, "ambient cells");
-    ambient_.emplace(device_, volume_, classification_);
+    dropLightCodes();
+    ambient_.emplace(device_, volume_, classification_, edge);
   }
   const std::uint64_t bytes = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks * sizeof(std::uint16_t);
   for (int slot = 0; slot < shader::kMostLightSlots; ++slot) {
@@ -340,7 +342,7 @@ void GatherVolume::recordQuads(Commands& commands, int axis) {
 
 /// Of all blocks of bricks, whether or not they hold anything.
 void GatherVolume::recordLightCodes(Commands& commands, const Shading& shading) {
-  if (ambientChannels_ > 0 && ambient_->record(commands, *shading.lighting)) dropLightCodes();
+  if (ambientChannels_ > 0 && ambient_->record(commands, *shading.lighting, shading.frame.eye)) dropLightCodes();
   if ((wantedLevels_ & ~lightLevels_) == 0) return;
   commands.beginPass("light depths");
   if (lightLevels_ == 0)
@@ -385,11 +387,13 @@ void GatherVolume::recordAmbientCodes(Commands& commands, int level) {
   const std::array<Binding, 2> bindings{&brickCellTexels_, &ambient_->light()};
   const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
   const glm::ivec3 cells = ambient_->cells();
+  const int cellCount = cells.x * cells.y * cells.z;
   for (int channel = 0; channel < ambientChannels_; ++channel) {
     const shader::AmbientCodesPush push{.cells = cells,
                                         .cellEdge = ambient_->edge(),
                                         .blockEdge = 1 << level,
-                                        .firstLight = channel * cells.x * cells.y * cells.z,
+                                        .firstLight = channel * cellCount,
+                                        .firstWeight = ambient_->hasWeights() ? ambientChannels_ * cellCount : -1,
                                         .firstBrick = first,
                                         .count = count,
                                         .codes = addressWords(lightCodes_[std::size_t(sampleLights() + channel)].address())};

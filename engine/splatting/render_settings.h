@@ -70,8 +70,7 @@ inline LightAttenuation lightAttenuationFor(const FrameSettings& settings) {
   const Lighting& lighting = *settings.lighting;
   if (lighting.attenuation != LightAttenuation::Auto) return lighting.attenuation;
   const bool isPaper = settings.attenuation == AttenuationLookup::Nearest;
-  return lighting.lights.size() <= kMostExactLights && !isPaper ? LightAttenuation::Exact
-                                                                : LightAttenuation::Table;
+  return isPaper ? LightAttenuation::Table : LightAttenuation::Exact;
 }
 
 }  // namespace freevoxels

@@ -136,7 +136,6 @@ TEST_F(BadInput, BadLights) {
   expectBadLight("--ambient 1,2", "--ambient");
   expectBadLight("--ambient -1", "--ambient");
   expectBadLight("--phase-g 1 --light direction=1,0,0", "--phase-g");
-  expectBadLight("--phase-g 0.5 --ambient 1", "--phase-g");
   expectBadLight("--scattering 0", "--scattering");
   expectBadLight("--scattering 9", "--scattering");
   expectBadLight("--scattering-scale 1.5", "--scattering-scale");

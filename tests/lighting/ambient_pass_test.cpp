@@ -9,11 +9,12 @@ namespace freevoxels {
 namespace {
 
 TEST(AmbientCells, AreNoMoreThanThereMayBe) {
-  EXPECT_EQ(ambientCellEdge({128, 128, 128}), 1);
-  EXPECT_EQ(ambientCellEdge({256, 256, 256}), 2);
-  EXPECT_EQ(ambientCellEdge({512, 512, 512}), 4);
-  EXPECT_EQ(ambientCellEdge({455, 602, 493}), 4);
-  EXPECT_EQ(ambientCellEdge({2, 3, 4'000'000}), 2);
+  EXPECT_EQ(ambientCellEdge({128, 128, 128}, false), 1);
+  EXPECT_EQ(ambientCellEdge({256, 256, 256}, false), 2);
+  EXPECT_EQ(ambientCellEdge({128, 128, 128}, true), 2);
+  EXPECT_EQ(ambientCellEdge({512, 512, 512}, false), 4);
+  EXPECT_EQ(ambientCellEdge({455, 602, 493}, false), 4);
+  EXPECT_EQ(ambientCellEdge({2, 3, 4'000'000}, false), 2);
 }
 
 /// Beyond the box, and where there is no data, cells are empty.

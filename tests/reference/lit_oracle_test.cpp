@@ -100,6 +100,12 @@ TEST(LitOracle, AConstantEnvironmentIsAmbientLight) {
               5e-3);
 }
 
+/// A phase function only changes where light goes, and here it comes from everywhere.
+TEST(LitOracle, APhaseFunctionDoesNotChangeAmbientLightOfAThinBox) {
+  const double thin = 1e-4;
+  EXPECT_NEAR(middle({.ambient = glm::dvec3(3.0), .phaseG = kPhaseG}, thin) / (3.0 * kAlbedo * thin), 1.0, 1e-2);
+}
+
 /// Of a sun alone.
 TEST(LitOracle, ASmallPartOfAnEnvironmentIsALight) {
   Environment sun = makeSky(256);
@@ -110,9 +116,12 @@ TEST(LitOracle, ASmallPartOfAnEnvironmentIsALight) {
       irradiance += part.solidAngle * part.radiance;
       towards += part.solidAngle * part.radiance.r * part.direction;
     }
-  const Lighting light{.lights = {{.place = towards, .color = irradiance, .intensity = 1.0}}};
-  EXPECT_NEAR(middle({.environment = std::make_shared<Environment>(sun)}, kDepth) / middle(light, kDepth),
-              1.0, 1e-2);
+  for (const double phaseG : {0.0, kPhaseG}) {
+    const Lighting light{.lights = {{.place = towards, .color = irradiance, .intensity = 1.0}}, .phaseG = phaseG};
+    EXPECT_NEAR(middle({.environment = std::make_shared<Environment>(sun), .phaseG = phaseG}, kDepth) / middle(light, kDepth), 1.0,
+                1e-2)
+        << phaseG;
+  }
 }
 
 TEST(LitOracle, APointFarAwayIsADirection) {
@@ -167,7 +176,7 @@ TEST(LitOracle, MatchesTinySteps) {
   const ReferenceField field(volume, classification);
   const LightMarch march(
       field, volume.indexToWorld,
-      {.lights = {{.place = worldLight, .atInfinity = false, .intensity = 2.0}}, .phaseG = kPhaseG}, 0);
+      {.lights = {{.place = worldLight, .atInfinity = false, .intensity = 2.0}}, .phaseG = kPhaseG}, {.place = origin}, 0);
   const RaySum sum = marchRay(field,
                               {.origin = origin,
                                .direction = direction,

@@ -1,0 +1,11 @@
+// Henyey and Greenstein 1941.
+
+const float kPi = 3.14159265358979;
+
+// Per steradian, from the way of the light before to that after, both of length 1; integrates to 1 over the sphere.
+// 1 + g² - 2 g cos without the difference of large terms.
+float phaseFunction(float g, vec3 before, vec3 after) {
+  const vec3 apart = after - sign(g) * before;
+  const float width = (1.0 - abs(g)) * (1.0 - abs(g)) + abs(g) * dot(apart, apart);
+  return (1.0 - g * g) / (4.0 * kPi * width * sqrt(width));
+}
