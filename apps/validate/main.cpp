@@ -101,6 +101,7 @@ int main(int argc, char** argv) {
   app.add_option("FILE", extent.files, "OpenVDB files to check as well, the middle of those that are large");
   app.add_flag("--quick", extent.quick, "Small volumes and pictures");
   addResolution(app, extent.resolution)->description("Voxels along an edge of the procedural volumes");
+  addText(app, "--only", "TEXT", extent.only, "Sections whose name contains this, as 'light' or 'stages of cloud'");
   files.add(app);
   device.add(app);
   app.footer("Exit codes: 0 all checks passed, 7 some failed, others as of 'freevoxels'.");

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "apps/freevoxels/input_options.h"
+#include "engine/core/error.h"
 #include "engine/renderer.h"
 #include "engine/validation/closed_forms.h"
 #include "engine/validation/culling_checks.h"
@@ -161,6 +162,15 @@ void addLight(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
                       return lightQuality(device, openQualityScene(device, subject, resolution),
                                           quick ? kQuickLightPicture : kQuickQualityPicture);
                     }});
+  for (const QualitySubject& subject : std::span(kCullingSubjects).first(2)) {
+    const char* const color = subject.color == QualityColor::Skin ? "skin" : "bone";
+    jobs.push_back({fmt::format("light on the {}'s {}", subject.procedural, color), [=, &device, &subject] {
+                      QualityScene scene = openQualityScene(device, subject, quick ? kQuickQuality : kLarge);
+                      scene.name += fmt::format(", {}", color);
+                      return opaqueLightQuality(device, scene, quick ? quickQualityViews() : qualityViews(),
+                                                quick ? kQuickLightPicture : kWholeQualityPicture);
+                    }});
+  }
   const int sky = quick ? kQuickSky : kQuickProcedural;
   jobs.push_back({"light from all around", [=, &device] {
                     return environmentQuality(device, openQualityScene(device, kQualitySubjects[2], sky),
@@ -223,6 +233,9 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
     jobs.push_back({fmt::format("picture quality of {}", file),
                     [scene, edge, &device] { return fileQuality(device, *scene, edge); }});
   }
+  if (extent.only) std::erase_if(jobs, [&](const SectionJob& job) { return job.name.find(*extent.only) == std::string::npos; });
+  if (jobs.empty())
+    fail(ExitCode::Usage, "--only '{}' leaves no section: give a part of a name, such as light, quality or stages", *extent.only);
   return jobs;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 // How near lit pictures are to the oracle's, and whether shadows are where they should be.
 
+#include <span>
+
 #include "engine/validation/quality_scenes.h"
 #include "engine/validation/report.h"
 #include "engine/vulkan/device.h"
@@ -13,6 +15,13 @@ inline constexpr double kTableLightPsnr = 32.0, kExactLightPsnr = 38.0, kEnviron
 
 /// One light from the side, from a few views.
 ReportSection lightQuality(const Device& device, const QualityScene& scene, int pictureEdge);
+
+/// Mean over the views, and the worst of them, of what is lit and opaque.
+inline constexpr double kOpaqueMeanPsnr = 35.0, kOpaqueWorstPsnr = 32.0;
+
+/// One and three lights with exact shadows on what is opaque within a few voxels.
+ReportSection opaqueLightQuality(const Device& device, const QualityScene& scene, std::span<const QualityView> views,
+                                 int pictureEdge);
 
 /// A sky with a sun, from one view: the oracle marches for it from every point of the volume.
 ReportSection environmentQuality(const Device& device, const QualityScene& scene, int pictureEdge);
