@@ -54,6 +54,7 @@ const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
 const bool kSampled = kLights > 0 || kAmbient > 0;
 const float kLeastShaded = 1.0 / 512.0;  // part of a pixel from which on the normal of a surface counts
+const float kMostlySurface = 0.95;        // from which on what else scatters light does not count
 const float kOutside = 2.5;               // blocks
 const float kMostLightDepth = 0.99 * kOpaqueDepth;  // about the end of the code of rays
 
@@ -277,7 +278,8 @@ struct Found {
   vec2 change;     // of the scalar per voxel along the sides
   vec3 gradient;   // of the scalar, or of the extinction, per block, index space
   bool hasGradient;
-  vec4 depths;     // optical depths towards the lights; less than 0: nothing was found
+  vec4 depths;     // optical depths towards the lights, of scalars from a layer further on; less than 0: nothing was found
+  vec4 arriving;   // of scalars, optical depths towards the lights; less than 0: not looked for
   vec3 ambient;    // optical depths that ambient light has passed, by channel
 };
 
@@ -445,13 +447,27 @@ Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye
   return found;
 }
 
-// Depths towards lights from a voxel further on, where they are known, to the two ends of a stretch: along the way the scalar
-// changes as its gradient says.
-void addTowardsLights(inout vec4 begin, inout vec4 end, Ray ray, Found first, Found second, vec2 change, float alongRay, vec3 position) {
-  vec3 gradient;
-  gradient[kAxis] = alongRay - dot(ray.slope, change);
-  gradient[kSideA] = change.x;
-  gradient[kSideB] = change.y;
+// The scalar at a position, index space, and the coverage by voxels with data.
+vec2 scalarNear(Slices level, vec3 position) {
+  const float low = floor(position[kAxis]), part = position[kAxis] - low;
+  vec2 sum = vec2(0.0);
+  [[unroll]] for (int i = 0; i < 2; ++i) {
+    const int slice = int(low) + i;
+    if ((i == 1 && part == 0.0) || slice < 0 || slice >= level.count) continue;
+    vec4 weights;
+    const uvec2 pairs = mediumQuad(quadAt(level, vec2(position[kSideA], position[kSideB]), slice, weights));
+    const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
+    weights *= i == 0 ? 1.0 - part : part;
+    [[unroll]] for (int k = 0; k < 4; ++k) weights[k] = codes[k] != 0 ? weights[k] : 0.0;
+    sum += vec2(dot(weights, vec4(codes) - 1.0), weights.x + weights.y + weights.z + weights.w);
+  }
+  return vec2(max(sum.x / max(sum.y, 1e-20), 0.0) * (float(kTransferIntervals) / float(kScalarCodes)), sum.y);
+}
+
+// Adds to the depths towards lights from a layer of voxels further on, where they are known, those up to there.
+// Where little shows the extinction is taken to be the same all the way.
+vec4 depthsAt(Slices level, Found at, vec3 position, bool shows) {
+  vec4 depths = at.depths;
   [[unroll]] for (int i = 0; i < kMostSampleLights; ++i) {
     if (i >= kLights) continue;
     vec3 way = frame.lights[i].across;
@@ -460,14 +476,19 @@ void addTowardsLights(inout vec4 begin, inout vec4 end, Ray ray, Found first, Fo
       way /= max(max(abs(way.x), max(abs(way.y), abs(way.z))), 1e-6);
     }
     const float layer = length(frame.indexToWorld * way) * frame.extinctionUnit;
-    const float further = dot(gradient, way);
+    if (!shows) {
+      depths[i] += layer * at.coverage * at.medium.a;
+      continue;
+    }
+    const vec2 next = scalarNear(level, position + way);
     vec4 integral, medium;
-    const float a = clamp(first.scalar + further, 0.0, float(kTransferIntervals)), b = clamp(second.scalar + further, 0.0, float(kTransferIntervals));
-    tableAt(a, integral, medium);
-    begin[i] += layer * meanBetween(first.scalar, first.integral, first.medium, a, integral, medium).a;
-    tableAt(b, integral, medium);
-    end[i] += layer * meanBetween(second.scalar, second.integral, second.medium, b, integral, medium).a;
+    tableAt(next.x, integral, medium);
+    const float mean = at.coverage == 0.0 ? medium.a
+                       : next.y == 0.0    ? at.medium.a
+                                          : meanBetween(at.scalar, at.integral, at.medium, next.x, integral, medium).a;
+    depths[i] += layer * 0.5 * (at.coverage + next.y) * mean;
   }
+  return depths;
 }
 
 // Of the extinction, over its larger value, from a scalar less `reach` to that and `reach` more.
@@ -482,6 +503,7 @@ float changeAcross(float scalar, float reach) {
 // transfer function give the means. In the middle both slices' functions count half.
 void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within) {
   Found found = scalarAt(level, ray.origin + ray.slope * float(slice), slice, 0.5 * ray.direction * ray.slope, ray.toEye);
+  found.arriving = vec4(-1.0);
   if (!within) found.coverage = 0.0;
   const float coverage = 0.5 * (last.coverage + found.coverage);
   Found first = last, second = found;
@@ -498,7 +520,8 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
     far.rgb *= mix(first.light, second.light, 0.75);
   }
   const float ahead = (float(slice) - ray.eye) * ray.direction;
-  const float layer = ray.layer * coverage;
+  const float nearLayer = ray.layer * mix(last.coverage, found.coverage, 0.25);
+  const float farLayer = ray.layer * mix(last.coverage, found.coverage, 0.75);
   Lit nearLit, farLit;
   if (kSampled) {
     const float nearPart = near.a + far.a > 0.0 ? near.a / (near.a + far.a) : 0.5;
@@ -506,22 +529,12 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
     nearLit.ambientBegin = first.ambient;
     farLit.ambientChange = second.ambient - first.ambient - nearLit.ambientChange;
     farLit.ambientBegin = first.ambient + nearLit.ambientChange;
-    // Along a stretch the depth towards a light changes as the depth towards the eye does, both being integrals of the same
-    // extinction.
     nearLit.position = farLit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
-    const vec2 change = 0.5 * (first.change + second.change);
-    const float alongRay = (second.scalar - first.scalar) * ray.direction;
-    vec4 begin = first.depths, end = second.depths;
-    if (near.a + far.a > 0.0) addTowardsLights(begin, end, ray, first, second, change, alongRay, nearLit.position);
-    nearLit.change = (end - begin) * (near.a + far.a > 0.0 ? near.a / (near.a + far.a) : 0.5);
-    farLit.change = end - begin - nearLit.change;
-    nearLit.begin = begin;
-    farLit.begin = begin + nearLit.change;
     if (kSurfaces) {
       found.hasGradient = false;
       found.gradient = vec3(0.0);
       nearLit.surface = farLit.surface = 0.0;
-      if (sums.transmittance * layer * (near.a + far.a) > 2.0 * kLeastShaded) {
+      if (sums.transmittance * (nearLayer * near.a + farLayer * far.a) > 2.0 * kLeastShaded) {
         findGradients(last, found, level, ray, slice);
         const vec3 nearGradient = mix(last.gradient, found.gradient, 0.25), farGradient = mix(last.gradient, found.gradient, 0.75);
         const float nearChange = changeAcross(mix(first.scalar, second.scalar, 0.25), length(nearGradient));
@@ -534,9 +547,26 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
         lightFrom(farLit, outside);
       }
     }
+    // Along a stretch the depth towards a light changes as the depth towards the eye does, both being integrals of the same
+    // extinction.
+    if (kLights > 0 && near.a + far.a > 0.0) {
+      if (last.depths.x < 0.0) {
+        vec4 weights;
+        const int before = slice - int(ray.direction);
+        last.depths = depthsTowardsLights(quadAt(level, ray.origin + ray.slope * float(before), clamp(before, 0, level.count - 1), weights), weights);
+      }
+      bool shows = sums.transmittance * (nearLayer * near.a + farLayer * far.a) > kLeastShaded;
+      if (kSurfaces) shows = shows && min(nearLit.surface, farLit.surface) < kMostlySurface;
+      if (last.arriving.x < 0.0) last.arriving = depthsAt(level, last, voxelPosition(ray, float(slice) - ray.direction), shows);
+      found.arriving = depthsAt(level, found, voxelPosition(ray, float(slice)), shows);
+      nearLit.begin = last.arriving;
+      nearLit.change = (found.arriving - last.arriving) * near.a / (near.a + far.a);
+      farLit.begin = nearLit.begin + nearLit.change;
+      farLit.change = found.arriving - farLit.begin;
+    }
   }
-  addPart(sums, near, layer * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75, nearLit, ray.toEye);
-  addPart(sums, far, layer * clamp(ahead, 0.0, 0.5), ahead - 0.25, farLit, ray.toEye);
+  addPart(sums, near, nearLayer * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75, nearLit, ray.toEye);
+  addPart(sums, far, farLayer * clamp(ahead, 0.0, 0.5), ahead - 0.25, farLit, ray.toEye);
   last = found;
 }
 
@@ -583,7 +613,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
   last.change = vec2(0.0);
   last.gradient = vec3(0.0);
   last.hasGradient = false;
-  last.depths = vec4(-1.0);
+  last.depths = last.arriving = vec4(-1.0);
   last.ambient = vec3(0.0);
   // Loops that end with their conditions: lavapipe runs a body once more, masked, where a loop begins with one.
   do {
@@ -593,7 +623,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
       if (empty > 0) {
         last.coverage = 0.0;
         last.hasGradient = false;
-        last.depths = vec4(-1.0);
+        last.depths = last.arriving = vec4(-1.0);
         last.medium = vec4(0.0);
       }
       slice += direction * empty;

@@ -21,7 +21,7 @@ FV_CONSTANT int kBrickQuadsThreads = kGatherBrickEdge * kGatherBrickEdge;
 // Quads of more bricks than one texel buffer or allocation holds are in pieces of so many.
 FV_CONSTANT int kPieceBricksLog2 = 17;
 FV_CONSTANT int kMostPieces = 32;
-// Lights whose transmittance is found at samples, from quads of optical depths towards them: kMostExactLights.
+// Lights whose transmittance is found at samples, from quads of optical depths towards them.
 FV_CONSTANT int kMostSampleLights = 4;
 // Quads of codes of light: a slot a light, then one for each channel of light from everywhere.
 FV_CONSTANT int kMostLightSlots = kMostSampleLights + 3;

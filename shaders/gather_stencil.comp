@@ -8,6 +8,7 @@
 
 layout(constant_id = 0) const bool kWithDistance = false;
 layout(constant_id = 1) const bool kDirect = false;  // the lattice is that of the pixels: write the image
+layout(constant_id = 2) const bool kScalars = false;  // whether voxels are classified after interpolation
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 layout(scalar, binding = 0) uniform Frame { GatherFrame frame; };
@@ -63,7 +64,8 @@ void main() {
   const float cross = 0.25 * covariance.y;
   const float weights[9] = float[9](cross, 0.5 * covariance.z, -cross, 0.5 * covariance.x, 1.0 - covariance.x - covariance.z,
                                     0.5 * covariance.x, -cross, 0.5 * covariance.z, cross);
-  // Footprints add up optical depths, so that is what the stencil is about: E and with it the colour follow.
+  // Footprints add up optical depths, so that is what the stencil is about: E and with it the colour follow. Scalars that are
+  // interpolated do not: there mean depths would widen what is opaque by a quarter of a voxel.
   vec4 color = vec4(0.0);
   float depth = 0.0;
   distance = 0.0;
@@ -72,7 +74,7 @@ void main() {
     depth -= weights[i] * log(max(1.0 - colors[i].a, kLeastTransmittance));
     distance += weights[i] * weighted[i];
   }
-  if (color.a > kLeastTransmittance) {
+  if (!kScalars && color.a > kLeastTransmittance) {
     const float scale = (1.0 - exp(-max(depth, 0.0))) / color.a;
     color *= scale;
     distance *= scale;

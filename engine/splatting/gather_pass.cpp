@@ -28,11 +28,11 @@ Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume) 
 }
 
 /// Of the stencil and the upsampling, which have the same bindings.
-Pipeline makeImagePass(const Device& device, const ShaderCode& code, bool withDistance, bool second) {
+Pipeline makeImagePass(const Device& device, const ShaderCode& code, bool withDistance, bool second, bool third = false) {
   return makeComputePipeline(
       device, code,
       {.bindings = {kUniform, kTexels, kTexels, kTexelsOut, kTexelsOut, kImage, kImage}}, kTile,
-      {withDistance, second});
+      {withDistance, second, third});
 }
 
 bool isLatticeOfPixels(const shader::GatherFrame& frame) {
@@ -99,7 +99,7 @@ void GatherPass::recordGather(Commands& commands, const GatherVolume& volume, co
   commands.barrier(kCompute, kCompute);
 }
 
-void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& frame, const SplatTargets& targets) {
+void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets) {
   const bool direct = isLatticeOfPixels(frame), withDistance = targets.distance.exists();
   const Sums& any = gathered_;
   if (!direct) {
@@ -117,7 +117,7 @@ void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& fram
   };
   commands.beginPass("gather image");
   const Pipeline stencil =
-      makeImagePass(device_, {gather_stencil_spv, "gather stencil"}, withDistance, direct);
+      makeImagePass(device_, {gather_stencil_spv, "gather stencil"}, withDistance, direct, scalars);
   commands.dispatch(stencil, bindings(gathered_, direct ? any : smoothed_), glm::ivec3(frame.samples, 1));
   if (direct) return;
   for (const bool alongY : {false, true}) {
@@ -134,7 +134,7 @@ void GatherPass::record(Commands& commands, const GatherVolume& volume, const sh
   for (const RenderTarget* target : targets.all())
     commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kCompute, kCompute);
   recordGather(commands, volume, frame);
-  recordImage(commands, frame, targets);
+  recordImage(commands, frame, volume.hasScalars(), targets);
   commands.barrier(kCompute, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
 }
 

@@ -26,7 +26,7 @@ class GatherPass {
 
  private:
   void recordGather(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
-  void recordImage(Commands& commands, const shader::GatherFrame& frame, const SplatTargets& targets);
+  void recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets);
 
   /// C and E (four floats), and the sum of e times distance, of samples.
   struct Sums {
