@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -49,6 +50,29 @@ Frame frameTime(const Renderer& renderer) {
 std::uint64_t drawnSplats(const Renderer& renderer) {
   const std::vector<std::uint64_t> drawn = renderer.cutCounts().drawn;
   return std::accumulate(drawn.begin(), drawn.end(), std::uint64_t(0));
+}
+
+double millisecondsOf(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+Lighting directionalLights(int count) {
+  Lighting lighting;
+  for (int i = 0; i < count; ++i) lighting.lights.push_back({.place = {std::cos(0.4 * i), 0.5, std::sin(0.4 * i)}});
+  return lighting;
+}
+
+/// Milliseconds from a volume in memory to its first picture of 1024 x 1024 pixels in memory.
+double firstImage(const Device& device, const Volume& volume, const Classification& classification, bool lit,
+                  int runs) {
+  FrameSettings settings{.size = {1024, 1024}, .draw = Draw::Auto};
+  if (lit) settings.lighting = directionalLights(1);
+  const Camera camera = framingCamera(volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
+  return least(runs, [&] {
+    return millisecondsOf([&] { Renderer(device, volume, classification, {}).render(camera, settings); });
+  });
 }
 
 BuiltVolume built(const Device& device, const Volume& volume) {
@@ -166,13 +190,9 @@ std::vector<Result> frames(const Device& device, std::string_view name, int reso
   for (const bool lit : {false, true})
     for (const Draw draw : {Draw::Gather, Draw::Splats}) {
       FrameSettings settings{.size = {1024, 1024}, .draw = draw};
-      if (lit) settings.lighting = Lighting{.lights = {{}}};
+      if (lit) settings.lighting = directionalLights(1);
       renderer.render(camera, settings);  // what is made once
-      const double time = least(runs, [&] {
-        const auto start = std::chrono::steady_clock::now();
-        renderer.render(camera, settings);
-        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-      });
+      const double time = least(runs, [&] { return millisecondsOf([&] { renderer.render(camera, settings); }); });
       const std::string ratio = draw == Draw::Splats
                                     ? fmt::format(": {:.1f} of the gather", time / results.back().milliseconds)
                                     : "";
@@ -183,16 +203,37 @@ std::vector<Result> frames(const Device& device, std::string_view name, int reso
   return results;
 }
 
+Result turntable(const Device& device, std::string_view name, int resolution, glm::ivec2 size, int lights, int runs) {
+  constexpr int kFrames = 12;
+  const bool head = name == "head";
+  const QualityScene scene = makeQualityScene(
+      {head ? "head" : "cloud", head ? QualityColor::Bone : QualityColor::Cloud, false}, resolution,
+      makeProcedural(std::string(name), resolution));
+  Renderer renderer(device, scene.volume, scene.classification, {});
+  FrameSettings settings{.size = size, .draw = Draw::Auto};
+  if (lights > 0) settings.lighting = directionalLights(lights);
+  const auto cameraOf = [&](int frame) {
+    return framingCamera(scene.volume, kDefaultAzimuth + 5.0 * frame, kDefaultElevation, double(size.x) / size.y, {});
+  };
+  renderer.render(cameraOf(0), settings);  // what is made once
+  const double time = least(runs, [&] {
+    return millisecondsOf([&] {
+      for (int frame = 1; frame <= kFrames; ++frame) renderer.render(cameraOf(frame), settings);
+    });
+  });
+  return {.name = fmt::format("turntable of {} {}^3, {}x{}, {} light{}", name, resolution, size.x, size.y, lights,
+                              lights == 1 ? "" : "s"),
+          .milliseconds = time / kFrames};
+}
+
 std::vector<Result> lights(const Device& device, int resolution, int runs) {
   const Volume volume = makeProcedural("cloud", resolution);
   const Classification classification{.densityScale = automaticDensityScale(volume, 2.0)};
   const Camera camera = framingCamera(volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
   std::vector<Result> results;
   const auto measure = [&](int count, LightAttenuation attenuation) {
-    FrameSettings settings{
-        .size = {1024, 1024}, .draw = Draw::Auto, .lighting = Lighting{.attenuation = attenuation}};
-    for (int i = 0; i < count; ++i)
-      settings.lighting->lights.push_back({.place = {std::cos(0.4 * i), 0.5, std::sin(0.4 * i)}});
+    FrameSettings settings{.size = {1024, 1024}, .draw = Draw::Auto, .lighting = directionalLights(count)};
+    settings.lighting->attenuation = attenuation;
     const double time = least(runs, [&] {
       std::vector<StageTime> times;
       {
@@ -255,21 +296,20 @@ Result splats(const Device& device, double pixels, int runs) {
           .perSecond = double(volume.voxelCount()) / time * 1e3};
 }
 
-Result wholeRender(const Device& device, const InputOptions& input, int runs) {
+Result wholeRender(const Device& device, const InputOptions& input, bool lit, int runs) {
   const Volume volume = input.open(maximumVoxels(device));
   const Classification classification{.densityScale = automaticDensityScale(volume, 2.0)};
-  const FrameSettings settings{.size = {1024, 1024}, .draw = Draw::Auto};
-  const double time = least(runs, [&] {
-    const auto start = std::chrono::steady_clock::now();
-    Renderer renderer(device, volume, classification, {});
-    renderer.render(framingCamera(volume, kDefaultAzimuth, kDefaultElevation, 1.0, {}), settings);
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-  });
   const glm::ivec3 box = volume.dimensions;
-  return {.name = fmt::format("render {}, {}x{}x{}, 1024x1024", volume.source, box.x, box.y, box.z),
-          .milliseconds = time,
-          .copyMilliseconds = 0.0,
-          .perSecond = 0.0};
+  return {.name = fmt::format("first image of {}, {}x{}x{}, {}", volume.source, box.x, box.y, box.z,
+                              lit ? "one light" : "unlit"),
+          .milliseconds = firstImage(device, volume, classification, lit, runs)};
+}
+
+Result wholeScan(const Device& device, int resolution, bool lit, int runs) {
+  const QualityScene scene =
+      makeQualityScene({"head", QualityColor::Bone, false}, resolution, makeProcedural("head", resolution));
+  return {.name = fmt::format("first image of a dense scan, {}^3, {}", resolution, lit ? "one light" : "unlit"),
+          .milliseconds = firstImage(device, scene.volume, scene.classification, lit, runs)};
 }
 
 std::vector<Result> flight(const Device& device, int resolution, int runs) {
@@ -282,11 +322,7 @@ std::vector<Result> flight(const Device& device, int resolution, int runs) {
   for (const Camera& camera : flyThrough(volume, kFrames)) {
     const bool inside = eyeIsInside(camera, volume.dimensions, volume.indexToWorld);
     renderer.render(camera, settings);  // makes what is made once
-    sum[inside] += least(runs, [&] {
-      const auto start = std::chrono::steady_clock::now();
-      renderer.render(camera, settings);
-      return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-    });
+    sum[inside] += least(runs, [&] { return millisecondsOf([&] { renderer.render(camera, settings); }); });
     ++frames[inside];
   }
   std::vector<Result> results;

@@ -33,6 +33,10 @@ std::vector<Result> culling(const Device& device, QualityColor color, int resolu
 /// without lights and with one. What is made once is made before.
 std::vector<Result> frames(const Device& device, std::string_view name, int resolution, int runs);
 
+/// A frame of a turntable of a head or a cloud of N³ voxels, in memory: the mean of 12 cameras, 5 degrees from each other,
+/// after the first. Each light is directional.
+Result turntable(const Device& device, std::string_view name, int resolution, glm::ivec2 size, int lights, int runs);
+
 /// A cloud of N³ voxels, from memory to a lit picture of 1024 x 1024 pixels in memory: with one light and 16
 /// that the table shadows, and with as many as Auto shadows exactly.
 std::vector<Result> lights(const Device& device, int resolution, int runs);
@@ -44,7 +48,10 @@ Result compaction(const Device& device, int resolution, int runs);
 Result splats(const Device& device, double pixels, int runs);
 
 /// Everything from a volume in memory to the picture in memory, at 1024 x 1024 pixels.
-Result wholeRender(const Device& device, const InputOptions& input, int runs);
+Result wholeRender(const Device& device, const InputOptions& input, bool lit, int runs);
+
+/// The same of a dense scan of N³ voxels: 8-bit scalars with a transfer function.
+Result wholeScan(const Device& device, int resolution, bool lit, int runs);
 
 /// A frame of a flight through procedural:cloud at `resolution`³ at 512 x 512 pixels: the mean of those with
 /// the eye outside the box, and of those with the eye inside. The table is made before.

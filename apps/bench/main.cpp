@@ -65,8 +65,20 @@ Results frames(const Device& device, const Extent& extent) {
   return results;
 }
 
+Results turntable(const Device& device, const Extent& extent) {
+  Results results;
+  for (const std::string_view name : {"head", "cloud"})
+    for (const int lights : {0, 1})
+      results.push_back(bench::turntable(device, name, 128, {1280, 800}, lights, extent.quick ? 1 : 2));
+  return results;
+}
+
 Results lights(const Device& device, const Extent& extent) {
-  return bench::lights(device, 128, extent.runs());
+  Results results = bench::lights(device, 128, extent.runs());
+  const double one = results.emplace_back(bench::turntable(device, "cloud", 128, {1024, 1024}, 1, 1)).milliseconds;
+  Result& sixteen = results.emplace_back(bench::turntable(device, "cloud", 128, {1024, 1024}, 16, 1));
+  sixteen.name += fmt::format(": {:.2f} of one light", sixteen.milliseconds / one);
+  return results;
 }
 
 Results list(const Device& device, const Extent& extent) {
@@ -85,12 +97,17 @@ Results flight(const Device& device, const Extent& extent) {
 
 Results whole(const Device& device, const Extent& extent) {
   Results results;
-  if (!extent.quick)  // a twentieth of more than 512³ voxels
+  if (!extent.quick) {  // a twentieth of more than 512³ voxels, and all of 512³
     results.push_back(
-        bench::wholeRender(device, {.input = "procedural:plume", .grid = {}, .resolution = 640}, 1));
-  for (const std::string& input : extent.inputs)
-    results.push_back(
-        bench::wholeRender(device, {.input = input, .grid = {}, .resolution = {}}, extent.runs()));
+        bench::wholeRender(device, {.input = "procedural:plume", .grid = {}, .resolution = 640}, false, 1));
+    results.push_back(bench::wholeScan(device, 512, false, 1));
+  }
+  for (const bool lit : {false, true}) {
+    results.push_back(bench::wholeScan(device, extent.quick ? 128 : 256, lit, extent.runs()));
+    for (const std::string& input : extent.inputs)
+      results.push_back(
+          bench::wholeRender(device, {.input = input, .grid = {}, .resolution = {}}, lit, extent.runs()));
+  }
   return results;
 }
 
@@ -99,9 +116,9 @@ struct Stage {
   Results (*measure)(const Device& device, const Extent& extent);
 };
 const std::vector<Stage> kStages{{"sweeps", sweeps},   {"octree", octree}, {"zoom", zoom},
-                                 {"culling", culling}, {"frames", frames}, {"lights", lights},
-                                 {"list", list},       {"splats", splats}, {"flight", flight},
-                                 {"whole", whole}};
+                                 {"culling", culling}, {"frames", frames}, {"turntable", turntable},
+                                 {"lights", lights},   {"list", list},     {"splats", splats},
+                                 {"flight", flight},   {"whole", whole}};
 
 std::vector<std::string> stageNames() {
   std::vector<std::string> names;
