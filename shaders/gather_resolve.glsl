@@ -6,5 +6,5 @@ void resolvePixel(ivec2 pixel, vec4 colorEnergy, float distance) {
   const float alpha = clamp(colorEnergy.a, 0.0, 1.0);
   imageStore(colorImage, pixel, vec4(max(colorEnergy.rgb, vec3(0.0)), alpha));
   if (kWithDistance)
-    imageStore(distanceImage, pixel, vec4(alpha > 0.0 ? max(distance, 0.0) / alpha : uintBitsToFloat(0x7f800000u)));
+    imageStore(distanceImage, pixel, vec4(alpha > 0.0 && distance >= 0.0 ? distance / alpha : uintBitsToFloat(0x7f800000u)));
 }

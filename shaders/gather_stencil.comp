@@ -20,6 +20,7 @@ layout(binding = 4, r32f) writeonly uniform imageBuffer distancesOut;
 layout(binding = 5, rgba32f) writeonly uniform image2D colorImage;
 layout(binding = 6, r32f) writeonly uniform image2D distanceImage;
 #include "gather_resolve.glsl"
+#include "mean_distance.glsl"
 
 const float kStencilStrength = 1.2;   // measured: higher than the missing variance, as the stencil is coarse
 const float kLeastTransmittance = 1e-6;  // that the stencil tells from 0
@@ -68,12 +69,13 @@ void main() {
   // interpolated do not: there mean depths would widen what is opaque by a quarter of a voxel.
   vec4 color = vec4(0.0);
   float depth = 0.0;
-  distance = 0.0;
+  MeanDistance mean = kNoDistance;
   [[unroll]] for (int i = 0; i < 9; ++i) {
     color += weights[i] * colors[i];
     depth -= weights[i] * log(max(1.0 - colors[i].a, kLeastTransmittance));
-    distance += weights[i] * weighted[i];
+    addSample(mean, weights[i], colors[i].a, weighted[i]);
   }
+  distance = distancesOf(mean, color.a);
   if (!kScalars && color.a > kLeastTransmittance) {
     const float scale = (1.0 - exp(-max(depth, 0.0))) / color.a;
     color *= scale;

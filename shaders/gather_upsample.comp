@@ -5,6 +5,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "gather_interface.h"
 #include "catmull_rom.glsl"
+#include "mean_distance.glsl"
 
 layout(constant_id = 0) const bool kWithDistance = false;
 layout(constant_id = 1) const bool kAlongY = false;
@@ -30,12 +31,14 @@ void main() {
   const int row = kAlongY ? frame.size.x : 1;
   int place = kAlongY ? index.x + (int(low) - 1) * row : int(low) - 1 + index.y * frame.samples.x;
   vec4 color = vec4(0.0);
-  float distance = 0.0;
+  MeanDistance mean = kNoDistance;
   [[unroll]] for (int i = 0; i < 4; ++i) {
-    color += weights[i] * texelFetch(colorEnergy, place);
-    if (kWithDistance) distance += weights[i] * texelFetch(distances, place).x;
+    const vec4 texel = texelFetch(colorEnergy, place);
+    color += weights[i] * texel;
+    if (kWithDistance) addSample(mean, weights[i], texel.a, texelFetch(distances, place).x);
     place += row;
   }
+  const float distance = distancesOf(mean, color.a);
   if (kAlongY) {
     resolvePixel(index, color, distance);
     return;

@@ -387,6 +387,22 @@ TEST_F(GatherTest, DistanceIsTheMeanOfWhatIsSeen) {
   EXPECT_NEAR(image.depth[7 + 7 * 15], camera.position.z - z, 1e-3);
 }
 
+TEST_F(GatherTest, DistanceOfFaintPixelsIsWithinTheVolume) {
+  const Scene scene = cloud(48);
+  Renderer renderer(device(), scene.volume, scene.classification, {});
+  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 4.0 / 3.0, {});
+  FrameSettings settings = gathering({160, 120});
+  settings.depth = true;
+  const Image image = renderer.render(camera, settings);
+  const glm::dvec3 diagonal(glm::dmat3(scene.volume.indexToWorld) * glm::dvec3(scene.volume.dimensions));
+  const double middle = glm::length(camera.lookAt - camera.position), reach = 0.5 * glm::length(diagonal);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    if (std::isinf(image.depth[i])) continue;
+    EXPECT_GT(image.depth[i], middle - reach) << i << " with alpha " << image.pixels[i].a;
+    EXPECT_LT(image.depth[i], middle + reach) << i << " with alpha " << image.pixels[i].a;
+  }
+}
+
 TEST_F(GatherTest, IsTheSameToTheBitEveryTime) {
   const Volume volume = makeProcedural("cloud", 40);
   const Classification classification{.densityScale = automaticDensityScale(volume, 2.0)};

@@ -1,0 +1,27 @@
+// Sums of e times distance, of samples that an interpolation adds with weights of both signs. Where their energies nearly
+// cancel, the quotient of the two sums alone could be any number; the mean distance of the result stays within the range of
+// the samples' own. A negative sum marks a sample without a distance.
+#ifndef MEAN_DISTANCE_GLSL
+#define MEAN_DISTANCE_GLSL
+
+struct MeanDistance {
+  float sum;        // of weight times e times distance
+  float low, high;  // of the samples' mean distances; low > high: there are none
+};
+
+const MeanDistance kNoDistance = MeanDistance(0.0, 3e38, 0.0);
+
+void addSample(inout MeanDistance mean, float weight, float energy, float distances) {
+  if (energy <= 0.0 || distances < 0.0) return;
+  const float distance = distances / energy;
+  mean.sum += weight * distances;
+  mean.low = min(mean.low, distance);
+  mean.high = max(mean.high, distance);
+}
+
+float distancesOf(MeanDistance mean, float energy) {
+  if (energy <= 0.0 || mean.low > mean.high) return -1.0;
+  return clamp(mean.sum, energy * mean.low, energy * mean.high);
+}
+
+#endif
