@@ -126,6 +126,12 @@ bool looksLikeScan(const Volume& volume) {
          double(volume.activeVoxels) >= 0.95 * double(volume.voxelCount());
 }
 
+void orientScan(Volume& volume) {
+  if (!looksLikeScan(volume)) return;
+  volume.upReason = "it looks like a scan";
+  volume.up = {0.0, 0.0, 1.0};
+}
+
 TransferFunction scanTransferFunction(const Volume& volume) {
   const Histogram fine = histogramOf(volume, kFineBins);
   const double low = volume.minimum, high = highestUsual(fine), width = (high - low) / double(kBins);

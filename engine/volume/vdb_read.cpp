@@ -85,11 +85,11 @@ Volume readVdb(const std::filesystem::path& path, const std::string& gridName, s
     });
     channels.addTo(volume);
     volume.isLevelSet = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
-    if (file.isOfBlender(entry))
+    orientScan(volume);
+    if (file.isOfBlender(entry)) {
       volume.upReason = "Blender wrote the file";
-    else if (looksLikeScan(volume))
-      volume.upReason = "it looks like a scan";
-    if (!volume.upReason.empty()) volume.up = {0.0, 0.0, 1.0};
+      volume.up = {0.0, 0.0, 1.0};
+    }
     return volume;
   } catch (const std::bad_alloc&) {
     fail(ExitCode::OutOfMemory, "not enough memory for {}; free some, or resample or crop the volume",
