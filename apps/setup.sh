@@ -13,7 +13,8 @@ packages=(
   libopenexr-dev libpng-dev
   libglfw3-dev libimgui-dev
   libopenvdb-dev libtbb-dev libboost-iostreams-dev # OpenVDB's headers and CMake module need the last
-  libgtest-dev xvfb xdotool
+  pybind11-dev python3-pybind11 python3-dev python3-numpy # the Python module
+  libgtest-dev xvfb xdotool python3-openvdb
 )
 
 say() { echo "setup: $*"; }

@@ -62,6 +62,11 @@ bool isInlineJson(const std::string& text);
 CLI::Option* addWord(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                      std::optional<int>& target, const std::string& description);
 
+/// The number of letters to insert, remove or replace that makes one name of the other (Levenshtein 1965): what the nearest
+/// known name of an unknown one is found by, where it is less than kFarName.
+std::size_t editDistance(const std::string& a, const std::string& b);
+inline constexpr std::size_t kFarName = 4;
+
 /// Resolved options as "--name" and value, for people, metadata and timings; an empty name is a positional,
 /// an empty value a flag.
 using OptionList = std::vector<std::pair<std::string, std::string>>;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numeric>
 #include <set>
 
 #include "apps/freevoxels/program.h"
@@ -34,8 +33,6 @@ const std::vector<Replaced> kReplaced{{"IN", {"--grid", "--resolution"}},
                                        {"--composite", "--attenuation", "--directions", "--code",
                                         "--path-length-correction", "--gradient", "--lod", "--culling"}}};
 
-constexpr std::size_t kFarName = 4;  ///< changes of letters from which a name is another one
-
 std::string quoted(const std::string& section, const std::string& key) {
   return inQuotes(section.empty() ? key : section + "." + key);
 }
@@ -52,22 +49,6 @@ std::vector<const CLI::Option*> sceneOptions(const CLI::App& command) {
       if (!sceneSection(*option).empty()) options.push_back(option);
   }
   return options;
-}
-
-/// How many letters have to change (Levenshtein 1965).
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t(0));
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
 }
 
 /// A scene that is given to a command.

@@ -69,15 +69,24 @@ Volume SceneOptions::readVolume(std::uint64_t maximumVoxels) const {
 
 Scene SceneOptions::resolve(std::shared_ptr<const Volume> volume) const {
   Scene scene{.volume = std::move(volume)};
-  scene.classification = classification.resolve(*scene.volume, emission.grid().has_value());
-  scene.classification.emission = emission.resolve(*scene.volume, scene.classification);
-  if (scene.classification.emission && !classification.albedo)
-    scene.classification.albedo = glm::vec3(kSmokeAlbedo);
+  scene.classification = resolveClassification(*scene.volume);
+  resolveView(scene);
+  return scene;
+}
+
+Classification SceneOptions::resolveClassification(const Volume& volume) const {
+  Classification result = classification.resolve(volume, emission.grid().has_value());
+  result.emission = emission.resolve(volume, result);
+  if (result.emission && !classification.albedo) result.albedo = glm::vec3(kSmokeAlbedo);
+  return result;
+}
+
+void SceneOptions::resolveView(Scene& scene) const {
   scene.camera = camera.resolve(*scene.volume, scene.classification).front();
   scene.lighting = lighting.resolve(*scene.volume, scene.classification, scene.camera);
+  scene.classification.emissionLight = nullptr;
   if (scene.classification.emission && scene.lighting)
     scene.classification.emissionLight = std::make_shared<const EmissionLight>(*scene.volume, scene.classification);
-  return scene;
 }
 
 Scene SceneOptions::open(std::uint64_t maximumVoxels) const {

@@ -46,6 +46,9 @@ struct SceneOptions {
   Volume readVolume(std::uint64_t maximumVoxels) const;
   /// Reads what else there is to read.
   Scene resolve(std::shared_ptr<const Volume> volume) const;
+  /// The two halves of it: how a volume is classified, and how it is seen and lit, `scene` having the other half.
+  Classification resolveClassification(const Volume& volume) const;
+  void resolveView(Scene& scene) const;
   /// Both.
   Scene open(std::uint64_t maximumVoxels) const;
   /// One warning each for values of the scene's volume that are not drawn as they are.

@@ -1,0 +1,121 @@
+#include "apps/python/array_volume.h"
+
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/packing.hpp>
+#include <limits>
+
+#include "engine/core/error.h"
+#include "engine/volume/scan.h"
+
+namespace freevoxels {
+
+namespace {
+
+namespace py = pybind11;
+
+struct Half {
+  std::uint16_t bits;
+  explicit operator float() const { return glm::unpackHalf1x16(bits); }
+};
+
+/// What of an array is read without the GIL, while its owner holds a reference.
+struct Source {
+  const char* data;
+  glm::i64vec3 strides;  ///< bytes along x, y and z
+  glm::ivec3 dimensions;
+};
+
+std::string shapeText(const py::array& array) {
+  std::string text;
+  for (py::ssize_t axis = 0; axis < array.ndim(); ++axis)
+    text += fmt::format("{}{}", axis == 0 ? "" : " x ", array.shape(axis));
+  return text;
+}
+
+Source sourceOf(const py::array& array) {
+  if (array.ndim() != 3)
+    fail(ExitCode::Input, "the array has {} dimension{}: a volume needs three, ordered z, y, x", array.ndim(),
+         array.ndim() == 1 ? "" : "s");
+  constexpr py::ssize_t kMost = std::numeric_limits<std::int32_t>::max();
+  for (py::ssize_t axis = 0; axis < 3; ++axis)
+    if (array.shape(axis) < 1 || array.shape(axis) > kMost)
+      fail(ExitCode::Input, "the array has the shape {}: every dimension of a volume is at least 1", shapeText(array));
+  return {static_cast<const char*>(array.data()),
+          {array.strides(2), array.strides(1), array.strides(0)},
+          {array.shape(2), array.shape(1), array.shape(0)}};
+}
+
+template <typename Value>
+ScalarBricks bricksOf(const Source& source, std::optional<double> noData) {
+  const float absent = noData ? float(*noData) : std::numeric_limits<float>::quiet_NaN();
+  const py::gil_scoped_release withoutGil;
+  return ScalarBricks::make(source.dimensions, [&](glm::ivec3 voxel) {
+    const glm::i64vec3 offset = glm::i64vec3(voxel) * source.strides;
+    Value value;
+    std::memcpy(&value, source.data + offset.x + offset.y + offset.z, sizeof value);
+    const float scalar = float(value);
+    return std::isnan(scalar) || scalar == absent ? kInactiveVoxel : scalar;
+  });
+}
+
+ScalarBricks readArray(const py::array& array, std::optional<double> noData) {
+  const Source source = sourceOf(array);
+  const py::dtype type = array.dtype();
+  if (type.byteorder() != '>')  // Debian's machines that this runs on are little-endian
+    switch (type.kind()) {
+      case 'b': return bricksOf<std::uint8_t>(source, noData);
+      case 'u':
+        if (type.itemsize() == 1) return bricksOf<std::uint8_t>(source, noData);
+        if (type.itemsize() == 2) return bricksOf<std::uint16_t>(source, noData);
+        if (type.itemsize() == 4) return bricksOf<std::uint32_t>(source, noData);
+        return bricksOf<std::uint64_t>(source, noData);
+      case 'i':
+        if (type.itemsize() == 1) return bricksOf<std::int8_t>(source, noData);
+        if (type.itemsize() == 2) return bricksOf<std::int16_t>(source, noData);
+        if (type.itemsize() == 4) return bricksOf<std::int32_t>(source, noData);
+        return bricksOf<std::int64_t>(source, noData);
+      case 'f':
+        if (type.itemsize() == 2) return bricksOf<Half>(source, noData);
+        if (type.itemsize() == 4) return bricksOf<float>(source, noData);
+        if (type.itemsize() == 8) return bricksOf<double>(source, noData);
+        break;
+      default: break;
+    }
+  fail(ExitCode::Input, "arrays of {} cannot be rendered: convert it with array.astype('float32')",
+       py::str(type.attr("name")).cast<std::string>());
+}
+
+}  // namespace
+
+glm::dmat4 placement(const glm::dvec3& spacing, const glm::dvec3& origin) {
+  return glm::scale(glm::translate(glm::dmat4(1.0), origin), spacing);
+}
+
+Volume volumeOfArray(const py::array& scalars, const std::optional<py::array>& temperature,
+                     const ArrayPlacement& placement) {
+  Volume volume{.source = "the array"};
+  volume.indexToWorld = placement.indexToWorld;
+  const double determinant = glm::determinant(glm::dmat3(volume.indexToWorld));
+  if (!std::isfinite(determinant) || !(std::abs(determinant) > 0.0))
+    fail(ExitCode::Input, "voxels without extent cannot be rendered: spacing, origin and transform must be finite, and the "
+                          "spacing along each axis not 0");
+  volume.scalars = readArray(scalars, placement.noData);
+  volume.dimensions = volume.scalars.dimensions();
+  summariseValues(volume);
+  if (volume.activeVoxels == 0)
+    fail(ExitCode::Input, "the array of {} voxels holds no data: all its values are NaN{}", shapeText(scalars),
+         placement.noData ? " or no_data" : "");
+  orientScan(volume);
+  if (!temperature) return volume;
+  volume.temperature = TemperatureGrid{.name = "temperature", .values = readArray(*temperature, placement.noData)};
+  if (volume.temperature->values.dimensions() != volume.dimensions)
+    fail(ExitCode::Input, "the temperatures have the shape {}, and the array has {}: they must be the same",
+         shapeText(*temperature), shapeText(scalars));
+  summariseValues(*volume.temperature);
+  coverBricks(volume, volume.temperature->values);
+  return volume;
+}
+
+}  // namespace freevoxels

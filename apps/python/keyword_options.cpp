@@ -1,0 +1,98 @@
+#include "apps/python/keyword_options.h"
+
+#include <algorithm>
+
+#include "apps/freevoxels/scene_value.h"
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+using Json = nlohmann::json;
+
+std::string groupOf(const CLI::Option& option) {
+  return CLI::detail::to_lower(option.get_group());
+}
+
+/// "density_scale" of --density-scale.
+std::string keywordOf(std::string name) {
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+std::string keywordOf(const CLI::Option& option) {
+  return keywordOf(option.get_lnames().front());
+}
+
+/// Whether a value of the key "light" is one light, not the section of that name.
+bool isLight(const Json& value) {
+  return value.contains("direction") || value.contains("position");
+}
+
+}  // namespace
+
+KeywordOptions::KeywordOptions(const Json& keywords, std::vector<std::string> sections)
+    : sections_(std::move(sections)) {
+  scene.add(app_);
+  scene.lighting.addMethod(app_);
+  method.add(app_);
+  device.add(app_);
+  for (const auto& [key, value] : keywords.items()) {
+    if (!value.is_object() || !isSection(key) || isLight(value)) {
+      give("", key, value);
+      continue;
+    }
+    for (const auto& [inner, one] : value.items()) give(key, keywordOf(inner), one);
+  }
+  scene.file.apply([this](const std::string& option) { return scene.output.honours(option); });
+  for (const CLI::Option* option : app_.get_options())
+    if (groupOf(*option) == "classification" || groupOf(*option) == "emission")
+      for (const std::string& text : option->results()) classificationText_ += fmt::format("{}={} ", optionName(*option), text);
+}
+
+bool KeywordOptions::isSection(const std::string& name) const {
+  return std::ranges::find(sections_, name) != sections_.end();
+}
+
+CLI::Option* KeywordOptions::find(const std::string& section, const std::string& keyword) {
+  std::string nearest;
+  std::size_t least = kFarName;
+  for (CLI::Option* option : app_.get_options([](const CLI::Option*) { return true; })) {
+    if (option->get_lnames().empty() || !isSection(groupOf(*option))) continue;
+    const std::string known = keywordOf(*option);
+    const bool isInSection = section.empty() || groupOf(*option) == section;
+    if (isInSection && (keyword == known || keyword == keywordOf(sceneKey(*option))))
+      return option;
+    const std::size_t distance = editDistance(keyword, known) + (isInSection ? 0 : 1);
+    if (distance < least) least = distance, nearest = known;
+  }
+  fail(ExitCode::Usage, "there is no option '{}'{}", keyword,
+       nearest.empty() ? "; 'freevoxels render --help' lists them, with - in place of _" : fmt::format("; did you mean '{}'?", nearest));
+}
+
+void KeywordOptions::give(const std::string& section, const std::string& keyword, const Json& value) {
+  CLI::Option* const option = find(section, keyword);
+  const bool wantsList = isRepeated(*option) && !value.is_array();
+  const std::vector<std::string> texts = optionTexts(*option, wantsList ? Json::array({value}) : value, "", keyword);
+  if (texts.empty()) return;
+  for (const CLI::Option* other : given_)
+    if (option->get_excludes().contains(const_cast<CLI::Option*>(other)))
+      fail(ExitCode::Usage, "'{}' and '{}' exclude each other: keep one of them", keyword, keywordOf(*other));
+  for (const std::string& text : texts) option->add_result(text);
+  option->run_callback();
+  given_.push_back(option);
+}
+
+std::string KeywordOptions::rendererText(const Scene& resolved) const {
+  OptionList options;
+  scene.classification.describe(options, resolved.classification);
+  scene.emission.describe(options, *resolved.volume, resolved.classification.emission);
+  const TableSettings table = method.table();
+  options.emplace_back("table", fmt::format("{} {} {} {}", int(table.directions), int(table.code), int(table.filter),
+                                            table.pathLengthCorrection));
+  options.emplace_back("emission light", resolved.classification.emissionLight ? "yes" : "no");
+  return commandText(options);
+}
+
+}  // namespace freevoxels

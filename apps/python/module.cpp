@@ -1,0 +1,250 @@
+// The Python module `freevoxels`: arrays and files in, images as arrays out.
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <filesystem>
+#include <glm/gtc/matrix_access.hpp>
+#include <memory>
+#include <optional>
+
+#include "apps/freevoxels/program.h"
+#include "apps/python/array_volume.h"
+#include "apps/python/device_context.h"
+#include "apps/python/keyword_options.h"
+#include "apps/python/python_values.h"
+#include "engine/core/error.h"
+#include "engine/hierarchy/volume_memory.h"
+#include "engine/renderer.h"
+
+namespace freevoxels {
+
+namespace {
+
+namespace py = pybind11;
+using Json = nlohmann::json;
+using Triple = std::array<double, 3>;
+using Matrix = std::array<std::array<double, 4>, 4>;
+
+const std::vector<std::string> kViewSections{"classification", "emission", "camera", "light", "method", "scene", "device"};
+const std::vector<std::string> kFileSections{"input", "classification", "emission"};
+const std::vector<std::string> kOutputSections{"output"};
+
+struct PythonVolume {
+  std::shared_ptr<const Volume> volume;
+};
+
+glm::dmat4 placementOf(const std::variant<double, Triple>& spacing, const Triple& origin, const std::optional<Matrix>& transform) {
+  if (!transform) {
+    const bool isCube = std::holds_alternative<double>(spacing);
+    const Triple steps = isCube ? Triple{std::get<double>(spacing), std::get<double>(spacing), std::get<double>(spacing)}
+                                : std::get<Triple>(spacing);
+    return placement({steps[0], steps[1], steps[2]}, {origin[0], origin[1], origin[2]});
+  }
+  glm::dmat4 matrix(1.0);
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) matrix[column][row] = (*transform)[std::size_t(row)][std::size_t(column)];
+  if (glm::row(matrix, 3) != glm::dvec4(0.0, 0.0, 0.0, 1.0))
+    fail(ExitCode::Input, "a transform is affine: its last row is 0, 0, 0, 1");
+  return matrix;
+}
+
+PythonVolume volumeFromArray(const py::array& array, const std::variant<double, Triple>& spacing, const Triple& origin,
+                             const std::optional<Matrix>& transform, std::optional<double> noData,
+                             const std::optional<py::array>& temperature) {
+  const ArrayPlacement place{placementOf(spacing, origin, transform), noData};
+  Volume volume = volumeOfArray(array, temperature, place);
+  warnAboutValues(volume, false);
+  return {std::make_shared<const Volume>(std::move(volume))};
+}
+
+PythonVolume openVolume(const std::filesystem::path& file, const py::kwargs& keywords) {
+  KeywordOptions options(jsonOf(keywords), kFileSections);
+  options.scene.input.input = file.string();
+  options.scene.checkLook();
+  DeviceContext& context = deviceContext(options.device);
+  const py::gil_scoped_release withoutGil;
+  return {std::make_shared<const Volume>(options.scene.readVolume(maximumVoxels(*context.device)))};
+}
+
+class PythonRenderer {
+ public:
+  PythonRenderer(PythonVolume volume, const py::kwargs& keywords)
+      : volume_(std::move(volume.volume)), keywords_(jsonOf(keywords)), context_(deviceContext(read(Json::object())->device)) {}
+
+  py::object render(const py::object& progress, bool depth, const py::kwargs& keywords);
+
+  std::vector<std::pair<std::string, double>> timings() const {
+    std::vector<std::pair<std::string, double>> pairs;
+    if (renderer_)
+      for (const StageTime& time : renderer_->timings()) pairs.emplace_back(time.name, time.milliseconds);
+    return pairs;
+  }
+  std::string device() const { return context_.device->description().name; }
+
+ private:
+  /// The options of a frame: those that the renderer was made with, then `more` in their places.
+  std::unique_ptr<KeywordOptions> read(const Json& more) const;
+  Image draw(const KeywordOptions& options, bool depth, const Progress& progress);
+  void makeRenderer(const KeywordOptions& options, const Progress& progress);
+
+  const std::shared_ptr<const Volume> volume_;
+  const Json keywords_;
+  DeviceContext& context_;
+  Scene scene_;                  ///< of the last frame
+  std::string classification_;   ///< the options that scene_.classification was resolved from
+  std::string rendererText_;     ///< KeywordOptions::rendererText of what renderer_ was made for
+  std::unique_ptr<Renderer> renderer_;
+};
+
+std::unique_ptr<KeywordOptions> PythonRenderer::read(const Json& more) const {
+  Json merged = keywords_;
+  merged.update(more);
+  auto options = std::make_unique<KeywordOptions>(merged, kViewSections);
+  options->scene.input = {};  // whatever volume a scene file names
+  options->scene.checkLook();
+  return options;
+}
+
+py::object PythonRenderer::render(const py::object& progress, bool depth, const py::kwargs& keywords) {
+  const std::unique_ptr<const KeywordOptions> options = read(jsonOf(keywords));
+  const Progress report = progressOf(progress);
+  Image image;
+  {
+    const py::gil_scoped_release withoutGil;
+    const std::lock_guard lock(context_.mutex);
+    image = draw(*options, depth, report);
+  }
+  if (!depth) return pixelsOf(image);
+  return py::make_tuple(pixelsOf(image), depthOf(image));
+}
+
+void PythonRenderer::makeRenderer(const KeywordOptions& options, const Progress& progress) {
+  scene_.volume = volume_;
+  const std::string classification = options.classificationText();
+  if (!renderer_ || classification != classification_) {
+    scene_.classification = options.scene.resolveClassification(*volume_);
+    classification_ = classification;
+  }
+  options.scene.resolveView(scene_);
+  const std::string text = options.rendererText(scene_);
+  if (renderer_ && text == rendererText_) return;
+  renderer_ = nullptr;  // the device need not hold two at once
+  renderer_ = std::make_unique<Renderer>(*context_.device, *volume_, scene_.classification, options.method.table(), progress);
+  rendererText_ = text;
+}
+
+Image PythonRenderer::draw(const KeywordOptions& options, bool depth, const Progress& progress) {
+  FrameSettings settings{.size = options.scene.camera.size, .depth = depth};
+  options.method.apply(settings);
+  checkFrameFits(*context_.device, settings);
+  makeRenderer(options, progress);
+  settings.lighting = scene_.lighting;
+  Image image = renderer_->render(scene_.camera, settings, progress);
+  if (const std::uint64_t count = context_.instance.validationMessageCount(); count > 0)
+    throw InternalError(fmt::format("{} Vulkan validation messages, printed above", count));
+  return image;
+}
+
+void save(const std::filesystem::path& file, const py::array& image, const std::optional<py::array>& depth,
+          const py::kwargs& keywords) {
+  KeywordOptions options(jsonOf(keywords), kOutputSections);
+  OutputOptions& output = options.scene.output;
+  output.files = {file.string()};
+  if (depth) output.aov = 0;
+  output.check();
+  const Image pixels = imageOf(image, depth);
+  const py::gil_scoped_release withoutGil;
+  output.write(pixels, {.fullFloat = output.fullFloat});
+}
+
+constexpr const char* kModuleText =
+    "Renders volumes with shadows, on a GPU or on the CPU.\n\n"
+    "    import freevoxels\n"
+    "    image = freevoxels.render(array, spacing=(1, 1, 2.5), size=(800, 600))\n"
+    "    freevoxels.save('image.png', image)\n\n"
+    "An array has axes (z, y, x); spacing, origin and every other position are (x, y, z). Options are those of\n"
+    "'freevoxels render --help', with _ in place of -: density_scale=40, orbit=(35, 25), light='direction=1,1,1',\n"
+    "transfer_function={...} or 'file.json', camera={'orbit': (35, 25), 'fov': 30}. Errors are freevoxels.Error.\n"
+    "Remarks and warnings go to the logger 'freevoxels' of the module logging.";
+
+void addVolume(py::module_& module) {
+  using namespace py::literals;
+  const auto tuple3 = [](glm::dvec3 v) { return py::make_tuple(v.x, v.y, v.z); };
+  py::class_<PythonVolume>(module, "Volume", "A volume in memory, which renderers can share.")
+      .def(py::init(&volumeFromArray), "array"_a, py::kw_only(), "spacing"_a = 1.0, "origin"_a = Triple{},
+           "transform"_a = py::none(), "no_data"_a = py::none(), "temperature"_a = py::none(),
+           "Copies an array of real numbers with axes (z, y, x). spacing: world units between voxels, one number or along\n"
+           "(x, y, z). origin: where the centre of voxel [0, 0, 0] is. transform: instead of both, a 4x4 affine matrix from\n"
+           "(x, y, z, 1) in voxels to the world. NaN, and values equal to no_data, hold no data. temperature: an array of\n"
+           "the same shape, for emission.")
+      .def_static("open", &openVolume, "file"_a,
+                  "Reads an OpenVDB file, or makes 'procedural:NAME'. Options: grid, resolution, albedo_grid, and emission=True\n"
+                  "or temperature_grid for temperatures.")
+      .def_property_readonly("shape", [](const PythonVolume& v) {
+        const glm::ivec3 size = v.volume->dimensions;
+        return py::make_tuple(size.z, size.y, size.x);
+      }, "Voxels along z, y and x.")
+      .def_property_readonly("range", [](const PythonVolume& v) { return std::pair(v.volume->minimum, v.volume->maximum); },
+                             "The least and the largest value of the voxels that hold data.")
+      .def_property_readonly("active_voxels", [](const PythonVolume& v) { return v.volume->activeVoxels; },
+                             "How many voxels hold data.")
+      .def_property_readonly("origin", [tuple3](const PythonVolume& v) { return tuple3(v.volume->indexToWorld[3]); },
+                             "World position (x, y, z) of the centre of voxel [0, 0, 0].")
+      .def_property_readonly("source", [](const PythonVolume& v) { return v.volume->source; }, "File and grid, for messages.");
+}
+
+void addRenderer(py::module_& module) {
+  using namespace py::literals;
+  py::class_<PythonRenderer>(module, "Renderer",
+                             "Renders one volume many times. What frames have in common, the attenuation table above all, is\n"
+                             "kept on the device, and is made again only for a frame whose options change it. Threads may share\n"
+                             "a renderer; its frames are drawn one after another.")
+      .def(py::init<PythonVolume, const py::kwargs&>(), "volume"_a, "Options given here hold for every frame.")
+      .def("render", &PythonRenderer::render, py::kw_only(), "progress"_a = py::none(), "depth"_a = false,
+           "Returns float32 (height, width, 4): linear red, green and blue, multiplied by alpha, and alpha; row 0 is the top.\n"
+           "With depth=True returns (image, depth), the latter float32 (height, width): mean distance along the viewing axis\n"
+           "of what is seen, infinite where there is nothing. progress(stage, fraction) is called about every 50 ms of work;\n"
+           "an exception that it raises abandons the frame. Options given here hold for this frame.")
+      .def_property_readonly("timings", &PythonRenderer::timings, "(stage, milliseconds) of what was made and of the last frame.")
+      .def_property_readonly("device", &PythonRenderer::device, "Name of the Vulkan device.");
+}
+
+/// render(): the keywords of Volume are taken out of those of a frame.
+py::object renderOnce(const py::object& source, const py::object& progress, bool depth, py::kwargs keywords) {
+  const py::object type = py::type::of<PythonVolume>();
+  py::object volume = source;
+  const bool isFile = py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__");
+  const std::vector<const char*> taken =
+      isFile ? std::vector{"grid", "resolution"} : std::vector{"spacing", "origin", "transform", "no_data", "temperature"};
+  if (!py::isinstance<PythonVolume>(source)) {
+    py::dict given;
+    for (const char* key : taken)
+      if (keywords.contains(key)) given[key] = keywords.attr("pop")(key);
+    if (isFile)
+      for (const char* key : {"emission", "temperature_grid", "albedo_grid"})
+        if (keywords.contains(key)) given[key] = keywords[key];
+    volume = (isFile ? py::object(type.attr("open")) : type)(source, **given);
+  }
+  return PythonRenderer(volume.cast<PythonVolume>(), keywords).render(progress, depth, {});
+}
+
+}  // namespace
+
+PYBIND11_MODULE(freevoxels, module) {
+  using namespace py::literals;
+  module.doc() = kModuleText;
+  module.attr("__version__") = programVersion();
+  logToPython();
+  addExceptions(module);
+  addVolume(module);
+  addRenderer(module);
+  module.def("render", &renderOnce, "volume"_a, py::kw_only(), "progress"_a = py::none(), "depth"_a = false,
+             "Renders an array, a file or a Volume once, as Renderer(...).render() does. Also takes the keywords of Volume for an\n"
+             "array, and those of Volume.open for a file.");
+  module.def("save", &save, "file"_a, "image"_a, py::kw_only(), "depth"_a = py::none(),
+             "Writes an image to a .png, 8-bit sRGB over a background, or to an .exr, linear, which may have depth. Options:\n"
+             "background, exposure, tone_map, float.");
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,215 @@
+"""The module as a user calls it: closed forms, the command line's images, arrays of all kinds, errors."""
+
+import logging
+import math
+import os
+import pathlib
+import subprocess
+import tempfile
+import threading
+import unittest
+
+import freevoxels
+import numpy as np
+
+PROGRAM = os.environ["FREEVOXELS_PROGRAM"]
+ALONG_Z = dict(camera_position=(9.5, 9.5, 100), look_at=(9.5, 9.5, 0), up=(0, 1, 0), orthographic=20, size=(40, 40))
+
+
+def blob(shape=(12, 14, 16)):
+    """A soft ball with a dent, positive everywhere, so that every voxel is active in any file."""
+    z, y, x = np.meshgrid(*[np.linspace(-1, 1, n, dtype="float32") for n in shape], indexing="ij")
+    return np.maximum(1 - np.sqrt(x * x + y * y + z * z) + 0.3 * np.sin(5 * x), 1e-3).astype("float32")
+
+
+class RenderTest(unittest.TestCase):
+    def test_homogeneous_box_is_the_law_of_beer_and_lambert(self):
+        box = np.ones((12, 20, 20), "float32")
+        for extinction in (0.01, 0.1):
+            image = freevoxels.render(box, spacing=(1, 1, 2), density_scale=extinction, unlit=True, albedo=(0.8, 0.5, 0.2), **ALONG_Z)
+            self.assertEqual((image.shape, image.dtype), ((40, 40, 4), np.float32))
+            alpha = 1 - math.exp(-extinction * 12 * 2)
+            np.testing.assert_allclose(image[20, 20], [0.8 * alpha, 0.5 * alpha, 0.2 * alpha, alpha], rtol=2e-3)
+
+    def test_axes_are_z_y_x_and_rows_begin_at_the_top(self):
+        corner = np.zeros((4, 20, 20), "float32")
+        corner[:, 15:, :5] = 1  # large y, small x: the upper left of a view along -z
+        image = freevoxels.render(corner, density_scale=1, unlit=True, **ALONG_Z)
+        self.assertGreater(image[5, 5, 3], 0.9)
+        self.assertEqual(image[30, 30, 3], 0)
+
+    def test_depth_is_the_distance_to_what_is_seen(self):
+        slab = np.zeros((9, 20, 20), "float32")
+        slab[4] = 1
+        image, depth = freevoxels.render(slab, density_scale=9, unlit=True, depth=True, **ALONG_Z)
+        self.assertEqual(depth.shape, image.shape[:2])
+        self.assertAlmostEqual(float(depth[20, 20]), 100 - 4, delta=0.01)
+
+    def test_spacing_origin_and_transform_place_the_same_volume(self):
+        transform = np.diag([1.0, 1.0, 2.0, 1.0])
+        transform[:3, 3] = (3, 4, 5)
+        placed = freevoxels.render(blob(), spacing=(1, 1, 2), origin=(3, 4, 5), size=(48, 40))
+        np.testing.assert_array_equal(placed, freevoxels.render(blob(), transform=transform, size=(48, 40)))
+
+    def test_nan_and_no_data_hold_nothing(self):
+        marked, holed = blob(), blob()
+        marked[4:8], holed[4:8] = -999, np.nan
+        image = freevoxels.render(marked, no_data=-999, density_scale=1, size=(40, 40))
+        np.testing.assert_array_equal(image, freevoxels.render(holed, density_scale=1, size=(40, 40)))
+
+    def test_arrays_of_all_types_and_strides_are_read(self):
+        whole = np.round(blob() * 60).astype("float32")
+        expected = freevoxels.render(whole, density_scale=0.01, size=(40, 40))
+        for kind in ("u1", "u2", "u4", "u8", "i1", "i2", "i4", "i8", "f2", "f8"):
+            np.testing.assert_array_equal(freevoxels.render(whole.astype(kind), density_scale=0.01, size=(40, 40)), expected, kind)
+        strided = np.zeros((24, 14, 32), "float32")[::2, ::-1, 1::2]
+        strided[:] = whole
+        np.testing.assert_array_equal(freevoxels.render(strided, density_scale=0.01, size=(40, 40)), expected)
+        np.testing.assert_array_equal(freevoxels.render(np.asfortranarray(whole), density_scale=0.01, size=(40, 40)), expected)
+
+    def test_temperatures_shine(self):
+        image = freevoxels.render(blob(), temperature=2000 * blob(), emission=5, density_scale=0.1, unlit=True, size=(40, 40))
+        self.assertGreater(image[20, 20, 0], 2 * image[20, 20, 2])
+
+    def test_options_take_the_forms_of_scene_files(self):
+        one = freevoxels.render(blob(), density_scale=1, orbit=(10, 20), fov=30, light={"direction": (1, 1, 0), "intensity": 3},
+                                size="40x30")
+        other = freevoxels.render(blob(), classification={"density-scale": 1}, camera={"orbit": np.array([10, 20]), "fov": 30},
+                                  lights=["direction=1,1,0,intensity=3"], size=(np.int64(40), 30))
+        np.testing.assert_array_equal(one, other)
+
+    def test_transfer_function_may_be_a_dictionary(self):
+        points = {"opacity": [[0, 0], [1, 0.5]], "color": [[0, 1, 0, 0], [1, 1, 0, 0]]}
+        image = freevoxels.render(blob(), transfer_function=points, unlit=True, size=(40, 40))
+        self.assertGreater(image[20, 20, 0], 0.3)
+        self.assertEqual(image[..., 1:3].max(), 0)
+
+
+class RendererTest(unittest.TestCase):
+    def test_frames_are_those_of_separate_renders(self):
+        volume = freevoxels.Volume(blob())
+        renderer = freevoxels.Renderer(volume, size=(48, 40), density_scale=0.5)
+        for options in ({}, {"orbit": (90, 10)}, {"density_scale": 2}, {"unlit": True}, {"directions": 98, "draw": "splats"}, {}):
+            expected = freevoxels.render(volume, **{"size": (48, 40), "density_scale": 0.5, **options})
+            np.testing.assert_array_equal(renderer.render(**options), expected, str(options))
+
+    def test_keeps_the_table_between_frames(self):
+        renderer = freevoxels.Renderer(freevoxels.Volume(blob()), size=(40, 40), draw="splats")
+        stages = []
+        for azimuth in (0, 90):
+            renderer.render(orbit=(azimuth, 0))
+            stages.append({stage for stage, milliseconds in renderer.timings if milliseconds >= 0})
+        self.assertIn("attenuation sweeps", stages[0] - stages[1])
+
+    def test_an_exception_of_progress_abandons_the_frame_alone(self):
+        volume = freevoxels.Volume.open("procedural:cloud", resolution=64)
+        renderer = freevoxels.Renderer(volume, size=(900, 900), draw="splats")  # long enough to be reported
+
+        def stop(stage, fraction):
+            self.assertTrue(0 <= fraction <= 1)
+            raise InterruptedError(stage)
+
+        with self.assertRaises(InterruptedError):
+            renderer.render(progress=stop)
+        np.testing.assert_array_equal(renderer.render(size=(40, 40)), freevoxels.render(volume, size=(40, 40), draw="splats"))
+
+    def test_threads_may_share_a_renderer(self):
+        renderer = freevoxels.Renderer(freevoxels.Volume(blob()), size=(40, 40))
+        expected = [renderer.render(orbit=(90 * k, 0)) for k in range(3)]
+        images = [None] * 3
+
+        def render(k):
+            images[k] = renderer.render(orbit=(90 * k, 0))
+
+        threads = [threading.Thread(target=render, args=(k,)) for k in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        np.testing.assert_array_equal(images, expected)
+
+
+class FilesTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def command(self, *words):
+        return subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True)
+
+    def test_file_array_and_command_make_the_same_image(self):
+        import pyopenvdb
+
+        grid = pyopenvdb.FloatGrid()
+        grid.name = "density"
+        grid.copyFromArray(np.ascontiguousarray(blob().transpose(2, 1, 0)))
+        file = self.folder / "blob.vdb"
+        pyopenvdb.write(str(file), grid)
+        volume = freevoxels.Volume.open(file, grid="density")
+        self.assertEqual((volume.shape, volume.active_voxels), (blob().shape, blob().size))
+        np.testing.assert_allclose(volume.range, (blob().min(), blob().max()))
+        options = dict(density_scale=1, orbit=(20, 30), size=(48, 40))
+        image, depth = freevoxels.render(file, depth=True, **options)
+        np.testing.assert_array_equal(image, freevoxels.render(volume, **options))
+        np.testing.assert_array_equal(image, freevoxels.render(blob(), **options))
+
+        ours, theirs = self.folder / "ours.exr", self.folder / "theirs.exr"
+        freevoxels.save(ours, image, depth=depth, float=True)
+        made = self.command("render", file, theirs, "--float", "--aov", "depth", "--density-scale", 1, "--orbit", "20,30", "--size", "48x40")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        compared = self.command("compare", ours, theirs, "--json")
+        self.assertEqual(compared.returncode, 0, compared.stderr)
+        self.assertIn('"difference": 0.0', compared.stdout)
+
+    def test_png_is_that_of_the_command(self):
+        options = dict(resolution=24, size=(48, 40))
+        freevoxels.save(self.folder / "ours.png", freevoxels.render("procedural:fire", emission=True, **options), background=(0.1, 0.2, 0.3), exposure=-1)
+        made = self.command("render", "procedural:fire", self.folder / "theirs.png", "--emission", "--resolution", 24, "--size", "48x40",
+                            "--background", "0.1,0.2,0.3", "--exposure", -1)
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertEqual((self.folder / "ours.png").read_bytes(), (self.folder / "theirs.png").read_bytes())
+
+
+class ErrorsTest(unittest.TestCase):
+    def refused(self, kind, sentence, *arguments, **options):
+        with self.assertRaisesRegex(kind, sentence) as caught:
+            freevoxels.render(*arguments, **options)
+        self.assertIsInstance(caught.exception, freevoxels.Error)
+        self.assertNotIn("\n", str(caught.exception))
+
+    def test_wrong_options_are_named(self):
+        self.refused(freevoxels.UsageError, "'densty_scale'; did you mean 'density_scale'", blob(), densty_scale=1)
+        self.refused(ValueError, "'orbit' and 'camera_position' exclude", blob(), camera_position=(1, 2, 3), orbit=(1, 2))
+        self.refused(ValueError, "--size takes WxH", blob(), size="big")
+        self.refused(ValueError, "'up' takes", blob(), up=object())
+        self.refused(ValueError, "'exposure'", blob(), exposure=1)
+
+    def test_wrong_arrays_are_named(self):
+        self.refused(freevoxels.InputError, "2 dimensions", blob()[0])
+        self.refused(ValueError, "complex128", blob().astype(complex))
+        self.refused(ValueError, "at least 1", np.zeros((0, 3, 3)))
+        self.refused(ValueError, "all its values are NaN", blob() * np.nan)
+        self.refused(ValueError, "spacing along each axis", blob(), spacing=(1, 1, 0))
+        self.refused(ValueError, "last row is 0, 0, 0, 1", blob(), transform=np.ones((4, 4)))
+        self.refused(ValueError, "must be the same", blob(), temperature=blob()[1:], emission=True)
+
+    def test_wrong_files_devices_and_sizes_are_named(self):
+        self.refused(freevoxels.InputError, "there is no file '/none/x.vdb'", "/none/x.vdb")
+        self.refused(freevoxels.DeviceError, "no device matches", blob(), device="none such")
+        self.refused(MemoryError, "needs .* MiB", blob(), memory_limit=1)
+        with self.assertRaisesRegex(OSError, "there is no folder '/none'"):
+            freevoxels.save("/none/a.png", np.zeros((4, 4, 4)))
+        with self.assertRaisesRegex(freevoxels.InputError, "height, width, 4"):
+            freevoxels.save("a.png", np.zeros((4, 4, 3)))
+
+    def test_infinite_values_are_reported_to_the_logger(self):
+        infinite = blob()
+        infinite[0, 0, 0] = np.inf
+        with self.assertLogs("freevoxels", logging.WARNING) as logs:
+            freevoxels.Volume(infinite)
+        self.assertIn("1 voxel of the array with a value that is NaN or infinite counts as 0", logs.output[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
