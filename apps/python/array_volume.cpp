@@ -97,10 +97,7 @@ Volume volumeOfArray(const py::array& scalars, const std::optional<py::array>& t
                      const ArrayPlacement& placement) {
   Volume volume{.source = "the array"};
   volume.indexToWorld = placement.indexToWorld;
-  const double determinant = glm::determinant(glm::dmat3(volume.indexToWorld));
-  if (!std::isfinite(determinant) || !(std::abs(determinant) > 0.0))
-    fail(ExitCode::Input, "voxels without extent cannot be rendered: spacing, origin and transform must be finite, and the "
-                          "spacing along each axis not 0");
+  checkPlacement(volume);
   volume.scalars = readArray(scalars, placement.noData);
   volume.dimensions = volume.scalars.dimensions();
   summariseValues(volume);

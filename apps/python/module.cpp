@@ -9,13 +9,10 @@
 #include <optional>
 
 #include "apps/freevoxels/program.h"
+#include "apps/library/scene_renderer.h"
 #include "apps/python/array_volume.h"
-#include "apps/python/device_context.h"
-#include "apps/python/keyword_options.h"
 #include "apps/python/python_values.h"
 #include "engine/core/error.h"
-#include "engine/hierarchy/volume_memory.h"
-#include "engine/renderer.h"
 
 namespace freevoxels {
 
@@ -25,10 +22,6 @@ namespace py = pybind11;
 using Json = nlohmann::json;
 using Triple = std::array<double, 3>;
 using Matrix = std::array<std::array<double, 4>, 4>;
-
-const std::vector<std::string> kViewSections{"classification", "emission", "camera", "light", "method", "scene", "device"};
-const std::vector<std::string> kFileSections{"input", "classification", "emission"};
-const std::vector<std::string> kOutputSections{"output"};
 
 struct PythonVolume {
   std::shared_ptr<const Volume> volume;
@@ -58,104 +51,41 @@ PythonVolume volumeFromArray(const py::array& array, const std::variant<double, 
   return {std::make_shared<const Volume>(std::move(volume))};
 }
 
-PythonVolume openVolume(const std::filesystem::path& file, const py::kwargs& keywords) {
-  KeywordOptions options(jsonOf(keywords), kFileSections);
-  options.scene.input.input = file.string();
-  options.scene.checkLook();
-  DeviceContext& context = deviceContext(options.device);
+PythonVolume volumeFromFile(const std::filesystem::path& file, const py::kwargs& keywords) {
+  const Json options = jsonOf(keywords);
   const py::gil_scoped_release withoutGil;
-  return {std::make_shared<const Volume>(options.scene.readVolume(maximumVoxels(*context.device)))};
+  return {openVolume(file.string(), options)};
 }
 
-class PythonRenderer {
- public:
-  PythonRenderer(PythonVolume volume, const py::kwargs& keywords)
-      : volume_(std::move(volume.volume)), keywords_(jsonOf(keywords)), context_(deviceContext(read(Json::object())->device)) {}
-
-  py::object render(const py::object& progress, bool depth, const py::kwargs& keywords);
-
-  std::vector<std::pair<std::string, double>> timings() const {
-    std::vector<std::pair<std::string, double>> pairs;
-    if (renderer_)
-      for (const StageTime& time : renderer_->timings()) pairs.emplace_back(time.name, time.milliseconds);
-    return pairs;
-  }
-  std::string device() const { return context_.device->description().name; }
-
- private:
-  /// The options of a frame: those that the renderer was made with, then `more` in their places.
-  std::unique_ptr<KeywordOptions> read(const Json& more) const;
-  Image draw(const KeywordOptions& options, bool depth, const Progress& progress);
-  void makeRenderer(const KeywordOptions& options, const Progress& progress);
-
-  const std::shared_ptr<const Volume> volume_;
-  const Json keywords_;
-  DeviceContext& context_;
-  Scene scene_;                  ///< of the last frame
-  std::string classification_;   ///< the options that scene_.classification was resolved from
-  std::string rendererText_;     ///< KeywordOptions::rendererText of what renderer_ was made for
-  std::unique_ptr<Renderer> renderer_;
-};
-
-std::unique_ptr<KeywordOptions> PythonRenderer::read(const Json& more) const {
-  Json merged = keywords_;
-  merged.update(more);
-  auto options = std::make_unique<KeywordOptions>(merged, kViewSections);
-  options->scene.input = {};  // whatever volume a scene file names
-  options->scene.checkLook();
-  return options;
+std::unique_ptr<SceneRenderer> makeRenderer(const PythonVolume& volume, const py::kwargs& keywords) {
+  return std::make_unique<SceneRenderer>(volume.volume, jsonOf(keywords));
 }
 
-py::object PythonRenderer::render(const py::object& progress, bool depth, const py::kwargs& keywords) {
-  const std::unique_ptr<const KeywordOptions> options = read(jsonOf(keywords));
+py::object render(SceneRenderer& renderer, const py::object& progress, bool depth, const py::kwargs& keywords) {
+  const Json options = jsonOf(keywords);
   const Progress report = progressOf(progress);
   Image image;
   {
     const py::gil_scoped_release withoutGil;
-    const std::lock_guard lock(context_.mutex);
-    image = draw(*options, depth, report);
+    image = renderer.render(options, depth, report);
   }
   if (!depth) return pixelsOf(image);
   return py::make_tuple(pixelsOf(image), depthOf(image));
 }
 
-void PythonRenderer::makeRenderer(const KeywordOptions& options, const Progress& progress) {
-  scene_.volume = volume_;
-  const std::string classification = options.classificationText();
-  if (!renderer_ || classification != classification_) {
-    scene_.classification = options.scene.resolveClassification(*volume_);
-    classification_ = classification;
-  }
-  options.scene.resolveView(scene_);
-  const std::string text = options.rendererText(scene_);
-  if (renderer_ && text == rendererText_) return;
-  renderer_ = nullptr;  // the device need not hold two at once
-  renderer_ = std::make_unique<Renderer>(*context_.device, *volume_, scene_.classification, options.method.table(), progress);
-  rendererText_ = text;
-}
-
-Image PythonRenderer::draw(const KeywordOptions& options, bool depth, const Progress& progress) {
-  FrameSettings settings{.size = options.scene.camera.size, .depth = depth};
-  options.method.apply(settings);
-  checkFrameFits(*context_.device, settings);
-  makeRenderer(options, progress);
-  settings.lighting = scene_.lighting;
-  Image image = renderer_->render(scene_.camera, settings, progress);
-  if (const std::uint64_t count = context_.instance.validationMessageCount(); count > 0)
-    throw InternalError(fmt::format("{} Vulkan validation messages, printed above", count));
-  return image;
+std::vector<std::pair<std::string, double>> timingsOf(const SceneRenderer& renderer) {
+  std::vector<std::pair<std::string, double>> pairs;
+  const py::gil_scoped_release withoutGil;
+  for (const StageTime& time : renderer.timings()) pairs.emplace_back(time.name, time.milliseconds);
+  return pairs;
 }
 
 void save(const std::filesystem::path& file, const py::array& image, const std::optional<py::array>& depth,
           const py::kwargs& keywords) {
-  KeywordOptions options(jsonOf(keywords), kOutputSections);
-  OutputOptions& output = options.scene.output;
-  output.files = {file.string()};
-  if (depth) output.aov = 0;
-  output.check();
+  const Json options = jsonOf(keywords);
   const Image pixels = imageOf(image, depth);
   const py::gil_scoped_release withoutGil;
-  output.write(pixels, {.fullFloat = output.fullFloat});
+  saveImage(file.string(), pixels, options);
 }
 
 constexpr const char* kModuleText =
@@ -178,7 +108,7 @@ void addVolume(py::module_& module) {
            "(x, y, z). origin: where the centre of voxel [0, 0, 0] is. transform: instead of both, a 4x4 affine matrix from\n"
            "(x, y, z, 1) in voxels to the world. NaN, and values equal to no_data, hold no data. temperature: an array of\n"
            "the same shape, for emission.")
-      .def_static("open", &openVolume, "file"_a,
+      .def_static("open", &volumeFromFile, "file"_a,
                   "Reads an OpenVDB file, or makes 'procedural:NAME'. Options: grid, resolution, albedo_grid, and emission=True\n"
                   "or temperature_grid for temperatures.")
       .def_property_readonly("shape", [](const PythonVolume& v) {
@@ -196,18 +126,18 @@ void addVolume(py::module_& module) {
 
 void addRenderer(py::module_& module) {
   using namespace py::literals;
-  py::class_<PythonRenderer>(module, "Renderer",
+  py::class_<SceneRenderer>(module, "Renderer",
                              "Renders one volume many times. What frames have in common, the attenuation table above all, is\n"
                              "kept on the device, and is made again only for a frame whose options change it. Threads may share\n"
                              "a renderer; its frames are drawn one after another.")
-      .def(py::init<PythonVolume, const py::kwargs&>(), "volume"_a, "Options given here hold for every frame.")
-      .def("render", &PythonRenderer::render, py::kw_only(), "progress"_a = py::none(), "depth"_a = false,
+      .def(py::init(&makeRenderer), "volume"_a, "Options given here hold for every frame.")
+      .def("render", &render, py::kw_only(), "progress"_a = py::none(), "depth"_a = false,
            "Returns float32 (height, width, 4): linear red, green and blue, multiplied by alpha, and alpha; row 0 is the top.\n"
            "With depth=True returns (image, depth), the latter float32 (height, width): mean distance along the viewing axis\n"
            "of what is seen, infinite where there is nothing. progress(stage, fraction) is called about every 50 ms of work;\n"
            "an exception that it raises abandons the frame. Options given here hold for this frame.")
-      .def_property_readonly("timings", &PythonRenderer::timings, "(stage, milliseconds) of what was made and of the last frame.")
-      .def_property_readonly("device", &PythonRenderer::device, "Name of the Vulkan device.");
+      .def_property_readonly("timings", &timingsOf, "(stage, milliseconds) of what was made and of the last frame.")
+      .def_property_readonly("device", &SceneRenderer::device, "Name of the Vulkan device.");
 }
 
 /// render(): the keywords of Volume are taken out of those of a frame.
@@ -226,7 +156,7 @@ py::object renderOnce(const py::object& source, const py::object& progress, bool
         if (keywords.contains(key)) given[key] = keywords[key];
     volume = (isFile ? py::object(type.attr("open")) : type)(source, **given);
   }
-  return PythonRenderer(volume.cast<PythonVolume>(), keywords).render(progress, depth, {});
+  return render(*makeRenderer(volume.cast<PythonVolume>(), keywords), progress, depth, {});
 }
 
 }  // namespace

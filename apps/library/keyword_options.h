@@ -1,5 +1,5 @@
 #pragma once
-// Options of the command line given by name, as JSON values: what keyword arguments of Python become.
+// Options of the command line given by name, as JSON values: scenes of the library, and what keyword arguments of Python become.
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "apps/python/keyword_options.h"
+#include "apps/library/keyword_options.h"
 
 #include <algorithm>
 
@@ -40,7 +40,7 @@ KeywordOptions::KeywordOptions(const Json& keywords, std::vector<std::string> se
   device.add(app_);
   for (const auto& [key, value] : keywords.items()) {
     if (!value.is_object() || !isSection(key) || isLight(value)) {
-      give("", key, value);
+      give("", keywordOf(key), value);
       continue;
     }
     for (const auto& [inner, one] : value.items()) give(key, keywordOf(inner), one);

@@ -1,5 +1,5 @@
 #pragma once
-// Vulkan devices that the renderers of one Python process share.
+// Vulkan devices that the renderers of one process share.
 
 #include <memory>
 #include <mutex>
@@ -14,10 +14,10 @@ struct DeviceContext {
 
   Instance instance;
   std::unique_ptr<Device> device;
-  std::mutex mutex;  ///< to be held, without the GIL, by the thread that uses `device`
+  std::mutex mutex;  ///< to be held by the thread that uses `device`
 };
 
-/// The context of these options, opened at the first call and kept until the process ends. To be called with the GIL held.
+/// The context of these options, opened at the first call and kept until the process ends. Any thread may call it.
 /// Fails with ExitCode::Device.
 DeviceContext& deviceContext(const DeviceOptions& options);
 

@@ -1,4 +1,4 @@
-#include "apps/python/device_context.h"
+#include "apps/library/device_context.h"
 
 #include <map>
 #include <utility>
@@ -8,7 +8,9 @@ namespace freevoxels {
 DeviceContext::DeviceContext(const DeviceOptions& options) : instance(validationRequested()), device(options.open(instance)) {}
 
 DeviceContext& deviceContext(const DeviceOptions& options) {
-  // Never destroyed: Python may drop its last renderer after static objects, and Vulkan's own, are gone.
+  static std::mutex opening;
+  const std::lock_guard lock(opening);
+  // Never destroyed: Python, or static objects, may drop the last renderer after Vulkan's own static objects are gone.
   static auto& contexts = *new std::map<std::pair<std::string, int>, std::unique_ptr<DeviceContext>>;
   std::unique_ptr<DeviceContext>& context = contexts[{options.selector.value_or(""), options.memoryLimit.value_or(0)}];
   if (!context) context = std::make_unique<DeviceContext>(options);

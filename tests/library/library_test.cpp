@@ -1,0 +1,114 @@
+// The installed interface, by its one header: closed forms, what frames share, errors.
+
+#include <freevoxels/freevoxels.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <thread>
+
+#include "tests/temporary_folder.h"
+
+namespace freevoxels {
+namespace {
+
+constexpr const char* kAlongZ =
+    R"({"camera-position": [9.5, 9.5, 100], "look-at": [9.5, 9.5, 0], "up": [0, 1, 0], "orthographic": 20, "size": [40, 40]})";
+
+/// An error's kind; its sentence is to contain `part`.
+template <typename Work>
+void expectError(v1::ErrorKind kind, const std::string& part, const Work& work) {
+  try {
+    work();
+    ADD_FAILURE() << "no error, but expected: " << part;
+  } catch (const v1::Error& error) {
+    EXPECT_EQ(error.kind(), kind) << error.what();
+    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+  }
+}
+
+const v1::Volume& cloud() {
+  static const v1::Volume volume = v1::Volume::open("procedural:cloud", R"({"resolution": 32})");
+  return volume;
+}
+
+TEST(Library, HomogeneousBoxIsTheLawOfBeerAndLambert) {
+  const std::vector<float> ones(20 * 20 * 12, 1.0f);
+  v1::Renderer renderer(v1::Volume::copy(ones, {20, 20, 12}, {.spacing = {1.0, 1.0, 2.0}}), kAlongZ);
+  const v1::Image image = renderer.render(R"({"density-scale": 0.1, "unlit": true, "albedo": [0.8, 0.5, 0.2]})", true);
+  ASSERT_EQ(image.pixels.size(), 4u * 40u * 40u);
+  ASSERT_EQ(image.depth.size(), 40u * 40u);
+  const float* const middle = &image.pixels[4 * (20 + 40 * 20)];
+  const double alpha = 1.0 - std::exp(-0.1 * 12 * 2);
+  EXPECT_NEAR(middle[0], 0.8 * alpha, 2e-3);
+  EXPECT_NEAR(middle[2], 0.2 * alpha, 2e-3);
+  EXPECT_NEAR(middle[3], alpha, 2e-3);
+  EXPECT_GT(image.depth[20 + 40 * 20], 100.0f - 23.0f);
+  EXPECT_LT(image.depth[20 + 40 * 20], 100.0f);
+}
+
+TEST(Library, FramesOfOneRendererAreThoseOfSeparateOnes) {
+  const std::string base = R"({"size": [48, 40], "density-scale": 20})";
+  v1::Renderer shared(cloud(), base);
+  for (const char* frame : {"{}", R"({"orbit": [90, 10]})", R"({"density-scale": 80})", R"({"draw": "splats"})", "{}"}) {
+    v1::Renderer separate(cloud(), base);
+    EXPECT_EQ(shared.render(frame).pixels, separate.render(frame).pixels) << frame;
+  }
+  EXPECT_FALSE(shared.timings().empty());
+}
+
+TEST(Library, CopiedVolumeKnowsWhatItHolds) {
+  std::vector<float> values{1.0f, 2.0f, std::numeric_limits<float>::quiet_NaN(), 3.0f};
+  const v1::Volume volume = v1::Volume::copy(values, {2, 1, 2});
+  EXPECT_EQ(volume.dimensions(), (std::array{2, 1, 2}));
+  EXPECT_EQ(volume.activeVoxels(), 3u);
+  EXPECT_EQ(volume.range(), std::pair(1.0f, 3.0f));
+}
+
+TEST(Library, ThreadsMayDrawAtOnce) {
+  std::vector<v1::Image> images(2);
+  {
+    std::vector<std::jthread> threads;
+    for (v1::Image& image : images)
+      threads.emplace_back([&image] { image = v1::Renderer(cloud(), R"({"size": [48, 40]})").render(); });
+  }
+  EXPECT_EQ(images[0].pixels, images[1].pixels);
+  EXPECT_FALSE(images[0].pixels.empty());
+}
+
+TEST(Library, SavesWhatItDrew) {
+  const test::TemporaryFolder folder;
+  const v1::Image image = v1::Renderer(cloud(), R"({"size": [48, 40]})").render("{}", true);
+  v1::save(folder.path() / "a.png", image, R"({"background": [0.1, 0.2, 0.3]})");
+  v1::save(folder.path() / "a.exr", image, R"({"float": true})");
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "a.png"));
+  EXPECT_GT(std::filesystem::file_size(folder.path() / "a.exr"), 0u);
+}
+
+TEST(Library, ErrorsNameWhatIsWrong) {
+  using enum v1::ErrorKind;
+  const auto render = [](const char* scene) { return [scene] { v1::Renderer(cloud(), scene).render(); }; };
+  expectError(Usage, "did you mean 'density_scale'", render(R"({"densty-scale": 1})"));
+  expectError(Usage, "a scene is a JSON object", render("[1, 2]"));
+  expectError(Usage, "exclude each other", render(R"({"orbit": [1, 2], "camera-position": [1, 2, 3]})"));
+  expectError(Input, "up takes X,Y,Z", render(R"({"up": true})"));
+  expectError(Device, "no device matches", render(R"({"device": "none such"})"));
+  expectError(OutOfMemory, "MiB", render(R"({"memory-limit": 1})"));
+  expectError(Input, "there is no file '/none.vdb'", [] { v1::Volume::open("/none.vdb"); });
+  const std::vector<float> values(8, 1.0f);
+  expectError(Input, "8 values are not a box of 2 x 2 x 3 voxels", [&] { v1::Volume::copy(values, {2, 2, 3}); });
+  expectError(Input, "spacing along each axis", [&] { v1::Volume::copy(values, {2, 2, 2}, {.spacing = {1.0, 0.0, 1.0}}); });
+  expectError(Output, "there is no folder", [] { v1::save("/none/a.png", {.width = 1, .height = 1, .pixels = {0, 0, 0, 0}}); });
+  expectError(Input, "needs 4 values", [] { v1::save("a.png", {.width = 2, .height = 1, .pixels = {0, 0, 0, 0}}); });
+}
+
+TEST(Library, AnExceptionOfProgressReachesTheCaller) {
+  struct Stopped {};
+  v1::Renderer renderer(v1::Volume::open("procedural:cloud", R"({"resolution": 64})"), R"({"draw": "splats", "size": [900, 900]})");
+  EXPECT_THROW(renderer.render("{}", false, [](std::string_view, double) { throw Stopped{}; }), Stopped);
+  EXPECT_EQ(renderer.render(R"({"size": [40, 40]})").width, 40);
+}
+
+}  // namespace
+}  // namespace freevoxels
