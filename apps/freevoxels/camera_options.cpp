@@ -27,7 +27,7 @@ void CameraOptions::add(CLI::App& app) {
                           ->excludes(fov);
   CLI::Option* pixels =
       addSize(app, "--size", size, kMaximumImageEdge,
-              fmt::format("Width and height of the image in pixels [{}x{}]", size.x, size.y));
+              fmt::format("Width and height of the image in pixels, or one number for a square [{}x{}]", size.x, size.y));
   for (CLI::Option* option : {from, at, upwards, around, fov, flat, pixels}) option->group("Camera");
 }
 

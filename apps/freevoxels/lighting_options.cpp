@@ -89,7 +89,7 @@ void LightingOptions::add(CLI::App& app) {
   app.add_option_function<std::string>(
          "--ambient",
          [this](const std::string& text) {
-           const bool one = text.find(',') == std::string::npos;
+           const bool one = text.find(',') == std::string::npos && !namedColor(text);
            const auto numbers =
                readNumbers("--ambient", one ? "L" : "R,G,B", one ? 1 : 3, text, {.minimum = 0.0});
            ambient = one ? glm::dvec3(numbers[0]) : glm::dvec3(numbers[0], numbers[1], numbers[2]);

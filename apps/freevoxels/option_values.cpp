@@ -4,12 +4,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
-#include <numeric>
 #include <string_view>
 
 #include "engine/core/error.h"
+#include "engine/image/srgb.h"
 
 namespace freevoxels {
 
@@ -23,6 +24,24 @@ struct Expectation {
   bool whole = false;
   char separator = ',';
 };
+
+struct NamedColor {
+  std::string_view name;
+  std::uint32_t srgb;  ///< 0xRRGGBB
+};
+/// Of CSS.
+constexpr std::array<NamedColor, 12> kNamedColors{{{"black", 0x000000},
+                                                   {"white", 0xffffff},
+                                                   {"gray", 0x808080},
+                                                   {"grey", 0x808080},
+                                                   {"red", 0xff0000},
+                                                   {"green", 0x008000},
+                                                   {"blue", 0x0000ff},
+                                                   {"yellow", 0xffff00},
+                                                   {"orange", 0xffa500},
+                                                   {"brown", 0xa52a2a},
+                                                   {"cyan", 0x00ffff},
+                                                   {"magenta", 0xff00ff}}};
 
 std::string rangeText(const Expectation& expected) {
   const NumberRange range = expected.range;
@@ -50,6 +69,8 @@ std::optional<double> parseNumber(std::string_view word, const Expectation& expe
 }
 
 std::vector<double> parseNumbers(const std::string& text, const Expectation& expected) {
+  if (expected.form.starts_with("R,G,B"))
+    if (const std::optional<glm::dvec3> color = namedColor(text)) return {color->r, color->g, color->b};
   std::vector<double> values;
   if (expected.count == 0 && text.empty()) return values;
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -76,6 +97,21 @@ CLI::Option* addNumbers(CLI::App& app, const Expectation& expected, const std::s
 }
 
 }  // namespace
+
+std::optional<glm::dvec3> namedColor(const std::string& text) {
+  std::uint32_t srgb = 0;
+  if (text.starts_with('#')) {
+    const char* const end = text.data() + text.size();
+    const auto [stopped, error] = std::from_chars(text.data() + 1, end, srgb, 16);
+    if (text.size() != 7 || error != std::errc() || stopped != end) return std::nullopt;
+  } else {
+    const auto named = std::ranges::find(kNamedColors, text, &NamedColor::name);
+    if (named == kNamedColors.end()) return std::nullopt;
+    srgb = named->srgb;
+  }
+  const auto linear = [srgb](int shift) { return double(linearFromSrgb(float((srgb >> shift) & 0xff) / 255.0f)); };
+  return glm::dvec3(linear(16), linear(8), linear(0));
+}
 
 CLI::Option* addNumber(CLI::App& app, const std::string& name, const std::string& form,
                        std::optional<double>& target, const std::string& description, NumberRange range) {
@@ -116,16 +152,19 @@ CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, const std::s
 
 CLI::Option* addSize(CLI::App& app, const std::string& name, glm::ivec2& target, int maximum,
                      const std::string& description) {
-  return addNumbers(app,
-                    {.option = name,
-                     .form = "WxH",
-                     .count = 2,
-                     .range = {1.0, double(maximum)},
-                     .whole = true,
-                     .separator = 'x'},
-                    description, [&target](const std::vector<double>& values) {
-                      target = glm::ivec2(values[0], values[1]);
-                    });
+  Expectation expected{
+      .option = name, .form = "WxH", .count = 2, .range = {1.0, double(maximum)}, .whole = true, .separator = 'x'};
+  return app
+      .add_option_function<std::string>(
+          name,
+          [&target, expected](const std::string& text) mutable {
+            expected.count = text.find('x') == std::string::npos ? 1 : 2;
+            const std::vector<double> edges = parseNumbers(text, expected);
+            target = glm::ivec2(edges.front(), edges.back());
+          },
+          description)
+      ->take_last()
+      ->type_name(expected.form);
 }
 
 CLI::Option* addText(CLI::App& app, const std::string& name, const std::string& form,
@@ -217,21 +256,6 @@ std::string commandText(const OptionList& options) {
     if (!value.empty()) addQuoted(value);
   }
   return fmt::format("{}", fmt::join(words, " "));
-}
-
-std::size_t editDistance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t(0));
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-    }
-  }
-  return row.back();
 }
 
 }  // namespace freevoxels

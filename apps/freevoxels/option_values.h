@@ -41,7 +41,10 @@ CLI::Option* addTriple(CLI::App& app, const std::string& name, const std::string
                        NumberRange range = {});
 CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, const std::string& form,
                             std::optional<int>& target, const std::string& description, NumberRange range);
-/// "WxH" in pixels.
+/// Linear Rec.709 of "#rrggbb" in sRGB or of one of CSS's basic names, "white"; every option of the form R,G,B takes them.
+std::optional<glm::dvec3> namedColor(const std::string& text);
+
+/// "WxH" in pixels, or one number for a square.
 CLI::Option* addSize(CLI::App& app, const std::string& name, glm::ivec2& target, int maximum,
                      const std::string& description);
 CLI::Option* addText(CLI::App& app, const std::string& name, const std::string& form,
@@ -61,11 +64,6 @@ bool isInlineJson(const std::string& text);
 /// One of a few words; `target` becomes the position of the one that was given.
 CLI::Option* addWord(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                      std::optional<int>& target, const std::string& description);
-
-/// The number of letters to insert, remove or replace that makes one name of the other (Levenshtein 1965): what the nearest
-/// known name of an unknown one is found by, where it is less than kFarName.
-std::size_t editDistance(const std::string& a, const std::string& b);
-inline constexpr std::size_t kFarName = 4;
 
 /// Resolved options as "--name" and value, for people, metadata and timings; an empty name is a positional,
 /// an empty value a flag.

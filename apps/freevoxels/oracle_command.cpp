@@ -40,7 +40,7 @@ void OracleCommand::add(CLI::App& app) {
 
 void OracleCommand::run() {
   messages_.apply();
-  scene_.takeScene();
+  scene_.takeScene("");
   scene_.check();
   draw();
   if (messages_.quiet) return;

@@ -30,8 +30,8 @@ bool isPng(const std::string& file) {
 }
 
 void OutputOptions::add(CLI::App& app) {
-  app.add_option("OUT", files,
-                 "Pictures to write: .exr (linear, premultiplied) or .png (sRGB)");
+  app.add_option("OUT,-o,--output", files,
+                 "Pictures to write: .exr (linear, premultiplied) or .png (sRGB) [the volume's name .png, in the current folder]");
   addForm(app);
 }
 

@@ -19,6 +19,7 @@
 
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
+#include "engine/core/nearest_name.h"
 
 namespace freevoxels {
 
@@ -61,11 +62,47 @@ std::string commandName(const CLI::App& app) {
   return subcommands.empty() ? app.get_name() : app.get_name() + " " + subcommands.front()->get_name();
 }
 
+/// The command that the arguments name, or the program itself.
+const CLI::App& commandOf(const CLI::App& app) {
+  const auto subcommands = app.get_subcommands();
+  return subcommands.empty() ? app : *subcommands.front();
+}
+
+std::vector<std::string> commandNames(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) names.push_back(command->get_name());
+  return names;
+}
+
+/// "unknown option '--szie'; did you mean '--size'?" of the first argument that is like an option and is none; else empty.
+std::string unknownOption(const CLI::App& command, int argc, char** argv) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument(argv[i]), name = argument.substr(0, argument.find('='));
+    if (!name.starts_with("--") || name.size() == 2 || command.get_option_no_throw(name) != nullptr) continue;
+    return fmt::format("there is no option '{}'{}", name, suggestion(name, known));
+  }
+  return "";
+}
+
+/// Of a first word that is no command.
+std::string unknownCommand(const CLI::App& app, const std::string& word) {
+  if (word.ends_with(".vdb") || std::filesystem::is_regular_file(word))
+    return fmt::format("'{}' is a file, not a command; to draw it: {} render {} image.png", word, app.get_name(), word);
+  return fmt::format("there is no command '{}'{}", word, suggestion(word, commandNames(app)));
+}
+
 int reportUsage(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
   std::string sentence = error.what();
-  if (app.get_subcommands().empty() && argc > 1 && argv[1][0] != '-')
-    sentence = fmt::format("there is no command '{}'", argv[1]);
-  else if (argc == 1)
+  const bool hasCommands = !commandNames(app).empty();
+  const CLI::App& command = commandOf(app);
+  if (hasCommands && &command == &app && argc > 1 && argv[1][0] != '-')
+    sentence = unknownCommand(app, argv[1]);
+  else if (const std::string unknown = unknownOption(command, argc, argv); !unknown.empty())
+    sentence = unknown;
+  else if (hasCommands && argc == 1)
     sentence = "a command is needed";
   if (sentence.size() > 1 && std::islower(static_cast<unsigned char>(sentence[1])))
     sentence[0] = char(std::tolower(static_cast<unsigned char>(sentence[0])));

@@ -1,6 +1,9 @@
 #include "apps/freevoxels/render_options.h"
 
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <span>
 
@@ -21,6 +24,11 @@ double millisecondsSince(Clock::time_point start) {
 /// "frame 3 of 72: ", which starts what is said about one of several frames.
 std::string framePrefix(std::size_t frame, std::size_t frames) {
   return frames == 1 ? "" : fmt::format("frame {} of {}: ", frame + 1, frames);
+}
+
+std::string whyNothingIsSeen(const Renderer& renderer) {
+  if (renderer.visibleVoxelCount() == 0u) return "all voxels are transparent; raise --density-scale, or change --transfer-function";
+  return "the camera looks past the volume, or what it sees is transparent; leave out --camera-position and --look-at to frame it";
 }
 
 Progress prefixed(const Progress& progress, const std::string& prefix) {
@@ -118,6 +126,8 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
     view.camera = cameras[frame];
     const std::string prefix = framePrefix(frame, outputs.size());
     const Image image = renderer.render(view.camera, settings, prefixed(line.progress(), prefix));
+    if (std::ranges::none_of(image.pixels, [](glm::vec4 pixel) { return pixel.a > 0.0f || pixel.r + pixel.g + pixel.b > 0.0f; }))
+      spdlog::warn("{}nothing is seen: {}", prefix, whyNothingIsSeen(renderer));
     const std::vector<StageTime> times = renderer.timings();
     addTimes(report.stages, std::span(times).subspan(built.size()));
     report.lackedRoomForRays |= renderer.lackedRoomForRays();

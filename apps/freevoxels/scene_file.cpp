@@ -13,6 +13,7 @@
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
 #include "engine/core/json_file.h"
+#include "engine/core/nearest_name.h"
 
 namespace freevoxels {
 

@@ -24,11 +24,18 @@ void SceneOptions::addLook(CLI::App& app) {
   file.add(app);
 }
 
-void SceneOptions::takeScene() {
+void SceneOptions::takeScene(const std::string& defaultEnding) {
   if ((isExr(input.input) || isPng(input.input)) && file.hasVolume()) {
     output.files.insert(output.files.begin(), input.input);
     input.input.clear();
     file.leaveOut("IN");
+  } else if (isExr(input.input) || isPng(input.input)) {
+    fail(ExitCode::Usage, "IN is required: '{}' is an image, which OUT is; name an OpenVDB file before it, or procedural:NAME",
+         input.input);
+  }
+  if (output.files.empty() && !defaultEnding.empty()) {
+    const std::string& named = !input.input.empty() || !file.file ? input.input : *file.file;
+    output.files = {proceduralName(named).value_or(std::filesystem::path(named).stem().string()) + defaultEnding};
   }
   file.apply([this](const std::string& option) { return output.honours(option); });
   input.checkGiven();

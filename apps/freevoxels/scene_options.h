@@ -34,8 +34,9 @@ struct SceneOptions {
   /// Those of them that say how a volume looks.
   void addLook(CLI::App& app);
   /// What --scene has and the command line has not. A single picture is then OUT, where the scene has the
-  /// volume. To be called before all below.
-  void takeScene();
+  /// volume. Without OUT it is the volume's name, else the scene's, with `defaultEnding` in place of its extension, in the
+  /// current folder; where that is empty OUT is required. To be called before all below.
+  void takeScene(const std::string& defaultEnding = ".png");
   /// Options that are wrong with any volume and any file: ExitCode::Usage.
   void checkLook() const;
   /// Before any work; `moreOutputs` are the files that the command writes besides pictures.

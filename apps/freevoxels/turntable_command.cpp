@@ -28,7 +28,7 @@ void TurntableCommand::add(CLI::App& app) {
       ->group("Camera");
   command->footer(kExamples);
   command->callback([this] {
-    options_.scene.takeScene();
+    options_.scene.takeScene("_####.png");
     options_.run(frameNames(options_.scene.output.files, frames_.value_or(kDefaultFrames)));
   });
 }

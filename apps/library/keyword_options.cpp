@@ -4,6 +4,7 @@
 
 #include "apps/freevoxels/scene_value.h"
 #include "engine/core/error.h"
+#include "engine/core/nearest_name.h"
 
 namespace freevoxels {
 

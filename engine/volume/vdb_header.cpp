@@ -2,6 +2,8 @@
 #include "engine/volume/vdb_header.h"
 
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <fstream>
 #include <limits>
 #include <span>
@@ -9,6 +11,7 @@
 #include <system_error>
 
 #include "engine/core/error.h"
+#include "engine/core/nearest_name.h"
 #include "engine/volume/vdb_reader.h"
 #include "engine/volume/vdb_tree_check.h"
 
@@ -22,6 +25,17 @@ constexpr std::int64_t kMagic = 0x56444220;  // "VDB "
 constexpr std::uint32_t kOldestFormat = 222;
 constexpr std::size_t kUuidLength = 36;
 
+/// What is in the folder of a file, as far as it can be read.
+std::vector<std::string> namesBeside(const fs::path& file) {
+  std::vector<std::string> names;
+  std::error_code error;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    names.push_back(entry->path().filename().string());
+  std::ranges::sort(names);  // of equally near ones the first, whatever order the folder has
+  return names;
+}
+
 void checkRegularFile(const fs::path& file) {
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
@@ -29,13 +43,43 @@ void checkRegularFile(const fs::path& file) {
     if (status.type() == fs::file_type::none)
       fail(ExitCode::Input, "cannot open '{}': {}; check its path and permissions", file.string(),
            error.message());
-    fail(ExitCode::Input, "there is no file '{}'; check the name", file.string());
+    const std::string meant = suggestion(file.filename().string(), namesBeside(file));
+    fail(ExitCode::Input, "there is no file '{}'{}", file.string(), meant.empty() ? "; check the name" : meant);
   }
   if (fs::is_directory(status))
     fail(ExitCode::Input, "'{}' is a folder; name an OpenVDB file in it", file.string());
   if (!fs::is_regular_file(status))
     fail(ExitCode::Input, "'{}' is not a regular file; copy its contents into a .vdb file first",
          file.string());
+}
+
+struct ScanFormat {
+  std::string_view ending, name;
+};
+constexpr std::array<ScanFormat, 13> kScanFormats{{{".nii", "a NIfTI scan"},
+                                                   {".nii.gz", "a NIfTI scan"},
+                                                   {".nrrd", "an NRRD scan"},
+                                                   {".nhdr", "an NRRD scan"},
+                                                   {".mha", "a MetaImage scan"},
+                                                   {".mhd", "a MetaImage scan"},
+                                                   {".vti", "a VTK image"},
+                                                   {".vtk", "a VTK file"},
+                                                   {".dcm", "a DICOM slice"},
+                                                   {".tif", "a TIFF image"},
+                                                   {".tiff", "a TIFF image"},
+                                                   {".mrc", "an MRC map"},
+                                                   {".raw", "values without a header"}}};
+
+/// Fails where the file's name is that of a scan.
+void refuseScan(const fs::path& file) {
+  std::string name = file.filename().string();
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  for (const ScanFormat& format : kScanFormats)
+    if (name.ends_with(format.ending))
+      fail(ExitCode::Input,
+           "'{}' is {}, not an OpenVDB file: read it in Python, for instance with SimpleITK, and give the array to "
+           "freevoxels.render, or convert it to .vdb",
+           file.string(), format.name);
 }
 
 /// What a file that is not an OpenVDB file seems to be.
@@ -53,9 +97,11 @@ std::string_view guessKind(const fs::path& file) {
 }
 
 void checkSignature(const fs::path& file, VdbReader& reader) {
-  if (reader.size() < sizeof(kMagic) || reader.read<std::int64_t>() != kMagic)
+  if (reader.size() < sizeof(kMagic) || reader.read<std::int64_t>() != kMagic) {
+    refuseScan(file);
     fail(ExitCode::Input, "'{}' is not an OpenVDB file: {}; give a .vdb file that OpenVDB has written",
          file.string(), guessKind(file));
+  }
 }
 
 struct TypeSize {

@@ -39,6 +39,18 @@ TEST_F(BadInput, MissingFile) {
   expectCleanRefusal("info @none.vdb", ExitCode::Input, "none.vdb");
 }
 
+TEST_F(BadInput, MissingFileNamesTheNearestOne) {
+  makeCube("smoke_0001.vdb");
+  expectCleanRefusal(std::string("render @smoke_001.vdb @a.png") + kSmall, ExitCode::Input, "did you mean 'smoke_0001.vdb'?");
+}
+
+TEST_F(BadInput, ScanSaysWhatReadsIt) {
+  writeBytes(folder / "head.NRRD", "NRRD0004\ntype: short\n");
+  writeBytes(folder / "brain.nii.gz", "\x1f\x8b 123456789");
+  expectCleanRefusal(std::string("render @head.NRRD @a.png") + kSmall, ExitCode::Input, "is an NRRD scan");
+  expectCleanRefusal(std::string("info @brain.nii.gz"), ExitCode::Input, "read it in Python");
+}
+
 TEST_F(BadInput, FolderInsteadOfFile) {
   std::filesystem::create_directory(folder / "volumes.vdb");
   expectCleanRefusal(std::string("render @volumes.vdb @a.png") + kSmall, ExitCode::Input, "volumes.vdb");

@@ -45,6 +45,49 @@ TEST_F(RenderCommand, WritesEveryOutputAndPrintsItsPath) {
   EXPECT_EQ(image.pixels[0], glm::vec4(0.0f));    // and leaves the corners free
 }
 
+TEST_F(RenderCommand, WithoutAnOutputItIsTheVolumesNameInTheCurrentFolder) {
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  const ProgramResult result = run(std::string("render procedural:cloud") + kSmall), turn = run(std::string("turntable procedural:cube --frames 2") + kSmall);
+  std::filesystem::current_path(before);
+  expectSuccess(result);
+  EXPECT_EQ(result.out, "cloud.png\n");
+  expectSuccess(turn);
+  EXPECT_EQ(turn.out, "cube_0000.png\ncube_0001.png\n");
+  EXPECT_EQ(folder.fileCount(), 3u);
+}
+
+TEST_F(RenderCommand, OutputsMayBeOptions) {
+  expectSuccess(run(std::string("render procedural:cloud -o @a.exr --output @b.png") + kSmall));
+  EXPECT_EQ(folder.fileCount(), 2u);
+}
+
+TEST_F(RenderCommand, ColoursMayBeNamesOrSrgb) {
+  const std::string numbers = render("--unlit --albedo 1,0.2158605,0", "numbers.exr");
+  const Image named = readExr(folder / "numbers.exr");
+  render("--unlit --albedo #ff8000", "srgb.exr");
+  render("--unlit --albedo orange", "orange.exr");
+  const Image srgb = readExr(folder / "srgb.exr"), orange = readExr(folder / "orange.exr");
+  const std::size_t middle = 32 + 64 * 24;
+  EXPECT_GT(named.pixels[middle].g, 0.1f);
+  EXPECT_NEAR(srgb.pixels[middle].g, named.pixels[middle].g, 2e-3);
+  EXPECT_NEAR(orange.pixels[middle].g / orange.pixels[middle].r, 0.3762621, 2e-3);
+}
+
+TEST_F(RenderCommand, OneNumberIsASquare) {
+  expectSuccess(run("render procedural:cube @a.exr --resolution 8 --size 20"));
+  EXPECT_EQ(readExr(folder / "a.exr").size, glm::ivec2(20));
+}
+
+TEST_F(RenderCommand, WarnsWhereNothingIsSeen) {
+  const ProgramResult away = run("render procedural:cube @a.png --resolution 8 --size 20 --camera-position 9,9,9 --look-at 20,20,20");
+  expectSuccess(away);
+  EXPECT_NE(away.err.find("warning: nothing is seen: the camera looks past"), std::string::npos) << away.err;
+  const ProgramResult clear = run("render procedural:cube @b.png --resolution 8 --size 20 --density-scale 0");
+  expectSuccess(clear);
+  EXPECT_NE(clear.err.find("warning: nothing is seen: all voxels are transparent"), std::string::npos) << clear.err;
+}
+
 TEST_F(RenderCommand, EveryProceduralVolumeShows) {
   for (const ProceduralKind& kind : proceduralKinds()) {
     SCOPED_TRACE(kind.name);

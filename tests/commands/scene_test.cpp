@@ -250,9 +250,9 @@ TEST_F(SceneCommand, WhatIsNoJsonIsRefused) {
   expectBadScene(R"({"camera": {"fov": 3, "fov": 4}})", R"("fov" more than once)");
   expectCleanRefusal("render --scene @none.json @a.png", ExitCode::Input, "none.json");
   scene("{}");
-  expectCleanRefusal("render --scene @s.json @a.png", ExitCode::Usage, "OUT");
+  expectCleanRefusal("render --scene @s.json @a.png", ExitCode::Usage, "IN is required");
   scene(R"({"input": {"volume": "procedural:cube"}})");
-  expectCleanRefusal("render --scene @s.json", ExitCode::Usage, "OUT");
+  expectCleanRefusal("oracle --scene @s.json", ExitCode::Usage, "OUT");
   expectCleanRefusal("render --scene @s.json @a.png --save-scene @s.json", ExitCode::Usage, "same file");
   expectCleanRefusal("render --scene @s.json @a.png --save-scene @no/s.json", ExitCode::Output, "no");
 }
