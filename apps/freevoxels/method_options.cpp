@@ -7,6 +7,10 @@
 
 namespace freevoxels {
 
+std::string tableText(const TableSettings& table) {
+  return fmt::format("{} {} {} {}", int(table.directions), int(table.code), int(table.filter), table.pathLengthCorrection);
+}
+
 void MethodOptions::add(CLI::App& app) {
   const char* const group = "Method";
   addWord(app, "--composite", kCompositeWords, composite,

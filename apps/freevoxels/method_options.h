@@ -20,6 +20,9 @@ inline const std::vector<std::string> kDirectionWords{"26", "98"};
 inline const std::vector<std::string> kCodeWords{"depth8", "linear8"};
 inline const std::vector<std::string> kHierarchyFilterWords{"geometric", "arithmetic"};
 
+/// Different for tables that are made differently.
+std::string tableText(const TableSettings& table);
+
 struct MethodOptions {
   bool paper = false;
   std::optional<int> draw, composite, attenuation, directions, code, hierarchyFilter;

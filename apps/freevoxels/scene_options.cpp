@@ -100,6 +100,16 @@ Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
   return resolve(std::make_shared<const Volume>(readVolume(maximumVoxels)));
 }
 
+std::string SceneOptions::rendererText(const Scene& scene, const TableSettings& table) const {
+  OptionList options;
+  classification.describe(options, scene.classification);
+  emission.describe(options, *scene.volume, scene.classification.emission);
+  options.emplace_back("table", tableText(table));
+  // Blocks store what they scatter of the volume's own light with what they send out.
+  options.emplace_back("emission light", scene.classification.emissionLight ? "yes" : "no");
+  return commandText(options);
+}
+
 void SceneOptions::warn(const Scene& scene) const {
   warnAboutValues(*scene.volume, !scene.classification.transferFunction);
   if (scene.classification.transferFunction && !classification.transferFunction)

@@ -9,6 +9,7 @@
 #include "apps/freevoxels/emission_options.h"
 #include "apps/freevoxels/input_options.h"
 #include "apps/freevoxels/lighting_options.h"
+#include "apps/freevoxels/method_options.h"
 #include "apps/freevoxels/output_options.h"
 #include "apps/freevoxels/scene_file.h"
 
@@ -52,6 +53,8 @@ struct SceneOptions {
   void resolveView(Scene& scene) const;
   /// Both.
   Scene open(std::uint64_t maximumVoxels) const;
+  /// Everything that a Renderer of the scene depends on, beside its volume: scenes of equal text share one.
+  std::string rendererText(const Scene& scene, const TableSettings& table) const;
   /// One warning each for values of the scene's volume that are not drawn as they are.
   void warn(const Scene& scene) const;
   /// Writes --save-scene, where it is wanted.

@@ -85,15 +85,4 @@ void KeywordOptions::give(const std::string& section, const std::string& keyword
   given_.push_back(option);
 }
 
-std::string KeywordOptions::rendererText(const Scene& resolved) const {
-  OptionList options;
-  scene.classification.describe(options, resolved.classification);
-  scene.emission.describe(options, *resolved.volume, resolved.classification.emission);
-  const TableSettings table = method.table();
-  options.emplace_back("table", fmt::format("{} {} {} {}", int(table.directions), int(table.code), int(table.filter),
-                                            table.pathLengthCorrection));
-  options.emplace_back("emission light", resolved.classification.emissionLight ? "yes" : "no");
-  return commandText(options);
-}
-
 }  // namespace freevoxels

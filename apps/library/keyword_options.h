@@ -26,8 +26,6 @@ class KeywordOptions {
 
   /// What scene.resolveClassification reads of the options: frames of equal text share its result.
   const std::string& classificationText() const { return classificationText_; }
-  /// Everything that the renderer of `resolved` depends on, beside the volume: frames of equal text share its table.
-  std::string rendererText(const Scene& resolved) const;
 
   SceneOptions scene;
   MethodOptions method;

@@ -52,7 +52,7 @@ void SceneRenderer::makeRenderer(const KeywordOptions& options, const Progress& 
     classification_ = classification;
   }
   options.scene.resolveView(scene_);
-  const std::string text = options.rendererText(scene_);
+  const std::string text = options.scene.rendererText(scene_, options.method.table());
   if (renderer_ && text == rendererText_) return;
   renderer_ = nullptr;  // the device need not hold two at once
   renderer_ = std::make_unique<Renderer>(*context_.device, *volume_, scene_.classification, options.method.table(), progress);

@@ -40,7 +40,7 @@ class SceneRenderer {
   DeviceContext& context_;
   Scene scene_;                 ///< of the last frame
   std::string classification_;  ///< KeywordOptions::classificationText of scene_.classification
-  std::string rendererText_;    ///< KeywordOptions::rendererText of what renderer_ was made for
+  std::string rendererText_;    ///< SceneOptions::rendererText of what renderer_ was made for
   std::unique_ptr<Renderer> renderer_;
 };
 

@@ -9,26 +9,12 @@ namespace freevoxels {
 
 namespace {
 
-/// Everything that the table and what is stored of a volume come from, beside the volume.
-std::string rendererOptions(const PictureRequest& request, const Scene& scene) {
-  OptionList options;
-  request.scene.classification.describe(options, scene.classification);
-  request.scene.emission.describe(options, *scene.volume, scene.classification.emission);
-  options.emplace_back("table", tableText(request.method.table()));
-  return commandText(options);
-}
-
 int blockEdge(const Volume& volume, int voxelsAlongEdge) {
   const glm::ivec3 size = volume.dimensions;
   return 1 + (std::max({size.x, size.y, size.z}) - 1) / voxelsAlongEdge;
 }
 
 }  // namespace
-
-std::string tableText(const TableSettings& table) {
-  return fmt::format("{} {} {} {}", int(table.directions), int(table.code), int(table.filter),
-                     table.pathLengthCorrection);
-}
 
 PictureMaker::PictureMaker(const Device& device, VolumeCache& volumes)
     : device_(device), volumes_(volumes), diagnoser_(device) {}
@@ -49,7 +35,7 @@ std::shared_ptr<const Volume> PictureMaker::coarse(const Scene& scene, int voxel
 
 void PictureMaker::makeRenderer(const Scene& scene, const PictureRequest& request, const Progress& progress) {
   const std::shared_ptr<const Volume> volume = coarse(scene, request.voxelsAlongEdge);
-  const std::string options = rendererOptions(request, scene);
+  const std::string options = request.scene.rendererText(scene, request.method.table());
   if (renderer_ && options == rendererOptions_) return;
   renderer_ = nullptr;  // not both at once
   diagnoser_.reset();

@@ -40,9 +40,6 @@ struct Picture {
   std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::visibleVoxelCount
 };
 
-/// Different for tables that are made differently.
-std::string tableText(const TableSettings& table);
-
 /// Keeps a volume on a device, and makes again only what a request changes.
 class PictureMaker {
  public:

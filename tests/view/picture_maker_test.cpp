@@ -48,5 +48,15 @@ TEST_F(PictureMakerTest, AnotherClassificationMakesAnotherOccupancy) {
   EXPECT_EQ(timesOf(maker_.make(request, {}), "bricks").size(), 1u);
 }
 
+TEST_F(PictureMakerTest, LightingAShiningVolumeMakesItsLightFallOnIt) {
+  PictureRequest request = litCloud();
+  request.scene.input.input = "procedural:fire";
+  request.scene.emission.emission = true;
+  request.scene.lighting.unlit = true;
+  maker_.make(request, {});
+  request.scene.lighting.unlit = false;
+  EXPECT_EQ(maker_.make(request, {}).image.pixels, PictureMaker(device(), volumes_).make(request, {}).image.pixels);
+}
+
 }  // namespace
 }  // namespace freevoxels
