@@ -22,6 +22,7 @@ struct Expectation {
   std::size_t count = 1;  ///< 0: one, which may be left out
   NumberRange range;
   bool whole = false;
+  bool mayBeOne = false;  ///< one number stands for `count` equal ones
   char separator = ',';
 };
 
@@ -29,7 +30,7 @@ struct NamedColor {
   std::string_view name;
   std::uint32_t srgb;  ///< 0xRRGGBB
 };
-/// Of CSS.
+/// Basic colour names of CSS.
 constexpr std::array<NamedColor, 12> kNamedColors{{{"black", 0x000000},
                                                    {"white", 0xffffff},
                                                    {"gray", 0x808080},
@@ -81,6 +82,7 @@ std::vector<double> parseNumbers(const std::string& text, const Expectation& exp
     values.push_back(*value);
     begin = end + 1;
   }
+  if (expected.mayBeOne && values.size() == 1) values.resize(expected.count, values.front());
   if (values.size() != std::max<std::size_t>(expected.count, 1)) refuse(expected, text);
   return values;
 }
@@ -152,19 +154,17 @@ CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, const std::s
 
 CLI::Option* addSize(CLI::App& app, const std::string& name, glm::ivec2& target, int maximum,
                      const std::string& description) {
-  Expectation expected{
-      .option = name, .form = "WxH", .count = 2, .range = {1.0, double(maximum)}, .whole = true, .separator = 'x'};
-  return app
-      .add_option_function<std::string>(
-          name,
-          [&target, expected](const std::string& text) mutable {
-            expected.count = text.find('x') == std::string::npos ? 1 : 2;
-            const std::vector<double> edges = parseNumbers(text, expected);
-            target = glm::ivec2(edges.front(), edges.back());
-          },
-          description)
-      ->take_last()
-      ->type_name(expected.form);
+  return addNumbers(app,
+                    {.option = name,
+                     .form = "WxH",
+                     .count = 2,
+                     .range = {1.0, double(maximum)},
+                     .whole = true,
+                     .mayBeOne = true,
+                     .separator = 'x'},
+                    description, [&target](const std::vector<double>& values) {
+                      target = glm::ivec2(values[0], values[1]);
+                    });
 }
 
 CLI::Option* addText(CLI::App& app, const std::string& name, const std::string& form,

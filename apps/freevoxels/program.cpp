@@ -74,7 +74,7 @@ std::vector<std::string> commandNames(const CLI::App& app) {
   return names;
 }
 
-/// "unknown option '--szie'; did you mean '--size'?" of the first argument that is like an option and is none; else empty.
+/// "there is no option '--szie'; did you mean '--size'?" for the first argument that is like an option and is none; else empty.
 std::string unknownOption(const CLI::App& command, int argc, char** argv) {
   std::vector<std::string> known;
   for (const CLI::Option* option : command.get_options())
@@ -87,7 +87,7 @@ std::string unknownOption(const CLI::App& command, int argc, char** argv) {
   return "";
 }
 
-/// Of a first word that is no command.
+/// What is said about a first word that is no command.
 std::string unknownCommand(const CLI::App& app, const std::string& word) {
   if (word.ends_with(".vdb") || std::filesystem::is_regular_file(word))
     return fmt::format("'{}' is a file, not a command; to draw it: {} render {} image.png", word, app.get_name(), word);

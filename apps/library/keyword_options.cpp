@@ -33,7 +33,7 @@ bool isLight(const Json& value) {
 
 }  // namespace
 
-KeywordOptions::KeywordOptions(const Json& keywords, std::vector<std::string> sections)
+KeywordOptions::KeywordOptions(const Json& keywords, std::vector<std::string> sections, const std::string& volume)
     : sections_(std::move(sections)) {
   scene.add(app_);
   scene.lighting.addMethod(app_);
@@ -46,6 +46,10 @@ KeywordOptions::KeywordOptions(const Json& keywords, std::vector<std::string> se
     }
     for (const auto& [inner, one] : value.items()) give(key, keywordOf(inner), one);
   }
+  if (!volume.empty()) {
+    app_.get_option("IN")->add_result(volume);
+    app_.get_option("IN")->run_callback();
+  }
   scene.file.apply([this](const std::string& option) { return scene.output.honours(option); });
   for (const CLI::Option* option : app_.get_options())
     if (groupOf(*option) == "classification" || groupOf(*option) == "emission")
@@ -57,19 +61,16 @@ bool KeywordOptions::isSection(const std::string& name) const {
 }
 
 CLI::Option* KeywordOptions::find(const std::string& section, const std::string& keyword) {
-  std::string nearest;
-  std::size_t least = kFarName;
+  std::vector<std::string> known;
   for (CLI::Option* option : app_.get_options([](const CLI::Option*) { return true; })) {
     if (option->get_lnames().empty() || !isSection(groupOf(*option))) continue;
-    const std::string known = keywordOf(*option);
-    const bool isInSection = section.empty() || groupOf(*option) == section;
-    if (isInSection && (keyword == known || keyword == keywordOf(sceneKey(*option))))
-      return option;
-    const std::size_t distance = editDistance(keyword, known) + (isInSection ? 0 : 1);
-    if (distance < least) least = distance, nearest = known;
+    known.push_back(keywordOf(*option));
+    if (!section.empty() && groupOf(*option) != section) continue;
+    if (keyword == known.back() || keyword == keywordOf(sceneKey(*option))) return option;
   }
-  fail(ExitCode::Usage, "there is no option '{}'{}", keyword,
-       nearest.empty() ? "; 'freevoxels render --help' lists them, with - in place of _" : fmt::format("; did you mean '{}'?", nearest));
+  const std::string meant = suggestion(keyword, known);
+  fail(ExitCode::Usage, "there is no option '{}{}'{}", section.empty() ? "" : section + ".", keyword,
+       meant.empty() ? "; 'freevoxels render --help' lists them, with - in place of _" : meant);
 }
 
 void KeywordOptions::give(const std::string& section, const std::string& keyword, const Json& value) {

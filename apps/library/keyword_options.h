@@ -18,9 +18,10 @@ class KeywordOptions {
  public:
   /// `keywords` is an object; `sections` are the sections of a scene file whose options it may give. A key is an option's name with '_' in place of '-' ("density_scale"), or a section of a
   /// scene file (apps/scenes/README.md) whose value is an object of such keys: {"camera": {"orbit": [35, 25]}}. A scene
-  /// file, key "scene", supplies what the other keys leave out. Fails with ExitCode::Usage for unknown keys and options
+  /// file, key "scene", supplies what the other keys leave out. `volume`, a file or "procedural:NAME", takes the place of
+  /// the scene file's. Fails with ExitCode::Usage for unknown keys and options
   /// that exclude each other, with ExitCode::Input for values of a wrong type.
-  KeywordOptions(const nlohmann::json& keywords, std::vector<std::string> sections);
+  KeywordOptions(const nlohmann::json& keywords, std::vector<std::string> sections, const std::string& volume = "");
   KeywordOptions(const KeywordOptions&) = delete;
   KeywordOptions& operator=(const KeywordOptions&) = delete;
 

@@ -1,13 +1,12 @@
 // The public interface, over the engine. No exception of the engine's own leaves it.
 
 #include <cmath>
-#include <glm/gtc/matrix_transform.hpp>
 
 #include "apps/freevoxels/program.h"
 #include "apps/library/include/freevoxels/freevoxels.h"
 #include "apps/library/scene_renderer.h"
 #include "engine/core/error.h"
-#include "engine/volume/scan.h"
+#include "engine/volume/volume_of_scalars.h"
 
 namespace freevoxels::v1 {
 
@@ -38,17 +37,14 @@ freevoxels::Volume volumeOf(std::span<const float> values, std::array<int, 3> di
   if (std::min({x, y, z}) < 1 || std::size_t(x) * std::size_t(y) * std::size_t(z) != values.size())
     fail(ExitCode::Input, "{} values are not a box of {} x {} x {} voxels", values.size(), x, y, z);
   const auto vector = [](const std::array<double, 3>& v) { return glm::dvec3(v[0], v[1], v[2]); };
-  freevoxels::Volume volume{.source = "the array", .dimensions = {x, y, z}};
-  volume.indexToWorld = glm::scale(glm::translate(glm::dmat4(1.0), vector(placement.origin)), vector(placement.spacing));
-  checkPlacement(volume);
-  volume.scalars = ScalarBricks::make(volume.dimensions, [&](glm::ivec3 voxel) {
-    const float value = values[volume.at(voxel.x, voxel.y, voxel.z)];
-    return std::isnan(value) ? kInactiveVoxel : value;
-  });
-  summariseValues(volume);
-  if (volume.activeVoxels == 0) fail(ExitCode::Input, "the array holds no data: all its values are NaN");
-  orientScan(volume);
-  return volume;
+  const glm::ivec3 size(x, y, z);
+  return volumeOfScalars(ScalarBricks::make(size,
+                                            [&](glm::ivec3 voxel) {
+                                              const std::size_t row = std::size_t(voxel.y) + std::size_t(y) * std::size_t(voxel.z);
+                                              const float value = values[std::size_t(voxel.x) + std::size_t(x) * row];
+                                              return std::isnan(value) ? kInactiveVoxel : value;
+                                            }),
+                         latticeTransform(vector(placement.spacing), vector(placement.origin)));
 }
 
 }  // namespace

@@ -10,14 +10,13 @@ namespace {
 using Json = nlohmann::json;
 
 const std::vector<std::string> kViewSections{"classification", "emission", "camera", "light", "method", "scene", "device"};
-const std::vector<std::string> kFileSections{"input", "classification", "emission"};
+const std::vector<std::string> kFileSections{"input", "classification", "emission", "camera", "light", "method", "scene", "device"};
 const std::vector<std::string> kOutputSections{"output"};
 
 }  // namespace
 
 std::shared_ptr<const Volume> openVolume(const std::string& file, const Json& keywords) {
-  KeywordOptions options(keywords, kFileSections);
-  options.scene.input.input = file;
+  KeywordOptions options(keywords, kFileSections, file);
   options.scene.checkLook();
   const DeviceContext& context = deviceContext(options.device);
   return std::make_shared<const Volume>(options.scene.readVolume(maximumVoxels(*context.device)));

@@ -11,8 +11,8 @@
 
 namespace freevoxels {
 
-/// Reads a file or makes "procedural:NAME". `keywords` are options of the sections input, classification and emission that
-/// choose grids. Fails as readVdb does.
+/// Reads a file or makes "procedural:NAME". `keywords` are the grid, the resolution and the scene of frames to come, which
+/// decides what grids are needed beside it. Fails as readVdb does.
 std::shared_ptr<const Volume> openVolume(const std::string& file, const nlohmann::json& keywords);
 
 /// Writes an image as `freevoxels render` does; `keywords` are options of the section output.

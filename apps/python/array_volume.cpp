@@ -2,12 +2,11 @@
 
 #include <cmath>
 #include <cstring>
-#include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/packing.hpp>
 #include <limits>
 
 #include "engine/core/error.h"
-#include "engine/volume/scan.h"
+#include "engine/volume/volume_of_scalars.h"
 
 namespace freevoxels {
 
@@ -89,22 +88,9 @@ ScalarBricks readArray(const py::array& array, std::optional<double> noData) {
 
 }  // namespace
 
-glm::dmat4 placement(const glm::dvec3& spacing, const glm::dvec3& origin) {
-  return glm::scale(glm::translate(glm::dmat4(1.0), origin), spacing);
-}
-
 Volume volumeOfArray(const py::array& scalars, const std::optional<py::array>& temperature,
                      const ArrayPlacement& placement) {
-  Volume volume{.source = "the array"};
-  volume.indexToWorld = placement.indexToWorld;
-  checkPlacement(volume);
-  volume.scalars = readArray(scalars, placement.noData);
-  volume.dimensions = volume.scalars.dimensions();
-  summariseValues(volume);
-  if (volume.activeVoxels == 0)
-    fail(ExitCode::Input, "the array of {} voxels holds no data: all its values are NaN{}", shapeText(scalars),
-         placement.noData ? " or no_data" : "");
-  orientScan(volume);
+  Volume volume = volumeOfScalars(readArray(scalars, placement.noData), placement.indexToWorld);
   if (!temperature) return volume;
   volume.temperature = TemperatureGrid{.name = "temperature", .values = readArray(*temperature, placement.noData)};
   if (volume.temperature->values.dimensions() != volume.dimensions)

@@ -17,9 +17,6 @@ struct ArrayPlacement {
   std::optional<double> noData;  ///< marks voxels that hold no data, as NaN always does
 };
 
-/// The affine map of voxels `spacing` apart whose first one's centre is at `origin`.
-glm::dmat4 placement(const glm::dvec3& spacing, const glm::dvec3& origin);
-
 /// Reads an array with axes (z, y, x), of real numbers or bool in the machine's byte order and any strides, without copying it
 /// first; releases the GIL meanwhile. `temperature` has the same shape. Fails with ExitCode::Input for other arrays.
 Volume volumeOfArray(const pybind11::array& scalars, const std::optional<pybind11::array>& temperature,

@@ -13,6 +13,7 @@
 #include "apps/python/array_volume.h"
 #include "apps/python/python_values.h"
 #include "engine/core/error.h"
+#include "engine/volume/volume_of_scalars.h"
 
 namespace freevoxels {
 
@@ -32,7 +33,7 @@ glm::dmat4 placementOf(const std::variant<double, Triple>& spacing, const Triple
     const bool isCube = std::holds_alternative<double>(spacing);
     const Triple steps = isCube ? Triple{std::get<double>(spacing), std::get<double>(spacing), std::get<double>(spacing)}
                                 : std::get<Triple>(spacing);
-    return placement({steps[0], steps[1], steps[2]}, {origin[0], origin[1], origin[2]});
+    return latticeTransform({steps[0], steps[1], steps[2]}, {origin[0], origin[1], origin[2]});
   }
   glm::dmat4 matrix(1.0);
   for (int row = 0; row < 4; ++row)
@@ -100,7 +101,6 @@ constexpr const char* kModuleText =
 
 void addVolume(py::module_& module) {
   using namespace py::literals;
-  const auto tuple3 = [](glm::dvec3 v) { return py::make_tuple(v.x, v.y, v.z); };
   py::class_<PythonVolume>(module, "Volume", "A volume in memory, which renderers can share.")
       .def(py::init(&volumeFromArray), "array"_a, py::kw_only(), "spacing"_a = 1.0, "origin"_a = Triple{},
            "transform"_a = py::none(), "no_data"_a = py::none(), "temperature"_a = py::none(),
@@ -109,8 +109,8 @@ void addVolume(py::module_& module) {
            "(x, y, z, 1) in voxels to the world. NaN, and values equal to no_data, hold no data. temperature: an array of\n"
            "the same shape, for emission.")
       .def_static("open", &volumeFromFile, "file"_a,
-                  "Reads an OpenVDB file, or makes 'procedural:NAME'. Options: grid, resolution, albedo_grid, and emission=True\n"
-                  "or temperature_grid for temperatures.")
+                  "Reads an OpenVDB file, or makes 'procedural:NAME'. Options: grid, resolution, and those of a frame, of which\n"
+                  "emission=True, temperature_grid and albedo_grid add grids to read.")
       .def_property_readonly("shape", [](const PythonVolume& v) {
         const glm::ivec3 size = v.volume->dimensions;
         return py::make_tuple(size.z, size.y, size.x);
@@ -119,8 +119,10 @@ void addVolume(py::module_& module) {
                              "The least and the largest value of the voxels that hold data.")
       .def_property_readonly("active_voxels", [](const PythonVolume& v) { return v.volume->activeVoxels; },
                              "How many voxels hold data.")
-      .def_property_readonly("origin", [tuple3](const PythonVolume& v) { return tuple3(v.volume->indexToWorld[3]); },
-                             "World position (x, y, z) of the centre of voxel [0, 0, 0].")
+      .def_property_readonly("origin", [](const PythonVolume& v) {
+        const glm::dvec3 origin(v.volume->indexToWorld[3]);
+        return py::make_tuple(origin.x, origin.y, origin.z);
+      }, "World position (x, y, z) of the centre of voxel [0, 0, 0].")
       .def_property_readonly("source", [](const PythonVolume& v) { return v.volume->source; }, "File and grid, for messages.");
 }
 
@@ -140,7 +142,8 @@ void addRenderer(py::module_& module) {
       .def_property_readonly("device", &SceneRenderer::device, "Name of the Vulkan device.");
 }
 
-/// render(): the keywords of Volume are taken out of those of a frame.
+/// render(): the keywords of the volume are taken out of those of the frame. A file is read with all of them, as its scene decides
+/// which of its grids are needed.
 py::object renderOnce(const py::object& source, const py::object& progress, bool depth, py::kwargs keywords) {
   const py::object type = py::type::of<PythonVolume>();
   py::object volume = source;
@@ -148,12 +151,9 @@ py::object renderOnce(const py::object& source, const py::object& progress, bool
   const std::vector<const char*> taken =
       isFile ? std::vector{"grid", "resolution"} : std::vector{"spacing", "origin", "transform", "no_data", "temperature"};
   if (!py::isinstance<PythonVolume>(source)) {
-    py::dict given;
+    py::dict given = isFile ? py::dict(keywords.attr("copy")()) : py::dict();
     for (const char* key : taken)
       if (keywords.contains(key)) given[key] = keywords.attr("pop")(key);
-    if (isFile)
-      for (const char* key : {"emission", "temperature_grid", "albedo_grid"})
-        if (keywords.contains(key)) given[key] = keywords[key];
     volume = (isFile ? py::object(type.attr("open")) : type)(source, **given);
   }
   return render(*makeRenderer(volume.cast<PythonVolume>(), keywords), progress, depth, {});

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/core/error.h"
-
 namespace freevoxels {
 
 namespace {
@@ -69,14 +67,6 @@ void expandByActive(const ScalarBricks& scalars, glm::ivec3& low, glm::ivec3& hi
 
 double Volume::voxelSize() const {
   return std::cbrt(std::abs(glm::determinant(glm::dmat3(indexToWorld))));
-}
-
-void checkPlacement(const Volume& volume) {
-  const double determinant = glm::determinant(glm::dmat3(volume.indexToWorld));
-  const glm::dvec4 origin = volume.indexToWorld[3];
-  if (!std::isfinite(determinant) || !(std::abs(determinant) > 0.0) || !std::isfinite(origin.x + origin.y + origin.z))
-    fail(ExitCode::Input, "voxels of {} have no extent: spacing, origin and transform must be finite, and the spacing along each "
-                          "axis not 0", volume.source);
 }
 
 std::vector<float> denseScalars(const Volume& volume) {

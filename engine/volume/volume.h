@@ -60,9 +60,6 @@ struct Volume {
   double voxelSize() const;
 };
 
-/// Fails with ExitCode::Input where indexToWorld is not finite or gives voxels no extent.
-void checkPlacement(const Volume& volume);
-
 /// Of all voxels, x fastest: for references and tests, which look at every one.
 std::vector<float> denseScalars(const Volume& volume);
 

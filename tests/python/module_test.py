@@ -162,6 +162,13 @@ class FilesTest(unittest.TestCase):
         self.assertEqual(compared.returncode, 0, compared.stderr)
         self.assertIn('"difference": 0.0', compared.stdout)
 
+    def test_scene_file_decides_which_grids_are_read(self):
+        scene = self.folder / "fire.json"
+        scene.write_text('{"input": {"volume": "procedural:cloud", "resolution": 90}, "emission": {"emission": 5}, "camera": {"fov": 30}}')
+        image = freevoxels.render("procedural:fire", resolution=24, scene=scene, size=(48, 40))
+        expected = freevoxels.render("procedural:fire", resolution=24, emission=5, fov=30, size=(48, 40))
+        np.testing.assert_array_equal(image, expected)
+
     def test_png_is_that_of_the_command(self):
         options = dict(resolution=24, size=(48, 40))
         freevoxels.save(self.folder / "ours.png", freevoxels.render("procedural:fire", emission=True, **options), background=(0.1, 0.2, 0.3), exposure=-1)

@@ -61,7 +61,8 @@ struct Placement {
 /// A volume in memory. Copies share it.
 class FREEVOXELS_API Volume {
  public:
-  /// Reads an OpenVDB file, or makes "procedural:NAME". `scene`: grid, resolution, albedo-grid, emission, temperature-grid.
+  /// Reads an OpenVDB file, or makes "procedural:NAME". `scene`: grid, resolution, and the scene of frames to come, of
+  /// which emission, temperature-grid and albedo-grid add grids to read.
   static Volume open(const std::filesystem::path& file, std::string_view scene = "{}");
   /// Copies as many values as `dimensions` (x, y, z) has voxels, x fastest. NaN holds no data.
   static Volume copy(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement = {});

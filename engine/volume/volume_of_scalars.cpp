@@ -1,0 +1,39 @@
+#include "engine/volume/volume_of_scalars.h"
+
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "engine/core/error.h"
+#include "engine/volume/scan.h"
+
+namespace freevoxels {
+
+namespace {
+
+void checkTransform(const glm::dmat4& indexToWorld) {
+  const double determinant = glm::determinant(glm::dmat3(indexToWorld));
+  const glm::dvec4 origin = indexToWorld[3];
+  if (!std::isfinite(determinant) || !(std::abs(determinant) > 0.0) || !std::isfinite(origin.x + origin.y + origin.z))
+    fail(ExitCode::Input, "voxels of the array have no extent: spacing, origin and transform must be finite, and the spacing "
+                          "along each axis not 0");
+}
+
+}  // namespace
+
+glm::dmat4 latticeTransform(const glm::dvec3& spacing, const glm::dvec3& origin) {
+  return glm::scale(glm::translate(glm::dmat4(1.0), origin), spacing);
+}
+
+Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld) {
+  checkTransform(indexToWorld);
+  Volume volume{.source = "the array", .dimensions = scalars.dimensions(), .indexToWorld = indexToWorld, .scalars = std::move(scalars)};
+  summariseValues(volume);
+  const glm::ivec3 size = volume.dimensions;
+  if (volume.activeVoxels == 0)
+    fail(ExitCode::Input, "the array of {} x {} x {} voxels holds no data: all its values are NaN, or mark that there is none",
+         size.x, size.y, size.z);
+  orientScan(volume);
+  return volume;
+}
+
+}  // namespace freevoxels
