@@ -5,18 +5,18 @@
 #include <span>
 
 #include "engine/attenuation/attenuation_table.h"
-#include "engine/attenuation/seen_runs.h"
+#include "engine/attenuation/table_levels.h"
+#include "engine/attenuation/table_pruning.h"
 #include "engine/core/error.h"
-#include "engine/hierarchy/cut_pass.h"
-#include "engine/hierarchy/level_passes.h"
+#include "engine/gathering/gather_pass.h"
 #include "engine/lighting/light_pass.h"
+#include "engine/octree/block_list.h"
+#include "engine/octree/device_volume.h"
 #include "engine/splatting/depth_sort.h"
-#include "engine/splatting/gather_pass.h"
 #include "engine/splatting/resolve_pass.h"
 #include "engine/splatting/splat_pass.h"
 #include "engine/splatting/sums_readback.h"
-#include "engine/splatting/visible_voxels.h"
-#include "engine/volume/device_volume.h"
+#include "engine/visibility/cut_pass.h"
 #include "engine/vulkan/target_readback.h"
 
 namespace freevoxels {
@@ -30,7 +30,7 @@ struct Renderer::State {
   std::optional<AttenuationTable> table;
   std::vector<double> largestDepths;  ///< of the table, by direction; empty: it has no levels yet
   std::optional<CutPass> cutter;
-  const VisibleVoxels* lastDrawn = nullptr;
+  const BlockList* lastDrawn = nullptr;
   bool lastWasCut = false;  ///< lastDrawn is `cutter`'s
   int lastLevel = 0;        ///< otherwise: of all that was drawn
   bool lastLackedRays = false, lastLackedGather = false;
@@ -81,6 +81,7 @@ const BuiltVolume& Renderer::State::builtWithBlocks(const Progress& progress) {
 const AttenuationTable& Renderer::State::sweptTable(const Progress& progress) {
   if (table) return *table;
   builtWithBlocks(progress);
+  checkTableFits(device, built.volume, tableSettings.directions);
   AttenuationTable made = makeTable(device, built.volume, tableSettings);
   AttenuationSweep sweep(device, tableSettings);
   Commands commands(device);
@@ -99,7 +100,7 @@ const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progres
   pass.record(commands, built.volume, built.lists.coarse, *table);
   commands.submitAndWait(progress);
   addTimes(frameTimes, commands.times());
-  leaveOutUnseen(device, *table, frameTimes);
+  pruneOpaqueRuns(device, *table, frameTimes);
   largestDepths = downloadLargestDepths(device, *table);
   return *table;
 }
@@ -321,7 +322,7 @@ std::vector<StageTime> Renderer::timings() const {
   return times;
 }
 
-std::optional<std::uint64_t> Renderer::visibleVoxelCount() const {
+std::optional<std::uint64_t> Renderer::occupiedVoxelCount() const {
   if (!state_->built.hasBlocks()) return {};
   return state_->built.volume.stored.front();
 }
@@ -356,7 +357,7 @@ CutCounts Renderer::cutCounts() const {
   if (state_->lastDrawn == nullptr) return {};
   if (state_->lastWasCut) return state_->cutter->counts();
   CutCounts counts{.drawn = std::vector<std::uint64_t>(std::size_t(state_->lastLevel), 0)};
-  counts.drawn.push_back(downloadVisibleCount(state_->device, *state_->lastDrawn));
+  counts.drawn.push_back(downloadBlockCount(state_->device, *state_->lastDrawn));
   counts.considered = counts.drawn.back();
   return counts;
 }
@@ -364,7 +365,7 @@ CutCounts Renderer::cutCounts() const {
 std::vector<Block> Renderer::downloadDrawnBlocks() const {
   std::vector<Block> blocks;
   if (state_->lastDrawn == nullptr) return blocks;
-  for (const std::uint32_t index : freevoxels::downloadVisibleVoxels(state_->device, *state_->lastDrawn))
+  for (const std::uint32_t index : freevoxels::downloadBlockList(state_->device, *state_->lastDrawn))
     blocks.push_back(state_->built.volume.hierarchy.blockAt(index));
   return blocks;
 }
@@ -381,9 +382,9 @@ std::vector<LevelData> Renderer::downloadLevels() const {
   return levels;
 }
 
-std::vector<std::uint32_t> Renderer::downloadVisibleVoxels() const {
+std::vector<std::uint32_t> Renderer::downloadBlockList() const {
   std::vector<std::uint32_t> voxels =
-      freevoxels::downloadVisibleVoxels(state_->device, state_->builtWithBlocks().visible);
+      freevoxels::downloadBlockList(state_->device, state_->builtWithBlocks().visible);
   for (std::uint32_t& voxel : voxels) voxel = state_->built.volume.layout.unpaddedIndex(voxel);
   return voxels;
 }

@@ -6,16 +6,16 @@
 #include <optional>
 #include <vector>
 
-#include "engine/attenuation/ray_fans.h"
 #include "engine/core/stages.h"
-#include "engine/hierarchy/cut_pass.h"
-#include "engine/hierarchy/hierarchy_layout.h"
-#include "engine/hierarchy/level_data.h"
-#include "engine/hierarchy/volume_memory.h"
 #include "engine/image/image.h"
-#include "engine/splatting/camera.h"
-#include "engine/splatting/render_settings.h"
+#include "engine/memory_planner.h"
+#include "engine/octree/hierarchy_layout.h"
+#include "engine/octree/level_data.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/render_settings.h"
+#include "engine/scene/source_rays.h"
 #include "engine/splatting/splat_sums.h"
+#include "engine/visibility/cut_pass.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 #include "engine/vulkan/device.h"
@@ -48,7 +48,7 @@ class Renderer {
   /// Of the constructor and of the last frame, in order.
   std::vector<StageTime> timings() const;
   /// How many voxels have extinction or emission; unknown while no frame needed their blocks.
-  std::optional<std::uint64_t> visibleVoxelCount() const;
+  std::optional<std::uint64_t> occupiedVoxelCount() const;
   /// Of the last frame.
   CutCounts cutCounts() const;
   /// Whether the last frame would have had rays from the eye, but for the device's memory: Auto is Bilinear
@@ -65,7 +65,7 @@ class Renderer {
   /// From the camera's eye. Fails with ExitCode::OutOfMemory.
   RayCodes downloadRays(const Camera& camera) const;
   /// Indices of the visible voxels, among all of the volume (Volume::at), in the order they are drawn.
-  std::vector<std::uint32_t> downloadVisibleVoxels() const;
+  std::vector<std::uint32_t> downloadBlockList() const;
   /// What the last frame drew, in that order, if it was not sorted.
   std::vector<Block> downloadDrawnBlocks() const;
   /// Of the levels above the voxels, the first has blocks of 2³ voxels.

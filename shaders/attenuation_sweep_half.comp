@@ -85,5 +85,5 @@ void main() {
     }
     window = wrapped(window + kWindowStep, quads);
   }
-  if (slab.endPlane < push.marchCount) keepLines(slab.firstDepth, thread, threads);
+  if (slab.endPlane < push.marchCount) saveLineState(slab.firstDepth, thread, threads);
 }

@@ -28,7 +28,7 @@ Block blockAt(uint address) {
 // The largest component; 0 of a block that holds nothing.
 float brightnessOf(BlockLevel level, ivec3 cell) {
   const uint address = blockAddress(level, cell);
-  if (!kEmits || !holdsAnything(address)) return 0.0;
+  if (!kEmits || !isOccupied(address)) return 0.0;
   const vec3 light = unpackLight(storedEmission(rankAt(level, address)));
   return max(light.r, max(light.g, light.b));
 }

@@ -15,16 +15,16 @@ float layerLength(vec3 direction) { return length(frame.indexToWorld * direction
 // How many layers of voxels a line in this direction crosses in a block.
 int layersOf(Block block, vec3 direction) { return block.extent[majorAxis(direction)]; }
 
-// `lookup` and `beyond` as Towards has them.
-Towards towardsSource(vec3 direction, int lookup, uvec2 beyond) {
+// `lookup` and `beyond` as TableLookup has them.
+TableLookup towardsSource(vec3 direction, int lookup, uvec2 beyond) {
   const bool inFull = frame.pathLengthCorrection != 0;
   const float layer = layerLength(direction);
-  return Towards(direction, layer, frame.indexToWorld, frame.cells, frame.code, lookup, inFull,
+  return TableLookup(direction, layer, frame.indexToWorld, frame.cells, frame.code, lookup, inFull,
                  inFull ? layer : frame.voxelSize, beyond);
 }
 
 // The mean over the voxels of a block that holds anything; `falling` as depthTowards has it.
-float meanDepth(Block block, Towards towards, out float falling) {
+float meanDepth(Block block, TableLookup towards, out float falling) {
   const BlockLevel level = frame.levels[block.level];
   return depthTowards(towards, rankAt(level, blockAddress(level, block.cell)), falling);
 }

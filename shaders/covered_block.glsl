@@ -1,10 +1,10 @@
 // Whether a block is behind what is drawn already. Include after interface.h; `frame` is the CutFrame, `tiles` are as
-// tile_cover.comp made them.
+// tile_opacity.comp made them.
 
 const int kMostTiles = 8;  // along an axis: a larger block is looked at in parts
 
 // Whether all pixels are covered that anything in the block reaches; `center` is relative to the volume's middle.
-bool isCovered(vec3 center, int edge) {
+bool isOccluded(vec3 center, int edge) {
   // What is drawn in the block is no larger than the frame's coarsest, and centred between its voxels' centres.
   const float reach = 0.5 * float(edge - 1) + kSplatRadius * float(min(edge, 1 << frame.coarsest));
   const vec3 projected = frame.indexToPixel * center + frame.middleInPixels;

@@ -1,6 +1,6 @@
 #version 460
 // First pass of the cut through the octree, one dispatch a level, from the coarsest: which of the level's blocks are
-// drawn, a bit a slot (cut_slot.glsl), and how many of each workgroup's. Subr et al. 2007, Section 3.3: the level is
+// drawn, a bit a slot (candidate_slot.glsl), and how many of each workgroup's. Subr et al. 2007, Section 3.3: the level is
 // chosen by the size on the image. What is outside of the image or hidden is left out with all that is below it.
 //
 // A parent is twice as large as its children and as near to the eye as the nearest of them, so of the blocks around a
@@ -37,7 +37,7 @@ layout(scalar, binding = 9) readonly buffer Tiles { uint tiles[]; };
 #include "direction_lookup.glsl"
 #include "occupancy.glsl"
 #include "cut_slot.glsl"
-#include "dark_block.glsl"
+#include "table_occlusion.glsl"
 #include "covered_block.glsl"
 
 shared CutCounts sums;
@@ -68,7 +68,7 @@ bool isOutside(vec3 center, int edge) {
 uint parentPlace(uint slot) { return frame.levels[push.level + 1].firstRank - frame.coarseFirst + slot / 8; }
 
 // Which of a thread's slots to look at, a bit each.
-uint askedSlots(uint first) {
+uint candidateSlots(uint first) {
   if (push.level == frame.top) return !kDeferred && first == 0 ? 1 : 0;
   if (kDeferred && counts.deferred == 0) return 0;
   uint bits = 0;
@@ -107,7 +107,7 @@ bool isDrawn(uint slot, inout CutCounts found) {
   const uint address = blockAddress(frame.levels[push.level], cell);
   const int edge = 1 << push.level;
   const vec3 center = centerOf(cell, edge);
-  if (!holdsAnything(address)) {
+  if (!isOccupied(address)) {
     ++found.empty;
     return false;
   }
@@ -117,7 +117,7 @@ bool isDrawn(uint slot, inout CutCounts found) {
   }
   // Of a voxel it costs about as much to ask as to draw it.
   if (!kVoxels && push.level < frame.top && frame.hides != 0) {
-    if (kDeferred && isCovered(center, edge)) {
+    if (kDeferred && isOccluded(center, edge)) {
       ++found.hidden;
       return false;
     }
@@ -145,7 +145,7 @@ void main() {
   }
   barrier();
   CutCounts found = CutCounts(0, 0, 0, 0, 0);
-  listAsked(askedSlots(first + thread * kCutSlotsPerThread), thread * kCutSlotsPerThread);
+  listAsked(candidateSlots(first + thread * kCutSlotsPerThread), thread * kCutSlotsPerThread);
   barrier();
   for (uint i = thread; i < askedCount; i += kCutThreads)
     if (isDrawn(first + asked[i], found)) atomicOr(mask[asked[i] / 32], 1u << (asked[i] % 32));

@@ -1,5 +1,5 @@
 #version 460
-// Last pass of the cut, one dispatch a level, after visible_scan.comp: the blocks that are drawn, at their places, in
+// Last pass of the cut, one dispatch a level, after compact_scan.comp: the blocks that are drawn, at their places, in
 // the order of their slots.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"

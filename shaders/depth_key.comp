@@ -8,7 +8,7 @@
 
 layout(local_size_x = kSortThreads) in;
 layout(scalar, push_constant) uniform Push { DepthKeyPush push; };
-layout(scalar, binding = 0) readonly buffer VisibleVoxels { uint visibleVoxels[]; };
+layout(scalar, binding = 0) readonly buffer BlockList { uint visibleVoxels[]; };
 layout(scalar, binding = 1) readonly buffer Chunks { ChunkArguments chunks[]; };
 layout(scalar, binding = 2) writeonly buffer Count { uint count; };
 layout(scalar, binding = 3) writeonly buffer Keys { uint keys[]; };

@@ -8,7 +8,7 @@ vec3 directionToEye(vec3 position) {
 }
 
 float tableDepth(Block block, out float falling) {
-  return meanDepth(block, towardsSource(directionToEye(block.center), frame.lookup, frame.beyondEye), falling);
+  return meanDepth(block, towardsSource(directionToEye(block.center), frame.lookup, frame.sourceDepth), falling);
 }
 
 // Of the block, or of itself where that holds nothing: the table does not know it.
@@ -16,7 +16,7 @@ Block neighbour(Block block, int axis, int steps) {
   ivec3 cell = block.cell;
   cell[axis] += steps;
   const BlockLevel level = frame.levels[block.level];
-  return isInside(level, cell) && holdsAnything(blockAddress(level, cell)) ? blockOf(block.level, cell) : block;
+  return isInside(level, cell) && isOccupied(blockAddress(level, cell)) ? blockOf(block.level, cell) : block;
 }
 
 // Between the neighbours, each with its own line of sight; one-sided where one of them holds nothing.
@@ -27,7 +27,7 @@ float tableSlope(Block block, int axis) {
 }
 
 // At the block's centre, which may lie between two planes: then the mean of what the line of sight has there.
-vec3 rayDepthOf(RayFan fan, Block block, vec3 direction) {
+vec3 rayDepthOf(FaceRays fan, Block block, vec3 direction) {
   if (block.extent[fan.axis] % 2 == 1) return rayDepth(fan, block.center);
   return 0.5 * (rayDepth(fan, block.center + 0.5 * direction) + rayDepth(fan, block.center - 0.5 * direction));
 }
@@ -51,7 +51,7 @@ DepthToEye inFrontOf(Block block, vec3 direction, int axis, vec3 middle, float l
 }
 
 DepthToEye alongRays(Block block, float sigma, vec3 direction) {
-  const RayFan fan = frame.fans[fanIndex(-direction)];
+  const FaceRays fan = frame.fans[fanIndex(-direction)];
   const float layerDepth = sigma * layerLength(direction);
   return inFrontOf(block, direction, fan.axis, rayDepthOf(fan, block, direction), layerDepth, layerDepth);
 }

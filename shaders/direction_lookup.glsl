@@ -9,7 +9,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Cod
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SeenRuns { OccupancyWord words[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer DepthsBeyond { float layers[]; };
 
-struct Towards {
+struct TableLookup {
   vec3 direction;  // divided by its largest component: a point on the cube's face
   float layer;     // world length of the direction
   mat3 indexToWorld;
@@ -41,36 +41,36 @@ uint codeAt(uvec2 plane, uint place) {
   return bitfieldExtract(CodePlane(plane).words[place / 4], int(place & 3) * 8, 8);
 }
 
-uint storedCode(Towards towards, ivec3 cell, uint place) {
+uint storedCode(TableLookup towards, ivec3 cell, uint place) {
   return codeAt(PLANE_ADDRESS(cellNumber(towards.cells, cell)), place);
 }
 
 // As if the line along the stored direction were as long as the one that is asked for: a homogeneous medium
 // is exact in every direction.
-float storedDepth(Towards towards, ivec3 cell, uint place) {
+float storedDepth(TableLookup towards, ivec3 cell, uint place) {
   const float depth = decodeDepth(towards.code, storedCode(towards, cell, place));
   if (!towards.pathLengthCorrection) return depth;
   return depth * towards.layer * float(towards.cells) / length(towards.indexToWorld * vec3(cell));
 }
 
 // Of an eye or a light inside the volume: A_B / A_V of Subr et al. 2007, Section 3.3.
-float depthBeyond(Towards towards, ivec3 cell) {
+float depthBeyond(TableLookup towards, ivec3 cell) {
   if (towards.beyond == uvec2(0)) return 0.0;
   return DepthsBeyond(towards.beyond).layers[cellNumber(towards.cells, cell)] * towards.countedLength;
 }
 
-float depthUpTo(Towards towards, ivec3 cell, uint place) {
+float depthUpTo(TableLookup towards, ivec3 cell, uint place) {
   return max(storedDepth(towards, cell, place) - depthBeyond(towards, cell), 0.0);
 }
 
 // Whether a stored depth is the largest there is: the depth itself may be any larger one, and is the same a layer before.
-bool isAtEnd(Towards towards, ivec3 cell, uint place) {
+bool isAtEnd(TableLookup towards, ivec3 cell, uint place) {
   return storedCode(towards, cell, place) == (towards.code == kCodeLinear8 ? 0 : 255);
 }
 
 // Between four directions of the table. Transmittances are interpolated, not depths: one dark direction would
 // darken all. `falling`: what part of the transmittance grows towards the eye by what a layer takes from it.
-float depthTowards(Towards towards, uint rank, out float falling) {
+float depthTowards(TableLookup towards, uint rank, out float falling) {
   const uint place = codePlace(towards.cells, rank);
   // A division may round to just beyond 1.
   const vec3 point = clamp(towards.direction, -1.0, 1.0) * towards.cells;

@@ -28,21 +28,21 @@ struct Light {
   int atInfinity;
   vec3 color;         // times the intensity
   uvec2 beyond;       // device address of what eye_depths.comp made of it; 0: the light is outside of the volume
-  RayFan fans[6];     // kLookupExact: from the light, as SetupFrame has them from the eye
+  FaceRays fans[6];     // kLookupExact: from the light, as SetupFrame has them from the eye
 };
 
 // What splat_setup.comp needs of a frame that is lit.
 struct FrameLighting {
   int lightCount;
   int lookup;                    // kLookup... of the lights' transmittances
-  int fromEverywhere;            // whether there is light in `fromAll`
+  int hasAmbient;            // whether there is light in `ambientByDirection`
   vec3 tint;                     // of the extinction, on the way of the light
   float phaseG;
   float surface;                 // how much of the lights is scattered as by surfaces
   int octaves;                   // of scattering
   float octaveScale;             // of each to the one before
   mat3 gradientToWorld;
-  vec4 fromAll[kMaximumCells];   // by cell number: radiance from there times its part of the sphere, and that part
+  vec4 ambientByDirection[kMaximumCells];   // by cell number: radiance from there times its part of the sphere, and that part
 };
 
 // The frame, as splat_setup.comp needs it. Index space is relative to the middle of the volume, so that
@@ -64,7 +64,7 @@ struct SetupFrame {
   float voxelSize;         // edge of the cube with a voxel's volume, world units
   int lookup;              // kLookup...
   float rayShare;          // of the depth to the eye that is along rays; the rest is the table's. kLookupExact: 1
-  uvec2 beyondEye;         // device address of what eye_depths.comp made; 0: the eye is outside of the volume
+  uvec2 sourceDepth;         // device address of what eye_depths.comp made; 0: the eye is outside of the volume
   int pathLengthCorrection;  // 0: every lattice step counts as long as any other
   int kernelMean;          // 1: a voxel has the mean of the transmittance over its kernel, along the line of sight
   int gradient;            // 0: the transmittance to the eye is the same all over a footprint
@@ -72,7 +72,7 @@ struct SetupFrame {
   int cells;               // that the table's directions divide the cube's half edge into
   vec3 albedo;
   float emissionUnit;      // radiance per world unit that a stored 1 is
-  RayFan fans[6];          // kLookupExact: from the eye, by fanIndex; orthographic six times the same
+  FaceRays fans[6];          // kLookupExact: from the eye, by fanIndex; orthographic six times the same
   FrameLighting lighting;
 };
 
@@ -108,7 +108,7 @@ struct ResolvePush {
   int composite;                         // kComposite...
 };
 
-// tile_cover.comp
+// tile_opacity.comp
 struct TilePush {
   ResolvePush rays;
   float hiddenDepth;   // optical depth of a covered pixel, at least

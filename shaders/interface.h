@@ -154,8 +154,8 @@ struct HalfSweepPush {
   ivec2 halfway[4];                        // rows around the middle of a step: offsets on the march and side axes
 };
 
-// engine/attenuation/ray_fans.h says what the members mean.
-struct RayFan {
+// engine/attenuation/source_rays.h says what the members mean.
+struct FaceRays {
   int axis;
   int direction;
   int firstPlane;
@@ -185,7 +185,7 @@ struct RaySlab {
 
 // ray_sweep.comp
 struct RaySweepPush {
-  RayFan fan;
+  FaceRays fan;
   mat3 indexToWorld;
   ivec2 sides;  // the volume's dimensions on the fan's sides
   RaySlab slab;
@@ -211,11 +211,11 @@ struct TableLevelPush {
   uint firstDirection, directionCount;  // in the order of directions.h
 };
 
-// seen_runs.comp and keep_runs.comp
+// prune_mark.comp and prune_compact.comp
 struct RunsPush {
   uint runCount;
   uint cellCount;  // that could be directions
-  uint darkest;    // four codes that say that no light comes through
+  uint maxCodePerDirection;    // four codes that say that no light comes through
 };
 
 // cut_select.comp, what is the same for all levels of a frame. Positions are relative to the volume's middle.
@@ -273,15 +273,15 @@ struct OccupiedBlocksPush {
   uint wordCount;    // of the parent level
 };
 
-// visible_count.comp, visible_scan.comp, visible_write.comp
-struct VisiblePush {
+// compact_count.comp, compact_scan.comp, compact_write.comp
+struct CompactPush {
   uint firstWord;    // of the level's occupancy
   uint wordCount;
-  uint firstCount;   // visible_scan.comp: where the counts begin; behind them comes their sum
+  uint firstCount;   // compact_scan.comp: where the counts begin; behind them comes their sum
   uint groupCount;   // workgroups of the count and write passes
-  uint firstChunk;   // visible_scan.comp writes the arguments of chunkCount draw chunks from here on
+  uint firstChunk;   // compact_scan.comp writes the arguments of chunkCount draw chunks from here on
   uint chunkCount;
-  uvec2 blocks;      // device address of the list that visible_write.comp writes
+  uvec2 blocks;      // device address of the list that compact_write.comp writes
 };
 
 // Arguments of one chunk, in the order that vkCmdDispatchIndirect and vkCmdDrawIndirect want them.

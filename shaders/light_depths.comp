@@ -32,7 +32,7 @@ float extinctionOf(ivec3 cell) {
 }
 
 // Where rays come from there is nothing in front of the first plane.
-float depthUpTo(RayFan fan, vec3 position) {
+float depthUpTo(FaceRays fan, vec3 position) {
   const int plane = (int(round(position[fan.axis])) - fan.firstPlane) * fan.direction;
   return plane < 0 ? 0.0 : rayDepth(fan, position).x;
 }
@@ -48,7 +48,7 @@ float depthOf(ivec3 cell) {
   if (dot(toLight, toLight) < kAtSource * kAtSource) toLight = vec3(0.0, 0.0, 1.0);
   const vec3 size = abs(toLight);
   const vec3 layer = toLight / max(size.x, max(size.y, size.z));
-  const RayFan fan = lights[push.light].fans[fanIndex(-toLight)];
+  const FaceRays fan = lights[push.light].fans[fanIndex(-toLight)];
   if (kScalars && push.edge == 1) return depthUpTo(fan, center + layer);
   const float found = extent[fan.axis] % 2 == 1
                           ? depthUpTo(fan, center)

@@ -78,7 +78,7 @@ Sides reaching(SeenBlock seen, vec3 direction, float depth, float falling, float
   return sides;
 }
 
-// Towards the eye; with kAnyView the mean over all directions d towards it, and for each the share 1 + dot(`towards`, d)
+// TableLookup the eye; with kAnyView the mean over all directions d towards it, and for each the share 1 + dot(`towards`, d)
 // of its luminance.
 struct ScatteredLight {
   vec3 light, towards;
@@ -131,11 +131,11 @@ void addScattered(inout ScatteredLight sum, int light, SeenBlock seen) {
 void addFromEverywhere(inout ScatteredLight total, SeenBlock seen) {
   ScatteredLight sum = ScatteredLight(vec3(0.0), vec3(0.0));
   float weights = 0.0, parts = 0.0;
-  const Towards towards = towardsSource(vec3(0.0, 0.0, 1.0), kLookupBilinear, uvec2(0));
+  const TableLookup towards = towardsSource(vec3(0.0, 0.0, 1.0), kLookupBilinear, uvec2(0));
   const int edge = 2 * frame.cells + 1;
   const uint place = codePlace(frame.cells, seen.rank);
   for (int i = 0; i < edge * edge * edge; ++i) {
-    const vec4 fromThere = frame.lighting.fromAll[i];
+    const vec4 fromThere = frame.lighting.ambientByDirection[i];
     if (fromThere.w == 0.0) continue;  // no direction: inside of the cube
     const ivec3 cell = ivec3(i % edge, i / edge % edge, i / edge / edge) - frame.cells;
     const float depth = decodeDepth(frame.code, storedCode(towards, cell, place));
@@ -171,6 +171,6 @@ ScatteredLight scatteredLight(Block block, float sigma, uint rank, vec3 towardsE
   }
   ScatteredLight sum = ScatteredLight(vec3(0.0), vec3(0.0));
   for (int i = 0; i < frame.lighting.lightCount; ++i) addScattered(sum, i, seen);
-  if (frame.lighting.fromEverywhere != 0) addFromEverywhere(sum, seen);
+  if (frame.lighting.hasAmbient != 0) addFromEverywhere(sum, seen);
   return sum;
 }

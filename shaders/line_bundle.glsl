@@ -17,7 +17,7 @@ layout(constant_id = 2) const int kStepX = 0;    // of the march, -2 to 2
 layout(local_size_x = kSweepThreads) in;
 layout(binding = 0) uniform textureBuffer extinction;
 #include "stored_codes.glsl"
-layout(scalar, binding = 3) buffer KeptDepths { float keptDepths[]; };
+layout(scalar, binding = 3) buffer KeptDepths { float carriedDepths[]; };
 
 const int kSize = kStepX < 0 ? -kStepX : kStepX;
 const int kPhases = kSize == 0 ? 1 : kSize == 1 ? 4 : 2;
@@ -44,14 +44,14 @@ void restartLines() {
   [[unroll]] for (int line = 0; line < kVoxels + kExtraLines; ++line) depths[line] = 0.0;
 }
 
-void keepLines(uint first, uint thread, uint threads) {
+void saveLineState(uint first, uint thread, uint threads) {
   [[unroll]] for (int line = 0; line < kVoxels + kExtraLines; ++line)
-    keptDepths[first + uint(line) * threads + thread] = depths[line];
+    carriedDepths[first + uint(line) * threads + thread] = depths[line];
 }
 
 void resumeLines(uint first, uint thread, uint threads) {
   [[unroll]] for (int line = 0; line < kVoxels + kExtraLines; ++line)
-    depths[line] = keptDepths[first + uint(line) * threads + thread];
+    depths[line] = carriedDepths[first + uint(line) * threads + thread];
 }
 
 // Where an index has come to that makes a number of steps and wraps around. A remainder of negative numbers is undefined.

@@ -38,7 +38,7 @@ void main() {
     const vec3 part = vec3(extentInside(child, push.childEdge, push.voxels)) / inside;
     const float share = part.x * part.y * part.z;
     const uint address = blockAddress(push.child, child);
-    if (!holdsAnything(address)) continue;
+    if (!isOccupied(address)) continue;
     const uint rank = rankAt(push.child, address);
     const float sigma = storedExtinction(rank);
     mean += share * sigma;

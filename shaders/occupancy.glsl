@@ -5,7 +5,7 @@ bool isInside(BlockLevel level, ivec3 cell) {
   return all(greaterThanEqual(cell, ivec3(0))) && all(lessThan(cell, level.dimensions));
 }
 
-bool holdsAnything(uint address) {
+bool isOccupied(uint address) {
   return (occupancy[address / kBlocksPerWord].mask >> (address % kBlocksPerWord) & 1u) != 0;
 }
 

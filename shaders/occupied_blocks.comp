@@ -9,7 +9,7 @@ layout(scalar, push_constant) uniform Push { OccupiedBlocksPush push; };
 layout(scalar, binding = 0) buffer Occupancy { OccupancyWord occupancy[]; };
 
 // Two children that are neighbours in x are in one word: rows begin at even addresses.
-bool holdsAnything(ivec3 cell) {
+bool isOccupied(ivec3 cell) {
   for (int row = 0; row < 4; ++row) {
     const ivec3 child = 2 * cell + ivec3(0, row & 1, row >> 1);
     if (any(greaterThanEqual(child, push.child.dimensions))) continue;
@@ -25,7 +25,7 @@ void main() {
   uint mask = 0;
   for (uint i = 0; i < kBlocksPerWord; ++i) {
     const ivec3 cell = cellAt(push.parent, push.parent.first + kBlocksPerWord * word + i);
-    if (all(lessThan(cell, push.parent.dimensions)) && holdsAnything(cell)) mask |= 1u << i;
+    if (all(lessThan(cell, push.parent.dimensions)) && isOccupied(cell)) mask |= 1u << i;
   }
   occupancy[push.parent.first / kBlocksPerWord + word].mask = mask;
 }

@@ -12,7 +12,7 @@ int fanIndex(vec3 fromSource) {
 }
 
 // The depth, and its change per voxel along the fan's two sides.
-vec3 rayDepth(RayFan fan, vec3 position) {
+vec3 rayDepth(FaceRays fan, vec3 position) {
   if (fan.planeCount == 0) return vec3(0.0);  // only of a voxel at the source
   // At the source: the first.
   const int plane = clamp((int(round(position[fan.axis])) - fan.firstPlane) * fan.direction, 0, fan.planeCount - 1);

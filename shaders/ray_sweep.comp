@@ -1,5 +1,5 @@
 #version 460
-// Optical depth along the rays of a fan (engine/attenuation/ray_fans.h), a thread a ray: at every plane of
+// Optical depth along the rays of a fan (engine/attenuation/source_rays.h), a thread a ray: at every plane of
 // voxels, what the planes before it hold. Subr et al. 2007, Eq. 5, along rays instead of lattice lines. A dispatch marches
 // through a slab of planes and hands the depths over to the next.
 #extension GL_GOOGLE_include_directive : require
@@ -65,7 +65,7 @@ float meanOf(Found before, Found after) {
 
 // How many layers of the stretch before the first plane a ray goes through.
 float layersToFirst() {
-  const RayFan fan = push.fan;
+  const FaceRays fan = push.fan;
   return fan.convergence == 0.0 ? 1.0 : min(abs(float(fan.firstPlane) - fan.farthest + 1.0 / fan.convergence), 1.0);
 }
 
@@ -87,7 +87,7 @@ ivec2 planesWithin(vec2 atFirst, vec2 perPlane) {
 // What a ray that starts within the volume has in front of its first layer, in layers: the extinction along it
 // is linear between the planes on either side of the source. Less than 0 where the source is in that layer.
 float sourceCut(vec2 atFirst, vec2 perPlane) {
-  const RayFan fan = push.fan;
+  const FaceRays fan = push.fan;
   if (fan.convergence == 0.0) return 0.0;
   const float distance = min(abs(float(fan.firstPlane) - fan.farthest + 1.0 / fan.convergence), 1.0);
   const float first = interpolated(0, atFirst);
@@ -97,7 +97,7 @@ float sourceCut(vec2 atFirst, vec2 perPlane) {
 
 void main() {
   const uint ray = gl_LocalInvocationID.x + kRaySweepThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
-  const RayFan fan = push.fan;
+  const FaceRays fan = push.fan;
   const uint rays = uint(fan.rayCount.x * fan.rayCount.y);
   if (ray >= rays) return;
 

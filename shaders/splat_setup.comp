@@ -15,7 +15,7 @@ layout(local_size_x = kSplatThreads) in;
 layout(scalar, push_constant) uniform Push { SetupPush push; };
 layout(scalar, binding = 0) readonly buffer Frame { SetupFrame frame; };
 layout(scalar, binding = 2) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
-layout(scalar, binding = 3) readonly buffer VisibleVoxels { uint visibleVoxels[]; };
+layout(scalar, binding = 3) readonly buffer BlockList { uint visibleVoxels[]; };
 layout(scalar, binding = 4) readonly buffer Chunks { ChunkArguments chunks[]; };
 layout(scalar, binding = 5) writeonly buffer Splats { Splat splats[]; };
 layout(scalar, binding = 6) readonly buffer Occupancy { OccupancyWord occupancy[]; };

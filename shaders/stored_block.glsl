@@ -8,5 +8,5 @@
 float extinctionOf(BlockLevel level, ivec3 cell) {
   if (!isInside(level, cell)) return 0.0;
   const uint address = blockAddress(level, cell);
-  return holdsAnything(address) ? storedExtinction(rankAt(level, address)) : 0.0;
+  return isOccupied(address) ? storedExtinction(rankAt(level, address)) : 0.0;
 }

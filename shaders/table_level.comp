@@ -19,7 +19,7 @@ layout(constant_id = 3) const uint kPerThread = kDirectionsPerLevelPass;  // dir
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { TableLevelPush push; };
 // By direction, of all voxels: the code of the most opaque, of linear8 255 minus it.
-layout(scalar, binding = 0) buffer Darkest { uint darkest[]; };
+layout(scalar, binding = 0) buffer Darkest { uint maxCodePerDirection[]; };
 layout(binding = 1) uniform utextureBuffer occupancy;  // an OccupancyWord a texel
 layout(scalar, binding = 2) readonly buffer Parents { uint parents[]; };
 // A direction's codes and bounds, read and written.
@@ -74,7 +74,7 @@ void findChildren(uint block) {
 }
 
 struct Parent {
-  uint code, bound, darkest;
+  uint code, bound, maxCodePerDirection;
 };
 
 uint boundOfChild(utextureBuffer bytes, uint code, uint rank) {
@@ -94,7 +94,7 @@ Parent parentOf(utextureBuffer bytes) {
     all += voxels[child];
     used |= holds ? code : 0;
     parent.bound = holds ? clearer(parent.bound, bound) : parent.bound;
-    parent.darkest = holds ? max(parent.darkest, darkness(code)) : parent.darkest;
+    parent.maxCodePerDirection = holds ? max(parent.maxCodePerDirection, darkness(code)) : parent.maxCodePerDirection;
   }
   if (used != 0) parent.code = codeOf(sum / all);  // what all children store as 0 is 0
   return parent;
@@ -106,7 +106,7 @@ bool isWanted(uint direction) {
 
 // Few are darker than all before them.
 void takeDarkest(uint direction, uint code) {
-  if (code > darkest[direction]) atomicMax(darkest[direction], code);
+  if (code > maxCodePerDirection[direction]) atomicMax(maxCodePerDirection[direction], code);
 }
 
 // By direction, of a thread's blocks.
@@ -119,7 +119,7 @@ uint deepest[kDirectionsPerLevelPass];
     const Parent parent = parentOf(read##i);                                                              \
     if (block < push.parentCount) plane##i.bytes[push.parent.firstRank + block] = uint8_t(parent.code);   \
     bounds[i] |= packBound(kCode, parent.bound) << (4 * (block - first));                                 \
-    deepest[i] = max(deepest[i], parent.darkest);                                                         \
+    deepest[i] = max(deepest[i], parent.maxCodePerDirection);                                                         \
   }
 #define END(i)                                                                                            \
   if (isWanted(i)) {                                                                                      \

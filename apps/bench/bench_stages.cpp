@@ -8,11 +8,14 @@
 #include <numbers>
 #include <numeric>
 
-#include "engine/hierarchy/volume_builder.h"
+#include "engine/attenuation/table_levels.h"
+#include "engine/octree/volume_builder.h"
+#include "engine/octree/volume_limits.h"
 #include "engine/renderer.h"
-#include "engine/splatting/fly_through.h"
 #include "engine/splatting/splat_pass.h"
+#include "engine/validation/fly_through.h"
 #include "engine/volume/procedural.h"
+#include "engine/volume/subject.h"
 
 namespace freevoxels::bench {
 
@@ -260,7 +263,7 @@ Result compaction(const Device& device, int resolution, int runs) {
     return ((x / 8) * 7 + (y / 8) * 13 + (z / 8) * 29) % 32 == 0 ? 1.0f : 0.0f;
   });
   const BuiltVolume onDevice = built(device, volume);
-  const VisibleVoxels& visible = onDevice.visible;
+  const BlockList& visible = onDevice.visible;
   const CompactionPass pass(device);
   const double time = least(runs, [&] {
     Commands commands(device);
@@ -269,7 +272,7 @@ Result compaction(const Device& device, int resolution, int runs) {
     return total(commands);
   });
   return {
-      .name = fmt::format("visible voxels, {} of {}^3", downloadVisibleCount(device, visible), resolution),
+      .name = fmt::format("visible voxels, {} of {}^3", downloadBlockCount(device, visible), resolution),
       .milliseconds = time,
       .copyMilliseconds = copyTime(volume.voxelCount() / 4 + 4 * onDevice.volume.stored.front()),
       .perSecond = double(volume.voxelCount()) / time * 1e3};

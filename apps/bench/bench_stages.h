@@ -6,7 +6,7 @@
 
 #include "apps/bench/measure.h"
 #include "apps/freevoxels/input_options.h"
-#include "engine/attenuation/directions.h"
+#include "engine/scene/directions.h"
 #include "engine/validation/quality_scenes.h"
 #include "engine/vulkan/device.h"
 

@@ -2,8 +2,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "engine/splatting/content.h"
-#include "engine/splatting/orbit.h"
+#include "engine/scene/orbit.h"
+#include "engine/volume/subject.h"
 
 namespace freevoxels {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/freevoxels/option_values.h"
-#include "engine/splatting/camera.h"
+#include "engine/scene/camera.h"
 #include "engine/volume/classification.h"
 
 namespace freevoxels {

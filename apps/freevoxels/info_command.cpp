@@ -10,6 +10,7 @@
 #include "apps/freevoxels/input_options.h"
 #include "apps/freevoxels/text_table.h"
 #include "engine/renderer.h"
+#include "engine/volume/occupied_count.h"
 #include "engine/volume/vdb.h"
 
 namespace freevoxels {
@@ -34,7 +35,7 @@ GridInfo describeVolume(const Volume& volume) {
   grid.memoryBytes = grid.hostBytes = volume.scalars.bytes();
   std::vector<bool> holding;
   for (const float value : denseScalars(volume)) holding.push_back(value > 0.0f);
-  grid.storedBlocks = countStored(HierarchyLayout(volume.dimensions), std::move(holding));
+  grid.storedBlocks = countOccupiedBlocks(volume.dimensions, std::move(holding));
   return grid;
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/freevoxels/option_values.h"
-#include "engine/lighting/lighting.h"
-#include "engine/splatting/camera.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/lighting.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 

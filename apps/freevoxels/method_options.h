@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/freevoxels/option_values.h"
-#include "engine/splatting/render_settings.h"
+#include "engine/scene/render_settings.h"
 
 namespace freevoxels {
 

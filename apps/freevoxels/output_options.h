@@ -8,7 +8,7 @@
 
 #include "apps/freevoxels/option_values.h"
 #include "engine/image/image.h"
-#include "engine/splatting/camera.h"
+#include "engine/scene/camera.h"
 
 namespace freevoxels {
 

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "apps/freevoxels/progress_line.h"
+#include "engine/octree/volume_limits.h"
 #include "engine/renderer.h"
 #include "engine/vulkan/pipeline.h"
 
@@ -27,7 +28,7 @@ std::string framePrefix(std::size_t frame, std::size_t frames) {
 }
 
 std::string whyNothingIsSeen(const Renderer& renderer) {
-  if (renderer.visibleVoxelCount() == 0u) return "all voxels are transparent; raise --density-scale, or change --transfer-function";
+  if (renderer.occupiedVoxelCount() == 0u) return "all voxels are transparent; raise --density-scale, or change --transfer-function";
   return "the camera looks past the volume, or what it sees is transparent; leave out --camera-position and --look-at to frame it";
 }
 
@@ -142,7 +143,7 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
     addTimes(report.stages, writing);
   }
   addTimes(report.stages, opened.pipelines().times);
-  report.visibleVoxels = renderer.visibleVoxelCount();
+  report.visibleVoxels = renderer.occupiedVoxelCount();
   report.voxels = view.volume->voxelCount();
   report.memory = renderer.memory();
   report.devicePeak = opened.peakBytes();

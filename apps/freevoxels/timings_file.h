@@ -8,8 +8,8 @@
 
 #include "apps/freevoxels/option_values.h"
 #include "engine/core/stages.h"
-#include "engine/hierarchy/cut_pass.h"
 #include "engine/renderer.h"
+#include "engine/visibility/cut_pass.h"
 #include "engine/vulkan/device.h"
 
 namespace freevoxels {
@@ -19,7 +19,7 @@ struct RunReport {
   DeviceDescription device;
   std::vector<StageTime> stages;
   double totalMilliseconds = 0.0;
-  std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::visibleVoxelCount
+  std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::occupiedVoxelCount
   std::uint64_t voxels = 0;  ///< of the volume's box
   VolumeMemory memory;
   std::uint64_t devicePeak = 0;    ///< bytes: the most that was ever allocated there

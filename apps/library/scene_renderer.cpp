@@ -1,7 +1,7 @@
 #include "apps/library/scene_renderer.h"
 
 #include "engine/core/error.h"
-#include "engine/hierarchy/volume_memory.h"
+#include "engine/octree/volume_limits.h"
 
 namespace freevoxels {
 

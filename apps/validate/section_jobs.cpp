@@ -8,6 +8,7 @@
 
 #include "apps/freevoxels/input_options.h"
 #include "engine/core/error.h"
+#include "engine/octree/volume_limits.h"
 #include "engine/renderer.h"
 #include "engine/validation/closed_forms.h"
 #include "engine/validation/culling_checks.h"

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/hierarchy/hierarchy_layout.h"
 #include "engine/image/image.h"
-#include "engine/splatting/camera.h"
+#include "engine/octree/hierarchy_layout.h"
+#include "engine/scene/camera.h"
 
 namespace freevoxels {
 

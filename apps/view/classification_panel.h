@@ -3,8 +3,8 @@
 
 #include <string>
 
+#include "apps/view/async_value.h"
 #include "apps/view/color_strip.h"
-#include "apps/view/made_beside.h"
 #include "apps/view/opacity_curve.h"
 #include "apps/view/transfer_model.h"
 #include "apps/view/view_state.h"
@@ -32,7 +32,7 @@ class ClassificationPanel {
   bool drawRange(const Volume& volume);
   bool drawFile(ViewState& state);
 
-  MadeBeside<std::shared_ptr<const Volume>, Histogram> histogram_{
+  AsyncValue<std::shared_ptr<const Volume>, Histogram> histogram_{
       [](const std::shared_ptr<const Volume>& volume) { return histogramOf(*volume, kHistogramBins); }};
   AutomaticSlider scale_, unitDistance_;
   OpacityCurve curve_;

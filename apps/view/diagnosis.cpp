@@ -48,7 +48,7 @@ Image blocksPicture(const std::optional<Camera>& chosenFor, Renderer& renderer, 
   if (chosenFor) {
     std::vector<Block> voxels;
     const glm::ivec3 size = volume.dimensions;
-    for (const std::uint32_t index : renderer.downloadVisibleVoxels()) {
+    for (const std::uint32_t index : renderer.downloadBlockList()) {
       const int row = int(index / std::uint32_t(size.x));
       voxels.push_back({0, {int(index % std::uint32_t(size.x)), row % size.y, row / size.y}});
     }

@@ -42,7 +42,7 @@ void ExportPanel::draw(ViewState& state) {
   takeKeys();
   begin(state);
   if (focus_ != Field::None) ImGui::SetNextItemOpen(true);
-  if (!ImGui::CollapsingHeader("Take away", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  if (!ImGui::CollapsingHeader("Export", ImGuiTreeNodeFlags_DefaultOpen)) return;
   ImGui::PushID("take away");
   if (state.whole) drawCommand(*state.whole, meantFile(pictureName_));
   drawPictureFields(state);

@@ -1,5 +1,5 @@
 #pragma once
-// "Take away": the command line of what is seen, and its files.
+// "Export": the command line that renders the shown image, and buttons that save image, scene and turntable.
 
 #include <deque>
 #include <functional>

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/view/made_beside.h"
+#include "apps/view/async_value.h"
 #include "engine/volume/vdb.h"
 
 namespace freevoxels {
@@ -20,7 +20,7 @@ class GridList {
  private:
   static std::vector<GridChoice> list(const std::string& input);
 
-  MadeBeside<std::string, std::vector<GridChoice>> grids_{list};
+  AsyncValue<std::string, std::vector<GridChoice>> grids_{list};
 };
 
 }  // namespace freevoxels

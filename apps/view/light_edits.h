@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 
 #include "apps/freevoxels/lighting_options.h"
-#include "engine/splatting/camera.h"
+#include "engine/scene/camera.h"
 
 namespace freevoxels {
 

@@ -2,7 +2,7 @@
 // The lights of a scene, each with what can be changed of it.
 
 #include "apps/freevoxels/lighting_options.h"
-#include "engine/splatting/camera.h"
+#include "engine/scene/camera.h"
 
 namespace freevoxels {
 

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include "apps/view/inspect_panel.h"
 #include "apps/view/navigation.h"
-#include "apps/view/understand_panel.h"
 
 namespace freevoxels {
 
@@ -83,7 +83,7 @@ void drawPanelsOf(ViewState& state, const Activity& activity, LookPanels& looks)
   drawVolumePanel(state);
   looks.draw(state);
   drawCameraPanel(state);
-  drawUnderstandPanel(state);
+  drawInspectPanel(state);
 }
 
 }  // namespace freevoxels

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "apps/view/look_panels.h"
+#include "apps/view/appearance_panels.h"
 #include "apps/view/view_state.h"
 
 namespace freevoxels {

@@ -9,7 +9,7 @@
 
 #include "apps/view/navigation.h"
 #include "apps/view/ui_painter.h"
-#include "engine/splatting/content.h"
+#include "engine/volume/subject.h"
 
 namespace freevoxels {
 

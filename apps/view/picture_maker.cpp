@@ -65,7 +65,7 @@ Picture PictureMaker::make(const PictureRequest& request, const Progress& progre
   picture.times = renderer_->timings();
   picture.memory = renderer_->memory();
   picture.cut = renderer_->cutCounts();
-  picture.visibleVoxels = renderer_->visibleVoxelCount();
+  picture.visibleVoxels = renderer_->occupiedVoxelCount();
   if (request.diagnosis.shown != Shown::Picture)
     picture.diagnosis = diagnoser_.make(request.diagnosis, *renderer_, *coarse_, request.method.table(),
                                         picture.scene.camera, settings);

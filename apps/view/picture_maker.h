@@ -37,7 +37,7 @@ struct Picture {
   double milliseconds = 0.0;  ///< in all, but for reading files
   VolumeMemory memory;
   CutCounts cut;
-  std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::visibleVoxelCount
+  std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::occupiedVoxelCount
 };
 
 /// Keeps a volume on a device, and makes again only what a request changes.

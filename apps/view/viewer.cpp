@@ -12,6 +12,7 @@
 #include "apps/view/panels.h"
 #include "engine/core/error.h"
 #include "engine/image/image.h"
+#include "engine/octree/volume_limits.h"
 
 namespace freevoxels {
 

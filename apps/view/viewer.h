@@ -4,12 +4,12 @@
 #include <chrono>
 #include <memory>
 
+#include "apps/view/adaptive_resolution.h"
+#include "apps/view/appearance_panels.h"
 #include "apps/view/export_panel.h"
 #include "apps/view/files_panel.h"
-#include "apps/view/look_panels.h"
 #include "apps/view/picture_area.h"
 #include "apps/view/picture_rate.h"
-#include "apps/view/quick_pace.h"
 #include "apps/view/render_thread.h"
 #include "apps/view/sequence_panel.h"
 #include "apps/view/swapchain.h"
@@ -64,7 +64,7 @@ class Viewer {
   Clock::time_point lastChange_, painted_;
   bool newPicture_ = false;  ///< that has not been painted
   PictureRate rate_;         ///< of all that are shown
-  QuickPace pace_;
+  AdaptiveResolution pace_;
   bool wholeIsQuick_ = false;
   int completeFrames_ = 0;
 };

@@ -5,9 +5,8 @@
 
 #include "embedded/attenuation_sweep.h"
 #include "embedded/attenuation_sweep_x.h"
-#include "engine/attenuation/seen_runs.h"
+#include "engine/attenuation/table_pruning.h"
 #include "engine/core/error.h"
-#include "engine/hierarchy/volume_memory.h"
 #include "shaders/interface.h"
 
 namespace freevoxels {
@@ -69,7 +68,6 @@ Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Speciali
 }  // namespace
 
 AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, const TableSettings& settings) {
-  checkTableFits(device, volume, settings.directions);
   // Whole runs.
   const std::uint64_t bytes = std::max<std::uint64_t>(
       (volume.planeBytes() + shader::kRunBlocks - 1) / shader::kRunBlocks * shader::kRunBlocks,
@@ -86,7 +84,7 @@ AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, con
   table.planeAddresses = Buffer(device, (std::size_t(cellCount(set)) + 1) * sizeof(VkDeviceAddress),
                                 MemoryUse::Device, "attenuation addresses");
   table.uploadAddresses(device);
-  table.darkest =
+  table.maxCodePerDirection =
       Buffer(device, table.planes.size() * sizeof(std::uint32_t), MemoryUse::Device, "darkest codes");
   return table;
 }
@@ -96,14 +94,20 @@ void AttenuationTable::uploadAddresses(const Device& device) const {
   std::vector<VkDeviceAddress> addresses(std::size_t(cellCount(set)) + 1, 0);
   for (int i = 0; i < directionCount(set); ++i)
     addresses[std::size_t(cellNumber(set, directionCell(set, i)))] = planes[std::size_t(i)].address();
-  addresses.back() = seenRuns.address();
+  addresses.back() = keptRuns.address();
   upload(device, planeAddresses, std::as_bytes(std::span(addresses)));
 }
 
 std::uint64_t AttenuationTable::bytes() const {
-  std::uint64_t sum = seenRuns.bytes();
+  std::uint64_t sum = keptRuns.bytes();
   for (const Buffer& plane : planes) sum += plane.bytes();
   return sum;
+}
+
+SweepStyle sweepStyle(const Device& device) {
+  SweepStyle style = sweepStyleOf(device.isCpu());
+  style.mostSlabBytes = device.largestBinding(sizeof(glm::vec4));
+  return style;
 }
 
 AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings)
@@ -149,7 +153,7 @@ void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume, co
                   .table = table,
                   .slab = {},
                   .extinction = extinctionQuads_,
-                  .keptDepths = keptDepths_};
+                  .carriedDepths = keptDepths_};
   for (const Slab& slab : plan_.slabs(planes)) {
     sweep.slab = slab;
     sweep.kept = 0;
@@ -209,7 +213,7 @@ std::vector<std::vector<std::uint8_t>> downloadPlanes(const Device& device, cons
     const auto stored = downloadCodes(device, plane, runs, first, (blocks.size() + share - 1) / share);
     std::vector<std::uint8_t> codes(blocks.size());
     for (std::size_t i = 0; i < codes.size(); ++i) codes[i] = valueOf(stored[i / share], i);
-    result.push_back(spreadOut(codes, blocks, count));
+    result.push_back(scatterToDense(codes, blocks, count));
   }
   return result;
 }
@@ -238,12 +242,12 @@ std::vector<std::vector<std::uint8_t>> downloadBounds(const Device& device, cons
 
 std::vector<double> downloadLargestDepths(const Device& device, const AttenuationTable& table) {
   std::vector<std::uint32_t> codes(table.planes.size());
-  download(device, table.darkest, std::as_writable_bytes(std::span(codes)));
+  download(device, table.maxCodePerDirection, std::as_writable_bytes(std::span(codes)));
   const AttenuationCode code = table.settings.code;
   std::vector<double> depths;
-  for (const std::uint32_t darkest : codes)
+  for (const std::uint32_t maxCodePerDirection : codes)
     depths.push_back(
-        decodeOpticalDepth(code, code == AttenuationCode::Linear8 ? 255 - int(darkest) : int(darkest)));
+        decodeOpticalDepth(code, code == AttenuationCode::Linear8 ? 255 - int(maxCodePerDirection) : int(maxCodePerDirection)));
   return depths;
 }
 

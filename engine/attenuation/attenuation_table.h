@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
-#include "engine/attenuation/directions.h"
-#include "engine/attenuation/half_sweep.h"
+#include "engine/attenuation/intermediate_sweep.h"
 #include "engine/attenuation/slabs.h"
-#include "engine/attenuation/table_settings.h"
-#include "engine/hierarchy/occupancy.h"
-#include "engine/volume/device_volume.h"
+#include "engine/octree/device_volume.h"
+#include "engine/octree/occupancy.h"
+#include "engine/scene/directions.h"
+#include "engine/scene/table_settings.h"
 
 namespace freevoxels {
 
@@ -21,12 +21,12 @@ struct AttenuationTable {
   std::vector<Buffer> planes;
   std::vector<TexelView> planeTexels;  ///< a byte of a plane a texel; while all codes are kept
   /// shader::OccupancyWord, a bit a run of blocks: whether its codes are kept. Empty where all are
-  /// (seen_runs.h).
-  Buffer seenRuns;
-  /// The planes' device addresses by cellNumber, 0 where a cell is no direction; then that of `seenRuns`.
+  /// (table_pruning.h).
+  Buffer keptRuns;
+  /// The planes' device addresses by cellNumber, 0 where a cell is no direction; then that of `keptRuns`.
   Buffer planeAddresses;
   /// uint by direction, once the levels are made: the code of the most opaque voxel; of Linear8 255 minus it.
-  Buffer darkest;
+  Buffer maxCodePerDirection;
   TableSettings settings;
 
   /// Into `planeAddresses`. Waits.
@@ -35,8 +35,11 @@ struct AttenuationTable {
   std::uint64_t bytes() const;
 };
 
-/// Fails with ExitCode::OutOfMemory, before allocating.
+/// Allocates the table of all levels; checkTableFits() (memory_planner.h) tells beforehand whether it fits.
 AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, const TableSettings& settings);
+
+/// The sweep style that is fastest on this kind of device, within what it can bind.
+SweepStyle sweepStyle(const Device& device);
 
 /// COMPUTE attenuation_sweep.comp, attenuation_sweep_x.comp and, for 98 directions,
 /// attenuation_sweep_half.comp: a dispatch a direction and slab (slabs.h), of which those of a slab do not
@@ -60,7 +63,7 @@ class AttenuationSweep {
   SweepPlan plan_;
   std::array<Pipeline, 3> bundles_;  ///< by the march's step in x, -1, 0, 1
   std::array<Pipeline, 2> rows_;     ///< directions +x and -x
-  std::optional<HalfSweep> halves_;  ///< of 98 directions
+  std::optional<IntermediateSweep> halves_;  ///< of 98 directions
   ExpandPass expand_;
   Buffer extinction_;  ///< float, of all voxels of a slab
   TexelView extinctionQuads_;

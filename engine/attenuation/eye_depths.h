@@ -2,9 +2,9 @@
 // What the table's depths have beyond an eye or a light that is inside the volume: Subr et al. 2007,
 // Section 3.3.
 
-#include "engine/attenuation/directions.h"
-#include "engine/attenuation/ray_fans.h"
-#include "engine/volume/device_volume.h"
+#include "engine/octree/device_volume.h"
+#include "engine/scene/directions.h"
+#include "engine/scene/source_rays.h"
 #include "engine/vulkan/commands.h"
 
 namespace freevoxels {

@@ -13,11 +13,11 @@ namespace freevoxels {
 
 namespace {
 
-std::uint64_t depthBytes(const RayFan& fan) {
+std::uint64_t depthBytes(const FaceRays& fan) {
   return fan.rays() * std::uint64_t((fan.planeCount + 1) / 2) * sizeof(std::uint32_t);
 }
 
-shader::RayFan deviceFan(const RayFan& fan, VkDeviceAddress depths) {
+shader::FaceRays deviceFan(const FaceRays& fan, VkDeviceAddress depths) {
   return {.axis = fan.axis,
           .direction = fan.direction,
           .firstPlane = fan.firstPlane,
@@ -49,7 +49,7 @@ struct SlabBox {
 };
 
 /// The planes of a fan from `begin` on and before `end`, rounded up to even, and the one before.
-SlabBox slabBox(const RayFan& fan, glm::ivec3 dimensions, int begin, int end) {
+SlabBox slabBox(const FaceRays& fan, glm::ivec3 dimensions, int begin, int end) {
   SlabBox box{.first = glm::ivec3(-kQuad, -1, -1),
               .extent = {quadsUp(dimensions.x) + 2 * kQuad, dimensions.y + 2, dimensions.z + 2}};
   const int near = fan.firstPlane + fan.direction * (begin - 1);
@@ -65,7 +65,7 @@ SlabBox slabBox(const RayFan& fan, glm::ivec3 dimensions, int begin, int end) {
 }
 
 /// Of a slab, a multiple of four.
-int planesPerSlab(const RayFan& fan, glm::ivec3 dimensions) {
+int planesPerSlab(const FaceRays& fan, glm::ivec3 dimensions) {
   glm::ivec3 plane = dimensions + 2;
   plane[fan.axis] = 1;
   const std::uint64_t bytes = SlabBox{.first = {}, .extent = plane}.bytes();
@@ -82,9 +82,9 @@ struct RayRoom {
   std::uint64_t bytes() const { return depths + slab + carried; }
 };
 
-RayRoom roomFor(const std::array<RayFan, 6>& fans, glm::ivec3 dimensions) {
+RayRoom roomFor(const std::array<FaceRays, 6>& fans, glm::ivec3 dimensions) {
   RayRoom room{.slab = sizeof(float), .carried = sizeof(float)};  // bindings need buffers
-  for (const RayFan& fan : fans) {
+  for (const FaceRays& fan : fans) {
     if (fan.planeCount == 0) continue;
     room.depths += depthBytes(fan);
     room.largest = std::max(room.largest, depthBytes(fan));
@@ -112,7 +112,7 @@ void checkFits(const Device& device, const RayRoom& room, std::uint64_t mostByte
 }  // namespace
 
 std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source) {
-  return roomFor(rayFans(dimensions, source), dimensions).bytes();
+  return roomFor(faceRays(dimensions, source), dimensions).bytes();
 }
 
 RaySweep::RaySweep(const Device& device, const char* name)
@@ -121,7 +121,7 @@ RaySweep::RaySweep(const Device& device, const char* name)
       expand_(device) {}
 
 void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source, std::uint64_t mostBytes) {
-  const RayRoom room = roomFor(rayFans(dimensions, source), dimensions);
+  const RayRoom room = roomFor(faceRays(dimensions, source), dimensions);
   const std::uint64_t own = depths_.bytes() + slab_.bytes() + carried_.bytes();
   checkFits(device_, room, std::min(mostBytes, device_.availableBytes() + own));
   const auto grow = [&](Buffer& buffer, std::uint64_t bytes, const char* name, VkBufferUsageFlags usage = 0) {
@@ -152,8 +152,8 @@ void RaySweep::recordScalars(Commands& commands, const DeviceVolume& volume, glm
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
-void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const RayFan& fan,
-                         const shader::RayFan& onDevice, bool scalars) const {
+void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const FaceRays& fan,
+                         const shader::FaceRays& onDevice, bool scalars) const {
   const glm::ivec3 dimensions = volume.layout.dimensions;
   // The table's extinctions are in another unit.
   const double unit = scalars ? 1.0 / (kStoredDepth * volume.voxelSize) : 1.0;
@@ -186,7 +186,7 @@ void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const R
 }
 
 void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars) {
-  const std::array<RayFan, 6> fans = rayFans(volume.layout.dimensions, source);
+  const std::array<FaceRays, 6> fans = faceRays(volume.layout.dimensions, source);
   makeRoom(volume.layout.dimensions, source);
   constexpr VkDescriptorType kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   pipelines_[scalars ? 1 : 0] = makeComputePipeline(
@@ -216,7 +216,7 @@ RayCodes RaySweep::sweep(const DeviceVolume& volume, const RaySource& source) {
   Commands commands(device_);
   record(commands, volume, source);
   commands.submitAndWait();
-  const std::array<RayFan, 6> fans = rayFans(volume.layout.dimensions, source);
+  const std::array<FaceRays, 6> fans = faceRays(volume.layout.dimensions, source);
   RayCodes codes;
   std::uint64_t first = 0;
   for (std::size_t f = 0; f < fans.size(); ++f) {

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <limits>
 
-#include "engine/attenuation/ray_fans.h"
-#include "engine/hierarchy/occupancy.h"
-#include "engine/volume/device_volume.h"
+#include "engine/octree/device_volume.h"
+#include "engine/octree/occupancy.h"
+#include "engine/scene/source_rays.h"
 #include "engine/vulkan/commands.h"
 #include "shaders/interface.h"
 
@@ -33,13 +33,13 @@ class RaySweep {
   void record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars = false);
   /// Of the last source, for look-ups: index 2 axis + (direction > 0). Parallel rays have one fan, which is
   /// in all six places, so that no look-up has to choose it with the same rounding.
-  const std::array<shader::RayFan, 6>& fans() const { return fans_; }
+  const std::array<shader::FaceRays, 6>& fans() const { return fans_; }
   /// Sweeps, waits and copies to the host: for validation.
   RayCodes sweep(const DeviceVolume& volume, const RaySource& source);
 
  private:
-  void recordFan(Commands& commands, const DeviceVolume& volume, const RayFan& fan,
-                 const shader::RayFan& onDevice, bool scalars) const;
+  void recordFan(Commands& commands, const DeviceVolume& volume, const FaceRays& fan,
+                 const shader::FaceRays& onDevice, bool scalars) const;
   void recordScalars(Commands& commands, const DeviceVolume& volume, glm::ivec3 first, glm::ivec3 extent) const;
 
   const Device& device_;
@@ -51,7 +51,7 @@ class RaySweep {
   TexelView slabTexels_;
   Buffer carried_;  ///< float, by ray: depth between slabs
   Buffer depths_;  ///< uint: codes of planes 2k and 2k + 1; by fan, k and ray
-  std::array<shader::RayFan, 6> fans_{};
+  std::array<shader::FaceRays, 6> fans_{};
 };
 
 }  // namespace freevoxels

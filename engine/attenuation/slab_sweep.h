@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "engine/attenuation/slabs.h"
-#include "engine/volume/device_volume.h"
+#include "engine/octree/device_volume.h"
 #include "engine/vulkan/commands.h"
 
 namespace freevoxels {
@@ -18,7 +18,7 @@ struct SlabSweep {
   const AttenuationTable& table;
   Slab slab;
   const TexelView& extinction;  ///< of the slab's voxels
-  const Buffer& keptDepths;
+  const Buffer& carriedDepths;
   int firstQuad = 0;       ///< of `extinction`, among all quads of voxels
   std::uint32_t kept = 0;  ///< depths that the sweeps so far keep of their lines
 
@@ -34,7 +34,7 @@ struct SlabSweep {
     return {.firstPlane = 0, .endPlane = steps, .firstQuad = firstQuad, .firstDepth = 0};
   }
   std::array<Binding, 4> bindings(const Buffer& plane) const {
-    return {&extinction, &plane, &volume.occupancyTexels, &keptDepths};
+    return {&extinction, &plane, &volume.occupancyTexels, &carriedDepths};
   }
   /// The first voxel's, among all with the padding.
   int firstVoxel() const {

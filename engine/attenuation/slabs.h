@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/attenuation/directions.h"
+#include "engine/scene/directions.h"
 #include "engine/volume/grid_layout.h"
 
 namespace freevoxels {

@@ -62,7 +62,7 @@ std::string asClause(std::string message) {
   return message.empty() ? "the reason is unknown" : message;
 }
 
-const char* mendFor(int error) {
+const char* remedyFor(int error) {
   switch (error) {
     case ENOSPC:
     case EDQUOT:
@@ -80,7 +80,7 @@ const char* mendFor(int error) {
 
 [[noreturn]] void failBecause(const fs::path& destination, int error) {
   fail(ExitCode::Output, "cannot write '{}': {}; {}", destination.string(),
-       asClause(std::generic_category().message(error)), mendFor(error));
+       asClause(std::generic_category().message(error)), remedyFor(error));
 }
 
 /// For exceptions that carry no error number: the state of the disk tells whether it is full.
@@ -88,7 +88,7 @@ const char* mendFor(int error) {
   std::error_code error;
   const fs::space_info space = fs::space(folderOf(destination), error);
   if (!error && space.available < kNoSpaceLeft) failBecause(destination, ENOSPC);
-  fail(ExitCode::Output, "cannot write '{}': {}; {}", destination.string(), asClause(message), mendFor(0));
+  fail(ExitCode::Output, "cannot write '{}': {}; {}", destination.string(), asClause(message), remedyFor(0));
 }
 
 /// Unless `file` is null by then.

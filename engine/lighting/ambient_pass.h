@@ -6,9 +6,9 @@
 #include <glm/glm.hpp>
 #include <vector>
 
-#include "engine/attenuation/directions.h"
-#include "engine/attenuation/ray_fans.h"
-#include "engine/lighting/lighting.h"
+#include "engine/scene/directions.h"
+#include "engine/scene/lighting.h"
+#include "engine/scene/source_rays.h"
 #include "engine/volume/classification.h"
 #include "engine/vulkan/commands.h"
 #include "shaders/gather_interface.h"

@@ -144,7 +144,7 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
   shader::FrameLighting frame{
       .lightCount = int(lighting.lights.size()),
       .lookup = lighting.attenuation == LightAttenuation::Exact ? shader::kLookupExact : ofTable,
-      .fromEverywhere = lighting.comesFromEverywhere() ? 1 : 0,
+      .hasAmbient = lighting.hasAmbient() ? 1 : 0,
       .tint = lighting.tint,
       .phaseG = float(lighting.phaseG),
       .surface = float(lighting.surface),
@@ -152,7 +152,7 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
       .octaveScale = float(lighting.scatteringScale),
       .gradientToWorld = glm::transpose(glm::inverse(glm::dmat3(volume.indexToWorld)))};
   for (int i = 0; i < directionCount(set); ++i)
-    frame.fromAll[cellNumber(set, directionCell(set, i))] = glm::vec4(fromAll_[std::size_t(i)]);
+    frame.ambientByDirection[cellNumber(set, directionCell(set, i))] = glm::vec4(fromAll_[std::size_t(i)]);
   return frame;
 }
 

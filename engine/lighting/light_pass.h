@@ -8,9 +8,9 @@
 #include "engine/attenuation/eye_depths.h"
 #include "engine/attenuation/ray_sweep.h"
 #include "engine/core/stages.h"
-#include "engine/lighting/lighting.h"
-#include "engine/splatting/render_settings.h"
-#include "engine/volume/device_volume.h"
+#include "engine/octree/device_volume.h"
+#include "engine/scene/lighting.h"
+#include "engine/scene/render_settings.h"
 #include "shaders/frame_interface.h"
 
 namespace freevoxels {

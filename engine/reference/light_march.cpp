@@ -60,7 +60,7 @@ LightMarch::LightMarch(const ReferenceField& field, const glm::dmat4& indexToWor
       eye_(eye),
       channels_(lighting.environment || lighting.isTinted() ? 3 : 1) {
   for (const Light& light : lighting.lights) sources_.push_back(lightSource(light, indexToWorld));
-  if (!lighting.comesFromEverywhere()) return;
+  if (!lighting.hasAmbient()) return;
   marchAmbient(lighting.environment ? environmentRays(lighting, ambientRays) : evenRays(ambientRays),
                progress);
 }

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "engine/core/stages.h"
-#include "engine/lighting/lighting.h"
 #include "engine/reference/reference_field.h"
+#include "engine/scene/lighting.h"
 
 namespace freevoxels {
 

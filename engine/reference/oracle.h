@@ -11,8 +11,8 @@
 
 #include "engine/core/stages.h"
 #include "engine/image/image.h"
-#include "engine/lighting/lighting.h"
-#include "engine/splatting/camera.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/lighting.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 

@@ -7,8 +7,8 @@
 #include <functional>
 #include <optional>
 
-#include "engine/hierarchy/hierarchy_layout.h"
-#include "engine/splatting/camera.h"
+#include "engine/octree/hierarchy_layout.h"
+#include "engine/scene/camera.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {

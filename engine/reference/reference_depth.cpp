@@ -69,7 +69,7 @@ class TableDepth : public ReferenceDepth {
   double extinctionAt(glm::dvec3 place) const;
   /// A byte of the table, as long as if its line's layers had this world length.
   double stored(int direction, int byte, double layer) const;
-  double beyondEye(int direction, double layer) const;
+  double sourceDepth(int direction, double layer) const;
 
   const Volume& volume_;
   const std::span<const double> extinction_;
@@ -102,7 +102,7 @@ double TableDepth::extinctionAt(glm::dvec3 place) const {
 }
 
 /// From the eye on, with half of what is there.
-double TableDepth::beyondEye(int direction, double layer) const {
+double TableDepth::sourceDepth(int direction, double layer) const {
   if (!eyeInside_) return 0.0;
   const glm::dvec3 last(volume_.dimensions - 1), step = directionAt(settings_.directions, direction);
   glm::dvec3 place = glm::clamp(*eyeInside_, glm::dvec3(0.0), last);
@@ -127,7 +127,7 @@ TableDepth::Transmittance TableDepth::transmittance(const Block& block) const {
   Transmittance result;
   const auto add = [&](double weight, int direction) {
     const int byte = table[std::size_t(direction)][index];
-    const double depth = std::max(stored(direction, byte, layer) - beyondEye(direction, layer), 0.0);
+    const double depth = std::max(stored(direction, byte, layer) - sourceDepth(direction, layer), 0.0);
     result.all += weight * std::exp(-depth);
     if (byte != end) result.falling += weight * std::exp(-depth);
   };
@@ -152,7 +152,7 @@ class RayDepth : public ReferenceDepth {
   RayDepth(const Volume& volume, const RaySource& source, RayCodes codes)
       : volume_(volume),
         source_(source),
-        fans_(rayFans(volume.dimensions, source)),
+        fans_(faceRays(volume.dimensions, source)),
         codes_(std::move(codes)) {
     for (std::size_t f = 0; f < fans_.size(); ++f)
       FV_CHECK_EQ(codes_[f].size(), fans_[f].rays() * std::size_t(fans_[f].planeCount));
@@ -160,7 +160,7 @@ class RayDepth : public ReferenceDepth {
 
   double at(const Block& block) const override { return lookUp(block).x; }
   double slope(const Block& block, int axis) const override {
-    const RayFan& fan = fanOf(boxOf(block, volume_.dimensions).centre());
+    const FaceRays& fan = fanOf(boxOf(block, volume_.dimensions).centre());
     return lookUp(block)[axis == (fan.axis + 1) % 3 ? 1 : 2];
   }
 
@@ -168,15 +168,15 @@ class RayDepth : public ReferenceDepth {
   glm::dvec3 fromSource(glm::dvec3 position) const {
     return source_.atInfinity ? -source_.place : position - source_.place;
   }
-  const RayFan& fanOf(glm::dvec3 position) const {
+  const FaceRays& fanOf(glm::dvec3 position) const {
     return fans_[std::size_t(fanIndex(fromSource(position)))];
   }
   glm::dvec3 lookUp(const Block& block) const;
-  glm::dvec3 lookUp(const RayFan& fan, glm::dvec3 onPlane) const;
+  glm::dvec3 lookUp(const FaceRays& fan, glm::dvec3 onPlane) const;
 
   const Volume& volume_;
   const RaySource source_;
-  const std::array<RayFan, 6> fans_;
+  const std::array<FaceRays, 6> fans_;
   const RayCodes codes_;
 };
 
@@ -184,13 +184,13 @@ class RayDepth : public ReferenceDepth {
 glm::dvec3 RayDepth::lookUp(const Block& block) const {
   const BlockBox box = boxOf(block, volume_.dimensions);
   const glm::dvec3 centre = box.centre();
-  const RayFan& fan = fanOf(centre);
+  const FaceRays& fan = fanOf(centre);
   if (box.extent[fan.axis] % 2 == 1) return lookUp(fan, centre);
   const glm::dvec3 ray = fromSource(centre), halfLayer = 0.5 * ray / ray[fan.axis];
   return 0.5 * (lookUp(fan, centre + halfLayer) + lookUp(fan, centre - halfLayer));
 }
 
-glm::dvec3 RayDepth::lookUp(const RayFan& fan, glm::dvec3 onPlane) const {
+glm::dvec3 RayDepth::lookUp(const FaceRays& fan, glm::dvec3 onPlane) const {
   if (fan.planeCount == 0) return glm::dvec3(0.0);  // only of a voxel at the source
   const std::vector<std::uint16_t>& codes = codes_[std::size_t(&fan - fans_.data())];
   // At the source: the first.
@@ -235,8 +235,8 @@ double extinctionOf(const Block& block, const Volume& volume, std::span<const do
 glm::dvec3 emissionOf(const Block& block, const Volume& volume, std::span<const glm::dvec3> emission,
                       std::span<const LevelData> coarser) {
   const LevelData* level = block.level == 0 ? nullptr : &coarser[std::size_t(block.level) - 1];
-  const bool isDark = level == nullptr ? emission.empty() : level->emission.empty();
-  if (isDark || isOutside(block, level, volume)) return glm::dvec3(0.0);
+  const bool isOpaqueTowardsEye = level == nullptr ? emission.empty() : level->emission.empty();
+  if (isOpaqueTowardsEye || isOutside(block, level, volume)) return glm::dvec3(0.0);
   if (level == nullptr) return emission[volume.at(block.cell.x, block.cell.y, block.cell.z)];
   return level->emission[level->at(block.cell)];
 }

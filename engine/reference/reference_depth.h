@@ -10,11 +10,11 @@
 #include <span>
 #include <vector>
 
-#include "engine/attenuation/ray_fans.h"
-#include "engine/attenuation/table_settings.h"
-#include "engine/hierarchy/hierarchy_layout.h"
-#include "engine/hierarchy/level_data.h"
-#include "engine/splatting/render_settings.h"
+#include "engine/octree/hierarchy_layout.h"
+#include "engine/octree/level_data.h"
+#include "engine/scene/render_settings.h"
+#include "engine/scene/source_rays.h"
+#include "engine/scene/table_settings.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -66,7 +66,7 @@ std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume, std::span<const
                                            std::optional<glm::dvec3> eyeInside,
                                            std::span<const glm::dvec3> emission = {});
 
-/// Along the rays of the source's fans (ray_fans.h), between which depths and slopes are those of Catmull and
+/// Along the rays of the source's fans (source_rays.h), between which depths and slopes are those of Catmull and
 /// Rom's spline. A block whose centre lies between two planes has the mean of what its line of sight has
 /// there. Keeps a reference to the volume.
 std::unique_ptr<ReferenceDepth> rayDepth(const Volume& volume, const RaySource& source, RayCodes codes);

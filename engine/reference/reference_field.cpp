@@ -43,7 +43,7 @@ bool mayHold(const TransferIntegral& integral, const glm::vec4* corner) {
     low = std::min(low, double(value.r));
     high = std::max(high, double(value.r));
   }
-  return low <= high && integral.holdsAnything(low, high);
+  return low <= high && integral.isOccupied(low, high);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "engine/attenuation/directions.h"
-#include "engine/hierarchy/detail_rule.h"
+#include "engine/scene/directions.h"
+#include "engine/visibility/detail_rule.h"
 #include "engine/volume/voxel_classifier.h"
 
 namespace freevoxels {
@@ -98,7 +98,7 @@ LevelData referenceParents(const LevelData& children, int level, const Volume& v
       for (int x = 0; x < n.x; ++x)
         family.push_back(childrenOf({level, {x, y, z}}, children, volume.dimensions));
   for (std::vector<Child> block : family) {
-    std::erase_if(block, [&](const Child& child) { return !children.holdsAnything(child.index); });
+    std::erase_if(block, [&](const Child& child) { return !children.isOccupied(child.index); });
     holding.push_back(std::move(block));
   }
   const double edge = volume.voxelSize() * (1 << (level - 1));

@@ -4,11 +4,11 @@
 #include <span>
 #include <vector>
 
-#include "engine/attenuation/table_settings.h"
-#include "engine/hierarchy/hierarchy_layout.h"
-#include "engine/hierarchy/level_data.h"
-#include "engine/splatting/camera.h"
-#include "engine/splatting/render_settings.h"
+#include "engine/octree/hierarchy_layout.h"
+#include "engine/octree/level_data.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/render_settings.h"
+#include "engine/scene/table_settings.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 

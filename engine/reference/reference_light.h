@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "engine/lighting/lighting.h"
 #include "engine/reference/reference_depth.h"
+#include "engine/scene/lighting.h"
 
 namespace freevoxels {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/attenuation/directions.h"
 #include "engine/core/error.h"
+#include "engine/scene/directions.h"
 
 namespace freevoxels {
 
@@ -16,17 +16,17 @@ std::uint16_t encodeRayDepth(double depth) {
   return std::uint16_t(std::lround(65535.0 * std::sqrt(std::clamp(depth / kOpaqueDepth, 0.0, 1.0))));
 }
 
-glm::dvec2 offsetOf(const RayFan& fan, glm::ivec2 ray) {
+glm::dvec2 offsetOf(const FaceRays& fan, glm::ivec2 ray) {
   return fan.spacing * glm::dvec2(ray);
 }
 
 /// Per voxel along the axis upwards.
-glm::dvec2 slopeOf(const RayFan& fan, glm::ivec2 ray) {
+glm::dvec2 slopeOf(const FaceRays& fan, glm::ivec2 ray) {
   return fan.slope + offsetOf(fan, ray) * fan.convergence;
 }
 
 /// Where it meets the plane at this coordinate of the axis.
-glm::dvec2 meets(const RayFan& fan, glm::ivec2 ray, int coordinate) {
+glm::dvec2 meets(const FaceRays& fan, glm::ivec2 ray, int coordinate) {
   return fan.origin + offsetOf(fan, ray) + slopeOf(fan, ray) * (coordinate - fan.farthest);
 }
 
@@ -36,12 +36,12 @@ class RayMarch {
       : volume_(volume), extinction_(extinction), source_(source) {}
 
   /// Writes the codes of one ray.
-  void run(const RayFan& fan, glm::ivec2 ray, std::vector<std::uint16_t>& codes) const;
+  void run(const FaceRays& fan, glm::ivec2 ray, std::vector<std::uint16_t>& codes) const;
 
  private:
   double extinctionAt(int axis, int plane, glm::ivec2 side) const;
   double interpolated(int axis, int plane, glm::dvec2 side) const;
-  double sourceCut(const RayFan& fan, glm::ivec2 ray) const;
+  double sourceCut(const FaceRays& fan, glm::ivec2 ray) const;
 
   const Volume& volume_;
   const std::span<const double> extinction_;
@@ -73,7 +73,7 @@ double RayMarch::interpolated(int axis, int plane, glm::dvec2 side) const {
 /// What a ray that starts within the volume has in front of its first layer, in layers: the extinction along
 /// it is linear between the planes on either side of the source. Less than 0 where the source is in that
 /// layer.
-double RayMarch::sourceCut(const RayFan& fan, glm::ivec2 ray) const {
+double RayMarch::sourceCut(const FaceRays& fan, glm::ivec2 ray) const {
   if (source_.atInfinity) return 0.0;
   const double distance = std::min(std::abs(fan.firstPlane - source_.place[fan.axis]), 1.0);
   const auto at = [&](int plane) { return interpolated(fan.axis, plane, meets(fan, ray, plane)); };
@@ -82,7 +82,7 @@ double RayMarch::sourceCut(const RayFan& fan, glm::ivec2 ray) const {
   return distance * (source + first) / 2.0 - first / 2.0;
 }
 
-void RayMarch::run(const RayFan& fan, glm::ivec2 ray, std::vector<std::uint16_t>& codes) const {
+void RayMarch::run(const FaceRays& fan, glm::ivec2 ray, std::vector<std::uint16_t>& codes) const {
   const glm::dvec2 slope = slopeOf(fan, ray);
   glm::dvec3 step;
   step[fan.axis] = 1.0;
@@ -103,10 +103,10 @@ void RayMarch::run(const RayFan& fan, glm::ivec2 ray, std::vector<std::uint16_t>
 RayCodes referenceRays(const Volume& volume, std::span<const double> extinction, const RaySource& source) {
   FV_CHECK_EQ(extinction.size(), volume.voxelCount());
   const RayMarch march(volume, extinction, source);
-  const std::array<RayFan, 6> fans = rayFans(volume.dimensions, source);
+  const std::array<FaceRays, 6> fans = faceRays(volume.dimensions, source);
   RayCodes codes;
   for (std::size_t f = 0; f < fans.size(); ++f) {
-    const RayFan& fan = fans[f];
+    const FaceRays& fan = fans[f];
     codes[f].resize(fan.rays() * std::size_t(fan.planeCount));
     if (codes[f].empty()) continue;
     tbb::parallel_for(0, fan.rayCount.y, [&](int j) {
@@ -121,7 +121,7 @@ double decodeRayDepth(std::uint16_t code) {
   return kOpaqueDepth * part * part;
 }
 
-bool isReadAt(const RayFan& fan, glm::ivec3 dimensions, glm::ivec2 ray, int plane) {
+bool isReadAt(const FaceRays& fan, glm::ivec3 dimensions, glm::ivec2 ray, int plane) {
   const glm::dvec2 place = meets(fan, ray, fan.firstPlane + fan.direction * plane);
   const glm::dvec2 last(dimensions[(fan.axis + 1) % 3] - 1, dimensions[(fan.axis + 2) % 3] - 1);
   const double reach = 2.0 * fan.spacing;  // of the spline, where the rays are furthest apart

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <span>
 
-#include "engine/attenuation/ray_fans.h"
+#include "engine/scene/source_rays.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -17,6 +17,6 @@ double decodeRayDepth(std::uint16_t code);
 
 /// Whether the ray is near enough to the volume at a plane (counted from the first) for a voxel to look it
 /// up: only there have codes a meaning.
-bool isReadAt(const RayFan& fan, glm::ivec3 dimensions, glm::ivec2 ray, int plane);
+bool isReadAt(const FaceRays& fan, glm::ivec3 dimensions, glm::ivec2 ray, int plane);
 
 }  // namespace freevoxels

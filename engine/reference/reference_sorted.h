@@ -9,8 +9,8 @@
 
 #include "engine/image/image.h"
 #include "engine/reference/reference_light.h"
-#include "engine/splatting/camera.h"
-#include "engine/splatting/render_settings.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/render_settings.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/attenuation/table_settings.h"
+#include "engine/scene/table_settings.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 

@@ -9,7 +9,7 @@ namespace freevoxels {
 
 namespace {
 
-shader::DepthKeyPush depthKeyPush(const DeviceVolume& volume, const VisibleVoxels& visible,
+shader::DepthKeyPush depthKeyPush(const DeviceVolume& volume, const BlockList& visible,
                                   const Camera& camera) {
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
   const glm::dvec3 eyeToMiddle =
@@ -35,7 +35,7 @@ DepthSort::DepthSort(const Device& device, const DeviceVolume& volume)
       sort_(device),
       pairs_(makeSortPairs(device, volume.activeVoxels)) {}
 
-void DepthSort::record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible,
+void DepthSort::record(Commands& commands, const DeviceVolume& volume, const BlockList& visible,
                        const Camera& camera) const {
   constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   const std::array<Binding, 5> keys{&visible.indices, &visible.chunks, &pairs_.count, &pairs_.keys,

@@ -1,10 +1,10 @@
 #pragma once
 // The visible voxels back to front, for the sorted composite: Subr et al. 2007, Section 4.1.
 
-#include "engine/splatting/camera.h"
+#include "engine/octree/block_list.h"
+#include "engine/octree/device_volume.h"
+#include "engine/scene/camera.h"
 #include "engine/splatting/radix_sort.h"
-#include "engine/splatting/visible_voxels.h"
-#include "engine/volume/device_volume.h"
 
 namespace freevoxels {
 
@@ -16,7 +16,7 @@ class DepthSort {
   /// Farthest first by the distance of the voxel's centre in world space: from the eye, or for an
   /// orthographic camera along the viewing axis. Distances are 32-bit floats relative to that of the volume's
   /// middle; where they are equal, voxels keep the order of their indices.
-  void record(Commands& commands, const DeviceVolume& volume, const VisibleVoxels& visible,
+  void record(Commands& commands, const DeviceVolume& volume, const BlockList& visible,
               const Camera& camera) const;
   /// uint: padded voxel indices, as many as there are visible voxels.
   const Buffer& voxels() const { return pairs_.values; }

@@ -137,7 +137,7 @@ void SplatPass::recordFrame(Commands& commands, const DeviceVolume& volume, cons
   }
   if (frame.eyeReadsTable() && frame.eyeInside) {
     eyeDepthsPass_.record(commands, volume, DirectionSet(setup.cells), frame.eye, eyeDepths_);
-    setup.beyondEye = addressWords(eyeDepths_.address());
+    setup.sourceDepth = addressWords(eyeDepths_.address());
   }
   commands.beginPass("splat set-up");
   commands.update(frame_, setup);

@@ -8,12 +8,12 @@
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/attenuation/eye_depths.h"
 #include "engine/attenuation/ray_sweep.h"
-#include "engine/hierarchy/cull_rule.h"
-#include "engine/hierarchy/detail_rule.h"
-#include "engine/splatting/camera.h"
-#include "engine/splatting/render_settings.h"
-#include "engine/splatting/visible_voxels.h"
-#include "engine/volume/device_volume.h"
+#include "engine/octree/block_list.h"
+#include "engine/octree/device_volume.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/render_settings.h"
+#include "engine/visibility/cull_rule.h"
+#include "engine/visibility/detail_rule.h"
 #include "shaders/frame_interface.h"
 
 namespace freevoxels {
@@ -75,7 +75,7 @@ class SplatPass {
   struct Inputs {
     const DeviceVolume& volume;
     const AttenuationTable* table;                 ///< null where FrameConstants::readsTable says no
-    const VisibleVoxels* visible;                  ///< the blocks to draw, by FrameConstants::detail
+    const BlockList* visible;                  ///< the blocks to draw, by FrameConstants::detail
     std::uint32_t firstChunk = 0, chunkCount = 0;  ///< of their chunks, these
     bool continued = false;  ///< the targets, in layout GENERAL, have the sums of what was drawn before
     const Buffer* lights = nullptr;  ///< shader::Light, of a frame that is lit

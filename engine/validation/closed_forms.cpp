@@ -8,8 +8,9 @@
 #include "engine/validation/equal_voxels.h"
 #include "engine/validation/homogeneous_box.h"
 #include "engine/validation/lattice_steps.h"
-#include "engine/validation/worst.h"
+#include "engine/validation/max_error.h"
 #include "engine/volume/procedural.h"
+#include "engine/volume/subject.h"
 
 namespace freevoxels {
 
@@ -26,7 +27,7 @@ Check checkTable(const StageMaker& make, AttenuationCode code) {
   const double sigma = 3.0;
   const Volume volume = constantVolume(size, shearedTransform(size), sigma);
   const TableBytes table = make(volume, physical(1.0, glm::vec3(1.0f)), {.code = code})->table();
-  Worst worst;
+  MaxError worst;
   for (int d = 0; d < kLatticeStepCount; ++d) {
     const double step = stepLength(volume.indexToWorld, latticeStep(d), true);
     for (int z = 0; z < size.z; ++z)
@@ -72,7 +73,7 @@ void checkCube(const StageMaker& make, int edge, ReportSection& section) {
     const Camera camera = cameraOf(cube, view);
     const BoxPicture box = boxPicture(cube, sigma, color, camera, size);
     const Image picture = device->picture(camera, {.size = size});
-    Worst worst;
+    MaxError worst;
     for (std::size_t i = 0; i < box.interior.size(); ++i)
       for (int c = 0; c < 4 && box.interior[i]; ++c)
         worst.take(std::abs(double(picture.pixels[i][c]) - double(box.image.pixels[i][c])),
@@ -93,7 +94,7 @@ Check checkSingleVoxel(const StageMaker& make) {
   const Volume voxel = constantVolume(glm::ivec3(1), shearedTransform(glm::ivec3(1)), 1.0);
   const auto device = make(voxel, physical(sigma, glm::vec3(1.0f)), {});
   const double expected = sigma * std::abs(glm::determinant(glm::dmat3(voxel.indexToWorld)));
-  Worst worst;
+  MaxError worst;
   for (const double azimuth : {0.0, 40.0, -120.0}) {
     Camera camera = framingCamera(voxel, azimuth, 33.0, 1.0, {.orthographic = true});
     camera.orthographicHeight *= 3.0;  // the kernel is larger than the voxel
@@ -109,7 +110,7 @@ Check checkEmpty(const StageMaker& make) {
   const glm::ivec3 size(9);
   const Volume empty = constantVolume(size, cubeTransform(size), 0.0);
   const auto device = make(empty, physical(1.0, glm::vec3(1.0f)), {});
-  Worst worst;
+  MaxError worst;
   for (const Composite composite : {Composite::Normalised, Composite::Additive}) {
     const FrameSettings settings{.size = {32, 32}, .composite = composite, .depth = true};
     const Image picture = device->picture(framingCamera(empty, 35.0, 25.0, 1.0, {}), settings);
@@ -128,7 +129,7 @@ Check checkTwoVoxels(const StageMaker& make) {
   const Volume volume =
       makeVolume({2, 1, 2}, glm::dmat4(1.0), [&](int x, int, int) { return extinctionOf(x == 0 ? a : b); });
   const auto device = make(volume, physical(1.0, glm::vec3(1.0f)), {.code = AttenuationCode::Linear8});
-  Worst worst;
+  MaxError worst;
   for (const double x : {0.0, 0.2, 0.5, 0.9}) {
     const double p = footprintAt(x) * a, q = footprintAt(1.0 - x) * b;
     const double expected = p + q + (1.0 - a) * p + (1.0 - b) * q;
@@ -147,7 +148,7 @@ Check checkFullLayers(const StageMaker& make) {
   const auto device =
       make(volume, physical(extinctionOf(alpha), glm::vec3(1.0f)), {.code = AttenuationCode::Linear8});
   const double expected = alpha + (1.0 - alpha) * alpha;
-  Worst worst;
+  MaxError worst;
   for (const glm::dvec2 at : {glm::dvec2(3.0, 3.0), glm::dvec2(3.5, 3.0), glm::dvec2(3.3, 2.6)}) {
     const double energy =
         device->sums(lookingDown(at.x, at.y, 1e-3), {.size = {1, 1}, .composite = Composite::Additive})

@@ -8,7 +8,8 @@
 
 #include "engine/image/metrics.h"
 #include "engine/renderer.h"
-#include "engine/validation/worst.h"
+#include "engine/validation/max_error.h"
+#include "engine/volume/subject.h"
 
 namespace freevoxels {
 
@@ -69,7 +70,7 @@ ReportSection cullingChecks(const Device& device, const QualityScene& scene, int
       .caption = "Blocks of all levels",
       .columns = {"view", "considered", "empty", "outside", "hidden", "opened", "drawn", "of all voxels"},
       .rows = {}};
-  Worst worst, worstClipped;
+  MaxError worst, worstClipped;
   double leastPsnr = 1e9;
   std::string leastAt;
   for (const View& view : viewsOf(scene.volume)) {
@@ -77,7 +78,7 @@ ReportSection cullingChecks(const Device& device, const QualityScene& scene, int
     const Image inImage = renderer.render(view.camera, clipped);
     worstClipped.take(largestDifference(inImage, expected).figure(), [&] { return view.name; });
     const Image picture = renderer.render(view.camera, culled);
-    table.rows.push_back(countsRow(view.name, renderer.cutCounts(), *renderer.visibleVoxelCount()));
+    table.rows.push_back(countsRow(view.name, renderer.cutCounts(), *renderer.occupiedVoxelCount()));
     const double psnr = std::min(compareImages(picture, expected).psnr, 200.0);
     if (psnr < leastPsnr) {
       leastPsnr = psnr;

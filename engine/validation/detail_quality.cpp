@@ -9,7 +9,7 @@
 
 #include "engine/image/metrics.h"
 #include "engine/renderer.h"
-#include "engine/validation/worst.h"
+#include "engine/validation/max_error.h"
 
 namespace freevoxels {
 
@@ -61,7 +61,7 @@ Check checkZoom(Renderer& renderer, const Volume& volume, ReportPlot& plot) {
   Camera camera = viewCamera(volume, kViews[0]);
   const glm::dvec3 toEye = camera.position - camera.lookAt;
   const double framed = pixelsPerVoxel(volume, camera, kZoomPicture);
-  Worst worst;
+  MaxError worst;
   std::array<Image, 2> last;
   plot.series = {{"level of detail 1", {}}, {"voxels", {}}};
   for (int frame = 0; frame < kZoomFrames; ++frame) {

@@ -10,8 +10,8 @@
 #include "engine/reference/oracle.h"
 #include "engine/renderer.h"
 #include "engine/validation/homogeneous_box.h"
+#include "engine/validation/max_error.h"
 #include "engine/validation/quality_scenes.h"
-#include "engine/validation/worst.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels {
@@ -58,7 +58,7 @@ Check checkBoxes(const Device& device, int resolution) {
   const Emission emission{.strength = 0.8};
   const glm::dvec3 light = emittedLight(emission, kKelvin);
   const Camera camera{.position = {0, 0, 3}, .orthographic = true, .orthographicHeight = 0.25};
-  Worst worst;
+  MaxError worst;
   for (const double depth : {0.0, 0.5, 2.0, 8.0}) {
     const Classification classification{
         .densityScale = depth, .albedo = glm::vec3(0.0f), .emission = emission};

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/splatting/footprint.h"
+#include "engine/scene/footprint.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels {

@@ -4,7 +4,7 @@
 
 #include <glm/glm.hpp>
 
-#include "engine/splatting/camera.h"
+#include "engine/scene/camera.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 

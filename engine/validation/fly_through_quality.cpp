@@ -6,9 +6,9 @@
 
 #include "engine/core/error.h"
 #include "engine/image/metrics.h"
-#include "engine/splatting/fly_through.h"
+#include "engine/validation/fly_through.h"
+#include "engine/validation/max_error.h"
 #include "engine/validation/quality_pictures.h"
-#include "engine/validation/worst.h"
 
 namespace freevoxels {
 
@@ -68,7 +68,7 @@ ReportPlot changePlot(const std::vector<Image>& pictures, const std::vector<Imag
 }
 
 Check mostWrongChange(const ReportPlot::Series& wrong, const std::string& method) {
-  Worst worst;
+  MaxError worst;
   for (const glm::dvec2 point : wrong.points)
     worst.take(point.y, [&] { return fmt::format("frame {:g}", point.x); });
   return worst.atMost(kMostWrongChange, method + ": change from frame to frame that is not the oracle's",

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "engine/image/image.h"
-#include "engine/splatting/camera.h"
+#include "engine/scene/camera.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {

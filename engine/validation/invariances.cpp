@@ -11,9 +11,10 @@
 #include "engine/reference/reference_splats.h"
 #include "engine/validation/axis_change.h"
 #include "engine/validation/lattice_steps.h"
+#include "engine/validation/max_error.h"
 #include "engine/validation/stage_outputs.h"
 #include "engine/validation/stepped_renderer.h"
-#include "engine/validation/worst.h"
+#include "engine/volume/subject.h"
 
 namespace freevoxels {
 
@@ -46,9 +47,9 @@ double largestOf(const std::vector<SplatSums>& sums, Component value) {
 }
 
 /// Every component relative to its largest in the picture.
-Worst sumsDifference(const std::vector<SplatSums>& a, const std::vector<SplatSums>& b, glm::ivec2 size) {
+MaxError sumsDifference(const std::vector<SplatSums>& a, const std::vector<SplatSums>& b, glm::ivec2 size) {
   FV_CHECK_EQ(a.size(), b.size());
-  Worst worst;
+  MaxError worst;
   for (const Component value : kComponents) {
     const double largest = largestOf(a, value);
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -99,7 +100,7 @@ void checkGroups(const Frame& frame, const SteppedVolume& steps, const Image& pi
 Check checkRunToRun(const Frame& frame, StageOutputs& first, const TableBytes& table, const Image& picture) {
   const auto second = deviceStages(frame.device)(frame.scene.volume, frame.scene.classification, {});
   const TableBytes tableAgain = second->table();
-  Worst worst;
+  MaxError worst;
   for (int d = 0; d < kLatticeStepCount; ++d)
     worst.take(table[std::size_t(d)] == tableAgain[std::size_t(d)] ? 0.0 : 1.0,
                [&] { return "table, " + directionText(kLatticeSteps, d); });
@@ -113,7 +114,7 @@ Check checkRunToRun(const Frame& frame, StageOutputs& first, const TableBytes& t
 
 Check checkSlabs(const TableBytes& table, const TableBytes& ofSlabs) {
   FV_CHECK_EQ(table.size(), ofSlabs.size());
-  Worst worst;
+  MaxError worst;
   for (int d = 0; d < kLatticeStepCount; ++d)
     worst.take(table[std::size_t(d)] == ofSlabs[std::size_t(d)] ? 0.0 : 1.0,
                [&] { return directionText(kLatticeSteps, d); });
@@ -134,7 +135,7 @@ double codedDepth(int byte) {
 /// line's voxels is asked.
 Check checkOpposites(const Volume& volume, const std::vector<float>& extinction, const TableBytes& table) {
   const glm::ivec3 n = volume.dimensions;
-  Worst worst;
+  MaxError worst;
   for (int d = 0; d < kLatticeStepCount / 2; ++d) {
     const glm::ivec3 step = latticeStep(d);
     const double length = stepLength(volume.indexToWorld, step, true);
@@ -162,10 +163,10 @@ Check checkOpposites(const Volume& volume, const std::vector<float>& extinction,
   return worst.atMost(1.0, "opposite directions: depth of a line from each of its voxels", "of rounding");
 }
 
-Worst changedTableDifference(const Volume& volume, const TableBytes& table, const Volume& changed,
+MaxError changedTableDifference(const Volume& volume, const TableBytes& table, const Volume& changed,
                              const TableBytes& changedTable, const AxisChange& change) {
   const glm::ivec3 n = volume.dimensions;
-  Worst worst;
+  MaxError worst;
   for (int d = 0; d < kLatticeStepCount; ++d) {
     const glm::ivec3 e = change.direction(latticeStep(d));
     const auto& plane = changedTable[std::size_t(directionIndex(kLatticeSteps, e))];

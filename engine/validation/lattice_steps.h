@@ -1,7 +1,7 @@
 #pragma once
 // The 26 directions that are steps between neighbouring voxels, as integers.
 
-#include "engine/attenuation/directions.h"
+#include "engine/scene/directions.h"
 
 namespace freevoxels {
 

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "engine/validation/equal_voxels.h"
-#include "engine/validation/worst.h"
+#include "engine/validation/max_error.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels {
@@ -99,7 +99,7 @@ std::vector<Stack> drawStacks(const StageMaker& make, const LayerStacks& stacks)
 }
 
 void addChecks(const std::vector<Stack>& stacks, ReportSection& section) {
-  Worst sorted, normalised;
+  MaxError sorted, normalised;
   for (const Stack& stack : stacks)
     for (std::size_t i = 0; i < kPlaces.size(); ++i) {
       const auto where = [&] { return fmt::format("{}, {}", stack.text(), kPlaceNames[i]); };

@@ -10,7 +10,8 @@
 #include "engine/reference/reference_hierarchy.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/renderer.h"
-#include "engine/validation/worst.h"
+#include "engine/validation/max_error.h"
+#include "engine/volume/subject.h"
 
 namespace freevoxels {
 
@@ -48,8 +49,8 @@ double opticalDepthOf(const LevelData& level, int number, glm::ivec3 dimensions)
   return sum;
 }
 
-void compareMedium(const LevelData& level, const LevelData& reference, int number, Worst& extinction,
-                   Worst& color, Worst& light) {
+void compareMedium(const LevelData& level, const LevelData& reference, int number, MaxError& extinction,
+                   MaxError& color, MaxError& light) {
   FV_CHECK_EQ(level.extinction.size(), reference.extinction.size());
   FV_CHECK_EQ(level.colors.size(), reference.colors.size());
   for (std::size_t i = 0; i < level.extinction.size(); ++i) {
@@ -71,12 +72,12 @@ void compareMedium(const LevelData& level, const LevelData& reference, int numbe
 }
 
 void compareTables(const LevelData& level, const LevelData& reference, int number, DirectionSet set,
-                   Worst& worst) {
+                   MaxError& worst) {
   FV_CHECK_EQ(level.table.size(), reference.table.size());
   for (std::size_t d = 0; d < level.table.size(); ++d) {
     FV_CHECK_EQ(level.table[d].size(), reference.table[d].size());
     for (std::size_t i = 0; i < level.table[d].size(); ++i)
-      if (reference.holdsAnything(i))
+      if (reference.isOccupied(i))
         worst.take(std::abs(int(level.table[d][i]) - int(reference.table[d][i])),
                    [&] { return fmt::format("{}, {}", directionText(set, int(d)), blockText(number, i)); });
   }
@@ -98,7 +99,7 @@ Camera randomCamera(const Volume& volume, std::mt19937& generator) {
 /// Each camera with a level of detail at which several levels are likely.
 Check checkCoverage(Renderer& renderer, const Volume& volume, const LevelData& voxels, glm::ivec2 size) {
   std::mt19937 generator(5);
-  Worst worst;
+  MaxError worst;
   for (int i = 0; i < kCameras; ++i) {
     FrameSettings settings{.size = size, .attenuation = AttenuationLookup::Nearest, .culling = false};
     const Camera camera = randomCamera(volume, generator);
@@ -140,7 +141,7 @@ using Bounds = std::vector<std::vector<int>>;  // [direction][block], any where 
 /// A bound is what half a byte keeps of the code of the most transparent voxel that holds anything; `own` is
 /// that of the children, one by one, and becomes the parents'.
 void compareBounds(const LevelData& level, const LevelData& children, int number,
-                   const TableSettings& settings, Bounds& own, Worst& worst) {
+                   const TableSettings& settings, Bounds& own, MaxError& worst) {
   const bool largest = settings.code == AttenuationCode::Linear8;
   for (std::size_t direction = 0; direction < own.size(); ++direction) {
     std::vector<int> expected(level.bounds[direction].size(), largest ? 0 : 255);
@@ -148,14 +149,14 @@ void compareBounds(const LevelData& level, const LevelData& children, int number
     for (int z = 0; z < n.z; ++z)
       for (int y = 0; y < n.y; ++y)
         for (int x = 0; x < n.x; ++x) {
-          if (!children.holdsAnything(children.at({x, y, z}))) continue;  // not stored
+          if (!children.isOccupied(children.at({x, y, z}))) continue;  // not stored
           int& bound = expected[level.at(glm::ivec3(x, y, z) / 2)];
           const int code = own[direction][children.at({x, y, z})];
           bound = largest ? std::max(bound, code) : std::min(bound, code);
         }
     own[direction] = expected;
     for (std::size_t i = 0; i < expected.size(); ++i)
-      if (level.holdsAnything(i))
+      if (level.isOccupied(i))
         worst.take(std::abs(level.bounds[direction][i] - packedBound(expected[i], largest)), [&] {
           return fmt::format("level {}, block {}, {}", number, i,
                              directionText(settings.directions, int(direction)));
@@ -168,7 +169,7 @@ void compareBounds(const LevelData& level, const LevelData& children, int number
 std::vector<Check> compareLevels(const Volume& volume, const LevelData& voxels,
                                  std::span<const LevelData> levels, const TableSettings& settings,
                                  const char* name) {
-  Worst extinction, color, light, depth, table, bounds;
+  MaxError extinction, color, light, depth, table, bounds;
   Bounds own;
   for (const std::vector<std::uint8_t>& codes : voxels.table) own.emplace_back(codes.begin(), codes.end());
   const double whole = opticalDepthOf(voxels, 0, volume.dimensions);

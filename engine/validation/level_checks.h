@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "engine/attenuation/table_settings.h"
-#include "engine/hierarchy/hierarchy_layout.h"
-#include "engine/hierarchy/level_data.h"
+#include "engine/octree/hierarchy_layout.h"
+#include "engine/octree/level_data.h"
+#include "engine/scene/table_settings.h"
 #include "engine/validation/report.h"
 #include "engine/validation/validation_scene.h"
 #include "engine/vulkan/device.h"

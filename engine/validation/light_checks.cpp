@@ -10,8 +10,8 @@
 #include "engine/reference/oracle.h"
 #include "engine/renderer.h"
 #include "engine/validation/homogeneous_box.h"
+#include "engine/validation/max_error.h"
 #include "engine/validation/sky_environment.h"
-#include "engine/validation/worst.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels {
@@ -139,7 +139,7 @@ void checkHollow(const Device& device, int resolution, ReportSection& section) {
                                      glm::dvec3(-1, 0.3, 0.6), glm::dvec3(0.2, -1, 0.45)})
     lights.push_back({.place = direction});
   for (const Shadows& shadows : kShadows) {
-    Worst worst;
+    MaxError worst;
     for (const Light& light : lights) {
       FrameSettings settings{.size = {48, 48}};
       settings.lighting = Lighting{.lights = {light}, .attenuation = shadows.attenuation};

@@ -8,15 +8,15 @@
 #include <optional>
 #include <utility>
 
-#include "engine/attenuation/directions.h"
 #include "engine/image/metrics.h"
 #include "engine/reference/oracle.h"
+#include "engine/scene/directions.h"
 #include "engine/validation/equal_voxels.h"
 #include "engine/validation/homogeneous_box.h"
 #include "engine/validation/lattice_steps.h"
 #include "engine/validation/light_checks.h"
+#include "engine/validation/max_error.h"
 #include "engine/validation/quality_scenes.h"
-#include "engine/validation/worst.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels {
@@ -73,7 +73,7 @@ Classification asBrightness(const Volume& volume) {
 Check checkTransmittances(const Volume& shown, int direction) {
   const glm::ivec3 d = latticeStep(direction), size = shown.dimensions;
   const double step = stepLength(shown.indexToWorld, d, true);
-  Worst worst;
+  MaxError worst;
   for (int z = 0; z < size.z; ++z)
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x) {

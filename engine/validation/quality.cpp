@@ -8,9 +8,10 @@
 #include "engine/core/error.h"
 #include "engine/image/flip.h"
 #include "engine/image/metrics.h"
-#include "engine/splatting/orbit.h"
+#include "engine/scene/orbit.h"
+#include "engine/validation/max_error.h"
 #include "engine/validation/quality_pictures.h"
-#include "engine/validation/worst.h"
+#include "engine/volume/subject.h"
 
 namespace freevoxels {
 
@@ -109,7 +110,7 @@ QualityResult pictureQuality(const StageMaker& make, const QualityScene& scene,
 
 Check largestJump(const std::vector<glm::dvec2>& series, double tolerance, std::string name) {
   FV_CHECK_LT(0u, series.size());
-  Worst worst;
+  MaxError worst;
   for (std::size_t i = 0; i < series.size(); ++i)
     worst.take(std::abs(series[(i + 1) % series.size()].y - series[i].y),
                [&] { return fmt::format("after azimuth {:g}", series[i].x); });

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "engine/attenuation/table_settings.h"
-#include "engine/splatting/render_settings.h"
+#include "engine/scene/render_settings.h"
+#include "engine/scene/table_settings.h"
 #include "engine/volume/classification.h"
 
 namespace freevoxels {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/volume/subject.h"
 
 namespace freevoxels {
 

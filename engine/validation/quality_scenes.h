@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "engine/splatting/camera.h"
+#include "engine/scene/camera.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 

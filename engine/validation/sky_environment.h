@@ -1,7 +1,7 @@
 #pragma once
 // A sky to light things with: brighter towards the horizon, a sun, and dark ground.
 
-#include "engine/lighting/environment.h"
+#include "engine/scene/environment.h"
 
 namespace freevoxels {
 

@@ -13,8 +13,9 @@
 #include "engine/reference/reference_splats.h"
 #include "engine/reference/reference_table.h"
 #include "engine/validation/lattice_steps.h"
-#include "engine/validation/worst.h"
+#include "engine/validation/max_error.h"
 #include "engine/volume/packed_light.h"
+#include "engine/volume/subject.h"
 #include "engine/volume/voxel_classifier.h"
 
 namespace freevoxels {
@@ -79,7 +80,7 @@ struct Outcome {
   std::vector<glm::dvec3> emission;  ///< empty where there is none
   TableBytes table;
 
-  bool holdsAnything(std::size_t voxel) const {
+  bool isOccupied(std::size_t voxel) const {
     return extinction[voxel] > 0.0 || (!emission.empty() && emission[voxel] != glm::dvec3(0.0));
   }
   std::vector<std::uint32_t> visible;
@@ -99,7 +100,7 @@ Check checkExtinction(const Outcome& outcome) {
   const Volume& volume = outcome.scene.volume;
   const std::vector<double> reference = referenceExtinction(volume, outcome.scene.classification);
   FV_CHECK_EQ(outcome.extinction.size(), reference.size());
-  Worst worst;
+  MaxError worst;
   for (std::size_t i = 0; i < reference.size(); ++i)
     worst.take(relativeDifference(outcome.extinction[i], reference[i]), [&] { return voxelText(volume, i); });
   return worst.atMost(kExtinctionTolerance, "classify: extinction", "relative");
@@ -111,7 +112,7 @@ Check checkEmission(const Outcome& outcome) {
   const Classification& classification = outcome.scene.classification;
   const double faintest = brightestLight(classification, volume) * kFaintest / kBrightest;
   const VoxelClassifier classifier(classification, volume);
-  Worst worst;
+  MaxError worst;
   std::size_t voxel = 0;
   for (int z = 0; z < volume.dimensions.z; ++z)
     for (int y = 0; y < volume.dimensions.y; ++y)
@@ -157,7 +158,7 @@ PlaneDifference comparePlanes(const Outcome& outcome, const std::vector<std::uin
   FV_CHECK_EQ(plane.size(), reference.size());
   PlaneDifference result;
   for (std::size_t i = 0; i < plane.size(); ++i) {
-    if (!outcome.holdsAnything(i)) continue;  // not stored
+    if (!outcome.isOccupied(i)) continue;  // not stored
     ++result.bytes;
     const int difference = std::abs(int(plane[i]) - int(reference[i]));
     if (difference > 0) ++result.differing;
@@ -174,7 +175,7 @@ Check checkTable(const Outcome& outcome, const char* name, std::vector<std::vect
   const DirectionSet set = outcome.settings.directions;
   const TableBytes reference = referenceTable(outcome.scene.volume, outcome.extinction, outcome.settings);
   FV_CHECK_EQ(outcome.table.size(), reference.size());
-  Worst worst;
+  MaxError worst;
   for (int d = 0; d < directionCount(set); ++d) {
     const PlaneDifference difference =
         comparePlanes(outcome, outcome.table[std::size_t(d)], reference[std::size_t(d)]);
@@ -201,7 +202,7 @@ Check checkSums(const std::vector<SplatSums>& sums, const std::vector<SplatSums>
   FV_CHECK_EQ(sums.size(), reference.size());
   double brightest = 0.0;
   for (const SplatSums& s : reference) brightest = std::max(brightest, largestComponent(channel.of(s)));
-  Worst worst;
+  MaxError worst;
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const glm::dvec3 expected = channel.of(reference[i]);
     const double difference = largestComponent(glm::abs(channel.of(sums[i]) - expected));
@@ -212,7 +213,7 @@ Check checkSums(const std::vector<SplatSums>& sums, const std::vector<SplatSums>
 }
 
 Check checkDistance(const Image& picture, const Image& reference, const char* method) {
-  Worst worst;
+  MaxError worst;
   for (std::size_t i = 0; i < picture.depth.size(); ++i)
     if (reference.pixels[i].a >= kLeastAlpha)
       worst.take(relativeDifference(double(picture.depth[i]), double(reference.depth[i])),
@@ -251,10 +252,10 @@ Check checkRays(const Outcome& outcome, const Camera& camera, const RayCodes& co
   const Volume& volume = outcome.scene.volume;
   const RaySource source = eyeSource(camera, volume.indexToWorld);
   const RayCodes reference = referenceRays(volume, outcome.extinction, source);
-  const std::array<RayFan, 6> fans = rayFans(volume.dimensions, source);
-  Worst worst;
+  const std::array<FaceRays, 6> fans = faceRays(volume.dimensions, source);
+  MaxError worst;
   for (std::size_t f = 0; f < fans.size(); ++f) {
-    const RayFan& fan = fans[f];
+    const FaceRays& fan = fans[f];
     FV_CHECK_EQ(codes[f].size(), reference[f].size());
     for (std::size_t i = 0; i < codes[f].size(); ++i) {
       if (codes[f][i] == reference[f][i]) continue;

@@ -15,7 +15,7 @@ class RendererOutputs : public StageOutputs {
   std::vector<float> extinction() override { return renderer_.downloadExtinction(); }
   std::vector<glm::dvec3> emission() override { return renderer_.downloadEmission(); }
   TableBytes table() override { return renderer_.downloadTable(); }
-  std::vector<std::uint32_t> visibleVoxels() override { return renderer_.downloadVisibleVoxels(); }
+  std::vector<std::uint32_t> visibleVoxels() override { return renderer_.downloadBlockList(); }
   RayCodes rays(const Camera& camera) override { return renderer_.downloadRays(camera); }
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
     return renderer_.renderSums(camera, settings);

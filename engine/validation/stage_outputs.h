@@ -7,10 +7,10 @@
 #include <memory>
 #include <vector>
 
-#include "engine/attenuation/ray_fans.h"
 #include "engine/image/image.h"
-#include "engine/splatting/camera.h"
-#include "engine/splatting/render_settings.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/render_settings.h"
+#include "engine/scene/source_rays.h"
 #include "engine/splatting/splat_sums.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"

@@ -3,15 +3,14 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
-#include "engine/hierarchy/volume_builder.h"
-#include "engine/hierarchy/volume_memory.h"
+#include "engine/octree/volume_builder.h"
 #include "engine/splatting/sums_readback.h"
 
 namespace freevoxels {
 
 namespace {
 
-/// What visible_scan.comp writes for a list of `count` voxels.
+/// What compact_scan.comp writes for a list of `count` voxels.
 std::vector<shader::ChunkArguments> chunkArguments(std::size_t count, std::uint32_t chunks) {
   std::vector<shader::ChunkArguments> arguments;
   for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
@@ -43,7 +42,7 @@ SteppedVolume prepareSteps(const Device& device, const Volume& volume, const Cla
   Commands commands(device);
   sweep.record(commands, steps.volume, steps.table);
   commands.submitAndWait();
-  steps.voxels = downloadVisibleVoxels(device, steps.visible);
+  steps.voxels = downloadBlockList(device, steps.visible);
   return steps;
 }
 

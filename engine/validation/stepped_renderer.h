@@ -7,18 +7,18 @@
 #include <vector>
 
 #include "engine/attenuation/attenuation_table.h"
-#include "engine/splatting/camera.h"
-#include "engine/splatting/render_settings.h"
+#include "engine/octree/block_list.h"
+#include "engine/octree/device_volume.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/render_settings.h"
 #include "engine/splatting/splat_sums.h"
-#include "engine/splatting/visible_voxels.h"
-#include "engine/volume/device_volume.h"
 
 namespace freevoxels {
 
 /// What the passes before the camera leave on the device.
 struct SteppedVolume {
   DeviceVolume volume;
-  VisibleVoxels visible;
+  BlockList visible;
   AttenuationTable table;
   std::vector<std::uint32_t> voxels;  ///< the visible ones, padded indices in the order of the list
 };

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "engine/hierarchy/hierarchy_layout.h"
+#include "engine/volume/occupied_count.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/vdb_density.h"
 #include "engine/volume/vdb_grids.h"
@@ -90,7 +90,6 @@ std::vector<std::uint64_t> storedBlocks(const FloatTree& tree,
                                         const std::vector<const FloatTree::LeafNodeType*>& leaves,
                                         const openvdb::CoordBBox& bounds, const ToDensity& toDensity) {
   if (bounds.volume() > kMostCounted) return {};
-  const HierarchyLayout hierarchy({bounds.dim().x(), bounds.dim().y(), bounds.dim().z()});
   std::vector<bool> holding(bounds.volume(), false);
   const auto hold = [&](const openvdb::Coord& voxel) {
     const openvdb::Coord place = voxel - bounds.min(), size = bounds.dim();
@@ -105,7 +104,7 @@ std::vector<std::uint64_t> storedBlocks(const FloatTree& tree,
     if (toDensity(value, active) > 0.0f)
       for (auto voxel = box.begin(); voxel; ++voxel) hold(*voxel);
   });
-  return countStored(hierarchy, std::move(holding));
+  return countOccupiedBlocks({bounds.dim().x(), bounds.dim().y(), bounds.dim().z()}, std::move(holding));
 }
 
 template <typename ToDensity>

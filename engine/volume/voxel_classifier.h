@@ -32,7 +32,7 @@ class TransferIntegral {
   glm::dvec4 mean(double fromScalar, double toScalar) const { return meanAt(place(fromScalar), place(toScalar)); }
   /// Whether some scalar of a range has extinction.
   bool holdsAnythingAt(double lowPlace, double highPlace) const;
-  bool holdsAnything(double low, double high) const { return holdsAnythingAt(place(low), place(high)); }
+  bool isOccupied(double low, double high) const { return holdsAnythingAt(place(low), place(high)); }
 
   static constexpr double kLeastChange = 1e-3;  ///< for differences of the integral to be used, intervals
 

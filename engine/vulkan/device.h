@@ -53,6 +53,11 @@ class Device {
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
   VkDeviceSize maximumAllocation() const { return maximumAllocation_; }
+  /// Bytes of the largest buffer that passes can bind, also as a texel buffer whose texels have `texelBytes`.
+  std::uint64_t largestBinding(std::uint64_t texelBytes) const {
+    return std::min({std::uint64_t(limits().maxStorageBufferRange), std::uint64_t(limits().maxTexelBufferElements) * texelBytes,
+                     std::uint64_t(maximumAllocation_)});
+  }
   /// Bytes that may be allocated in all: the device's, or fewer where a limit is set.
   std::uint64_t memoryBytes() const { return std::min(description_.memoryBytes, memoryLimit_); }
   /// Of these, what is not allocated now, and the most that ever was.

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "engine/attenuation/attenuation_table.h"
-#include "engine/hierarchy/volume_builder.h"
+#include "engine/octree/volume_builder.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/reference/reference_table.h"
 #include "engine/renderer.h"
@@ -154,7 +154,7 @@ TEST_F(AttenuationTableTest, VisibleVoxelsAreThoseWithExtinctionInAscendingOrder
     const Volume volume = randomVolume(size, cubeTransform(size), 0.3, 1.0);
     const Classification classification{.densityScale = 1.0};
     const Renderer renderer(device(), volume, classification, {});
-    EXPECT_EQ(renderer.downloadVisibleVoxels(),
+    EXPECT_EQ(renderer.downloadBlockList(),
               referenceVisibleVoxels(referenceExtinction(volume, classification)));
   }
 }

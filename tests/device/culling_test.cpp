@@ -9,6 +9,7 @@
 #include "engine/renderer.h"
 #include "engine/validation/culling_checks.h"
 #include "engine/validation/level_checks.h"
+#include "engine/volume/subject.h"
 #include "tests/device/device_fixture.h"
 #include "tests/device/test_volumes.h"
 
@@ -46,7 +47,7 @@ class CullingTest : public DeviceTest {
     const Image picture = renderer.render(camera, settings);
     EXPECT_LE(largestDifference(picture, expected), kCullingDifference) << name;
     EXPECT_GE(psnr(picture, expected), kCullingPsnr) << name;
-    return {renderer.cutCounts(), *renderer.visibleVoxelCount()};
+    return {renderer.cutCounts(), *renderer.occupiedVoxelCount()};
   }
 };
 
@@ -140,7 +141,7 @@ TEST_F(CullingTest, WhatIsOutsideOfTheImageIsNotDrawn) {
       const CutCounts counts = renderer.cutCounts();
       settings.culling = false;
       EXPECT_LE(largestDifference(picture, renderer.render(camera, settings)), kFrustumDifference);
-      EXPECT_LT(double(drawnBlocks(counts)), (zoom > 2.0 ? 0.2 : 1.0) * double(*renderer.visibleVoxelCount()));
+      EXPECT_LT(double(drawnBlocks(counts)), (zoom > 2.0 ? 0.2 : 1.0) * double(*renderer.occupiedVoxelCount()));
       EXPECT_GT(counts.outside, 0u);
       EXPECT_EQ(counts.hidden, 0u);
     }
@@ -167,7 +168,7 @@ TEST_F(CullingTest, CountsAddUp) {
   EXPECT_EQ(once.size(), drawn.size());
 
   renderer.render(camera, {.size = {120, 80}, .lod = 0.0f, .culling = false});
-  EXPECT_EQ(renderer.cutCounts().drawn, std::vector{*renderer.visibleVoxelCount()});
+  EXPECT_EQ(renderer.cutCounts().drawn, std::vector{*renderer.occupiedVoxelCount()});
 }
 
 /// The table counts from the outside; rays from the eye have no bounds; sorted pictures are of all voxels;
@@ -187,11 +188,11 @@ TEST_F(CullingTest, NothingIsHiddenWhereTheTableCannotTell) {
     renderer.render(camera, settings);
     EXPECT_EQ(renderer.cutCounts().hidden, 0u);
   }
-  EXPECT_EQ(renderer.cutCounts().drawn, std::vector{*renderer.visibleVoxelCount()});
+  EXPECT_EQ(renderer.cutCounts().drawn, std::vector{*renderer.occupiedVoxelCount()});
 
   Renderer thin(device(), volume, {.densityScale = 1.0}, {});
   thin.render(outside, {.size = {64, 64}, .lod = 0.0f});
-  EXPECT_EQ(thin.cutCounts().considered, *thin.visibleVoxelCount());
+  EXPECT_EQ(thin.cutCounts().considered, *thin.occupiedVoxelCount());
 }
 
 TEST_F(CullingTest, TheSameFrameTwiceIsBitIdentical) {

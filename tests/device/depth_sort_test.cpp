@@ -8,7 +8,7 @@
 #include <random>
 #include <span>
 
-#include "engine/hierarchy/volume_builder.h"
+#include "engine/octree/volume_builder.h"
 #include "engine/reference/reference_sorted.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/reference/reference_table.h"
@@ -63,7 +63,7 @@ class DepthSortTest : public DeviceTest {
       Commands commands(device());
       sort.record(commands, onDevice, visible, camera);
       commands.submitAndWait();
-      orders.push_back(read(sort.voxels(), downloadVisibleCount(device(), visible)));
+      orders.push_back(read(sort.voxels(), downloadBlockCount(device(), visible)));
       const auto pitch = std::uint32_t(onDevice.layout.rowPitch),
                  columns = std::uint32_t(volume.dimensions.x);
       for (std::uint32_t& voxel : orders.back()) voxel -= voxel / pitch * (pitch - columns);

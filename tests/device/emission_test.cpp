@@ -9,6 +9,7 @@
 #include "engine/validation/level_checks.h"
 #include "engine/validation/stage_checks.h"
 #include "engine/volume/packed_light.h"
+#include "engine/volume/subject.h"
 #include "engine/volume/voxel_classifier.h"
 #include "tests/device/splat_fixture.h"
 
@@ -98,7 +99,7 @@ TEST_F(EmissionTest, EveryVoxelWithExtinctionOrLightIsKept) {
         if (expected.extinction == 0.0) ++alone;
       }
   EXPECT_GT(alone, 100u);
-  EXPECT_EQ(renderer.downloadVisibleVoxels(), referenceVisibleVoxels(extinctionOf(renderer), emission));
+  EXPECT_EQ(renderer.downloadBlockList(), referenceVisibleVoxels(extinctionOf(renderer), emission));
   EXPECT_EQ(renderer.memory().emission % sizeof(std::uint32_t), 0u);
   EXPECT_GT(renderer.memory().emission, 0u);
 }
@@ -155,7 +156,7 @@ TEST_F(EmissionTest, SortedPicturesMatchTheReference) {
   Renderer renderer(device(), volume, classification, {});
   const Image picture = renderer.render(camera, settings);
   const Image expected =
-      referenceSortedPicture(volume, classification, camera, settings, renderer.downloadVisibleVoxels());
+      referenceSortedPicture(volume, classification, camera, settings, renderer.downloadBlockList());
   EXPECT_GE(psnr(picture, expected), 60.0);
 }
 

@@ -6,7 +6,7 @@
 
 #include "engine/image/metrics.h"
 #include "engine/reference/oracle.h"
-#include "engine/splatting/footprint.h"
+#include "engine/scene/footprint.h"
 #include "engine/validation/fly_through_quality.h"
 #include "tests/device/splat_fixture.h"
 #include "tests/refusal.h"

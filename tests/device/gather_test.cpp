@@ -5,6 +5,7 @@
 #include "engine/reference/oracle.h"
 #include "engine/validation/quality_scenes.h"
 #include "engine/validation/sky_environment.h"
+#include "engine/volume/subject.h"
 #include "engine/volume/voxel_classifier.h"
 #include "tests/device/splat_fixture.h"
 

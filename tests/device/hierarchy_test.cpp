@@ -5,14 +5,16 @@
 #include <cstring>
 
 #include "engine/attenuation/attenuation_table.h"
-#include "engine/hierarchy/detail_rule.h"
-#include "engine/hierarchy/level_passes.h"
-#include "engine/hierarchy/volume_builder.h"
+#include "engine/attenuation/table_levels.h"
+#include "engine/octree/medium_levels.h"
+#include "engine/octree/volume_builder.h"
 #include "engine/reference/reference_hierarchy.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/renderer.h"
 #include "engine/validation/detail_quality.h"
 #include "engine/validation/level_checks.h"
+#include "engine/visibility/detail_rule.h"
+#include "engine/volume/subject.h"
 #include "tests/device/device_fixture.h"
 #include "tests/device/test_volumes.h"
 
@@ -215,7 +217,7 @@ TEST_F(HierarchyTest, VoxelsAreDrawnWhereTheyAreLargeOrSorted) {
         FrameSettings{.size = {16, 16}, .composite = Composite::Sorted, .lod = 9.0f}}) {
     settings.culling = false;
     renderer.render(camera, settings);
-    EXPECT_EQ(renderer.cutCounts().drawn, std::vector{*renderer.visibleVoxelCount()});
+    EXPECT_EQ(renderer.cutCounts().drawn, std::vector{*renderer.occupiedVoxelCount()});
     for (const StageTime& stage : renderer.timings()) EXPECT_NE(stage.name, "octree table");
   }
 }

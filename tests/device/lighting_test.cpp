@@ -8,6 +8,7 @@
 #include "engine/reference/reference_light.h"
 #include "engine/reference/reference_sorted.h"
 #include "engine/validation/sky_environment.h"
+#include "engine/volume/subject.h"
 #include "tests/device/splat_fixture.h"
 
 namespace freevoxels {

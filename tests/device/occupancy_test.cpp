@@ -1,14 +1,16 @@
 // What is kept of a volume: of the blocks that hold anything, and of no others.
 
-#include "engine/hierarchy/occupancy.h"
+#include "engine/octree/occupancy.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "engine/attenuation/attenuation_table.h"
-#include "engine/hierarchy/volume_builder.h"
+#include "engine/octree/volume_builder.h"
 #include "engine/reference/reference_table.h"
 #include "engine/renderer.h"
+#include "engine/volume/occupied_count.h"
+#include "engine/volume/subject.h"
 #include "tests/device/device_fixture.h"
 #include "tests/device/test_volumes.h"
 
@@ -36,7 +38,7 @@ TEST_F(OccupancyTest, HasTheBlocksThatHoldAVoxelWithExtinction) {
       std::vector<bool> holding;
       for (const double extinction : referenceExtinction(volume, {.densityScale = 1.0}))
         holding.push_back(extinction > 0.0);
-      EXPECT_EQ(built.volume.stored, countStored(hierarchy, holding));
+      EXPECT_EQ(built.volume.stored, countOccupiedBlocks(hierarchy.levels.front().dimensions, holding));
 
       std::vector<std::uint32_t> parents;
       for (int level = hierarchy.top(); level >= 0; --level) {
@@ -108,7 +110,7 @@ TEST_F(OccupancyTest, AVolumeThatHoldsNothingIsAnEmptyPicture) {
                             {.size = {24, 24}, .composite = composite, .attenuation = lookup, .lod = lod});
         for (const glm::vec4& pixel : picture.pixels) EXPECT_EQ(pixel, glm::vec4(0.0f));
       }
-  EXPECT_EQ(renderer.visibleVoxelCount(), 0u);
+  EXPECT_EQ(renderer.occupiedVoxelCount(), 0u);
 }
 
 }  // namespace

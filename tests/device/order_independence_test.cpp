@@ -5,6 +5,7 @@
 
 #include "engine/core/error.h"
 #include "engine/validation/stepped_renderer.h"
+#include "engine/volume/subject.h"
 #include "tests/device/device_fixture.h"
 #include "tests/device/test_volumes.h"
 

@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/renderer.h"
+#include "engine/volume/subject.h"
 #include "tests/device/device_fixture.h"
 #include "tests/device/test_volumes.h"
 
@@ -93,7 +94,7 @@ TEST_F(RendererTest, MoreSplatsThanOneChunkAreAllDrawn) {
   const double sigma = 3.0;
   const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [](int, int, int) { return 1.0; });
   Renderer renderer(device(), volume, {.densityScale = sigma}, {});
-  EXPECT_EQ(*renderer.visibleVoxelCount(), volume.voxelCount());
+  EXPECT_EQ(*renderer.occupiedVoxelCount(), volume.voxelCount());
   const Camera camera = framingCamera(volume, 0.0, 0.0, 1.0, {});
   const glm::ivec2 size(128);
   EXPECT_GE(psnr(renderer.render(camera, {.size = size}),

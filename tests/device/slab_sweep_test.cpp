@@ -4,7 +4,7 @@
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/core/error.h"
-#include "engine/hierarchy/volume_builder.h"
+#include "engine/octree/volume_builder.h"
 #include "engine/reference/reference_table.h"
 #include "engine/renderer.h"
 #include "tests/device/device_fixture.h"

@@ -7,6 +7,7 @@
 #include "engine/reference/reference_splats.h"
 #include "engine/reference/reference_table.h"
 #include "engine/renderer.h"
+#include "engine/volume/subject.h"
 #include "tests/device/device_fixture.h"
 #include "tests/device/test_volumes.h"
 

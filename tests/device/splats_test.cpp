@@ -1,6 +1,7 @@
 // Splat sums on the device against the double-precision reference: perspective and orthographic, any voxel
 // shape, both kinds of primitive.
 
+#include "engine/volume/subject.h"
 #include "tests/device/splat_fixture.h"
 
 namespace freevoxels {

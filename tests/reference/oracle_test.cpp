@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "engine/reference/ray_march.h"
+#include "engine/volume/subject.h"
 #include "engine/volume/voxel_classifier.h"
 #include "tests/image_measures.h"
 #include "tests/reference/reference_scene.h"

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "engine/volume/subject.h"
 #include "tests/reference/reference_scene.h"
 
 namespace freevoxels {

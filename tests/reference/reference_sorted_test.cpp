@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-#include "engine/splatting/footprint.h"
+#include "engine/scene/footprint.h"
 #include "engine/volume/voxel_classifier.h"
 #include "tests/reference/reference_scene.h"
 

@@ -12,7 +12,8 @@
 #include <random>
 #include <vector>
 
-#include "engine/splatting/footprint.h"
+#include "engine/scene/footprint.h"
+#include "engine/volume/subject.h"
 #include "tests/image_measures.h"
 #include "tests/reference/reference_scene.h"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/splatting/camera.h"
+#include "engine/scene/camera.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels::test {

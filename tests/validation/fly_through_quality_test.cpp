@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "engine/splatting/camera.h"
+#include "engine/scene/camera.h"
 #include "engine/volume/procedural.h"
 #include "tests/device/device_fixture.h"
 

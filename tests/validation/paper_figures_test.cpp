@@ -1,7 +1,7 @@
 // The paper's figures, drawn by the device, and that a device which draws something else is noticed.
 
-#include "engine/validation/paper_figures.h"
 #include "engine/validation/lattice_steps.h"
+#include "engine/validation/paper_figures.h"
 
 #include "engine/validation/leakage.h"
 #include "tests/device/device_fixture.h"

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "engine/attenuation/ray_sweep.h"
-#include "engine/hierarchy/level_passes.h"
-#include "engine/hierarchy/occupancy.h"
+#include "engine/octree/medium_levels.h"
+#include "engine/octree/occupancy.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/validation/stage_outputs.h"
 #include "engine/validation/stepped_renderer.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "engine/attenuation/directions.h"
+#include "engine/scene/directions.h"
 #include "engine/volume/procedural.h"
 #include "tests/device/device_fixture.h"
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/volume/procedural.h"
+#include "engine/volume/subject.h"
 
 namespace freevoxels {
 namespace {

@@ -32,10 +32,10 @@ TEST(TransferIntegral, MeanIsTheAreaOverTheChangeOfTheScalar) {
 
 TEST(TransferIntegral, KnowsWhereThereIsNothing) {
   const TransferIntegral integral(tent(0.5f), 0.0f, 1.0f);
-  EXPECT_FALSE(integral.holdsAnything(0.0, 0.39));
-  EXPECT_FALSE(integral.holdsAnything(0.61, 1.0));
-  EXPECT_TRUE(integral.holdsAnything(0.0, 1.0));
-  EXPECT_TRUE(integral.holdsAnything(0.5, 0.5));
+  EXPECT_FALSE(integral.isOccupied(0.0, 0.39));
+  EXPECT_FALSE(integral.isOccupied(0.61, 1.0));
+  EXPECT_TRUE(integral.isOccupied(0.0, 1.0));
+  EXPECT_TRUE(integral.isOccupied(0.5, 0.5));
 }
 
 TEST(TransferTable, CodesAreEquallySpacedAndZeroHasNoData) {

@@ -1,0 +1,179 @@
+// The gather's lattice and rays, computed in double precision on the host.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/gathering/gather_pass.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// Lattice samples per voxel at the reference distance, at least.
+constexpr double kSamplesPerVoxel = 2.0;
+/// Lattices that would be hardly coarser than the pixels are those of the pixels, which need no upsampling.
+constexpr double kLeastPitch = 1.15;
+
+/// The pixels' rays with positions relative to the image's middle.
+struct CentredRays {
+  CentredRays(const PixelRays& rays, glm::ivec2 size)
+      : originX(rays.originX), originY(rays.originY), directionX(rays.directionX), directionY(rays.directionY) {
+    const glm::dvec2 middle = 0.5 * glm::dvec2(size);
+    origin = rays.origin + middle.x * originX + middle.y * originY;
+    direction = rays.direction + middle.x * directionX + middle.y * directionY;
+  }
+  glm::dvec3 origin, originX, originY, direction, directionX, directionY;
+};
+
+std::array<int, 2> sidesOf(int axis) {
+  return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
+}
+
+/// Pixels between neighbouring voxels of a slice at the middle of the image, the least of the slice's two axes;
+/// perspective: times distance from the eye plane.
+double pixelsPerVoxel(const CentredRays& rays, const glm::dmat3& toPixel) {
+  const std::array<int, 2> sides = sidesOf(majorAxis(rays.direction));
+  return std::min(glm::length(glm::dvec2(toPixel[sides[0]])), glm::length(glm::dvec2(toPixel[sides[1]])));
+}
+
+/// Distance from the eye plane that the lattice is made for: the middle of the volume, or where the camera is near to
+/// it or inside, most of the way to its farthest corner, as what is nearer is sampled the more finely.
+double referenceDistance(const CentredRays& rays, glm::dvec3 viewAxis, glm::ivec3 dimensions) {
+  double middle = 0.0, farthest = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 voxel = glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2) * glm::dvec3(dimensions - 1);
+    const double distance = glm::dot(viewAxis, voxel - rays.origin);
+    middle += distance / 8.0;
+    farthest = std::max(farthest, distance);
+  }
+  return std::max(middle, 0.75 * farthest);
+}
+
+shader::GatherAxis gatherAxis(const CentredRays& rays, const glm::dmat3& toPixel, int axis, double middlePlane,
+                              bool orthographic) {
+  const auto affine = [&](const glm::dvec3& at, const glm::dvec3& x, const glm::dvec3& y, int component) {
+    return glm::dvec3(at[component], x[component], y[component]);
+  };
+  shader::GatherAxis result{};
+  const glm::dvec3 along = affine(rays.direction, rays.directionX, rays.directionY, axis);
+  const glm::dvec3 eye = affine(rays.origin, rays.originX, rays.originY, axis);
+  result.along = along;
+  result.eye = eye;
+  result.middlePlane = float(middlePlane);
+  const std::array<int, 2> sides = sidesOf(axis);
+  for (std::size_t s = 0; s < 2; ++s) {
+    const glm::dvec3 slope = affine(rays.direction, rays.directionX, rays.directionY, sides[s]);
+    const glm::dvec3 start = affine(rays.origin, rays.originX, rays.originY, sides[s]);
+    result.slope[s] = slope;
+    // (start . p) (along . p) + (middlePlane - eye . p) (slope . p), p = (1, x, y): of the origin and the direction one
+    // does not change with the pixel, so that it is affine.
+    const glm::dvec3 toPlane = glm::dvec3(middlePlane, 0.0, 0.0) - eye;
+    result.middle[s] = glm::dvec3(
+        start.x * along.x + toPlane.x * slope.x,
+        start.y * along.x + start.x * along.y + toPlane.y * slope.x + toPlane.x * slope.y,
+        start.z * along.x + start.x * along.z + toPlane.z * slope.x + toPlane.x * slope.z);
+  }
+  result.tilt = glm::dvec2(toPixel[axis]);
+  result.tiltDepth = orthographic ? 0.0f : float(toPixel[axis].z);
+  return result;
+}
+
+/// Which slices of which level the rays read whose component along the axis has this sign. A level begins where its
+/// blocks are small on the image for all rays, at a multiple of its blocks' edge, so that no voxel counts twice.
+void setSlices(shader::GatherAxis& axis, int number, int sign, const HierarchyLayout& hierarchy,
+               const DetailRule& detail, glm::dvec2 halfImage) {
+  const int voxels = hierarchy.levels.front().dimensions[number];
+  std::vector<int> begins(std::size_t(detail.coarsest) + 2);  // voxels, from where on in the ray's direction
+  double steepest = 0.0;
+  for (int corner = 0; corner < 4; ++corner) {
+    const glm::dvec2 position = halfImage * (2.0 * glm::dvec2(corner & 1, corner >> 1) - 1.0);
+    steepest = std::max(steepest, std::abs(glm::dot(glm::dvec3(axis.along), glm::dvec3(1.0, position))));
+  }
+  const int first = sign > 0 ? 0 : voxels, end = sign > 0 ? voxels : 0;
+  for (int level = 0; level <= detail.coarsest; ++level) {
+    const double edge = double(1 << level);
+    if (level <= detail.finest) {
+      begins[std::size_t(level)] = first;
+      continue;
+    }
+    const double distance = edge * steepest / std::max(detail.edgePerDistance, 1e-300);
+    const double place = double(axis.eye.x) + 0.5 + sign * distance;
+    const double aligned = (sign > 0 ? std::ceil(place / edge) : std::floor(place / edge)) * edge;
+    begins[std::size_t(level)] = int(std::clamp(aligned, 0.0, double((voxels + (1 << level) - 1) >> level << level)));
+  }
+  begins[std::size_t(detail.coarsest) + 1] = end;
+  for (int level = 0; level <= detail.coarsest; ++level) {
+    const int a = begins[std::size_t(level)], b = begins[std::size_t(level) + 1];
+    const int low = std::min(a, b), high = std::max(a, b);
+    const int edge = 1 << level;
+    const bool none = sign > 0 ? b <= a : b >= a;
+    axis.slices[sign > 0 ? 1 : 0][level] = none ? glm::ivec2(0) : glm::ivec2(low / edge, (high + edge - 1) / edge);
+  }
+}
+
+/// Pixel positions, relative to the image's middle, between which the volume is seen; with an eye in or near its planes
+/// the whole plane.
+std::array<glm::dvec2, 2> seenRectangle(const CentredRays& rays, const glm::dmat3& toPixel, glm::ivec3 dimensions,
+                                        bool orthographic) {
+  constexpr double kAll = 1e9;
+  std::array<glm::dvec2, 2> seen{glm::dvec2(kAll), glm::dvec2(-kAll)};
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+    // Interpolated slices reach a voxel beyond the outermost centres.
+    const glm::dvec3 pixel = toPixel * (side * glm::dvec3(dimensions + 1) - 1.0 - rays.origin);
+    if (!orthographic && !(pixel.z > 1e-6)) return {glm::dvec2(-kAll), glm::dvec2(kAll)};
+    const glm::dvec2 position = orthographic ? glm::dvec2(pixel) : glm::dvec2(pixel) / pixel.z;
+    seen = {glm::min(seen[0], position), glm::max(seen[1], position)};
+  }
+  return {seen[0] - 1.0, seen[1] + 1.0};
+}
+
+glm::ivec2 sampleCount(glm::ivec2 size, double pitch) {
+  return glm::ivec2(glm::floor(glm::dvec2(size - 1) / pitch)) + 4;
+}
+
+}  // namespace
+
+shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& camera, const FrameSettings& settings,
+                                    const DetailRule& detail, double end) {
+  const PixelRays pixels = pixelRays(camera, settings.size, volume.indexToWorld);
+  const CentredRays rays(pixels, settings.size);
+  const bool orthographic = pixels.orthographic;
+  const glm::dmat3 toPixel = glm::inverse(orthographic ? glm::dmat3(rays.originX, rays.originY, rays.direction)
+                                                       : glm::dmat3(rays.directionX, rays.directionY, rays.direction));
+  const glm::dmat3 linear(volume.indexToWorld);
+  const glm::ivec3 dimensions = volume.layout.dimensions;
+  const double voxel = pixelsPerVoxel(rays, toPixel);
+  const glm::dvec3 viewAxis = glm::transpose(toPixel)[2];
+  const double distance = orthographic ? 1.0 : referenceDistance(rays, viewAxis, dimensions);
+  const double pitch = voxel / (kSamplesPerVoxel * std::max(distance, 1e-300));
+
+  shader::GatherFrame frame{.finest = detail.finest,
+                            .coarsest = detail.coarsest,
+                            .size = settings.size,
+                            .pixelsPerVoxel = float(voxel),
+                            .end = float(end),
+                            .orthographic = orthographic ? 1 : 0,
+                            .mainAxis = majorAxis(rays.direction)};
+  const std::array<glm::dvec2, 2> seen = seenRectangle(rays, toPixel, dimensions, orthographic);
+  frame.seenLow = seen[0];
+  frame.seenHigh = seen[1];
+  const bool coarse = pitch > kLeastPitch;
+  // A lattice of at least a few samples, whatever is near.
+  frame.pitch = coarse ? float(std::min(pitch, double(std::max(settings.size.x, settings.size.y)))) : 1.0f;
+  frame.samples = coarse ? sampleCount(settings.size, double(frame.pitch)) : settings.size;
+  frame.firstSample = -0.5f * glm::vec2(settings.size) + 0.5f - (coarse ? frame.pitch : 0.0f);
+  frame.worldRay[0] = linear * rays.direction;
+  frame.worldRay[1] = linear * rays.directionX;
+  frame.worldRay[2] = linear * rays.directionY;
+  for (int axis = 0; axis < 3; ++axis) {
+    frame.axes[axis] = gatherAxis(rays, toPixel, axis, 0.5 * (dimensions[axis] - 1), orthographic);
+    for (const int sign : {-1, 1})
+      setSlices(frame.axes[axis], axis, sign, volume.hierarchy, detail,
+                0.5 * glm::dvec2(settings.size) + 2.0 * double(frame.pitch));
+  }
+  return frame;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,199 @@
+// GatherVolume's part of lights whose transmittance is found at samples: codes of optical depths towards them, and gradients of
+// surfaces.
+
+#include <algorithm>
+#include <array>
+
+#include "embedded/ambient_codes.h"
+#include "embedded/light_depths.h"
+#include "embedded/surface_gradients.h"
+#include "engine/core/error.h"
+#include "engine/gathering/gather_volume.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+constexpr VkDescriptorType kTexelsIn = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+
+}  // namespace
+
+bool GatherVolume::lightsSamples(const DeviceVolume& volume, const Lighting* lighting) {
+  if (lighting == nullptr || volume.hasEmission()) return false;
+  if (lighting->lights.empty()) return lighting->hasAmbient();
+  return lighting->lights.size() <= std::size_t(shader::kMostSampleLights) && lighting->attenuation == LightAttenuation::Exact;
+}
+
+/// Keeps the codes as long as the lights stand where they are.
+void GatherVolume::prepareSampled(const Lighting* lighting, std::vector<StageTime>& times) {
+  const std::vector<Light> lights = lighting != nullptr ? lighting->lights : std::vector<Light>();
+  const int channels = lighting != nullptr && lighting->hasAmbient() ? AmbientPass::channelCount(*lighting) : 0;
+  const bool stand = channels == ambientChannels_ && std::ranges::equal(lights, sampled_, [](const Light& a, const Light& b) {
+    return a.place == b.place && a.atInfinity == b.atInfinity;
+  });
+  if (!stand) dropLightCodes();
+  sampled_ = lights;
+  ambientChannels_ = channels;
+  const int edge = channels > 0 ? ambientCellEdge(volume_.dimensions, lighting->phaseG != 0.0) : 0;
+  if (edge > 0 && (!ambient_ || ambient_->edge() != edge)) {
+    const StageTimer timer(times, "ambient cells");
+    dropLightCodes();
+    ambient_.emplace(device_, volume_, classification_, edge);
+  }
+  const std::uint64_t bytes = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks * sizeof(std::uint16_t);
+  for (int slot = 0; slot < shader::kMostLightSlots; ++slot) {
+    Buffer& codes = lightCodes_[std::size_t(slot)];
+    if (slot >= lightSlots())
+      codes = {};
+    else if (codes.bytes() == 0)
+      codes = Buffer(device_, bytes, MemoryUse::Device, "codes of light");
+  }
+}
+
+void GatherVolume::dropLightCodes() {
+  lightLevels_ = 0;
+  for (Quads& quads : quads_) quads.lightLevels = 0;
+}
+
+/// Finds the codes of all blocks of bricks, whether or not they hold anything.
+void GatherVolume::recordLightCodes(Commands& commands, const Shading& shading) {
+  if (ambientChannels_ > 0 && ambient_->record(commands, *shading.lighting, shading.frame.eye)) dropLightCodes();
+  if ((wantedLevels_ & ~lightLevels_) == 0) return;
+  commands.beginPass("light depths");
+  if (lightLevels_ == 0)
+    for (int slot = 0; slot < lightSlots(); ++slot) commands.clear(lightCodes_[std::size_t(slot)]);  // of the empty brick
+  for (int level = 0; level <= built_.volume.hierarchy.top(); ++level) {
+    if (((wantedLevels_ & ~lightLevels_) >> level & 1u) == 0 || firstBricks_[std::size_t(level)] == firstBricks_[std::size_t(level) + 1])
+      continue;
+    recordLightDepths(commands, shading, level);
+    recordAmbientCodes(commands, level);
+  }
+  commands.barrier(kCompute, kCompute);
+  lightLevels_ |= wantedLevels_;
+}
+
+void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading, int level) {
+  const DeviceVolume& volume = built_.volume;
+  const Pipeline pass = makeComputePipeline(device_, {light_depths_spv, "light depths"},
+                                            {.bindings = {kTexelsIn, kTexelsIn, kStorage}, .pushConstantBytes = sizeof(shader::LightDepthsPush)},
+                                            {shader::kBrickQuadsThreads, 1, 1}, {hasScalars()});
+  const std::array<Binding, 3> bindings{&brickCellTexels_, &volume.occupancyTexels, shading.lights};
+  const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
+  for (int light = 0; light < sampleLights(); ++light) {
+    const shader::LightDepthsPush push{.level = volume.onDevice(level),
+                                       .firstBrick = first,
+                                       .count = count,
+                                       .light = light,
+                                       .edge = 1 << level,
+                                       .voxels = volume.layout.dimensions,
+                                       .indexToWorld = glm::dmat3(volume.indexToWorld),
+                                       .extinction = addressWords(volume.extinction.address()),
+                                       .depths = addressWords(lightCodes_[std::size_t(light)].address())};
+    commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
+  }
+}
+
+void GatherVolume::recordAmbientCodes(Commands& commands, int level) {
+  if (ambientChannels_ == 0) return;
+  const Pipeline pass = makeComputePipeline(
+      device_, {ambient_codes_spv, "ambient codes"},
+      {.bindings = {kTexelsIn, kStorage}, .pushConstantBytes = sizeof(shader::AmbientCodesPush)},
+      {shader::kBrickQuadsThreads, 1, 1});
+  const std::array<Binding, 2> bindings{&brickCellTexels_, &ambient_->light()};
+  const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
+  const glm::ivec3 cells = ambient_->cells();
+  const int cellCount = cells.x * cells.y * cells.z;
+  for (int channel = 0; channel < ambientChannels_; ++channel) {
+    const shader::AmbientCodesPush push{.cells = cells,
+                                        .cellEdge = ambient_->edge(),
+                                        .blockEdge = 1 << level,
+                                        .firstLight = channel * cellCount,
+                                        .firstWeight = ambient_->hasWeights() ? ambientChannels_ * cellCount : -1,
+                                        .firstBrick = first,
+                                        .count = count,
+                                        .codes = addressWords(lightCodes_[std::size_t(sampleLights() + channel)].address())};
+    commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
+  }
+}
+
+void GatherVolume::recordGradients(Commands& commands) {
+  const std::uint32_t levels = wantedLevels_ & ~gradientLevels_;
+  if (levels == 0) return;
+  if (gradients_.bytes() == 0) {
+    const std::uint64_t blocks = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks;
+    gradients_ = Buffer(device_, blocks * sizeof(std::uint32_t), MemoryUse::Device, "gradients of surfaces");
+  }
+  commands.beginPass("surface gradients");
+  if (gradientLevels_ == 0) commands.clear(gradients_);  // of the empty brick
+  const DeviceVolume& volume = built_.volume;
+  const std::array<Binding, 2> bindings{&brickCellTexels_, &volume.occupancyTexels};
+  for (int level = 0; level <= volume.hierarchy.top(); ++level) {
+    const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
+    if ((levels >> level & 1u) == 0 || count == 0) continue;
+    const auto scalars = scalarCodes(level);
+    const Pipeline pass = makeComputePipeline(
+        device_, {surface_gradients_spv, "surface gradients"},
+        {.bindings = {kTexelsIn, kTexelsIn}, .pushConstantBytes = sizeof(shader::SurfaceGradientsPush)},
+        {shader::kBrickQuadsThreads, 1, 1}, {scalars.has_value()});
+    const shader::SurfaceGradientsPush push{.level = volume.onDevice(level),
+                                            .firstBrick = first,
+                                            .count = count,
+                                            .extinction = addressWords(volume.extinction.address()),
+                                            .gradients = addressWords(gradients_.address()),
+                                            .scalars = scalars.value_or(shader::CodeBricks())};
+    commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
+  }
+  commands.barrier(kCompute, kCompute);
+  gradientLevels_ |= levels;
+}
+
+void GatherVolume::recordLightQuads(Commands& commands, int axis) {
+  Quads& quads = quads_[std::size_t(axis)];
+  if ((wantedLevels_ & ~quads.lightLevels) == 0) return;
+  commands.beginPass("brick quads");
+  for (std::size_t slot = 0; slot < std::size_t(lightSlots()); ++slot) {
+    const auto make = [&](int level, std::uint32_t first, std::uint32_t end) {
+      const shader::GatherLevel& cells = levels_[std::size_t(level)];
+      const shader::CodeBricks codes{
+          .numbers = addressWords(brickNumbers_.address() + VkDeviceAddress(cells.firstCell) * sizeof(std::uint32_t)),
+          .codes = addressWords(lightCodes_[slot].address()),
+          .corner = glm::ivec3(0),
+          .cells = {cells.cellStrides.x, cells.cellStrides.y / cells.cellStrides.x, 0}};
+      recordBricks(commands, axis, level, first, end, codes, quads.light[slot], false);
+    };
+    if (quads.lightLevels == 0) make(0, 0, 1);
+    for (int level = 0; level <= built_.volume.hierarchy.top(); ++level)
+      if (((wantedLevels_ & ~quads.lightLevels) >> level & 1u) != 0)
+        make(level, firstBricks_[std::size_t(level)], firstBricks_[std::size_t(level) + 1]);
+  }
+  commands.barrier(kCompute, kCompute);
+  quads.lightLevels |= wantedLevels_;
+}
+
+void GatherVolume::describeLights(shader::GatherFrame& frame) const {
+  if (lightSlots() == 0) return;
+  const DeviceVolume& volume = built_.volume;
+  const glm::dmat3 linear(volume.indexToWorld);
+  for (std::size_t i = 0; i < sampled_.size(); ++i) {
+    const Light& light = sampled_[i];
+    const glm::dvec3 place = light.atInfinity ? glm::normalize(light.place) : lightSource(light, volume.indexToWorld).place;
+    frame.lights[i] = {.place = place, .atInfinity = light.atInfinity ? 1 : 0, .color = light.intensity * light.color};
+    if (light.atInfinity) {
+      const glm::dvec3 way = lightSource(light, volume.indexToWorld).place, size = glm::abs(way);
+      frame.lights[i].across = way / std::max({size.x, size.y, size.z});
+    }
+  }
+  if (ambientChannels_ > 0) frame.ambient = ambient_->unshadowed();
+  frame.tint = lighting_->tint;
+  frame.phaseG = float(lighting_->phaseG);
+  frame.surface = float(lighting_->surface);
+  frame.octaveScale = float(lighting_->scatteringScale);
+  frame.nearestLight2 = float(double(shader::kNearestLight2) * volume.voxelSize * volume.voxelSize);
+  frame.indexToWorld = linear;
+  frame.gradients = addressWords(gradients_.address());
+  frame.gradientToWorld = glm::transpose(glm::inverse(linear));
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,366 @@
+#include "engine/gathering/gather_volume.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "embedded/brick_quads.h"
+#include "embedded/shade_blocks.h"
+#include "engine/core/error.h"
+#include "engine/volume/coarse_cells.h"
+#include "engine/volume/packed_light.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+constexpr VkDescriptorType kTexelsIn = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
+constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
+
+/// Radiance that a stored source term equal to the stored extinction means: 1, or more where halves would not hold the
+/// brightest voxel. Lights are as bright as they are at the least distance that counts.
+double sourceUnit(const DeviceVolume& volume, const Lighting* lighting) {
+  double brightest = volume.emissionUnit * kBrightest * volume.voxelSize;
+  if (lighting != nullptr) {
+    for (const Light& light : lighting->lights) {
+      const double nearest = light.atInfinity ? 1.0 : double(shader::kNearestLight2) * volume.voxelSize * volume.voxelSize;
+      const double color = std::max({light.color.r, light.color.g, light.color.b});
+      brightest += light.intensity * color / (4.0 * std::numbers::pi * nearest);
+    }
+  }
+  return std::max(brightest * kStoredDepth / kBrightest, 1.0);
+}
+
+/// Of the device's memory one part in so many may hold quads that the frame does not read.
+constexpr std::uint64_t kKeptShare = 4;
+
+bool dependsOnView(const Lighting& lighting) {
+  return lighting.phaseG != 0.0 || lighting.surface > 0.0;
+}
+
+/// World length of a voxel's layer along its major axis, mean over all directions: about 1.2 voxel edges.
+float meanLayer(const DeviceVolume& volume) {
+  return float(1.2 * volume.voxelSize);
+}
+
+}  // namespace
+
+GatherVolume::GatherVolume(const Device& device, const Volume& volume, const Classification& classification,
+                           const BuiltVolume& built, std::vector<StageTime>& times)
+    : device_(device),
+      volume_(volume),
+      classification_(classification),
+      built_(built),
+      frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "shading frame") {
+  makeBricks(times);
+  const std::uint32_t bricks = firstBricks_.back();
+  const std::uint64_t quads = std::uint64_t(bricks) * shader::kGatherBrickBlocks;
+  const bool inOne = quads <= device.limits().maxTexelBufferElements && quads * sizeof(glm::uvec4) <= device.maximumAllocation();
+  bricksPerPiece_ = inOne ? bricks : 1u << shader::kPieceBricksLog2;
+  if (bricks > std::uint64_t(bricksPerPiece_) * shader::kMostPieces)
+    fail(ExitCode::OutOfMemory, "the gather needs {} quads of voxels, more than the {} that it can number: use --draw splats", quads,
+         std::uint64_t(bricksPerPiece_) * shader::kMostPieces * shader::kGatherBrickBlocks);
+}
+
+/// Which cells of the octree are bricks, and which are skipped. A position in a cell stays in that and its next neighbours
+/// along the axes upwards for an edge more, so that these decide. What lights a surface is looked up up to two blocks outside
+/// of it, so that bricks reach a cell to skip further.
+void GatherVolume::makeBricks(std::vector<StageTime>& times) {
+  const StageTimer timer(times, "bricks");
+  const HierarchyLayout& hierarchy = built_.volume.hierarchy;
+  const int top = hierarchy.top(), finest = std::min(shader::kSkipLevels, top);
+  Cells cells = metCells(volume_, classification_, 1 << finest);
+  std::vector<Cells> met, around{spread(cells, 0, 1)};  // by level above the finest
+  for (int level = finest; level <= top; ++level) {
+    met.push_back(spread(cells, 0, 1));
+    around.push_back(spread(coarserCells(spread(cells, -1, 0)), 0, 1));
+    cells = coarserCells(cells);
+  }
+
+  std::vector<std::uint32_t> numbers;
+  std::vector<std::uint8_t> skips;
+  constexpr int kOutside = 1 << 29;
+  std::vector<glm::ivec4> bricks{glm::ivec4(kOutside)};  // the empty one
+  for (int number = 0; number <= top; ++number) {
+    const Cells& brickCells = around[std::size_t(std::min(number + shader::kBrickLevels, top) - finest)];
+    const Cells skipCells = groupsToSkip(met[std::size_t(std::min(number + shader::kSkipLevels, top) - finest)]);
+    levels_.push_back({.dimensions = hierarchy.levels[std::size_t(number)].dimensions,
+                       .firstCell = int(numbers.size()),
+                       .cellStrides = brickCells.strides(),
+                       .firstSkip = int(skips.size()),
+                       .skipStrides = skipCells.strides(),
+                       .lastSkip = skipCells.dimensions - 1});
+    firstBricks_.push_back(std::uint32_t(bricks.size()));
+    glm::ivec3 cell;
+    for (cell.z = 0; cell.z < brickCells.dimensions.z; ++cell.z)
+      for (cell.y = 0; cell.y < brickCells.dimensions.y; ++cell.y)
+        for (cell.x = 0; cell.x < brickCells.dimensions.x; ++cell.x) {
+          const bool isBrick = brickCells.at(cell) != 0;
+          numbers.push_back(isBrick ? std::uint32_t(bricks.size()) : 0);
+          if (isBrick) bricks.emplace_back(cell * shader::kGatherBrickEdge, 0);
+        }
+    skips.insert(skips.end(), skipCells.values.begin(), skipCells.values.end());
+  }
+  firstBricks_.push_back(std::uint32_t(bricks.size()));
+  const auto make = [&](Buffer& buffer, TexelView& view, std::span<const std::byte> bytes, VkFormat format, const char* name) {
+    buffer = Buffer(device_, bytes.size(), MemoryUse::Device, name, kTexels);
+    upload(device_, buffer, bytes);
+    view = TexelView(device_, buffer, format);
+  };
+  make(brickNumbers_, brickNumberTexels_, std::as_bytes(std::span(numbers)), VK_FORMAT_R32_UINT, "brick numbers");
+  make(brickCells_, brickCellTexels_, std::as_bytes(std::span(bricks)), VK_FORMAT_R32G32B32A32_UINT, "brick cells");
+  make(skips_, skipTexels_, std::as_bytes(std::span(skips)), VK_FORMAT_R8_UINT, "cells to skip");
+}
+
+/// Scalars without light need none for the voxels.
+void GatherVolume::makeSources() {
+  const std::uint64_t blocks = built_.volume.storedBlocks() + 1;  // no buffer is empty
+  if (shadesLevel(0) || wantedLevels_ != 1u) {
+    if (sources_.bytes() == 0)
+      sources_ = Buffer(device_, blocks * sizeof(glm::uvec2), MemoryUse::Device, "source terms");
+  }
+  if (hasTowards() && towards_.bytes() == 0)
+    towards_ = Buffer(device_, blocks * sizeof(std::uint32_t), MemoryUse::Device, "source directions");
+}
+
+void GatherVolume::shade(Commands& commands, const Shading& shading, int level) {
+  const DeviceVolume& volume = built_.volume;
+  const auto count = std::uint32_t(volume.stored[std::size_t(level)]);
+  if (count == 0) return;
+  const Buffer& anyBuffer = frame_;
+  const bool lightOnly = level == 0 && hasScalars();
+  const std::array<Binding, 4> bindings{&frame_, shading.table != nullptr ? &shading.table->planeAddresses : &anyBuffer,
+                                        &volume.occupancy, shading.lights != nullptr ? shading.lights : &anyBuffer};
+  const shader::ShadePush push{
+      .blocks = addressWords(built_.lists.of(level, built_.visible).indices.address()),
+      .sources = addressWords(sources_.address()),
+      .towards = addressWords(towards_.address()),
+      .firstRank = volume.firstRank(level),
+      .count = count,
+      .extinctionScale = float(kStoredDepth * volume.voxelSize),
+      .sourceScale = float((lightOnly ? 1.0 : kStoredDepth * volume.voxelSize) / sourceUnit_),
+      .meanLayer = meanLayer(volume),
+      .lightOnly = lightOnly ? 1 : 0};
+  commands.dispatchLinear(shadePass_, bindings, push, count);
+  commands.barrier(kCompute, kCompute);
+}
+
+bool GatherVolume::hasColors() const {
+  const bool onlyScalars = hasScalars() && wantedLevels_ == 1u;  // which have their colours in the transfer function
+  return lit_ || (built_.volume.hasColors && !onlyScalars) || built_.volume.hasEmission();
+}
+
+bool GatherVolume::shadesLevel(int level) const {
+  return lit_ || level > 0 || !hasScalars();
+}
+
+bool GatherVolume::hasScalars() const {
+  return built_.volume.scalarBricks.has_value();
+}
+
+const TexelView& GatherVolume::transferTable() const {
+  return hasScalars() ? built_.volume.scalarBricks->tableTexels : built_.volume.extinctionQuads;
+}
+
+void GatherVolume::prepare(const Shading& shading, std::vector<StageTime>& times) {
+  if (built_.volume.lacksScalarBricks)
+    fail(ExitCode::OutOfMemory,
+         "the volume's scalars take more memory than there is, which classification after interpolation needs: "
+         "--classification pre does without");
+  const bool samples = lightsSamples(built_.volume, shading.lighting);
+  const bool lit = shading.lighting != nullptr && !samples;
+  const bool viewDependent = lit && dependsOnView(*shading.lighting);
+  const bool sameLight =
+      lit == lit_ && !viewDependent && !viewDependent_ && (!lit || lighting_ == *shading.lighting);
+  sourceUnit_ = sourceUnit(built_.volume, lit ? shading.lighting : nullptr);
+  lit_ = lit;
+  viewDependent_ = viewDependent;
+  if (shading.lighting != nullptr)
+    lighting_ = *shading.lighting;
+  else
+    lighting_.reset();
+  prepareSampled(samples ? shading.lighting : nullptr, times);
+  wantedLevels_ = 0;
+  for (int level = shading.frame.detail.finest; level <= shading.frame.detail.coarsest; ++level)
+    wantedLevels_ |= 1u << level;
+  if (!sameLight) shadedLevels_ = 0;
+  for (std::size_t axis = 0; axis < quads_.size(); ++axis)
+    if (!sameLight) quads_[axis].levels = 0;
+  makeSources();
+  const auto makeRoomForAll = [&] {
+    for (std::size_t axis = 0; axis < quads_.size(); ++axis)
+      if (shading.axes[axis]) makeRoom(quads_[axis], shading.axes);
+  };
+  try {
+    makeRoomForAll();
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::OutOfMemory) throw;
+    dropOtherAxes(shading.axes, 0);
+    makeRoomForAll();
+  }
+  // A turntable comes back to the other axes.
+  dropOtherAxes(shading.axes, device_.memoryBytes() / kKeptShare);
+}
+
+std::uint64_t GatherVolume::Quads::bytes() const {
+  std::uint64_t sum = medium.bytes() + source.bytes() + towards.bytes();
+  for (const QuadStore& store : light) sum += store.bytes();
+  return sum;
+}
+
+/// Frees quads that hold nothing of use, and those beyond `most` bytes.
+void GatherVolume::dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t most) {
+  std::uint64_t kept = 0;
+  for (std::size_t axis = 0; axis < quads_.size(); ++axis) {
+    Quads& quads = quads_[axis];
+    if (axes[axis]) continue;
+    kept += quads.bytes();
+    if (quads.levels == 0 || kept > most) quads = {};
+  }
+}
+
+std::uint64_t GatherVolume::QuadStore::bytes() const {
+  std::uint64_t sum = 0;
+  for (const Buffer& piece : pieces) sum += piece.bytes();
+  return sum;
+}
+
+/// Of a quad where there is no need, as a binding needs a buffer.
+GatherVolume::QuadStore GatherVolume::makeStore(bool needed, std::uint64_t quadBytes, VkFormat format, const char* name) const {
+  QuadStore store;
+  const std::uint32_t bricks = firstBricks_.back();
+  for (std::uint32_t first = 0; first == 0 || (needed && first < bricks); first += bricksPerPiece_) {
+    const std::uint64_t quads = std::uint64_t(std::min(bricksPerPiece_, bricks - first)) * shader::kGatherBrickBlocks;
+    store.pieces.emplace_back(device_, (needed ? quads : 1) * quadBytes, MemoryUse::Device, name, kTexels);
+  }
+  store.texels = TexelView(device_, store.pieces.front(), format);
+  return store;
+}
+
+/// Takes the memory of an axis that holds nothing of use, where there is one.
+void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
+  const std::uint64_t count = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks;
+  const auto fits = [&](const Quads& there) {
+    const auto holds = [&](const QuadStore& store, bool needed, std::uint64_t bytes) {
+      return store.bytes() >= (needed ? count : 1) * bytes;
+    };
+    for (std::size_t i = 0; i < there.light.size(); ++i)
+      if (!holds(there.light[i], i < std::size_t(lightSlots()), sizeof(glm::uvec2))) return false;
+    return holds(there.medium, true, sizeof(glm::uvec2)) && holds(there.source, hasColors(), sizeof(glm::uvec4)) &&
+           holds(there.towards, hasTowards(), sizeof(glm::uvec4));
+  };
+  if (fits(quads)) return;
+  for (std::size_t other = 0; other < axes.size(); ++other) {
+    if (axes[other] || quads_[other].levels != 0 || !fits(quads_[other])) continue;
+    quads = std::exchange(quads_[other], {});
+    return;
+  }
+  quads = {};  // not both at once
+  quads.medium = makeStore(true, sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "medium quads");
+  quads.source = makeStore(hasColors(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source quads");
+  quads.towards = makeStore(hasTowards(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source direction quads");
+  for (std::size_t i = 0; i < quads.light.size(); ++i)
+    quads.light[i] = makeStore(i < std::size_t(lightSlots()), sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "light quads");
+}
+
+void GatherVolume::record(Commands& commands, const Shading& shading) {
+  if ((wantedLevels_ & ~shadedLevels_) != 0) recordShading(commands, shading);
+  if (lightSlots() > 0) recordLightCodes(commands, shading);
+  if (hasSurfaces()) recordGradients(commands);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!shading.axes[std::size_t(axis)]) continue;
+    Quads& quads = quads_[std::size_t(axis)];
+    if ((wantedLevels_ & ~quads.levels) != 0) recordQuads(commands, axis);
+    if (lightSlots() > 0) recordLightQuads(commands, axis);
+  }
+}
+
+std::optional<shader::CodeBricks> GatherVolume::scalarCodes(int level) const {
+  if (!hasScalars() || level != 0) return {};
+  const DeviceScalars& scalars = *built_.volume.scalarBricks;
+  return shader::CodeBricks{.numbers = addressWords(scalars.brickNumbers.address()),
+                            .codes = addressWords(scalars.codes.address()),
+                            .corner = scalars.corner,
+                            .cells = scalars.cells};
+}
+
+void GatherVolume::recordQuads(Commands& commands, int axis) {
+  Quads& quads = quads_[std::size_t(axis)];
+  commands.beginPass("brick quads");
+  if (quads.levels == 0) recordBricks(commands, axis, 0, 0, 1, scalarCodes(0), quads.medium, hasColors());  // the empty one
+  for (int level = 0; level <= built_.volume.hierarchy.top(); ++level)
+    if (((wantedLevels_ & ~quads.levels) >> level & 1u) != 0)
+      recordBricks(commands, axis, level, firstBricks_[std::size_t(level)], firstBricks_[std::size_t(level) + 1],
+                   scalarCodes(level), quads.medium, hasColors() && (lit_ || !scalarCodes(level)));
+  commands.barrier(kCompute, kCompute);
+  quads.levels |= wantedLevels_;
+}
+
+/// The quads of bricks of a level, piece by piece.
+void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::uint32_t first, std::uint32_t end,
+                                const std::optional<shader::CodeBricks>& codes, const QuadStore& medium, bool colored) {
+  if (first == end) return;
+  const DeviceVolume& volume = built_.volume;
+  const Quads& quads = quads_[std::size_t(axis)];
+  const bool towards = hasTowards() && colored;
+  const Pipeline pass = makeComputePipeline(
+      device_, {brick_quads_spv, "brick quads"},
+      {.bindings = {kTexelsIn, kTexelsIn}, .pushConstantBytes = sizeof(shader::BrickQuadsPush)},
+      {shader::kBrickQuadsThreads, 1, 1}, {std::uint32_t(axis), towards, colored, codes.has_value()});
+  const std::array<Binding, 2> bindings{&brickCellTexels_, &volume.occupancyTexels};
+  for (std::uint32_t next = first; next < end;) {
+    const std::uint32_t piece = next / bricksPerPiece_;
+    const std::uint32_t bricks = std::min(end, (piece + 1) * bricksPerPiece_) - next;
+    const shader::BrickQuadsPush push{.level = volume.onDevice(level),
+                                      .firstBrick = next,
+                                      .count = bricks,
+                                      .firstQuad = next % bricksPerPiece_ * shader::kGatherBrickBlocks,
+                                      .medium = addressWords(medium.address(piece)),
+                                      .source = addressWords(quads.source.address(piece)),
+                                      .towards = addressWords(quads.towards.address(piece)),
+                                      .sources = addressWords(sources_.address()),
+                                      .towardsEye = addressWords(towards_.address()),
+                                      .codes = codes.value_or(shader::CodeBricks())};
+    commands.dispatchLinear(pass, bindings, push, std::uint64_t(bricks) * shader::kBrickQuadsThreads);
+    next += bricks;
+  }
+}
+
+void GatherVolume::recordShading(Commands& commands, const Shading& shading) {
+  const DeviceVolume& volume = built_.volume;
+  shadePass_ = makeComputePipeline(
+      device_, {shade_blocks_spv, "shade blocks"},
+      {.bindings = std::vector(4, kStorage), .pushConstantBytes = sizeof(shader::ShadePush)},
+      {shader::kShadeThreads, 1, 1},
+      {lit_, volume.hasEmission(), volume.hasColors, shading.frame.tinted, hasTowards()});
+  commands.beginPass("shade blocks");
+  commands.update(frame_, shading.frame.setup);
+  for (int level = 0; level <= volume.hierarchy.top(); ++level)
+    if (((wantedLevels_ & ~shadedLevels_) >> level & 1u) != 0 && shadesLevel(level))
+      shade(commands, shading, level);
+  shadedLevels_ |= wantedLevels_;
+}
+
+void GatherVolume::describe(shader::GatherFrame& frame) const {
+  for (std::size_t axis = 0; axis < quads_.size(); ++axis) {
+    const Quads& quads = quads_[axis];
+    const auto setPieces = [](const QuadStore& store, glm::uvec2* addresses) {
+      for (std::size_t i = 0; i < store.pieces.size(); ++i) addresses[i] = addressWords(store.pieces[i].address());
+    };
+    setPieces(quads.medium, frame.axes[axis].mediumPieces);
+    setPieces(quads.source, frame.axes[axis].sourcePieces);
+    setPieces(quads.towards, frame.axes[axis].towardsPieces);
+    for (std::size_t i = 0; i < quads.light.size(); ++i) setPieces(quads.light[i], frame.axes[axis].lightPieces[i]);
+  }
+  frame.extinctionUnit = float(1.0 / (kStoredDepth * built_.volume.voxelSize));
+  frame.sourceUnit = float(sourceUnit_);
+  frame.color = built_.volume.albedo;
+  describeLights(frame);
+  for (int number = frame.finest; number <= frame.coarsest; ++number) frame.levels[number] = levels_[std::size_t(number)];
+}
+
+}  // namespace freevoxels

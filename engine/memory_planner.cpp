@@ -1,0 +1,52 @@
+#include "engine/memory_planner.h"
+
+#include <limits>
+#include <numeric>
+
+#include "engine/attenuation/attenuation_table.h"
+#include "engine/octree/volume_limits.h"
+#include "shaders/frame_interface.h"
+
+namespace freevoxels {
+
+StoredKinds storedKinds(const DeviceVolume& volume) {
+  return {.colors = volume.hasColors, .emission = volume.hasEmission()};
+}
+
+VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std::uint64_t> stored, DirectionSet directions,
+                          StoredKinds kinds, const SweepStyle& style) {
+  const std::uint64_t blocks = std::accumulate(stored.begin(), stored.end(), std::uint64_t(0));
+  const std::uint64_t voxels = stored.front(), coarse = blocks - voxels;
+  const std::uint64_t channels = 1u + (kinds.colors ? 1u : 0u) + (kinds.emission ? 1u : 0u);
+  std::uint64_t codes = blocks;
+  for (std::size_t level = 1; level < stored.size(); ++level) codes += boundBytes(stored[level]);
+  const GridLayout& box = hierarchy.levels.front();
+  return {.occupancy = occupancyBytes(hierarchy),
+          .extinction = extinctionBytes(blocks),
+          .table = codes * std::uint64_t(directionCount(directions)),
+          .colors = kinds.colors ? voxels * sizeof(float) + coarse * sizeof(glm::uvec2) : 0,
+          .emission = kinds.emission ? blocks * sizeof(std::uint32_t) : 0,
+          // Indices of all blocks and of those that a frame draws, a bit for each block that could be drawn and two bytes for each
+          // block that has children.
+          .lists = (blocks + voxels) * sizeof(std::uint32_t) + blocks + 2 * coarse,
+          .bricks = brickBytes(box.dimensions) * channels,
+          .sweep = planSweep(box, directions, style, std::numeric_limits<std::uint64_t>::max()).bytes(),
+          .splats = std::min<std::uint64_t>(voxels, shader::kSplatsPerChunk) * sizeof(shader::Splat)};
+}
+
+void checkSplatsFit(const Device& device, const DeviceVolume& volume) {
+  checkBinds(device, volume.layout.dimensions, volume.activeVoxels * sizeof(std::uint32_t), sizeof(std::uint32_t));
+}
+
+void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions) {
+  const glm::ivec3 box = volume.layout.dimensions;
+  const SweepPlan least = planSweep(volume.layout, directions, sweepStyle(device), 0);
+  checkBinds(device, box, volume.planeBytes(), 1);
+  checkBinds(device, box, least.slabBytes, sizeof(glm::vec4));
+  checkBinds(device, box, least.keptBytes, sizeof(glm::vec4));
+  VolumeMemory memory = volumeMemory(volume.hierarchy, volume.stored, directions, storedKinds(volume), sweepStyle(device));
+  memory.sweep = least.bytes();  // sweeps make do with as little as that
+  checkHolds(device, box, memory.peak(), directions == DirectionSet::Directions26 ? "" : ", or take 26 directions");
+}
+
+}  // namespace freevoxels

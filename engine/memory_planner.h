@@ -1,0 +1,49 @@
+#pragma once
+// Predicts the device memory that a volume needs at each stage of a frame, and checks it before the stage allocates.
+
+#include <algorithm>
+#include <cstdint>
+#include <span>
+
+#include "engine/attenuation/slabs.h"
+#include "engine/octree/device_volume.h"
+#include "engine/scene/directions.h"
+
+namespace freevoxels {
+
+/// What is stored of occupied blocks besides extinction and table.
+struct StoredKinds {
+  bool colors = false, emission = false;
+};
+StoredKinds storedKinds(const DeviceVolume& volume);
+
+/// Bytes of device memory, by purpose.
+struct VolumeMemory {
+  std::uint64_t occupancy = 0;   ///< two bits for every voxel and block of the box
+  std::uint64_t extinction = 0;  ///< of occupied blocks, as are all that follow
+  std::uint64_t table = 0;       ///< attenuation table, once a frame has read it
+  std::uint64_t unseen = 0;      ///< part of the table that pruning removes (table_pruning.h)
+  std::uint64_t colors = 0;      ///< only with a transfer function or a grid of albedos
+  std::uint64_t emission = 0;    ///< only with temperatures
+  std::uint64_t lists = 0;       ///< lists of occupied blocks and of the blocks that a frame draws
+  std::uint64_t bricks = 0;      ///< a batch of bricks, while the octree is built
+  std::uint64_t sweep = 0;       ///< a slab, while the table is swept
+  std::uint64_t splats = 0;      ///< a chunk of splat records, while a frame is drawn
+
+  /// Bytes kept for the volume whatever is drawn.
+  std::uint64_t stored() const { return occupancy + extinction + table - unseen + colors + emission; }
+  /// The largest sum at any time, without the images and the sort of a frame.
+  std::uint64_t peak() const {
+    return occupancy + extinction + colors + emission + lists + std::max(bricks, table + std::max(sweep, splats));
+  }
+};
+
+/// `stored` counts the occupied blocks of each level (DeviceVolume::stored).
+VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std::uint64_t> stored, DirectionSet directions,
+                          StoredKinds kinds, const SweepStyle& style);
+
+/// Fails with ExitCode::OutOfMemory if the device cannot hold or bind the lists of splats, or the attenuation table and a sweep.
+void checkSplatsFit(const Device& device, const DeviceVolume& volume);
+void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions);
+
+}  // namespace freevoxels

@@ -1,0 +1,32 @@
+#pragma once
+// Extinction, colour and emission of the octree levels above the voxels, each computed from the level below: Subr et al. 2007,
+// Section 3.2.
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/octree/block_list.h"
+#include "engine/octree/device_volume.h"
+#include "engine/octree/level_data.h"
+#include "engine/vulkan/commands.h"
+
+namespace freevoxels {
+
+/// COMPUTE medium_level.comp: extinction, colours where there is more than one, light; a dispatch a level.
+class MediumLevels {
+ public:
+  MediumLevels(const Device& device, const DeviceVolume& volume);
+  /// `coarse` lists the blocks of levels 1, 2, ...
+  void record(Commands& commands, const DeviceVolume& volume, std::span<const BlockList> coarse) const;
+
+ private:
+  std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
+};
+
+/// Extinction, colours and light of a level, without its table. Waits.
+LevelData downloadMedium(const Device& device, const DeviceVolume& volume, int level);
+
+}  // namespace freevoxels

@@ -1,0 +1,95 @@
+#include "engine/octree/occupancy.h"
+
+#include <array>
+#include <bit>
+
+#include "embedded/expand_voxels.h"
+#include "embedded/occupied_blocks.h"
+#include "embedded/occupied_voxels.h"
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+constexpr int kQuad = 4;  // voxels of a row that expand_voxels.comp takes together
+
+}  // namespace
+
+OccupancyPass::OccupancyPass(const Device& device, bool emission)
+    : voxels_(makeComputePipeline(
+          device, {occupied_voxels_spv, "occupied voxels"},
+          {.bindings = std::vector(4, kStorage), .pushConstantBytes = sizeof(shader::BricksPush)},
+          {shader::kBrickThreads, 1, 1}, {emission ? 1u : 0u})),
+      blocks_(makeComputePipeline(
+          device, {occupied_blocks_spv, "occupied blocks"},
+          {.bindings = {kStorage}, .pushConstantBytes = sizeof(shader::OccupiedBlocksPush)},
+          {shader::kOccupancyThreads, 1, 1})) {}
+
+void OccupancyPass::recordVoxels(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks,
+                                 bool first) const {
+  commands.beginPass("occupancy");
+  if (first) commands.clear(volume.occupancy);
+  const std::array<Binding, 4> bindings{&bricks.scalars(), &bricks.firstVoxels(), &bricks.emissions(), &volume.occupancy};
+  const shader::BricksPush push = bricks.push();
+  commands.dispatchLinear(voxels_, bindings, push, std::uint64_t(push.brickCount) * shader::kBrickThreads);
+  commands.barrier(kCompute, kCompute);
+}
+
+void OccupancyPass::recordBlocks(Commands& commands, const DeviceVolume& volume) const {
+  commands.beginPass("occupancy");
+  for (int level = 1; level <= volume.hierarchy.top(); ++level) {
+    const shader::OccupiedBlocksPush push{.child = volume.onDevice(level - 1),
+                                          .parent = volume.onDevice(level),
+                                          .wordCount = std::uint32_t(volume.hierarchy.words(level))};
+    const std::array<Binding, 1> occupancy{&volume.occupancy};
+    commands.dispatchLinear(blocks_, occupancy, push, push.wordCount);
+    commands.barrier(kCompute, kCompute);
+  }
+}
+
+ExpandPass::ExpandPass(const Device& device)
+    : pipeline_(makeComputePipeline(
+          device, {expand_voxels_spv, "expand voxels"},
+          {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
+                        kStorage},
+           .pushConstantBytes = sizeof(shader::ExpandPush)},
+          {shader::kExpandTile, shader::kExpandTile, 1})) {}
+
+std::uint32_t ExpandPass::record(Commands& commands, const DeviceVolume& volume, int first, int planes,
+                                 const Buffer& extinction) const {
+  const GridLayout& grid = volume.layout;
+  recordBox(commands, volume, {0, 0, first}, {grid.rowPitch, grid.dimensions.y, planes}, extinction);
+  return volume.hierarchy.indexOf({.level = 0, .cell = {0, 0, first}});
+}
+
+void ExpandPass::recordBox(Commands& commands, const DeviceVolume& volume, glm::ivec3 first,
+                           glm::ivec3 extent, const Buffer& extinction) const {
+  FV_CHECK_EQ(first.x % kQuad, 0);
+  FV_CHECK_EQ(extent.x % kQuad, 0);
+  FV_CHECK_LE(glm::u64vec3(extent).x * glm::u64vec3(extent).y * glm::u64vec3(extent).z * sizeof(float),
+              extinction.bytes());
+  const glm::ivec3 quads(extent.x / kQuad, extent.y, extent.z);
+  const shader::ExpandPush push{.voxels = volume.onDevice(0), .first = first, .extent = quads};
+  const std::array<Binding, 3> bindings{&volume.occupancyTexels, &volume.extinctionQuads, &extinction};
+  commands.dispatch(pipeline_, bindings, push, quads);
+  commands.barrier(kCompute, kCompute);
+}
+
+std::vector<std::uint32_t> downloadStored(const Device& device, const DeviceVolume& volume, int level) {
+  const std::uint32_t first = volume.hierarchy.first[std::size_t(level)];
+  std::vector<shader::OccupancyWord> words(volume.hierarchy.words(level));
+  download(device, volume.occupancy, std::as_writable_bytes(std::span(words)),
+           first / shader::kBlocksPerWord * sizeof(shader::OccupancyWord));
+  const GridLayout& grid = volume.hierarchy.levels[std::size_t(level)];
+  std::vector<std::uint32_t> blocks;
+  for (std::size_t word = 0; word < words.size(); ++word)
+    for (std::uint32_t mask = words[word].mask; mask != 0; mask &= mask - 1)
+      blocks.push_back(grid.unpaddedIndex(std::uint32_t(word) * shader::kBlocksPerWord +
+                                          std::uint32_t(std::countr_zero(mask))));
+  return blocks;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,165 @@
+#include "engine/octree/volume_builder.h"
+
+#include <algorithm>
+#include <array>
+
+#include "embedded/pack_voxels.h"
+#include "engine/core/error.h"
+#include "engine/octree/device_bricks.h"
+#include "engine/octree/occupancy.h"
+#include "engine/octree/volume_limits.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// COMPUTE pack_voxels.comp
+class PackPass {
+ public:
+  PackPass(const Device& device, const DeviceVolume& volume)
+      : pipeline_(makeComputePipeline(
+            device, {pack_voxels_spv, "pack voxels"},
+            {.bindings = std::vector(5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+             .pushConstantBytes = sizeof(shader::BricksPush)},
+            {shader::kBrickThreads, 1, 1},
+            {volume.hasEmission(), volume.hasColors})) {}
+  void record(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks) const {
+    const std::array<Binding, 5> bindings{&bricks.scalars(), &bricks.firstVoxels(), &bricks.emissions(), &volume.occupancy,
+                                          &bricks.colors()};
+    const shader::BricksPush push = bricks.push();
+    commands.beginPass("pack");
+    commands.dispatchLinear(pipeline_, bindings, push,
+                            std::uint64_t(push.brickCount) * shader::kBrickThreads);
+    commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+  }
+
+ private:
+  Pipeline pipeline_;
+};
+
+/// A buffer is bound whether or not anything is stored in it.
+Buffer makeStore(const Device& device, std::uint64_t values, std::uint64_t bytes, const char* name) {
+  return Buffer(device, std::max<std::uint64_t>(values, 1) * bytes, MemoryUse::Device, name);
+}
+
+void makeStores(const Device& device, DeviceVolume& volume) {
+  const std::uint64_t blocks = volume.storedBlocks(), voxels = volume.stored.front();
+  volume.extinction = Buffer(device, extinctionBytes(blocks), MemoryUse::Device, "extinction",
+                             VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  volume.extinctionQuads = TexelView(device, volume.extinction);
+  if (volume.hasEmission()) volume.emission = makeStore(device, blocks, sizeof(std::uint32_t), "emission");
+  if (!volume.hasColors) return;
+  volume.colors = makeStore(device, voxels, sizeof(std::uint32_t), "colours");
+  volume.blockColors = makeStore(device, blocks - voxels, sizeof(glm::uvec2), "block colours");
+}
+
+class BlockBuilder {
+ public:
+  BlockBuilder(const Device& device, const Volume& volume, const Classification& classification, BuiltVolume& built,
+               std::vector<StageTime>& times, const Progress& progress)
+      : device_(device),
+        times_(times),
+        progress_(progress),
+        built_(built),
+        bricks_(device, built_.volume, volume, classification) {}
+
+  void run() {
+    findOccupancy();
+    checkStoresFit(device_, built_.volume);
+    makeStores(device_, built_.volume);
+    if (built_.volume.stored.front() > 0) store();
+  }
+
+ private:
+  /// Of all levels, with the lists and the ranks.
+  void findOccupancy() {
+    const DeviceVolume& volume = built_.volume;
+    const OccupancyPass occupancy(device_, volume.hasEmission());
+    const CompactionPass compaction(device_);
+    forEachBatch([&](Commands& commands, std::size_t batch) {
+      occupancy.recordVoxels(commands, volume, bricks_, batch == 0);
+    });
+    Commands commands(device_);
+    occupancy.recordBlocks(commands, volume);
+    built_.visible = makeBlockList(device_, volume);
+    compaction.record(commands, volume, built_.visible);
+    for (int level = 1; level <= volume.hierarchy.top(); ++level) {
+      built_.lists.coarse.push_back(makeBlockList(device_, volume, level));
+      compaction.record(commands, volume, built_.lists.coarse.back(), level);
+    }
+    submit(commands);
+    std::vector<std::uint64_t> stored;
+    for (int level = 0; level <= volume.hierarchy.top(); ++level)
+      stored.push_back(downloadBlockCount(device_, built_.lists.of(level, built_.visible)));
+    built_.volume.stored = std::move(stored);
+  }
+
+  /// What is kept of every block that holds anything.
+  void store() {
+    const DeviceVolume& volume = built_.volume;
+    const PackPass pack(device_, volume);
+    const MediumLevels levels(device_, volume);
+    forEachBatch([&](Commands& commands, std::size_t) { pack.record(commands, volume, bricks_); });
+    Commands commands(device_);
+    levels.record(commands, volume, built_.lists.coarse);
+    submit(commands);
+  }
+
+  template <typename Record>
+  void forEachBatch(const Record& record) {
+    for (std::size_t batch = 0; batch < bricks_.batches(); ++batch) {
+      {
+        const StageTimer timer(times_, "upload");
+        bricks_.upload(batch);
+      }
+      Commands commands(device_);
+      record(commands, batch);
+      submit(commands);
+    }
+  }
+
+  void submit(Commands& commands) {
+    commands.submitAndWait(progress_);
+    addTimes(times_, commands.times());
+  }
+
+  const Device& device_;
+  std::vector<StageTime>& times_;
+  const Progress& progress_;
+  BuiltVolume& built_;
+  DeviceBricks bricks_;
+};
+
+}  // namespace
+
+BuiltVolume buildVolume(const Device& device, const Volume& volume, const Classification& classification,
+                        std::vector<StageTime>& times, const Progress& progress) {
+  checkBoxFits(device, HierarchyLayout(volume.dimensions));
+  BuiltVolume built{.volume = makeDeviceVolume(device, volume, classification)};
+  if (classification.isPost(volume)) {
+    const StageTimer timer(times, "scalars");
+    try {
+      built.volume.scalarBricks =
+          uploadScalars(device, volume, *classification.transferFunction, kStoredDepth * built.volume.voxelSize);
+    } catch (const Error& error) {  // only the gather reads them, and says that they are lacking
+      if (error.code() != ExitCode::OutOfMemory) throw;
+      built.volume.lacksScalarBricks = true;
+    }
+  } else {
+    buildBlocks(device, volume, classification, built, times, progress);
+  }
+  return built;
+}
+
+void buildBlocks(const Device& device, const Volume& volume, const Classification& classification, BuiltVolume& built,
+                 std::vector<StageTime>& times, const Progress& progress) {
+  try {
+    BlockBuilder(device, volume, classification, built, times, progress).run();
+  } catch (const Error&) {
+    built.volume.stored.clear();
+    built.lists.coarse.clear();
+    throw;
+  }
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,33 @@
+#pragma once
+// Whether a device can hold and bind the octree of a volume. All checks fail with ExitCode::OutOfMemory and a sentence that gives
+// the volume's size, what it needs and what the device has.
+
+#include <cstdint>
+#include <string_view>
+
+#include "engine/octree/device_volume.h"
+
+namespace freevoxels {
+
+/// Bytes of the occupancy masks of all levels, which the shaders bind as one buffer of words and as one of texels.
+std::uint64_t occupancyBytes(const HierarchyLayout& hierarchy);
+
+/// Bytes of the largest batch of bricks that is on the device while a volume of `box` voxels is built, for each channel.
+std::uint64_t brickBytes(glm::ivec3 box);
+
+/// The largest number of voxels that an empty volume's box may have on this device.
+std::uint64_t maximumVoxels(const Device& device);
+
+/// Fails if the device cannot bind `bytes` in one buffer whose texels have `texelBytes`.
+void checkBinds(const Device& device, glm::ivec3 box, std::uint64_t bytes, std::uint64_t texelBytes);
+
+/// Fails if `bytes` exceed the device's memory or the limit set for it; `remedy` ends the sentence.
+void checkHolds(const Device& device, glm::ivec3 box, std::uint64_t bytes, std::string_view remedy = "");
+
+/// Fails if the box, were it empty, could not be built: its occupancy and a batch of bricks.
+void checkBoxFits(const Device& device, const HierarchyLayout& hierarchy);
+
+/// Fails if the extinction of the occupied blocks cannot be bound.
+void checkStoresFit(const Device& device, const DeviceVolume& volume);
+
+}  // namespace freevoxels

@@ -1,0 +1,245 @@
+#include "engine/visibility/cut_pass.h"
+
+#include <algorithm>
+#include <array>
+#include <ranges>
+
+#include "embedded/compact_scan.h"
+#include "embedded/cut_select.h"
+#include "embedded/cut_write.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr const char* kPassName = "level of detail and culling";
+constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+
+std::uint64_t groupsFor(std::uint64_t slots) {
+  return (slots + shader::kCutSlotsPerGroup - 1) / shader::kCutSlotsPerGroup;
+}
+
+/// The frame's constants, then `buffers` others. Uniform, as lavapipe loads from storage thread by thread
+/// what is the same for all of them.
+Pipeline makePass(const Device& device, ShaderCode code, std::size_t buffers,
+                  const Specialisation& constants = {}) {
+  std::vector<VkDescriptorType> bindings{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER};
+  bindings.insert(bindings.end(), buffers, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
+  return makeComputePipeline(device, code,
+                             {.bindings = bindings, .pushConstantBytes = sizeof(shader::CutPush)},
+                             {shader::kCutThreads, 1, 1}, constants);
+}
+
+void makeLarger(const Device& device, Buffer& buffer, std::uint64_t bytes, const char* name,
+                VkBufferUsageFlags usage = 0) {
+  if (buffer.bytes() >= bytes) return;
+  buffer = {};  // not both at once
+  buffer = Buffer(device, bytes, MemoryUse::Device, name, usage);
+}
+
+/// Blocks of the finest level that could be drawn: every block that is drawn holds one of them at least, and
+/// shares it with no other.
+std::uint64_t mostDrawn(const CutInputs& inputs) {
+  return std::max<std::uint64_t>(inputs.volume.stored[std::size_t(inputs.detail.finest)], 1);
+}
+
+/// What the table has to hold in each of its directions for the threshold's depth along a line of length 1 a
+/// layer; without path-length correction, along any.
+void setDarkDepths(shader::CutFrame& frame, const CutInputs& inputs) {
+  if (inputs.table == nullptr) return;
+  const DirectionSet set = inputs.table->settings.directions;
+  const int cells = int(set);
+  const glm::dmat3 linear(inputs.volume.indexToWorld);
+  for (int i = 0; i < directionCount(set); ++i) {
+    const glm::ivec3 cell = directionCell(set, i);
+    const double length = frame.pathLengthCorrection ? glm::length(linear * glm::dvec3(cell)) / cells : 1.0;
+    frame.darkDepths[cellNumber(set, cell)] = float(inputs.cull.hiddenDepth * length);
+  }
+  for (int axis = 0; axis < 3; ++axis) frame.axisLengths[axis] = float(glm::length(linear[axis]));
+}
+
+shader::CutFrame cutFrame(const CutInputs& inputs) {
+  const DeviceVolume& volume = inputs.volume;
+  const shader::SetupFrame& setup = inputs.setup;
+  const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
+  shader::CutFrame frame{
+      .coarseFirst = std::uint32_t(volume.stored.front()),
+      .top = volume.hierarchy.top(),
+      .finest = inputs.detail.finest,
+      .coarsest = inputs.detail.coarsest,
+      .middle = middle,
+      .viewAxis = inputs.detail.viewAxis,
+      .middleDistance = float(glm::dot(inputs.detail.viewAxis, middle - inputs.detail.eye)),
+      .edgePerDistance = float(inputs.detail.edgePerDistance),
+      .outside = inputs.cull.outside ? 1 : 0,
+      .hides = inputs.cull.hiddenDepth > 0.0 ? 1 : 0,
+      .tiles = coverTiles(inputs.rays.size),
+      .indexToWorld = setup.indexToWorld,
+      .indexToPixel = setup.indexToPixel,
+      .eyeToMiddle = setup.eyeToMiddle,
+      .middleInPixels = setup.middleInPixels,
+      .ray = setup.ray,
+      .orthographic = setup.orthographic,
+      .pathLengthCorrection = setup.pathLengthCorrection,
+      .cells = setup.cells};
+  std::ranges::copy(setup.levels, frame.levels);
+  std::ranges::copy(inputs.cull.planes, frame.planes);
+  setDarkDepths(frame, inputs);
+  return frame;
+}
+
+}  // namespace
+
+CutPass::CutPass(const Device& device, AttenuationCode code)
+    : device_(device),
+      scan_(makeComputePipeline(device, {compact_scan_spv, "cut scan"},
+                                {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
+                                 .pushConstantBytes = sizeof(shader::CompactPush)},
+                                {shader::kScanThreads, 1, 1})),
+      write_(makePass(device, {cut_write_spv, "cut write"}, 4)),
+      cover_(device),
+      frame_(device, sizeof(shader::CutFrame), MemoryUse::Device, "cut frame",
+             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
+      counts_(device, sizeof(shader::CutCounts), MemoryUse::Device, "cut counts") {
+  for (const Part part : {Part::First, Part::Deferred})
+    for (const std::uint32_t voxels : {0u, 1u})
+      select_[std::size_t(part)][voxels] = makePass(device, {cut_select_spv, "cut select"}, 9,
+                                                    {std::uint32_t(code), std::uint32_t(part), voxels});
+}
+
+void CutPass::makeRoom(const CutInputs& inputs) {
+  const std::uint64_t most = mostDrawn(inputs);
+  const std::uint64_t groups = std::max<std::uint64_t>(groupCount_, 1);
+  const std::uint64_t coarse = std::max<std::uint64_t>((inputs.volume.coarseBlocks() + 3) / 4 * 4, 4);
+  cut_.chunkCount = 2 * std::uint32_t((most + shader::kSplatsPerChunk - 1) / shader::kSplatsPerChunk);
+  makeLarger(device_, children_, coarse, "blocks to look at");
+  makeLarger(device_, deferred_, coarse, "deferred blocks");
+  makeLarger(device_, masks_, groups * shader::kCutThreads * sizeof(std::uint32_t), "cut masks");
+  makeLarger(device_, cut_.groupOffsets, 2 * (groups + 1) * sizeof(std::uint32_t), "cut group offsets");
+  makeLarger(device_, cut_.indices, most * sizeof(std::uint32_t), "cut");
+  makeLarger(device_, cut_.chunks, cut_.chunkCount * sizeof(shader::ChunkArguments), "cut chunk arguments",
+             VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+}
+
+/// Level by level from the finest that is drawn.
+std::vector<CutPass::Level> CutPass::planLevels(const CutInputs& inputs, Part part) {
+  std::vector<Level> levels;
+  std::uint64_t firstGroup = 0;
+  finest_ = inputs.detail.finest;
+  firstGroups_.clear();
+  const int top = inputs.volume.hierarchy.top();
+  for (int level = finest_; level <= top; ++level) {
+    const std::uint64_t slots = level == top ? 1 : 8 * inputs.volume.stored[std::size_t(level) + 1];
+    levels.push_back(
+        {.parents = &inputs.lists.of(std::min(level + 1, top), inputs.voxels).indices,
+         .push = {
+             .level = level, .slotCount = std::uint32_t(slots), .firstGroup = std::uint32_t(firstGroup)}});
+    if (level > inputs.detail.coarsest) continue;
+    firstGroups_.push_back(std::uint32_t(firstGroup));
+    firstGroup += groupsFor(slots);
+  }
+  groupCount_ = std::uint32_t(firstGroup);
+  for (Level& level : levels)
+    level.push.firstOffset = level.push.firstGroup + (part == Part::First ? 0 : groupCount_ + 1);
+  return levels;
+}
+
+void CutPass::record(Commands& commands, const CutInputs& inputs) {
+  commands.beginPass(kPassName);
+  hasDeferred_ = false;
+  recordPart(commands, inputs, Part::First);
+}
+
+void CutPass::recordDeferred(Commands& commands, const CutInputs& inputs, const RenderTarget& colorEnergy,
+                             const RenderTarget& opticalDepth) {
+  commands.beginPass(kPassName);
+  hasDeferred_ = true;
+  cover_.record(commands, {.counts = counts_,
+                           .colorEnergy = colorEnergy,
+                           .opticalDepth = opticalDepth,
+                           .rays = inputs.rays,
+                           .hiddenDepth = inputs.cull.hiddenDepth});
+  recordPart(commands, inputs, Part::Deferred);
+}
+
+void CutPass::recordPart(Commands& commands, const CutInputs& inputs, Part part) {
+  const std::vector<Level> levels = planLevels(inputs, part);
+  if (part == Part::First) {
+    makeRoom(inputs);
+    for (const Buffer* buffer : {&children_, &deferred_, &counts_, &cut_.chunks}) commands.clear(*buffer);
+    commands.update(frame_, cutFrame(inputs));
+  }
+  recordSelect(commands, inputs, levels, part);
+  recordList(commands, std::span(levels).first(firstGroups_.size()), part);
+}
+
+void CutPass::recordSelect(Commands& commands, const CutInputs& inputs, std::span<const Level> levels,
+                           Part part) {
+  const Buffer& anyBuffer = frame_;
+  for (const Level& level : levels | std::views::reverse) {
+    const std::array<Binding, 10> bindings{&frame_,
+                                           level.parents,
+                                           &inputs.volume.occupancy,
+                                           &children_,
+                                           &deferred_,
+                                           &masks_,
+                                           &cut_.groupOffsets,
+                                           &counts_,
+                                           inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
+                                           part == Part::Deferred ? &cover_.tiles() : &anyBuffer};
+    if (level.push.slotCount > 0)
+      commands.dispatchLinear(select_[std::size_t(part)][level.push.level == 0 ? 1 : 0], bindings, level.push,
+                              groupsFor(level.push.slotCount) * shader::kCutThreads);
+    commands.barrier(kCompute, kCompute);
+  }
+}
+
+void CutPass::recordList(Commands& commands, std::span<const Level> levels, Part part) {
+  const std::array<Binding, 2> scan{&cut_.groupOffsets, &cut_.chunks};
+  const std::uint32_t chunks = cut_.chunkCount / 2;
+  const bool first = part == Part::First;
+  commands.dispatchLinear(scan_, scan,
+                          shader::CompactPush{.firstCount = first ? 0 : groupCount_ + 1,
+                                              .groupCount = groupCount_,
+                                              .firstChunk = first ? 0 : chunks,
+                                              .chunkCount = chunks},
+                          shader::kScanThreads);
+  commands.barrier(kCompute, kCompute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
+  for (const Level& level : levels) {
+    const std::array<Binding, 5> bindings{&frame_, level.parents, &masks_, &cut_.groupOffsets, &cut_.indices};
+    if (level.push.slotCount > 0)
+      commands.dispatchLinear(write_, bindings, level.push,
+                              groupsFor(level.push.slotCount) * shader::kCutThreads);
+  }
+  commands.barrier(kCompute, kCompute);
+}
+
+/// From the offsets of the levels' first workgroups, in both parts.
+std::vector<std::uint64_t> CutPass::drawnByLevel() const {
+  std::vector<std::uint32_t> offsets(cut_.groupOffsets.bytes() / sizeof(std::uint32_t));
+  download(device_, cut_.groupOffsets, std::as_writable_bytes(std::span(offsets)));
+  std::vector<std::uint64_t> drawn(std::size_t(finest_), 0);
+  for (std::size_t level = 0; level < firstGroups_.size(); ++level) {
+    const std::uint32_t begin = firstGroups_[level];
+    const std::uint32_t end = level + 1 < firstGroups_.size() ? firstGroups_[level + 1] : groupCount_;
+    std::uint64_t count = offsets[end] - offsets[begin];
+    if (hasDeferred_) count += offsets[groupCount_ + 1 + end] - offsets[groupCount_ + 1 + begin];
+    drawn.push_back(count);
+  }
+  return drawn;
+}
+
+CutCounts CutPass::counts() const {
+  shader::CutCounts found;
+  download(device_, counts_, std::as_writable_bytes(std::span(&found, 1)));
+  CutCounts result{.empty = found.empty,
+                   .outside = found.outside,
+                   .hidden = found.hidden,
+                   .opened = found.opened,
+                   .drawn = drawnByLevel()};
+  result.considered = result.empty + result.outside + result.hidden + result.opened;
+  for (const std::uint64_t count : result.drawn) result.considered += count;
+  return result;
+}
+
+}  // namespace freevoxels

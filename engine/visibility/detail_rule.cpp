@@ -1,0 +1,72 @@
+#include "engine/visibility/detail_rule.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/scene/footprint.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// What the device's rounding may move a distance by, and more, relative.
+constexpr double kMargin = 1e-3;
+
+/// Pixels that a voxel's edge is long at most at distance 1, at the sides of the image, where perspective
+/// stretches it; orthographic: anywhere.
+double pixelsPerEdge(const glm::dmat3& rows, const PixelRays& rays, glm::ivec2 imageSize) {
+  double longest = 0.0;
+  for (int axis = 0; axis < 2; ++axis)
+    for (const double side : {0.0, rays.orthographic ? 0.0 : double(imageSize[axis])})
+      longest = std::max(longest, glm::length(rows[axis] - side * rows[2]));
+  return longest;
+}
+
+/// Least and largest nearestDistance of the blocks of a level.
+glm::dvec2 distances(const DetailRule& rule, const HierarchyLayout& hierarchy, int level) {
+  const glm::ivec3 last = hierarchy.levels[std::size_t(level)].dimensions - 1;
+  glm::dvec2 range(rule.nearestDistance({level, {0, 0, 0}}));
+  for (int corner = 1; corner < 8; ++corner) {
+    const double distance =
+        rule.nearestDistance({level, last * glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2)});
+    range = {std::min(range.x, distance), std::max(range.y, distance)};
+  }
+  return range;
+}
+
+}  // namespace
+
+double DetailRule::nearestDistance(const Block& block) const {
+  const glm::dvec3 centre = (glm::dvec3(block.cell) + 0.5) * double(block.edge()) - 0.5;
+  const glm::dvec3 steepness = glm::abs(viewAxis);
+  return glm::dot(viewAxis, centre - eye) - 0.5 * block.edge() * (steepness.x + steepness.y + steepness.z);
+}
+
+bool DetailRule::isSmall(const Block& block) const {
+  return block.edge() <= edgePerDistance * nearestDistance(block);
+}
+
+DetailRule detailRule(const HierarchyLayout& hierarchy, const PixelRays& rays, glm::ivec2 imageSize,
+                      double lod) {
+  const glm::dmat3 basis = rays.orthographic ? glm::dmat3(rays.originX, rays.originY, rays.direction)
+                                             : glm::dmat3(rays.directionX, rays.directionY, rays.direction);
+  const glm::dmat3 rows = glm::transpose(glm::inverse(basis));
+  const double pixels = pixelsPerEdge(rows, rays, imageSize);
+  DetailRule rule{.viewAxis = rows[2], .eye = rays.origin};
+  if (rays.orthographic) {
+    while (rule.coarsest < hierarchy.top() && Block{.level = rule.coarsest + 1}.edge() * pixels <= lod)
+      ++rule.coarsest;
+    rule.finest = rule.coarsest;
+    return rule;
+  }
+  rule.edgePerDistance = std::min(lod / pixels, 0.5 / (kFootprintRadius * glm::length(rows[2])));
+  for (int level = 1; level <= hierarchy.top(); ++level) {
+    const glm::dvec2 range = rule.edgePerDistance * distances(rule, hierarchy, level);
+    const int edge = Block{.level = level}.edge();
+    if (edge <= range.x * (1.0 - kMargin)) rule.finest = level;
+    if (edge <= range.y * (1.0 + kMargin)) rule.coarsest = level;
+  }
+  return rule;
+}
+
+}  // namespace freevoxels

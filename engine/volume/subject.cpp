@@ -1,0 +1,58 @@
+#include "engine/volume/subject.h"
+
+#include <algorithm>
+
+#include "engine/volume/coarse_cells.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr int kCellsAlongLongestSide = 64;
+constexpr float kLeastDensity = 1.0f / 256.0f;  // of the largest
+constexpr double kMargin = 0.13;
+
+}  // namespace
+
+Subject boxOf(const Volume& volume) {
+  const auto toWorld = [&](glm::dvec3 index) { return glm::dvec3(volume.indexToWorld * glm::dvec4(index, 1.0)); };
+  const glm::dvec3 extent(volume.dimensions);
+  Subject subject{.centre = toWorld((extent - 1.0) / 2.0)};
+  for (int corner = 0; corner < 8; ++corner)
+    subject.points.push_back(toWorld(glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2) * extent - 0.5));
+  return subject;
+}
+
+Subject contentOf(const Volume& volume, const Classification& classification) {
+  const glm::ivec3 n = volume.dimensions;
+  const int edge = (std::max({n.x, n.y, n.z}) + kCellsAlongLongestSide - 1) / kCellsAlongLongestSide;
+  const Cells cells = metCells(volume, classification, edge, kLeastDensity * volume.maximum);
+  Subject subject = boxOf(volume);
+  subject.margin = kMargin;
+
+  std::vector<glm::dvec3> points;
+  glm::dvec3 low(n), high(-1.0);
+  for (int z = 0; z < cells.dimensions.z; ++z)
+    for (int y = 0; y < cells.dimensions.y; ++y) {
+      const auto* const row = &cells.values[cells.index({0, y, z})];
+      const auto* const end = row + cells.dimensions.x;
+      const auto* const first = std::find(row, end, 1);
+      if (first == end) continue;
+      const auto* last = end - 1;
+      while (*last == 0) --last;
+      const glm::dvec3 from = glm::dvec3(first - row, y, z) * double(edge) - 0.5;
+      const glm::dvec3 to = glm::min(glm::dvec3(last - row + 1, y + 1, z + 1) * double(edge), glm::dvec3(n)) - 0.5;
+      low = glm::min(low, from);
+      high = glm::max(high, to);
+      for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 index = glm::mix(from, to, glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2));
+        points.emplace_back(volume.indexToWorld * glm::dvec4(index, 1.0));
+      }
+    }
+  if (points.empty()) return subject;
+  subject.points = std::move(points);
+  subject.centre = glm::dvec3(volume.indexToWorld * glm::dvec4((low + high) / 2.0, 1.0));
+  return subject;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,48 @@
+#version 460
+// Second pass of the visible-voxel list, one workgroup: counts become offsets (exclusive sum), and the total
+// becomes the arguments of each chunk's dispatch and draw. A list that is continued has the sum of what it has so far
+// before its counts.
+#extension GL_GOOGLE_include_directive : require
+#include "interface.h"
+
+layout(local_size_x = kScanThreads) in;
+layout(scalar, push_constant) uniform Push { CompactPush push; };
+layout(scalar, binding = 0) buffer GroupCounts { uint groupCounts[]; };
+layout(scalar, binding = 1) writeonly buffer Chunks { ChunkArguments chunks[]; };
+
+shared uint sums[kScanThreads];
+
+void main() {
+  const uint thread = gl_LocalInvocationIndex;
+  const uint perThread = (push.groupCount + kScanThreads - 1) / kScanThreads;
+  const uint first = min(thread * perThread, push.groupCount);
+  const uint last = min(first + perThread, push.groupCount);
+  uint sum = 0;
+  for (uint i = first; i < last; ++i) sum += groupCounts[push.firstCount + i];
+  sums[thread] = sum;
+  barrier();
+
+  const uint before = push.firstCount > 0 ? groupCounts[push.firstCount - 1] : 0;
+  uint offset = before;
+  uint total = before;
+  for (uint i = 0; i < kScanThreads; ++i) {
+    offset += i < thread ? sums[i] : 0;
+    total += sums[i];
+  }
+  for (uint i = first; i < last; ++i) {
+    const uint count = groupCounts[push.firstCount + i];
+    groupCounts[push.firstCount + i] = offset;
+    offset += count;
+  }
+
+  if (thread == 0) groupCounts[push.firstCount + push.groupCount] = total;
+
+  for (uint chunk = thread; chunk < push.chunkCount; chunk += kScanThreads) {
+    const uint start = min(before + chunk * kSplatsPerChunk, total);
+    const uint count = min(total - start, uint(kSplatsPerChunk));
+    chunks[push.firstChunk + chunk] = ChunkArguments((count + kSplatThreads - 1) / kSplatThreads, 1, 1,  //
+                                                     count, start,                                       //
+                                                     count, 1, 0, 0,                                     //
+                                                     4, count, 0, 0);
+  }
+}

@@ -1,0 +1,32 @@
+#version 460
+// Third pass of the list of a level's blocks that hold anything: every one writes its index at its place, in
+// ascending order, so that the splats, and the rounding of their sums, come in the same order every time. A block's
+// place in the list is its rank in the level.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+#include "interface.h"
+
+layout(local_size_x = kOccupancyThreads) in;
+layout(scalar, push_constant) uniform Push { CompactPush push; };
+layout(scalar, binding = 0) buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 1) readonly buffer GroupOffsets { uint groupOffsets[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Blocks { uint values[]; };
+
+shared uint counts[kOccupancyThreads];
+
+void main() {
+  const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+  const uint thread = gl_LocalInvocationIndex;
+  const uint word = group * kOccupancyThreads + thread;
+  uint mask = word < push.wordCount ? occupancy[push.firstWord + word].mask : 0;
+  counts[thread] = bitCount(mask);
+  barrier();
+
+  if (word >= push.wordCount) return;
+  uint offset = groupOffsets[group];
+  for (uint i = 0; i < thread; ++i) offset += counts[i];
+  occupancy[push.firstWord + word].before = offset;
+  for (; mask != 0; mask &= mask - 1)
+    Blocks(push.blocks).values[offset++] = (push.firstWord + word) * kBlocksPerWord + uint(findLSB(mask));
+}
