@@ -1,4 +1,7 @@
-// The two codes of a table byte; engine/attenuation/directions.cpp has them in double precision.
+// The two codes of a table byte; engine/scene/directions.cpp has them in double precision.
+#ifndef ATTENUATION_CODE_GLSL
+#define ATTENUATION_CODE_GLSL
+#include "interface.h"
 
 uint encodeDepth(int code, float depth) {
   return code == kCodeDepth8 ? uint(sqrt(min(depth, kMaximumDepth)) * (255.0 / sqrt(kMaximumDepth)) + 0.5)
@@ -14,3 +17,5 @@ float decodeDepth(int code, uint byte) {
 // A bound in half a byte, no darker than the code itself; of linear8 only 0 hides anything.
 uint packBound(int code, uint byte) { return code == kCodeDepth8 ? byte / 16 : min((byte + 15) / 16, 15); }
 uint unpackBound(uint byte, int place) { return 16 * bitfieldExtract(byte, 4 * place, 4); }
+
+#endif

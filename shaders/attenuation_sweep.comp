@@ -5,8 +5,6 @@
 // A thread marches a bundle of lines from the side at which they enter the volume, plane by plane, and writes
 // each voxel's optical depth to the outside, exclusive of the voxel, before it adds the voxel's own.
 #extension GL_GOOGLE_include_directive : require
-#include "interface.h"
-#include "attenuation_code.glsl"
 #include "line_bundle.glsl"
 
 layout(scalar, push_constant) uniform Push { SweepPush push; };

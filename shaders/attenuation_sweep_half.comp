@@ -6,8 +6,6 @@
 // its extinction is the mean of the two or four around the line, and counts also where the voxel at the step's
 // end is outside. A march by two planes a step has two families of lines, over even and over odd planes.
 #extension GL_GOOGLE_include_directive : require
-#include "interface.h"
-#include "attenuation_code.glsl"
 #include "line_bundle.glsl"
 
 layout(constant_id = 3) const int kHalfwayRows = 1;  // around the middle of a step: 1, 2 or 4

@@ -1,16 +1,13 @@
 #version 460
 // The attenuation table for the directions +x and -x: Subr et al. 2007, Section 3.1, Eq. 5. A thread a row.
 #extension GL_GOOGLE_include_directive : require
-#include "interface.h"
-#include "attenuation_code.glsl"
+#include "stored_codes.glsl"
 
-layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const int kStepX = 1;  // of the march: 1 or -1
 
 layout(local_size_x = kSweepThreads) in;
 layout(scalar, push_constant) uniform Push { SweepPush push; };
 layout(binding = 0) uniform textureBuffer extinction;
-#include "stored_codes.glsl"
 
 void main() {
   const int row = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kSweepThreads);

@@ -1,5 +1,9 @@
-// A drawn block. Include after stored_block.glsl and packed_light.glsl; `frame` is the SetupFrame; kEmits says
-// whether blocks send out light.
+// A block that is drawn, and its centre of mass.
+#ifndef BLOCK_AT_GLSL
+#define BLOCK_AT_GLSL
+#include "packed_light.glsl"
+#include "setup_frame.glsl"
+#include "stored_block.glsl"
 
 struct Block {
   int level;
@@ -57,3 +61,5 @@ vec3 centerOfMass(Block block) {
   if (kEmits && mass == 0.0) return block.center;
   return block.center + sum / mass;
 }
+
+#endif

@@ -1,5 +1,9 @@
-// Optical depth from a block towards an eye or a light, from the table. Include after direction_lookup.glsl and
-// block_at.glsl; `frame` is the SetupFrame.
+// Optical depth from a block towards an eye or a light, from the table.
+#ifndef BLOCK_DEPTH_GLSL
+#define BLOCK_DEPTH_GLSL
+#include "block_at.glsl"
+#include "direction_lookup.glsl"
+#include "major_axis.glsl"
 
 const float kAtSource = 1e-3;  // voxels; nearer to an eye or a light a position has no direction
 
@@ -23,10 +27,10 @@ TableLookup towardsSource(vec3 direction, int lookup, uvec2 beyond) {
                  inFull ? layer : frame.voxelSize, beyond);
 }
 
-// The mean over the voxels of a block that holds anything; `falling` as depthTowards has it.
-float meanDepth(Block block, TableLookup towards, out float falling) {
+// The mean over the voxels of a block that holds anything; `unsaturated` as depthTowards has it.
+float meanDepth(Block block, TableLookup towards, out float unsaturated) {
   const BlockLevel level = frame.levels[block.level];
-  return depthTowards(towards, rankAt(level, blockAddress(level, block.cell)), falling);
+  return depthTowards(towards, rankAt(level, blockAddress(level, block.cell)), unsaturated);
 }
 
 // A block's mean depth is that of its middle layer: what lies in front of it is less by its own layers before. Where the
@@ -35,3 +39,5 @@ float meanDepth(Block block, TableLookup towards, out float falling) {
 float depthInFront(Block block, vec3 direction, float depth, float layerDepth) {
   return max(depth - 0.5 * float(layersOf(block, direction) - 1) * layerDepth, 0.0);
 }
+
+#endif

@@ -1,4 +1,7 @@
-// The octree's blocks: engine/hierarchy/hierarchy_layout.h. Include after interface.h.
+// The blocks of the octree: engine/octree/hierarchy_layout.h.
+#ifndef BLOCKS_GLSL
+#define BLOCKS_GLSL
+#include "interface.h"
 
 // Where a block is, here and in HierarchyLayout::indexOf and nowhere else.
 uint blockAddress(BlockLevel level, ivec3 cell) {
@@ -23,3 +26,5 @@ ivec3 extentInside(ivec3 cell, int edge, ivec3 voxels) { return min(voxels - cel
 // The colour of a block above the voxels, in 8 bytes.
 uvec2 packColor(vec3 color) { return uvec2(packHalf2x16(color.rg), packHalf2x16(vec2(color.b, 0.0))); }
 vec3 unpackColor(uvec2 bits) { return vec3(unpackHalf2x16(bits.x), unpackHalf2x16(bits.y).x); }
+
+#endif

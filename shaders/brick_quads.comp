@@ -7,6 +7,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "gather_interface.h"
 #include "blocks.glsl"
+#include "code_bricks.glsl"
 #include "rank.glsl"
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -20,7 +21,6 @@ layout(local_size_x = kBrickQuadsThreads) in;
 layout(scalar, push_constant) uniform Push { BrickQuadsPush push; };
 layout(binding = 0) uniform utextureBuffer brickCells;  // of each brick, in blocks: x, y, z of its first one
 layout(binding = 1) uniform utextureBuffer occupancy;   // OccupancyWord
-#include "code_bricks.glsl"
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Words { uint values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Sources { uvec2 values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer MediumQuads { uvec2 values[]; };

@@ -1,5 +1,8 @@
-// A row of a brick, a thread a row: densities, whose extinction is density x scale, and the light that they send out,
-// packed_light.glsl. Include after interface.h and blocks.glsl; takes the bindings 0 to 2.
+// A row of a brick, a thread a row: the extinction of its voxels, which is density x scale, and their emission (packed_light.glsl).
+// Takes the bindings 0 to 2 and the push constants.
+#ifndef BRICK_ROW_GLSL
+#define BRICK_ROW_GLSL
+#include "interface.h"
 
 layout(constant_id = 0) const bool kEmits = false;
 
@@ -35,3 +38,5 @@ Row loadRow(uint brick) {
   }
   return row;
 }
+
+#endif

@@ -1,4 +1,10 @@
-// Codes of 16 bits a block, in bricks of kBrickEdge^3, x fastest: include after the extension of buffer references.
+// Codes of 16 bits a block, in bricks of kBrickEdge^3, x fastest.
+#ifndef CODE_BRICKS_GLSL
+#define CODE_BRICKS_GLSL
+#include "interface.h"
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer CodeWords { uint values[]; };
 
 // 0 of blocks without data, which are all that are beyond the volume.
@@ -10,3 +16,5 @@ uint codeAt(CodeBricks bricks, ivec3 dimensions, ivec3 block) {
   const uint index = inside ? ((brick * kBrickEdge + local.z) * kBrickEdge + local.y) * kBrickEdge + local.x : 0;
   return bitfieldExtract(CodeWords(bricks.codes).values[index / 2], int(index % 2) * 16, 16);
 }
+
+#endif

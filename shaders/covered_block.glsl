@@ -1,5 +1,9 @@
-// Whether a block is behind what is drawn already. Include after interface.h; `frame` is the CutFrame, `tiles` are as
-// tile_opacity.comp made them.
+// Whether a block is behind what is drawn already, by the tiles of tile_opacity.comp.
+#ifndef COVERED_BLOCK_GLSL
+#define COVERED_BLOCK_GLSL
+#include "cut_frame.glsl"
+
+layout(scalar, binding = 9) readonly buffer Tiles { uint tiles[]; };
 
 const int kMostTiles = 8;  // along an axis: a larger block is looked at in parts
 
@@ -28,3 +32,5 @@ bool isOccluded(vec3 center, int edge) {
       if (tiles[y * frame.tiles.x + x] == 0) return false;
   return true;
 }
+
+#endif

@@ -9,36 +9,23 @@
 // What the table calls hidden is deferred. When the rest is drawn, the cut goes on below the deferred blocks, and of
 // these those are hidden at last that only reach pixels which are covered.
 #extension GL_GOOGLE_include_directive : require
-#include "interface.h"
-#include "blocks.glsl"
-#include "attenuation_code.glsl"
-#include "major_axis.glsl"
+#define OCCUPANCY_BINDING 2
+#define PLANE_ADDRESSES_BINDING 8
+#include "candidate_slot.glsl"
+#include "covered_block.glsl"
+#include "table_occlusion.glsl"
 
-layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const bool kDeferred = false;  // whether the cut goes on below the deferred blocks
 // Whether the level is that of the voxels. By itself, as lavapipe goes through branches that no thread takes.
 layout(constant_id = 2) const bool kVoxels = false;
 
 layout(local_size_x = kCutThreads) in;
-layout(scalar, push_constant) uniform Push { CutPush push; };
-layout(scalar, binding = 0) uniform Frame { CutFrame frame; };
-layout(scalar, binding = 1) readonly buffer Parents { uint parents[]; };
-layout(scalar, binding = 2) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 // Of each block above the voxels a byte, four a word: which children to look at. And which of them are deferred.
 layout(scalar, binding = 3) buffer Children { uint children[]; };
 layout(scalar, binding = 4) buffer Deferred { uint deferred[]; };
 layout(scalar, binding = 5) writeonly buffer Masks { uint masks[]; };
 layout(scalar, binding = 6) buffer GroupCounts { uint groupCounts[]; };
 layout(scalar, binding = 7) buffer Counts { CutCounts counts; };
-layout(scalar, binding = 8) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
-layout(scalar, binding = 9) readonly buffer Tiles { uint tiles[]; };
-#define PLANE_ADDRESS(cell) planeAddresses[cell]
-#include "rank.glsl"
-#include "direction_lookup.glsl"
-#include "occupancy.glsl"
-#include "cut_slot.glsl"
-#include "table_occlusion.glsl"
-#include "covered_block.glsl"
 
 shared CutCounts sums;
 shared uint asked[kCutSlotsPerGroup];  // the slots to look at, in any order

@@ -2,17 +2,12 @@
 // Last pass of the cut, one dispatch a level, after compact_scan.comp: the blocks that are drawn, at their places, in
 // the order of their slots.
 #extension GL_GOOGLE_include_directive : require
-#include "interface.h"
-#include "blocks.glsl"
+#include "candidate_slot.glsl"
 
 layout(local_size_x = kCutThreads) in;
-layout(scalar, push_constant) uniform Push { CutPush push; };
-layout(scalar, binding = 0) uniform Frame { CutFrame frame; };
-layout(scalar, binding = 1) readonly buffer Parents { uint parents[]; };
 layout(scalar, binding = 2) readonly buffer Masks { uint masks[]; };
 layout(scalar, binding = 3) readonly buffer GroupOffsets { uint groupOffsets[]; };
 layout(scalar, binding = 4) writeonly buffer Drawn { uint drawn[]; };
-#include "cut_slot.glsl"
 
 shared uint counts[kCutThreads];
 

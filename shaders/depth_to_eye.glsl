@@ -1,5 +1,8 @@
-// Optical depth between a block and the eye, exclusive of the block, and its gradient across the lines of
-// sight. Include after block_depth.glsl and ray_lookup.glsl.
+// Optical depth between a block and the eye, exclusive of the block, and its gradient across the lines of sight.
+#ifndef DEPTH_TO_EYE_GLSL
+#define DEPTH_TO_EYE_GLSL
+#include "block_depth.glsl"
+#include "ray_lookup.glsl"
 
 vec3 directionToEye(vec3 position) {
   vec3 toEye = -(position - frame.middle + frame.eyeToMiddle);
@@ -7,8 +10,8 @@ vec3 directionToEye(vec3 position) {
   return acrossLayer(toEye);
 }
 
-float tableDepth(Block block, out float falling) {
-  return meanDepth(block, towardsSource(directionToEye(block.center), frame.lookup, frame.sourceDepth), falling);
+float tableDepth(Block block, out float unsaturated) {
+  return meanDepth(block, towardsSource(directionToEye(block.center), frame.lookup, frame.sourceDepth), unsaturated);
 }
 
 // Of the block, or of itself where that holds nothing: the table does not know it.
@@ -58,12 +61,12 @@ DepthToEye alongRays(Block block, float sigma, vec3 direction) {
 
 DepthToEye fromTable(Block block, float sigma, vec3 direction) {
   const int axis = majorAxis(direction);
-  float falling;
-  vec3 middle = vec3(tableDepth(block, falling), 0.0, 0.0);
+  float unsaturated;
+  vec3 middle = vec3(tableDepth(block, unsaturated), 0.0, 0.0);
   if (frame.gradient != 0) middle.yz = vec2(tableSlope(block, (axis + 1) % 3), tableSlope(block, (axis + 2) % 3));
-  const float fallingSigma = falling * sigma, layerDepth = fallingSigma * layerLength(direction);
+  const float unsaturatedSigma = unsaturated * sigma, layerDepth = unsaturatedSigma * layerLength(direction);
   return inFrontOf(block, direction, axis, middle, layerDepth,
-                   frame.pathLengthCorrection != 0 ? layerDepth : fallingSigma * frame.voxelSize);
+                   frame.pathLengthCorrection != 0 ? layerDepth : unsaturatedSigma * frame.voxelSize);
 }
 
 // `sigma` is the block's extinction.
@@ -77,3 +80,5 @@ DepthToEye depthToEye(Block block, float sigma) {
   const DepthToEye rays = alongRays(block, sigma, direction);
   return DepthToEye(mix(table.depth, rays.depth, frame.rayShare), mix(table.gradient, rays.gradient, frame.rayShare));
 }
+
+#endif

@@ -1,9 +1,18 @@
-// Optical depth from a block towards a general direction, from the directions of the table: Subr et al. 2007,
-// Section 3.3, there with the nearest one. Include after interface.h, major_axis.glsl, attenuation_code.glsl and rank.glsl,
-// and define PLANE_ADDRESS(cell) as the device address of the codes of the direction with that cell number; behind the
-// last cell that of the runs of blocks that can be seen, 0 where the codes of all are kept.
+// Optical depth from a block towards a general direction, interpolated between the directions of the table: Subr et al. 2007,
+// Section 3.3, which takes the nearest one. Binding PLANE_ADDRESSES_BINDING has the device address of each direction's codes, by cell
+// number, and behind the last cell that of the mask of runs that pruning kept: 0 if it kept all.
+#ifndef DIRECTION_LOOKUP_GLSL
+#define DIRECTION_LOOKUP_GLSL
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
+#include "attenuation_code.glsl"
+#include "major_axis.glsl"
+#include "rank.glsl"
+#ifndef PLANE_ADDRESSES_BINDING
+#error "Define PLANE_ADDRESSES_BINDING, the binding of the addresses of the planes, before including direction_lookup.glsl."
+#endif
+
+layout(scalar, binding = PLANE_ADDRESSES_BINDING) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer CodePlane { uint words[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SeenRuns { OccupancyWord words[]; };
@@ -29,7 +38,7 @@ int cellNumber(int cells, ivec3 cell) {
 
 // Where in a plane the code of a block is: those of runs that cannot be seen share the first one's.
 uint codePlace(int cells, uint rank) {
-  const uvec2 runs = PLANE_ADDRESS(cellNumber(cells, ivec3(cells)) + 1);
+  const uvec2 runs = planeAddresses[cellNumber(cells, ivec3(cells)) + 1];
   if (runs == uvec2(0)) return rank;
   const OccupancyWord word = SeenRuns(runs).words[rank / (kRunBlocks * kBlocksPerWord)];
   const int bit = int(rank / kRunBlocks % kBlocksPerWord);
@@ -42,7 +51,7 @@ uint codeAt(uvec2 plane, uint place) {
 }
 
 uint storedCode(TableLookup towards, ivec3 cell, uint place) {
-  return codeAt(PLANE_ADDRESS(cellNumber(towards.cells, cell)), place);
+  return codeAt(planeAddresses[cellNumber(towards.cells, cell)], place);
 }
 
 // As if the line along the stored direction were as long as the one that is asked for: a homogeneous medium
@@ -68,15 +77,19 @@ bool isAtEnd(TableLookup towards, ivec3 cell, uint place) {
   return storedCode(towards, cell, place) == (towards.code == kCodeLinear8 ? 0 : 255);
 }
 
+// Halves go towards 0, as in nearestDirection() of engine/scene/directions.h; GLSL's round() may take them either way.
+ivec3 nearestCell(vec3 point) { return ivec3(sign(point) * ceil(abs(point) - 0.5)); }
+
 // Between four directions of the table. Transmittances are interpolated, not depths: one dark direction would
-// darken all. `falling`: what part of the transmittance grows towards the eye by what a layer takes from it.
-float depthTowards(TableLookup towards, uint rank, out float falling) {
+// darken all. `unsaturated` is the part of the transmittance that comes from directions whose code is not at its end: only that part
+// grows towards the eye by what a layer takes from it.
+float depthTowards(TableLookup towards, uint rank, out float unsaturated) {
   const uint place = codePlace(towards.cells, rank);
   // A division may round to just beyond 1.
   const vec3 point = clamp(towards.direction, -1.0, 1.0) * towards.cells;
   if (towards.lookup == kLookupNearest) {
-    falling = isAtEnd(towards, ivec3(round(point)), place) ? 0.0 : 1.0;
-    return depthUpTo(towards, ivec3(round(point)), place);
+    unsaturated = isAtEnd(towards, nearestCell(point), place) ? 0.0 : 1.0;
+    return depthUpTo(towards, nearestCell(point), place);
   }
   const vec3 low = floor(min(point, 0.999999 * towards.cells));
   const vec3 weight = point - low;
@@ -86,7 +99,7 @@ float depthTowards(TableLookup towards, uint rank, out float falling) {
   const int b = (major + 2) % 3;
   ivec3 cell;
   cell[major] = point[major] > 0.0 ? towards.cells : -towards.cells;
-  float sum = 0.0, ofFalling = 0.0;
+  float sum = 0.0, unsaturatedSum = 0.0;
   [[unroll]] for (int j = 0; j < 2; ++j) {
     [[unroll]] for (int i = 0; i < 2; ++i) {
       cell[a] = int(low[a]) + i;
@@ -94,9 +107,11 @@ float depthTowards(TableLookup towards, uint rank, out float falling) {
       const float share = (i == 0 ? 1.0 - weight[a] : weight[a]) * (j == 0 ? 1.0 - weight[b] : weight[b]);
       const float transmittance = share * exp(-depthUpTo(towards, cell, place));
       sum += transmittance;
-      if (!isAtEnd(towards, cell, place)) ofFalling += transmittance;
+      if (!isAtEnd(towards, cell, place)) unsaturatedSum += transmittance;
     }
   }
-  falling = ofFalling / sum;
+  unsaturated = unsaturatedSum / sum;
   return -log(sum);
 }
+
+#endif

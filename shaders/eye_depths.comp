@@ -4,12 +4,11 @@
 // half of what is at the eye itself.
 #extension GL_GOOGLE_include_directive : require
 #include "frame_interface.h"
-#include "blocks.glsl"
 
 layout(local_size_x = kEyeThreads) in;
 layout(scalar, push_constant) uniform Push { EyeDepthsPush push; };
-layout(scalar, binding = 0) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 layout(scalar, binding = 1) writeonly buffer EyeDepths { float eyeDepths[]; };
+#define OCCUPANCY_BINDING 0
 #define STORES push.stores
 #include "stored_block.glsl"
 

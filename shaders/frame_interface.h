@@ -116,9 +116,6 @@ struct TilePush {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(Splat) == 64);
-static_assert(sizeof(ResolvePush) == 84);
-static_assert(sizeof(TilePush) == 96);
 }  // namespace freevoxels::shader
 #endif
 #endif

@@ -5,12 +5,13 @@
 // in place of the attenuation table.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "gather_interface.h"
+#define TRANSFER_TABLE_BINDING 7
+#include "gather_ray.glsl"
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 #include "packed_light.glsl"
 #include "packed_gradient.glsl"
-#include "phase_function.glsl"
+#include "transfer_table.glsl"
 
 layout(constant_id = 0) const int kAxis = 2;        // rays with another axis are left to other dispatches
 layout(constant_id = 1) const bool kTowards = false;  // whether the light of blocks depends on the direction to the eye
@@ -25,8 +26,6 @@ layout(constant_id = 8) const bool kSurfaces = false;
 layout(constant_id = 5) const bool kPieces = false;   // whether quads are in more than one piece
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
-layout(scalar, binding = 0) uniform Frame { GatherFrame frame; };
-#include "gather_ray.glsl"
 layout(binding = 1) uniform utextureBuffer brickNumbers;
 // Quads: of two neighbours along the first side each, of this position and of the next one along the second side.
 layout(binding = 2) uniform utextureBuffer mediumQuads;      // extinctions, four halves; or four codes of scalars
@@ -47,8 +46,6 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Med
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Gradients { uint values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SourcePiece { uvec4 values[]; };
 layout(binding = 8) uniform utextureBuffer skipCells;
-layout(binding = 7) uniform textureBuffer transferTable;  // of each interval the integral up to it, and the mean
-#include "transfer_table.glsl"
 
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;

@@ -193,16 +193,8 @@ struct BrickQuadsPush {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(GatherAxis) == 8 * 4 + 12 * 6 - 16 + (3 + kMostLightSlots) * kMostPieces * 8 + 2 * kMaximumLevels * 8);
-static_assert(sizeof(GatherLevel) == 48);
-static_assert(sizeof(BrickQuadsPush) == 120);
 static_assert(sizeof(GatherFrame) <= 16384);
 static_assert(sizeof(SurfaceGradientsPush) <= 128);
-static_assert(sizeof(LightDepthsPush) == 108);
-static_assert(sizeof(ExpandScalarsPush) == 76);
-static_assert(sizeof(ShadePush) == 48);
-static_assert(sizeof(AmbientSweepPush) == 120);
-static_assert(sizeof(AmbientCodesPush) == 44);
 }  // namespace freevoxels::shader
 #endif
 #endif

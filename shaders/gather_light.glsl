@@ -1,17 +1,10 @@
 // Part of gather.comp, whose frame and constants it reads: what a light sends to the eye from a part of a ray.
 #ifndef GATHER_LIGHT_GLSL
 #define GATHER_LIGHT_GLSL
+#include "surface_scattering.glsl"
 
 // The mean of exp(-depth) over a part along which the depth grows from 0 to x, of either sign.
 float meanTransmittance(float x) { return abs(x) < 0.02 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(-x)) / x; }
-
-// In the place of the phase function, after Blinn; both sides are alike.
-float surfaceScattering(vec3 normal, vec3 toLight, vec3 toEye) {
-  const vec3 between = toLight + toEye;
-  const float facing = min(abs(dot(normal, between)) / max(length(between), 1e-6), 1.0);
-  const float highlight = (kHighlightExponent + 1.0) / (8.0 * kPi) * pow(facing, kHighlightExponent);
-  return (1.0 - kHighlight) * abs(dot(normal, toLight)) / (2.0 * kPi) + kHighlight * highlight;
-}
 
 // What a part of the ray is lit by: optical depths towards the lights at its beginning, and how they change along it.
 struct Lit {

@@ -1,6 +1,7 @@
-// The ray of a lattice sample. Include after gather_interface.h and the uniform block `frame`, a GatherFrame.
+// The ray of a sample of the lattice.
 #ifndef GATHER_RAY_GLSL
 #define GATHER_RAY_GLSL
+#include "gather_frame.glsl"
 #include "major_axis.glsl"
 
 // The sample's position relative to the image's middle, in pixels: (1, x, y).

@@ -4,23 +4,18 @@
 // distance of what the sample shows. Voxels smaller than a pixel are widened to it, as footprints are.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "gather_interface.h"
+#include "gather_ray.glsl"
+#include "gather_resolve.glsl"
+#include "mean_distance.glsl"
 
-layout(constant_id = 0) const bool kWithDistance = false;
 layout(constant_id = 1) const bool kDirect = false;  // the lattice is that of the pixels: write the image
 layout(constant_id = 2) const bool kScalars = false;  // whether voxels are classified after interpolation
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
-layout(scalar, binding = 0) uniform Frame { GatherFrame frame; };
-#include "gather_ray.glsl"
 layout(binding = 1) uniform textureBuffer colorEnergy;  // C, E
 layout(binding = 2) uniform textureBuffer distances;    // sum of e times distance
 layout(binding = 3, rgba32f) writeonly uniform imageBuffer colorEnergyOut;
 layout(binding = 4, r32f) writeonly uniform imageBuffer distancesOut;
-layout(binding = 5, rgba32f) writeonly uniform image2D colorImage;
-layout(binding = 6, r32f) writeonly uniform image2D distanceImage;
-#include "gather_resolve.glsl"
-#include "mean_distance.glsl"
 
 const float kStencilStrength = 1.2;   // measured: higher than the missing variance, as the stencil is coarse
 const float kLeastTransmittance = 1e-6;  // that the stencil tells from 0

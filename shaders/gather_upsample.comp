@@ -3,22 +3,18 @@
 // the lattice with the image's width, then along y into the image.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "gather_interface.h"
 #include "catmull_rom.glsl"
+#include "gather_frame.glsl"
+#include "gather_resolve.glsl"
 #include "mean_distance.glsl"
 
-layout(constant_id = 0) const bool kWithDistance = false;
 layout(constant_id = 1) const bool kAlongY = false;
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
-layout(scalar, binding = 0) uniform Frame { GatherFrame frame; };
 layout(binding = 1) uniform textureBuffer colorEnergy;  // C, E
 layout(binding = 2) uniform textureBuffer distances;    // sum of e times distance
 layout(binding = 3, rgba32f) writeonly uniform imageBuffer colorEnergyOut;
 layout(binding = 4, r32f) writeonly uniform imageBuffer distancesOut;
-layout(binding = 5, rgba32f) writeonly uniform image2D colorImage;
-layout(binding = 6, r32f) writeonly uniform image2D distanceImage;
-#include "gather_resolve.glsl"
 
 void main() {
   const ivec2 index = ivec2(gl_GlobalInvocationID.xy);

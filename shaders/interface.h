@@ -310,16 +310,7 @@ struct RadixPush {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(BlockLevel) == 28);
-static_assert(sizeof(ChunkArguments) == 52);
 static_assert(sizeof(CutFrame) <= 16384);  // a uniform buffer, which every device takes up to here
-static_assert(sizeof(CutPush) == 16);
-static_assert(sizeof(DepthKeyPush) == 80);
-static_assert(sizeof(ExpandPush) == 52);
-static_assert(sizeof(HalfSweepPush) == 84);
-static_assert(sizeof(MediumLevelPush) == 116);
-static_assert(sizeof(RaySweepPush) == 128);  // what every device takes
-static_assert(sizeof(TableLevelPush) == 84);
 }  // namespace freevoxels::shader
 #endif
 #endif

@@ -8,7 +8,7 @@
 #include "gather_interface.h"
 #include "blocks.glsl"
 #include "rank.glsl"
-#include "major_axis.glsl"
+#include "ray_lookup.glsl"
 
 layout(constant_id = 0) const bool kScalars = false;  // rays have the depths of positions, else those in front of layers
 
@@ -19,7 +19,6 @@ layout(binding = 1) uniform utextureBuffer occupancy;   // OccupancyWord
 layout(scalar, binding = 2) readonly buffer Lights { Light lights[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Extinctions { float values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer LightDepths { uint pairs[]; };
-#include "ray_lookup.glsl"
 
 const float kAtSource = 1e-3;  // voxels; nearer to a light a position has no direction
 

@@ -1,9 +1,12 @@
-// What a block of albedo 1 scatters towards the eye of the light that it gets: Subr et al. 2007, Section 4.3. Include after
-// block_depth.glsl and self_attenuation.glsl; `frame` is the SetupFrame, `lights` its lights. kAnyView says whether the
-// light is wanted for all positions of the eye, to first order in the direction towards it: then there must be neither a
-// phase function nor surfaces.
-
+// The light that a block of albedo 1 scatters towards the eye: Subr et al. 2007, Section 4.3. With kAnyView it is computed for all
+// positions of the eye, to first order in the direction towards the eye; there must then be neither a phase function nor surfaces.
+#ifndef LIGHTING_GLSL
+#define LIGHTING_GLSL
+#include "block_depth.glsl"
 #include "phase_function.glsl"
+#include "ray_lookup.glsl"
+#include "self_attenuation.glsl"
+#include "surface_scattering.glsl"
 
 const float kMostRayDepth = 0.9999 * kOpaqueDepth;  // the end of the code of rays
 
@@ -31,14 +34,6 @@ vec3 extinctionGradient(Block block) {
   return gradient;
 }
 
-// In the place of the phase function, after Blinn; both sides are alike.
-float surfaceScattering(vec3 normal, vec3 toLight, vec3 toEye) {
-  const vec3 between = toLight + toEye;
-  const float facing = min(abs(dot(normal, between)) / max(length(between), 1e-6), 1.0);
-  const float highlight = (kHighlightExponent + 1.0) / (8.0 * kPi) * pow(facing, kHighlightExponent);
-  return (1.0 - kHighlight) * abs(dot(normal, toLight)) / (2.0 * kPi) + kHighlight * highlight;
-}
-
 // What of a light reaches the parts of a block that the eye sees, were it on the light's side of the block, and on the
 // other one.
 struct Sides {
@@ -55,19 +50,19 @@ vec2 meansSeen(SeenBlock seen, float own) {
 }
 
 // What of the light from a direction reaches what is seen of the block, in an octave of scattering that multiplies optical
-// depths by `scale`. `depth` and `falling` as depthTowards has them.
-Sides reaching(SeenBlock seen, vec3 direction, float depth, float falling, float scale) {
+// depths by `scale`. `depth` and `unsaturated` as depthTowards has them.
+Sides lightReaching(SeenBlock seen, vec3 direction, float depth, float unsaturated, float scale) {
   const float layer = layerLength(direction);
   const bool inFull = frame.lighting.lookup == kLookupExact || frame.pathLengthCorrection != 0;
   const float counted = inFull ? layer : frame.voxelSize;
-  const float inFront = scale * depthInFront(seen.block, direction, depth, falling * seen.sigma * counted);
+  const float inFront = scale * depthInFront(seen.block, direction, depth, unsaturated * seen.sigma * counted);
   const float own = scale * seen.sigma * layer * float(layersOf(seen.block, direction));
   if (!kTinted) {
     const vec2 means = exp(-inFront) * meansSeen(seen, own);
     return Sides(vec3(means.x), vec3(means.y));
   }
   // At the end of its code a depth may be any larger one, and a tint would let light through.
-  if (falling == 0.0 || depth >= kMostRayDepth) return Sides(vec3(0.0), vec3(0.0));
+  if (unsaturated == 0.0 || depth >= kMostRayDepth) return Sides(vec3(0.0), vec3(0.0));
   Sides sides;
   for (int c = 0; c < 3; ++c) {
     const float tint = frame.lighting.tint[c];
@@ -108,11 +103,11 @@ void addScattered(inout ScatteredLight sum, int light, SeenBlock seen) {
     if (dot(toLight, toLight) < kAtSource * kAtSource) toLight = vec3(0.0, 0.0, 1.0);
     toLight = acrossLayer(toLight);
   }
-  float depth, falling = 1.0;
+  float depth, unsaturated = 1.0;
   if (frame.lighting.lookup == kLookupExact)
     depth = rayDepthOf(lights[light].fans[fanIndex(-toLight)], seen.block, toLight).x;
   else
-    depth = depthTowards(towardsSource(toLight, frame.lighting.lookup, lights[light].beyond), seen.rank, falling);
+    depth = depthTowards(towardsSource(toLight, frame.lighting.lookup, lights[light].beyond), seen.rank, unsaturated);
   const vec3 way = normalize(frame.indexToWorld * toLight);
   float scale = 1.0;
   for (int octave = 0; octave < frame.lighting.octaves; ++octave) {
@@ -120,7 +115,7 @@ void addScattered(inout ScatteredLight sum, int light, SeenBlock seen) {
     if (seen.surface > 0.0)
       phase = mix(phase, octave == 0 ? surfaceScattering(seen.normal, way, seen.toEye) : 0.0, seen.surface);
     const vec3 arriving = lights[light].color * (scale * phase / distance2);
-    addLight(sum, seen, arriving, reaching(seen, toLight, depth, falling, scale), way);
+    addLight(sum, seen, arriving, lightReaching(seen, toLight, depth, unsaturated, scale), way);
     scale *= frame.lighting.octaveScale;
   }
 }
@@ -139,7 +134,7 @@ void addFromEverywhere(inout ScatteredLight total, SeenBlock seen) {
     if (fromThere.w == 0.0) continue;  // no direction: inside of the cube
     const ivec3 cell = ivec3(i % edge, i / edge % edge, i / edge / edge) - frame.cells;
     const float depth = decodeDepth(frame.code, storedCode(towards, cell, place));
-    const float falling = isAtEnd(towards, cell, place) ? 0.0 : 1.0;
+    const float unsaturated = isAtEnd(towards, cell, place) ? 0.0 : 1.0;
     const vec3 direction = vec3(cell) / float(frame.cells);
     const vec3 way = normalize(frame.indexToWorld * direction);
     float scale = 1.0;
@@ -148,7 +143,7 @@ void addFromEverywhere(inout ScatteredLight total, SeenBlock seen) {
           kAnyView || frame.lighting.phaseG == 0.0 ? 1.0 : 4.0 * kPi * phaseFunction(scale * frame.lighting.phaseG, -way, seen.toEye);
       weights += fromThere.w * scale * phase;
       parts += fromThere.w * scale;
-      addLight(sum, seen, scale * phase * fromThere.rgb, reaching(seen, direction, depth, falling, scale), way);
+      addLight(sum, seen, scale * phase * fromThere.rgb, lightReaching(seen, direction, depth, unsaturated, scale), way);
       scale *= frame.lighting.octaveScale;
     }
   }
@@ -174,3 +169,5 @@ ScatteredLight scatteredLight(Block block, float sigma, uint rank, vec3 towardsE
   if (frame.lighting.hasAmbient != 0) addFromEverywhere(sum, seen);
   return sum;
 }
+
+#endif

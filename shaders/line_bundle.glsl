@@ -1,5 +1,5 @@
 // What the sweeps that march along z or y share: a bundle of lattice lines that are neighbours in x, carried
-// by one thread. Include after interface.h and attenuation_code.glsl.
+// by one thread.
 //
 // Lines that leave the box sideways enter again on the other side with an optical depth of 0: as many lines as
 // the entry plane has voxels cover every voxel exactly once, and no face needs a case of its own.
@@ -9,14 +9,15 @@
 // than it writes.
 //
 // A volume that is swept slab by slab keeps the lines' depths between slabs: a thread those of all lines that it carries.
+#ifndef LINE_BUNDLE_GLSL
+#define LINE_BUNDLE_GLSL
+#include "stored_codes.glsl"
 
-layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const int kVoxels = 16;  // a multiple of 4
 layout(constant_id = 2) const int kStepX = 0;    // of the march, -2 to 2
 
 layout(local_size_x = kSweepThreads) in;
 layout(binding = 0) uniform textureBuffer extinction;
-#include "stored_codes.glsl"
 layout(scalar, binding = 3) buffer KeptDepths { float carriedDepths[]; };
 
 const int kSize = kStepX < 0 ? -kStepX : kStepX;
@@ -93,3 +94,5 @@ void writeWindow(int row, int window, int quads, int phase) {
     storeCodes(row + wrapped(window + w, quads), vec4(depths[line], depths[line + 1], depths[line + 2], depths[line + 3]));
   }
 }
+
+#endif

@@ -5,7 +5,6 @@
 // Subr et al. 2007, Section 3.2.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
-#include "blocks.glsl"
 #include "opacity.glsl"
 #include "packed_light.glsl"
 
@@ -15,8 +14,8 @@ layout(constant_id = 2) const bool kEmits = false;
 
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { MediumLevelPush push; };
-layout(scalar, binding = 0) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 layout(scalar, binding = 1) readonly buffer Parents { uint parents[]; };
+#define OCCUPANCY_BINDING 0
 #define STORES push.stores
 #include "stored_block.glsl"
 

@@ -2,13 +2,11 @@
 // The extinction, the colours and the light of the voxels that hold anything, each at its rank, brick by brick.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
-#include "blocks.glsl"
-#include "rank.glsl"
 #include "brick_row.glsl"
 
 layout(constant_id = 1) const bool kColors = false;  // voxels have colours of their own
 
-layout(scalar, binding = 3) readonly buffer Occupancy { OccupancyWord occupancy[]; };
+#define OCCUPANCY_BINDING 3
 #include "occupancy.glsl"
 #define STORES push.stores
 #include "stores.glsl"

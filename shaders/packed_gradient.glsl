@@ -1,4 +1,7 @@
 // Gradients in 4 bytes: three signed components of 9 bits, and the exponent that they share.
+#ifndef PACKED_GRADIENT_GLSL
+#define PACKED_GRADIENT_GLSL
+
 const float kMantissas = 255.0;
 const int kLeastExponent = -16;  // of what is less nothing is kept
 
@@ -13,3 +16,5 @@ vec3 unpackGradient(uint bits) {
   const ivec3 parts = ivec3(bitfieldExtract(int(bits), 0, 9), bitfieldExtract(int(bits), 9, 9), bitfieldExtract(int(bits), 18, 9));
   return vec3(parts) * (exp2(float(int(bits >> 27) + kLeastExponent)) / kMantissas);
 }
+
+#endif

@@ -1,6 +1,8 @@
 // Light and albedos in 4 bytes, 9 bits a component with an exponent that they share (as VK_FORMAT_E5B9G9R9_UFLOAT_PACK32):
 // a component is at most 1/512 of the largest off. Light is in units in which the brightest voxel's is kBrightest
 // (engine/volume/packed_light.h).
+#ifndef PACKED_LIGHT_GLSL
+#define PACKED_LIGHT_GLSL
 
 vec3 unpackLight(uint bits) {
   const uvec3 parts = uvec3(bits, bits >> 9, bits >> 18) & 511u;
@@ -16,3 +18,5 @@ uint packLight(vec3 light) {
   const uvec3 parts = uvec3(ldexp(light, ivec3(9 - exponent)) + 0.5);
   return parts.r | parts.g << 9 | parts.b << 18 | uint(exponent + 15) << 27;
 }
+
+#endif

@@ -1,4 +1,6 @@
 // Henyey and Greenstein 1941.
+#ifndef PHASE_FUNCTION_GLSL
+#define PHASE_FUNCTION_GLSL
 
 const float kPi = 3.14159265358979;
 
@@ -9,3 +11,5 @@ float phaseFunction(float g, vec3 before, vec3 after) {
   const float width = (1.0 - abs(g)) * (1.0 - abs(g)) + abs(g) * dot(apart, apart);
   return (1.0 - g * g) / (4.0 * kPi * width * sqrt(width));
 }
+
+#endif

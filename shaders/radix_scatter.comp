@@ -3,6 +3,7 @@
 // A bit mask a digit says which threads of the tile hold it; a pair's rank is the bits before its own.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
+#include "radix_stretch.glsl"
 
 layout(local_size_x = kSortThreads) in;
 layout(scalar, push_constant) uniform Push { RadixPush push; };
@@ -12,7 +13,6 @@ layout(scalar, binding = 2) readonly buffer Values { uint values[]; };
 layout(scalar, binding = 3) readonly buffer Offsets { uint offsets[]; };  // [group][digit]
 layout(scalar, binding = 4) writeonly buffer SortedKeys { uint sortedKeys[]; };
 layout(scalar, binding = 5) writeonly buffer SortedValues { uint sortedValues[]; };
-#include "radix_stretch.glsl"
 
 const uint kWords = kSortThreads / 32;
 shared uint next[kSortDigits];  // where the stretch's next pair with this digit goes
@@ -25,8 +25,8 @@ void main() {
   for (uint w = 0; w < kWords; ++w) masks[w][thread] = 0;
   barrier();
 
-  const uint last = stretchLast();
-  for (uint tile = stretchFirst(); tile < last; tile += kSortThreads) {
+  const uint last = stretchLast(count);
+  for (uint tile = stretchFirst(count); tile < last; tile += kSortThreads) {
     const uint i = tile + thread;
     const bool mine = i < last;
     const uint key = mine ? keys[i] : 0;

@@ -1,9 +1,14 @@
-// The stretch of pairs that is this workgroup's: whole tiles of one pair a thread. Included after interface.h
-// and a buffer with `count`.
+// The stretch of pairs that a workgroup sorts: whole tiles of one pair a thread.
+#ifndef RADIX_STRETCH_GLSL
+#define RADIX_STRETCH_GLSL
+#include "interface.h"
 
-uint stretchLength() {
+// `count` pairs are sorted in all.
+uint stretchLength(uint count) {
   const uint tiles = (count + kSortThreads - 1) / kSortThreads;
   return (tiles + kSortGroups - 1) / kSortGroups * kSortThreads;
 }
-uint stretchFirst() { return min(gl_WorkGroupID.x * stretchLength(), count); }
-uint stretchLast() { return min(stretchFirst() + stretchLength(), count); }
+uint stretchFirst(uint count) { return min(gl_WorkGroupID.x * stretchLength(count), count); }
+uint stretchLast(uint count) { return min(stretchFirst(count) + stretchLength(count), count); }
+
+#endif

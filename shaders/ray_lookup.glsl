@@ -1,7 +1,11 @@
-// Optical depth between the source of a ray sweep and a position on one of its planes, and how it changes
-// within the plane. Include after interface.h, major_axis.glsl and GL_EXT_buffer_reference_uvec2.
-
+// Optical depth between the source of a ray sweep and a position on one of its planes, and how it changes within the plane.
+#ifndef RAY_LOOKUP_GLSL
+#define RAY_LOOKUP_GLSL
 #include "catmull_rom.glsl"
+#include "interface.h"
+#include "major_axis.glsl"
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RayDepths { uint pairs[]; };
 
@@ -38,3 +42,5 @@ vec3 rayDepth(FaceRays fan, vec3 position) {
   }
   return vec3(max(sum.x, 0.0), sum.yz);
 }
+
+#endif

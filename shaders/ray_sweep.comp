@@ -6,7 +6,8 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_samplerless_texture_functions : require
-#include "gather_interface.h"
+#define TRANSFER_TABLE_BINDING 2
+#include "transfer_table.glsl"
 
 // Classification after interpolation: depths are those up to the planes themselves, from scalars that change linearly between
 // planes. Else they are those in front of the planes' layers, each with the extinction of its plane.
@@ -15,8 +16,6 @@ layout(constant_id = 0) const bool kScalars = false;
 layout(local_size_x = kRaySweepThreads) in;
 layout(scalar, push_constant) uniform Push { RaySweepPush push; };
 layout(binding = 0) uniform samplerBuffer extinction;  // of the slab's voxels, with 0 around the volume; or scalars
-layout(binding = 2) uniform textureBuffer transferTable;
-#include "transfer_table.glsl"
 layout(scalar, binding = 1) buffer Carried { float carried[]; };  // from slab to slab, by ray
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Depths { uint pairs[]; };
 

@@ -1,5 +1,8 @@
-// What of its own light leaves a voxel, towards the eye: the mean of the transmittance over its layer, or over its
-// kernel, relative to that at the layer's front. Include after depth_to_eye.glsl; `frame` is the SetupFrame.
+// How much of its own light leaves a voxel towards the eye: the mean of the transmittance over its layer, or over its kernel,
+// relative to that at the front of the layer.
+#ifndef SELF_ATTENUATION_GLSL
+#define SELF_ATTENUATION_GLSL
+#include "block_depth.glsl"
 
 // Over a layer of optical depth x: (1 - exp(-x)) / x, also right for small x.
 float selfAttenuation(float x) {
@@ -39,3 +42,5 @@ float kernelMean(vec3 position, vec3 direction, float own, float inFront) {
   return 0.5 * selfAttenuation(own) + 0.25 * halfLayer * halfLayer + 0.125 * fadingMean(-0.5 * before) +
          0.125 * exp(-own) * fadingMean(0.5 * behind);
 }
+
+#endif

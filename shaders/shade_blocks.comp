@@ -5,34 +5,12 @@
 // 1 + dot(towards, direction to the eye), the direction in the world and of length 1.
 #extension GL_GOOGLE_include_directive : require
 #include "gather_interface.h"
-#include "attenuation_code.glsl"
-#include "blocks.glsl"
-
-layout(constant_id = 0) const bool kLit = false;  // else a voxel sends out its colour
-layout(constant_id = 1) const bool kEmits = false;
-layout(constant_id = 2) const bool kColors = false;  // voxels have colours of their own
-layout(constant_id = 3) const bool kTinted = false;   // whether every colour of light has an extinction of its own
-layout(constant_id = 4) const bool kAnyView = false;  // whether the source term is for all positions of the eye
+#include "block_color.glsl"
+#include "depth_to_eye.glsl"
+#include "lighting.glsl"
 
 layout(local_size_x = kShadeThreads) in;
 layout(scalar, push_constant) uniform Push { ShadePush push; };
-layout(scalar, binding = 0) readonly buffer Frame { SetupFrame frame; };
-layout(scalar, binding = 1) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
-layout(scalar, binding = 2) readonly buffer Occupancy { OccupancyWord occupancy[]; };
-layout(scalar, binding = 3) readonly buffer Lights { Light lights[]; };
-#define STORES frame.stores
-#define PLANE_ADDRESS(cell) planeAddresses[cell]
-#include "major_axis.glsl"
-#include "stored_block.glsl"
-#include "direction_lookup.glsl"
-#include "ray_lookup.glsl"
-#include "packed_light.glsl"
-#include "block_at.glsl"
-#include "block_depth.glsl"
-#include "depth_to_eye.glsl"
-#include "self_attenuation.glsl"
-#include "lighting.glsl"
-#include "block_color.glsl"
 
 const float kLeastLight = 1e-4;  // that is stored
 const float kLargestStored = 65280.0;  // that halves and packed light hold

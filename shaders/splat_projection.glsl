@@ -1,4 +1,8 @@
-// A block's footprint on the image. Include after interface.h and part_ahead.glsl; `frame` is the SetupFrame.
+// The footprint of a block on the image.
+#ifndef SPLAT_PROJECTION_GLSL
+#define SPLAT_PROJECTION_GLSL
+#include "part_ahead.glsl"
+#include "setup_frame.glsl"
 
 const float kBeyondImage = 1e6;  // pixels
 const float kBoundsSlack = 2.0;  // pixels: for rounding, and for what a footprint is widened by
@@ -106,3 +110,5 @@ bool project(vec3 offset, float edge, out Footprint footprint) {
   widenToPixel(footprint, shape, scale);
   return true;
 }
+
+#endif

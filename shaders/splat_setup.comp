@@ -2,40 +2,16 @@
 // A voxel or a block of them becomes a splat: its transmittance to the eye, colour, and footprint on the image
 // (Subr et al. 2007, Section 3.3 and 4.1, Eq. 10). Independent of every other one.
 #extension GL_GOOGLE_include_directive : require
-#include "frame_interface.h"
-#include "attenuation_code.glsl"
-#include "blocks.glsl"
-
-layout(constant_id = 0) const bool kLit = false;  // else a voxel sends out its colour
-layout(constant_id = 1) const bool kEmits = false;
-layout(constant_id = 2) const bool kColors = false;  // voxels have colours of their own
-layout(constant_id = 3) const bool kTinted = false;   // whether every colour of light has an extinction of its own
+#include "block_color.glsl"
+#include "depth_to_eye.glsl"
+#include "lighting.glsl"
+#include "splat_projection.glsl"
 
 layout(local_size_x = kSplatThreads) in;
 layout(scalar, push_constant) uniform Push { SetupPush push; };
-layout(scalar, binding = 0) readonly buffer Frame { SetupFrame frame; };
-layout(scalar, binding = 2) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
-layout(scalar, binding = 3) readonly buffer BlockList { uint visibleVoxels[]; };
-layout(scalar, binding = 4) readonly buffer Chunks { ChunkArguments chunks[]; };
-layout(scalar, binding = 5) writeonly buffer Splats { Splat splats[]; };
-layout(scalar, binding = 6) readonly buffer Occupancy { OccupancyWord occupancy[]; };
-layout(scalar, binding = 1) readonly buffer Lights { Light lights[]; };
-#define STORES frame.stores
-#define PLANE_ADDRESS(cell) planeAddresses[cell]
-#include "major_axis.glsl"
-#include "stored_block.glsl"
-#include "direction_lookup.glsl"
-#include "ray_lookup.glsl"
-#include "packed_light.glsl"
-#include "block_at.glsl"
-#include "block_depth.glsl"
-#include "depth_to_eye.glsl"
-#include "part_ahead.glsl"
-#include "splat_projection.glsl"
-#include "self_attenuation.glsl"
-const bool kAnyView = false;
-#include "lighting.glsl"
-#include "block_color.glsl"
+layout(scalar, binding = 4) readonly buffer BlockList { uint visibleVoxels[]; };
+layout(scalar, binding = 5) readonly buffer Chunks { ChunkArguments chunks[]; };
+layout(scalar, binding = 6) writeonly buffer Splats { Splat splats[]; };
 
 void main() {
   const uint local = gl_GlobalInvocationID.x;

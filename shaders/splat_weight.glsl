@@ -1,6 +1,7 @@
 // The footprint on the pixel's own ray, which is exact for perspective and for any voxel shape. Included by
 // the splats' fragment shaders, after interface.h.
-
+#ifndef SPLAT_WEIGHT_GLSL
+#define SPLAT_WEIGHT_GLSL
 #include "part_ahead.glsl"
 
 layout(constant_id = 0) const bool kQuads = false;  // only they can be cut
@@ -50,3 +51,5 @@ float splatWeight(float length2) {
   const float w = max(1.0 - r2, 0.0);
   return (w * w) * (w * w);
 }
+
+#endif

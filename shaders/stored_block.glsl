@@ -1,8 +1,8 @@
-// The extinction of blocks, which is kept of those that hold anything. Include after blocks.glsl; `occupancy` is the
-// buffer of words, STORES the BlockStores.
-#include "stores.glsl"
-#include "rank.glsl"
+// The extinction of blocks. Parameters: OCCUPANCY_BINDING (occupancy.glsl) and STORES (stores.glsl).
+#ifndef STORED_BLOCK_GLSL
+#define STORED_BLOCK_GLSL
 #include "occupancy.glsl"
+#include "stores.glsl"
 
 // 0 of a block that holds nothing, and outside.
 float extinctionOf(BlockLevel level, ivec3 cell) {
@@ -10,3 +10,5 @@ float extinctionOf(BlockLevel level, ivec3 cell) {
   const uint address = blockAddress(level, cell);
   return isOccupied(address) ? storedExtinction(rankAt(level, address)) : 0.0;
 }
+
+#endif

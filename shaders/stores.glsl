@@ -1,9 +1,13 @@
-// What is kept of blocks that hold anything, by rank (engine/volume/device_volume.h), at device addresses, as devices bind
-// buffers only up to a size. Include after interface.h; STORES is the BlockStores.
-#ifndef FREEVOXELS_STORES_GLSL
-#define FREEVOXELS_STORES_GLSL
+// The values of occupied blocks by rank (engine/octree/device_volume.h), at device addresses, as devices bind buffers only up to a
+// size. STORES is an expression for the BlockStores.
+#ifndef STORES_GLSL
+#define STORES_GLSL
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
+#include "interface.h"
+#ifndef STORES
+#error "Define STORES, an expression for the BlockStores, before including stores.glsl."
+#endif
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FloatStore { float values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer WordStore { uint values[]; };

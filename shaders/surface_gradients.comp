@@ -8,6 +8,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "gather_interface.h"
 #include "blocks.glsl"
+#include "code_bricks.glsl"
 #include "rank.glsl"
 #include "packed_gradient.glsl"
 
@@ -19,7 +20,6 @@ layout(binding = 0) uniform utextureBuffer brickCells;  // of each brick, in blo
 layout(binding = 1) uniform utextureBuffer occupancy;   // OccupancyWord
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Extinctions { float values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Gradients { uint values[]; };
-#include "code_bricks.glsl"
 
 const int kEdge = kGatherBrickEdge + 2;
 const float kNoData = -1.0;

@@ -1,6 +1,12 @@
-// Whether a block is hidden as far as the table knows, which is a plenoptic opacity function (Gao, Huang, Johnson, Moorhead
-// 2003, "Visibility culling using plenoptic opacity functions"). Include after occupancy.glsl, attenuation_code.glsl,
-// major_axis.glsl and direction_lookup.glsl; `frame` is the CutFrame, kCode the table's.
+// Whether a block is hidden as far as the table knows, which is a plenoptic opacity function (Gao, Huang, Johnson, Moorhead 2003,
+// "Visibility culling using plenoptic opacity functions").
+#ifndef TABLE_OCCLUSION_GLSL
+#define TABLE_OCCLUSION_GLSL
+#include "cut_frame.glsl"
+#include "direction_lookup.glsl"
+#include "occupancy.glsl"
+
+layout(constant_id = 0) const int kCode = kCodeDepth8;  // of the table
 
 vec3 toEyeFrom(ivec3 cell, int level) {
   if (frame.orthographic != 0) return -frame.ray;
@@ -41,7 +47,7 @@ bool findAround(vec3 toEye, int major, int level, out BilinearCell around) {
     corner[(major + 1) % 3] = ((i & 1) == 0 ? from : to)[(major + 1) % 3];
     corner[(major + 2) % 3] = ((i & 2) == 0 ? from : to)[(major + 2) % 3];
     const int number = cellNumber(frame.cells, corner);
-    around.planes[i] = PLANE_ADDRESS(number);
+    around.planes[i] = planeAddresses[number];
     around.depths[i] = layer > 0.0 ? frame.darkDepths[number] / layer : uintBitsToFloat(0x7f800000u);
   }
   return true;
@@ -78,3 +84,5 @@ bool isHidden(ivec3 cell, int level) {
   }
   return dark;
 }
+
+#endif

@@ -1,7 +1,12 @@
-// A transfer function's integrals over the scalar, in intervals: engine/volume/transfer_table.h. Include after
-// gather_interface.h; `transferTable` is the buffer of TransferTable::texels.
-#ifndef FREEVOXELS_TRANSFER_TABLE_GLSL
-#define FREEVOXELS_TRANSFER_TABLE_GLSL
+// A transfer function's integrals over the scalar, in intervals (engine/volume/transfer_table.h), in binding TRANSFER_TABLE_BINDING.
+#ifndef TRANSFER_TABLE_GLSL
+#define TRANSFER_TABLE_GLSL
+#include "gather_interface.h"
+#ifndef TRANSFER_TABLE_BINDING
+#error "Define TRANSFER_TABLE_BINDING, the binding of the texels, before including transfer_table.glsl."
+#endif
+
+layout(binding = TRANSFER_TABLE_BINDING) uniform textureBuffer transferTable;  // TransferTable::texels
 
 const float kLeastChange = 16.0;  // of the scalar along a stretch, intervals, for its mean to be taken from integrals
 

@@ -18,9 +18,7 @@ static_assert(sizeof(ImDrawIdx) == 2);
 
 Pipeline makePipeline(const Device& device, VkFormat format) {
   return makeGraphicsPipeline(
-      device, {ui_vertex_spv, "user interface"}, {ui_fragment_spv, "user interface"},
-      {.bindings = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER},
-       .pushConstantBytes = sizeof(shader::UiPush)},
+      device, shaders::ui_vertex, shaders::ui_fragment,
       VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, std::array{format}, Blend::Over);
 }
 

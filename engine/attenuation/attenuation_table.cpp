@@ -56,15 +56,6 @@ const Buffer& planeOf(const AttenuationTable& table, glm::ivec3 direction) {
   return table.planes[std::size_t(directionIndex(set, direction * int(set)))];
 }
 
-Pipeline makeSweepPipeline(const Device& device, ShaderCode code, const Specialisation& constants) {
-  return makeComputePipeline(
-      device, code,
-      {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                    VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-       .pushConstantBytes = sizeof(shader::SweepPush)},
-      {shader::kSweepThreads, 1, 1}, constants);
-}
-
 }  // namespace
 
 AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, const TableSettings& settings) {
@@ -119,10 +110,10 @@ AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& se
   const auto code = std::uint32_t(settings.code);
   for (int step = -1; step <= 1; ++step)
     bundles_[std::size_t(step + 1)] =
-        makeSweepPipeline(device, {attenuation_sweep_spv, "attenuation sweep"},
+        makeComputePipeline(device, shaders::attenuation_sweep,
                           {code, std::uint32_t(style.voxelsPerThread), std::uint32_t(step)});
   for (int step : {-1, 1})
-    rows_[step > 0 ? 1 : 0] = makeSweepPipeline(device, {attenuation_sweep_x_spv, "attenuation sweep x"},
+    rows_[step > 0 ? 1 : 0] = makeComputePipeline(device, shaders::attenuation_sweep_x,
                                                 {code, std::uint32_t(step)});
   if (settings.directions == DirectionSet::Directions98)
     halves_.emplace(device, settings.code, style.voxelsPerThread);

@@ -8,10 +8,7 @@
 namespace freevoxels {
 
 EyeDepthsPass::EyeDepthsPass(const Device& device)
-    : pipeline_(makeComputePipeline(device, {eye_depths_spv, "eye depths"},
-                                    {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                                     .pushConstantBytes = sizeof(shader::EyeDepthsPush)},
-                                    {shader::kEyeThreads, 1, 1})) {}
+    : pipeline_(makeComputePipeline(device, shaders::eye_depths)) {}
 
 void EyeDepthsPass::record(Commands& commands, const DeviceVolume& volume, DirectionSet set,
                            const RaySource& source, const Buffer& depths, int slot) const {

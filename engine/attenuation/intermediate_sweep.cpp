@@ -79,13 +79,7 @@ IntermediateSweep::IntermediateSweep(const Device& device, AttenuationCode code,
   for (const glm::ivec3 cell : halfCells()) {
     const auto key = pipelineKey(cell);
     if (pipelines_.contains(key)) continue;
-    pipelines_[key] = makeComputePipeline(
-        device, {attenuation_sweep_half_spv, "attenuation sweep half"},
-        {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                      VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-         .pushConstantBytes = sizeof(shader::HalfSweepPush)},
-        {shader::kSweepThreads, 1, 1},
-        {std::uint32_t(code), std::uint32_t(voxelsPerThread), std::uint32_t(key.first),
+    pipelines_[key] = makeComputePipeline(device, shaders::attenuation_sweep_half, {std::uint32_t(code), std::uint32_t(voxelsPerThread), std::uint32_t(key.first),
          std::uint32_t(key.second)});
   }
 }

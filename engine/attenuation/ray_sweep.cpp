@@ -188,15 +188,9 @@ void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const F
 void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars) {
   const std::array<FaceRays, 6> fans = faceRays(volume.layout.dimensions, source);
   makeRoom(volume.layout.dimensions, source);
-  constexpr VkDescriptorType kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-  pipelines_[scalars ? 1 : 0] = makeComputePipeline(
-      device_, {ray_sweep_spv, "ray sweep"},
-      {.bindings = {kTexels, kStorage, kTexels}, .pushConstantBytes = sizeof(shader::RaySweepPush)},
-      {shader::kRaySweepThreads, 1, 1}, {scalars});
+  pipelines_[scalars ? 1 : 0] = makeComputePipeline(device_, shaders::ray_sweep, {scalars});
   if (scalars)
-    expandScalars_ = makeComputePipeline(device_, {expand_scalars_spv, "expand scalars"},
-                                         {.bindings = {kStorage}, .pushConstantBytes = sizeof(shader::ExpandScalarsPush)},
-                                         {shader::kExpandTile, shader::kExpandTile, 1});
+    expandScalars_ = makeComputePipeline(device_, shaders::expand_scalars);
 
   commands.beginPass(name_);
   VkDeviceAddress address = depths_.address();

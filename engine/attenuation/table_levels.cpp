@@ -23,17 +23,8 @@ TableLevels::TableLevels(const Device& device, const TableSettings& settings)
 TableLevels::TableLevels(const Device& device, const TableSettings& settings,
                          std::uint32_t directionsPerThread)
     : perThread_(directionsPerThread) {
-  std::vector<VkDescriptorType> bindings{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                                         VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
-                                         VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
-  bindings.insert(bindings.end(), shader::kDirectionsPerLevelPass, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER);
-  bindings.insert(bindings.end(), shader::kDirectionsPerLevelPass, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
   for (const std::uint32_t fromVoxels : {0u, 1u})
-    pipelines_[fromVoxels] = makeComputePipeline(
-        device, {table_level_spv, "table level"},
-        {.bindings = bindings, .pushConstantBytes = sizeof(shader::TableLevelPush)},
-        {shader::kLevelThreads, 1, 1},
-        {std::uint32_t(settings.code), std::uint32_t(settings.filter), fromVoxels, perThread_});
+    pipelines_[fromVoxels] = makeComputePipeline(device, shaders::table_level, {std::uint32_t(settings.code), std::uint32_t(settings.filter), fromVoxels, perThread_});
 }
 
 void TableLevels::record(Commands& commands, const DeviceVolume& volume,

@@ -14,15 +14,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 constexpr std::uint64_t kRunBytes = shader::kRunBlocks;
-
-Pipeline makePass(const Device& device, ShaderCode code, std::size_t buffers) {
-  return makeComputePipeline(
-      device, code,
-      {.bindings = std::vector(buffers, kStorage), .pushConstantBytes = sizeof(shader::RunsPush)},
-      {shader::kRunThreads, 1, 1});
-}
 
 shader::RunsPush runsPush(const AttenuationTable& table) {
   return {.runCount = std::uint32_t(table.planes.front().bytes() / kRunBytes),
@@ -60,7 +52,7 @@ Buffer findSeen(const Device& device, const AttenuationTable& table, std::vector
   Buffer words(device,
                groups * (shader::kRunThreads / shader::kBlocksPerWord) * sizeof(shader::OccupancyWord),
                MemoryUse::Device, "seen runs");
-  const Pipeline pass = makePass(device, {prune_mark_spv, "seen runs"}, 2);
+  const Pipeline pass = makeComputePipeline(device, shaders::prune_mark);
   const std::array<Binding, 2> bindings{&table.planeAddresses, &words};
   Commands commands(device);
   commands.beginPass("unseen runs");
@@ -82,7 +74,7 @@ void pruneOpaqueRuns(const Device& device, AttenuationTable& table, std::vector<
   if (bytes > table.planes.front().bytes() / 4 * 3 || bytes > device.availableBytes()) return;
   upload(device, seen, std::as_bytes(std::span(words)));
   table.planeTexels.clear();
-  const Pipeline pass = makePass(device, {prune_compact_spv, "keep runs"}, 3);
+  const Pipeline pass = makeComputePipeline(device, shaders::prune_compact);
   for (Buffer& plane : table.planes) {
     Buffer kept(device, bytes, MemoryUse::Device, "attenuation of what is seen");
     const std::array<Binding, 3> bindings{&seen, &plane, &kept};

@@ -15,8 +15,6 @@ namespace freevoxels {
 namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-constexpr VkDescriptorType kTexelsIn = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 
 }  // namespace
 
@@ -76,9 +74,7 @@ void GatherVolume::recordLightCodes(Commands& commands, const Shading& shading) 
 
 void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading, int level) {
   const DeviceVolume& volume = built_.volume;
-  const Pipeline pass = makeComputePipeline(device_, {light_depths_spv, "light depths"},
-                                            {.bindings = {kTexelsIn, kTexelsIn, kStorage}, .pushConstantBytes = sizeof(shader::LightDepthsPush)},
-                                            {shader::kBrickQuadsThreads, 1, 1}, {hasScalars()});
+  const Pipeline pass = makeComputePipeline(device_, shaders::light_depths, {hasScalars()});
   const std::array<Binding, 3> bindings{&brickCellTexels_, &volume.occupancyTexels, shading.lights};
   const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
   for (int light = 0; light < sampleLights(); ++light) {
@@ -97,10 +93,7 @@ void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading,
 
 void GatherVolume::recordAmbientCodes(Commands& commands, int level) {
   if (ambientChannels_ == 0) return;
-  const Pipeline pass = makeComputePipeline(
-      device_, {ambient_codes_spv, "ambient codes"},
-      {.bindings = {kTexelsIn, kStorage}, .pushConstantBytes = sizeof(shader::AmbientCodesPush)},
-      {shader::kBrickQuadsThreads, 1, 1});
+  const Pipeline pass = makeComputePipeline(device_, shaders::ambient_codes);
   const std::array<Binding, 2> bindings{&brickCellTexels_, &ambient_->light()};
   const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
   const glm::ivec3 cells = ambient_->cells();
@@ -133,10 +126,7 @@ void GatherVolume::recordGradients(Commands& commands) {
     const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
     if ((levels >> level & 1u) == 0 || count == 0) continue;
     const auto scalars = scalarCodes(level);
-    const Pipeline pass = makeComputePipeline(
-        device_, {surface_gradients_spv, "surface gradients"},
-        {.bindings = {kTexelsIn, kTexelsIn}, .pushConstantBytes = sizeof(shader::SurfaceGradientsPush)},
-        {shader::kBrickQuadsThreads, 1, 1}, {scalars.has_value()});
+    const Pipeline pass = makeComputePipeline(device_, shaders::surface_gradients, {scalars.has_value()});
     const shader::SurfaceGradientsPush push{.level = volume.onDevice(level),
                                             .firstBrick = first,
                                             .count = count,

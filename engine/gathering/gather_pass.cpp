@@ -12,27 +12,16 @@ namespace freevoxels {
 namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-constexpr VkDescriptorType kTexelsOut = VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
-constexpr VkDescriptorType kUniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-constexpr VkDescriptorType kTexels = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
-constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
-constexpr glm::ivec3 kTile{shader::kGatherTile, shader::kGatherTile, 1};
 
 Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume) {
-  PipelineInterface interface{.bindings = {kUniform, kTexels, kTexels, kTexels, kTexels, kTexelsOut, kTexelsOut, kTexels, kTexels}};
-  interface.bindings.insert(interface.bindings.end(), shader::kMostLightSlots, kTexels);
-  return makeComputePipeline(device, {gather_spv, "gather"}, interface, kTile,
-                             {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.hasScalars(), volume.isLit(),
+  return makeComputePipeline(device, shaders::gather, {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.hasScalars(), volume.isLit(),
                               volume.inPieces(), std::uint32_t(volume.sampleLights()), volume.isTinted(), volume.hasSurfaces(),
                               std::uint32_t(volume.ambientChannels()), std::uint32_t(volume.octaves())});
 }
 
 /// Of the stencil and the upsampling, which have the same bindings.
-Pipeline makeImagePass(const Device& device, const ShaderCode& code, bool withDistance, bool second, bool third = false) {
-  return makeComputePipeline(
-      device, code,
-      {.bindings = {kUniform, kTexels, kTexels, kTexelsOut, kTexelsOut, kImage, kImage}}, kTile,
-      {withDistance, second, third});
+Pipeline makeImagePass(const Device& device, const Shader& code, bool withDistance, bool second, bool third = false) {
+  return makeComputePipeline(device, code, {withDistance, second, third});
 }
 
 bool isLatticeOfPixels(const shader::GatherFrame& frame) {
@@ -117,13 +106,13 @@ void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& fram
   };
   commands.beginPass("gather image");
   const Pipeline stencil =
-      makeImagePass(device_, {gather_stencil_spv, "gather stencil"}, withDistance, direct, scalars);
+      makeImagePass(device_, shaders::gather_stencil, withDistance, direct, scalars);
   commands.dispatch(stencil, bindings(gathered_, direct ? any : smoothed_), glm::ivec3(frame.samples, 1));
   if (direct) return;
   for (const bool alongY : {false, true}) {
     commands.barrier(kCompute, kCompute);
     const Pipeline upsample =
-        makeImagePass(device_, {gather_upsample_spv, "gather upsample"}, withDistance, alongY);
+        makeImagePass(device_, shaders::gather_upsample, withDistance, alongY);
     commands.dispatch(upsample, alongY ? bindings(rows_, any) : bindings(smoothed_, rows_),
                       {frame.size.x, alongY ? frame.size.y : frame.samples.y, 1});
   }

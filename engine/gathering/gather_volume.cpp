@@ -17,8 +17,6 @@ namespace freevoxels {
 namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-constexpr VkDescriptorType kTexelsIn = VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER;
 constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
 
 /// Radiance that a stored source term equal to the stored extinction means: 1, or more where halves would not hold the
@@ -307,10 +305,7 @@ void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::ui
   const DeviceVolume& volume = built_.volume;
   const Quads& quads = quads_[std::size_t(axis)];
   const bool towards = hasTowards() && colored;
-  const Pipeline pass = makeComputePipeline(
-      device_, {brick_quads_spv, "brick quads"},
-      {.bindings = {kTexelsIn, kTexelsIn}, .pushConstantBytes = sizeof(shader::BrickQuadsPush)},
-      {shader::kBrickQuadsThreads, 1, 1}, {std::uint32_t(axis), towards, colored, codes.has_value()});
+  const Pipeline pass = makeComputePipeline(device_, shaders::brick_quads, {std::uint32_t(axis), towards, colored, codes.has_value()});
   const std::array<Binding, 2> bindings{&brickCellTexels_, &volume.occupancyTexels};
   for (std::uint32_t next = first; next < end;) {
     const std::uint32_t piece = next / bricksPerPiece_;
@@ -332,11 +327,7 @@ void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::ui
 
 void GatherVolume::recordShading(Commands& commands, const Shading& shading) {
   const DeviceVolume& volume = built_.volume;
-  shadePass_ = makeComputePipeline(
-      device_, {shade_blocks_spv, "shade blocks"},
-      {.bindings = std::vector(4, kStorage), .pushConstantBytes = sizeof(shader::ShadePush)},
-      {shader::kShadeThreads, 1, 1},
-      {lit_, volume.hasEmission(), volume.hasColors, shading.frame.tinted, hasTowards()});
+  shadePass_ = makeComputePipeline(device_, shaders::shade_blocks, {lit_, volume.hasEmission(), volume.hasColors, shading.frame.tinted, hasTowards()});
   commands.beginPass("shade blocks");
   commands.update(frame_, shading.frame.setup);
   for (int level = 0; level <= volume.hierarchy.top(); ++level)

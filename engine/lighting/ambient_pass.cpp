@@ -112,10 +112,7 @@ bool AmbientPass::record(Commands& commands, const Lighting& lighting, const Ray
 
   const VkDeviceSize bytes = extinction_.bytes() * VkDeviceSize(channels + (hasPhase ? 1 : 0));
   if (light_.bytes() != bytes) light_ = Buffer(device_, bytes, MemoryUse::Device, "ambient light of cells");
-  pipeline_ = makeComputePipeline(device_, {ambient_sweep_spv, "ambient sweep"},
-                                  {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                                   .pushConstantBytes = sizeof(shader::AmbientSweepPush)},
-                                  {shader::kAmbientThreads, 1, 1}, {std::uint32_t(channels), hasPhase ? 1u : 0u});
+  pipeline_ = makeComputePipeline(device_, shaders::ambient_sweep, {std::uint32_t(channels), hasPhase ? 1u : 0u});
   commands.beginPass("ambient sweep");
   commands.clear(light_);
   const std::array<Binding, 2> bindings{&extinction_, &light_};

@@ -33,10 +33,7 @@ MediumLevels::MediumLevels(const Device& device, const DeviceVolume& volume) {
   const std::uint32_t colors = volume.hasColors, emission = volume.hasEmission();
   for (const std::uint32_t fromVoxels : {0u, 1u})
     pipelines_[fromVoxels] =
-        makeComputePipeline(device, {medium_level_spv, "medium level"},
-                            {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                             .pushConstantBytes = sizeof(shader::MediumLevelPush)},
-                            {shader::kLevelThreads, 1, 1}, {colors, fromVoxels, emission});
+        makeComputePipeline(device, shaders::medium_level, {colors, fromVoxels, emission});
 }
 
 void MediumLevels::record(Commands& commands, const DeviceVolume& volume,

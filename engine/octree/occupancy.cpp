@@ -13,20 +13,13 @@ namespace freevoxels {
 namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
 constexpr int kQuad = 4;  // voxels of a row that expand_voxels.comp takes together
 
 }  // namespace
 
 OccupancyPass::OccupancyPass(const Device& device, bool emission)
-    : voxels_(makeComputePipeline(
-          device, {occupied_voxels_spv, "occupied voxels"},
-          {.bindings = std::vector(4, kStorage), .pushConstantBytes = sizeof(shader::BricksPush)},
-          {shader::kBrickThreads, 1, 1}, {emission ? 1u : 0u})),
-      blocks_(makeComputePipeline(
-          device, {occupied_blocks_spv, "occupied blocks"},
-          {.bindings = {kStorage}, .pushConstantBytes = sizeof(shader::OccupiedBlocksPush)},
-          {shader::kOccupancyThreads, 1, 1})) {}
+    : voxels_(makeComputePipeline(device, shaders::occupied_voxels, {emission ? 1u : 0u})),
+      blocks_(makeComputePipeline(device, shaders::occupied_blocks)) {}
 
 void OccupancyPass::recordVoxels(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks,
                                  bool first) const {
@@ -51,12 +44,7 @@ void OccupancyPass::recordBlocks(Commands& commands, const DeviceVolume& volume)
 }
 
 ExpandPass::ExpandPass(const Device& device)
-    : pipeline_(makeComputePipeline(
-          device, {expand_voxels_spv, "expand voxels"},
-          {.bindings = {VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER,
-                        kStorage},
-           .pushConstantBytes = sizeof(shader::ExpandPush)},
-          {shader::kExpandTile, shader::kExpandTile, 1})) {}
+    : pipeline_(makeComputePipeline(device, shaders::expand_voxels)) {}
 
 std::uint32_t ExpandPass::record(Commands& commands, const DeviceVolume& volume, int first, int planes,
                                  const Buffer& extinction) const {

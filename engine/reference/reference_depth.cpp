@@ -39,9 +39,9 @@ class TableDepth : public ReferenceDepth {
   }
 
   double at(const Block& block) const override { return -std::log(transmittance(block).all); }
-  double falling(const Block& block) const override {
+  double unsaturated(const Block& block) const override {
     const Transmittance found = transmittance(block);
-    return found.falling / found.all;
+    return found.unsaturated / found.all;
   }
   double slope(const Block& block, int axis) const override {
     const Block before = neighbour(block, axis, -1), after = neighbour(block, axis, 1);
@@ -54,7 +54,7 @@ class TableDepth : public ReferenceDepth {
 
  private:
   struct Transmittance {
-    double all = 0.0, falling = 0.0;
+    double all = 0.0, unsaturated = 0.0;
   };
   Transmittance transmittance(const Block& block) const;
   glm::dvec3 centre(const Block& block) const { return boxOf(block, volume_.dimensions).centre(); }
@@ -129,7 +129,7 @@ TableDepth::Transmittance TableDepth::transmittance(const Block& block) const {
     const int byte = table[std::size_t(direction)][index];
     const double depth = std::max(stored(direction, byte, layer) - sourceDepth(direction, layer), 0.0);
     result.all += weight * std::exp(-depth);
-    if (byte != end) result.falling += weight * std::exp(-depth);
+    if (byte != end) result.unsaturated += weight * std::exp(-depth);
   };
   if (lookup_ == AttenuationLookup::Nearest) {
     add(1.0, nearestDirection(set, toEye));

@@ -27,7 +27,7 @@ class ReferenceDepth {
   virtual double at(const Block& block) const = 0;
   /// What part of the transmittance grows towards the eye by what a layer takes from it: that of stored
   /// depths which are not at the end of their code, where they are the same a layer before.
-  virtual double falling(const Block&) const { return 1.0; }
+  virtual double unsaturated(const Block&) const { return 1.0; }
   /// Change per voxel along an axis of the lattice layer: one that is not the largest component of the line
   /// of sight.
   virtual double slope(const Block& block, int axis) const = 0;

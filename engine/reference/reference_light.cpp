@@ -54,8 +54,8 @@ glm::dvec3 ReferenceLight::toLight(const RaySource& source, glm::dvec3 position)
   return glm::length(way) < kAtLight ? glm::dvec3(0.0, 0.0, 1.0) : way;
 }
 
-glm::dvec3 ReferenceLight::reaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth,
-                                    double falling, double counted, double scale) const {
+glm::dvec3 ReferenceLight::lightReaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth,
+                                    double unsaturated, double counted, double scale) const {
   const double sigma = extinctionOf(block, inputs_.volume, inputs_.extinction, inputs_.coarser);
   const auto layersOf = [&](glm::dvec3 way) {
     return boxOf(block, inputs_.volume.dimensions).extent[majorAxis(way)];
@@ -63,10 +63,10 @@ glm::dvec3 ReferenceLight::reaching(const Block& block, glm::dvec3 toEye, glm::d
   const auto own = [&](glm::dvec3 way) {
     return sigma * layersOf(way) * glm::length(toWorld_ * (way / std::abs(way[majorAxis(way)])));
   };
-  const double inFront = std::max(depth - 0.5 * (layersOf(direction) - 1) * falling * sigma * counted, 0.0);
+  const double inFront = std::max(depth - 0.5 * (layersOf(direction) - 1) * unsaturated * sigma * counted, 0.0);
   const double e = own(toEye);
   const double cosine = glm::dot(glm::normalize(toWorld_ * toEye), glm::normalize(toWorld_ * direction));
-  const bool isUnknown = falling == 0.0 || depth >= 0.9999 * kOpaqueDepth;
+  const bool isUnknown = unsaturated == 0.0 || depth >= 0.9999 * kOpaqueDepth;
   if (lighting_.isTinted() && isUnknown) return glm::dvec3(0.0);
   glm::dvec3 part;
   for (int c = 0; c < 3; ++c) {
@@ -101,7 +101,7 @@ glm::dvec3 ReferenceLight::reachingFromAll(const Block& block, glm::dvec3 toEye)
       weights += shares_[std::size_t(d)] * scale * phase;
       parts += shares_[std::size_t(d)] * scale;
       sum += scale * phase * fromAll_[std::size_t(d)] *
-             reaching(block, toEye, direction, decodeOpticalDepth(settings.code, byte), byte == end ? 0.0 : 1.0,
+             lightReaching(block, toEye, direction, decodeOpticalDepth(settings.code, byte), byte == end ? 0.0 : 1.0,
                       stepLength(inputs_.volume.indexToWorld, direction, settings.pathLengthCorrection), scale);
     }
   }
@@ -149,7 +149,7 @@ glm::dvec3 ReferenceLight::scattered(const Block& block, glm::dvec3 toEye) const
       double phase = (1.0 - surface) * phaseFunction(scale * lighting_.phaseG, glm::dot(before, after));
       if (octave == 0 && surface > 0.0) phase += surface * surfaceScattering(normal, -before, after);
       sum += light.color * (scale * irradiance * phase) *
-             reaching(block, toEye, way, depth.at(block), depth.falling(block), counted, scale);
+             lightReaching(block, toEye, way, depth.at(block), depth.unsaturated(block), counted, scale);
     }
   }
   return sum + reachingFromAll(block, toEye);

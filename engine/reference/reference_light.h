@@ -32,8 +32,8 @@ class ReferenceLight {
   glm::dvec3 toLight(const RaySource& source, glm::dvec3 position) const;
   /// What a block lets through towards a light, in the mean over what the eye sees of it. The middle layer
   /// has `depth` before it; a layer counts as `counted` long.
-  glm::dvec3 reaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth,
-                      double falling, double counted, double scale) const;
+  glm::dvec3 lightReaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth,
+                      double unsaturated, double counted, double scale) const;
   glm::dvec3 reachingFromAll(const Block& block, glm::dvec3 toEye) const;
 
   /// Central differences, index space, per block of its size.

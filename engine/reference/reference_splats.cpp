@@ -168,8 +168,8 @@ DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& spl
 DepthToEye SplatSummer::depthBy(const ReferenceDepth& depths, const Block& block, const ProjectedSplat& splat,
                                 double extinction, int layers) const {
   // The mean over a block is the depth of its middle layer: what lies in front of it has none of its own.
-  const double layer = projector_.layerLength(splat), falling = depths.falling(block) * extinction;
-  const double before = 0.5 * (layers - 1) * falling * depths.countedLength(layer);
+  const double layer = projector_.layerLength(splat), unsaturated = depths.unsaturated(block) * extinction;
+  const double before = 0.5 * (layers - 1) * unsaturated * depths.countedLength(layer);
   DepthToEye depth{.centre = std::max(depths.at(block) - before, 0.0)};
   if (!settings_.gradient) return depth;
   if (splat.cut) {
@@ -177,7 +177,7 @@ DepthToEye SplatSummer::depthBy(const ReferenceDepth& depths, const Block& block
     depth.distance = projector_.distanceFromEye(splat);
     return depth;
   }
-  const glm::dvec3 gradient = depths.gradient(block, splat.toEye, falling * layer);
+  const glm::dvec3 gradient = depths.gradient(block, splat.toEye, unsaturated * layer);
   // It fades with the widening: a widened footprint stands for a pixel in which the depth changes often.
   // The children of a block that is not widened may have been.
   const double ofChildren = block.level == 0 ? 1.0 : std::min(splat.edge2 / 4.0, 1.0);

@@ -28,12 +28,9 @@ shader::DepthKeyPush depthKeyPush(const DeviceVolume& volume, const BlockList& v
 }  // namespace
 
 DepthSort::DepthSort(const Device& device, const DeviceVolume& volume)
-    : keys_(makeComputePipeline(device, {depth_key_spv, "depth keys"},
-                                {.bindings = std::vector(5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                                 .pushConstantBytes = sizeof(shader::DepthKeyPush)},
-                                {shader::kSortThreads, 1, 1})),
+    : keys_(makeComputePipeline(device, shaders::depth_key)),
       sort_(device),
-      pairs_(makeSortPairs(device, volume.activeVoxels)) {}
+      pairs_(makeSortPairs(device, std::max<std::uint64_t>(volume.stored.front(), 1))) {}
 
 void DepthSort::record(Commands& commands, const DeviceVolume& volume, const BlockList& visible,
                        const Camera& camera) const {

@@ -18,13 +18,6 @@ constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BI
 constexpr int kThreads = shader::kSortGroups * shader::kSortThreads;
 static_assert(32 / shader::kSortBits % 2 == 0, "the last pass must end in SortPairs::keys and values");
 
-Pipeline makePass(const Device& device, ShaderCode code, std::size_t buffers) {
-  return makeComputePipeline(device, code,
-                             {.bindings = std::vector(buffers, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                              .pushConstantBytes = sizeof(shader::RadixPush)},
-                             {shader::kSortThreads, 1, 1});
-}
-
 }  // namespace
 
 SortPairs makeSortPairs(const Device& device, std::uint64_t capacity) {
@@ -43,9 +36,9 @@ SortPairs makeSortPairs(const Device& device, std::uint64_t capacity) {
 }
 
 RadixSort::RadixSort(const Device& device)
-    : count_(makePass(device, {radix_count_spv, "radix count"}, 3)),
-      scan_(makePass(device, {radix_scan_spv, "radix scan"}, 1)),
-      scatter_(makePass(device, {radix_scatter_spv, "radix scatter"}, 6)) {}
+    : count_(makeComputePipeline(device, shaders::radix_count)),
+      scan_(makeComputePipeline(device, shaders::radix_scan)),
+      scatter_(makeComputePipeline(device, shaders::radix_scatter)) {}
 
 void RadixSort::record(Commands& commands, const SortPairs& pairs) const {
   const Buffer *keys = &pairs.keys, *values = &pairs.values;

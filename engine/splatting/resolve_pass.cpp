@@ -9,11 +9,7 @@ namespace freevoxels {
 
 ResolvePass::ResolvePass(const Device& device, bool withDistance)
     : withDistance_(withDistance),
-      pipeline_(makeComputePipeline(device, {resolve_spv, "resolve"},
-                                    {.bindings = std::vector(3, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE),
-                                     .pushConstantBytes = sizeof(shader::ResolvePush)},
-                                    {shader::kResolveTile, shader::kResolveTile, 1},
-                                    {withDistance ? 1u : 0u})) {}
+      pipeline_(makeComputePipeline(device, shaders::resolve, {withDistance ? 1u : 0u})) {}
 
 void ResolvePass::record(Commands& commands, const FrameConstants& frame, const SplatTargets& targets) const {
   // Where there is no T or no distance, it is not read: the other one takes its place.

@@ -21,27 +21,22 @@ constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BI
 constexpr VkPipelineStageFlags2 kDraw = VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
 constexpr VkPipelineStageFlags2 kOutput = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
 
-ShaderCode fragmentShader(bool withDistance, bool sorted) {
+const Shader& fragmentShader(bool withDistance, bool sorted) {
   if (sorted)
-    return withDistance ? ShaderCode{splat_sorted_distance_spv, "sorted splat with distance"}
-                        : ShaderCode{splat_sorted_spv, "sorted splat"};
-  return withDistance ? ShaderCode{splat_fragment_distance_spv, "splat with distance"}
-                      : ShaderCode{splat_fragment_spv, "splat"};
+    return withDistance ? shaders::splat_sorted_distance
+                        : shaders::splat_sorted;
+  return withDistance ? shaders::splat_fragment_distance
+                      : shaders::splat_fragment;
 }
 
 Pipeline makeSetupPipeline(const Device& device, const DeviceVolume& volume, bool lit, bool tinted) {
-  return makeComputePipeline(device, {splat_setup_spv, "splat set-up"},
-                             {.bindings = std::vector(7, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                              .pushConstantBytes = sizeof(shader::SetupPush)},
-                             {shader::kSplatThreads, 1, 1},
-                             {lit, volume.hasEmission(), volume.hasColors, tinted});
+  return makeComputePipeline(device, shaders::splat_setup, {lit, volume.hasEmission(), volume.hasColors, tinted});
 }
 
 Pipeline makeSplatPipeline(const Device& device, bool quads, bool withDistance, bool sorted) {
   const std::array formats{kColorFormat, kScalarFormat, kScalarFormat};
   return makeGraphicsPipeline(
-      device, {splat_vertex_spv, "splat"}, fragmentShader(withDistance, sorted),
-      {.bindings = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}, .pushConstantBytes = sizeof(shader::SplatPush)},
+      device, shaders::splat_vertex, fragmentShader(withDistance, sorted),
       quads ? VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP : VK_PRIMITIVE_TOPOLOGY_POINT_LIST,
       std::span(formats).first(1u + (sorted ? 0u : 1u) + (withDistance ? 1u : 0u)),
       sorted ? Blend::Over : Blend::Additive, {quads ? 1u : 0u});
@@ -146,17 +141,17 @@ void SplatPass::recordFrame(Commands& commands, const DeviceVolume& volume, cons
 void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,
                        const SplatTargets& targets) {
   const std::uint64_t count =
-      std::clamp<std::uint64_t>(inputs.volume.activeVoxels, 1, shader::kSplatsPerChunk);
+      std::clamp<std::uint64_t>(inputs.volume.stored.front(), 1, shader::kSplatsPerChunk);
   if (splats_.bytes() < count * sizeof(shader::Splat))
     splats_ = Buffer(device_, count * sizeof(shader::Splat), MemoryUse::Device, "splats");
   const Buffer& anyBuffer = frame_;
   const std::array<Binding, 7> setup{&frame_,
-                                     frame.lit ? inputs.lights : &anyBuffer,
                                      inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
+                                     &inputs.volume.occupancy,
+                                     frame.lit ? inputs.lights : &anyBuffer,
                                      inputs.order ? inputs.order : &inputs.visible->indices,
                                      &inputs.visible->chunks,
-                                     &splats_,
-                                     &inputs.volume.occupancy};
+                                     &splats_};
   const std::array<Binding, 1> draw{&splats_};
   Pipeline& setUp = setups_[std::size_t(frame.lit) + std::size_t(frame.tinted)];
   if (setUp.handle() == VK_NULL_HANDLE)

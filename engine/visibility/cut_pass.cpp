@@ -19,16 +19,6 @@ std::uint64_t groupsFor(std::uint64_t slots) {
   return (slots + shader::kCutSlotsPerGroup - 1) / shader::kCutSlotsPerGroup;
 }
 
-/// The frame's constants, then `buffers` others. Uniform, as lavapipe loads from storage thread by thread
-/// what is the same for all of them.
-Pipeline makePass(const Device& device, ShaderCode code, std::size_t buffers,
-                  const Specialisation& constants = {}) {
-  std::vector<VkDescriptorType> bindings{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER};
-  bindings.insert(bindings.end(), buffers, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
-  return makeComputePipeline(device, code,
-                             {.bindings = bindings, .pushConstantBytes = sizeof(shader::CutPush)},
-                             {shader::kCutThreads, 1, 1}, constants);
-}
 
 void makeLarger(const Device& device, Buffer& buffer, std::uint64_t bytes, const char* name,
                 VkBufferUsageFlags usage = 0) {
@@ -92,19 +82,15 @@ shader::CutFrame cutFrame(const CutInputs& inputs) {
 
 CutPass::CutPass(const Device& device, AttenuationCode code)
     : device_(device),
-      scan_(makeComputePipeline(device, {compact_scan_spv, "cut scan"},
-                                {.bindings = std::vector(2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                                 .pushConstantBytes = sizeof(shader::CompactPush)},
-                                {shader::kScanThreads, 1, 1})),
-      write_(makePass(device, {cut_write_spv, "cut write"}, 4)),
+      scan_(makeComputePipeline(device, shaders::compact_scan)),
+      write_(makeComputePipeline(device, shaders::cut_write)),
       cover_(device),
       frame_(device, sizeof(shader::CutFrame), MemoryUse::Device, "cut frame",
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       counts_(device, sizeof(shader::CutCounts), MemoryUse::Device, "cut counts") {
   for (const Part part : {Part::First, Part::Deferred})
     for (const std::uint32_t voxels : {0u, 1u})
-      select_[std::size_t(part)][voxels] = makePass(device, {cut_select_spv, "cut select"}, 9,
-                                                    {std::uint32_t(code), std::uint32_t(part), voxels});
+      select_[std::size_t(part)][voxels] = makeComputePipeline(device, shaders::cut_select, {std::uint32_t(code), std::uint32_t(part), voxels});
 }
 
 void CutPass::makeRoom(const CutInputs& inputs) {

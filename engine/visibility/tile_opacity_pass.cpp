@@ -12,12 +12,7 @@ glm::ivec2 coverTiles(glm::ivec2 imageSize) {
 
 TileOpacityPass::TileOpacityPass(const Device& device)
     : device_(device),
-      pipeline_(makeComputePipeline(
-          device, {tile_opacity_spv, "tile cover"},
-          {.bindings = {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                        VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE},
-           .pushConstantBytes = sizeof(shader::TilePush)},
-          {shader::kCoverThreads, 1, 1})) {}
+      pipeline_(makeComputePipeline(device, shaders::tile_opacity)) {}
 
 void TileOpacityPass::record(Commands& commands, const Inputs& inputs) {
   const glm::ivec2 tiles = coverTiles(inputs.rays.size);

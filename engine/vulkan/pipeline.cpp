@@ -1,6 +1,8 @@
 #include "engine/vulkan/pipeline.h"
 
+#include <algorithm>
 #include <array>
+#include <initializer_list>
 
 #include "engine/core/error.h"
 
@@ -8,7 +10,7 @@ namespace freevoxels {
 
 namespace {
 
-OwnedShaderModule makeModule(const Device& device, const ShaderCode& code) {
+OwnedShaderModule makeModule(const Device& device, const Shader& code) {
   const VkShaderModuleCreateInfo info{.sType = VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO,
                                       .codeSize = code.words.size_bytes(),
                                       .pCode = code.words.data()};
@@ -91,10 +93,23 @@ VkShaderStageFlags stagesOf(VkPipelineBindPoint bindPoint) {
              : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 }
 
-PipelineParts makeLayout(const Device& device, const PipelineInterface& interface,
-                         VkPipelineBindPoint bindPoint) {
+/// What all stages need together.
+PipelineInterface interfaceOf(std::initializer_list<const Shader*> stages) {
+  PipelineInterface interface;
+  for (const Shader* stage : stages) {
+    interface.pushConstantBytes = std::max(interface.pushConstantBytes, stage->pushConstantBytes);
+    interface.bindings.resize(std::max(interface.bindings.size(), stage->bindings.size()), kNoBinding);
+    for (std::size_t i = 0; i < stage->bindings.size(); ++i)
+      if (stage->bindings[i] != kNoBinding) interface.bindings[i] = stage->bindings[i];
+  }
+  FV_CHECK_EQ(std::ranges::count(interface.bindings, kNoBinding), 0);
+  return interface;
+}
+
+PipelineParts makeLayout(const Device& device, std::initializer_list<const Shader*> shaders, VkPipelineBindPoint bindPoint) {
+  PipelineParts parts{.interface = interfaceOf(shaders), .bindPoint = bindPoint};
+  const PipelineInterface& interface = parts.interface;
   FV_CHECK_LE(interface.pushConstantBytes, device.limits().maxPushConstantsSize);
-  PipelineParts parts{.interface = interface, .bindPoint = bindPoint};
   const VkShaderStageFlags stages = stagesOf(bindPoint);
   std::vector<VkDescriptorSetLayoutBinding> bindings;
   for (std::uint32_t i = 0; i < interface.bindings.size(); ++i)
@@ -132,10 +147,9 @@ Pipeline stored(const Device& device, const PipelineKey& key, const Make& make) 
   return Pipeline(store.made.emplace(key, make()).first->second);
 }
 
-PipelineParts makeCompute(const Device& device, const ShaderCode& code, const PipelineInterface& interface,
-                          glm::ivec3 workgroup, const Specialisation& constants) {
-  PipelineParts result = makeLayout(device, interface, VK_PIPELINE_BIND_POINT_COMPUTE);
-  result.workgroup = workgroup;
+PipelineParts makeCompute(const Device& device, const Shader& code, const Specialisation& constants) {
+  PipelineParts result = makeLayout(device, {&code}, VK_PIPELINE_BIND_POINT_COMPUTE);
+  result.workgroup = code.workgroup;
   const OwnedShaderModule module = makeModule(device, code);
   const SpecialisationInfo specialisation(constants);
   const VkComputePipelineCreateInfo info{
@@ -153,9 +167,8 @@ PipelineParts makeCompute(const Device& device, const ShaderCode& code, const Pi
   return result;
 }
 
-PipelineParts makeGraphics(const Device& device, const ShaderCode& vertex, const ShaderCode& fragment,
-                           const PipelineKey& key) {
-  PipelineParts result = makeLayout(device, key.interface, VK_PIPELINE_BIND_POINT_GRAPHICS);
+PipelineParts makeGraphics(const Device& device, const Shader& vertex, const Shader& fragment, const PipelineKey& key) {
+  PipelineParts result = makeLayout(device, {&vertex, &fragment}, VK_PIPELINE_BIND_POINT_GRAPHICS);
   const OwnedShaderModule vertexModule = makeModule(device, vertex);
   const OwnedShaderModule fragmentModule = makeModule(device, fragment);
   const SpecialisationInfo specialisation(key.constants);
@@ -199,19 +212,14 @@ VkShaderStageFlags Pipeline::stages() const {
   return stagesOf(parts_->bindPoint);
 }
 
-Pipeline makeComputePipeline(const Device& device, const ShaderCode& code, PipelineInterface interface,
-                             glm::ivec3 workgroup, const Specialisation& constants) {
-  const PipelineKey key{
-      .code = {code.words.data(), nullptr}, .interface = std::move(interface), .constants = constants};
-  return stored(device, key, [&] { return makeCompute(device, code, key.interface, workgroup, constants); });
+Pipeline makeComputePipeline(const Device& device, const Shader& shader, const Specialisation& constants) {
+  const PipelineKey key{.code = {shader.words.data(), nullptr}, .constants = constants};
+  return stored(device, key, [&] { return makeCompute(device, shader, constants); });
 }
 
-Pipeline makeGraphicsPipeline(const Device& device, const ShaderCode& vertex, const ShaderCode& fragment,
-                              PipelineInterface interface, VkPrimitiveTopology topology,
-                              std::span<const VkFormat> attachments, Blend blend,
-                              const Specialisation& constants) {
+Pipeline makeGraphicsPipeline(const Device& device, const Shader& vertex, const Shader& fragment, VkPrimitiveTopology topology,
+                              std::span<const VkFormat> attachments, Blend blend, const Specialisation& constants) {
   const PipelineKey key{.code = {vertex.words.data(), fragment.words.data()},
-                        .interface = std::move(interface),
                         .constants = constants,
                         .topology = topology,
                         .attachments = {attachments.begin(), attachments.end()},

@@ -13,20 +13,14 @@
 #include "engine/core/stages.h"
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/owned.h"
+#include "engine/vulkan/shader.h"
 
 namespace freevoxels {
 
-/// Embedded SPIR-V and the name that debuggers show.
-struct ShaderCode {
-  std::span<const std::uint32_t> words;
-  const char* name = "";
-};
-
-/// What a pipeline's set 0 holds: binding i is of type bindings[i]; and the bytes of its push constants.
+/// The bindings of set 0, by number, and the bytes of the push constants: those of all stages.
 struct PipelineInterface {
   std::vector<VkDescriptorType> bindings;
   std::uint32_t pushConstantBytes = 0;
-  auto operator<=>(const PipelineInterface&) const = default;
 };
 
 /// Values of the specialisation constants 0, 1, 2, ...: ints or bools.
@@ -68,10 +62,9 @@ class Pipeline {
   const PipelineParts* parts_ = nullptr;
 };
 
-/// What a pipeline is made from; the size of a workgroup is in the code.
+/// What a pipeline is made from; its interface is in the code.
 struct PipelineKey {
   std::array<const std::uint32_t*, 2> code{};  ///< compute, or vertex and fragment
-  PipelineInterface interface;
   Specialisation constants;
   VkPrimitiveTopology topology = VK_PRIMITIVE_TOPOLOGY_POINT_LIST;
   std::vector<VkFormat> attachments;
@@ -87,15 +80,11 @@ struct PipelineStore {
   std::vector<StageTime> times;  ///< to make them
 };
 
-/// `workgroup` must be the shader's local size.
-Pipeline makeComputePipeline(const Device& device, const ShaderCode& code, PipelineInterface interface,
-                             glm::ivec3 workgroup, const Specialisation& constants = {});
+Pipeline makeComputePipeline(const Device& device, const Shader& shader, const Specialisation& constants = {});
 
 /// No vertex input (vertices are pulled), no depth, no culling; all attachments are blended alike. Viewport
 /// and scissor are dynamic.
-Pipeline makeGraphicsPipeline(const Device& device, const ShaderCode& vertex, const ShaderCode& fragment,
-                              PipelineInterface interface, VkPrimitiveTopology topology,
-                              std::span<const VkFormat> attachments, Blend blend,
-                              const Specialisation& constants = {});
+Pipeline makeGraphicsPipeline(const Device& device, const Shader& vertex, const Shader& fragment, VkPrimitiveTopology topology,
+                              std::span<const VkFormat> attachments, Blend blend, const Specialisation& constants = {});
 
 }  // namespace freevoxels

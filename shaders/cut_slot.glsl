@@ -1,9 +1,0 @@
-// The blocks that a level of the cut looks at: eight slots for each block of the level above that holds anything, for
-// its children; of the coarsest level one. Include after blocks.glsl; `frame` is the CutFrame, `parents` the list of
-// the level above.
-
-ivec3 cellOfSlot(uint slot) {
-  if (push.level == frame.top) return ivec3(0);
-  const ivec3 corner = ivec3(slot & 1, slot >> 1 & 1, slot >> 2 & 1);
-  return 2 * cellAt(frame.levels[push.level + 1], parents[slot / 8]) + corner;
-}
