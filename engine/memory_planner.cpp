@@ -35,7 +35,7 @@ VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std:
 }
 
 void checkSplatsFit(const Device& device, const DeviceVolume& volume) {
-  checkBinds(device, volume.layout.dimensions, volume.activeVoxels * sizeof(std::uint32_t), sizeof(std::uint32_t));
+  checkBinds(device, volume.layout.dimensions, volume.stored.front() * sizeof(std::uint32_t), sizeof(std::uint32_t));
 }
 
 void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions) {

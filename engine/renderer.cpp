@@ -100,7 +100,12 @@ const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progres
   pass.record(commands, built.volume, built.lists.coarse, *table);
   commands.submitAndWait(progress);
   addTimes(frameTimes, commands.times());
-  pruneOpaqueRuns(device, *table, frameTimes);
+  try {
+    pruneOpaqueRuns(device, *table, frameTimes);
+  } catch (const Error&) {  // planes that are pruned in part are of no use
+    table.reset();
+    throw;
+  }
   largestDepths = downloadLargestDepths(device, *table);
   return *table;
 }
@@ -183,8 +188,8 @@ FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSet
 Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const Camera& camera,
                                                      const FrameSettings& wanted, const Progress& progress) {
   frameTimes.clear();
-  checkSplatsFit(device, built.volume);
   builtWithBlocks(progress);
+  checkSplatsFit(device, built.volume);
   const FrameSettings settings = resolved(wanted);
   const bool sorted = settings.composite == Composite::Sorted;
   if (!splats || !splats->draws(settings)) {

@@ -263,16 +263,19 @@ Result compaction(const Device& device, int resolution, int runs) {
     return ((x / 8) * 7 + (y / 8) * 13 + (z / 8) * 29) % 32 == 0 ? 1.0f : 0.0f;
   });
   const BuiltVolume onDevice = built(device, volume);
-  const BlockList& visible = onDevice.visible;
+  BlockList list;
+  const Buffer totals(device, sizeof(std::uint32_t), MemoryUse::Device, "block counts");
   const CompactionPass pass(device);
+  pass.allocate(list, onDevice.volume.stored.front());
   const double time = least(runs, [&] {
     Commands commands(device);
-    pass.record(commands, onDevice.volume, visible);
+    pass.recordCount(commands, onDevice.volume, 0, list, totals);
+    pass.recordList(commands, onDevice.volume, 0, list);
     commands.submitAndWait();
     return total(commands);
   });
   return {
-      .name = fmt::format("visible voxels, {} of {}^3", downloadBlockCount(device, visible), resolution),
+      .name = fmt::format("list of {} occupied of {}^3 voxels", onDevice.volume.stored.front(), resolution),
       .milliseconds = time,
       .copyMilliseconds = copyTime(volume.voxelCount() / 4 + 4 * onDevice.volume.stored.front()),
       .perSecond = double(volume.voxelCount()) / time * 1e3};

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdint>
+#include <span>
 
 #include "embedded/compact_count.h"
 #include "embedded/compact_scan.h"
@@ -13,77 +13,95 @@ namespace freevoxels {
 
 namespace {
 
+constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+
 std::uint32_t groupsFor(std::uint32_t words) {
   return (words + shader::kOccupancyThreads - 1) / shader::kOccupancyThreads;
 }
 
-constexpr VkDescriptorType kStorage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+shader::CompactPush pushOf(const DeviceVolume& volume, int level) {
+  const auto words = std::uint32_t(volume.hierarchy.words(level));
+  return {.firstWord = volume.hierarchy.first[std::size_t(level)] / shader::kBlocksPerWord,
+          .wordCount = words,
+          .groupCount = groupsFor(words)};
+}
 
-Pipeline makePass(const Device& device, ShaderCode code, std::vector<VkDescriptorType> bindings,
-                  int threads) {
-  return makeComputePipeline(
-      device, code, {.bindings = std::move(bindings), .pushConstantBytes = sizeof(shader::CompactPush)},
-      {threads, 1, 1});
+std::uint64_t threadsOf(const shader::CompactPush& push) {
+  return std::uint64_t(push.groupCount) * shader::kOccupancyThreads;
+}
+
+/// The same as compact_scan.comp writes.
+shader::ChunkArguments chunkArguments(std::uint32_t first, std::uint32_t count) {
+  return {.groupsX = (count + shader::kSplatThreads - 1) / shader::kSplatThreads,
+          .groupsY = 1,
+          .groupsZ = 1,
+          .splatCount = count,
+          .firstSplat = first,
+          .vertexCount = count,
+          .instanceCount = 1,
+          .quadVertexCount = 4,
+          .quadInstanceCount = count};
 }
 
 }  // namespace
 
-BlockList makeBlockList(const Device& device, const DeviceVolume& volume, int level) {
-  BlockList result;
-  const GridLayout& layout = volume.hierarchy.levels[std::size_t(level)];
-  const std::uint64_t most = std::clamp<std::uint64_t>(volume.activeVoxels, 1, layout.voxels());
-  result.chunkCount = std::uint32_t((most + shader::kSplatsPerChunk - 1) / shader::kSplatsPerChunk);
-  result.groupOffsets =
-      Buffer(device, (groupsFor(std::uint32_t(volume.hierarchy.words(level))) + 1) * sizeof(std::uint32_t),
-             MemoryUse::Device, "visible group offsets");
-  result.indices = Buffer(device, most * sizeof(std::uint32_t), MemoryUse::Device, "visible voxels");
-  result.chunks = Buffer(device, result.chunkCount * sizeof(shader::ChunkArguments), MemoryUse::Device,
-                         "chunk arguments", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-  return result;
-}
-
 CompactionPass::CompactionPass(const Device& device)
-    : count_(makePass(device, {compact_count_spv, "visible count"}, {kStorage, kStorage},
-                      shader::kOccupancyThreads)),
-      scan_(makePass(device, {compact_scan_spv, "visible scan"}, {kStorage, kStorage}, shader::kScanThreads)),
-      write_(makePass(device, {compact_write_spv, "visible write"}, {kStorage, kStorage},
-                      shader::kOccupancyThreads)) {}
+    : device_(device),
+      count_(makeComputePipeline(device, shaders::compact_count)),
+      scan_(makeComputePipeline(device, shaders::compact_scan)),
+      write_(makeComputePipeline(device, shaders::compact_write)) {}
 
-void CompactionPass::record(Commands& commands, const DeviceVolume& volume, const BlockList& visible,
-                            int level) const {
-  const auto words = std::uint32_t(volume.hierarchy.words(level)), groups = groupsFor(words);
-  const shader::CompactPush push{
-      .firstWord = volume.hierarchy.first[std::size_t(level)] / shader::kBlocksPerWord,
-      .wordCount = words,
-      .groupCount = groups,
-      .chunkCount = visible.chunkCount,
-      .blocks = addressWords(visible.indices.address())};
-  const std::array<Binding, 2> count{&volume.occupancy, &visible.groupOffsets};
-  const std::array<Binding, 2> scan{&visible.groupOffsets, &visible.chunks};
-  const std::array<Binding, 2> write{&volume.occupancy, &visible.groupOffsets};
-  constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-  const std::uint64_t threads = std::uint64_t(groups) * shader::kOccupancyThreads;
-  commands.beginPass("visible voxels");
-  commands.dispatchLinear(count_, count, push, threads);
+void CompactionPass::recordCount(Commands& commands, const DeviceVolume& volume, int level, BlockList& list,
+                                 const Buffer& totals) const {
+  const shader::CompactPush push = pushOf(volume, level);
+  const VkDeviceSize totalAt = VkDeviceSize(push.groupCount) * sizeof(std::uint32_t);
+  if (list.groupOffsets.bytes() == 0)
+    list.groupOffsets = Buffer(device_, totalAt + sizeof(std::uint32_t), MemoryUse::Device, "block group offsets");
+  const std::array<Binding, 2> count{&volume.occupancy, &list.groupOffsets};
+  const std::array<Binding, 2> scan{&list.groupOffsets, &totals};  // of no chunks, so that the second is not written
+  commands.beginPass("block lists");
+  commands.dispatchLinear(count_, count, push, threadsOf(push));
   commands.barrier(kCompute, kCompute);
   commands.dispatchLinear(scan_, scan, push, shader::kScanThreads);
-  commands.barrier(kCompute, kCompute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
-  commands.dispatchLinear(write_, write, push, threads);
+  commands.barrier(kCompute, kCompute | VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+  commands.copy(list.groupOffsets, totals,
+                {.srcOffset = totalAt, .dstOffset = VkDeviceSize(level) * sizeof(std::uint32_t), .size = sizeof(std::uint32_t)});
+}
+
+void CompactionPass::allocate(BlockList& list, std::uint64_t count) const {
+  std::vector<shader::ChunkArguments> chunks;
+  for (std::uint64_t first = 0; first == 0 || first < count; first += shader::kSplatsPerChunk)
+    chunks.push_back(
+        chunkArguments(std::uint32_t(first), std::uint32_t(std::min<std::uint64_t>(count - first, shader::kSplatsPerChunk))));
+  list.chunkCount = std::uint32_t(chunks.size());
+  list.indices =
+      Buffer(device_, std::max<std::uint64_t>(count, 1) * sizeof(std::uint32_t), MemoryUse::Device, "occupied blocks");
+  list.chunks = Buffer(device_, chunks.size() * sizeof(shader::ChunkArguments), MemoryUse::Device, "chunk arguments",
+                       VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  upload(device_, list.chunks, std::as_bytes(std::span(chunks)));
+}
+
+void CompactionPass::recordList(Commands& commands, const DeviceVolume& volume, int level, const BlockList& list) const {
+  shader::CompactPush push = pushOf(volume, level);
+  push.blocks = addressWords(list.indices.address());
+  const std::array<Binding, 2> write{&volume.occupancy, &list.groupOffsets};
+  commands.beginPass("block lists");
+  commands.dispatchLinear(write_, write, push, threadsOf(push));
   commands.barrier(kCompute, kCompute);
 }
 
-std::uint64_t downloadBlockCount(const Device& device, const BlockList& visible) {
-  std::vector<shader::ChunkArguments> chunks(visible.chunkCount);
-  download(device, visible.chunks, std::as_writable_bytes(std::span(chunks)));
+std::uint64_t downloadBlockCount(const Device& device, const BlockList& list) {
+  std::vector<shader::ChunkArguments> chunks(list.chunkCount);
+  download(device, list.chunks, std::as_writable_bytes(std::span(chunks)));
   std::uint64_t total = 0;
   for (const shader::ChunkArguments& chunk : chunks) total += chunk.splatCount;
   return total;
 }
 
-std::vector<std::uint32_t> downloadBlockList(const Device& device, const BlockList& visible) {
-  std::vector<std::uint32_t> voxels(downloadBlockCount(device, visible));
-  download(device, visible.indices, std::as_writable_bytes(std::span(voxels)));
-  return voxels;
+std::vector<std::uint32_t> downloadBlockList(const Device& device, const BlockList& list) {
+  std::vector<std::uint32_t> indices(downloadBlockCount(device, list));
+  download(device, list.indices, std::as_writable_bytes(std::span(indices)));
+  return indices;
 }
 
 }  // namespace freevoxels

@@ -1,6 +1,5 @@
 #pragma once
-// The list of voxels, or blocks of a level of the octree, that have something to draw, in ascending order,
-// made on the device.
+// Lists of the occupied blocks of a level of the octree, in ascending order, made on the device. Level 0 has the voxels.
 
 #include <cstdint>
 #include <vector>
@@ -11,31 +10,34 @@
 namespace freevoxels {
 
 struct BlockList {
-  Buffer groupOffsets;  ///< uint: counts, then offsets, of each workgroup's stretch of blocks, and the total
-  Buffer indices;       ///< uint: as of HierarchyLayout::indexOf, ascending
+  Buffer groupOffsets;  ///< uint: for each workgroup's stretch of blocks how many occupied ones come before it, then the total
+  Buffer indices;       ///< uint: of blocks as HierarchyLayout::indexOf counts them, ascending
   Buffer chunks;        ///< shader::ChunkArguments of each draw chunk
   std::uint32_t chunkCount = 0;
 };
 
-/// Room for all blocks of a level (hierarchy_layout.h) that can hold anything.
-BlockList makeBlockList(const Device& device, const DeviceVolume& volume, int level = 0);
-
-/// COMPUTE compact_count.comp, compact_scan.comp, compact_write.comp: lists what OccupancyPass found, and
-/// ranks it.
+/// COMPUTE compact_count.comp, compact_scan.comp, compact_write.comp: counts what OccupancyPass found, lists it and ranks it. The
+/// count is read back in between, so that a list takes memory for the blocks that are occupied and not for all that could be.
 class CompactionPass {
  public:
   explicit CompactionPass(const Device& device);
-  void record(Commands& commands, const DeviceVolume& volume, const BlockList& visible,
-              int level = 0) const;
+
+  /// Records counting a level's occupied blocks. `list` gets groupOffsets, and `totals` the count at index `level`.
+  void recordCount(Commands& commands, const DeviceVolume& volume, int level, BlockList& list, const Buffer& totals) const;
+  /// Allocates a list of `count` blocks, with the arguments of its draw chunks. Fails with ExitCode::OutOfMemory.
+  void allocate(BlockList& list, std::uint64_t count) const;
+  /// Records listing and ranking the blocks that recordCount counted, after allocate().
+  void recordList(Commands& commands, const DeviceVolume& volume, int level, const BlockList& list) const;
 
  private:
+  const Device& device_;
   Pipeline count_, scan_, write_;
 };
 
-/// Sum of the chunks' splat counts. Reads back.
-std::uint64_t downloadBlockCount(const Device& device, const BlockList& visible);
+/// Sum of the chunks' block counts. Reads back.
+std::uint64_t downloadBlockCount(const Device& device, const BlockList& list);
 
 /// The list: padded indices. Reads back.
-std::vector<std::uint32_t> downloadBlockList(const Device& device, const BlockList& visible);
+std::vector<std::uint32_t> downloadBlockList(const Device& device, const BlockList& list);
 
 }  // namespace freevoxels

@@ -61,9 +61,7 @@ DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
                       .albedo = classification.albedo,
                       .hasColors = volume.albedo.has_value() || classification.transferFunction.has_value(),
                       .emissionUnit = brightestSource(classification, volume) / kBrightest,
-                      .voxelSize = volume.voxelSize(),
-                      .activeVoxels = volume.activeVoxels};
-  if (result.hasEmission()) result.activeVoxels += volume.temperature->activeVoxels;
+                      .voxelSize = volume.voxelSize()};
   const std::uint64_t words = result.hierarchy.paddedBlocks() / shader::kBlocksPerWord;
   result.occupancy = Buffer(device, words * sizeof(shader::OccupancyWord), MemoryUse::Device, "occupancy",
                             VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);

@@ -37,7 +37,6 @@ struct DeviceVolume {
   bool hasColors = false;     ///< voxels have colours of their own: a transfer function's or a grid's
   double emissionUnit = 0.0;  ///< radiance per world unit that a stored 1 is; 0: no voxel sends out light
   double voxelSize = 0.0;
-  std::uint64_t activeVoxels = 0;  ///< no more than this many can be visible
 
   /// Where samples are classified after interpolation, and there is memory for it.
   std::optional<DeviceScalars> scalarBricks;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 
 #include "embedded/pack_voxels.h"
 #include "engine/core/error.h"
@@ -17,12 +18,7 @@ namespace {
 class PackPass {
  public:
   PackPass(const Device& device, const DeviceVolume& volume)
-      : pipeline_(makeComputePipeline(
-            device, {pack_voxels_spv, "pack voxels"},
-            {.bindings = std::vector(5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-             .pushConstantBytes = sizeof(shader::BricksPush)},
-            {shader::kBrickThreads, 1, 1},
-            {volume.hasEmission(), volume.hasColors})) {}
+      : pipeline_(makeComputePipeline(device, shaders::pack_voxels, {volume.hasEmission(), volume.hasColors})) {}
   void record(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks) const {
     const std::array<Binding, 5> bindings{&bricks.scalars(), &bricks.firstVoxels(), &bricks.emissions(), &volume.occupancy,
                                           &bricks.colors()};
@@ -71,7 +67,7 @@ class BlockBuilder {
   }
 
  private:
-  /// Of all levels, with the lists and the ranks.
+  /// Finds the occupied blocks of all levels, lists them and ranks them.
   void findOccupancy() {
     const DeviceVolume& volume = built_.volume;
     const OccupancyPass occupancy(device_, volume.hasEmission());
@@ -79,19 +75,26 @@ class BlockBuilder {
     forEachBatch([&](Commands& commands, std::size_t batch) {
       occupancy.recordVoxels(commands, volume, bricks_, batch == 0);
     });
-    Commands commands(device_);
-    occupancy.recordBlocks(commands, volume);
-    built_.visible = makeBlockList(device_, volume);
-    compaction.record(commands, volume, built_.visible);
-    for (int level = 1; level <= volume.hierarchy.top(); ++level) {
-      built_.lists.coarse.push_back(makeBlockList(device_, volume, level));
-      compaction.record(commands, volume, built_.lists.coarse.back(), level);
+    const auto levels = volume.hierarchy.levels.size();
+    built_.lists.coarse.resize(levels - 1);
+    const auto listOf = [&](std::size_t level) -> BlockList& {
+      return level == 0 ? built_.visible : built_.lists.coarse[level - 1];
+    };
+    std::vector<std::uint32_t> counts(levels);
+    const Buffer totals(device_, levels * sizeof(std::uint32_t), MemoryUse::Device, "block counts");
+    Commands counting(device_);
+    occupancy.recordBlocks(counting, volume);
+    for (std::size_t level = 0; level < levels; ++level)
+      compaction.recordCount(counting, volume, int(level), listOf(level), totals);
+    submit(counting);
+    download(device_, totals, std::as_writable_bytes(std::span(counts)));
+    Commands listing(device_);
+    for (std::size_t level = 0; level < levels; ++level) {
+      compaction.allocate(listOf(level), counts[level]);
+      compaction.recordList(listing, volume, int(level), listOf(level));
     }
-    submit(commands);
-    std::vector<std::uint64_t> stored;
-    for (int level = 0; level <= volume.hierarchy.top(); ++level)
-      stored.push_back(downloadBlockCount(device_, built_.lists.of(level, built_.visible)));
-    built_.volume.stored = std::move(stored);
+    submit(listing);
+    built_.volume.stored.assign(counts.begin(), counts.end());
   }
 
   /// What is kept of every block that holds anything.
