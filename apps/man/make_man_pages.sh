@@ -11,7 +11,7 @@ trap 'rm -rf "$scratch"' EXIT
 # What help2man expects of --help: spaces between the names of an option, no marks of CLI11, and a prompt before examples.
 tidy() {
   sed -E -e 's/^(  -[^ ]*)\{false\}/\1/' -e 's/^(  [^ ]+) +\.\.\.  /\1...  /' -e 's/^(  --?[^ ,]*),--/\1, --/' \
-    -e 's/^(  [^ ].*[^ ]) (Excludes|Needs): .*  /\1  /' \
+    -e 's/^(  -.*[^ ]) (Excludes|Needs):( --[a-z-]+)+/\1/' \
     -e 's/^Positionals:/Arguments:/' -e '/^Examples:/,$ s/^  /  $ /'
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // What a point of the reference field scatters towards the eye, once, of the light that reaches it along a
-// ray of its own: in double precision, and without a table. README.md, section "How we know it is right".
+// ray of its own: in double precision, and without a table. engine/docs/validation.md.
 
 #include <glm/glm.hpp>
 #include <memory>

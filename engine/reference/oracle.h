@@ -1,6 +1,6 @@
 #pragma once
 // The picture as it should be: a converged ray march, on the CPU in double precision, that knows nothing of
-// splats or attenuation tables. README.md, section "How we know it is right".
+// splats or attenuation tables. engine/docs/validation.md.
 //
 // Voxels are classified and the field interpolated trilinearly, or scalars are interpolated and points classified (reference_field.h), light emitted and
 // absorbed along N x N rays a pixel (ray_march.h), N doubled until the picture no longer changes.
@@ -40,7 +40,7 @@ struct Oracle {
 /// 16 at most. It is doubled at least once, and as long as that changes the pixel or one of its eight
 /// neighbours by the tolerance. Rays are regular, at the centres of N x N parts. Alpha is the mean of
 /// 1 - exp(-tau), exact on each ray; lights are scattered once, with shadow rays of their own; depth is as in
-/// README.md, over all of the pixel's rays, and takes no part in the test. Nothing behind the eye is drawn.
+/// apps/manual/images.md, over all of the pixel's rays, and takes no part in the test. Nothing behind the eye is drawn.
 /// All cores; the same picture whatever their number.
 Oracle renderOracle(const Volume& volume, const Classification& classification, const Camera& camera,
                     const OracleSettings& settings, const Progress& progress = {});

@@ -1,5 +1,5 @@
 // The picture as a sum of splats: Subr et al. 2007, Section 4.1, Eq. 10, with footprints that are exact for
-// any camera and voxel shape, and the normalised resolve of README.md.
+// any camera and voxel shape, and the normalised resolve of engine/docs/method.md.
 
 #include "engine/reference/reference_splats.h"
 

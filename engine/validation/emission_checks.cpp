@@ -19,7 +19,8 @@ namespace freevoxels {
 namespace {
 
 constexpr float kKelvin = 1800.0f;
-/// Of a box seen face-on through its middle: what kernels of constant volumes are off (README.md), and codes.
+/// Tolerance for a box seen face-on through its middle: the kernels of a constant volume do not add up to a constant exactly
+/// (engine/docs/method.md), and codes are rounded.
 constexpr double kBoxTolerance = 1e-2;
 
 struct Medium {
