@@ -22,7 +22,7 @@ struct ShaderCode {
   const char* name = "";
 };
 
-/// What a pipeline's set 0 holds: binding i is of type bindings[i]; and the bytes of its push constants.
+/// The resources of a pipeline: binding i of set 0 has the type bindings[i]; the size of its push constants.
 struct PipelineInterface {
   std::vector<VkDescriptorType> bindings;
   std::uint32_t pushConstantBytes = 0;
@@ -32,13 +32,13 @@ struct PipelineInterface {
 /// Values of the specialisation constants 0, 1, 2, ...: ints or bools.
 using Specialisation = std::vector<std::uint32_t>;
 
-/// What a fragment does to an attachment.
+/// How a fragment is blended into an attachment.
 enum class Blend {
   Additive,  ///< source + destination
   Over,      ///< source + (1 - alpha of the fragment's output for this attachment) * destination
 };
 
-/// What a device keeps of a pipeline.
+/// The objects of a pipeline, owned by the device.
 struct PipelineParts {
   PipelineInterface interface;
   VkPipelineBindPoint bindPoint = VK_PIPELINE_BIND_POINT_COMPUTE;
@@ -48,17 +48,17 @@ struct PipelineParts {
   OwnedPipeline pipeline;
 };
 
-/// One of its device's pipelines, which live as long as it does.
+/// A reference to a pipeline of a device, valid as long as the device.
 class Pipeline {
  public:
   Pipeline() = default;
   explicit Pipeline(const PipelineParts& parts) : parts_(&parts) {}
 
-  /// None of a pipeline that is still to be made.
+  /// VK_NULL_HANDLE for a default-constructed pipeline.
   VkPipeline handle() const { return parts_ != nullptr ? parts_->pipeline.get() : VK_NULL_HANDLE; }
   VkPipelineLayout layout() const { return parts_->layout.get(); }
   VkPipelineBindPoint bindPoint() const { return parts_->bindPoint; }
-  /// That see the descriptors and the push constants.
+  /// The stages that access the descriptors and the push constants.
   VkShaderStageFlags stages() const;
   const PipelineInterface& interface() const { return parts_->interface; }
   /// Invocations of one workgroup; compute only.
@@ -68,7 +68,7 @@ class Pipeline {
   const PipelineParts* parts_ = nullptr;
 };
 
-/// What a pipeline is made from; the size of a workgroup is in the code.
+/// Everything that distinguishes pipelines. The workgroup size is part of the code.
 struct PipelineKey {
   std::array<const std::uint32_t*, 2> code{};  ///< compute, or vertex and fragment
   PipelineInterface interface;
@@ -79,20 +79,19 @@ struct PipelineKey {
   auto operator<=>(const PipelineKey&) const = default;
 };
 
-/// The pipelines of a device, kept for whoever wants the same again: lavapipe compiles one in up to a tenth
-/// of a second, each time.
+/// The pipelines of a device, kept for reuse: lavapipe takes up to a tenth of a second to compile one.
 struct PipelineStore {
   std::mutex mutex;
   std::map<PipelineKey, PipelineParts> made;
-  std::vector<StageTime> times;  ///< to make them
+  std::vector<StageTime> times;  ///< time to create the pipelines
 };
 
-/// `workgroup` must be the shader's local size.
+/// Returns a compute pipeline. `workgroup` must equal the shader's local size.
 Pipeline makeComputePipeline(const Device& device, const ShaderCode& code, PipelineInterface interface,
                              glm::ivec3 workgroup, const Specialisation& constants = {});
 
-/// No vertex input (vertices are pulled), no depth, no culling; all attachments are blended alike. Viewport
-/// and scissor are dynamic.
+/// Returns a graphics pipeline without vertex input (shaders fetch vertices from buffers), depth test or face
+/// culling. All attachments use the same blending. Viewport and scissor are dynamic.
 Pipeline makeGraphicsPipeline(const Device& device, const ShaderCode& vertex, const ShaderCode& fragment,
                               PipelineInterface interface, VkPrimitiveTopology topology,
                               std::span<const VkFormat> attachments, Blend blend,
