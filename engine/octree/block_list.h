@@ -1,6 +1,6 @@
 #pragma once
-// The list of voxels, or blocks of a level of the octree, that have something to draw, in ascending order,
-// made on the device.
+// Lists of the occupied voxels, or of the occupied blocks of a level of the octree, in ascending order, made
+// on the device.
 
 #include <cstdint>
 #include <vector>
@@ -11,17 +11,17 @@
 namespace freevoxels {
 
 struct BlockList {
-  Buffer groupOffsets;  ///< uint: counts, then offsets, of each workgroup's stretch of blocks, and the total
-  Buffer indices;       ///< uint: as of HierarchyLayout::indexOf, ascending
-  Buffer chunks;        ///< shader::ChunkArguments of each draw chunk
+  Buffer groupOffsets;  ///< uint: first the counts, then the offsets of each workgroup's blocks in the list, and the total
+  Buffer indices;       ///< uint: indices as of HierarchyLayout::indexOf, ascending
+  Buffer chunks;        ///< shader::ChunkArguments of each chunk that is drawn at once
   std::uint32_t chunkCount = 0;
 };
 
-/// Room for all blocks of a level (hierarchy_layout.h) that can hold anything.
+/// Allocates a list for all blocks of a level that can be occupied.
 BlockList makeBlockList(const Device& device, const DeviceVolume& volume, int level = 0);
 
-/// COMPUTE compact_count.comp, compact_scan.comp, compact_write.comp: lists what OccupancyPass found, and
-/// ranks it.
+/// COMPUTE compact_count.comp, compact_scan.comp, compact_write.comp: lists the blocks that OccupancyPass
+/// marked as occupied, and writes their ranks.
 class CompactionPass {
  public:
   explicit CompactionPass(const Device& device);
@@ -32,10 +32,10 @@ class CompactionPass {
   Pipeline count_, scan_, write_;
 };
 
-/// Sum of the chunks' splat counts. Reads back.
+/// The number of blocks in a list. Reads back, so it blocks until the device is idle.
 std::uint64_t downloadBlockCount(const Device& device, const BlockList& visible);
 
-/// The list: padded indices. Reads back.
+/// The padded indices of the blocks in a list. Reads back.
 std::vector<std::uint32_t> downloadBlockList(const Device& device, const BlockList& visible);
 
 }  // namespace freevoxels
