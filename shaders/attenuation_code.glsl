@@ -1,4 +1,4 @@
-// The two codes of a table byte; engine/attenuation/directions.cpp has them in double precision.
+// The two codes of a table byte; engine/scene/directions.cpp has them in double precision.
 
 uint encodeDepth(int code, float depth) {
   return code == kCodeDepth8 ? uint(sqrt(min(depth, kMaximumDepth)) * (255.0 / sqrt(kMaximumDepth)) + 0.5)

@@ -1,4 +1,4 @@
-// The octree's blocks: engine/hierarchy/hierarchy_layout.h. Include after interface.h.
+// The octree's blocks: engine/octree/hierarchy_layout.h. Include after interface.h.
 
 // Where a block is, here and in HierarchyLayout::indexOf and nowhere else.
 uint blockAddress(BlockLevel level, ivec3 cell) {

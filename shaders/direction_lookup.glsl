@@ -13,7 +13,7 @@ struct TableLookup {
   vec3 direction;  // divided by its largest component: a point on the cube's face
   float layer;     // world length of the direction
   mat3 indexToWorld;
-  int cells;       // on the cube's half edge (engine/attenuation/directions.h)
+  int cells;       // on the cube's half edge (engine/scene/directions.h)
   int code;        // kCode...
   int lookup;      // kLookup...
   bool pathLengthCorrection;
@@ -21,7 +21,7 @@ struct TableLookup {
   uvec2 beyond;         // device address of what eye_depths.comp made; 0: nothing lies beyond
 };
 
-// As in engine/attenuation/directions.h.
+// As in engine/scene/directions.h.
 int cellNumber(int cells, ivec3 cell) {
   const int edge = 2 * cells + 1;
   return cell.x + cells + edge * (cell.y + cells + edge * (cell.z + cells));

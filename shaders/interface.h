@@ -69,7 +69,7 @@ FV_CONSTANT int kSortGroups = 256;
 // volume.
 FV_CONSTANT int kSplatsPerChunk = 1 << 20;
 
-// The footprint, f(r) = peak (1 - r²/R²)⁴: engine/splatting/footprint.h says why.
+// The footprint, f(r) = peak (1 - r²/R²)⁴: engine/scene/footprint.h says why.
 FV_CONSTANT float kSplatRadius = 1.3960250075605876f;
 FV_CONSTANT float kSplatPeak = 5.0f / (3.14159265358979f * kSplatRadius * kSplatRadius);
 
@@ -82,7 +82,7 @@ FV_CONSTANT float kLeastExtinction = 1e-37f;
 // Must be engine/volume/classification.h's kMaximumExtinction.
 FV_CONSTANT float kMaximumExtinction = 1e30f;
 
-// Must be engine/lighting/lighting.h's.
+// Must be engine/scene/lighting.h's.
 FV_CONSTANT float kHighlight = 0.2f;
 FV_CONSTANT float kHighlightExponent = 40.0f;
 
@@ -102,7 +102,7 @@ FV_CONSTANT int kCompositeNormalised = 0;
 FV_CONSTANT int kCompositeAdditive = 1;
 FV_CONSTANT int kCompositeSorted = 2;
 
-// One level of the octree: engine/hierarchy/hierarchy_layout.h.
+// One level of the octree: engine/octree/hierarchy_layout.h.
 struct BlockLevel {
   uint first;       // index of its first block
   uint firstRank;   // of its blocks that hold anything
@@ -111,7 +111,7 @@ struct BlockLevel {
   ivec3 dimensions;
 };
 
-// Device addresses of what is kept of blocks that hold anything: engine/volume/device_volume.h. 0 where there is nothing.
+// Device addresses of what is kept of blocks that hold anything: engine/octree/device_volume.h. 0 where there is nothing.
 struct BlockStores {
   uvec2 extinction, emission, colors, blockColors;
 };
@@ -154,7 +154,7 @@ struct HalfSweepPush {
   ivec2 halfway[4];                        // rows around the middle of a step: offsets on the march and side axes
 };
 
-// engine/attenuation/source_rays.h says what the members mean.
+// engine/scene/source_rays.h says what the members mean.
 struct FaceRays {
   int axis;
   int direction;

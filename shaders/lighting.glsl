@@ -78,7 +78,7 @@ Sides reaching(SeenBlock seen, vec3 direction, float depth, float falling, float
   return sides;
 }
 
-// TableLookup the eye; with kAnyView the mean over all directions d towards it, and for each the share 1 + dot(`towards`, d)
+// Towards the eye; with kAnyView the mean over all directions d towards it, and for each the share 1 + dot(`towards`, d)
 // of its luminance.
 struct ScatteredLight {
   vec3 light, towards;

@@ -1,5 +1,5 @@
 #version 460
-// Optical depth along the rays of a fan (engine/attenuation/source_rays.h), a thread a ray: at every plane of
+// Optical depth along the rays of a fan (engine/scene/source_rays.h), a thread a ray: at every plane of
 // voxels, what the planes before it hold. Subr et al. 2007, Eq. 5, along rays instead of lattice lines. A dispatch marches
 // through a slab of planes and hands the depths over to the next.
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-// What is kept of blocks that hold anything, by rank (engine/volume/device_volume.h), at device addresses, as devices bind
+// What is kept of blocks that hold anything, by rank (engine/octree/device_volume.h), at device addresses, as devices bind
 // buffers only up to a size. Include after interface.h; STORES is the BlockStores.
 #ifndef FREEVOXELS_STORES_GLSL
 #define FREEVOXELS_STORES_GLSL

@@ -13,7 +13,7 @@ struct BilinearCell {
   float depths[4];
 };
 
-// BilinearCell all lines of sight to the voxels of a block and of those beside it. False where they have not the same four.
+// Around all lines of sight to the voxels of a block and of those beside it. False where they have not the same four.
 bool findAround(vec3 toEye, int major, int level, out BilinearCell around) {
   vec3 spread = vec3(0.0);
   if (frame.orthographic == 0) {

@@ -1,6 +1,6 @@
 // Footprints that are exact for any camera and voxel shape.
 //
-// A pixel's ray D(x, y) passes the voxel p at the distance r in index space. BilinearCell the voxel's projected
+// A pixel's ray D(x, y) passes the voxel p at the distance r in index space. Around the voxel's projected
 // centre c, with d = (x, y) - c and q = p - origin, the rays span the plane through Dc = D(c) and the
 // derivatives X, Y of D, so that
 //   perspective:   r² = |q x D|² / |D|²  = dᵀ G d / |D|²,   G = [U·U U·V; U·V V·V],  U = q x X,  V = q x Y

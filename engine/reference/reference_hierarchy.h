@@ -30,7 +30,7 @@ LevelData referenceParents(const LevelData& children, int level, const Volume& v
 std::vector<LevelData> referenceLevels(const LevelData& voxels, const Volume& volume,
                                        const TableSettings& settings);
 
-/// Blocks that hold anything and are drawn by the rule of engine/hierarchy/detail_rule.h; `extinction` and
+/// Blocks that hold anything and are drawn by the rule of engine/visibility/detail_rule.h; `extinction` and
 /// `emission` are of the voxels.
 std::vector<Block> referenceCut(const Volume& volume, std::span<const double> extinction,
                                 const Camera& camera, const FrameSettings& settings,

@@ -20,7 +20,7 @@ double extinctionOf(double opacity);
 /// Looks along -z through (x, y), orthographic, `height` world units high.
 Camera lookingDown(double x, double y, double height);
 
-/// The footprint (engine/splatting/footprint.h) at this distance of the ray from the voxel's centre.
+/// The footprint (engine/scene/footprint.h) at this distance of the ray from the voxel's centre.
 double footprintAt(double distance);
 
 }  // namespace freevoxels

@@ -4,7 +4,7 @@
     python3 tests/documentation/check_documentation.py ROOT PROGRAM...
 
 - Every relative link in a *.md file leads to a file, and to a heading of it if the link has an anchor.
-- Every *.md file that a source file mentions by its path exists.
+- Every file that a page or a comment mentions by its path exists.
 - Every command and option of our programs that a *.md file mentions exists in --help.
 - Every option in --help is mentioned in the manual.
 """
@@ -15,7 +15,8 @@ import subprocess
 import sys
 
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z0-9-]*")
-SOURCES = {".h", ".cpp", ".comp", ".vert", ".frag", ".glsl", ".py", ".sh", ".cmake", ".txt"}
+PATH = re.compile(r"(?<![\w/.-])(?:(?:engine|shaders|apps|tests|third_party_notes)/[\w/.-]+|README)\.(?:h|cpp|glsl|comp|vert|frag|md|py|sh|json|png)\b")
+SOURCES = {".md", ".h", ".cpp", ".comp", ".vert", ".frag", ".glsl", ".py", ".sh", ".cmake", ".txt"}
 FOLDERS = ("engine", "shaders", "apps", "tests", "third_party_notes", ".github")
 EVERYWHERE = {"--help", "--version"}
 
@@ -63,10 +64,11 @@ def broken_links(root, page):
             yield f"{page.relative_to(root)}: '{path or page.name}' has no heading for '#{anchor}'"
 
 
-def missing_pages(root, source):
-    for path in re.findall(r"[\w./-]+/\w+\.md\b|\bREADME\.md\b", source.read_text(errors="replace")):
-        if not any((folder / path).exists() for folder in (root, source.parent)):
-            yield f"{source.relative_to(root)}: there is no '{path}'"
+def missing_files(root, file):
+    """Files of the repository that a comment or page mentions by their path, generated ones (.in) included."""
+    for path in PATH.findall(file.read_text(errors="replace")):
+        if not any((folder / path).exists() for folder in (root, file.parent)) and not (root / f"{path}.in").exists():
+            yield f"{file.relative_to(root)}: there is no '{path}'"
 
 
 def code_of(text):
@@ -105,7 +107,7 @@ def main():
     files = [root / "README.md"] + sorted(f for folder in FOLDERS for f in (root / folder).rglob("*") if f.is_file())
     pages = [file for file in files if file.suffix == ".md"]
     problems = [p for page in pages for p in broken_links(root, page)]
-    problems += [p for file in files if file.suffix in SOURCES for p in missing_pages(root, file)]
+    problems += [p for file in files if file.suffix in SOURCES for p in missing_files(root, file)]
     problems += [p for page in pages if page.name != "changelog.md" for p in unknown_options(root, page, known)]
     problems += unmentioned_options(root, known)
     for problem in problems:
