@@ -5,7 +5,7 @@
 #include "attenuation_code.glsl"
 
 layout(constant_id = 0) const int kCode = kCodeDepth8;
-layout(constant_id = 1) const int kStepX = 1;  // of the march: 1 or -1
+layout(constant_id = 1) const int kStepX = 1;  // step of the march: 1 or -1
 
 layout(local_size_x = kSweepThreads) in;
 layout(scalar, push_constant) uniform Push { SweepPush push; };

@@ -1,5 +1,5 @@
-// A block's colour. Include after block_at.glsl and packed_light.glsl; `frame` is the SetupFrame, kColors says whether
-// voxels have colours of their own.
+// A block's colour. Include after block_at.glsl and packed_light.glsl. `frame` is the SetupFrame; kColors
+// says whether voxels have their own colours.
 
 vec3 colorOf(Block block, uint rank) {
   if (!kColors) return frame.albedo;

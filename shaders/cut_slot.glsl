@@ -1,6 +1,6 @@
-// The blocks that a level of the cut looks at: eight slots for each block of the level above that holds anything, for
-// its children; of the coarsest level one. Include after blocks.glsl; `frame` is the CutFrame, `parents` the list of
-// the level above.
+// The candidates of a level of the cut: eight slots for the children of each occupied block of the level
+// above; one slot for the coarsest level. Include after blocks.glsl. `frame` is the CutFrame, `parents` the
+// list of the level above.
 
 ivec3 cellOfSlot(uint slot) {
   if (push.level == frame.top) return ivec3(0);

@@ -1,2 +1,2 @@
-// 1 - exp(-x), also right for small x.
+// 1 - exp(-x), accurate for small x.
 float opacityOf(float x) { return x < 0.02 ? x * (1.0 - x * (1.0 / 2.0 - x * (1.0 / 6.0))) : 1.0 - exp(-x); }

@@ -1,6 +1,6 @@
-// Gradients in 4 bytes: three signed components of 9 bits, and the exponent that they share.
+// Gradients in 4 bytes: three signed components of 9 bits with a shared exponent.
 const float kMantissas = 255.0;
-const int kLeastExponent = -16;  // of what is less nothing is kept
+const int kLeastExponent = -16;  // smaller gradients become 0
 
 uint packGradient(vec3 gradient) {
   const float most = max(max(abs(gradient.x), abs(gradient.y)), abs(gradient.z));

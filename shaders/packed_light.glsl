@@ -1,14 +1,14 @@
-// Light and albedos in 4 bytes, 9 bits a component with an exponent that they share (as VK_FORMAT_E5B9G9R9_UFLOAT_PACK32):
-// a component is at most 1/512 of the largest off. Light is in units in which the brightest voxel's is kBrightest
-// (engine/volume/packed_light.h).
+// Light and albedos in 4 bytes: 9 bits a component with a shared exponent (VK_FORMAT_E5B9G9R9_UFLOAT_PACK32).
+// The error of a component is at most 1/512 of the largest component. The unit of light is such that the
+// brightest voxel has kBrightest (engine/volume/packed_light.h).
 
 vec3 unpackLight(uint bits) {
   const uvec3 parts = uvec3(bits, bits >> 9, bits >> 18) & 511u;
-  // 2^(exponent - 24), by its bits: ldexp is slow on lavapipe.
+  // 2^(exponent - 24) made of its bits, because ldexp is slow on lavapipe.
   return uintBitsToFloat(((bits >> 27) + 103u) << 23) * vec3(parts);
 }
 
-// Not negative, and at most kBrightest.
+// Packs components in 0..kBrightest.
 uint packLight(vec3 light) {
   const float largest = max(light.r, max(light.g, light.b));
   int exponent = max(int(floatBitsToUint(largest) >> 23) - 127, -16) + 1;

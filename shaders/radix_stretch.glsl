@@ -1,4 +1,4 @@
-// The stretch of pairs that is this workgroup's: whole tiles of one pair a thread. Included after interface.h
+// The stretch of pairs that this workgroup sorts: whole tiles of one pair a thread. Include after interface.h
 // and a buffer with `count`.
 
 uint stretchLength() {

@@ -1,12 +1,12 @@
-// A direction's codes of the voxels that hold anything, at their ranks. Include after interface.h and
-// attenuation_code.glsl; `kCode` is the code. Takes the bindings 1 and 2.
+// A direction's codes of the occupied voxels, at their ranks. Include after interface.h and
+// attenuation_code.glsl. `kCode` is the code. Uses the bindings 1 and 2.
 #extension GL_EXT_shader_8bit_storage : require
 #include "rank.glsl"
 
 layout(scalar, binding = 1) writeonly buffer Plane { uint8_t codes[]; };
 layout(binding = 2) uniform utextureBuffer occupancy;  // an OccupancyWord a texel
 
-// Of four voxels of a row.
+// Writes the codes of four voxels of a row.
 void storeCodes(int quad, vec4 depths) {
   const uvec2 word = texelFetch(occupancy, quad / (kBlocksPerWord / 4)).xy;  // mask, before
   const int first = 4 * quad % kBlocksPerWord;

@@ -1,5 +1,5 @@
-// What is kept of blocks that hold anything, by rank (engine/octree/device_volume.h), at device addresses, as devices bind
-// buffers only up to a size. Include after interface.h; STORES is the BlockStores.
+// The medium of occupied blocks by rank (engine/octree/device_volume.h), at device addresses, because the
+// size of a bound buffer is limited. Include after interface.h. STORES is the BlockStores.
 #ifndef FREEVOXELS_STORES_GLSL
 #define FREEVOXELS_STORES_GLSL
 #extension GL_EXT_buffer_reference : require

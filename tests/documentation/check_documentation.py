@@ -16,6 +16,7 @@ import sys
 
 OPTION = re.compile(r"(?<![\w-])--[a-z][a-z0-9-]*")
 PATH = re.compile(r"(?<![\w/.-])(?:(?:engine|shaders|apps|tests|third_party_notes)/[\w/.-]+|README)\.(?:h|cpp|glsl|comp|vert|frag|md|py|sh|json|png)\b")
+SHADER = re.compile(r"(?<![\w/.*{])[a-z]\w+\.(?:glsl|comp|vert|frag)\b")
 SOURCES = {".md", ".h", ".cpp", ".comp", ".vert", ".frag", ".glsl", ".py", ".sh", ".cmake", ".txt"}
 FOLDERS = ("engine", "shaders", "apps", "tests", "third_party_notes", ".github")
 EVERYWHERE = {"--help", "--version"}
@@ -69,6 +70,9 @@ def missing_files(root, file):
     for path in PATH.findall(file.read_text(errors="replace")):
         if not any((folder / path).exists() for folder in (root, file.parent)) and not (root / f"{path}.in").exists():
             yield f"{file.relative_to(root)}: there is no '{path}'"
+    for shader in SHADER.findall(file.read_text(errors="replace")):
+        if not (root / "shaders" / shader).exists():
+            yield f"{file.relative_to(root)}: there is no shader '{shader}'"
 
 
 def code_of(text):
