@@ -14,6 +14,7 @@ packages=(
   libglfw3-dev libimgui-dev
   libopenvdb-dev libtbb-dev libboost-iostreams-dev # OpenVDB's headers and CMake module need the last
   pybind11-dev python3-pybind11 python3-dev python3-numpy # the Python module
+  help2man man-db # man pages, and their test
   libgtest-dev xvfb xdotool python3-openvdb
 )
 

@@ -1,5 +1,5 @@
 #pragma once
-// Volume in, picture out: the passes of README.md, section "How it works", in their order.
+// Volume in, image out: the passes of engine/docs/method.md in their order.
 
 #include <cstdint>
 #include <memory>

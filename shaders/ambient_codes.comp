@@ -1,7 +1,8 @@
 #version 460
-// What part of the light from everywhere reaches the middles of all blocks of bricks, interpolated between cells
-// (ambient_sweep.comp), as the optical depth that a single light would have passed: so it changes as fast into what is opaque.
-// A workgroup a brick, a thread a row of blocks.
+// The fraction of the ambient light that reaches the centres of all blocks of bricks, interpolated between
+// cells (ambient_sweep.comp). It is stored as the optical depth that a single light would have passed, so
+// that it changes as fast as that towards opaque parts. A workgroup for each brick, a thread for each row of
+// blocks.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -10,7 +11,7 @@
 
 layout(local_size_x = kBrickQuadsThreads) in;
 layout(scalar, push_constant) uniform Push { AmbientCodesPush push; };
-layout(binding = 0) uniform utextureBuffer brickCells;  // of each brick, in blocks: x, y, z of its first one
+layout(binding = 0) uniform utextureBuffer brickCells;  // position of each brick's first block, in blocks: x, y, z
 layout(scalar, binding = 1) readonly buffer CellLight { float light[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Codes { uint pairs[]; };
 

@@ -1,7 +1,8 @@
 #version 460
-// Adds to every cell of a volume what reaches it of the light from a direction: Subr et al. 2007, Section 3.1. A thread marches
-// through all planes across the last axis of the step; where it leaves the volume at a side it goes on at the other one, on the line that enters
-// there, so that all lines are marched and every cell is met once.
+// Adds to every cell of a volume the light that reaches it from one direction: Subr et al. 2007, Section 3.1.
+// A thread marches through all planes across the last axis of the step. Where it leaves the volume at a side,
+// it continues at the opposite side with the line that enters there, so that all lines are marched and every
+// cell is visited once.
 #extension GL_GOOGLE_include_directive : require
 #include "gather_interface.h"
 #include "phase_function.glsl"
@@ -12,9 +13,10 @@ layout(constant_id = 1) const bool kPhase = false;  // whether the light is weig
 layout(local_size_x = kAmbientThreads) in;
 layout(scalar, push_constant) uniform Push { AmbientSweepPush push; };
 layout(scalar, binding = 0) readonly buffer Extinctions { float extinctions[]; };
-layout(scalar, binding = 1) buffer CellLight { float light[]; };  // channels, and with kPhase the sum of weights, after each other
+// The channels one after the other; with kPhase followed by the sum of weights.
+layout(scalar, binding = 1) buffer CellLight { float light[]; };
 
-// Of an octave of scattering over that of light that is scattered alike in all directions.
+// The weight of an octave of scattering, relative to isotropic scattering.
 float phaseAt(ivec3 cell, float g) {
   const vec3 toEye = push.orthographic != 0 ? push.eye : push.eye - vec3(cell);
   const vec3 towards = push.cellToWorld * toEye;
@@ -33,7 +35,7 @@ void main() {
   const ivec3 step = ivec3(push.step[axes.x], push.step[axes.y], push.step[axes.z]);
   ivec2 side = ivec2(number % sides.x, number / sides.x);
   int plane = step.z > 0 ? 0 : count - 1;
-  float depth = 0.0;  // in front of the cell
+  float depth = 0.0;  // optical depth in front of the cell
   for (int k = 0; k < count; ++k) {
     const int place = side.x * strides[axes.x] + side.y * strides[axes.y] + plane * strides[axes.z];
     const float own = extinctions[place] * push.stepLength, middle = depth + 0.5 * own;

@@ -14,7 +14,7 @@ float decodeDepth(int code, uint byte) {
   return byte == 0 ? kOpaqueDepth : -log(fraction);
 }
 
-// A bound in half a byte, no darker than the code itself; of linear8 only 0 hides anything.
+// A bound in half a byte: never darker than the code itself. For linear8 only the bound 0 hides anything.
 uint packBound(int code, uint byte) { return code == kCodeDepth8 ? byte / 16 : min((byte + 15) / 16, 15); }
 uint unpackBound(uint byte, int place) { return 16 * bitfieldExtract(byte, 4 * place, 4); }
 

@@ -2,8 +2,8 @@
 // The attenuation table for one of the 26 lattice directions that is not along x: Subr et al. 2007, Section
 // 3.1, Eq. 5.
 //
-// A thread marches a bundle of lines from the side at which they enter the volume, plane by plane, and writes
-// each voxel's optical depth to the outside, exclusive of the voxel, before it adds the voxel's own.
+// A thread marches a bundle of lines, plane by plane, from the side at which they enter the volume. It writes
+// each voxel's optical depth to the outside, without the voxel itself, and then adds the voxel's own.
 #extension GL_GOOGLE_include_directive : require
 #include "line_bundle.glsl"
 
@@ -17,7 +17,7 @@ void main() {
   if (thread >= threads) return;
   const SweepSlab slab = push.slab;
   int side = movedBy(thread / bundles, slab.firstPlane * push.sideStep, push.lineCount);
-  // First quad of voxels that this thread writes.
+  // The first quad of voxels that this thread writes.
   int window = movedBy(thread % bundles * kWindowQuads, slab.firstPlane / kPhases * kWindowStep, quads);
   if (slab.firstPlane == 0)
     restartLines();

@@ -2,13 +2,14 @@
 // The attenuation table for one of the 72 directions half-way between those of Subr et al. 2007, Section 3.1:
 // Eq. 5 along lattice lines with steps of two layers, such as (2,1,0) or (2,2,1).
 //
-// As attenuation_sweep.comp, but for the layer in the middle of a step, which the line crosses between voxels:
-// its extinction is the mean of the two or four around the line, and counts also where the voxel at the step's
-// end is outside. A march by two planes a step has two families of lines, over even and over odd planes.
+// Like attenuation_sweep.comp, except for the layer in the middle of a step, which the line crosses between
+// voxels: its extinction is the mean of the two or four voxels around the line, and it counts even if the
+// voxel at the step's end is outside. A march by two planes a step has two families of lines, over even and
+// over odd planes.
 #extension GL_GOOGLE_include_directive : require
 #include "line_bundle.glsl"
 
-layout(constant_id = 3) const int kHalfwayRows = 1;  // around the middle of a step: 1, 2 or 4
+layout(constant_id = 3) const int kHalfwayRows = 1;  // number of rows around the middle of a step: 1, 2 or 4
 
 layout(scalar, push_constant) uniform Push { HalfSweepPush push; };
 
@@ -16,7 +17,7 @@ bool outside(int index, int count) { return index < 0 || index >= count; }
 
 int rowOf(int plane, int side) { return (push.start + plane * push.marchStride + side * push.sideStride) / 4; }
 
-// The mean of the rows around the middle of the step; nothing beyond the volume.
+// The mean of the rows around the middle of the step; 0 beyond the volume.
 void loadHalfwayRows(int plane, int side, int window, int quads) {
   [[unroll]] for (int j = 0; j < 4 * kQuads; ++j) sigma[j] = 0.0;
   [[unroll]] for (int i = 0; i < kHalfwayRows; ++i) {
@@ -30,7 +31,7 @@ void loadHalfwayRows(int plane, int side, int window, int quads) {
   }
 }
 
-// The rows' mean half-way along the step towards where the march comes from; nothing beyond the row.
+// The rows' mean half a step back along the march; 0 beyond the row.
 float halfway(int j, int window, int quads) {
   if (kSize == 0) return sigma[j];
   const bool entry = j % 4 == (kStepX > 0 ? 0 : 3) && isEntry(j / 4 - kMargin, window, quads);
@@ -54,14 +55,14 @@ void main() {
   const int line = thread / bundles;
   const int family = line / push.sideCount, steps = slab.firstPlane / families;
   int side = movedBy(line - family * push.sideCount, steps * push.sideStep, push.sideCount);
-  // First quad of voxels that this thread writes.
+  // The first quad of voxels that this thread writes.
   int window = movedBy(thread % bundles * kWindowQuads, steps / kPhases * kWindowStep, quads);
   if (slab.firstPlane == 0)
     restartLines();
   else
     resumeLines(slab.firstDepth, thread, threads);
 
-  // In the order of the march, in which the plane of the volume is the one from its other end where the step is downwards.
+  // Planes are counted in the order of the march: from the other end of the volume if the step is downwards.
   for (int ahead = slab.firstPlane + family; ahead < slab.endPlane;) {
     [[unroll]] for (int phase = 0; phase < kPhases; ++phase) {
       if (ahead >= slab.endPlane) break;

@@ -9,8 +9,8 @@ struct Block {
   int level;
   int edge;       // voxels
   ivec3 cell;
-  ivec3 extent;   // voxels inside of the volume
-  vec3 center;    // of that part, index space
+  ivec3 extent;   // voxels along each axis that are inside the volume
+  vec3 center;    // centre of that part, index space
 };
 
 Block blockOf(int level, ivec3 cell) {
@@ -29,7 +29,7 @@ Block blockAt(uint address) {
   return blockOf(level, cellAt(frame.levels[level], address));
 }
 
-// The largest component; 0 of a block that holds nothing.
+// The largest component of a block's emission, or 0 for a block that is not occupied.
 float brightnessOf(BlockLevel level, ivec3 cell) {
   const uint address = blockAddress(level, cell);
   if (!kEmits || !isOccupied(address)) return 0.0;
@@ -37,8 +37,8 @@ float brightnessOf(BlockLevel level, ivec3 cell) {
   return max(light.r, max(light.g, light.b));
 }
 
-// Where a block's extinction is, as its children have it: one that is half empty is drawn where the other half is. With
-// light half-way to where that is.
+// The centre of a block's extinction, from its children: a block that is half empty is drawn where its other
+// half is. With emission, the point half-way to the centre of the emission.
 vec3 centerOfMass(Block block) {
   if (block.level == 0) return block.center;
   const BlockLevel children = frame.levels[block.level - 1];
@@ -57,7 +57,7 @@ vec3 centerOfMass(Block block) {
     sum += share * (child.center - block.center);
     mass += share;
   }
-  // Of light that is too faint for any block, nothing may be left.
+  // Emission that is too faint for every child may leave nothing to weight by.
   if (kEmits && mass == 0.0) return block.center;
   return block.center + sum / mass;
 }

@@ -5,18 +5,18 @@
 #include "direction_lookup.glsl"
 #include "major_axis.glsl"
 
-const float kAtSource = 1e-3;  // voxels; nearer to an eye or a light a position has no direction
+const float kAtSource = 1e-3;  // in voxels: at a smaller distance from an eye or a light the direction is undefined
 
-// Divided by its largest component, so that its length is that of one lattice layer.
+// The direction divided by its largest component, so that its length is that of one lattice layer.
 vec3 acrossLayer(vec3 direction) {
   const vec3 size = abs(direction);
   return direction / max(size.x, max(size.y, size.z));
 }
 
-// In world units.
+// The same direction in world units.
 float layerLength(vec3 direction) { return length(frame.indexToWorld * direction); }
 
-// How many layers of voxels a line in this direction crosses in a block.
+// The number of layers of voxels that a line in this direction crosses in a block.
 int layersOf(Block block, vec3 direction) { return block.extent[majorAxis(direction)]; }
 
 // `lookup` and `beyond` as TableLookup has them.
@@ -33,9 +33,10 @@ float meanDepth(Block block, TableLookup towards, out float unsaturated) {
   return depthTowards(towards, rankAt(level, blockAddress(level, block.cell)), unsaturated);
 }
 
-// A block's mean depth is that of its middle layer: what lies in front of it is less by its own layers before. Where the
-// table ends, a depth is the same a layer before: what is deep in an opaque medium would shine at its rim if the layers
-// were taken off. `layerDepth` is what the depth counts of one.
+// The optical depth in front of a block. The mean depth is that of its middle layer, so the block's own
+// layers in front of that are subtracted. Where the table ends, the depth is kept as it was a layer before:
+// otherwise blocks deep inside an opaque medium would shine at their rims. `layerDepth` is what one layer
+// counts in the depth.
 float depthInFront(Block block, vec3 direction, float depth, float layerDepth) {
   return max(depth - 0.5 * float(layersOf(block, direction) - 1) * layerDepth, 0.0);
 }

@@ -3,7 +3,7 @@
 #define BLOCKS_GLSL
 #include "interface.h"
 
-// Where a block is, here and in HierarchyLayout::indexOf and nowhere else.
+// The index of a block. Only this function and HierarchyLayout::indexOf compute it.
 uint blockAddress(BlockLevel level, ivec3 cell) {
   return level.first + uint(cell.x + level.rowPitch * (cell.y + level.dimensions.y * cell.z));
 }
@@ -15,12 +15,12 @@ ivec3 cellAt(BlockLevel level, uint address) {
   return ivec3(index - row * level.rowPitch, row - plane * level.dimensions.y, plane);
 }
 
-// The byte of a direction of the table in which the bound is of a block above the voxels that has this rank, and which of
-// those in it.
+// The byte of a table plane that has the bound of the block (above the voxels) with this rank, and the
+// position of the bound in that byte.
 uint boundOf(BlockLevel level, uint rank) { return level.firstBound + (rank - level.firstRank) / kBoundBlocks; }
 int boundInByte(BlockLevel level, uint rank) { return int((rank - level.firstRank) % kBoundBlocks); }
 
-// How much of a block is inside of the volume, in voxels along each axis; not positive outside.
+// The part of a block inside the volume, in voxels along each axis; not positive if it is outside.
 ivec3 extentInside(ivec3 cell, int edge, ivec3 voxels) { return min(voxels - cell * edge, ivec3(edge)); }
 
 // The colour of a block above the voxels, in 8 bytes.

@@ -9,13 +9,13 @@ layout(constant_id = 0) const bool kEmits = false;
 layout(local_size_x = kBrickThreads) in;
 layout(scalar, push_constant) uniform Push { BricksPush push; };
 layout(scalar, binding = 0) readonly buffer Densities { vec4 densities[]; };
-layout(scalar, binding = 1) readonly buffer FirstVoxels { ivec3 firstVoxels[]; };  // of the bricks
+layout(scalar, binding = 1) readonly buffer FirstVoxels { ivec3 firstVoxels[]; };  // of each brick
 layout(scalar, binding = 2) readonly buffer Emissions { uint emissions[]; };       // as the densities
 
 struct Row {
   float extinction[kBrickEdge];
   uint emission[kBrickEdge];
-  uint holding;  // a bit for each voxel with extinction or light; none for what is beyond the box
+  uint holding;  // a bit for each voxel with extinction or emission; 0 beyond the box
   ivec3 first;   // voxel
 };
 
@@ -30,7 +30,7 @@ Row loadRow(uint brick) {
     const vec4 quad = densities[(brick * kBrickThreads + thread) * (kBrickEdge / 4) + q];
     [[unroll]] for (int c = 0; c < 4; ++c) {
       const int i = 4 * q + c;
-      // Without data a density is negative.
+      // Voxels without data have a negative density.
       row.extinction[i] = min(max(quad[c], 0.0) * push.densityScale, kMaximumExtinction);
       row.emission[i] = kEmits ? emissions[(brick * kBrickThreads + thread) * kBrickEdge + i] : 0;
       row.holding |= uint(row.extinction[i] > 0.0 || row.emission[i] != 0) << i;

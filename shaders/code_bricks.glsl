@@ -7,7 +7,7 @@
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer CodeWords { uint values[]; };
 
-// 0 of blocks without data, which are all that are beyond the volume.
+// The code of a block, 0 without data. Blocks beyond the volume have no data.
 uint codeAt(CodeBricks bricks, ivec3 dimensions, ivec3 block) {
   const ivec3 place = block + bricks.corner;
   const ivec3 cell = place / kBrickEdge, local = place % kBrickEdge;

@@ -1,5 +1,5 @@
 #version 460
-// First pass of the list of a level's blocks that hold anything: how many each workgroup's stretch has.
+// First pass of the list of a level's occupied blocks: counts those of each workgroup's stretch.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 

@@ -1,7 +1,7 @@
 #version 460
-// Second pass of the visible-voxel list, one workgroup: counts become offsets (exclusive sum), and the total
-// becomes the arguments of each chunk's dispatch and draw. A list that is continued has the sum of what it has so far
-// before its counts.
+// Second pass of the list of occupied blocks, one workgroup: turns counts into offsets (exclusive sum), and
+// the total into the arguments of each chunk's dispatch and draw. If a list is continued, the number of its
+// blocks so far precedes its counts.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 

@@ -1,7 +1,7 @@
 #version 460
-// Third pass of the list of a level's blocks that hold anything: every one writes its index at its place, in
-// ascending order, so that the splats, and the rounding of their sums, come in the same order every time. A block's
-// place in the list is its rank in the level.
+// Third pass of the list of a level's occupied blocks: each block's index is written at its position, in
+// ascending order, so that splats are drawn, and their sums rounded, in the same order every time. The
+// position in the list is the block's rank in its level.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require

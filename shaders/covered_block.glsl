@@ -5,11 +5,13 @@
 
 layout(scalar, binding = 9) readonly buffer Tiles { uint tiles[]; };
 
-const int kMostTiles = 8;  // along an axis: a larger block is looked at in parts
+const int kMostTiles = 8;  // along an axis; the tiles of a larger block are tested in parts
 
-// Whether all pixels are covered that anything in the block reaches; `center` is relative to the volume's middle.
+// Whether every pixel that anything in the block can reach is covered. `center` is relative to the volume's
+// middle.
 bool isOccluded(vec3 center, int edge) {
-  // What is drawn in the block is no larger than the frame's coarsest, and centred between its voxels' centres.
+  // Elements drawn in the block are no larger than the frame's coarsest block, and centred between its
+  // voxels' centres.
   const float reach = 0.5 * float(edge - 1) + kSplatRadius * float(min(edge, 1 << frame.coarsest));
   const vec3 projected = frame.indexToPixel * center + frame.middleInPixels;
   const mat3 rows = transpose(frame.indexToPixel);
@@ -22,7 +24,7 @@ bool isOccluded(vec3 center, int edge) {
     steepest = vec2(dot(abs(rows[0] - pixel.x * rows[2]), vec3(1.0)), dot(abs(rows[1] - pixel.y * rows[2]), vec3(1.0))) /
                nearest;
   }
-  // A widened footprint reaches this much further, and rounding less than the rest.
+  // Margin for widened footprints, which reach farther, and for rounding.
   const vec2 half_ = reach * steepest + kSplatRadius + 0.5;
   const ivec2 first = ivec2(clamp(floor((pixel - half_) / float(kCoverTile)), vec2(0.0), vec2(frame.tiles)));
   const ivec2 end = ivec2(clamp(floor((pixel + half_) / float(kCoverTile)) + 1.0, vec2(0.0), vec2(frame.tiles)));

@@ -1,13 +1,14 @@
 #version 460
-// First pass of the cut through the octree, one dispatch a level, from the coarsest: which of the level's blocks are
-// drawn, a bit a slot (candidate_slot.glsl), and how many of each workgroup's. Subr et al. 2007, Section 3.3: the level is
-// chosen by the size on the image. What is outside of the image or hidden is left out with all that is below it.
+// First pass of the cut through the octree, one dispatch for each level, from the coarsest: which of the
+// level's candidates are drawn (a bit for each slot, cut_slot.glsl), and how many of each workgroup. Subr et
+// al. 2007, Section 3.3: the level is chosen by size on the image. Blocks outside of the image and hidden
+// blocks are left out with everything below them.
 //
-// A parent is twice as large as its children and as near to the eye as the nearest of them, so of the blocks around a
-// voxel that is not left out exactly one is drawn.
+// A parent is twice as large as its children and as near to the eye as the nearest of them. Therefore exactly
+// one of the blocks around a voxel is drawn, unless it is left out.
 //
-// What the table calls hidden is deferred. When the rest is drawn, the cut goes on below the deferred blocks, and of
-// these those are hidden at last that only reach pixels which are covered.
+// Blocks that the table calls hidden are deferred. After the others are drawn, the cut continues below the
+// deferred blocks, and leaves out those that reach covered pixels only.
 #extension GL_GOOGLE_include_directive : require
 #define OCCUPANCY_BINDING 2
 #define PLANE_ADDRESSES_BINDING 8
@@ -28,12 +29,12 @@ layout(scalar, binding = 6) buffer GroupCounts { uint groupCounts[]; };
 layout(scalar, binding = 7) buffer Counts { CutCounts counts; };
 
 shared CutCounts sums;
-shared uint asked[kCutSlotsPerGroup];  // the slots to look at, in any order
+shared uint asked[kCutSlotsPerGroup];  // the slots to test, in any order
 shared uint askedCount;
 shared uint mask[kCutThreads];
 shared uint drawn;
 
-// Of a block's voxels: as many as an edge has, around the centre.
+// The centre of a block, relative to the volume's middle. Its part beyond the volume counts too.
 vec3 centerOf(ivec3 cell, int edge) { return (vec3(cell) + 0.5) * float(edge) - 0.5 - frame.middle; }
 
 bool isSmall(vec3 center, int edge) {
@@ -51,10 +52,11 @@ bool isOutside(vec3 center, int edge) {
   return false;
 }
 
-// Of a slot's parent among the blocks above the voxels: it is the rank that the list is in the order of.
+// The index of a slot's parent among the blocks above the voxels: its rank, because the list is in the order
+// of ranks.
 uint parentPlace(uint slot) { return frame.levels[push.level + 1].firstRank - frame.coarseFirst + slot / 8; }
 
-// Which of a thread's slots to look at, a bit each.
+// Which of a thread's slots to test, a bit each.
 uint candidateSlots(uint first) {
   if (push.level == frame.top) return !kDeferred && first == 0 ? 1 : 0;
   if (kDeferred && counts.deferred == 0) return 0;
@@ -68,7 +70,7 @@ uint candidateSlots(uint first) {
   return bits;
 }
 
-// Lists them for the whole workgroup: as many turns as there are slots to look at, shared evenly.
+// Collects the slots of the whole workgroup, so that its threads share the tests evenly.
 void listAsked(uint bits, uint firstInGroup) {
   uint place = atomicAdd(askedCount, uint(bitCount(bits)));
   for (; bits != 0; bits &= bits - 1) asked[place++] = firstInGroup + uint(findLSB(bits));
@@ -87,7 +89,7 @@ void open(uint block) {
     atomicOr(children[block / 4], allOfThem);
 }
 
-// Whether the block of a slot is drawn; opens it where its children may be.
+// Whether the block of a slot is drawn. Opens the block if its children may be drawn instead.
 bool isDrawn(uint slot, inout CutCounts found) {
   const ivec3 cell = cellOfSlot(slot);
   if (any(greaterThanEqual(cell, frame.levels[push.level].dimensions))) return false;
@@ -102,7 +104,7 @@ bool isDrawn(uint slot, inout CutCounts found) {
     ++found.outside;
     return false;
   }
-  // Of a voxel it costs about as much to ask as to draw it.
+  // Voxels are not tested: the test costs about as much as drawing a splat.
   if (!kVoxels && push.level < frame.top && frame.hides != 0) {
     if (kDeferred && isOccluded(center, edge)) {
       ++found.hidden;

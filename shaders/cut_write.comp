@@ -1,6 +1,6 @@
 #version 460
-// Last pass of the cut, one dispatch a level, after compact_scan.comp: the blocks that are drawn, at their places, in
-// the order of their slots.
+// Last pass of the cut, one dispatch for each level, after compact_scan.comp: writes the drawn blocks at
+// their positions, in the order of their slots.
 #extension GL_GOOGLE_include_directive : require
 #include "candidate_slot.glsl"
 

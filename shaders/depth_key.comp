@@ -1,8 +1,8 @@
 #version 460
-// The sort key of every visible voxel: ascending keys are back to front. It is made of the distance from the
-// eye (orthographic: along the viewing axis) less that of the volume's middle, so that a far eye takes no bits
-// from it: |m + o| - |m| = (2m + o) . o / (|m + o| + |m|), m from the eye to the middle, o from there to the
-// voxel.
+// The sort key of every occupied voxel: ascending keys are back to front. It is the distance from the eye
+// (orthographic: along the viewing axis) minus that of the volume's middle, so that a distant eye costs no
+// precision: |m + o| - |m| = (2m + o) . o / (|m + o| + |m|), with m from the eye to the middle and o from
+// there to the voxel.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 
@@ -14,13 +14,13 @@ layout(scalar, binding = 2) writeonly buffer Count { uint count; };
 layout(scalar, binding = 3) writeonly buffer Keys { uint keys[]; };
 layout(scalar, binding = 4) writeonly buffer Values { uint values[]; };
 
-// Unsigned integers in the order of the floats; -0 and 0 are the same.
+// Maps floats to unsigned integers in the same order; -0 and 0 are equal.
 uint ordered(float x) {
   const uint bits = x == 0.0 ? 0u : floatBitsToUint(x);
   return bits ^ ((bits & 0x80000000u) != 0u ? 0xffffffffu : 0x80000000u);
 }
 
-// `precise`: voxels that mirror each other must tie, whatever the compiler would contract.
+// `precise`, because mirrored voxels must have equal keys, whatever operations the compiler would contract.
 float relativeDistance(vec3 index) {
   const vec3 steps = index - push.middle;
   precise vec3 offset =

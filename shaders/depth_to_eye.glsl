@@ -14,7 +14,8 @@ float tableDepth(Block block, out float unsaturated) {
   return meanDepth(block, towardsSource(directionToEye(block.center), frame.lookup, frame.sourceDepth), unsaturated);
 }
 
-// Of the block, or of itself where that holds nothing: the table does not know it.
+// The depth of a neighbour, or of the block itself if the neighbour is not occupied: the table does not have
+// it.
 Block neighbour(Block block, int axis, int steps) {
   ivec3 cell = block.cell;
   cell[axis] += steps;
@@ -22,14 +23,16 @@ Block neighbour(Block block, int axis, int steps) {
   return isInside(level, cell) && isOccupied(blockAddress(level, cell)) ? blockOf(block.level, cell) : block;
 }
 
-// Between the neighbours, each with its own line of sight; one-sided where one of them holds nothing.
+// The difference between both neighbours, each with its own line of sight; one-sided if one of them is not
+// occupied.
 float tableSlope(Block block, int axis) {
   const Block before = neighbour(block, axis, -1), after = neighbour(block, axis, 1);
   float unused;
   return (tableDepth(after, unused) - tableDepth(before, unused)) / max(after.center[axis] - before.center[axis], 1.0);
 }
 
-// At the block's centre, which may lie between two planes: then the mean of what the line of sight has there.
+// The depth at the block's centre. If that lies between two planes, the mean of the line of sight's depths on
+// both.
 vec3 rayDepthOf(FaceRays fan, Block block, vec3 direction) {
   if (block.extent[fan.axis] % 2 == 1) return rayDepth(fan, block.center);
   return 0.5 * (rayDepth(fan, block.center + 0.5 * direction) + rayDepth(fan, block.center - 0.5 * direction));
@@ -40,15 +43,15 @@ struct DepthToEye {
   vec3 gradient;  // per voxel, index space
 };
 
-// From the depth of a block's middle layer and its slopes beside `axis`. A layer takes `layerDepth` from the light, and
-// counts `countedDepth` in the depth.
+// Combines the depth of a block's middle layer and its slopes beside `axis`. A layer dims the light by
+// `layerDepth`, and counts `countedDepth` in the stored depths.
 DepthToEye inFrontOf(Block block, vec3 direction, int axis, vec3 middle, float layerDepth, float countedDepth) {
   DepthToEye result = DepthToEye(0.0, vec3(0.0));
   result.depth = depthInFront(block, direction, middle.x, countedDepth);
   if (frame.gradient == 0) return result;
   result.gradient[(axis + 1) % 3] = middle.y;
   result.gradient[(axis + 2) % 3] = middle.z;
-  // Along the line of sight the depth falls by that of a layer.
+  // Along the line of sight, the depth falls by that of one layer.
   result.gradient[axis] = -(layerDepth + dot(result.gradient, direction)) / direction[axis];
   return result;
 }
@@ -76,7 +79,8 @@ DepthToEye depthToEye(Block block, float sigma) {
   if (frame.lookup == kLookupExact) return alongRays(block, sigma, direction);
   const DepthToEye table = fromTable(block, sigma, direction);
   if (frame.rayShare == 0.0) return table;
-  // Depths are mixed, not transmittances: what is dark in one of them alone is not to shine as soon as the other counts.
+  // Depths are mixed, not transmittances: a voxel that is dark by only one of them must not become bright as
+  // soon as the other has any weight.
   const DepthToEye rays = alongRays(block, sigma, direction);
   return DepthToEye(mix(table.depth, rays.depth, frame.rayShare), mix(table.gradient, rays.gradient, frame.rayShare));
 }

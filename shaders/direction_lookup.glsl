@@ -19,24 +19,24 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer See
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer DepthsBeyond { float layers[]; };
 
 struct TableLookup {
-  vec3 direction;  // divided by its largest component: a point on the cube's face
+  vec3 direction;  // divided by its largest component: a point on a face of the cube
   float layer;     // world length of the direction
   mat3 indexToWorld;
-  int cells;       // on the cube's half edge (engine/attenuation/directions.h)
+  int cells;       // cells along half an edge of the cube (engine/scene/directions.h)
   int code;        // kCode...
   int lookup;      // kLookup...
   bool pathLengthCorrection;
-  float countedLength;  // world length that a layer counts in stored depths
-  uvec2 beyond;         // device address of what eye_depths.comp made; 0: nothing lies beyond
+  float countedLength;  // world length of a layer in stored depths
+  uvec2 beyond;         // device address of the output of eye_depths.comp; 0 if nothing lies beyond the source
 };
 
-// As in engine/attenuation/directions.h.
+// As in engine/scene/directions.h.
 int cellNumber(int cells, ivec3 cell) {
   const int edge = 2 * cells + 1;
   return cell.x + cells + edge * (cell.y + cells + edge * (cell.z + cells));
 }
 
-// Where in a plane the code of a block is: those of runs that cannot be seen share the first one's.
+// The offset of a block's code in a plane. Pruned runs share the codes of the first run.
 uint codePlace(int cells, uint rank) {
   const uvec2 runs = planeAddresses[cellNumber(cells, ivec3(cells)) + 1];
   if (runs == uvec2(0)) return rank;
@@ -54,15 +54,15 @@ uint storedCode(TableLookup towards, ivec3 cell, uint place) {
   return codeAt(planeAddresses[cellNumber(towards.cells, cell)], place);
 }
 
-// As if the line along the stored direction were as long as the one that is asked for: a homogeneous medium
-// is exact in every direction.
+// Scales a stored depth by the length of the requested line over that of the stored one, so that a
+// homogeneous medium is exact in every direction.
 float storedDepth(TableLookup towards, ivec3 cell, uint place) {
   const float depth = decodeDepth(towards.code, storedCode(towards, cell, place));
   if (!towards.pathLengthCorrection) return depth;
   return depth * towards.layer * float(towards.cells) / length(towards.indexToWorld * vec3(cell));
 }
 
-// Of an eye or a light inside the volume: A_B / A_V of Subr et al. 2007, Section 3.3.
+// The depth beyond an eye or a light inside the volume: A_B / A_V of Subr et al. 2007, Section 3.3.
 float depthBeyond(TableLookup towards, ivec3 cell) {
   if (towards.beyond == uvec2(0)) return 0.0;
   return DepthsBeyond(towards.beyond).layers[cellNumber(towards.cells, cell)] * towards.countedLength;
@@ -72,7 +72,8 @@ float depthUpTo(TableLookup towards, ivec3 cell, uint place) {
   return max(storedDepth(towards, cell, place) - depthBeyond(towards, cell), 0.0);
 }
 
-// Whether a stored depth is the largest there is: the depth itself may be any larger one, and is the same a layer before.
+// Whether a stored depth is the end of the code. The true depth may be larger, and is stored with the same
+// value a layer before.
 bool isAtEnd(TableLookup towards, ivec3 cell, uint place) {
   return storedCode(towards, cell, place) == (towards.code == kCodeLinear8 ? 0 : 255);
 }
@@ -85,7 +86,7 @@ ivec3 nearestCell(vec3 point) { return ivec3(sign(point) * ceil(abs(point) - 0.5
 // grows towards the eye by what a layer takes from it.
 float depthTowards(TableLookup towards, uint rank, out float unsaturated) {
   const uint place = codePlace(towards.cells, rank);
-  // A division may round to just beyond 1.
+  // The division may round to slightly more than 1.
   const vec3 point = clamp(towards.direction, -1.0, 1.0) * towards.cells;
   if (towards.lookup == kLookupNearest) {
     unsaturated = isAtEnd(towards, nearestCell(point), place) ? 0.0 : 1.0;
@@ -93,7 +94,7 @@ float depthTowards(TableLookup towards, uint rank, out float unsaturated) {
   }
   const vec3 low = floor(min(point, 0.999999 * towards.cells));
   const vec3 weight = point - low;
-  // The major axis has weight 0 or 1: both of its neighbours are the same face.
+  // The major axis has weight 0 or 1, because both of its neighbours are on the same face.
   const int major = majorAxis(point);
   const int a = (major + 1) % 3;
   const int b = (major + 2) % 3;

@@ -1,6 +1,6 @@
 #version 460
-// The scalars of all voxels of a box, which may reach beyond the volume, as intervals of the transfer function's table; less
-// than 0 where there is no data. Four of a row a thread.
+// Writes the scalars of all voxels of a box, which may reach beyond the volume, as intervals of the transfer
+// function's table; negative without data. A thread writes four voxels of a row.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require

@@ -1,5 +1,6 @@
 #version 460
-// The extinction of all voxels of a box, which may reach beyond the volume: four of a row a thread.
+// Writes the extinction of all voxels of a box, which may reach beyond the volume. A thread writes four
+// voxels of a row.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "blocks.glsl"
@@ -11,7 +12,7 @@ layout(binding = 0) uniform usamplerBuffer occupancy;
 layout(binding = 1) uniform samplerBuffer extinction;  // by rank
 layout(scalar, binding = 2) writeonly buffer BoxExtinction { vec4 boxExtinction[]; };
 
-// Four in a row from this rank on.
+// Four consecutive extinctions, starting at this rank.
 vec4 fourFrom(uint rank) {
   const vec4 low = texelFetch(extinction, int(rank / 4)), high = texelFetch(extinction, int(rank / 4 + 1));
   const bool two = (rank & 2u) != 0, one = (rank & 1u) != 0;
@@ -32,7 +33,7 @@ void main() {
     const int bit = int(address % kBlocksPerWord);
     const uint mask = bitfieldExtract(word.x, bit, 4);
     if (mask != 0) {
-      // The rank of a voxel is higher by one than that of the last before it that holds anything.
+      // A voxel's rank is one more than that of the occupied voxel before it.
       const vec4 held = fourFrom(push.voxels.firstRank + rankIn(word, bit));
       const bvec4 holds = notEqual(mask & uvec4(1, 2, 4, 8), uvec4(0));
       const float second = holds.x ? held.y : held.x;

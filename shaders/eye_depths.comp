@@ -1,7 +1,7 @@
 #version 460
-// Optical depth from an eye or a light inside the volume to the outside in the table's directions, in layers of voxels:
-// A_V of Subr et al. 2007, Section 3.3. A thread a direction marches from the eye as the sweeps do from a voxel, with
-// half of what is at the eye itself.
+// Optical depth from an eye or a light inside the volume to the outside, in the table's directions and in
+// layers of voxels: A_V of Subr et al. 2007, Section 3.3. A thread for each direction marches from the eye
+// like the sweeps from a voxel, and adds half of the extinction at the eye itself.
 #extension GL_GOOGLE_include_directive : require
 #include "frame_interface.h"
 
@@ -30,7 +30,7 @@ void main() {
   if (i >= edge * edge * edge) return;
   const vec3 cell = vec3(i % edge, i / edge % edge, i / edge / edge) - float(push.cells);
   const vec3 size = abs(cell);
-  if (max(size.x, max(size.y, size.z)) < push.cells) return;  // no direction: inside of the cube
+  if (max(size.x, max(size.y, size.z)) < push.cells) return;  // a cell inside the cube, which is not a direction
   const vec3 layer = cell / push.cells;
   float sum = 0.5 * extinctionAt(push.place);
   vec3 place = push.place + layer;

@@ -1,24 +1,25 @@
 #ifndef FREEVOXELS_FRAME_INTERFACE_H
 #define FREEVOXELS_FRAME_INTERFACE_H
-// What C++ and the shaders of a frame share, as interface.h of the volume's: lights, splats, their drawing, the picture.
+// Structs that C++ and the shaders of a frame share: lights, splats, resolve. interface.h has those of the
+// volume.
 #include "interface.h"
 
 #ifdef __cplusplus
 namespace freevoxels::shader {
 #endif
 
-// One splat, ready to draw. Written by splat_setup.comp, pulled by splat.vert.
+// A splat that is ready to draw: written by splat_setup.comp, read by splat.vert.
 struct Splat {
   vec4 colorEnergy;   // e_v c_v and e_v without the transmittance to the eye, times the footprint's peak
   vec2 center;        // pixels, (0, 0) = the top left corner of the image
-  vec2 halfExtent;    // pixels; 0 = not drawn
+  vec2 halfExtent;    // in pixels; 0 if the splat is not drawn
   vec3 conic;         // xx, xy, yy: (r/R)² |D|² = xx dx² + 2 xy dx dy + yy dy² at (dx, dy) from the centre
-  float opticalDepth; // t_v, times the footprint's peak, per world length of ray; less than 0: the kernel is cut
+  float opticalDepth; // t_v times the footprint's peak, per world length of the ray; negative if the eye plane cuts the kernel
   float distance;     // from the eye plane along the viewing axis, world units
-  vec3 depthToEye;    // of the voxel's centre, and how it changes per pixel along x and y
-  // A kernel that the eye plane cuts, q from the eye to its centre in index space: `conic` is q . D of the pixel
-  // (0, 0) and its change per pixel along x and y; `depthToEye` is the depth at the eye, its change per world
-  // length along the ray, and |q|².
+  vec3 depthToEye;    // depth at the voxel's centre, and its change per pixel along x and y
+  // If the eye plane cuts the kernel, with q from the eye to its centre in index space: `conic` is q . D of
+  // the pixel (0, 0) and its change per pixel along x and y; `depthToEye` is the depth at the eye, its change
+  // per world length along the ray, and |q|².
 };
 
 // lighting.glsl
@@ -26,27 +27,29 @@ struct Light {
   vec3 place;         // from the volume's middle, index space; at infinity the direction towards the light, of which
                       // the largest component is 1
   int atInfinity;
-  vec3 color;         // times the intensity
-  uvec2 beyond;       // device address of what eye_depths.comp made of it; 0: the light is outside of the volume
-  FaceRays fans[6];     // kLookupExact: from the light, as SetupFrame has them from the eye
+  vec3 color;         // includes the intensity
+  uvec2 beyond;       // device address of the output of eye_depths.comp; 0 if the light is outside of the volume
+  FaceRays fans[6];     // kLookupExact: rays from the light, as in SetupFrame
 };
 
-// What splat_setup.comp needs of a frame that is lit.
+// The lighting of a frame.
 struct FrameLighting {
   int lightCount;
-  int lookup;                    // kLookup... of the lights' transmittances
+  int lookup;                    // kLookup... for the transmittance to lights
   int hasAmbient;            // whether there is light in `ambientByDirection`
-  vec3 tint;                     // of the extinction, on the way of the light
+  vec3 tint;                     // factor of the extinction between light and voxel
   float phaseG;
-  float surface;                 // how much of the lights is scattered as by surfaces
-  int octaves;                   // of scattering
-  float octaveScale;             // of each to the one before
+  float surface;                 // fraction of the lights that is reflected like a surface
+  int octaves;                   // orders of scattering
+  float octaveScale;             // factor from one order to the next
   mat3 gradientToWorld;
-  vec4 ambientByDirection[kMaximumCells];   // by cell number: radiance from there times its part of the sphere, and that part
+  // By cell number: radiance from this direction times its fraction of the sphere (rgb), and that fraction
+  // (a).
+  vec4 ambientByDirection[kMaximumCells];
 };
 
-// The frame, as splat_setup.comp needs it. Index space is relative to the middle of the volume, so that
-// 32-bit floats keep their precision far from the origin.
+// The constants of a frame. Index space is relative to the middle of the volume, so that 32-bit floats keep
+// their precision far from the origin.
 struct SetupFrame {
   mat3 indexToWorld;       // linear part
   mat3 indexToPixel;       // index offset -> (x t, y t, t), orthographic (x, y, t): see PixelRays for x, y and t
@@ -63,16 +66,16 @@ struct SetupFrame {
   int levelCount;
   float voxelSize;         // edge of the cube with a voxel's volume, world units
   int lookup;              // kLookup...
-  float rayShare;          // of the depth to the eye that is along rays; the rest is the table's. kLookupExact: 1
-  uvec2 sourceDepth;         // device address of what eye_depths.comp made; 0: the eye is outside of the volume
-  int pathLengthCorrection;  // 0: every lattice step counts as long as any other
-  int kernelMean;          // 1: a voxel has the mean of the transmittance over its kernel, along the line of sight
-  int gradient;            // 0: the transmittance to the eye is the same all over a footprint
+  float rayShare;          // weight of the exact depth to the eye; the table's has the rest. kLookupExact: 1
+  uvec2 sourceDepth;         // device address of the output of eye_depths.comp; 0 if the eye is outside of the volume
+  int pathLengthCorrection;  // 0 if every lattice step has the same length
+  int kernelMean;          // 1 if a voxel has the mean transmittance over its kernel along the line of sight
+  int gradient;            // 0 if the transmittance to the eye is constant over a footprint
   int code;                // kCode...
   int cells;               // that the table's directions divide the cube's half edge into
   vec3 albedo;
-  float emissionUnit;      // radiance per world unit that a stored 1 is
-  FaceRays fans[6];          // kLookupExact: from the eye, by fanIndex; orthographic six times the same
+  float emissionUnit;      // radiance per world unit of a stored 1
+  FaceRays fans[6];          // kLookupExact: rays from the eye, by fanIndex; for an orthographic camera six times the same
   FrameLighting lighting;
 };
 
@@ -84,9 +87,9 @@ struct SetupPush {
 struct EyeDepthsPush {
   BlockLevel voxels;
   BlockStores stores;
-  vec3 place;        // of the eye, index space, in the box of the voxels' centres
+  vec3 place;        // position of the eye, index space, clamped to the box of the voxels' centres
   int cells;         // that the table's directions divide the cube's half edge into
-  int first;         // of the depths, by cell number from here on
+  int first;         // index of the first depth; depths are by cell number
 };
 
 // splat.vert and splat.frag
@@ -96,14 +99,14 @@ struct SplatPush {
   vec3 rayLength2Squares;  //   + rayLength2Squares . (x², xy, y²)
   vec3 worldLength2;       // the same in world space
   vec3 worldLength2Squares;
-  vec2 viewportOrigin;   // of the enlarged viewport, pixels
+  vec2 viewportOrigin;   // of the enlarged viewport, in pixels
   vec2 viewportSize;
 };
 
 // resolve.comp
 struct ResolvePush {
   vec3 ray, rayX, rayY;                  // index space
-  vec3 worldRay, worldRayX, worldRayY;   // the same, world space
+  vec3 worldRay, worldRayX, worldRayY;   // in world space
   ivec2 size;
   int composite;                         // kComposite...
 };
@@ -111,7 +114,7 @@ struct ResolvePush {
 // tile_opacity.comp
 struct TilePush {
   ResolvePush rays;
-  float hiddenDepth;   // optical depth of a covered pixel, at least
+  float hiddenDepth;   // least optical depth of a covered pixel
   uvec2 tiles;         // of the image
 };
 

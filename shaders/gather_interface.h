@@ -1,6 +1,6 @@
 #ifndef FREEVOXELS_GATHER_INTERFACE_H
 #define FREEVOXELS_GATHER_INTERFACE_H
-// What C++ and the shaders of the gather share: engine/splatting/gather_pass.h describes the passes.
+// What C++ and the shaders of the gather share: engine/gathering/gather_pass.h describes the passes.
 #include "frame_interface.h"
 
 #ifdef __cplusplus

@@ -1,6 +1,6 @@
 #version 460
-// Optical depth from the middles of all blocks of bricks towards a light, from its rays: light is found by it at the samples
-// of the gather. A workgroup a brick, a thread a row of blocks.
+// Optical depth from the centres of all blocks of bricks to a light, from the light's rays: the gather's
+// samples interpolate it. A workgroup for each brick, a thread for each row of blocks.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -10,17 +10,18 @@
 #include "rank.glsl"
 #include "ray_lookup.glsl"
 
-layout(constant_id = 0) const bool kScalars = false;  // rays have the depths of positions, else those in front of layers
+// Whether rays hold depths of positions (scalars), or those in front of layers.
+layout(constant_id = 0) const bool kScalars = false;
 
 layout(local_size_x = kBrickQuadsThreads) in;
 layout(scalar, push_constant) uniform Push { LightDepthsPush push; };
-layout(binding = 0) uniform utextureBuffer brickCells;  // of each brick, in blocks: x, y, z of its first one
+layout(binding = 0) uniform utextureBuffer brickCells;  // position of each brick's first block, in blocks: x, y, z
 layout(binding = 1) uniform utextureBuffer occupancy;   // OccupancyWord
 layout(scalar, binding = 2) readonly buffer Lights { Light lights[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Extinctions { float values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer LightDepths { uint pairs[]; };
 
-const float kAtSource = 1e-3;  // voxels; nearer to a light a position has no direction
+const float kAtSource = 1e-3;  // in voxels: at a smaller distance from a light the direction is undefined
 
 float extinctionOf(ivec3 cell) {
   const uint address = blockAddress(push.level, cell);
@@ -30,14 +31,14 @@ float extinctionOf(ivec3 cell) {
   return Extinctions(push.extinction).values[push.level.firstRank + rankIn(word, bit)];
 }
 
-// Where rays come from there is nothing in front of the first plane.
+// On the side from which rays come, there is nothing in front of the first plane.
 float depthUpTo(FaceRays fan, vec3 position) {
   const int plane = (int(round(position[fan.axis])) - fan.firstPlane) * fan.direction;
   return plane < 0 ? 0.0 : rayDepth(fan, position).x;
 }
 
-// In front of a layer of voxels the depth lacks half of the layer. Of scalars the depth is that of the next voxel towards the
-// light: the rest is found at the sample, from how the scalar changes there.
+// The depth in front of a layer lacks half of the layer. For scalars the depth is that of the next voxel
+// towards the light; the rest is integrated at the sample, from the change of the scalar there.
 float depthOf(ivec3 cell) {
   cell = min(cell, push.level.dimensions - 1);
   const ivec3 extent = extentInside(cell, push.edge, push.voxels);

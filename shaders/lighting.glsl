@@ -8,20 +8,20 @@
 #include "self_attenuation.glsl"
 #include "surface_scattering.glsl"
 
-const float kMostRayDepth = 0.9999 * kOpaqueDepth;  // the end of the code of rays
+const float kMostRayDepth = 0.9999 * kOpaqueDepth;  // the end of the code of depths along rays
 
-// A block as the eye sees it.
+// The properties of a block as seen from the eye.
 struct SeenBlock {
   Block block;
   uint rank;
   float sigma;
-  vec3 toEye;      // in the world, of length 1
+  vec3 toEye;      // unit vector in world space
   float own;       // optical depth towards the eye
-  vec3 normal;     // of a surface, in the world, of length 1
-  float surface;   // how much of one it is
+  vec3 normal;     // of a surface; unit vector in world space
+  float surface;   // fraction that is reflected like a surface, 0..1
 };
 
-// Of the extinction, by central differences, per block of its size, index space; 0 outside.
+// Gradient of the extinction by central differences, per block of its size, in index space; 0 outside.
 vec3 extinctionGradient(Block block) {
   const BlockLevel level = frame.levels[block.level];
   vec3 gradient;
@@ -40,9 +40,9 @@ struct Sides {
   vec3 same, other;
 };
 
-// The means over a block of what it lets through towards a light, `own` its optical depth there, each part weighted by
-// what it sends to the eye. Seen from the light's side the parts that the eye sees are those in the light (x), from the
-// other side those in the dark (y).
+// The means over a block of its transmittance towards a light, each part weighted by the light that it sends
+// to the eye; `own` is the block's optical depth towards the light. From the light's side the eye sees the
+// lit parts (x), from the other side the dark ones (y).
 vec2 meansSeen(SeenBlock seen, float own) {
   const float sameSide = selfAttenuation(seen.own + own);
   const float otherSide = exp(-min(seen.own, own)) * selfAttenuation(abs(seen.own - own));
@@ -73,15 +73,15 @@ Sides lightReaching(SeenBlock seen, vec3 direction, float depth, float unsaturat
   return sides;
 }
 
-// TableLookup the eye; with kAnyView the mean over all directions d towards it, and for each the share 1 + dot(`towards`, d)
-// of its luminance.
+// The light towards the eye. With kAnyView its mean over all directions d towards the eye; in direction d its
+// luminance is 1 + dot(`towards`, d) times as large.
 struct ScatteredLight {
   vec3 light, towards;
 };
 
 float luminanceOf(vec3 light) { return light.r + light.g + light.b; }
 
-// `way` is the direction towards where `light` comes from, in the world and of length 1.
+// `way` is the direction from which `light` comes, a unit vector in world space.
 void addLight(inout ScatteredLight sum, SeenBlock seen, vec3 light, Sides sides, vec3 way) {
   if (kAnyView) {
     sum.light += 0.5 * light * (sides.same + sides.other);
@@ -91,7 +91,7 @@ void addLight(inout ScatteredLight sum, SeenBlock seen, vec3 light, Sides sides,
   }
 }
 
-// `light` is a number: a copy of a Light would be of all its rays.
+// `light` is an index: copying a Light would copy all its rays.
 void addScattered(inout ScatteredLight sum, int light, SeenBlock seen) {
   vec3 toLight = lights[light].place;
   float distance2 = 1.0;
@@ -120,9 +120,9 @@ void addScattered(inout ScatteredLight sum, int light, SeenBlock seen) {
   }
 }
 
-// The mean of the radiance that reaches the block from all directions, weighted by the phase function: what is dark from
-// everywhere is dark in ambient light. The weights of a narrow phase function at a few directions do not add up to 1, so the
-// sum is divided by theirs.
+// The mean of the radiance that reaches the block from all directions, weighted by the phase function: a
+// block that is dark from everywhere is dark in ambient light. The weights of a narrow phase function at a
+// few directions do not add up to 1, so the sum is divided by their sum.
 void addFromEverywhere(inout ScatteredLight total, SeenBlock seen) {
   ScatteredLight sum = ScatteredLight(vec3(0.0), vec3(0.0));
   float weights = 0.0, parts = 0.0;
@@ -131,7 +131,7 @@ void addFromEverywhere(inout ScatteredLight total, SeenBlock seen) {
   const uint place = codePlace(frame.cells, seen.rank);
   for (int i = 0; i < edge * edge * edge; ++i) {
     const vec4 fromThere = frame.lighting.ambientByDirection[i];
-    if (fromThere.w == 0.0) continue;  // no direction: inside of the cube
+    if (fromThere.w == 0.0) continue;  // a cell inside the cube, which is not a direction
     const ivec3 cell = ivec3(i % edge, i / edge % edge, i / edge / edge) - frame.cells;
     const float depth = decodeDepth(frame.code, storedCode(towards, cell, place));
     const float unsaturated = isAtEnd(towards, cell, place) ? 0.0 : 1.0;
@@ -151,14 +151,14 @@ void addFromEverywhere(inout ScatteredLight total, SeenBlock seen) {
   total.towards += parts / weights * sum.towards;
 }
 
-// Per albedo. `towardsEye` is the world's direction of length 1 in which the light is sent, `own` the block's optical
-// depth in it.
+// The scattered light for albedo 1. `towardsEye` is a unit vector in world space, `own` the block's optical
+// depth in this direction.
 ScatteredLight scatteredLight(Block block, float sigma, uint rank, vec3 towardsEye, float own) {
   SeenBlock seen = SeenBlock(block, rank, sigma, towardsEye, own, vec3(0.0), 0.0);
   if (!kAnyView && frame.lighting.surface > 0.0) {
     const vec3 gradient = extinctionGradient(block);
     const vec3 normal = frame.lighting.gradientToWorld * gradient;
-    // Where the extinction hardly changes there is no surface, and its normal is noise.
+    // Where the extinction hardly changes there is no surface, and its normal would be noise.
     if (dot(gradient, gradient) > 0.0) {
       seen.normal = normalize(normal);
       seen.surface = frame.lighting.surface * min(2.0 * length(gradient) / sigma, 1.0);

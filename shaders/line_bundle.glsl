@@ -1,12 +1,12 @@
 // What the sweeps that march along z or y share: a bundle of lattice lines that are neighbours in x, carried
 // by one thread.
 //
-// Lines that leave the box sideways enter again on the other side with an optical depth of 0: as many lines as
-// the entry plane has voxels cover every voxel exactly once, and no face needs a case of its own.
+// Lines that leave the box at a side enter it again at the opposite side with an optical depth of 0: as many
+// lines as the entry plane has voxels cover every voxel exactly once, and no face is a special case.
 //
-// With a step in x the bundle moves along the rows plane by plane while the quads of voxels it writes do not. So a
-// thread writes the aligned quads of a window that moves by one every kPhases planes, and carries kExtraLines more
-// than it writes.
+// With a step in x the bundle moves along the rows plane by plane, while a thread must write aligned quads of
+// voxels. It therefore writes the quads of a window that moves by one quad every kPhases planes, and carries
+// kExtraLines lines more than it writes.
 //
 // A volume that is swept slab by slab keeps the lines' depths between slabs: a thread those of all lines that it carries.
 #ifndef LINE_BUNDLE_GLSL
@@ -24,12 +24,12 @@ const int kSize = kStepX < 0 ? -kStepX : kStepX;
 const int kPhases = kSize == 0 ? 1 : kSize == 1 ? 4 : 2;
 const int kExtraLines = kSize * (kPhases - 1);
 const int kWindowQuads = kVoxels / 4;
-const int kMargin = kSize == 0 ? 0 : 1;         // quads looked at on either side of the window
+const int kMargin = kSize == 0 ? 0 : 1;         // quads read on both sides of the window
 const int kQuads = kWindowQuads + 2 * kMargin;
 const int kWindowStep = kStepX < 0 ? -1 : kStepX > 0 ? 1 : 0;  // quads, every kPhases planes
 
-float depths[kVoxels + kExtraLines];  // of the lines, up to the current plane
-float sigma[4 * kQuads];              // of a row, from kMargin quads before the window
+float depths[kVoxels + kExtraLines];  // optical depths of the lines up to the current plane
+float sigma[4 * kQuads];              // extinction of a row, starting kMargin quads before the window
 
 int wrapped(int index, int count) { return index < 0 ? index + count : index >= count ? index - count : index; }
 
@@ -38,7 +38,7 @@ int lineOffset(int phase) { return kStepX > 0 ? kExtraLines - kSize * phase : kS
 int lineOf(int j, int phase) { return j - 4 * kMargin + lineOffset(phase); }
 bool isLine(int line) { return line >= 0 && line < kVoxels + kExtraLines; }
 
-// Whether this quad of the window is the one in which the march enters the rows.
+// Whether the march enters the rows in this quad of the window.
 bool isEntry(int quad, int window, int quads) { return wrapped(window + quad, quads) == (kStepX > 0 ? 0 : quads - 1); }
 
 void restartLines() {
@@ -55,13 +55,13 @@ void resumeLines(uint first, uint thread, uint threads) {
     depths[line] = carriedDepths[first + uint(line) * threads + thread];
 }
 
-// Where an index has come to that makes a number of steps and wraps around. A remainder of negative numbers is undefined.
+// The index after a number of steps with wrapping. (The remainder of negative numbers is undefined in GLSL.)
 int movedBy(int index, int steps, int count) {
   const int by = abs(steps) % count;
   return wrapped(steps < 0 ? index - by : index + by, count);
 }
 
-// Lines that have just come around the end of the row start again at the boundary of the volume.
+// Lines that have just wrapped around the end of the row start again at the boundary of the volume.
 void restartWrappedLines(int window, int quads, int phase) {
   if (kSize == 0) return;
   [[unroll]] for (int q = -1; q <= kWindowQuads; ++q)

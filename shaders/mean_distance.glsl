@@ -1,12 +1,12 @@
-// Sums of e times distance, of samples that an interpolation adds with weights of both signs. Where their energies nearly
-// cancel, the quotient of the two sums alone could be any number; the mean distance of the result stays within the range of
-// the samples' own. A negative sum marks a sample without a distance.
+// Sums of e times distance, for an interpolation with weights of both signs. Where the energies nearly
+// cancel, the quotient of the two sums could be any number, so the mean distance is clamped to the range of
+// the samples' own distances. A negative sum marks a sample without a distance.
 #ifndef MEAN_DISTANCE_GLSL
 #define MEAN_DISTANCE_GLSL
 
 struct MeanDistance {
   float sum;        // of weight times e times distance
-  float low, high;  // of the samples' mean distances; low > high: there are none
+  float low, high;  // range of the samples' mean distances; low > high if there are none
 };
 
 const MeanDistance kNoDistance = MeanDistance(0.0, 3e38, 0.0);

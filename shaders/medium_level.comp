@@ -1,15 +1,14 @@
 #version 460
-// A level of the octree from the one below, a thread a block that holds anything: extinction, the mean over the voxels
-// inside of the volume, which conserves optical depth, colour, the mean weighted by the children's opacities, and the
-// light that it sends out, the mean like extinction.
-// Subr et al. 2007, Section 3.2.
+// Computes a level of the octree from the one below, a thread for each occupied block: extinction is the mean
+// over the voxels inside the volume, which conserves optical depth; colour is the mean weighted by the
+// children's opacities; emission is a mean like extinction.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "opacity.glsl"
 #include "packed_light.glsl"
 
-layout(constant_id = 0) const bool kColors = false;      // there is more than one colour
-layout(constant_id = 1) const bool kFromVoxels = false;  // the children are voxels
+layout(constant_id = 0) const bool kColors = false;      // whether there is more than one colour
+layout(constant_id = 1) const bool kFromVoxels = false;  // whether the children are voxels
 layout(constant_id = 2) const bool kEmits = false;
 
 layout(local_size_x = kLevelThreads) in;

@@ -17,7 +17,7 @@ bool isOccupied(uint address) {
   return (occupancy[address / kBlocksPerWord].mask >> (address % kBlocksPerWord) & 1u) != 0;
 }
 
-// Of a block that holds anything.
+// The rank of an occupied block.
 uint rankAt(BlockLevel level, uint address) {
   const OccupancyWord word = occupancy[address / kBlocksPerWord];
   return level.firstRank + rankIn(uvec2(word.mask, word.before), int(address % kBlocksPerWord));

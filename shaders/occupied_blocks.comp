@@ -1,5 +1,5 @@
 #version 460
-// Which blocks of a level of the octree hold anything, from the level below: a word of blocks a thread.
+// Marks the occupied blocks of a level of the octree, from the level below; a thread for each word of blocks.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "blocks.glsl"
@@ -8,7 +8,7 @@ layout(local_size_x = kOccupancyThreads) in;
 layout(scalar, push_constant) uniform Push { OccupiedBlocksPush push; };
 layout(scalar, binding = 0) buffer Occupancy { OccupancyWord occupancy[]; };
 
-// Two children that are neighbours in x are in one word: rows begin at even addresses.
+// Two children that are neighbours in x are in the same word, because rows begin at even indices.
 bool isOccupied(ivec3 cell) {
   for (int row = 0; row < 4; ++row) {
     const ivec3 child = 2 * cell + ivec3(0, row & 1, row >> 1);

@@ -1,10 +1,10 @@
 #version 460
-// The extinction, the colours and the light of the voxels that hold anything, each at its rank, brick by brick.
+// Writes extinction, colours and emission of the occupied voxels at their ranks, brick by brick.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "brick_row.glsl"
 
-layout(constant_id = 1) const bool kColors = false;  // voxels have colours of their own
+layout(constant_id = 1) const bool kColors = false;  // whether voxels have their own colours
 
 #define OCCUPANCY_BINDING 3
 #include "occupancy.glsl"
@@ -17,7 +17,7 @@ void main() {
   if (brick >= push.brickCount) return;
   const Row row = loadRow(brick);
   if (row.holding == 0) return;
-  // Voxels of a row follow one another: so do the ranks of those that hold anything.
+  // Voxels of a row are consecutive, and so are the ranks of its occupied voxels.
   uint rank = rankAt(push.voxels, blockAddress(push.voxels, row.first + ivec3(findLSB(row.holding), 0, 0)));
   [[unroll]] for (int i = 0; i < kBrickEdge; ++i) {
     if ((row.holding >> i & 1u) == 0) continue;

@@ -3,7 +3,7 @@
 #define PACKED_GRADIENT_GLSL
 
 const float kMantissas = 255.0;
-const int kLeastExponent = -16;  // of what is less nothing is kept
+const int kLeastExponent = -16;  // smaller gradients become 0
 
 uint packGradient(vec3 gradient) {
   const float most = max(max(abs(gradient.x), abs(gradient.y)), abs(gradient.z));

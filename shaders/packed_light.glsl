@@ -6,11 +6,11 @@
 
 vec3 unpackLight(uint bits) {
   const uvec3 parts = uvec3(bits, bits >> 9, bits >> 18) & 511u;
-  // 2^(exponent - 24), by its bits: ldexp is slow on lavapipe.
+  // 2^(exponent - 24) made of its bits, because ldexp is slow on lavapipe.
   return uintBitsToFloat(((bits >> 27) + 103u) << 23) * vec3(parts);
 }
 
-// Not negative, and at most kBrightest.
+// Packs components in 0..kBrightest.
 uint packLight(vec3 light) {
   const float largest = max(light.r, max(light.g, light.b));
   int exponent = max(int(floatBitsToUint(largest) >> 23) - 127, -16) + 1;

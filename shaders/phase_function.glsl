@@ -4,8 +4,9 @@
 
 const float kPi = 3.14159265358979;
 
-// Per steradian, from the way of the light before to that after, both of length 1; integrates to 1 over the sphere.
-// 1 + g² - 2 g cos without the difference of large terms.
+// The phase function per steradian, from the directions (unit vectors) of the light before and after
+// scattering; it integrates to 1 over the sphere. 1 + g² - 2 g cos is computed without the difference of
+// large terms.
 float phaseFunction(float g, vec3 before, vec3 after) {
   const vec3 apart = after - sign(g) * before;
   const float width = (1.0 - abs(g)) * (1.0 - abs(g)) + abs(g) * dot(apart, apart);

@@ -1,5 +1,5 @@
 #version 460
-// The codes of a direction's runs that can be seen, moved together; the first run stands for all others.
+// Moves the codes of a direction's kept runs together. The first run stands for all removed ones.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "rank.glsl"

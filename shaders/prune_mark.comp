@@ -1,5 +1,6 @@
 #version 460
-// Which runs of blocks can be seen from any of the table's directions, a bit each: a thread a run.
+// Marks the runs of blocks from which light leaves in any of the table's directions, a bit each; a thread for
+// each run.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require

@@ -1,5 +1,5 @@
 #version 460
-// First of a digit's three passes: how often each value of the digit comes in each workgroup's stretch.
+// First of a digit's three passes: counts the values of the digit in each workgroup's stretch.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "radix_stretch.glsl"

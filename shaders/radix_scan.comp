@@ -1,6 +1,7 @@
 #version 460
-// Second of a digit's three passes, one workgroup, a thread a digit: counts become the places where each
-// workgroup's keys with that digit go. Smaller digits first, then earlier stretches.
+// Second of a digit's three passes, one workgroup with a thread for each value of the digit: turns counts
+// into the positions at which each workgroup's keys with that value are written. Smaller values come first,
+// then earlier stretches.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 

@@ -1,6 +1,7 @@
 #version 460
-// Third of a digit's three passes: every pair goes to its place, pairs of one digit in the order they are in.
-// A bit mask a digit says which threads of the tile hold it; a pair's rank is the bits before its own.
+// Third of a digit's three passes: writes every pair to its position; pairs of one value keep their order. A
+// bit mask for each value says which threads of the tile have it; a pair's rank is the number of bits before
+// its own.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 #include "radix_stretch.glsl"
@@ -15,7 +16,7 @@ layout(scalar, binding = 4) writeonly buffer SortedKeys { uint sortedKeys[]; };
 layout(scalar, binding = 5) writeonly buffer SortedValues { uint sortedValues[]; };
 
 const uint kWords = kSortThreads / 32;
-shared uint next[kSortDigits];  // where the stretch's next pair with this digit goes
+shared uint next[kSortDigits];  // position of the stretch's next pair with this value
 shared uint masks[kWords][kSortDigits];
 
 void main() {

@@ -9,16 +9,16 @@
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RayDepths { uint pairs[]; };
 
-// `fromSource` is the direction in which the ray leaves it.
+// `fromSource` is the direction from the source to the position.
 int fanIndex(vec3 fromSource) {
   const int axis = majorAxis(fromSource);
   return 2 * axis + (fromSource[axis] > 0.0 ? 1 : 0);
 }
 
-// The depth, and its change per voxel along the fan's two sides.
+// The depth, and its change per voxel along the two sides of the face.
 vec3 rayDepth(FaceRays fan, vec3 position) {
-  if (fan.planeCount == 0) return vec3(0.0);  // only of a voxel at the source
-  // At the source: the first.
+  if (fan.planeCount == 0) return vec3(0.0);  // only for a voxel at the source
+  // At the source, the first axis.
   const int plane = clamp((int(round(position[fan.axis])) - fan.firstPlane) * fan.direction, 0, fan.planeCount - 1);
   const float up = float(fan.firstPlane + fan.direction * plane) - fan.farthest;
   const vec2 side = vec2(position[(fan.axis + 1) % 3], position[(fan.axis + 2) % 3]);

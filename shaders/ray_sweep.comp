@@ -1,7 +1,7 @@
 #version 460
-// Optical depth along the rays of a fan (engine/attenuation/source_rays.h), a thread a ray: at every plane of
-// voxels, what the planes before it hold. Subr et al. 2007, Eq. 5, along rays instead of lattice lines. A dispatch marches
-// through a slab of planes and hands the depths over to the next.
+// Optical depth along the rays of a face (engine/scene/source_rays.h), a thread for each ray: at every plane
+// of voxels the depth of the planes before it. Subr et al. 2007, Eq. 5, along rays instead of lattice lines.
+// A dispatch marches through a slab of planes and stores the depths for the next.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -9,8 +9,9 @@
 #define TRANSFER_TABLE_BINDING 2
 #include "transfer_table.glsl"
 
-// Classification after interpolation: depths are those up to the planes themselves, from scalars that change linearly between
-// planes. Else they are those in front of the planes' layers, each with the extinction of its plane.
+// Whether extinction is classified after interpolation: depths are then those up to the planes, from scalars
+// that change linearly between planes. Otherwise they are those in front of the planes' layers, each with the
+// extinction of its plane.
 layout(constant_id = 0) const bool kScalars = false;
 
 layout(local_size_x = kRaySweepThreads) in;
@@ -19,9 +20,9 @@ layout(binding = 0) uniform samplerBuffer extinction;  // of the slab's voxels, 
 layout(scalar, binding = 1) buffer Carried { float carried[]; };  // from slab to slab, by ray
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Depths { uint pairs[]; };
 
-// `plane` is counted from the fan's first.
+// `plane` is counted from the first of the face.
 float interpolated(int plane, vec2 position) {
-  // There is 0 a voxel beyond the volume on each side, and so it is farther out.
+  // Beyond the volume the border of one voxel is 0, and so is everything farther out.
   const vec2 near = clamp(position, vec2(-1.0), vec2(push.sides));
   const vec2 low = min(floor(near), vec2(push.sides - 1));
   const vec2 w = near - low;
@@ -31,7 +32,7 @@ float interpolated(int plane, vec2 position) {
              mix(texelFetch(extinction, first + b).x, texelFetch(extinction, first + a + b).x, w.x), w.y);
 }
 
-// What a ray found on a plane of scalars.
+// The scalar of a ray on a plane.
 struct Found {
   float coverage, scalar;
   vec4 integral, medium;
@@ -62,14 +63,14 @@ float meanOf(Found before, Found after) {
          meanBetween(before.scalar, before.integral, before.medium, after.scalar, after.integral, after.medium).a;
 }
 
-// How many layers of the stretch before the first plane a ray goes through.
+// Number of layers that a ray crosses before the first plane.
 float layersToFirst() {
   const FaceRays fan = push.fan;
   return fan.convergence == 0.0 ? 1.0 : min(abs(float(fan.firstPlane) - fan.farthest + 1.0 / fan.convergence), 1.0);
 }
 
-// The planes, counted from the first, between which the ray is near enough to the volume to be looked up: x
-// to y.
+// The range of planes, counted from the first, within which the ray is near enough to the volume to be looked
+// up: x to y.
 ivec2 planesWithin(vec2 atFirst, vec2 perPlane) {
   float enter = 0.0, leave = float(push.fan.planeCount - 1);
   const vec2 high = vec2(push.sides) + 1.0;
@@ -83,8 +84,8 @@ ivec2 planesWithin(vec2 atFirst, vec2 perPlane) {
   return ivec2(floor(min(enter, float(push.fan.planeCount))), ceil(max(leave, -1.0)));
 }
 
-// What a ray that starts within the volume has in front of its first layer, in layers: the extinction along it
-// is linear between the planes on either side of the source. Less than 0 where the source is in that layer.
+// For a ray that starts inside the volume, the path in front of its first layer, in layers: the extinction
+// along it is linear between the planes on both sides of the source. Negative if the source is in that layer.
 float sourceCut(vec2 atFirst, vec2 perPlane) {
   const FaceRays fan = push.fan;
   if (fan.convergence == 0.0) return 0.0;
@@ -101,7 +102,7 @@ void main() {
   if (ray >= rays) return;
 
   const vec2 offset = fan.spacing * vec2(ray % fan.rayCount.x, ray / fan.rayCount.x);
-  const vec2 slope = fan.slope + offset * fan.convergence;  // along the axis upwards
+  const vec2 slope = fan.slope + offset * fan.convergence;  // per step along the positive axis
   const vec2 atFirst = fan.origin + offset + slope * (float(fan.firstPlane) - fan.farthest);
   const vec2 perPlane = slope * float(fan.direction);
   vec3 layerStep;
@@ -123,7 +124,7 @@ void main() {
     depth = layer * sourceCut(atFirst, perPlane);
   Found last;
   if (kScalars) last = scalarAt(2 * pair - 1, atFirst + perPlane * float(2 * pair - 1));
-  // Software Vulkan runs the body of a loop that ends with its condition once less.
+  // Software Vulkan executes the body of a loop that ends with its condition once less.
   do {
     vec2 planeDepths;
     [[unroll]] for (int i = 0; i < 2; ++i) {

@@ -1,6 +1,6 @@
 #version 460
-// The sums of a pixel become its colour, in place. Additive: Subr et al. 2007, Eq. 10 and 11. Normalised:
-// alpha is exact and the sums only decide how the colours along the ray mix. Sorted: the colour is there
+// Turns the sums of a pixel into its colour, in place. Additive: Subr et al. 2007, Eq. 10 and 11. Normalised:
+// alpha is exact, and the sums only decide how the colours along the ray mix. Sorted: the colour is complete
 // already.
 #extension GL_GOOGLE_include_directive : require
 #include "frame_interface.h"

@@ -4,18 +4,18 @@
 #define SELF_ATTENUATION_GLSL
 #include "block_depth.glsl"
 
-// Over a layer of optical depth x: (1 - exp(-x)) / x, also right for small x.
+// The mean over a layer of optical depth x: (1 - exp(-x)) / x, accurate for small x.
 float selfAttenuation(float x) {
   return x < 0.02 ? 1.0 - x * (1.0 / 2.0 - x * (1.0 / 6.0 - x * (1.0 / 24.0))) : (1.0 - exp(-x)) / x;
 }
 
-// Over half a layer of optical depth x, from its front, with weights that fall to 0 at its end, which have the mean 1:
-// 2 (x - 1 + exp(-x)) / x², also for x < 0 and near 0.
+// The mean over half a layer of optical depth x, from its front, with weights of mean 1 that fall to 0 at its
+// end: 2 (x - 1 + exp(-x)) / x², valid for x < 0 and near 0.
 float fadingMean(float x) {
   return abs(x) < 0.1 ? 1.0 - x * (1.0 / 3.0 - x * (1.0 / 12.0 - x * (1.0 / 60.0))) : 2.0 * (x - 1.0 + exp(-x)) / (x * x);
 }
 
-// Between the four voxels around a position in a plane of voxels; 0 outside.
+// Interpolates between the four voxels around a position in a plane of voxels; 0 outside.
 float extinctionAt(vec3 position, int axis) {
   const int sideA = (axis + 1) % 3, sideB = (axis + 2) % 3;
   const vec3 low = floor(position);
@@ -31,8 +31,9 @@ float extinctionAt(vec3 position, int axis) {
   return sum;
 }
 
-// The kernel is a tent along the line of sight: 3/4 of it are in the voxel's own layer of optical depth `own`, 1/8 in
-// the half layers in front of it and behind. `inFront` is the depth to the eye at the layer's front.
+// The kernel is a tent along the line of sight: 3/4 of it is in the voxel's own layer of optical depth `own`,
+// and 1/8 in each of the half layers in front and behind. `inFront` is the depth to the eye at the layer's
+// front.
 float kernelMean(vec3 position, vec3 direction, float own, float inFront) {
   const int axis = majorAxis(direction);
   const float layer = layerLength(direction);

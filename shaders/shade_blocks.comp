@@ -1,8 +1,9 @@
 #version 460
-// What the gather reads of occupied blocks, a thread a block: extinction, and the source term, which is the light that the
-// block sends to the eye per world unit, extinction times colour plus emission. Without a phase function and surfaces the
-// source term is for all positions of the eye, and made once, until lights change: the source term times
-// 1 + dot(towards, direction to the eye), the direction in the world and of length 1.
+// What the gather reads of occupied blocks, a thread for each block: extinction, and the source term, which
+// is the light that the block sends to the eye per world unit (extinction times colour, plus emission).
+// Without a phase function and surfaces the source term is computed once for all positions of the eye, until
+// lights change: it is to be multiplied by 1 + dot(towards, direction to the eye), a unit vector in world
+// space.
 #extension GL_GOOGLE_include_directive : require
 #include "gather_interface.h"
 #include "block_color.glsl"
@@ -12,8 +13,8 @@
 layout(local_size_x = kShadeThreads) in;
 layout(scalar, push_constant) uniform Push { ShadePush push; };
 
-const float kLeastLight = 1e-4;  // that is stored
-const float kLargestStored = 65280.0;  // that halves and packed light hold
+const float kLeastLight = 1e-4;  // smaller light is stored as this
+const float kLargestStored = 65280.0;  // largest value of halves and of packed light
 
 ScatteredLight scatteredBy(Block block, float sigma, uint rank) {
   if (kAnyView) return scatteredLight(block, sigma, rank, vec3(0.0), sigma * push.meanLayer * float(block.edge));
@@ -27,7 +28,7 @@ void main() {
   if (number >= push.count) return;
   const uint rank = push.firstRank + number;
   const Block block = blockAt(WordStore(push.blocks).values[number]);
-  // What of the block is outside of the volume is empty.
+  // The part of the block outside of the volume is empty.
   const vec3 part = vec3(block.extent) / float(block.edge);
   const float inside = part.x * part.y * part.z;
   const float sigma = storedExtinction(rank);
@@ -39,7 +40,7 @@ void main() {
     towards = luminanceOf(source) / max(luminanceOf(scattered.light), 1e-37) * scattered.towards;
   }
   if (kEmits) source += frame.emissionUnit * unpackLight(storedEmission(rank));
-  // Without any light a block would be one that has none.
+  // A block without any light would count as one that has no source term.
   if (push.lightOnly != 0) source = max(source, kLeastLight / push.sourceScale);
   const vec4 stored = min(vec4(push.sourceScale * source, push.extinctionScale * sigma) * (push.lightOnly != 0 ? 1.0 : inside), kLargestStored);
   PairStore(push.sources).values[rank] = uvec2(packLight(stored.rgb), packHalf2x16(vec2(stored.a, 0.0)));

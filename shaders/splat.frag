@@ -12,7 +12,7 @@ layout(location = 2) out float distanceSum;
 #endif
 
 // The optical depth on the pixel's own ray, to first order: what is half in the shadow of something shows its
-// lit half. BilinearCell the eye it grows along every ray by the voxel's own.
+// lit half. Around the eye it grows along every ray by the voxel's own.
 float depthOnRay(float length2) {
   if (isCut()) return max(depthToEye.x + depthToEye.y * worldPerIndex(length2) * cutAhead(length2), 0.0);
   const vec2 d = gl_FragCoord.xy - centerDistance.xy;

@@ -4,7 +4,7 @@
 #include "occupancy.glsl"
 #include "stores.glsl"
 
-// 0 of a block that holds nothing, and outside.
+// 0 for a block that is not occupied, and outside.
 float extinctionOf(BlockLevel level, ivec3 cell) {
   if (!isInside(level, cell)) return 0.0;
   const uint address = blockAddress(level, cell);

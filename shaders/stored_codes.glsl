@@ -11,7 +11,7 @@ layout(constant_id = 0) const int kCode = kCodeDepth8;  // of the table
 layout(scalar, binding = 1) writeonly buffer Plane { uint8_t codes[]; };
 layout(binding = 2) uniform utextureBuffer occupancy;  // an OccupancyWord a texel
 
-// Of four voxels of a row.
+// Writes the codes of four voxels of a row.
 void storeCodes(int quad, vec4 depths) {
   const uvec2 word = texelFetch(occupancy, quad / (kBlocksPerWord / 4)).xy;  // mask, before
   const int first = 4 * quad % kBlocksPerWord;

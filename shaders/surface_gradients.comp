@@ -1,7 +1,8 @@
 #version 460
-// Gradients in the middles of all blocks of bricks, whose directions are the normals of surfaces: of the scalars where voxels
-// are classified after interpolation, else of extinctions. By Sobel's weights, which smooth alike in all directions: a
-// surface that is steep shows no steps from voxel to voxel. A workgroup a brick, a thread a row of blocks.
+// Gradients at the centres of all blocks of bricks, whose directions are the normals of surfaces: of the
+// scalars if voxels are classified after interpolation, otherwise of extinctions. Sobel's weights smooth
+// equally in all directions, so that a steep surface shows no steps from voxel to voxel. A workgroup for each
+// brick, a thread for each row of blocks.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -16,14 +17,14 @@ layout(constant_id = 0) const bool kScalars = false;
 
 layout(local_size_x = kBrickQuadsThreads) in;
 layout(scalar, push_constant) uniform Push { SurfaceGradientsPush push; };
-layout(binding = 0) uniform utextureBuffer brickCells;  // of each brick, in blocks: x, y, z of its first one
+layout(binding = 0) uniform utextureBuffer brickCells;  // position of each brick's first block, in blocks: x, y, z
 layout(binding = 1) uniform utextureBuffer occupancy;   // OccupancyWord
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Extinctions { float values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Gradients { uint values[]; };
 
 const int kEdge = kGatherBrickEdge + 2;
 const float kNoData = -1.0;
-shared float values[kEdge * kEdge * kEdge];  // of the brick, and a block around it
+shared float values[kEdge * kEdge * kEdge];  // of the brick and one block around it
 
 float valueAt(ivec3 cell) {
   if (kScalars) {
@@ -38,7 +39,7 @@ float valueAt(ivec3 cell) {
   return Extinctions(push.extinction).values[push.level.firstRank + rankIn(word, bit)];
 }
 
-// What has no data is as its neighbour.
+// A block without data has the value of its neighbour.
 vec3 gradientOf(int middle) {
   const float here = values[middle];
   if (here == kNoData) return vec3(0.0);

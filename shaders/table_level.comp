@@ -1,9 +1,10 @@
 #version 460
-// A level of the octree's attenuation table from the one below, for a few directions, a thread kBoundBlocks blocks
-// that hold anything: Subr et al. 2007, Section 3.2, Eq. 7. The geometric mean of transmittances is the mean of optical
-// depths. Children that hold nothing or are outside of the volume do not count, the others as much as they have voxels.
+// Computes a level of the octree's attenuation table from the one below, for a few directions; a thread for
+// kBoundBlocks occupied blocks: Subr et al. 2007, Section 3.2, Eq. 7. The geometric mean of transmittances is
+// the mean of optical depths. Only occupied children count, weighted by their numbers of voxels inside the
+// volume.
 //
-// And its bounds: the code of the most transparent voxel, which says what can be left out behind others.
+// Also computes the bounds: the code of a block's most transparent voxel, by which hidden blocks are found.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_8bit_storage : require
 #include "interface.h"
@@ -13,12 +14,12 @@
 
 layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const int kFilter = kFilterGeometric;
-layout(constant_id = 2) const bool kFromVoxels = false;  // whose codes are their own bounds
-layout(constant_id = 3) const uint kPerThread = kDirectionsPerLevelPass;  // directions, of its layer of workgroups
+layout(constant_id = 2) const bool kFromVoxels = false;  // whether the children are voxels, whose codes are their own bounds
+layout(constant_id = 3) const uint kPerThread = kDirectionsPerLevelPass;  // directions a thread, in its layer of workgroups
 
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { TableLevelPush push; };
-// By direction, of all voxels: the code of the most opaque, of linear8 255 minus it.
+// By direction, the code of the most opaque voxel; for linear8 255 minus it.
 layout(scalar, binding = 0) buffer Darkest { uint maxCodePerDirection[]; };
 layout(binding = 1) uniform utextureBuffer occupancy;  // an OccupancyWord a texel
 layout(scalar, binding = 2) readonly buffer Parents { uint parents[]; };
@@ -29,11 +30,11 @@ layout(scalar, binding = 2) readonly buffer Parents { uint parents[]; };
 #define FOR_EACH_DIRECTION(F) F(0) F(1) F(2) F(3) F(4) F(5) F(6) F(7) F(8) F(9) F(10) F(11) F(12)
 FOR_EACH_DIRECTION(PLANE)
 
-const bool kSquares = kCode == kCodeDepth8 && kFilter == kFilterGeometric;  // depths are as the squares of codes
+const bool kSquares = kCode == kCodeDepth8 && kFilter == kFilterGeometric;  // depths are proportional to the squares of codes
 const uint kDarkest = kCode == kCodeLinear8 ? 0 : 255;
 
-// What the filter takes the mean of. A transmittance that is stored as 0 counts as half the smallest code: it is
-// less than a whole one, and -infinity would be all that is left of any mean.
+// The quantity that the filter averages. A transmittance stored as 0 counts as half the smallest code, which
+// is less than the smallest code; with -infinity every mean would be -infinity.
 float filtered(uint byte) {
   if (kSquares) return float(byte) * float(byte);
   const float depth = kCode == kCodeLinear8 && byte == 0 ? log(2.0 * 255.0) : decodeDepth(kCode, byte);
@@ -43,21 +44,21 @@ uint codeOf(float mean) {
   if (kSquares) return uint(sqrt(mean) + 0.5);
   return encodeDepth(kCode, kFilter == kFilterGeometric ? mean : -log(mean));
 }
-// Of the two, the one of more transmittance.
+// The code of more transmittance of the two.
 uint clearer(uint a, uint b) { return kCode == kCodeLinear8 ? max(a, b) : min(a, b); }
 uint darkness(uint code) { return kCode == kCodeLinear8 ? 255 - code : code; }
 
-// The children: their ranks, and how many voxels they have; none of those that hold nothing.
+// The ranks of the children and their numbers of voxels, 0 for those that are not occupied.
 uint ranks[8];
 float voxels[8];
 
-// None behind the level's last block.
+// No children for ranks beyond the level's last block.
 void findChildren(uint block) {
   const ivec3 cell = cellAt(push.parent, parents[min(block, push.parentCount - 1)]);
   [[unroll]] for (int row = 0; row < 4; ++row) {
     const ivec3 child = 2 * cell + ivec3(0, row & 1, row >> 1);
     const bool exists = block < push.parentCount && all(lessThan(child, push.child.dimensions));
-    // Two that are neighbours in x are in one word.
+    // Two neighbours in x are in the same word.
     const uint address = exists ? blockAddress(push.child, child) : 0;
     const uvec2 word = texelFetch(occupancy, int(address / kBlocksPerWord)).xy;
     const int bit = int(address % kBlocksPerWord);
@@ -96,7 +97,7 @@ Parent parentOf(utextureBuffer bytes) {
     parent.bound = holds ? clearer(parent.bound, bound) : parent.bound;
     parent.maxCodePerDirection = holds ? max(parent.maxCodePerDirection, darkness(code)) : parent.maxCodePerDirection;
   }
-  if (used != 0) parent.code = codeOf(sum / all);  // what all children store as 0 is 0
+  if (used != 0) parent.code = codeOf(sum / all);  // it stays 0 if all children store 0
   return parent;
 }
 
@@ -104,12 +105,12 @@ bool isWanted(uint direction) {
   return direction / kPerThread == gl_WorkGroupID.z && direction < push.directionCount;
 }
 
-// Few are darker than all before them.
+// A plain read first avoids most atomics: few codes exceed all before them.
 void takeDarkest(uint direction, uint code) {
   if (code > maxCodePerDirection[direction]) atomicMax(maxCodePerDirection[direction], code);
 }
 
-// By direction, of a thread's blocks.
+// By direction, for a thread's blocks.
 uint bounds[kDirectionsPerLevelPass];
 uint deepest[kDirectionsPerLevelPass];
 

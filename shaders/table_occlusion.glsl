@@ -13,13 +13,14 @@ vec3 toEyeFrom(ivec3 cell, int level) {
   return -((vec3(cell) + 0.5) * float(1 << level) - 0.5 - frame.middle + frame.eyeToMiddle);
 }
 
-// The four directions of the table around a line of sight: their codes, and the depth that hides behind each.
+// The four table directions around a line of sight: their codes, and the depth from which on each hides.
 struct BilinearCell {
   uvec2 planes[4];
   float depths[4];
 };
 
-// BilinearCell all lines of sight to the voxels of a block and of those beside it. False where they have not the same four.
+// Finds the four directions around all lines of sight to the voxels of a block and of those beside it.
+// Returns false if these lines do not share the same four.
 bool findAround(vec3 toEye, int major, int level, out BilinearCell around) {
   vec3 spread = vec3(0.0);
   if (frame.orthographic == 0) {
@@ -28,7 +29,7 @@ bool findAround(vec3 toEye, int major, int level, out BilinearCell around) {
   }
   const float least = abs(toEye[major]) - spread[major], largest = abs(toEye[major]) + spread[major];
   if (least <= 0.0) return false;
-  // Points on the face of the cube of directions.
+  // Points on a face of the cube of directions.
   const vec3 low = toEye - spread, high = toEye + spread;
   vec3 first = low / mix(vec3(largest), vec3(least), lessThan(low, vec3(0.0)));
   vec3 last = high / mix(vec3(least), vec3(largest), lessThan(high, vec3(0.0)));
@@ -37,7 +38,7 @@ bool findAround(vec3 toEye, int major, int level, out BilinearCell around) {
   const ivec3 from = ivec3(floor(first * float(frame.cells))), to = ivec3(ceil(last * float(frame.cells)));
   if (any(greaterThan(to - from, ivec3(1)))) return false;
 
-  // No layer in these directions is shorter.
+  // A lower bound of the length of a layer in these directions.
   const vec3 half_ = 0.5 * (last - first);
   const float layer = frame.pathLengthCorrection == 0
                           ? 1.0
@@ -53,7 +54,7 @@ bool findAround(vec3 toEye, int major, int level, out BilinearCell around) {
   return true;
 }
 
-// Whether no voxel of a block that holds anything sends more than the threshold towards these directions.
+// Whether no voxel of an occupied block sends more than the threshold towards these directions.
 bool isOpaqueTowardsEye(int level, uint rank, BilinearCell around) {
   const uint place = codePlace(frame.cells, boundOf(frame.levels[level], rank));
   const int inByte = boundInByte(frame.levels[level], rank);
@@ -61,14 +62,15 @@ bool isOpaqueTowardsEye(int level, uint rank, BilinearCell around) {
   [[unroll]] for (int i = 0; i < 4; ++i) {
     const uint code = unpackBound(codeAt(around.planes[i], place), inByte);
     if (decodeDepth(kCode, code) < around.depths[i]) dark = false;
-    // Between 0 and 1 depths jump so much that a splat next to both may shine at its rim.
+    // Only code 0 is dark in linear8: from 1 to 0 the depth jumps so far that a splat next to both may shine at its rim.
     if (kCode == kCodeLinear8 && code != 0) dark = false;
   }
   return dark;
 }
 
-// A splat's depth changes across it as those of its neighbours beside the line of sight differ, and where one of them is
-// bright some of it is: they have to be dark as well. They share what is asked, which costs more than to ask.
+// The depth changes across a splat as its neighbours beside the line of sight differ, so that a bright
+// neighbour brightens a part of it: the neighbours must be dark as well. All five share one set of table
+// directions, because computing it costs more than the tests.
 bool isHidden(ivec3 cell, int level) {
   const vec3 toEye = toEyeFrom(cell, level);
   const int major = majorAxis(toEye);

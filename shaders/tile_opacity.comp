@@ -1,11 +1,12 @@
 #version 460
-// Between the two drawings of a frame: a thread says of its tile of pixels whether all of them are covered, so that
-// nothing behind what is drawn changes the picture by more than the threshold.
+// Between the two phases of a frame's drawing, a thread decides for its tile of pixels whether all of them
+// are covered: nothing behind what is drawn can then change the image by more than the threshold.
 //
-// Opacity: the optical depth of what is drawn leaves less than that. Colours are divided by E, and what the table
-// calls hidden sends less than the threshold: where E is not much less than 1 either, the mix stays as it is. Where it
-// is, every voxel on the pixel's ray is dark in the table, which has no direction through the opening that the pixel
-// looks through: all of them count.
+// A pixel is covered if two conditions hold. First, the optical depth of what is drawn leaves less than the
+// threshold. Second, E is not much less than 1: colours are divided by E, and hidden blocks send less than
+// the threshold, so that the mix stays as it is. A small E means that every voxel on the pixel's ray is dark
+// in the table, which has no direction through the opening that the pixel looks through; then all of them
+// count.
 #extension GL_GOOGLE_include_directive : require
 #include "frame_interface.h"
 
@@ -33,7 +34,7 @@ void main() {
   if (tile >= push.tiles.x * push.tiles.y) return;
   const ivec2 first = kCoverTile * ivec2(tile % push.tiles.x, tile / push.tiles.x);
   const ivec2 end = min(first + kCoverTile, push.rays.size);
-  // Most of the open ones are so from their first pixel on.
+  // Most tiles that are not covered are so from their first pixel on.
   bool covered = true;
   for (int y = first.y; y < end.y && covered; ++y)
     for (int x = first.x; x < end.x && covered; ++x) covered = isCoveredPixel(ivec2(x, y));

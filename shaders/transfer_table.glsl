@@ -8,7 +8,8 @@
 
 layout(binding = TRANSFER_TABLE_BINDING) uniform textureBuffer transferTable;  // TransferTable::texels
 
-const float kLeastChange = 16.0;  // of the scalar along a stretch, intervals, for its mean to be taken from integrals
+// Least change of the scalar along a stretch, in intervals, for which its mean is taken from integrals.
+const float kLeastChange = 16.0;
 
 // The transfer function's integral up to a scalar, and its value there.
 void tableAt(float scalar, out vec4 integral, out vec4 medium) {
@@ -17,7 +18,8 @@ void tableAt(float scalar, out vec4 integral, out vec4 medium) {
   integral = texelFetch(transferTable, 2 * interval) + (scalar - float(interval)) * medium;
 }
 
-// The mean of the transfer function between two scalars. Small differences of integrals have few digits.
+// The mean of the transfer function between two scalars. Differences of nearly equal integrals have few
+// significant digits.
 vec4 meanBetween(float from, vec4 fromIntegral, vec4 fromMedium, float to, vec4 toIntegral, vec4 toMedium) {
   const float change = to - from;
   return abs(change) > kLeastChange ? (toIntegral - fromIntegral) / change : 0.5 * (fromMedium + toMedium);

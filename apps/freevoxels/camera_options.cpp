@@ -9,25 +9,25 @@ namespace freevoxels {
 
 void CameraOptions::add(CLI::App& app) {
   CLI::Option* from = addTriple(app, "--camera-position", "X,Y,Z", position,
-                                "Eye in world units [frames the volume, see --orbit]");
+                                "Position of the eye in world units [around the volume, see --orbit]");
   CLI::Option* around =
       addPair(app, "--orbit", "AZIMUTH,ELEVATION", orbit,
               fmt::format(
-                  "Eye in degrees around the volume: azimuth about the up direction (with +y up, from +z towards +x), elevation "
-                  "[{},{}]",
+                  "Direction of the eye around the volume in degrees: azimuth about the up direction (if +y is up, from +z "
+                  "towards +x), elevation; the volume fills the image [{},{}]",
                   kDefaultAzimuth, kDefaultElevation))
           ->excludes(from);
   CLI::Option* at =
-      addTriple(app, "--look-at", "X,Y,Z", lookAt, "Point in the middle of the image [the middle of what is seen]");
-  CLI::Option* upwards = addTriple(app, "--up", "X,Y,Z", up, "Direction that is up in the image [0,1,0; 0,0,1 of what Blender wrote]");
+      addTriple(app, "--look-at", "X,Y,Z", lookAt, "Point in the middle of the image [the middle of the visible volume]");
+  CLI::Option* upwards = addTriple(app, "--up", "X,Y,Z", up, "Up direction of the image [0,1,0; for scans and files of Blender 0,0,1]");
   CLI::Option* fov = addNumber(app, "--fov", "DEG", verticalFov,
                                fmt::format("Vertical field of view [{}]", Camera{}.verticalFov));
   CLI::Option* flat = addNumber(app, "--orthographic", "HEIGHT", orthographicHeight,
-                                "Orthographic, the image HEIGHT world units high")
+                                "Orthographic projection; the image is HEIGHT world units high [perspective]")
                           ->excludes(fov);
   CLI::Option* pixels =
       addSize(app, "--size", size, kMaximumImageEdge,
-              fmt::format("Width and height of the image in pixels, or one number for a square [{}x{}]", size.x, size.y));
+              fmt::format("Image size in pixels, or one number for a square [{}x{}]", size.x, size.y));
   for (CLI::Option* option : {from, at, upwards, around, fov, flat, pixels}) option->group("Camera");
 }
 

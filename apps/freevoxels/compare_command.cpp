@@ -161,27 +161,27 @@ void writeDifference(const std::string& file, const Image& test, const Image& re
 }  // namespace
 
 void CompareCommand::add(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("compare", "Measure how far a picture is from a reference");
-  command->add_option("A", test_, "Picture to judge: .exr or .png")->required();
-  command->add_option("B", reference_, "Reference of the same size: .exr or .png")->required();
+  CLI::App* command = app.add_subcommand("compare", "Measure the difference between an image and a reference");
+  command->add_option("A", test_, "Image to measure: .exr or .png")->required();
+  command->add_option("B", reference_, "Reference image of the same size: .exr or .png")->required();
   addText(*command, "--difference", "OUT", difference_,
-          "Picture to write: .png (LDR-FLIP map, black: alike, yellow: 1) or .exr (|A - B|)");
+          "Image to write: .png (LDR-FLIP map, black: equal, yellow: 1) or .exr (|A - B|)");
   command
       ->add_option("--fail-above", limits_,
-                   "Exit with 7 if rmse, maximum, ldr-flip or hdr-flip is above VALUE, or psnr below it")
+                   "Exit with code 7 if rmse, maximum, ldr-flip or hdr-flip is above VALUE, or psnr below it; may be repeated")
       ->allow_extra_args(false)
       ->type_name("METRIC=VALUE");
   addTriple(*command, "--background", "R,G,B", background_,
-            "Colour behind both pictures for FLIP, linear [0,0,0]", {0.0, 1.0});
+            "Background of both images for FLIP, linear [0,0,0]", {0.0, 1.0});
   addNumber(*command, "--ppd", "N", pixelsPerDegree_,
-            "Pixels that a degree of the observer's view spans, for FLIP [67.02]", {1.0, 1000.0});
-  addPair(*command, "--exposures", "START,STOP", exposures_, "HDR-FLIP's range in stops [from B]",
+            "Pixels per degree of the observer's view, for FLIP [67.02]", {1.0, 1000.0});
+  addPair(*command, "--exposures", "START,STOP", exposures_, "Exposure range of HDR-FLIP in stops [from B]",
           {-100.0, 100.0});
   command->add_flag("--json", json_, "Print JSON for programs");
   command->footer(
-      "RMSE, PSNR and maximum are of premultiplied linear colour and alpha; alpha is left out where both\n"
-      "pictures are opaque. FLIP is of what is seen over the background, 0 (alike) to 1. HDR-FLIP's\n"
-      "exposures begin where B's brightest pixel is exposed well and end where its median is.\n"
+      "RMSE, PSNR and maximum are of premultiplied linear colour and alpha, without alpha if both images\n"
+      "are opaque. FLIP compares the images over the background, from 0 (equal) to 1. The exposures of\n"
+      "HDR-FLIP range from one for B's brightest pixel to one for its median.\n"
       "Examples:\n"
       "  freevoxels compare cloud.exr truth.exr --difference difference.png\n"
       "  freevoxels compare a.png b.png --fail-above psnr=40 --fail-above ldr-flip=0.02 --json\n");

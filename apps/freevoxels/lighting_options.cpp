@@ -70,18 +70,17 @@ Lighting defaultLights(const Camera& camera, double part) {
 
 void LightingOptions::add(CLI::App& app) {
   const char* const group = "Light";
-  app.add_flag("--unlit", unlit, "No light: every voxel sends out its colour, whatever is around it")->group(group);
+  app.add_flag("--unlit", unlit, "No lighting: every voxel sends out its colour")->group(group);
   app.add_option_function<std::vector<std::string>>(
          "--light",
          [this](const std::vector<std::string>& texts) {
            lights.clear();
            for (const std::string& text : texts) lights.push_back(readLight(text));
          },
-         "A light, of which there may be any number: the direction from the volume towards it, or where it "
-         "is "
-         "in the world; its linear colour [1,1,1]; its irradiance, of a position at distance 1 "
-         "[4 pi in the middle of the volume]. Without any light, ambient light or environment: a key light from the upper "
-         "left of the first view and some ambient light, dimmer for a volume that shines")
+         "A light; may be repeated. direction: from the volume towards a light at infinity; position: of a point light in the "
+         "world; color: linear [1,1,1]; intensity: irradiance, for a position at distance 1 [4 pi in the middle of the volume]. "
+         "Without any light, ambient light or environment there are a key light from the upper left of the first view and "
+         "ambient light, dimmer for volumes with emission")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->type_name("direction|position=X,Y,Z[,color=R,G,B][,intensity=I]")
@@ -94,32 +93,32 @@ void LightingOptions::add(CLI::App& app) {
                readNumbers("--ambient", one ? "L" : "R,G,B", one ? 1 : 3, text, {.minimum = 0.0});
            ambient = one ? glm::dvec3(numbers[0]) : glm::dvec3(numbers[0], numbers[1], numbers[2]);
          },
-         "Radiance that comes from everywhere, linear; one number is a grey [0 with lights]")
+         "Radiance from all directions, linear; one number is a grey [0 if there is another light]")
       ->take_last()
       ->type_name("R,G,B")
       ->group(group);
   addText(app, "--environment", "FILE.exr", environment,
-          "Radiance by where it comes from, added to what is ambient: a lat-long picture, linear, +y up, its "
-          "middle towards +z and a quarter from the left +x [none]")
+          "Radiance by direction, added to the ambient light: a linear latitude-longitude image, +y up, its middle column "
+          "towards +z, the column a quarter from the left towards +x [none]")
       ->group(group);
   addNumber(app, "--environment-rotation", "DEG", environmentRotation,
-            "Turns the environment about +y, as the azimuth of --orbit [0]")
+            "Rotation of the environment about +y in degrees, added to its azimuths [0]")
       ->group(group);
   addNumber(app, "--environment-intensity", "I", environmentIntensity,
-            "What the environment's radiance is multiplied by [1]", {.minimum = 0.0})
+            "Factor of the environment's radiance [1]", {.minimum = 0.0})
       ->group(group);
   addNumber(app, "--phase-g", "G", phaseG,
-            "How much of the light is scattered forwards, from -1 to 1 (Henyey and Greenstein) [0]",
+            "Asymmetry of the Henyey-Greenstein phase function, -0.99 to 0.99; positive scatters forwards [0]",
             {-kMostPhaseG, kMostPhaseG})
       ->group(group);
   addWholeNumber(app, "--scattering", "N", scattering,
-                 fmt::format("How many orders of scattering there are: 1 is single, more brighten what light gets deep into; each "
-                             "takes --scattering-scale of the one before [{}]", kDefaultScattering),
+                 fmt::format("Orders of scattering, 1 to 8: 1 is single scattering; each further order has --scattering-scale of the "
+                             "light of the one before, which reaches deeper [{}]", kDefaultScattering),
                  {1.0, double(kMostOctaves)})
       ->group(group);
   addNumber(app, "--scattering-scale", "S", scatteringScale,
-            fmt::format("What optical depth towards the light, phase function's g and light are multiplied by from one order of "
-                        "scattering to the next [{}]", Lighting{}.scatteringScale),
+            fmt::format("Factor of optical depth towards the light, --phase-g and light from one order of scattering to the next [{}]",
+                        Lighting{}.scatteringScale),
             {0.0, 1.0})
       ->group(group);
   app.add_option_function<std::string>(
@@ -127,9 +126,8 @@ void LightingOptions::add(CLI::App& app) {
          [this](const std::string& text) {
            tint = triple("--extinction-tint", "R,G,B", text, {.minimum = kLeastTint, .maximum = kMostTint});
          },
-         "What the extinction is multiplied by for each colour on the way of the light, so that white light "
-         "turns "
-         "coloured within the volume [1,1,1]")
+         "Factor of the extinction between light and voxel for each colour, so that white light becomes coloured inside the "
+         "volume [1,1,1]")
       ->take_last()
       ->type_name("R,G,B")
       ->group(group);
@@ -138,15 +136,15 @@ void LightingOptions::add(CLI::App& app) {
 void LightingOptions::addMethod(CLI::App& app) {
   knowsMethod = true;
   addWord(app, "--light-attenuation", kLightAttenuationWords, attenuation,
-          "Whether the shadows of lights are looked up in the table, or exact, along rays that are swept once for each light: "
-          "auto is exact where memory is plenty, not with --attenuation nearest [auto]")
+          "Shadows of lights: looked up in the attenuation table, or exact, along rays that are swept once for each light; auto: "
+          "exact if it takes at most a quarter of the device's memory and --attenuation is not nearest [auto]")
       ->group("Light");
   addWord(app, "--shading", kShadingWords, shading,
-          "What a voxel does with lights: scatters them as fog does, or as a surface across the change of its extinction; "
-          "auto is as a surface with a transfer function and of level sets [auto]")
+          "What a voxel does with light: scatter it as fog, or reflect it like a surface across the gradient; auto: gradient with a "
+          "transfer function and for level sets, else scatter [auto]")
       ->group("Light");
   addNumber(app, "--surface-share", "S", surface,
-            "Of surfaces, how much is scattered by them, from 0 to 1; the rest is as by fog [1]",
+            "Part of the light that surfaces reflect like surfaces, 0 to 1; the rest is scattered like fog [1]",
             {.minimum = 0.0, .maximum = 1.0})
       ->group("Light");
 }

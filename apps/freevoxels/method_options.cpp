@@ -14,54 +14,52 @@ std::string tableText(const TableSettings& table) {
 void MethodOptions::add(CLI::App& app) {
   const char* const group = "Method";
   addWord(app, "--composite", kCompositeWords, composite,
-          "How the splats become the picture; sorted is back-to-front alpha blending, to compare with "
-          "[normalised]")
+          "How splats become pixels: colours mixed by the table with exact opacity, the paper's plain sum, or back-to-front alpha "
+          "blending for comparison [normalised]")
       ->group(group);
   addWord(app, "--draw", kDrawWords, draw,
-          "How the volume becomes the image; gather marches through it for every sample of the image, splats draws a "
-          "billboard for every voxel; auto: gather where attenuation is auto or exact and the composite is not "
-          "sorted, else splats [auto]")
+          "How the volume becomes the image: gather marches rays through it, splats draws a billboard for every voxel; auto: gather "
+          "if --attenuation is auto or exact and --composite is not sorted, else splats [auto]")
       ->group(group);
   addWord(app, "--attenuation", kAttenuationWords, attenuation,
-          "How the table is looked up between its directions; exact does not read it, but "
-          "sweeps from the eye for every frame; auto: exact of what shines and where the eye is inside, bilinear "
-          "where it "
-          "is far away, and a mix of both between [auto]")
+          "Transmittance of splats to the eye: interpolated between four directions of the table, its nearest direction, or exact, "
+          "along rays from the eye that are swept for every frame; auto: exact for volumes with emission and if the eye is inside "
+          "the volume, bilinear if it is far away, a mix in between [auto]")
       ->group(group);
   addWord(app, "--directions", kDirectionWords, directions,
-          "How many directions the table holds; 98 are more exact and take more memory and time [26]")
+          "Directions of the table; 98 are more exact and take more memory and time [26]")
       ->group(group);
-  addWord(app, "--code", kCodeWords, code, "What a byte of the table holds [depth8]")->group(group);
+  addWord(app, "--code", kCodeWords, code, "What a byte of the table holds: optical depth or transmittance [depth8]")->group(group);
   app.add_flag_function(
          "--path-length-correction,!--no-path-length-correction",
          [this](std::int64_t count) { pathLengthCorrection = count > 0; },
-         "Whether a diagonal step counts its length in full [yes]")
+         "Whether diagonal steps of the table count with their full length [yes]")
       ->group(group);
   app.add_flag_function(
          "--gradient,!--no-gradient", [this](std::int64_t count) { gradient = count > 0; },
-         "Whether transmittance varies across a splat [yes]")
+         "Whether the transmittance varies across a splat [yes]")
       ->group(group);
   addNumber(
       app, "--lod", "PIXELS", lod,
-      "Size on the image up to which blocks of voxels are drawn as one splat; 0: always voxels, as sorted "
-      "is whatever this is [1]",
+      "Size on the image up to which blocks of voxels are drawn as one element; 0 always draws voxels, as does --composite "
+      "sorted [1]",
       {0.0, 1e6})
       ->group(group);
   app.add_flag_function(
          "--culling,!--no-culling", [this](std::int64_t count) { culling = count > 0; },
-         "Whether blocks outside of the image or behind others are left out; sorted draws all [yes]")
+         "Whether blocks outside of the image or hidden by others are left out; --composite sorted draws all [yes]")
       ->group(group);
   addNumber(app, "--cull-threshold", "TRANSMITTANCE", cullThreshold,
-            "Transmittance to the eye below which a block is behind others; 0: none is [1/512]",
+            "Transmittance to the eye below which a block is hidden, and a ray of the gather ends; 0 hides nothing [1/512]",
             {.minimum = 0.0, .maximum = 1.0})
       ->group(group);
   addWord(app, "--hierarchy-filter", kHierarchyFilterWords, hierarchyFilter,
-          "Which mean of its voxels' transmittances a block has [geometric]")
+          "Mean of its voxels' transmittances that a block has [geometric]")
       ->group(group);
   app.add_flag("--paper", paper,
-               "As the paper: additive, nearest, 26 directions, linear8, no path-length correction, no "
-               "gradient, lod 0, no culling; any of the eight that is given wins. To compare with: 1 to 25 dB worse than the default, and "
-               "opaque parts burn out")
+               "The paper's method, for comparison: --composite additive --attenuation nearest --directions 26 --code linear8 "
+               "--no-path-length-correction --no-gradient --lod 0 --no-culling. Any of these that is given wins. 1 to 25 dB worse than "
+               "the default")
       ->group(group);
 }
 

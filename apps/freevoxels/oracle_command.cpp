@@ -31,7 +31,7 @@ void logOracle(const Oracle& oracle, double seconds) {
 
 void OracleCommand::add(CLI::App& app) {
   CLI::App* command =
-      app.add_subcommand("oracle", "March rays through a volume until the picture is right, for comparison");
+      app.add_subcommand("oracle", "Draw a reference image by ray marching in double precision, for comparison");
   scene_.add(*command);
   messages_.add(*command);
   command->footer(kExamples);

@@ -1,4 +1,4 @@
-"""Builds the module with CMake, for `pip install`: README.md, section "Python"."""
+"""Builds the module with CMake, for `pip install`: apps/manual/python.md."""
 
 import os
 import re

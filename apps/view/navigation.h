@@ -7,14 +7,14 @@
 
 namespace freevoxels {
 
-/// BilinearCell the look-at point, about `up` and the camera's right: half a turn for the picture's height. Stops
+/// Around the look-at point, about `up` and the camera's right: half a turn for the picture's height. Stops
 /// short of the poles.
 Camera orbited(const Camera& camera, glm::dvec2 drag);
 
 /// Eye and look-at point together, so that what is at the look-at point follows the drag.
 Camera panned(const Camera& camera, glm::dvec2 drag);
 
-/// TableLookup the look-at point, whose distance, or the orthographic height, is multiplied by `factor`.
+/// Towards the look-at point, whose distance, or the orthographic height, is multiplied by `factor`.
 Camera dollied(const Camera& camera, double factor);
 
 /// Turns the head: the look-at point moves around the eye, by the field of view for the picture's height.

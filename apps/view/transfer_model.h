@@ -1,5 +1,5 @@
 #pragma once
-// A transfer function as a hand edits it: points over x in 0..1, as its JSON has them (README.md).
+// A transfer function as a hand edits it: points over x in 0..1, as its JSON has them (apps/manual/classification.md).
 
 #include <glm/glm.hpp>
 #include <optional>

@@ -18,8 +18,8 @@ static_assert(shader::kOpaqueDepth == float(kOpaqueDepth));
 static_assert(shader::kCodeDepth8 == int(AttenuationCode::Depth8));
 static_assert(shader::kCodeLinear8 == int(AttenuationCode::Linear8));
 
-/// The sweep for `direction` marches the other way: from where its lines leave the volume, against the
-/// direction. Without the slab.
+/// Push constants of the sweep for `direction`, without the slab. The sweep marches against the direction,
+/// from where its lines leave the volume.
 shader::SweepPush sweepPush(const SlabSweep& sweep, glm::ivec3 direction) {
   const DeviceVolume& volume = sweep.volume;
   const glm::ivec3 extent = volume.layout.dimensions;
@@ -50,7 +50,7 @@ shader::SweepPush sweepPush(const SlabSweep& sweep, glm::ivec3 direction) {
   return push;
 }
 
-/// Of the direction {-1,0,1}³.
+/// The plane of a direction of {-1,0,1}³.
 const Buffer& planeOf(const AttenuationTable& table, glm::ivec3 direction) {
   const DirectionSet set = table.settings.directions;
   return table.planes[std::size_t(directionIndex(set, direction * int(set)))];
@@ -59,7 +59,7 @@ const Buffer& planeOf(const AttenuationTable& table, glm::ivec3 direction) {
 }  // namespace
 
 AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, const TableSettings& settings) {
-  // Whole runs.
+  // Rounded up to whole runs.
   const std::uint64_t bytes = std::max<std::uint64_t>(
       (volume.planeBytes() + shader::kRunBlocks - 1) / shader::kRunBlocks * shader::kRunBlocks,
       shader::kRunBlocks);
@@ -123,7 +123,7 @@ void AttenuationSweep::makeRoom(const SweepPlan& plan) {
   plan_ = plan;
   if (extinction_.bytes() != plan.slabBytes) {
     extinctionQuads_ = {};
-    extinction_ = {};  // not both at once
+    extinction_ = {};  // free the old buffer before allocating the new one
     extinction_ = Buffer(device_, plan.slabBytes, MemoryUse::Device, "extinction of a slab",
                          VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     extinctionQuads_ = TexelView(device_, extinction_);
@@ -189,8 +189,8 @@ void AttenuationSweep::recordBundles(SlabSweep& sweep, glm::ivec2 yz) const {
 
 namespace {
 
-/// Of every plane, the bytes from `first` on of what is stored of a level: of block i byte i / `share`, as
-/// `valueOf(byte, i)`.
+/// For every plane, the values of the stored blocks of a level, read from the bytes that start at `first`.
+/// Byte i / `share` belongs to block i; `valueOf(byte, i)` extracts its value.
 template <typename ValueOf>
 std::vector<std::vector<std::uint8_t>> downloadPlanes(const Device& device, const DeviceVolume& volume,
                                                       const AttenuationTable& table, int level,
@@ -213,7 +213,7 @@ std::uint8_t wholeByte(std::uint8_t byte, std::size_t) {
   return byte;
 }
 
-/// As shaders/attenuation_code.glsl packs them.
+/// The bound of a block in a packed byte (shaders/attenuation_code.glsl).
 std::uint8_t boundInByte(std::uint8_t byte, std::size_t block) {
   return std::uint8_t((byte >> (block % shader::kBoundBlocks * 4) & 15) * 16);
 }

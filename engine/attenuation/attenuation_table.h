@@ -16,39 +16,43 @@
 namespace freevoxels {
 
 struct AttenuationTable {
-  /// One byte a direction and block that holds anything, of all levels, by rank (device_volume.h), of which
-  /// AttenuationSweep fills the voxels'; then the blocks' bounds. Directions in the order of directions.h.
+  /// A buffer for each direction, in the order of directions.h, with one byte for each occupied block of all
+  /// levels, by rank (device_volume.h), followed by the blocks' bounds. AttenuationSweep fills those of the
+  /// voxels.
   std::vector<Buffer> planes;
-  std::vector<TexelView> planeTexels;  ///< a byte of a plane a texel; while all codes are kept
-  /// shader::OccupancyWord, a bit a run of blocks: whether its codes are kept. Empty where all are
+  std::vector<TexelView> planeTexels;  ///< one byte a texel; empty after pruning
+  /// shader::OccupancyWord with a bit for each run of blocks: whether its codes are kept. Empty if all are
   /// (table_pruning.h).
   Buffer keptRuns;
-  /// The planes' device addresses by cellNumber, 0 where a cell is no direction; then that of `keptRuns`.
+  /// The device addresses of the planes by cellNumber, 0 for cells that are not directions; then that of
+  /// `keptRuns`.
   Buffer planeAddresses;
-  /// uint by direction, once the levels are made: the code of the most opaque voxel; of Linear8 255 minus it.
+  /// uint by direction, filled with the levels: the code of the voxel with the largest optical depth; for
+  /// Linear8 255 minus the code.
   Buffer maxCodePerDirection;
   TableSettings settings;
 
-  /// Into `planeAddresses`. Waits.
+  /// Writes `planeAddresses`. Blocks until the copy is complete.
   void uploadAddresses(const Device& device) const;
-  /// What is kept of it.
+  /// Bytes of device memory of the planes.
   std::uint64_t bytes() const;
 };
 
 /// Allocates the table of all levels; checkTableFits() (memory_planner.h) tells beforehand whether it fits.
 AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, const TableSettings& settings);
 
-/// The sweep style that is fastest on this kind of device, within what it can bind.
+/// The sweep style that is fastest on this kind of device, within the limits of what it can bind.
 SweepStyle sweepStyle(const Device& device);
 
 /// COMPUTE attenuation_sweep.comp, attenuation_sweep_x.comp and, for 98 directions,
-/// attenuation_sweep_half.comp: a dispatch a direction and slab (slabs.h), of which those of a slab do not
-/// wait for each other.
+/// attenuation_sweep_half.comp: a dispatch for each direction and slab (slabs.h). The dispatches of a slab
+/// run concurrently.
 class AttenuationSweep {
  public:
   AttenuationSweep(const Device& device, const TableSettings& settings);
   AttenuationSweep(const Device& device, const TableSettings& settings, const SweepStyle& style);
-  /// One volume after the other: the sweeps have one slab.
+  /// Records the sweeps of a volume. Volumes are swept one after the other, since there is memory for one
+  /// slab.
   void record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table);
 
  private:
@@ -61,25 +65,25 @@ class AttenuationSweep {
   TableSettings settings_;
   SweepStyle style_;
   SweepPlan plan_;
-  std::array<Pipeline, 3> bundles_;  ///< by the march's step in x, -1, 0, 1
+  std::array<Pipeline, 3> bundles_;  ///< by the step of the march along x: -1, 0, 1
   std::array<Pipeline, 2> rows_;     ///< directions +x and -x
-  std::optional<IntermediateSweep> halves_;  ///< of 98 directions
+  std::optional<IntermediateSweep> halves_;  ///< exists for 98 directions
   ExpandPass expand_;
-  Buffer extinction_;  ///< float, of all voxels of a slab
+  Buffer extinction_;  ///< float: extinction of all voxels of a slab
   TexelView extinctionQuads_;
-  Buffer keptDepths_;  ///< float: of lines between slabs
+  Buffer keptDepths_;  ///< float: optical depths of lines between slabs
 };
 
-/// Bytes [direction][block] of one level, without padding, 0 of blocks that hold nothing.
+/// Bytes [direction][block] of a level, without padding; 0 for blocks that are not occupied. Reads back.
 std::vector<std::vector<std::uint8_t>> downloadTable(const Device& device, const DeviceVolume& volume,
                                                      const AttenuationTable& table, int level = 0);
 
-/// The same of the bounds of a level above the voxels: what half a byte keeps of the code of each block's
-/// most transparent voxel.
+/// Bytes [direction][block] of the bounds of a level above the voxels: what half a byte keeps of the code of
+/// each block's most transparent voxel. Reads back.
 std::vector<std::vector<std::uint8_t>> downloadBounds(const Device& device, const DeviceVolume& volume,
                                                       const AttenuationTable& table, int level);
 
-/// By direction, the optical depth of the voxel that has most before it. Of a table that has its levels.
+/// The largest optical depth of any voxel, by direction, of a table with levels. Reads back.
 std::vector<double> downloadLargestDepths(const Device& device, const AttenuationTable& table);
 
 }  // namespace freevoxels

@@ -1,6 +1,6 @@
 #pragma once
-// What the table's depths have beyond an eye or a light that is inside the volume: Subr et al. 2007,
-// Section 3.3.
+// Optical depths from an eye or a light inside the volume to the outside, which look-ups in the table
+// subtract: Subr et al. 2007, Section 3.3.
 
 #include "engine/octree/device_volume.h"
 #include "engine/scene/directions.h"
@@ -13,7 +13,7 @@ namespace freevoxels {
 class EyeDepthsPass {
  public:
   explicit EyeDepthsPass(const Device& device);
-  /// Writes shader::kMaximumCells floats, by cellNumber, as the `slot`th of `depths`.
+  /// Writes shader::kMaximumCells floats, by cellNumber, into slot `slot` of `depths`.
   void record(Commands& commands, const DeviceVolume& volume, DirectionSet set, const RaySource& source,
               const Buffer& depths, int slot = 0) const;
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr DirectionSet kSet = DirectionSet::Directions98;
 
-/// The cells of the 98 directions that are none of the 26: their lattice step is the cell itself.
+/// The cells of the 72 directions that are not among the 26. Their lattice step is the cell itself.
 std::vector<glm::ivec3> halfCells() {
   std::vector<glm::ivec3> cells;
   for (int i = 0; i < directionCount(kSet); ++i)
@@ -21,7 +21,7 @@ std::vector<glm::ivec3> halfCells() {
   return cells;
 }
 
-/// The distances from a voxel to those nearest to the middle of a step, along one axis.
+/// Offsets, along one axis, from a voxel to the voxels nearest to the middle of a step.
 std::vector<int> halfwayOffsets(int step) {
   if (step % 2 == 0) return {step / 2};
   return {0, step};
@@ -34,8 +34,8 @@ std::vector<glm::ivec2> halfwayOffsets(glm::ivec2 step) {
   return offsets;
 }
 
-/// The direction's steps along the axis that its sweep marches along, against the direction, and along the
-/// other axis than x.
+/// The direction's steps along the march axis and along the side axis (neither x nor the march axis). The
+/// march goes against the direction.
 glm::ivec2 marchAndSide(glm::ivec3 cell) {
   return cell.z != 0 ? glm::ivec2(cell.z, cell.y) : glm::ivec2(cell.y, 0);
 }
@@ -49,7 +49,7 @@ std::uint64_t threadsOf(const shader::HalfSweepPush& push, int voxelsPerThread) 
          std::uint64_t(push.rowPitch / voxelsPerThread);
 }
 
-/// Without the slab.
+/// Push constants of a direction's sweep, without the slab.
 shader::HalfSweepPush sweepPush(const SlabSweep& sweep, glm::ivec3 cell) {
   const DeviceVolume& volume = sweep.volume;
   const bool pathLengthCorrection = sweep.table.settings.pathLengthCorrection;
@@ -86,7 +86,7 @@ IntermediateSweep::IntermediateSweep(const Device& device, AttenuationCode code,
 
 void IntermediateSweep::record(SlabSweep& sweep) const {
   for (const glm::ivec3 cell : halfCells()) {
-    // The march is against the direction.
+    // The march goes against the direction.
     if (sweep.slab.upwards ? cell.z > 0 : cell.z <= 0) continue;
     shader::HalfSweepPush push = sweepPush(sweep, cell);
     const std::uint64_t threads = threadsOf(push, voxelsPerThread_);

@@ -13,12 +13,13 @@ namespace freevoxels {
 class IntermediateSweep {
  public:
   IntermediateSweep(const Device& device, AttenuationCode code, int voxelsPerThread);
-  /// Of a table with 98 directions, those that march the slab's way; within planes where it is upwards.
+  /// Records the directions whose march goes the slab's way. Directions that march within planes are recorded
+  /// with upward slabs.
   void record(SlabSweep& sweep) const;
 
  private:
   int voxelsPerThread_;
-  std::map<std::pair<int, int>, Pipeline> pipelines_;  ///< by the march's step in x and the rows half-way
+  std::map<std::pair<int, int>, Pipeline> pipelines_;  ///< by the step of the march along x and the number of rows half-way
 };
 
 }  // namespace freevoxels

@@ -31,15 +31,15 @@ shader::FaceRays deviceFan(const FaceRays& fan, VkDeviceAddress depths) {
           .depths = addressWords(depths)};
 }
 
-/// Bytes of the extinction of a slab, which the caches of processors hold: of more only where four planes
-/// are.
+/// Bytes of the extinction of a slab, which fit into a processor's cache. A slab exceeds this only if four
+/// planes do.
 constexpr std::uint64_t kSlabBytes = std::uint64_t(8) << 20;
-constexpr int kQuad = 4;  // voxels of a row that ExpandPass takes together
+constexpr int kQuad = 4;  // number of voxels of a row that an invocation of ExpandPass writes
 
-/// The next multiple of a quad, also of less than 0.
+/// Rounds up to a multiple of a quad, negative numbers too.
 int quadsUp(int voxels) { return (voxels + kQuad - 1) & -kQuad; }
 
-/// A part of the volume with a voxel or a quad of nothing around it on the sides of a fan.
+/// A part of the volume, with a border of empty voxels or quads on the sides of a face.
 struct SlabBox {
   glm::ivec3 first, extent;
 
@@ -48,7 +48,8 @@ struct SlabBox {
   }
 };
 
-/// The planes of a fan from `begin` on and before `end`, rounded up to even, and the one before.
+/// The box of the planes `begin` to `end` - 1 of a face, rounded up to an even number, and of the plane
+/// before them.
 SlabBox slabBox(const FaceRays& fan, glm::ivec3 dimensions, int begin, int end) {
   SlabBox box{.first = glm::ivec3(-kQuad, -1, -1),
               .extent = {quadsUp(dimensions.x) + 2 * kQuad, dimensions.y + 2, dimensions.z + 2}};
@@ -64,7 +65,7 @@ SlabBox slabBox(const FaceRays& fan, glm::ivec3 dimensions, int begin, int end) 
   return box;
 }
 
-/// Of a slab, a multiple of four.
+/// Number of planes of a slab, a multiple of four.
 int planesPerSlab(const FaceRays& fan, glm::ivec3 dimensions) {
   glm::ivec3 plane = dimensions + 2;
   plane[fan.axis] = 1;
@@ -73,17 +74,17 @@ int planesPerSlab(const FaceRays& fan, glm::ivec3 dimensions) {
   return int(std::clamp<std::uint64_t>(kSlabBytes / bytes, kQuad, most)) / kQuad * kQuad;
 }
 
-/// What the sweep of a source needs.
+/// Bytes of memory for the sweep of a source.
 struct RayRoom {
-  std::uint64_t depths = 0;   ///< of all fans, bytes
-  std::uint64_t largest = 0;  ///< of those of a fan
+  std::uint64_t depths = 0;   ///< for the depths of all faces
+  std::uint64_t largest = 0;  ///< the largest part of `depths` that a single face has
   std::uint64_t slab = 0, carried = 0;
 
   std::uint64_t bytes() const { return depths + slab + carried; }
 };
 
 RayRoom roomFor(const std::array<FaceRays, 6>& fans, glm::ivec3 dimensions) {
-  RayRoom room{.slab = sizeof(float), .carried = sizeof(float)};  // bindings need buffers
+  RayRoom room{.slab = sizeof(float), .carried = sizeof(float)};  // bindings need buffers even if no face has rays
   for (const FaceRays& fan : fans) {
     if (fan.planeCount == 0) continue;
     room.depths += depthBytes(fan);
@@ -99,7 +100,7 @@ RayRoom roomFor(const std::array<FaceRays, 6>& fans, glm::ivec3 dimensions) {
 }
 
 void checkFits(const Device& device, const RayRoom& room, std::uint64_t mostBytes) {
-  // Shaders index the depths of a fan with 31 bits.
+  // Shaders index the depths of a face with 31 bits.
   const std::uint64_t most = std::uint64_t(std::numeric_limits<std::int32_t>::max()) * sizeof(std::uint32_t);
   const std::uint64_t fits = std::min(std::uint64_t(device.maximumAllocation()), mostBytes);
   if (room.bytes() > mostBytes || room.depths > fits || room.largest > most)
@@ -126,7 +127,7 @@ void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source, std::uin
   checkFits(device_, room, std::min(mostBytes, device_.availableBytes() + own));
   const auto grow = [&](Buffer& buffer, std::uint64_t bytes, const char* name, VkBufferUsageFlags usage = 0) {
     if (buffer.bytes() >= bytes) return false;
-    buffer = {};  // not both at once
+    buffer = {};  // free the old buffer before allocating the new one
     buffer = Buffer(device_, bytes, MemoryUse::Device, name, usage);
     return true;
   };
@@ -136,7 +137,7 @@ void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source, std::uin
     slabTexels_ = TexelView(device_, slab_, VK_FORMAT_R32_SFLOAT);
 }
 
-/// Of a box of voxels.
+/// Expands the extinction of a box of voxels from the scalars.
 void RaySweep::recordScalars(Commands& commands, const DeviceVolume& volume, glm::ivec3 first, glm::ivec3 extent) const {
   const DeviceScalars& scalars = *volume.scalarBricks;
   const glm::ivec3 quads(extent.x / kQuad, extent.y, extent.z);
@@ -155,7 +156,7 @@ void RaySweep::recordScalars(Commands& commands, const DeviceVolume& volume, glm
 void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const FaceRays& fan,
                          const shader::FaceRays& onDevice, bool scalars) const {
   const glm::ivec3 dimensions = volume.layout.dimensions;
-  // The table's extinctions are in another unit.
+  // Extinctions of the transfer table are in another unit.
   const double unit = scalars ? 1.0 / (kStoredDepth * volume.voxelSize) : 1.0;
   const int sideA = (fan.axis + 1) % 3, sideB = (fan.axis + 2) % 3;
   const int planes = planesPerSlab(fan, dimensions);

@@ -1,7 +1,7 @@
 #pragma once
-// Optical depths along the ray fans of a source, on the device: a thread a ray. What is kept of the volume is
-// expanded first, a slab of planes at a time: to look up a voxel's place among those that hold anything takes
-// several times as long as its extinction, and four rays share it.
+// Optical depths along the rays of a source, on the device, with a thread for each ray. The volume is first
+// expanded to a dense grid, a slab of planes at a time: finding a voxel's rank takes several times as long as
+// reading its extinction, and four rays share each voxel.
 
 #include <cstdint>
 #include <limits>
@@ -14,27 +14,27 @@
 
 namespace freevoxels {
 
-/// On the device, of the rays of a source.
+/// Bytes of device memory for the rays of a source.
 std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source);
 
-/// COMPUTE expand_voxels.comp and ray_sweep.comp, a dispatch each for a fan's every slab.
+/// COMPUTE expand_voxels.comp and ray_sweep.comp: a dispatch of each for every slab of a face.
 class RaySweep {
  public:
-  /// Its time is that of the pass `name`.
+  /// `name` is the pass that its time is reported as.
   explicit RaySweep(const Device& device, const char* name = "ray sweep");
 
-  /// For the depths of this source, which may take no more than `mostBytes`: fails with
-  /// ExitCode::OutOfMemory where there is none. No work may be under way on those of the last source.
+  /// Allocates memory for the depths of a source, at most `mostBytes`; fails with ExitCode::OutOfMemory if it
+  /// is not enough. No work on the depths of the last source may be in progress.
   void makeRoom(glm::ivec3 dimensions, const RaySource& source,
                 std::uint64_t mostBytes = std::numeric_limits<std::uint64_t>::max());
-  /// Sweeps the volume for this source; the depths replace those of the last one. Makes room if need be. With `scalars` from
-  /// the volume's scalars, classified after interpolation; depths then are those up to the planes of voxels, not those in
-  /// front of their layers.
+  /// Records the sweep for a source; its depths replace those of the last one. Allocates memory if necessary.
+  /// With `scalars`, extinction is classified from the volume's scalars after interpolation, and the depths
+  /// are those up to the planes of voxels instead of those in front of their layers.
   void record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars = false);
-  /// Of the last source, for look-ups: index 2 axis + (direction > 0). Parallel rays have one fan, which is
-  /// in all six places, so that no look-up has to choose it with the same rounding.
+  /// The rays of the last source, for look-ups, at index 2 axis + (direction > 0). Parallel rays have one
+  /// face, which is stored in all six places, so that a look-up need not choose it with the same rounding.
   const std::array<shader::FaceRays, 6>& fans() const { return fans_; }
-  /// Sweeps, waits and copies to the host: for validation.
+  /// Sweeps and copies the depths to the host, for validation. Blocks until the device is done.
   RayCodes sweep(const DeviceVolume& volume, const RaySource& source);
 
  private:
@@ -45,12 +45,12 @@ class RaySweep {
   const Device& device_;
   const char* name_;
   ExpandPass expand_;
-  std::array<Pipeline, 2> pipelines_;  ///< by whether of scalars
+  std::array<Pipeline, 2> pipelines_;  ///< without and with `scalars`
   Pipeline expandScalars_;
-  Buffer slab_;  ///< float: extinction of its voxels
+  Buffer slab_;  ///< float: extinction of the voxels of a slab
   TexelView slabTexels_;
-  Buffer carried_;  ///< float, by ray: depth between slabs
-  Buffer depths_;  ///< uint: codes of planes 2k and 2k + 1; by fan, k and ray
+  Buffer carried_;  ///< float, by ray: optical depth between slabs
+  Buffer depths_;  ///< uint: codes of planes 2k and 2k + 1, by face, k and ray
   std::array<shader::FaceRays, 6> fans_{};
 };
 

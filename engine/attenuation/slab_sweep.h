@@ -1,5 +1,5 @@
 #pragma once
-// What the sweeps of one slab of a volume share.
+// The data that all sweeps of a slab share.
 
 #include <array>
 #include <cstdint>
@@ -17,12 +17,12 @@ struct SlabSweep {
   const DeviceVolume& volume;
   const AttenuationTable& table;
   Slab slab;
-  const TexelView& extinction;  ///< of the slab's voxels
+  const TexelView& extinction;  ///< extinction of the slab's voxels
   const Buffer& carriedDepths;
-  int firstQuad = 0;       ///< of `extinction`, among all quads of voxels
-  std::uint32_t kept = 0;  ///< depths that the sweeps so far keep of their lines
+  int firstQuad = 0;       ///< index of the first quad of `extinction` among all quads of voxels
+  std::uint32_t kept = 0;  ///< number of depths that the sweeps recorded so far carry between slabs
 
-  /// A march along z, of which `floats` depths are kept for the next slab.
+  /// A march along z that carries `floats` depths to the next slab.
   shader::SweepSlab marchAlongZ(std::uint64_t floats) {
     const shader::SweepSlab result{
         .firstPlane = slab.first, .endPlane = slab.end, .firstQuad = firstQuad, .firstDepth = kept};
@@ -36,7 +36,7 @@ struct SlabSweep {
   std::array<Binding, 4> bindings(const Buffer& plane) const {
     return {&extinction, &plane, &volume.occupancyTexels, &carriedDepths};
   }
-  /// The first voxel's, among all with the padding.
+  /// Padded index of the slab's first voxel.
   int firstVoxel() const {
     const glm::ivec3 extent = volume.layout.dimensions;
     return slab.lowest(extent.z) * extent.y * volume.layout.rowPitch;

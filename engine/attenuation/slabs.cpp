@@ -11,21 +11,23 @@ std::uint64_t planeVoxels(const GridLayout& layout) {
   return std::uint64_t(layout.rowPitch) * std::uint64_t(layout.dimensions.y);
 }
 
-/// With fewer, what lines keep between slabs costs more than a slab that fits into the cache gains.
+/// Least number of planes of a slab. With fewer, carrying depths between slabs costs more than a slab that
+/// fits into the cache gains.
 constexpr int kFewestPlanes = 32;
 
-/// Planes beyond either end of a slab that the steps of 98 directions look at.
+/// Planes beyond both ends of a slab that the steps of 98 directions read.
 int haloOf(DirectionSet directions) {
   return directions == DirectionSet::Directions98 ? 1 : 0;
 }
 
 std::uint64_t slabBytesOf(const GridLayout& layout, DirectionSet directions, int planes) {
   const int all = std::min(planes + 2 * haloOf(directions), layout.dimensions.z);
-  // It begins and ends with whole words of occupancy.
+  // A slab begins and ends with whole occupancy words.
   return (planeVoxels(layout) * std::uint64_t(all) + 2 * shader::kBlocksPerWord) * sizeof(float);
 }
 
-/// Of all directions that march the same way along z. Lines with steps of two planes are of two families.
+/// Bytes of the depths of all directions that march the same way along z. Lines with steps of two planes are
+/// of two families.
 std::uint64_t keptBytesOf(const GridLayout& layout, DirectionSet set, int voxelsPerThread) {
   std::uint64_t lines = 0;
   for (int i = 0; i < directionCount(set); ++i) {
@@ -37,14 +39,14 @@ std::uint64_t keptBytesOf(const GridLayout& layout, DirectionSet set, int voxels
 
 }  // namespace
 
-// kExtraLines of line_bundle.glsl beside the voxels.
+// The voxels of a thread and kExtraLines of line_bundle.glsl.
 int linesPerThread(int voxelsPerThread, int stepX) {
   const int size = std::abs(stepX), phases = size == 0 ? 1 : size == 1 ? 4 : 2;
   return voxelsPerThread + size * (phases - 1);
 }
 
 SweepStyle sweepStyleOf(bool cpu) {
-  // Of a CPU, so that all sweeps of a slab but the first find it in the cache.
+  // For a CPU: all sweeps of a slab but the first find it in the cache.
   if (cpu) return {.voxelsPerThread = 16, .slabBytes = std::uint64_t(4) << 20};
   return {.voxelsPerThread = 4, .slabBytes = std::uint64_t(256) << 20};
 }

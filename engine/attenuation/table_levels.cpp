@@ -44,7 +44,7 @@ void TableLevels::record(Commands& commands, const DeviceVolume& volume,
       push.directionCount = std::uint32_t(std::min(kGroup, directions - first));
       std::vector<Binding> bindings{&table.maxCodePerDirection, &volume.occupancyTexels,
                                     &coarse[std::size_t(level) - 1].indices};
-      // Whatever is bound in the last group's place of more is not looked at.
+      // The last group may have fewer directions. Its other bindings are not read.
       for (std::size_t i = 0; i < kGroup; ++i)
         bindings.emplace_back(&table.planeTexels[std::min(first + i, directions - 1)]);
       for (std::size_t i = 0; i < kGroup; ++i)

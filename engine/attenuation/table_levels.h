@@ -23,13 +23,13 @@ class TableLevels {
  public:
   TableLevels(const Device& device, const TableSettings& settings);
   TableLevels(const Device& device, const TableSettings& settings, std::uint32_t directionsPerThread);
-  /// What was recorded before must be done.
+  /// All work that was submitted before must be complete.
   void record(Commands& commands, const DeviceVolume& volume, std::span<const BlockList> coarse,
               const AttenuationTable& table) const;
 
  private:
-  std::uint32_t perThread_;            ///< directions: as many layers of workgroups as a dispatch needs
-  std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
+  std::uint32_t perThread_;            ///< directions a thread; a dispatch has as many layers of workgroups as it needs
+  std::array<Pipeline, 2> pipelines_;  ///< for children that are blocks; for children that are voxels
 };
 
 }  // namespace freevoxels

@@ -28,7 +28,8 @@ std::vector<shader::OccupancyWord> downloadWords(const Device& device, const Buf
   return words;
 }
 
-/// Fills in how many kept runs come before each word, the one for all others included; the kept runs.
+/// Writes into each word how many kept runs precede it, and returns their total. The first kept run is the
+/// one that stands for all removed runs.
 std::uint32_t countKept(std::vector<shader::OccupancyWord>& words) {
   std::uint32_t kept = 1;
   for (shader::OccupancyWord& word : words) {
@@ -38,14 +39,14 @@ std::uint32_t countKept(std::vector<shader::OccupancyWord>& words) {
   return kept;
 }
 
-/// Whether there may be voxels that store the maxCodePerDirection code for every direction.
+/// Whether there may be voxels that store the maxCodePerDirection code in every direction.
 bool endsInAllDirections(const Device& device, const AttenuationTable& table) {
   const AttenuationCode code = table.settings.code;
   const double end = decodeOpticalDepth(code, code == AttenuationCode::Linear8 ? 0 : 255);
   return std::ranges::min(downloadLargestDepths(device, table)) >= end;
 }
 
-/// Which runs can be seen; how many come before is not there yet.
+/// The occupancy words of the runs to keep; the number of kept runs before each word is not filled in yet.
 Buffer findSeen(const Device& device, const AttenuationTable& table, std::vector<StageTime>& times) {
   const shader::RunsPush push = runsPush(table);
   const std::uint64_t groups = (push.runCount + shader::kRunThreads - 1) / shader::kRunThreads;

@@ -1,5 +1,5 @@
 #pragma once
-// A table without the codes of what cannot be seen from any of its directions.
+// Pruning of the attenuation table: removes the codes of blocks from which no light leaves in any direction.
 
 #include <cstdint>
 #include <vector>
@@ -9,17 +9,17 @@
 
 namespace freevoxels {
 
-/// Of a table that has its levels, keeps the codes of runs of kRunBlocks blocks (in the order of their ranks,
-/// then of their bounds) of which any code says that light comes through. All others are the maxCodePerDirection code, as
-/// they were: what look-ups find does not change by a bit. Leaves the table alone where less than a quarter
-/// would go, or where the device lacks the memory of one more direction. Waits.
+/// Removes from a table with levels all runs of kRunBlocks blocks (in the order of their ranks, then of their
+/// bounds) of which every code is the maxCodePerDirection code. Look-ups return that code for removed runs,
+/// so their results do not change by a bit. Does nothing if less than a quarter would be removed, or if the
+/// device lacks memory for one more direction. Blocks until the device is done.
 void pruneOpaqueRuns(const Device& device, AttenuationTable& table, std::vector<StageTime>& times);
 
-/// By run, where the kept codes are: the first byte in a plane. Empty: everything is where it was.
+/// For each run, the offset in a plane of its kept codes. Empty if the table is not pruned.
 using SeenRuns = std::vector<std::uint64_t>;
 SeenRuns downloadSeenRuns(const Device& device, const AttenuationTable& table);
 
-/// Of a plane, the codes of `count` blocks from that of rank `first` on. Waits.
+/// The codes of a plane for `count` blocks, starting at rank `first`. Reads back.
 std::vector<std::uint8_t> downloadCodes(const Device& device, const Buffer& plane, const SeenRuns& runs,
                                         std::uint64_t first, std::uint64_t count);
 

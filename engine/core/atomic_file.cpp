@@ -20,15 +20,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Below this, a write that failed for a reason the library did not tell failed because the disk is full.
+/// If a library does not say why a write failed, and fewer bytes than this are free, the disk is taken to be
+/// full.
 constexpr std::uintmax_t kNoSpaceLeft = 4096;
 
-/// The folder part, "." where there is none.
+/// The folder of `file`, or "." if its name has none.
 fs::path folderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// The first bytes, at most so many, without a part of a UTF-8 character at the end.
+/// At most the first `bytes` bytes of `text`, without an incomplete UTF-8 character at the end.
 std::string cutUtf8(const std::string& text, std::size_t bytes) {
   if (text.size() <= bytes) return text;
   const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) == 0x80u; };
@@ -36,8 +37,9 @@ std::string cutUtf8(const std::string& text, std::size_t bytes) {
   return text.substr(0, bytes);
 }
 
-/// ".NAME.PID.NUMBER.tmp.EXT" beside `target`, another one each time: several threads may write files whose
-/// names begin alike. Long names are cut, so that the temporary's fits where the target's does.
+/// Returns a new name ".NAME.PID.NUMBER.tmp.EXT" in the folder of `target` at each call, so that threads that
+/// write files with similar names do not collide. NAME is cut so that the temporary name is not too long
+/// where the target's is not.
 fs::path temporaryPath(const fs::path& target) {
   constexpr std::size_t kLongestStem = 100;
   static std::atomic<unsigned> number = 0;
@@ -46,7 +48,7 @@ fs::path temporaryPath(const fs::path& target) {
          fmt::format(".{}.{}.{}.tmp{}", stem, getpid(), number++, target.extension().string());
 }
 
-/// What a rename has to replace: the file behind a symbolic link, not the link.
+/// Returns the path that the rename has to replace: the file that a symbolic link points to, not the link.
 fs::path followLink(const fs::path& destination) {
   std::error_code error;
   if (!fs::is_symlink(destination, error)) return destination;
@@ -54,7 +56,7 @@ fs::path followLink(const fs::path& destination) {
   return error ? destination : target;
 }
 
-/// A library's message as part of a sentence: one line, no full stop.
+/// A library's message in a form that fits into a sentence: one line without a full stop.
 std::string asClause(std::string message) {
   std::replace_if(
       message.begin(), message.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
@@ -83,7 +85,7 @@ const char* remedyFor(int error) {
        asClause(std::generic_category().message(error)), remedyFor(error));
 }
 
-/// For exceptions that carry no error number: the state of the disk tells whether it is full.
+/// Fails for an exception without an error number: the free space tells whether the disk is full.
 [[noreturn]] void failBecause(const fs::path& destination, const std::string& message) {
   std::error_code error;
   const fs::space_info space = fs::space(folderOf(destination), error);
@@ -91,7 +93,7 @@ const char* remedyFor(int error) {
   fail(ExitCode::Output, "cannot write '{}': {}; {}", destination.string(), asClause(message), remedyFor(0));
 }
 
-/// Unless `file` is null by then.
+/// Removes the file when it goes out of scope, unless `file` is null then.
 struct RemoveOnExit {
   const fs::path* file;
   ~RemoveOnExit() {

@@ -16,7 +16,7 @@ namespace freevoxels {
 void writeAtomically(const std::filesystem::path& destination,
                      const std::function<void(const std::filesystem::path&)>& write);
 
-/// A file of these bytes.
+/// Writes a file that consists of these bytes, in the same way.
 void writeTextAtomically(const std::filesystem::path& destination, std::string_view text);
 
 /// Fails early, before any work, if `destination` can clearly not be written: its folder is missing or not

@@ -1,6 +1,6 @@
 #pragma once
-// A binary file for writing, none of whose failures can pass unseen: libraries that write through C or C++
-// streams lose the error of the last, buffered bytes when the disk is full.
+// A binary file for writing that reports every failure. Libraries that write through C or C++ streams lose
+// the error of the last buffered bytes when the disk is full.
 
 #include <cerrno>
 #include <cstdint>
@@ -35,7 +35,7 @@ class CheckedFile {
   void seek(std::uint64_t position) {
     if (fseeko(file_, off_t(position), SEEK_SET) != 0) throwErrno();
   }
-  /// Also throws if any earlier write failed, even where its exception was swallowed by a library in between.
+  /// Also throws if any earlier write failed, even if a library in between swallowed its exception.
   void close() {
     const bool failedEarlier = std::ferror(file_) != 0;
     const bool failedNow = std::fclose(std::exchange(file_, nullptr)) != 0;

@@ -1,6 +1,7 @@
 #pragma once
-// Two kinds of error. `Error` is the user's: one sentence that names the file and the mend, and an exit code.
-// A failed FV_CHECK is ours: it prints both operands and ends the program with ExitCode::Internal.
+// There are two kinds of error. `Error` is the user's: it carries an exit code and one sentence that names
+// the file or option and the remedy. A failed FV_CHECK is a bug of ours: it prints both operands and ends the
+// program with ExitCode::Internal.
 
 #include <fmt/format.h>
 
@@ -10,7 +11,7 @@
 
 namespace freevoxels {
 
-/// Exit codes of every program here, documented in README.md.
+/// Exit codes of all programs, documented in apps/manual/exit_codes.md.
 enum class ExitCode : int {
   Success = 0,
   Internal = 1,
@@ -19,7 +20,7 @@ enum class ExitCode : int {
   Output = 4,
   Device = 5,
   OutOfMemory = 6,
-  Comparison = 7  ///< not as it should be: compare --fail-above, or a check of freevoxels-validate
+  Comparison = 7  ///< `compare --fail-above` or a check of freevoxels-validate failed
 };
 
 class Error : public std::runtime_error {

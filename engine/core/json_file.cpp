@@ -24,7 +24,7 @@ std::string parseReason(const Json::parse_error& error) {
   return reason;
 }
 
-/// For the parser, which by itself takes the last of equal keys.
+/// A parser callback that fails for repeated keys. Without it the parser silently keeps the last value.
 Json::parser_callback_t refuseRepeatedKeys(std::string_view kind, std::string_view name) {
   return [kind, name, seen = std::vector<std::set<Json>>()](int depth, Json::parse_event_t event,
                                                             Json& parsed) mutable {

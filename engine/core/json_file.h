@@ -1,5 +1,6 @@
 #pragma once
-// JSON that a person wrote: what is wrong with it is said in one sentence, ExitCode::Input.
+// Reads JSON written by a person. Errors are one sentence with ExitCode::Input that says what is wrong and
+// where.
 
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
@@ -8,13 +9,14 @@
 
 namespace freevoxels {
 
-/// `kind` is what the sentence calls the file: "transfer function". No object of it may have a key twice.
+/// Reads a file. Messages call it `kind`, such as "transfer function". A repeated key of an object is an
+/// error.
 nlohmann::json readJson(std::string_view kind, const std::filesystem::path& file);
 
-/// The same of a text, which the sentence calls `name`.
+/// Parses `text`, which messages call `name`, in the same way.
 nlohmann::json parseJson(std::string_view kind, std::string_view name, std::string_view text);
 
-/// A value as JSON on one line, whatever bytes are in it.
+/// Prints a value as one line of JSON; invalid UTF-8 is replaced.
 std::string inQuotes(const nlohmann::json& value);
 
 }  // namespace freevoxels

@@ -1,5 +1,5 @@
 #pragma once
-// What long work tells its caller: how far it is, and afterwards how long each stage took.
+// Progress and stage times of long work.
 
 #include <algorithm>
 #include <chrono>
@@ -11,7 +11,7 @@
 
 namespace freevoxels {
 
-/// Called with the stage's name and how much of it is done, 0..1. May be empty.
+/// Callback for the progress of a stage: its name and the fraction of it that is done, 0..1. May be empty.
 using Progress = std::function<void(std::string_view stage, double fraction)>;
 
 struct StageTime {
@@ -20,7 +20,7 @@ struct StageTime {
   bool onDevice = false;  ///< measured by the device's own clock
 };
 
-/// Stages of one name are one.
+/// Adds `time` to the entry of the same name, or appends it.
 inline void addTime(std::vector<StageTime>& times, const StageTime& time) {
   const auto same = std::ranges::find(times, time.name, &StageTime::name);
   if (same == times.end())

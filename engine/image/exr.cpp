@@ -1,4 +1,5 @@
-// OpenEXR in and out. The bytes written depend on the image and the options only: no time, no host.
+// Reading and writing OpenEXR files. The bytes written depend on the image and the options only, not on time
+// or host.
 
 #include <ImathBox.h>
 #include <ImathMatrix.h>
@@ -35,7 +36,8 @@ constexpr std::array<const char*, 4> kColorChannels = {"R", "G", "B", "A"};
 constexpr float kLargestHalf = 65504.0f;
 constexpr std::size_t kPixelsATask = 1 << 14;
 
-/// Of 1 to 9. Files become at most a tenth larger than by OpenEXR's 4, in two thirds of the time.
+/// Compression level, 1 to 9. Files are at most a tenth larger than with OpenEXR's default 4, in two thirds
+/// of the time.
 constexpr int kZipLevel = 3;
 
 /// OpenEXR swallows exceptions in its destructors; CheckedFile remembers them until close.
@@ -50,7 +52,7 @@ class ExrStream : public Imf::OStream {
   CheckedFile& file_;
 };
 
-/// Blocks of scan lines are compressed, and decompressed, side by side.
+/// Lets OpenEXR compress and decompress blocks of scan lines in parallel.
 void useAllProcessors() {
   static const bool once = [] {
     Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency()));
@@ -78,7 +80,7 @@ Imf::Header makeHeader(const Image& image, const ExrOptions& options) {
   return header;
 }
 
-/// Values beyond the range of half become the largest half, not infinity.
+/// Converts to half. Values beyond its range become the largest half, not infinity.
 std::vector<half> toHalf(const std::vector<glm::vec4>& pixels) {
   std::vector<half> halves(pixels.size() * 4);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), kPixelsATask),
@@ -91,7 +93,7 @@ std::vector<half> toHalf(const std::vector<glm::vec4>& pixels) {
   return halves;
 }
 
-/// A slice of `channels` interleaved values of type T a pixel.
+/// A slice of interleaved pixels of `channels` values of type T.
 template <typename T>
 Imf::Slice makeSlice(Imf::PixelType type, const T* base, std::size_t channels, std::size_t width,
                      double fill = 0.0) {
@@ -136,7 +138,7 @@ Image decode(const std::filesystem::path& file, std::int64_t maximumPixels) {
   Image image;
   image.size = {int(width), int(height)};
   image.pixels.resize(std::size_t(width * height));
-  // Slices are addressed in the coordinates of the data window, which need not start at 0.
+  // Slices are addressed by the coordinates of the data window, which need not start at 0.
   const auto first = -(std::ptrdiff_t(window.min.y) * width + window.min.x);
   Imf::FrameBuffer frame;
   for (std::size_t c = 0; c < kColorChannels.size(); ++c)

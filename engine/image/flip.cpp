@@ -14,7 +14,7 @@ namespace freevoxels {
 
 namespace {
 
-/// A tile and its planes stay in a core's cache, and memory does not grow with the picture.
+/// Edge of a tile in pixels: its planes fit into a core's cache, and memory does not grow with the image.
 constexpr int kTileSide = 128;
 
 /// Narkowicz's fit of ACES with the exposure that the HDR-FLIP paper gives it: (a x^2 + b x) / (c x^2 + d x +
@@ -37,7 +37,7 @@ constexpr AcesFit kAces;
 constexpr double kExposedTo = 0.85;  // the paper's target for the brightest and for the median pixel
 constexpr double kSmallestLuminance = 0x1p-23;
 
-/// What of a pixel goes to the display. Without a factor, its colour.
+/// How a pixel is displayed: multiplied by a factor and tone-mapped, or as it is if there is no factor.
 struct Display {
   float exposureFactor = 0.0f;
 
@@ -47,8 +47,8 @@ struct Display {
   }
 };
 
-/// The pixels [begin, begin + size) and `margin` more on every side; outside of the picture its border goes
-/// on.
+/// The pixels [begin, begin + size) and `margin` more on every side. Beyond the image its border pixels are
+/// repeated.
 DisplayedTile displayTile(const Image& image, glm::ivec2 begin, glm::ivec2 size, int margin,
                           const Display& display) {
   DisplayedTile tile(size.x + 2 * margin, size.y + 2 * margin);
@@ -64,7 +64,7 @@ DisplayedTile displayTile(const Image& image, glm::ivec2 begin, glm::ivec2 size,
   return tile;
 }
 
-/// The largest FLIP over the displays.
+/// The maximum of FLIP over the displays, per pixel.
 FlipMap largestFlip(const Image& test, const Image& reference, const std::vector<Display>& displays,
                     double pixelsPerDegree) {
   FV_CHECK_EQ(test.size.x, reference.size.x);
@@ -134,7 +134,7 @@ Exposures flipExposures(const Image& reference) {
 }
 
 Image magmaPicture(const FlipMap& map) {
-  // Every fifteenth of matplotlib's 256 (CC0), which lines between them meet to 3/255.
+  // Every fifteenth of matplotlib's 256 colours (CC0). Linear interpolation reproduces the others to 3/255.
   constexpr glm::vec3 kMagma[] = {
       {0, 0, 4},      {9, 7, 32},      {26, 16, 66},    {49, 17, 101},   {74, 16, 121},   {98, 25, 128},
       {121, 34, 130}, {145, 43, 129},  {170, 51, 125},  {194, 59, 117},  {217, 70, 107},  {236, 88, 96},

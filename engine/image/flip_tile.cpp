@@ -41,7 +41,7 @@ Kernel scaled(const std::vector<double>& values, double scale) {
   return kernel;
 }
 
-/// exp(-x^2 / (2 sigma^2)) for x = -radius..radius pixels, less what floats cannot tell from 0.
+/// exp(-x^2 / (2 sigma^2)) for x = -radius..radius pixels, without values that are 0 in 32-bit floats.
 std::vector<double> gaussianValues(double sigma, int radius) {
   radius = std::min(radius, int(std::ceil(6.5 * sigma)));
   std::vector<double> values;
@@ -67,7 +67,7 @@ std::vector<FlipFilters::Product> sensitivityFilter(const std::vector<Sensitivit
   return products;
 }
 
-/// Positive weights sum to 1, negative ones to -1.
+/// Scales the values so that positive weights sum to 1 and negative weights to -1.
 Kernel balanced(const std::vector<double>& values) {
   double positive = 0.0, negative = 0.0;
   for (const double value : values) (value > 0.0 ? positive : negative) += value;
@@ -130,7 +130,7 @@ float colorDifference(glm::vec3 a, glm::vec3 b) {
   return kSplitTarget + (difference - split) / (kLargestDifference - split) * (1.0f - kSplitTarget);
 }
 
-/// What the eye makes of a tile.
+/// A tile after the model of the eye.
 struct PerceivedTile {
   PerceivedTile(const DisplayedTile& tile, const FlipFilters& filters);
 
@@ -179,8 +179,7 @@ void PerceivedTile::detectFeatures(const Plane& luminance, const FlipFilters& fi
     filterColumns(rows, kernel, alongY);
     for (std::size_t i = 0; i < magnitude.values.size(); ++i) {
       const float x = alongX.values[i], y = alongY.values[i];
-      // The filters have no constant part, so that of Y's range, 0..100 as 116 y - 16, only the factor
-      // counts.
+      // The filters have a sum of 0. Only the factor 116 of Y's range, 116 y - 16, therefore matters.
       magnitude.values[i] = std::sqrt(x * x + y * y) / 116.0f;
     }
   };
@@ -224,7 +223,7 @@ bool DisplayedTile::operator==(const DisplayedTile& other) const {
 Plane flipTile(const DisplayedTile& test, const DisplayedTile& reference, const FlipFilters& filters) {
   const int margin = filters.margin();
   Plane result(test.channels[0].width - 2 * margin, test.channels[0].height - 2 * margin);
-  if (test == reference) return result;  // much of a picture of a volume is background
+  if (test == reference) return result;  // much of an image of a volume is background
   const PerceivedTile a(test, filters), b(reference, filters);
   for (std::size_t i = 0; i < result.values.size(); ++i) {
     const float color = colorDifference(a.color(i), b.color(i));

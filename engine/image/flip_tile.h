@@ -1,5 +1,5 @@
 #pragma once
-// FLIP of one tile of two pictures: Andersson et al. 2020, sections 4 and 5.
+// FLIP of one tile of two images: Andersson et al. 2020, sections 4 and 5.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace freevoxels {
 
-/// The 2D filters of the paper, each as a sum of products of one along x and one along y.
+/// The paper's two-dimensional filters, each as a sum of products of a filter along x and one along y.
 class FlipFilters {
  public:
   struct Product {
@@ -16,20 +16,20 @@ class FlipFilters {
 
   explicit FlipFilters(double pixelsPerDegree);
 
-  /// Pixels around a tile that its values depend on.
+  /// Width in pixels of the border around a tile on which its values depend.
   int margin() const { return margin_; }
 
   /// The eye's contrast sensitivity to Y, Cx and Cz as low-pass filters (section 4.1.1, Table 1).
   std::vector<Product> contrastSensitivity[3];
-  /// Section 4.2: a Gaussian, and its first and second derivatives whose positive and whose negative
-  /// weights sum to 1 and -1.
+  /// Section 4.2: a Gaussian, and its first and second derivatives, whose positive weights sum to 1 and
+  /// negative weights to -1.
   Kernel gaussian, edge, point;
 
  private:
   int margin_;
 };
 
-/// What a display shows of a picture: a tile and the margin around it, in Y, Cx and Cz.
+/// A displayed tile with its margin, in Y, Cx and Cz.
 struct DisplayedTile {
   DisplayedTile(int width, int height) : channels{{width, height}, {width, height}, {width, height}} {}
 

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures in memory, and their files.
+// Images in memory, and reading and writing image files.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,56 +15,59 @@ namespace freevoxels {
 struct Image {
   glm::ivec2 size{0};
   std::vector<glm::vec4> pixels;  ///< linear Rec.709, premultiplied alpha; row 0 is the top
-  /// Empty, or one a pixel: mean distance from the eye along the viewing axis, in world units, of what is
-  /// seen there (README.md, "Depth"); +infinity where there is nothing.
+  /// Empty, or one value a pixel: the mean distance from the eye along the viewing axis, in world units, of
+  /// what is seen there (apps/manual/images.md); +infinity where nothing is seen.
   std::vector<float> depth;
 };
 
 struct ExrOptions {
   bool fullFloat = false;  ///< 32-bit RGBA; otherwise half. Z is always 32-bit.
   std::map<std::string, std::string> metadata;
-  /// "worldToCamera", "worldToNDC" as glm has them (matrix * column); the file holds OpenEXR's row * matrix.
+  /// "worldToCamera" and "worldToNDC" in glm's convention (matrix * column). The file stores OpenEXR's (row *
+  /// matrix).
   std::map<std::string, glm::mat4> matrices;
 };
 
-/// RGBA (and Z where there is depth). Atomic. Fails with ExitCode::Output.
+/// Writes RGBA, and Z if the image has depth. Atomic. Fails with ExitCode::Output.
 void writeExr(const std::filesystem::path& file, const Image& image, const ExrOptions& options);
 
-/// RGBA and, where present, Z of a scanline EXR of at most so many pixels. Fails with ExitCode::Input.
+/// Reads RGBA and, if present, Z of a scanline EXR of at most `maximumPixels` pixels. Fails with
+/// ExitCode::Input.
 Image readExr(const std::filesystem::path& file, std::int64_t maximumPixels = std::int64_t(1) << 30);
 
-/// Any PNG of straight alpha (grey, palette, 8 or 16 bits, interlaced), taken for sRGB whatever its chunks
+/// Reads any PNG (grey, palette, 8 or 16 bits, interlaced) as sRGB with straight alpha, whatever its chunks
 /// say. Fails with ExitCode::Input.
 Image readPng(const std::filesystem::path& file);
 
-/// readExr or readPng, by what the file begins with, not by its name. Fails with ExitCode::Input.
+/// Calls readExr or readPng, by the first bytes of the file, not by its name. Fails with ExitCode::Input.
 Image readPicture(const std::filesystem::path& file);
 
-/// What is behind a picture, linear Rec.709: changes linearly from the top edge to the bottom edge.
+/// The background of an image, linear Rec.709, interpolated linearly from the top edge to the bottom edge.
 struct Background {
   glm::vec3 top{0.0f}, bottom{0.0f};
 };
 
-/// How light of any brightness becomes 0..1. Filmic: Hable's curve (2010), white at 11.2; Aces: Narkowicz's fit (2015).
+/// The curve that maps linear light to 0..1. Filmic: Hable's curve (2010), white at 11.2. Aces: Narkowicz's
+/// fit (2015).
 enum class ToneMap : int { None = 0, Filmic = 1, Aces = 2 };
 
 struct PngLook {
-  std::optional<Background> background;  ///< none: straight alpha
-  double exposure = 0.0;                 ///< stops that the picture, not the background, is brightened by
-  ToneMap toneMap = ToneMap::None;       ///< after that, of each channel
+  std::optional<Background> background;  ///< if there is none, the file has straight alpha
+  double exposure = 0.0;                 ///< in stops, applied to the image but not to the background
+  ToneMap toneMap = ToneMap::None;       ///< applied to each channel after the exposure
 };
 
-/// 8-bit sRGB. Straight alpha without a background; composited over it and opaque with one. Atomic. Fails with
-/// ExitCode::Output.
+/// Writes 8-bit sRGB: composited over the background and opaque, or with straight alpha if there is no
+/// background. Atomic. Fails with ExitCode::Output.
 void writePng(const std::filesystem::path& file, const Image& image, const PngLook& look = {});
 
-/// What writePng's file shows, 4 bytes a pixel.
+/// The pixels that writePng writes, 4 bytes each.
 std::vector<std::uint8_t> srgbTexels(const Image& image, const PngLook& look = {});
 
-/// Such texels as an opaque picture, whatever their alpha is. Atomic. Fails with ExitCode::Output.
+/// Writes such texels as an opaque image, ignoring their alpha. Atomic. Fails with ExitCode::Output.
 void writePngTexels(const std::filesystem::path& file, glm::ivec2 size, std::span<const std::uint8_t> texels);
 
-/// The bytes of writePng's file.
+/// The bytes of the file that writePng writes.
 std::vector<std::uint8_t> encodePng(const Image& image, const PngLook& look = {});
 
 }  // namespace freevoxels

@@ -57,7 +57,7 @@ ImageMetrics compareImages(const Image& test, const Image& reference) {
 
   double squares = 0.0;
   metrics.maximum = -1.0;
-  for (const RowDifference& row : rows) {  // in order, whichever thread made them
+  for (const RowDifference& row : rows) {  // in a fixed order, whichever thread computed them
     squares += row.squares;
     if (row.maximum > metrics.maximum) {
       metrics.maximum = row.maximum;

@@ -9,7 +9,7 @@ namespace freevoxels {
 
 namespace {
 
-/// The inner loop of all filters; compilers vectorise it.
+/// The inner loop of all filters, which compilers vectorise.
 void addScaled(float* __restrict sum, const float* __restrict values, float weight, int count) {
   for (int i = 0; i < count; ++i) sum[i] += weight * values[i];
 }

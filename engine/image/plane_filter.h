@@ -23,13 +23,15 @@ struct Kernel {
   std::vector<float> weights;
 };
 
-/// Along x. `output` has the input's height and is narrower by twice a margin of at least the radius.
+/// Filters along x. `output` has the input's height and is narrower by twice a margin, which is at least the
+/// radius.
 void filterRows(const Plane& input, const Kernel& kernel, Plane& output);
 
-/// Along y. `output` has the input's width and is lower by twice a margin of at least the radius.
+/// Filters along y. `output` has the input's width and is lower by twice a margin, which is at least the
+/// radius.
 void filterColumns(const Plane& input, const Kernel& kernel, Plane& output);
 
-/// Adds to `output` instead of replacing it.
+/// Filters along y and adds the result to `output`.
 void addFilteredColumns(const Plane& input, const Kernel& kernel, Plane& output);
 
 }  // namespace freevoxels

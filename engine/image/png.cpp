@@ -1,4 +1,5 @@
-// sRGB PNG in, 8-bit sRGB PNG out. The bytes written depend on the image only: no time chunk.
+// Reading PNG files as sRGB and writing 8-bit sRGB. The bytes written depend on the image only; there is no
+// time chunk.
 
 #include <png.h>
 #include <tbb/parallel_for.h>
@@ -30,10 +31,11 @@ namespace {
 
 constexpr std::int64_t kMaximumPixels = std::int64_t(1) << 30;
 
-/// Of 1 to 9. Rendered pictures become at most a tenth larger than by libpng's 6, in half the time.
+/// Compression level, 1 to 9. Rendered images are at most a tenth larger than with libpng's default 6, in
+/// half the time.
 constexpr int kCompressionLevel = 4;
 
-/// 0 for NaN.
+/// Clamps to 0..1; NaN becomes 0.
 float clampUnit(float value) {
   return value > 0.0f ? std::min(value, 1.0f) : 0.0f;
 }
@@ -52,7 +54,7 @@ float toneMapped(ToneMap map, float light) {
   return light;
 }
 
-/// A row of pixels as bytes.
+/// Converts rows of pixels to bytes.
 class RowWriter {
  public:
   RowWriter(const Image& image, const PngLook& look)
@@ -75,8 +77,8 @@ class RowWriter {
     return result;
   }
 
-  /// Alpha above 1, which the additive composite makes, counts as 1. Straight alpha cannot be less than a colour that it is
-  /// to show: light of more than the opacity takes as much alpha as it needs.
+  /// Alpha above 1, which the additive composite produces, counts as 1. A straight colour cannot exceed 1, so
+  /// light that is brighter than the opacity gets as much alpha as it needs.
   void writePixel(const glm::vec4& pixel, const glm::vec3& behind, std::uint8_t* bytes) const {
     const float needed = look_.background ? pixel.a : std::max({pixel.a, pixel.r, pixel.g, pixel.b});
     const float alpha = clampUnit(needed);
@@ -101,10 +103,11 @@ std::vector<std::uint8_t> toBytes(const Image& image, const PngLook& look) {
   return bytes;
 }
 
-/// Takes the file's next bytes; may throw.
+/// Receives the next bytes of the file; may throw.
 using Sink = std::function<void(const std::uint8_t* bytes, std::size_t count)>;
 
-/// What libpng's C callbacks know. No exception may cross libpng: it is kept here and thrown by `encode`.
+/// The state of libpng's C callbacks. No exception may pass through libpng: it is stored here and rethrown by
+/// `encode`.
 struct PngTarget {
   const Sink& write;
   std::exception_ptr failure = nullptr;
@@ -118,7 +121,7 @@ void writeChunk(png_structp png, png_bytep bytes, std::size_t count) {
   } catch (...) {
     target->failure = std::current_exception();
   }
-  png_error(png, "the write failed");  // outside of the handler, which a long jump must not leave
+  png_error(png, "the write failed");  // outside of the catch block, which a long jump must not leave
 }
 
 [[noreturn]] void onError(png_structp png, png_const_charp message) {
@@ -134,11 +137,11 @@ void onWarning(png_structp, png_const_charp) {}
   png_longjmp(png, 1);
 }
 
-/// Decodes any PNG to straight RGBA of 8 or, from 16-bit files, 16 bits a sample. Its members hold nothing
-/// that a long jump would fail to destroy.
+/// Decodes any PNG to straight RGBA with 8 bits a sample, or 16 for 16-bit files. Its members need no
+/// destruction after a long jump.
 class PngDecoder {
  public:
-  /// libpng's messages go to `problem`.
+  /// Stores libpng's messages in `problem`.
   PngDecoder(std::FILE* file, std::string& problem)
       : png_(png_create_read_struct(PNG_LIBPNG_VER_STRING, &problem, onReadError, onWarning)) {
     if (png_) info_ = png_create_info_struct(png_);
@@ -183,7 +186,7 @@ class PngDecoder {
   png_infop info_ = nullptr;
 };
 
-/// Premultiplied linear light of straight RGBA samples.
+/// Converts straight RGBA samples to premultiplied linear light.
 template <typename Sample>
 void toLinear(const std::vector<std::uint8_t>& bytes, std::vector<glm::vec4>& pixels) {
   constexpr std::size_t kLevels = std::size_t(std::numeric_limits<Sample>::max()) + 1;
@@ -239,7 +242,7 @@ class PngEncoder {
   PngEncoder(const PngEncoder&) = delete;
   PngEncoder& operator=(const PngEncoder&) = delete;
 
-  /// False after an error. Holds nothing that a long jump would fail to destroy.
+  /// Returns false after an error. Has no local objects that a long jump would fail to destroy.
   bool write(glm::ivec2 size, int channels, const std::uint8_t* bytes) {
     if (setjmp(png_jmpbuf(png_))) return false;
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
@@ -247,8 +250,8 @@ class PngEncoder {
                  channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
-    // Trying all five filters in every row takes longer than deflating it, and saves nothing: what is drawn
-    // is smooth, or empty.
+    // Trying all five filters in every row takes longer than compressing it and saves nothing, since rendered
+    // images are smooth or empty.
     png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
     png_set_compression_level(png_, kCompressionLevel);
     png_write_info(png_, info_);

@@ -7,9 +7,9 @@ namespace freevoxels {
 
 namespace {
 
-/// The byte of every linear value, exactly as the curve gives it. The values of a bucket share their exponent
-/// and the first bits of their mantissa. The curve climbs by at most 78 bytes an octave (at 1), so of the 128
-/// buckets of an octave none crosses more than one step from a byte to the next.
+/// A table of the sRGB byte of every linear value, exactly as the curve gives it. The values of a bucket
+/// share their exponent and the first bits of their mantissa. The curve rises by at most 78 bytes an octave
+/// (at 1), so that none of the 128 buckets of an octave contains more than one step from a byte to the next.
 class SrgbByteTable {
  public:
   SrgbByteTable() {
@@ -30,11 +30,12 @@ class SrgbByteTable {
 
  private:
   struct Bucket {
-    float next;  ///< the first value that is the next byte, or the bucket's end
+    float next;  ///< the first value that maps to the next byte, or the bucket's end
     std::uint8_t byte;
   };
-  static constexpr std::uint32_t kDropped = 16;  ///< bits of the mantissa
-  /// Byte 0 is all up to half a byte on the straight part of the curve, 0.5 / 255 / 12.92 = 1.24 / 2^13.
+  static constexpr std::uint32_t kDropped = 16;  ///< low bits of the mantissa that do not select a bucket
+  /// Values up to half a byte on the linear part of the curve, 0.5 / 255 / 12.92 = 1.24 / 2^13, map to byte
+  /// 0.
   static constexpr std::uint32_t kFirst = std::bit_cast<std::uint32_t>(0x1p-13f);
   static constexpr std::uint32_t kEnd = std::bit_cast<std::uint32_t>(1.0f);
   static constexpr std::uint32_t kBuckets = (kEnd - kFirst) >> kDropped;
@@ -43,7 +44,7 @@ class SrgbByteTable {
     return byteFromUnit(srgbFromLinear(std::bit_cast<float>(bits)));
   }
 
-  /// By bisection: positive floats are in the order of their bits.
+  /// Found by bisection: the bit patterns of positive floats are in the order of the floats.
   static std::uint32_t firstAbove(std::uint8_t byte, std::uint32_t low, std::uint32_t high) {
     while (low < high) {
       const std::uint32_t middle = low + (high - low) / 2;

@@ -16,14 +16,14 @@ inline float linearFromSrgb(float srgb) {
   return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
 }
 
-/// 0..1 to 0..255, rounded to nearest, halves up. Not by std::lround, which is a call a value.
+/// Maps 0..1 to 0..255, rounded to nearest, halves up. std::lround would be a function call for every value.
 inline std::uint8_t byteFromUnit(float unit) {
   const float scaled = 255.0f * unit;
   const int whole = int(scaled);
   return std::uint8_t(whole + int(scaled - float(whole) >= 0.5f));
 }
 
-/// byteFromUnit(srgbFromLinear(linear)) of 0..1, looked up.
+/// Equals byteFromUnit(srgbFromLinear(linear)) for 0..1, but uses a table.
 std::uint8_t srgbByteFromLinear(float linear);
 
 }  // namespace freevoxels

@@ -17,7 +17,7 @@ namespace {
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr DirectionSet kDirections = DirectionSet::Directions26;
 
-/// Extinction by scalar: exactly without a transfer function, else from a table.
+/// Extinction by scalar: exact without a transfer function, otherwise from a table.
 class ExtinctionTable {
  public:
   ExtinctionTable(const Volume& volume, const Classification& classification)
@@ -90,7 +90,7 @@ bool AmbientPass::record(Commands& commands, const Lighting& lighting, const Ray
   const bool hasPhase = lighting.phaseG != 0.0;
   const std::vector<glm::dvec3> light = directionLight(lighting, kDirections, indexToWorld_);
   const std::vector<double> shares = directionShares(kDirections, indexToWorld_);
-  double octaves = 0.0;  // without anything in the way
+  double octaves = 0.0;  // sum of the octaves without shadows
   for (int octave = 0; octave < lighting.scattering; ++octave) octaves += lighting.octaveScale(octave);
   unshadowed_ = octaves * std::accumulate(light.begin(), light.end(), glm::dvec3(0.0));
   if (hasPhase)

@@ -1,6 +1,6 @@
 #pragma once
-// Light from everywhere for the gather: what of it reaches cells of a volume, by sweeps along the 26 directions of Subr et
-// al. 2007, Section 3.1, that add up light in place of keeping depths.
+// Ambient light for the gather: how much of it reaches cells of a volume, by sweeps along the 26 directions
+// of Subr et al. 2007, Section 3.1, that add up light instead of storing optical depths.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -15,31 +15,35 @@
 
 namespace freevoxels {
 
-/// Ambient light is smooth: a volume has no more cells than these, which are cubes of voxels with a power of two of them
-/// along an edge. With a phase function every view has sweeps of its own, of fewer cells.
+/// Largest numbers of cells, without and with a phase function. Ambient light is smooth, so that cells may be
+/// cubes of 2, 4, ... voxels along an edge. With a phase function every view has its own sweeps, which have
+/// fewer cells.
 inline constexpr std::uint64_t kMostAmbientCells = 4u << 20, kMostPhaseCells = 1u << 19;
 int ambientCellEdge(glm::ivec3 dimensions, bool hasPhase);
 
-/// The mean extinction, per world unit, of the voxels of each cell, x fastest; what of a cell is beyond the volume is empty.
+/// The mean extinction, per world unit, of each cell, x fastest. The part of a cell beyond the volume counts
+/// as empty.
 std::vector<float> cellExtinctions(const Volume& volume, const Classification& classification, int edge);
 
-/// COMPUTE ambient_sweep.comp: a dispatch a direction. Belongs to one volume.
+/// COMPUTE ambient_sweep.comp: a dispatch for each direction. Belongs to one volume.
 class AmbientPass {
  public:
-  /// Looks at all voxels; `edge` is that of the cells. Fails with ExitCode::OutOfMemory.
+  /// Reads all voxels on the host. `edge` is the number of voxels along a cell's edge. Fails with
+  /// ExitCode::OutOfMemory.
   AmbientPass(const Device& device, const Volume& volume, const Classification& classification, int edge);
 
-  /// Uniform light without a tint is one channel, else each colour is one.
+  /// One channel for uniform light without a tint, otherwise one for each colour.
   static int channelCount(const Lighting& lighting);
-  /// Records the sweeps for light that differs from that of the call before, or with a phase function for another eye (index
-  /// space); whether it did. `lighting` comes from everywhere.
+  /// Records the sweeps if the light differs from that of the last call, or with a phase function if the eye
+  /// (in index space) does. Returns whether it did. `lighting` must have ambient light.
   bool record(Commands& commands, const Lighting& lighting, const RaySource& eye);
-  /// Radiance, of all octaves of scattering, that light() is parts of: the mean over all directions where nothing is in the
-  /// way; with a phase function, which may weight any direction most, that of the brightest one.
+  /// The radiance, of all octaves of scattering, that light() holds fractions of: the unshadowed mean over
+  /// all directions, or with a phase function, which may weight any direction most, that of the brightest
+  /// direction.
   glm::dvec3 unshadowed() const { return unshadowed_; }
 
-  /// Of each cell and channel, what part of the unshadowed light reaches it. float, cells of a channel after each other; with a
-  /// phase function then the weights to divide it by.
+  /// float: the fraction of the unshadowed light that reaches each cell, channel by channel; with a phase
+  /// function followed by the weights to divide by.
   const Buffer& light() const { return light_; }
   bool hasWeights() const { return like_.phaseG != 0.0; }
   glm::ivec3 cells() const { return cells_; }
@@ -50,12 +54,12 @@ class AmbientPass {
   glm::dmat4 indexToWorld_;
   int edge_;
   glm::ivec3 cells_;
-  Buffer extinction_;  ///< cellExtinctions()
+  Buffer extinction_;  ///< float: cellExtinctions()
   Buffer light_;
   Pipeline pipeline_;
-  std::vector<glm::dvec3> parts_;  ///< of the unshadowed light, by direction: what `light_` was made of
-  Lighting like_;                  ///< its tint, phase function and octaves of scattering
-  RaySource eye_;                  ///< that it was weighted for
+  std::vector<glm::dvec3> parts_;  ///< the unshadowed light by direction from which `light_` was made
+  Lighting like_;                  ///< the tint, phase function and octaves from which `light_` was made
+  RaySource eye_;                  ///< the eye for which `light_` was weighted
   glm::dvec3 unshadowed_{0.0};
 };
 

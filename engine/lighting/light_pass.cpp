@@ -21,11 +21,11 @@ shader::Light deviceLight(const Light& light, const RaySource& source, glm::dvec
       .beyond = {0, 0}};
 }
 
-/// With Auto, of the device's memory.
+/// With Auto, rays may take one part in this many of the device's memory.
 constexpr std::uint64_t kMostRayShare = 4;
 
 struct RayMemory {
-  std::uint64_t bytes = 0, largest = 0;  ///< of all lights, and of one
+  std::uint64_t bytes = 0, largest = 0;  ///< of all lights together; the largest of one light
 };
 
 RayMemory rayMemory(glm::ivec3 dimensions, std::span<const RaySource> sources) {
@@ -128,7 +128,7 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
   const bool stand =
       placed_ && placed_->lights == lighting.lights && placed_->attenuation == lighting.attenuation && placedScalars_ == scalars;
   if (!stand) {
-    placed_.reset();  // until there is room for all of these
+    placed_.reset();  // invalid until the new lights are complete
     Commands commands(device_);
     const std::vector<shader::Light> lights = place(commands, volume, set, lighting, scalars);
     commands.submitAndWait();

@@ -15,23 +15,24 @@
 
 namespace freevoxels {
 
-/// Of one volume. What is made for a light is kept as long as the light stays as it is.
+/// The lights of one volume. Everything that is computed for a light is kept until the light changes.
 class LightPass {
  public:
   explicit LightPass(const Device& device) : device_(device), beyond_(device) {}
 
-  /// Table or Exact, of settings that have lighting. Auto is lightAttenuationFor, but Table where rays would
-  /// take more than a quarter of the device's memory, or more than `others` bytes leave of it: whatever is
-  /// allocated now, so that it is the same for every frame.
+  /// Resolves Auto to Table or Exact, for settings with lighting. Auto is lightAttenuationFor, but Table if
+  /// rays would take more than a quarter of the device's memory, or more than `others` bytes leave free. This
+  /// does not depend on what is allocated at present, so that it is the same for every frame.
   LightAttenuation resolve(const DeviceVolume& volume, const FrameSettings& settings,
                            std::uint64_t others) const;
-  /// On the device, of lighting that is not Auto.
+  /// Bytes of device memory for the rays of lights whose attenuation is not Auto.
   static std::uint64_t rayBytes(const DeviceVolume& volume, const Lighting& lighting);
-  /// Of settings whose lighting is not Auto; the rays of lights are of the volume's `scalars`, or of its classified voxels. Waits for what it has to make; no frame may be under way. Adds
-  /// the times of that to `times`.
+  /// Prepares the lights of a frame whose attenuation is not Auto. With `scalars`, rays are swept through the
+  /// volume's scalars, otherwise through its classified voxels. Blocks until the device is done and adds the
+  /// times to `times`; no frame may be in progress.
   shader::FrameLighting prepare(const DeviceVolume& volume, const TableSettings& table,
                                 const FrameSettings& settings, bool scalars, std::vector<StageTime>& times);
-  /// shader::Light, of the last frame.
+  /// shader::Light of each light of the last frame.
   const Buffer& lights() const { return lights_; }
 
  private:
@@ -45,11 +46,11 @@ class LightPass {
   const Device& device_;
   EyeDepthsPass beyond_;
   bool placedScalars_ = false;
-  std::optional<Lighting> placed_;   ///< whose light the buffers and `fromAll_` are of
-  std::vector<glm::dvec4> fromAll_;  ///< directionLight, and directionShares
+  std::optional<Lighting> placed_;   ///< the lighting that the buffers and `fromAll_` were made for
+  std::vector<glm::dvec4> fromAll_;  ///< directionLight (rgb) and directionShares (a) by direction
   Buffer lights_;                    ///< shader::Light
-  Buffer beyondDepths_;              ///< kEyeDepthsBytes a light that is inside of the volume
-  std::deque<RaySweep> rays_;        ///< of the lights; empty where they are looked up in the table
+  Buffer beyondDepths_;              ///< kEyeDepthsBytes for each light inside the volume
+  std::deque<RaySweep> rays_;        ///< rays of the lights; empty if they are looked up in the table
 };
 
 }  // namespace freevoxels

@@ -14,7 +14,7 @@ namespace {
 
 using Brick = ScalarBricks::Brick;
 
-/// Bytes of classified voxels that are kept from one upload of their batch to the next, at most.
+/// Largest number of bytes of classified voxels that are kept from one upload of their batch to the next.
 constexpr std::uint64_t kMostKept = std::uint64_t(256) << 20;
 
 static_assert(shader::kMaximumExtinction == float(kMaximumExtinction));
@@ -46,7 +46,7 @@ std::span<const Brick> DeviceBricks::batchOf(std::size_t batch) const {
   return bricks_.bricks().subspan(first, std::min(bricksPerBatch_, bricks_.bricks().size() - first));
 }
 
-/// 0 beyond the box.
+/// Uploads a value for each voxel of a batch, 0 beyond the box.
 void DeviceBricks::uploadPacked(const Buffer& buffer, std::size_t batch,
                                 const std::function<std::uint32_t(glm::ivec3 voxel)>& valueAt) const {
   constexpr int n = ScalarBricks::kEdge;

@@ -1,6 +1,6 @@
 #pragma once
-// The bricks of a volume's scalars, or with a transfer function their extinctions, with light and colours, on their way to the device, a batch at a
-// time: what the volume is built from.
+// Uploads the bricks of a volume batch by batch: scalars, or with a transfer function extinctions; and
+// emission and colours if there are any. The octree is built from them.
 
 #include <cstdint>
 #include <functional>
@@ -14,30 +14,31 @@
 
 namespace freevoxels {
 
-/// Bytes of scalars in a batch, at most.
+/// Largest number of bytes of scalars in a batch.
 inline constexpr std::uint64_t kBatchBytes = std::uint64_t(16) << 20;
 
 class DeviceBricks {
  public:
-  /// Keeps references to the last three.
+  /// The last three arguments must outlive this object.
   DeviceBricks(const Device& device, const DeviceVolume& target, const Volume& volume,
                const Classification& classification);
 
-  /// One that is empty where there is no brick.
+  /// Number of batches; a volume without bricks has one empty batch.
   std::size_t batches() const { return batches_; }
-  /// In place of the one before, on which no work may be under way. Waits.
+  /// Uploads a batch, which replaces the one before. No work on that may be in progress. Blocks until the
+  /// copy is complete.
   void upload(std::size_t batch);
-  /// What occupied_voxels.comp and pack_voxels.comp do to the batch that was uploaded last.
+  /// Push constants of occupied_voxels.comp and pack_voxels.comp for the current batch.
   shader::BricksPush push() const;
   const Buffer& scalars() const { return scalars_; }
-  /// packed_light.h, as the scalars; any buffer where there are none.
+  /// Packed emission (packed_light.h) in the order of the scalars; an arbitrary buffer if there is none.
   const Buffer& emissions() const { return target_.hasEmission() ? emissions_ : scalars_; }
   const Buffer& colors() const { return target_.hasColors ? colors_ : scalars_; }
   const Buffer& firstVoxels() const { return firstVoxels_; }
 
  private:
   std::span<const ScalarBricks::Brick> batchOf(std::size_t batch) const;
-  /// Extinctions and packed colours of a batch.
+  /// Extinctions and packed colours of the voxels of a batch.
   struct Classified {
     std::vector<float> extinctions;
     std::vector<std::uint32_t> colors;
@@ -55,8 +56,8 @@ class DeviceBricks {
   std::size_t batches_, bricksPerBatch_, uploaded_;
   std::uint32_t brickCount_ = 0;
   VoxelClassifier classifier_;
-  std::vector<Classified> kept_;  ///< batches are uploaded twice; empty where they would take too much memory
-  Buffer scalars_;             ///< float; extinctions with a transfer function
+  std::vector<Classified> kept_;  ///< classified batches, since each is uploaded twice; empty if they would take too much memory
+  Buffer scalars_;             ///< float: scalars, or extinctions with a transfer function
   Buffer emissions_, colors_;  ///< uint
   Buffer firstVoxels_;          ///< ivec3
 };

@@ -9,17 +9,18 @@
 
 namespace freevoxels {
 
-/// Codes of TransferTable, in the bricks of Volume::scalars; brick 0 is one without data.
+/// Codes of TransferTable in the bricks of Volume::scalars. Brick 0 has no data.
 struct DeviceScalars {
   Buffer codes;         ///< 16 bits a voxel
-  Buffer brickNumbers;  ///< uint32 of each cell of `cells`, x fastest
+  Buffer brickNumbers;  ///< uint32: number of the brick of each cell, x fastest
   Buffer table;         ///< TransferTable::texels()
   TexelView tableTexels;
-  glm::ivec3 cells{0};   ///< bricks along the axes
-  glm::ivec3 corner{0};  ///< place of the box's voxel (0,0,0) in its brick
+  glm::ivec3 cells{0};   ///< number of bricks along the axes
+  glm::ivec3 corner{0};  ///< position of the box's voxel (0,0,0) in its brick
 };
 
-/// Extinctions in the table are per world unit, times `extinctionScale`. Fails with ExitCode::OutOfMemory.
+/// Uploads the scalars and the table. Extinctions in the table are per world unit, times `extinctionScale`.
+/// Fails with ExitCode::OutOfMemory.
 DeviceScalars uploadScalars(const Device& device, const Volume& volume, const TransferFunction& function,
                             double extinctionScale);
 

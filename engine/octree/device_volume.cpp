@@ -41,7 +41,8 @@ shader::BlockStores DeviceVolume::stores() const {
 
 namespace {
 
-/// At least the largest component of what any voxel emits, and scatters of that.
+/// An upper bound of the largest component of the light that any voxel emits, including what it scatters of
+/// the volume's own emission.
 double brightestSource(const Classification& classification, const Volume& volume) {
   double extinction = classify(classification, volume.maximum).extinction;
   if (classification.transferFunction)

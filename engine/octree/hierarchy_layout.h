@@ -1,6 +1,7 @@
 #pragma once
-// The octree over the voxels and its place in memory: Subr et al. 2007, Section 3.2. All levels live in one
-// index space: a block's index is the place of its bit of occupancy, and of what is kept there is a rank.
+// The octree over the voxels and its place in memory: Subr et al. 2007, Section 3.2. The blocks of all levels
+// share one index space. A block's index is the position of its occupancy bit; the medium and the table are
+// stored by rank.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -10,22 +11,23 @@
 
 namespace freevoxels {
 
-/// Cell c of level l covers the voxels from c 2^l to (c + 1) 2^l - 1 along each axis. Level 0 are the voxels.
+/// A block of the octree. Cell c of level l covers the voxels from c 2^l to (c + 1) 2^l - 1 along each axis.
+/// Level 0 are the voxels.
 struct Block {
   int level = 0;
   glm::ivec3 cell{0};
 
   bool operator==(const Block&) const = default;
-  /// Voxels along an edge.
+  /// Number of voxels along an edge.
   int edge() const { return 1 << level; }
   Block parent() const { return {level + 1, cell / 2}; }
 };
 
-/// What a block has of the volume: voxels `first` to `first` + `extent` - 1.
+/// The part of a block that is inside the volume: voxels `first` to `first` + `extent` - 1.
 struct BlockBox {
   glm::ivec3 first{0}, extent{1};
 
-  /// Index space.
+  /// In index space.
   glm::dvec3 centre() const { return glm::dvec3(first) + 0.5 * glm::dvec3(extent - 1); }
   double voxels() const { return double(extent.x) * double(extent.y) * double(extent.z); }
 };
@@ -39,19 +41,19 @@ struct HierarchyLayout {
   explicit HierarchyLayout(glm::ivec3 dimensions);
   HierarchyLayout() = default;
   int top() const { return int(levels.size()) - 1; }
-  /// Of all levels, with the padding.
+  /// Number of blocks of all levels, including the padding.
   std::uint64_t paddedBlocks() const;
-  /// Of occupancy, that a level has.
+  /// Number of occupancy words of a level.
   std::uint64_t words(int level) const;
 
-  /// Where a block is, here and in shaders/blocks.glsl and nowhere else.
+  /// The index of a block. Only this function and shaders/blocks.glsl compute it.
   std::uint32_t indexOf(const Block& block) const;
-  /// The block at an index that is no padding.
+  /// The block at an index, which must not be that of padding.
   Block blockAt(std::uint32_t index) const;
 };
 
-/// Bytes that a direction of the attenuation table has for the bounds of so many blocks of a level above the
-/// voxels.
+/// Bytes of the bounds of `storedBlocks` blocks of a level above the voxels, for each direction of the
+/// attenuation table.
 inline std::uint64_t boundBytes(std::uint64_t storedBlocks) {
   return (storedBlocks + shader::kBoundBlocks - 1) / shader::kBoundBlocks;
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 
-static_assert(shader::kRowAlignment % 2 == 0);  // two children of a row are in one word of occupancy
+static_assert(shader::kRowAlignment % 2 == 0);  // two children in a row are in the same occupancy word
 
 shader::MediumLevelPush mediumPush(const DeviceVolume& volume, int level) {
   const int childEdge = Block{.level = level - 1}.edge();

@@ -15,7 +15,8 @@
 
 namespace freevoxels {
 
-/// COMPUTE medium_level.comp: extinction, colours where there is more than one, light; a dispatch a level.
+/// COMPUTE medium_level.comp: extinction, emission, and colours if there is more than one; a dispatch a
+/// level.
 class MediumLevels {
  public:
   MediumLevels(const Device& device, const DeviceVolume& volume);
@@ -23,10 +24,10 @@ class MediumLevels {
   void record(Commands& commands, const DeviceVolume& volume, std::span<const BlockList> coarse) const;
 
  private:
-  std::array<Pipeline, 2> pipelines_;  ///< from blocks, from voxels
+  std::array<Pipeline, 2> pipelines_;  ///< for children that are blocks; for children that are voxels
 };
 
-/// Extinction, colours and light of a level, without its table. Waits.
+/// Extinction, colours and emission of a level, without its table. Reads back.
 LevelData downloadMedium(const Device& device, const DeviceVolume& volume, int level);
 
 }  // namespace freevoxels

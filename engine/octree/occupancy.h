@@ -1,5 +1,5 @@
 #pragma once
-// Which blocks of the octree hold anything: Subr et al. 2007, Section 3.2, but no more of it than there is.
+// Which blocks of the octree are occupied: Subr et al. 2007, Section 3.2, for sparse volumes.
 
 #include <cstdint>
 #include <vector>
@@ -10,31 +10,33 @@
 
 namespace freevoxels {
 
-/// COMPUTE occupied_voxels.comp and occupied_blocks.comp: the masks of all levels. Their ranks are
-/// CompactionPass's.
+/// COMPUTE occupied_voxels.comp and occupied_blocks.comp: the occupancy masks of all levels. CompactionPass
+/// makes their ranks.
 class OccupancyPass {
  public:
-  /// Of volumes that send out light, or of others.
+  /// `emission` says whether the volume emits light.
   OccupancyPass(const Device& device, bool emission);
-  /// The voxels of a batch of bricks, of which the first begins with none.
+  /// Marks the voxels of a batch of bricks; the first batch clears the masks.
   void recordVoxels(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks,
                     bool first) const;
-  /// After those of all batches.
+  /// Marks the blocks, after the voxels of all batches.
   void recordBlocks(Commands& commands, const DeviceVolume& volume) const;
 
  private:
   Pipeline voxels_, blocks_;
 };
 
-/// COMPUTE expand_voxels.comp: the extinction of all voxels of a slab or a box again, for the sweeps.
+/// COMPUTE expand_voxels.comp: expands the extinction of the occupied voxels of a slab or a box to a dense
+/// grid, for the sweeps.
 class ExpandPass {
  public:
   explicit ExpandPass(const Device& device);
-  /// Of `planes` planes across z from `first` on, with the padding: into `extinction`, which begins with the
-  /// voxel whose index is returned.
+  /// Expands `planes` planes across z, starting at plane `first`, including the padding, into `extinction`.
+  /// Returns the padded index of the first voxel of that buffer.
   std::uint32_t record(Commands& commands, const DeviceVolume& volume, int first, int planes,
                        const Buffer& extinction) const;
-  /// Of a box, x fastest, 0 beyond the volume. The x of `first` and of `extent` are multiples of 4.
+  /// Expands a box, x fastest, with 0 beyond the volume. The x of `first` and of `extent` must be multiples
+  /// of 4.
   void recordBox(Commands& commands, const DeviceVolume& volume, glm::ivec3 first, glm::ivec3 extent,
                  const Buffer& extinction) const;
 
@@ -42,11 +44,11 @@ class ExpandPass {
   Pipeline pipeline_;
 };
 
-/// The blocks of a level that hold anything, in the order of their ranks: indices x fastest, without padding.
+/// The indices (x fastest, without padding) of the occupied blocks of a level, in the order of their ranks.
 /// Reads back.
 std::vector<std::uint32_t> downloadStored(const Device& device, const DeviceVolume& volume, int level);
 
-/// Values of `count` blocks from those of the listed ones, 0 of the others.
+/// Values of `count` blocks: those of the listed blocks, 0 for the others.
 template <typename Value>
 std::vector<Value> scatterToDense(const std::vector<Value>& byRank, const std::vector<std::uint32_t>& blocks,
                              std::uint64_t count) {

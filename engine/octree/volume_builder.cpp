@@ -33,7 +33,7 @@ class PackPass {
   Pipeline pipeline_;
 };
 
-/// A buffer is bound whether or not anything is stored in it.
+/// A buffer for `values` values, or for one if there are none, since bindings need a buffer.
 Buffer makeStore(const Device& device, std::uint64_t values, std::uint64_t bytes, const char* name) {
   return Buffer(device, std::max<std::uint64_t>(values, 1) * bytes, MemoryUse::Device, name);
 }
@@ -97,7 +97,7 @@ class BlockBuilder {
     built_.volume.stored.assign(counts.begin(), counts.end());
   }
 
-  /// What is kept of every block that holds anything.
+  /// Stores the medium of every occupied block.
   void store() {
     const DeviceVolume& volume = built_.volume;
     const PackPass pack(device_, volume);
@@ -144,7 +144,7 @@ BuiltVolume buildVolume(const Device& device, const Volume& volume, const Classi
     try {
       built.volume.scalarBricks =
           uploadScalars(device, volume, *classification.transferFunction, kStoredDepth * built.volume.voxelSize);
-    } catch (const Error& error) {  // only the gather reads them, and says that they are lacking
+    } catch (const Error& error) {  // only the gather needs the scalars, and it reports that they are missing
       if (error.code() != ExitCode::OutOfMemory) throw;
       built.volume.lacksScalarBricks = true;
     }

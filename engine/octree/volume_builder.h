@@ -1,6 +1,6 @@
 #pragma once
-// A volume to what every frame needs of it but the attenuation table: extinction and colours of all blocks of
-// the octree that hold anything, and their lists.
+// Builds everything that frames need of a volume except the attenuation table: extinction, colours and
+// emission of all occupied blocks of the octree, and their lists.
 
 #include <vector>
 
@@ -9,7 +9,7 @@
 
 namespace freevoxels {
 
-/// The blocks of every level that hold anything; of level 0 they are BuiltVolume::visible.
+/// The occupied blocks of every level. Those of level 0 are BuiltVolume::visible.
 struct LevelLists {
   std::vector<BlockList> coarse;  ///< of levels 1, 2, ...
 
@@ -20,20 +20,22 @@ struct LevelLists {
 
 struct BuiltVolume {
   DeviceVolume volume;
-  BlockList visible;  ///< the voxels
+  BlockList visible;  ///< the occupied voxels
   LevelLists lists;
 
-  /// Whether there is anything but the scalars for classification after interpolation: see buildBlocks.
+  /// Whether the blocks are built, or only the scalars for classification after interpolation (buildBlocks).
   bool hasBlocks() const { return !volume.stored.empty(); }
 };
 
-/// Scalars, if voxels are classified after interpolation, else blocks too. Waits. Adds the times of its passes to `times`.
-/// Fails with ExitCode::OutOfMemory, where the box is too large before allocating.
+/// Uploads the scalars if they are classified after interpolation, otherwise builds the blocks. Blocks until
+/// the device is done, and adds the times of its passes to `times`. Fails with ExitCode::OutOfMemory, before
+/// allocating if the box is too large.
 BuiltVolume buildVolume(const Device& device, const Volume& volume, const Classification& classification,
                         std::vector<StageTime>& times, const Progress& progress = {});
 
-/// What lights, levels of detail, splats and the table need of a volume that has scalars: its classified voxels and blocks,
-/// their ranks and lists. Waits. Fails with ExitCode::OutOfMemory.
+/// Builds the classified voxels and blocks, their ranks and lists for a volume of which there are only
+/// scalars: lights, levels of detail, splats and the table need them. Blocks until the device is done. Fails
+/// with ExitCode::OutOfMemory.
 void buildBlocks(const Device& device, const Volume& volume, const Classification& classification, BuiltVolume& built,
                  std::vector<StageTime>& times, const Progress& progress = {});
 

@@ -10,7 +10,7 @@ namespace freevoxels {
 
 namespace {
 
-/// Shaders number voxels by signed 32-bit integers, the padding of rows included.
+/// Shaders index voxels with signed 32-bit integers, including the padding of rows.
 constexpr std::uint64_t kMostNumbered = std::numeric_limits<std::int32_t>::max();
 
 }  // namespace

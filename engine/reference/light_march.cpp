@@ -12,7 +12,7 @@ namespace freevoxels {
 
 namespace {
 
-/// Of an n x n x 6 grid on the faces of a cube.
+/// A cell of an n x n x 6 grid on the faces of a cube.
 std::size_t partOfCube(glm::dvec3 direction, int n) {
   const glm::dvec3 size = glm::abs(direction);
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -25,7 +25,7 @@ std::size_t partOfCube(glm::dvec3 direction, int n) {
 
 }  // namespace
 
-/// A spiral from pole to pole, each with the same share (Fibonacci's lattice).
+/// Directions on a spiral from pole to pole, each with the same part of the sphere (Fibonacci lattice).
 std::vector<LightMarch::Ray> LightMarch::evenRays(int count) {
   const double turn = std::numbers::pi * (3.0 - std::sqrt(5.0));
   std::vector<Ray> rays;
@@ -83,7 +83,8 @@ glm::dvec3 LightMarch::scatteredFrom(std::size_t i, glm::dvec3 position, glm::dv
   return light.color * irradiance * octaves(transmittance(position, way, end), glm::dot(-worldWay / length, toEye));
 }
 
-/// The sum over all octaves of scattering, with the phase function of the cosine between the ways before and after.
+/// The sum over all octaves of scattering, weighted by the phase function for the cosine between the
+/// directions before and after scattering.
 glm::dvec3 LightMarch::octaves(glm::dvec3 transmittance, double cosine) const {
   glm::dvec3 sum(0.0);
   for (int octave = 0; octave < lighting_.scattering; ++octave) {

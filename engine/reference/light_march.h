@@ -1,6 +1,6 @@
 #pragma once
-// What a point of the reference field scatters towards the eye, once, of the light that reaches it along a
-// ray of its own: in double precision, and without a table. README.md, section "How we know it is right".
+// The light that a point of the reference field scatters once towards the eye, with a shadow ray from the
+// point to every light: in double precision and without a table. See engine/docs/validation.md.
 
 #include <glm/glm.hpp>
 #include <memory>
@@ -14,24 +14,26 @@ namespace freevoxels {
 
 class LightMarch {
  public:
-  /// Keeps a reference to the field; `eye` is where the light is scattered to, in index space. What reaches a point of ambient light is marched for along `ambientRays`
-  /// rays, evenly over the sphere, from points half a voxel apart wherever there is extinction, and
-  /// interpolated trilinearly between them. With an environment there are at least as many rays, each of
-  /// which brings what comes from a part of a cube's face, from the middle of that light.
+  /// Keeps a reference to the field. Light is scattered towards `eye`, in index space. Ambient light is
+  /// marched along `ambientRays` rays, spread evenly over the sphere, from points half a voxel apart wherever
+  /// there is extinction, and interpolated trilinearly between them. With an environment there are at least
+  /// as many rays; each represents a part of a cube's face, from the centre of the light in that part.
   LightMarch(const ReferenceField& field, const glm::dmat4& indexToWorld, const Lighting& lighting, const RaySource& eye,
              int ambientRays, const Progress& progress = {});
 
-  /// Radiance per albedo. `position` in index space, `toEye` in the world, of length 1.
+  /// Scattered radiance for albedo 1. `position` is in index space, `toEye` a unit vector in world space.
   glm::dvec3 scattered(glm::dvec3 position, glm::dvec3 toEye) const;
 
  private:
   static constexpr int kPointsPerVoxel = 2;
   static constexpr int kBrickPoints = kPointsPerVoxel * ReferenceField::kBrickCells + 1;
-  /// Of what comes from everywhere: towards it in the world, and radiance times its part of the sphere.
+  /// A direction of ambient light in world space, and its radiance times the part of the sphere that it
+  /// represents.
   struct Ray {
     glm::dvec3 direction, light;
   };
-  /// What reaches the points of a brick, x fastest, of white light or by channel.
+  /// The ambient light that reaches the points of a brick, x fastest: one channel for white light, otherwise
+  /// one for each colour.
   using Reaching = std::vector<float>;
 
   glm::dvec3 transmittance(glm::dvec3 position, glm::dvec3 direction, double end) const;
@@ -48,8 +50,8 @@ class LightMarch {
   const Lighting lighting_;
   const RaySource eye_;
   std::vector<RaySource> sources_;
-  const int channels_;                              ///< that reach differently: 1 of white light alone
-  std::vector<std::unique_ptr<Reaching>> ambient_;  ///< by brick; null where the field is 0
+  const int channels_;                              ///< 1 for white light, otherwise 3
+  std::vector<std::unique_ptr<Reaching>> ambient_;  ///< by brick; null if the field is 0 in it
 };
 
 }  // namespace freevoxels

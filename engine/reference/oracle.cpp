@@ -19,7 +19,7 @@ namespace {
 constexpr int kFewestSamples = 2;
 constexpr int kMostFirstSamples = 16;
 
-/// What a pixel is so far: the means over its rays.
+/// The state of a pixel: means over its rays so far.
 struct PixelMean {
   glm::dvec4 color{0.0};  ///< premultiplied RGBA
   double distance = 0.0;  ///< sum of e t
@@ -55,12 +55,12 @@ class Sampler {
   const ReferenceField field_;
   const PixelRays rays_;
   const glm::dmat3 indexToWorld_;
-  const std::unique_ptr<LightMarch> light_;  ///< null where nothing is lit
+  const std::unique_ptr<LightMarch> light_;  ///< null without lighting
   std::vector<PixelMean> pixels_;
 };
 
-/// Rays along an edge of a pixel that pass no further than a voxel from each other: at the far end of the
-/// volume, where they are widest.
+/// The number of rays along an edge of a pixel for which neighbouring rays are at most a voxel apart, at the
+/// far end of the volume, where they are farthest apart.
 int Sampler::firstSamples() const {
   double farthest = 0.0;
   const glm::dmat3 toWorld(indexToWorld_);
@@ -118,8 +118,8 @@ void Sampler::sampleAll(const std::vector<std::size_t>& pixels, int samples) {
   }
 }
 
-/// The pixels to sample again: those that the last doubling changed, and their neighbours, which share what
-/// is seen there.
+/// The pixels to sample again: those that the last doubling changed, and their neighbours, which show the
+/// same parts of the volume.
 std::vector<std::size_t> Sampler::unsettled(const std::vector<std::size_t>& sampled) const {
   const int width = settings_.size.x, height = settings_.size.y;
   std::vector<bool> wanted(pixels_.size(), false);

@@ -1,6 +1,6 @@
 // Footprints that are exact for any camera and voxel shape.
 //
-// A pixel's ray D(x, y) passes the voxel p at the distance r in index space. BilinearCell the voxel's projected
+// A pixel's ray D(x, y) passes the voxel p at the distance r in index space. Around the voxel's projected
 // centre c, with d = (x, y) - c and q = p - origin, the rays span the plane through Dc = D(c) and the
 // derivatives X, Y of D, so that
 //   perspective:   r² = |q x D|² / |D|²  = dᵀ G d / |D|²,   G = [U·U U·V; U·V V·V],  U = q x X,  V = q x Y
@@ -32,10 +32,10 @@ namespace freevoxels {
 namespace {
 
 constexpr double kR2 = kFootprintRadius * kFootprintRadius;
-/// Voxels: nearer to the eye than this a position has no direction.
+/// In voxels: at a smaller distance from the eye the direction is undefined.
 constexpr double kAtEye = 1e-3;
 
-/// First and last pixel of a range; empty where last < first.
+/// A range of pixels, empty if last < first.
 struct PixelBox {
   glm::ivec2 first{0}, last{-1};
 };
@@ -59,8 +59,8 @@ double smallerEigenvalue(const glm::dmat2& symmetric) {
   return glm::determinant(symmetric) / larger;
 }
 
-/// The pixels whose centres can be inside of the footprint, dᵀ shape d < |D|²: the box around that conic,
-/// from its dual, one pixel larger against rounding. Every pixel where the conic is no ellipse.
+/// The pixels whose centres can be inside of the footprint, dᵀ shape d < |D|²: the bounding box of this
+/// conic, from its dual, extended by a pixel for rounding. All pixels if the conic is not an ellipse.
 PixelBox boundingPixels(const PixelRays& rays, glm::dvec3 central, const ProjectedSplat& splat,
                         glm::ivec2 size) {
   const std::array<glm::dvec3, 3> columns = {rays.directionX, rays.directionY, central};
@@ -116,7 +116,7 @@ std::optional<ProjectedSplat> SplatProjector::project(const Block& block, glm::d
   splat.pixelY = rays_.orthographic ? rays_.originY : k.z * rays_.directionY;
   const glm::dvec3 rowZ(toPixel_[0][2], toPixel_[1][2], toPixel_[2][2]);
   const double reach =
-      kFootprintRadius * block.edge() * glm::length(rowZ);  // of the kernel, along the viewing axis
+      kFootprintRadius * block.edge() * glm::length(rowZ);  // extent of the kernel along the viewing axis
   if (k.z <= -reach) return std::nullopt;
   glm::dvec3 u, v;
   if (rays_.orthographic) {

@@ -24,12 +24,13 @@ constexpr double kNegligibleTransmittance = 1e-7;
 constexpr std::array<double, 3> kNodes = {0.1127016653792583, 0.5, 0.8872983346207417};
 constexpr std::array<double, 2> kTwoNodes = {0.2113248654051871, 0.7886751345948129};
 constexpr std::array<double, 3> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
-/// Largest distance between neighbouring nodes, as a part of the interval.
+/// Largest distance between neighbouring nodes as a fraction of the interval.
 constexpr double kNodeDistance = 0.3872983346207417;
 
-/// Optical depth of a quadrature interval. At 1/2 the three points are exact to 1e-8.
+/// Largest optical depth of a quadrature interval. At 1/2 the three points have an error of 1e-8.
 constexpr double kLongestDepth = 0.5;
-/// Intervals in a cell. Reached only where its optical depth is above 2000 and the ray ends at once.
+/// Largest number of intervals in a cell. Reached only if its optical depth is above 2000, so that the ray
+/// ends at once.
 constexpr double kMostIntervals = 4096.0;
 
 /// Calls visit(cube, t0, t1) for the unit cubes from `first` to `last` that the ray passes between `enter`
@@ -58,7 +59,7 @@ void walkCubes(glm::dvec3 origin, glm::dvec3 direction, glm::ivec3 first, glm::i
   }
 }
 
-/// A cubic as sum of term[m] s^m (1 - s)^(3 - m).
+/// A cubic polynomial: the sum of term[m] s^m (1 - s)^(3 - m).
 struct Cubic {
   std::array<glm::dvec4, 4> term{};
 
@@ -89,15 +90,15 @@ Cubic cubicAlong(const glm::vec4* corner, glm::dvec3 a, glm::dvec3 b) {
   return cubic;
 }
 
-/// The steps along a segment of a cell, from a to b, in local coordinates of the cell in 0..1, over which scalars change
-/// all but linearly, so that the transfer function's integral gives the means.
+/// The steps along a segment of a cell, from a to b in local coordinates 0..1, over each of which the scalar
+/// is nearly linear, so that the transfer function's integral gives its means.
 struct ClassifiedSteps {
   static constexpr double kStepsPerVoxel = 16.0;
 
   const TransferIntegral& integral;
   Cubic cubic;  ///< scalar times coverage (r), coverage (a)
   int count;
-  double scalar;  ///< at the end of the step before
+  double scalar;  ///< scalar at the end of the previous step
 
   ClassifiedSteps(const TransferIntegral& of, const glm::vec4* corner, glm::dvec3 a, glm::dvec3 b, double atLeast)
       : integral(of),
@@ -106,12 +107,13 @@ struct ClassifiedSteps {
         scalar(scalarAt(0.0)) {
     count = std::max(count, 1);
   }
-  /// Where nothing is covered, a step away from the segment's end something is.
+  /// At an end of the segment that is not covered, a point one step inside is covered.
   double scalarAt(double s) const {
     const glm::dvec4 value = cubic.at(std::clamp(s, 1e-9, 1.0 - 1e-9));
     return value.a > 0.0 ? value.r / value.a : 0.0;
   }
-  /// Extinction times colour, and extinction, mean over step i; to be asked for one after the other.
+  /// The means of extinction times colour and of extinction over step i. Must be called for one step after
+  /// the other.
   glm::dvec4 mean(int i) {
     const double next = scalarAt(double(i + 1) / count);
     const glm::dvec4 result = cubic.at((i + 0.5) / count).a * integral.mean(scalar, next);
@@ -120,7 +122,7 @@ struct ClassifiedSteps {
   }
 };
 
-/// Of the field, at local coordinates of a cell in 0..1; `corner` is the cell's first.
+/// The field at local coordinates 0..1 of a cell; `corner` is the cell's first corner.
 double extinctionAt(const glm::vec4* corner, glm::dvec3 local) {
   constexpr int n = ReferenceField::kBrickCorners;
   std::array<double, 4> edges;
@@ -220,7 +222,7 @@ class March {
   const MarchedRay& ray_;
   const LightMarch* const light_;
   const glm::dvec3 toEye_;
-  const double intervals_;  ///< per unit of t
+  const double intervals_;  ///< number per unit of t
   double transmittance_ = 1.0;
   RaySum sum_;
 };
@@ -271,7 +273,7 @@ bool March::crossClassified(const glm::vec4* corner, glm::ivec3 cell, double ent
   return transmittance_ >= kNegligibleTransmittance;
 }
 
-/// Returns the light that an optical depth takes away: as much as it emits at colour 1.
+/// Returns the light that an optical depth absorbs, which equals the light that it emits with colour 1.
 double March::absorb(double thickness) {
   const double energy = transmittance_ * -std::expm1(-thickness);
   sum_.opacity += energy;
@@ -279,20 +281,20 @@ double March::absorb(double thickness) {
   return energy;
 }
 
-/// One colour everywhere needs no quadrature.
+/// A uniform colour needs no quadrature.
 void March::addEvenly(double thickness) {
   const double energy = absorb(thickness);
   sum_.color += energy * *field_.evenColor();
 }
 
-/// The interval's light is its opacity times the mean colour in it, weighted by e; and where there is no
-/// opacity its own light, over its length.
+/// The light of an interval: its opacity times its mean colour, weighted by e; and its emission, which where
+/// there is no opacity is multiplied by its length.
 void March::addInterval(const Cubic& cubic, const Cubic* own, const Depth& depth, double begin, double end,
                         double enter, double length) {
   glm::dvec4 mean(0.0);
   double distance = 0.0;
   const double before = depth.at(begin);
-  double first = 0.0;  // weights relative to the first node's: the largest optical depths do not underflow
+  double first = 0.0;  // weights are relative to the first node's, so that the largest optical depths do not underflow
   for (std::size_t i = 0; i < kNodes.size(); ++i) {
     const double s = begin + kNodes[i] * (end - begin);
     const double tau = depth.at(s);
@@ -325,7 +327,7 @@ double marchDepth(const ReferenceField& field, const MarchedRay& ray, double end
   double depth = 0.0;
   walkField(field, ray, end,
             [&](const glm::vec4* corner, const glm::vec4*, glm::ivec3 cell, double enter, double leave) {
-              // Two Gauss points are exact of a cubic.
+              // Two Gauss points are exact for a cubic.
               const glm::dvec3 a = localAt(ray, cell, enter), b = localAt(ray, cell, leave);
               double sum = 0.0;
               if (field.integral() != nullptr) {

@@ -1,5 +1,5 @@
 #pragma once
-// What one ray sees of the field: emission and absorption, in double precision.
+// Emission and absorption along one ray through the field, in double precision.
 
 #include <glm/glm.hpp>
 
@@ -11,19 +11,19 @@ namespace freevoxels {
 /// The points origin + t * direction with t >= 0, in index space.
 struct MarchedRay {
   glm::dvec3 origin, direction;
-  double worldLength = 1.0;                  ///< of `direction` in the world
-  bool distance = true;                      ///< whether RaySum::distance is wanted
-  glm::dvec3 worldDirection{0.0, 0.0, 1.0};  ///< of length 1; only what is lit asks for it
+  double worldLength = 1.0;                  ///< world length of `direction`
+  bool distance = true;                      ///< whether to compute RaySum::distance
+  glm::dvec3 worldDirection{0.0, 0.0, 1.0};  ///< unit vector; only used with lighting
 };
 
-/// With e = T sigma ds, T the transmittance from the ray's start:
+/// The sums along a ray, with e = T sigma ds and T the transmittance from the ray's start.
 struct RaySum {
   glm::dvec3 color{0.0};  ///< sum of e times colour
-  double opacity = 0.0;   ///< sum of e, which is 1 - T in the end
+  double opacity = 0.0;   ///< sum of e, which equals 1 - T at the end of the ray
   double distance = 0.0;  ///< sum of e t
 };
 
-/// `step`: no two neighbouring quadrature points are further apart, in voxels.
+/// Marches along a ray. `step` is the largest distance between neighbouring quadrature points, in voxels.
 ///
 /// The opacity is exact for any step: along a ray through a cell the field is a cubic, integrated as one. The
 /// colour is a Gauss quadrature, exact where the colour is constant; with `light` times what is scattered of
@@ -32,7 +32,7 @@ struct RaySum {
 RaySum marchRay(const ReferenceField& field, const MarchedRay& ray, double step,
                 const LightMarch* light = nullptr);
 
-/// Optical depth up to t = `end`, exact; anything above 16 where it is at least that.
+/// The exact optical depth up to t = `end`; an arbitrary value above 16 if it is larger than that.
 double marchDepth(const ReferenceField& field, const MarchedRay& ray, double end);
 
 }  // namespace freevoxels

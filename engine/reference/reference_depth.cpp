@@ -13,7 +13,7 @@ namespace freevoxels {
 
 namespace {
 
-/// As long as a lattice layer.
+/// The direction scaled to the length of a lattice layer.
 glm::dvec3 acrossLayer(glm::dvec3 direction) {
   return direction / std::abs(direction[majorAxis(direction)]);
 }
@@ -58,7 +58,7 @@ class TableDepth : public ReferenceDepth {
   };
   Transmittance transmittance(const Block& block) const;
   glm::dvec3 centre(const Block& block) const { return boxOf(block, volume_.dimensions).centre(); }
-  /// Itself where that holds nothing, or is outside.
+  /// The neighbour, or the block itself if that is not occupied or outside.
   Block neighbour(Block block, int axis, int steps) const {
     Block next = block;
     next.cell[axis] += steps;
@@ -67,7 +67,7 @@ class TableDepth : public ReferenceDepth {
     return holds ? next : block;
   }
   double extinctionAt(glm::dvec3 place) const;
-  /// A byte of the table, as long as if its line's layers had this world length.
+  /// The depth of a table byte, scaled as if the layers of its line had this world length.
   double stored(int direction, int byte, double layer) const;
   double sourceDepth(int direction, double layer) const;
 
@@ -89,7 +89,7 @@ double TableDepth::stored(int direction, int byte, double layer) const {
   return depth * layer / layerLengths_[std::size_t(direction)];
 }
 
-/// Between the eight voxels around a place; 0 outside.
+/// Interpolates between the eight voxels around a position; 0 outside.
 double TableDepth::extinctionAt(glm::dvec3 place) const {
   const glm::ivec3 low(glm::floor(place));
   double sum = 0.0;
@@ -101,7 +101,7 @@ double TableDepth::extinctionAt(glm::dvec3 place) const {
   return sum;
 }
 
-/// From the eye on, with half of what is there.
+/// The depth from the eye to the outside, with half of the voxel at the eye.
 double TableDepth::sourceDepth(int direction, double layer) const {
   if (!eyeInside_) return 0.0;
   const glm::dvec3 last(volume_.dimensions - 1), step = directionAt(settings_.directions, direction);
@@ -180,7 +180,7 @@ class RayDepth : public ReferenceDepth {
   const RayCodes codes_;
 };
 
-/// The depth, and its slopes along the fan's two sides.
+/// The depth and its slopes along the two sides of the face.
 glm::dvec3 RayDepth::lookUp(const Block& block) const {
   const BlockBox box = boxOf(block, volume_.dimensions);
   const glm::dvec3 centre = box.centre();
@@ -191,9 +191,9 @@ glm::dvec3 RayDepth::lookUp(const Block& block) const {
 }
 
 glm::dvec3 RayDepth::lookUp(const FaceRays& fan, glm::dvec3 onPlane) const {
-  if (fan.planeCount == 0) return glm::dvec3(0.0);  // only of a voxel at the source
+  if (fan.planeCount == 0) return glm::dvec3(0.0);  // only for a voxel at the source
   const std::vector<std::uint16_t>& codes = codes_[std::size_t(&fan - fans_.data())];
-  // At the source: the first.
+  // At the source, the first axis.
   const int plane = std::clamp((int(std::lround(onPlane[fan.axis])) - fan.firstPlane) * fan.direction, 0,
                                fan.planeCount - 1);
   const double up = fan.firstPlane + fan.direction * plane - fan.farthest;

@@ -23,7 +23,7 @@ class ReferenceDepth {
  public:
   virtual ~ReferenceDepth() = default;
 
-  /// The mean over the block's voxels.
+  /// The mean depth of the block's voxels.
   virtual double at(const Block& block) const = 0;
   /// What part of the transmittance grows towards the eye by what a layer takes from it: that of stored
   /// depths which are not at the end of their code, where they are the same a layer before.
@@ -31,24 +31,24 @@ class ReferenceDepth {
   /// Change per voxel along an axis of the lattice layer: one that is not the largest component of the line
   /// of sight.
   virtual double slope(const Block& block, int axis) const = 0;
-  /// World length that a layer of voxels counts in the depths, where in the line of sight it is
-  /// `layerLength`.
+  /// The world length of a layer of voxels in the stored depths, if it is `layerLength` in the line of sight.
   virtual double countedLength(double layerLength) const { return layerLength; }
 
-  /// Per voxel, index space: the slopes, and along the line of sight a fall by `layerDepth`, the optical
-  /// depth of one lattice layer. `toEye` may have any length.
+  /// The gradient per voxel in index space: the slopes, and along the line of sight a decrease by
+  /// `layerDepth`, the optical depth of one lattice layer. `toEye` may have any length.
   glm::dvec3 gradient(const Block& block, glm::dvec3 toEye, double layerDepth) const;
 };
 
-/// Per world unit; 0 outside of the volume. `extinction` has a value a voxel, `coarser` the levels above.
+/// Extinction per world unit, 0 outside of the volume. `extinction` has a value for each voxel; `coarser` has
+/// the levels above.
 double extinctionOf(const Block& block, const Volume& volume, std::span<const double> extinction,
                     std::span<const LevelData> coarser);
 
-/// The light that it sends out, per world unit; `emission` has a value a voxel, or is empty. 0 outside.
+/// Emission per world unit, 0 outside. `emission` has a value for each voxel, or is empty.
 glm::dvec3 emissionOf(const Block& block, const Volume& volume, std::span<const glm::dvec3> emission,
                       std::span<const LevelData> coarser);
 
-/// From a position in index space towards the eye, any length.
+/// The direction from a position in index space towards the eye, of any length.
 using ToEye = std::function<glm::dvec3(glm::dvec3 position)>;
 
 /// -log of the mean of the four transmittances around the line of sight, or the nearest one's. With
@@ -66,9 +66,9 @@ std::unique_ptr<ReferenceDepth> tableDepth(const Volume& volume, std::span<const
                                            std::optional<glm::dvec3> eyeInside,
                                            std::span<const glm::dvec3> emission = {});
 
-/// Along the rays of the source's fans (source_rays.h), between which depths and slopes are those of Catmull and
-/// Rom's spline. A block whose centre lies between two planes has the mean of what its line of sight has
-/// there. Keeps a reference to the volume.
+/// Depths along the rays of a source (source_rays.h), interpolated with their slopes by Catmull-Rom splines.
+/// A block whose centre lies between two planes has the mean of its line of sight's depths on both. Keeps a
+/// reference to the volume.
 std::unique_ptr<ReferenceDepth> rayDepth(const Volume& volume, const RaySource& source, RayCodes codes);
 
 }  // namespace freevoxels

@@ -14,7 +14,7 @@ bool isInside(glm::ivec3 voxel, glm::ivec3 dimensions) {
   return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) && glm::all(glm::lessThan(voxel, dimensions));
 }
 
-/// Null where `valueAt(voxel)` is 0 at all corners.
+/// A brick of the values at all corners, or null if all are 0.
 template <typename ValueAt>
 std::unique_ptr<Brick> makeBrick(glm::ivec3 dimensions, glm::ivec3 position, const ValueAt& valueAt) {
   constexpr int n = ReferenceField::kBrickCorners;
@@ -33,7 +33,7 @@ std::unique_ptr<Brick> makeBrick(glm::ivec3 dimensions, glm::ivec3 position, con
   return anything ? std::make_unique<Brick>(brick) : nullptr;
 }
 
-/// Whether some scalar between those of a cell's corners has extinction.
+/// Whether any scalar between those of a cell's corners has extinction.
 bool mayHold(const TransferIntegral& integral, const glm::vec4* corner) {
   constexpr int n = ReferenceField::kBrickCorners;
   double low = 1e300, high = -1e300;
@@ -63,7 +63,7 @@ bool ReferenceField::isFilled(const Brick& brick, glm::ivec3 cell) const {
 ReferenceField::ReferenceField(const Volume& volume, const Classification& classification,
                                const Progress& progress)
     : dimensions_(volume.dimensions),
-      brickCount_((volume.dimensions + kBrickCells) / kBrickCells),  // of dimensions + 1 cells
+      brickCount_((volume.dimensions + kBrickCells) / kBrickCells),  // for dimensions + 1 cells
       bricks_(std::size_t(brickCount_.x) * std::size_t(brickCount_.y) * std::size_t(brickCount_.z)) {
   if (!classification.transferFunction && !volume.albedo) evenColor_ = classification.albedo;
   if (brightestLight(classification, volume) > 0.0) light_.resize(bricks_.size());

@@ -14,9 +14,9 @@ namespace freevoxels {
 
 namespace {
 
-/// A child that is inside of the volume.
+/// A child of which a part is inside of the volume.
 struct Child {
-  std::size_t index;  ///< in its level
+  std::size_t index;  ///< index in its level
   double voxels;
 };
 
@@ -54,7 +54,7 @@ glm::dvec3 colorOf(const std::vector<Child>& children, const LevelData& level, d
   return weights > 0.0 ? sum / weights : sum;
 }
 
-/// Of children that hold anything; 0 of none.
+/// The mean over the occupied children; 0 if there are none.
 std::uint8_t codeOf(const std::vector<Child>& children, const std::vector<std::uint8_t>& codes,
                     const TableSettings& settings) {
   if (std::ranges::all_of(children, [&](const Child& child) { return codes[child.index] == 0; })) return 0;

@@ -9,11 +9,11 @@ namespace freevoxels {
 
 namespace {
 
-/// Index space; nearer to a light a position has no direction, and +z stands for it.
+/// In index space: at a smaller distance from a light the direction is undefined, and +z is used.
 constexpr double kAtLight = 1e-3;
 
-/// The square of a ball's radius over that of the edge of a cube of its volume, by the 3 of the mean of
-/// 1 / distance² from its middle.
+/// The squared radius of a ball in squared edges of a cube of equal volume, divided by the 3 of the mean of 1
+/// / distance² from its middle.
 const double kNearestLight2 = std::pow(3.0 / (4.0 * std::numbers::pi), 2.0 / 3.0) / 3.0;
 
 /// The integral of exp(-x t) over t from 0 to 1.
@@ -132,7 +132,7 @@ glm::dvec3 ReferenceLight::scattered(const Block& block, glm::dvec3 toEye) const
     const double sigma = extinctionOf(block, inputs_.volume, inputs_.extinction, inputs_.coarser);
     normal = glm::normalize(glm::inverse(glm::transpose(toWorld_)) * gradient);
     surface =
-        lighting_.surface * surfaceShare(glm::length(gradient) / sigma);  // infinite where there is none
+        lighting_.surface * surfaceShare(glm::length(gradient) / sigma);  // infinite if sigma is 0
   }
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Light& light = lighting_.lights[i];

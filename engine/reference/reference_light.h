@@ -1,6 +1,6 @@
 #pragma once
-// What blocks scatter of the light that reaches them, in double precision: Subr et al. 2007, Section 4.3.
-// Shares no code with the shaders.
+// The light that blocks scatter, in double precision: Subr et al. 2007, Section 4.3. Shares no code with the
+// shaders.
 
 #include <memory>
 #include <vector>
@@ -10,7 +10,7 @@
 
 namespace freevoxels {
 
-/// What reference_depth.h needs of the stages before; keeps references.
+/// The input of reference_depth.h from earlier stages. Keeps references.
 struct LightInputs {
   const Volume& volume;
   std::span<const double> extinction;
@@ -22,10 +22,10 @@ struct LightInputs {
 
 class ReferenceLight {
  public:
-  /// Of settings that have lighting.
+  /// For settings with lighting.
   ReferenceLight(const LightInputs& inputs, const FrameSettings& settings);
 
-  /// Radiance towards the eye per albedo; `toEye` in index space, of any length.
+  /// Radiance towards the eye for albedo 1. `toEye` is in index space, of any length.
   glm::dvec3 scattered(const Block& block, glm::dvec3 toEye) const;
 
  private:
@@ -36,7 +36,7 @@ class ReferenceLight {
                       double unsaturated, double counted, double scale) const;
   glm::dvec3 reachingFromAll(const Block& block, glm::dvec3 toEye) const;
 
-  /// Central differences, index space, per block of its size.
+  /// The gradient by central differences in index space, per block of its size.
   glm::dvec3 extinctionGradient(const Block& block) const;
 
   const LightInputs inputs_;

@@ -20,12 +20,12 @@ glm::dvec2 offsetOf(const FaceRays& fan, glm::ivec2 ray) {
   return fan.spacing * glm::dvec2(ray);
 }
 
-/// Per voxel along the axis upwards.
+/// The ray's slope per voxel along the positive axis.
 glm::dvec2 slopeOf(const FaceRays& fan, glm::ivec2 ray) {
   return fan.slope + offsetOf(fan, ray) * fan.convergence;
 }
 
-/// Where it meets the plane at this coordinate of the axis.
+/// The point where the ray meets the plane at this coordinate of the axis.
 glm::dvec2 meets(const FaceRays& fan, glm::ivec2 ray, int coordinate) {
   return fan.origin + offsetOf(fan, ray) + slopeOf(fan, ray) * (coordinate - fan.farthest);
 }
@@ -70,8 +70,8 @@ double RayMarch::interpolated(int axis, int plane, glm::dvec2 side) const {
   return sum;
 }
 
-/// What a ray that starts within the volume has in front of its first layer, in layers: the extinction along
-/// it is linear between the planes on either side of the source. Less than 0 where the source is in that
+/// For a ray that starts inside the volume, the path in front of its first layer, in layers: the extinction
+/// along it is linear between the planes on both sides of the source. Negative if the source is in that
 /// layer.
 double RayMarch::sourceCut(const FaceRays& fan, glm::ivec2 ray) const {
   if (source_.atInfinity) return 0.0;
@@ -124,7 +124,7 @@ double decodeRayDepth(std::uint16_t code) {
 bool isReadAt(const FaceRays& fan, glm::ivec3 dimensions, glm::ivec2 ray, int plane) {
   const glm::dvec2 place = meets(fan, ray, fan.firstPlane + fan.direction * plane);
   const glm::dvec2 last(dimensions[(fan.axis + 1) % 3] - 1, dimensions[(fan.axis + 2) % 3] - 1);
-  const double reach = 2.0 * fan.spacing;  // of the spline, where the rays are furthest apart
+  const double reach = 2.0 * fan.spacing;  // of the spline, where the rays are farthest apart
   return glm::all(glm::greaterThanEqual(place, glm::dvec2(-reach))) &&
          glm::all(glm::lessThanEqual(place, last + reach));
 }

@@ -10,13 +10,12 @@
 
 namespace freevoxels {
 
-/// `extinction` has a value a voxel.
+/// `extinction` has a value for each voxel.
 RayCodes referenceRays(const Volume& volume, std::span<const double> extinction, const RaySource& source);
 
 double decodeRayDepth(std::uint16_t code);
 
-/// Whether the ray is near enough to the volume at a plane (counted from the first) for a voxel to look it
-/// up: only there have codes a meaning.
+/// Whether a voxel may look up the ray at a plane (counted from the first). Other codes are meaningless.
 bool isReadAt(const FaceRays& fan, glm::ivec3 dimensions, glm::ivec2 ray, int plane);
 
 }  // namespace freevoxels

@@ -12,8 +12,8 @@ namespace freevoxels {
 namespace {
 
 struct BlendedPixel {
-  glm::dvec4 color{0.0};  ///< premultiplied, and alpha
-  double distance = 0.0;  ///< premultiplied too
+  glm::dvec4 color{0.0};  ///< premultiplied colour and alpha
+  double distance = 0.0;  ///< premultiplied by alpha
 };
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The picture as a sum of splats: Subr et al. 2007, Section 4.1, Eq. 10, with footprints that are exact for
-// any camera and voxel shape, and the normalised resolve of README.md.
+// The image as a sum of splats: Subr et al. 2007, Section 4.1, Eq. 10, with footprints that are exact for any
+// camera and voxel shape, and the normalised resolve of engine/docs/method.md.
 
 #include "engine/reference/reference_splats.h"
 
@@ -23,11 +23,12 @@ namespace freevoxels {
 
 namespace {
 
-/// The list is added up in about as many, each with a picture of its own, whatever the number of cores.
+/// Number of parts of the list that are added up independently, each into its own image, whatever the number
+/// of cores.
 constexpr std::size_t kParts = 16;
 
-/// Optical depth to the eye at a voxel's centre, and its change per pixel; for a kernel that is cut, its
-/// change per world length along the ray, from the centre's distance on.
+/// Optical depth to the eye at a voxel's centre, and its change per pixel. For a cut kernel: its change per
+/// world length along the ray, starting at the centre's distance.
 struct DepthToEye {
   double centre = 0.0;
   glm::dvec2 perPixel{0.0};
@@ -68,7 +69,7 @@ class SplatSummer {
     FV_CHECK_EQ(inputs.extinction.size(), volume.voxelCount());
   }
 
-  /// Over a list of what `blockOf` makes blocks of.
+  /// Sums over a list, whose items `blockOf` turns into blocks.
   template <typename Item, typename BlockOf>
   std::vector<SplatSums> sum(std::span<const Item> list, const BlockOf& blockOf) const;
   Block voxel(std::uint32_t index) const { return projector_.voxel(index); }
@@ -99,8 +100,8 @@ class SplatSummer {
   const FrameSettings& settings_;
   const SplatProjector projector_;
   const double rayShare_;
-  const std::unique_ptr<ReferenceDepth> rays_, table_;  ///< null where they have no share
-  const std::unique_ptr<ReferenceLight> light_;         ///< null where nothing is lit
+  const std::unique_ptr<ReferenceDepth> rays_, table_;  ///< null if their weight is 0
+  const std::unique_ptr<ReferenceLight> light_;         ///< null without lighting
 };
 
 std::unique_ptr<ReferenceDepth> SplatSummer::raysFor(const Camera& camera) const {
@@ -135,7 +136,8 @@ glm::dvec3 SplatSummer::colorOf(const Block& block) const {
   return level.colors.empty() ? glm::dvec3(classification_.albedo) : level.colors[level.at(block.cell)];
 }
 
-/// Of the extinction, which every child has at its own centre, and half-way to that of the light.
+/// The centre of the extinction, of which every child has its part at its own centre; with emission, the
+/// point half-way to the centre of that.
 glm::dvec3 SplatSummer::centreOfMass(const Block& block) const {
   if (block.level == 0) return projector_.box(block).centre();
   const double extinction = extinctionOf(block), light = largest(emissionOf(block));
@@ -153,7 +155,7 @@ glm::dvec3 SplatSummer::centreOfMass(const Block& block) const {
   return masses > 0.0 ? sum / masses : projector_.box(block).centre();
 }
 
-/// Of rays and of the table, as far as each has a share.
+/// The depth mixed from that of rays and that of the table, by their weights.
 DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& splat, double extinction,
                                    int layers) const {
   if (!table_) return depthBy(*rays_, block, splat, extinction, layers);
@@ -186,7 +188,7 @@ DepthToEye SplatSummer::depthBy(const ReferenceDepth& depths, const Block& block
   return depth;
 }
 
-/// Between the four voxels around a position in a plane of voxels; 0 outside.
+/// Interpolates between the four voxels around a position in a plane of voxels; 0 outside.
 double SplatSummer::extinctionAt(glm::dvec3 position, int axis) const {
   position[axis] = std::round(position[axis]);
   const glm::ivec3 low(glm::floor(position)), n = volume_.dimensions;
@@ -201,8 +203,8 @@ double SplatSummer::extinctionAt(glm::dvec3 position, int axis) const {
   return sum;
 }
 
-/// What of a voxel's light leaves it, as far as its kernel, a tent along the line of sight, sees the eye
-/// better or worse than the front of its layer.
+/// The fraction of a voxel's light that leaves it, relative to that at the front of its layer, averaged over
+/// its kernel, a tent along the line of sight.
 double SplatSummer::leaving(const Block& block, const ProjectedSplat& splat, double extinction,
                             double inFront) const {
   const int axis = majorAxis(splat.toEye);

@@ -1,7 +1,6 @@
 #pragma once
-// The picture as the plain sum over voxels, on the CPU in double precision: Subr et al. 2007, Section 4.1,
-// Eq. 10 and the normalised resolve. Projects and adds every voxel by itself; shares no code with the
-// shaders.
+// The image as a plain sum over voxels, on the CPU in double precision: Subr et al. 2007, Section 4.1, Eq.
+// 10, and the normalised resolve. Projects and adds every voxel on its own; shares no code with the shaders.
 
 #include <cstdint>
 #include <span>
@@ -20,28 +19,28 @@
 
 namespace freevoxels {
 
-/// What the stages before the camera made.
+/// The results of the stages that do not depend on the camera.
 struct SplatInputs {
-  std::span<const double> extinction;                   ///< of every voxel: the classification only colours
+  std::span<const double> extinction;                   ///< for every voxel; of the classification only the colours are used
   const std::vector<std::vector<std::uint8_t>>& table;  ///< bytes [direction][voxel]
   TableSettings tableSettings;
-  std::span<const LevelData> coarser = {};    ///< levels above the voxels, as far as blocks of them are drawn
-  std::span<const glm::dvec3> emission = {};  ///< of every voxel; empty where none sends out light
-  const RayCodes* rays = nullptr;  ///< of the camera's eye, where they are looked up: none, made here
+  std::span<const LevelData> coarser = {};    ///< levels above the voxels, up to the coarsest that is drawn
+  std::span<const glm::dvec3> emission = {};  ///< for every voxel; empty if none emits light
+  const RayCodes* rays = nullptr;  ///< depths along rays from the camera's eye; null to compute them
 };
 
-/// Sums over the voxels listed (indices into Volume::values), in that order.
+/// Sums over the listed voxels (indices, Volume::at), in that order.
 std::vector<SplatSums> referenceSplatSums(const Volume& volume, const Classification& classification,
                                           const SplatInputs& inputs, const Camera& camera,
                                           const FrameSettings& settings,
                                           std::span<const std::uint32_t> voxels);
 
-/// The same of blocks of the octree.
+/// Sums over blocks of the octree.
 std::vector<SplatSums> referenceBlockSums(const Volume& volume, const Classification& classification,
                                           const SplatInputs& inputs, const Camera& camera,
                                           const FrameSettings& settings, std::span<const Block> blocks);
 
-/// Indices of the voxels with extinction above 0 or light, ascending; `emission` may be empty.
+/// Ascending indices of the voxels with extinction above 0 or emission. `emission` may be empty.
 std::vector<std::uint32_t> referenceVisibleVoxels(const std::vector<double>& extinction,
                                                   std::span<const glm::dvec3> emission = {});
 

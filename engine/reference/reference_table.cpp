@@ -15,12 +15,12 @@ namespace freevoxels {
 
 namespace {
 
-/// The i-th coordinate of a line of n voxels in an order that has v + step before v.
+/// The i-th coordinate of a line of n voxels, in an order in which v + step precedes v.
 int towards(int i, int n, int step) {
   return step > 0 ? n - 1 - i : i;
 }
 
-/// Extinction of the voxels of a volume, 0 around it.
+/// Extinction of the voxels of a volume, with 0 around it.
 class Field {
  public:
   Field(const Volume& volume, const std::vector<double>& extinction)
@@ -30,11 +30,12 @@ class Field {
     return v.x >= 0 && v.x < n.x && v.y >= 0 && v.y < n.y && v.z >= 0 && v.z < n.z;
   }
   double operator()(glm::ivec3 v) const { return contains(v) ? extinction_[volume_.at(v.x, v.y, v.z)] : 0.0; }
-  /// Of the voxels nearest to v + step / 2: one in an even component of the step, two in an odd one.
+  /// The mean extinction of the voxels nearest to v + step / 2: one coordinate for an even component of the
+  /// step, two for an odd one.
   double halfway(glm::ivec3 v, glm::ivec3 step) const {
     const glm::dvec3 middle = 0.5 * glm::dvec3(step);
     const glm::ivec3 low(glm::floor(middle)), high(glm::ceil(middle));
-    double sum = 0.0;  // of eight, of which some are the same
+    double sum = 0.0;  // over eight voxels, some of which are the same
     for (const int z : {low.z, high.z})
       for (const int y : {low.y, high.y})
         for (const int x : {low.x, high.x}) sum += (*this)(v + glm::ivec3(x, y, z));

@@ -1,6 +1,6 @@
 #pragma once
-// The attenuation table computed the plain way, on the CPU in double precision: Subr et al. 2007,
-// Section 3.1, Eq. 5. Shares nothing with the shaders but the direction order and the codes.
+// The attenuation table computed directly on the CPU in double precision: Subr et al. 2007, Section 3.1, Eq.
+// 5. Shares only the order of directions and the codes with the renderer.
 
 #include <cstdint>
 #include <vector>
@@ -14,12 +14,12 @@ namespace freevoxels {
 /// Extinction of every voxel of the volume, x fastest, per world unit.
 std::vector<double> referenceExtinction(const Volume& volume, const Classification& classification);
 
-/// Optical depth from half a layer of voxels beyond each voxel's centre to the outside, along a direction of
-/// the set: exclusive of the voxel.
+/// Optical depth from half a layer beyond each voxel's centre to the outside, along a direction of the set,
+/// without the voxel itself.
 std::vector<double> referenceOpticalDepth(const Volume& volume, const std::vector<double>& extinction,
                                           DirectionSet set, int direction, bool pathLengthCorrection);
 
-/// The bytes of the table for all its directions, [direction][voxel].
+/// The bytes of the table for all directions of the set, [direction][voxel].
 std::vector<std::vector<std::uint8_t>> referenceTable(const Volume& volume,
                                                       const std::vector<double>& extinction,
                                                       const TableSettings& settings);

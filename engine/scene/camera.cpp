@@ -38,13 +38,13 @@ Axes cameraAxes(const Camera& camera) {
   return {right, glm::cross(right, forward), forward};
 }
 
-/// Half the height of what the camera sees: at distance 1 for a perspective camera, anywhere for an
+/// Half the height of the visible area: at distance 1 for a perspective camera, at any distance for an
 /// orthographic one.
 double halfHeight(const Camera& camera) {
   return camera.orthographic ? camera.orthographicHeight / 2.0 : std::tan(radians(camera.verticalFov) / 2.0);
 }
 
-/// Turns +y to `up`, on the shortest way.
+/// The rotation from +y to `up` on the shortest way.
 glm::dmat3 fromYUp(glm::dvec3 up) {
   const glm::dvec3 y(0.0, 1.0, 0.0), to = glm::normalize(up);
   if (glm::length(glm::cross(y, to)) < kSmallestUpAngle) {
@@ -118,7 +118,8 @@ glm::dvec3 orbitDirection(glm::dvec3 up, double azimuth, double elevation) {
 
 Camera framed(const Camera& camera, const Subject& subject, double aspect) {
   const Axes axes = cameraAxes(camera);
-  double radius = 0.0, halfImage = 0.0, distance = 0.0;  // of the points; half the image's height; from the centre to the eye
+  // Radius of the points; half the image's height; distance from the centre to the eye.
+  double radius = 0.0, halfImage = 0.0, distance = 0.0;
   for (const glm::dvec3& point : subject.points) {
     const glm::dvec3 offset = point - subject.centre;
     const double needed = (1.0 + subject.margin) *
@@ -136,8 +137,9 @@ Camera framed(const Camera& camera, const Subject& subject, double aspect) {
 
 glm::dvec3 imageCentre(const Camera& camera, const Subject& subject) {
   const Axes axes = cameraAxes(camera);
-  // A point beside the axis by x and nearer to the eye by z is seen at x / (d - z) from the distance d: the axis is moved to
-  // where the largest x + t z is that of -x + t z, t being the tangent of half the field of view.
+  // A point at x beside the axis and nearer to the eye by z is seen at x / (d - z) from the distance d. The
+  // axis is moved to where the largest x + t z equals the largest -x + t z, with t the tangent of half the
+  // field of view.
   const double tangent = camera.orthographic ? 0.0 : halfHeight(camera);
   glm::dvec3 centre = subject.centre;
   for (const glm::dvec3& axis : {axes.right, axes.up}) {
@@ -158,7 +160,7 @@ Camera framingCamera(const Subject& subject, double azimuth, double elevation, d
   Camera camera = base;
   camera.lookAt = glm::dvec3(0.0);
   camera.position = toEye;
-  // Straight from above or below, `up` says nothing about the roll: the limit of lower elevations does.
+  // Straight above or below, `up` does not determine the roll. Use the limit of lower elevations.
   if (glm::length(glm::cross(glm::normalize(base.up), toEye)) < kSmallestUpAngle)
     camera.up = orbitDirection(base.up, azimuth, elevation + 90.0);
   return framed(camera, subject, aspect);
@@ -180,7 +182,7 @@ double rayShare(AttenuationLookup lookup, const Camera& camera, glm::ivec3 dimen
   if (lookup == AttenuationLookup::Exact) return 1.0;
   if (lookup != AttenuationLookup::Auto || camera.orthographic) return 0.0;
   if (eyeIsInside(camera, dimensions, indexToWorld)) return 1.0;
-  // Along the box's axes, as if they were at right angles.
+  // Distances along the box's axes, treated as if the axes were at right angles.
   const glm::dvec3 extent(dimensions), eye = eyeSource(camera, indexToWorld).place + 0.5;
   glm::dvec3 beyond = glm::max(glm::max(-eye, eye - extent), 0.0);
   double longest = 0.0;

@@ -18,39 +18,40 @@ struct Camera {
   double orthographicHeight = 1.0;  ///< world units the image is high, orthographic
 };
 
-/// Throws ExitCode::Usage for a camera that sees nothing: NaN, position at the look-at point, up along the
-/// view, a field of view outside (0, 180), a height that is not positive. The sentence names the option to
-/// change.
+/// Fails with ExitCode::Usage for a camera that cannot produce an image: NaN, a position at the look-at
+/// point, an up direction along the view, a field of view outside of (0, 180), or a height that is not
+/// positive. The sentence names the option to change.
 void checkCamera(const Camera& camera);
 
-/// Right, up and backward (-view) unit vectors and the position: world -> camera, right-handed, looking along
-/// -z.
+/// The world-to-camera transform, right-handed: the camera looks along -z, x points to the right and y up.
 glm::dmat4 worldToCamera(const Camera& camera);
 
 /// worldToCamera followed by the projection to [-1,1] in x and y (y up) for this aspect ratio (width /
 /// height).
 glm::dmat4 worldToNdc(const Camera& camera, double aspect);
 
-/// What an image is to show, in world space.
+/// The part of the world that an image is to show.
 struct Subject {
-  glm::dvec3 centre{0.0};          ///< in the middle of the image
-  std::vector<glm::dvec3> points;  ///< all of them are in the image
-  double margin = 0.03;            ///< around the points, relative to their extent
+  glm::dvec3 centre{0.0};          ///< shown in the middle of the image
+  std::vector<glm::dvec3> points;  ///< all of them are shown
+  double margin = 0.03;            ///< empty border around the points, relative to their extent
 };
 
-/// The unit vector towards the eye. Azimuth, in degrees, turns about `up` counterclockwise seen from its tip; elevation rises
-/// from the plane across it. Azimuth 0 is +z where +y is up and -y where +z is up: of the shortest turn from +y to `up`.
+/// The unit vector from the subject towards the eye. Azimuth, in degrees, turns about `up`, counterclockwise
+/// seen from its tip; elevation, in degrees, rises from the plane across `up`. Azimuth 0 is +z if +y is up
+/// and -y if +z is up: the frame is turned from +y to `up` on the shortest way.
 glm::dvec3 orbitDirection(glm::dvec3 up, double azimuth, double elevation);
 
-/// `camera` moved without being turned: it looks at the subject's centre, as near as the points and the margin fit the image.
+/// Returns `camera` with the same orientation, moved so that it looks at the subject's centre from the
+/// smallest distance at which all points and the margin fit into the image.
 Camera framed(const Camera& camera, const Subject& subject, double aspect);
 
-/// The centre for which the points have equal margins to opposite sides of a perspective image too, so that such a camera
-/// comes nearest. As deep in the image as the subject's.
+/// The look-at point, as far away as the subject's centre, for which the points have equal margins at
+/// opposite sides of the image. A perspective camera can then come nearest.
 glm::dvec3 imageCentre(const Camera& camera, const Subject& subject);
 
-/// A framed camera that looks from `orbitDirection(base.up, azimuth, elevation)`. Straight from above or below, its up is the
-/// limit of that of lower elevations.
+/// A framed camera that looks from `orbitDirection(base.up, azimuth, elevation)`. Straight above or below,
+/// where `up` does not determine the roll, it has the limit of that of lower elevations.
 Camera framingCamera(const Subject& subject, double azimuth, double elevation, double aspect, const Camera& base);
 
 inline constexpr double kDefaultAzimuth = 35.0, kDefaultElevation = 25.0;
@@ -65,25 +66,26 @@ struct PixelRays {
   bool orthographic = false;
 };
 
-/// Where the lines of sight start: the eye, or an orthographic camera's direction towards it.
+/// The source of the lines of sight: the eye, or for an orthographic camera the direction towards it.
 RaySource eyeSource(const Camera& camera, const glm::dmat4& indexToWorld);
 
-/// Whether the eye is within the volume's box, faces included. Never of an orthographic camera.
+/// Whether the eye is inside the volume's box, faces included. Always false for an orthographic camera.
 bool eyeIsInside(const Camera& camera, glm::ivec3 dimensions, const glm::dmat4& indexToWorld);
 
-/// An eye is near to the volume's box within this part of the box's longest edge.
+/// An eye counts as near if its distance to the volume's box is at most this fraction of the box's longest
+/// edge.
 inline constexpr double kNearBox = 0.5;
 
-/// Auto of a volume that shines is Exact: a flame behind smoke shows as many times the table's error as it is
-/// bright.
+/// Resolves Auto for a volume with emission to Exact: behind smoke, the table's error is multiplied by the
+/// brightness of a flame.
 inline AttenuationLookup lookupFor(AttenuationLookup lookup, bool shines) {
   return lookup == AttenuationLookup::Auto && shines ? AttenuationLookup::Exact : lookup;
 }
 
-/// What share of a voxel's optical depth to the eye is that along rays from it, the rest being the table's: 1
-/// of Exact, 0 of the table's own look-ups. Of Auto 1 for an eye inside, as the table tells how much light
-/// leaves the volume; outside less the farther the eye is from the box, down to 0 where it is no longer near,
-/// so that no step shows.
+/// The weight of the exact optical depth to the eye; the table's has the rest. 1 for Exact and 0 for the
+/// look-ups of the table. For Auto it is 1 for an eye inside the box, since the table counts from the
+/// outside, and falls linearly with the distance to 0 where the eye is no longer near, so that no step is
+/// visible.
 double rayShare(AttenuationLookup lookup, const Camera& camera, glm::ivec3 dimensions,
                 const glm::dmat4& indexToWorld);
 

@@ -16,15 +16,15 @@ glm::dvec3 onUnitCube(glm::dvec3 direction) {
   return direction / largest;
 }
 
-/// The axis whose face of the cube a point is on. On an edge or corner, the first of x, y, z: the look-up is
-/// continuous, so any choice gives the same.
+/// The axis whose face of the cube contains a point. On an edge or corner it is the first of x, y, z; as the
+/// look-up is continuous, the choice does not matter.
 int faceAxis(glm::dvec3 point) {
   for (int axis = 0; axis < 2; ++axis)
     if (std::abs(point[axis]) == 1.0) return axis;
   return 2;
 }
 
-/// How many cells inside of the cube of cells, which are no directions, have a smaller number.
+/// Number of cells inside the cube, which are not directions, with a smaller number than `cell`.
 int cellsInsideBefore(DirectionSet set, glm::ivec3 cell) {
   const int k = int(set), edge = 2 * k - 1;
   const auto before = [&](int component) { return std::clamp(component + k - 1, 0, edge); };
@@ -86,8 +86,8 @@ DirectionBlend bilinearDirections(DirectionSet set, glm::dvec3 direction) {
   const int axisA = (axis + 1) % 3;
   const int axisB = (axis + 2) % 3;
 
-  // The quad with corners {lowA, lowA+1} x {lowB, lowB+1}; a point on a line between quads belongs to the
-  // upper one.
+  // The quad with corners {lowA, lowA+1} x {lowB, lowB+1}. A point on the line between two quads belongs to
+  // the upper one.
   const int lowA = std::min(int(std::floor(point[axisA])), k - 1);
   const int lowB = std::min(int(std::floor(point[axisB])), k - 1);
   const double a = point[axisA] - lowA;

@@ -20,7 +20,7 @@ int partsPerPixel(const Environment& environment) {
   return (kFewestRows + environment.size.y - 1) / environment.size.y;
 }
 
-/// Of a row's parts, by direction of a table.
+/// Sums over the parts of a row, by direction of a table.
 struct RowSums {
   std::vector<glm::dvec3> light;
   std::vector<double> weight;
@@ -70,7 +70,7 @@ int environmentRows(const Environment& environment) {
 
 std::vector<EnvironmentPart> environmentRow(const Environment& environment, int row) {
   const int parts = partsPerPixel(environment), rows = environmentRows(environment), columns = 2 * rows;
-  const double step = std::numbers::pi / rows;  // along a column as along the equator
+  const double step = std::numbers::pi / rows;  // angle between rows, and between columns at the equator
   const double polar = (row + 0.5) * step, turned = glm::radians(environment.rotation);
   const double solidAngle = step * (std::cos(row * step) - std::cos((row + 1) * step));
   const std::size_t first = std::size_t(row / parts) * std::size_t(environment.size.x);

@@ -1,5 +1,5 @@
 #pragma once
-// Light from all around: a lat-long picture of radiance that comes from infinitely far away.
+// Light from all directions: a latitude-longitude image of radiance that arrives from infinitely far away.
 
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -9,35 +9,35 @@
 
 namespace freevoxels {
 
-/// +y is up. The columns are as OpenEXR has them in its lat-long maps: the one in the middle is towards +z,
-/// the one a quarter of the width from the left towards +x. So a pixel at u from the left, in 0..1, is at the
-/// azimuth 360 (1/2 - u) about +y from +z, which is how a camera's orbit counts.
+/// +y is up. Columns follow OpenEXR's latitude-longitude maps: the middle column is towards +z, the column a
+/// quarter of the width from the left towards +x. A pixel at u from the left, in 0..1, is at the azimuth 360
+/// (1/2 - u) about +y from +z, counted like a camera's orbit.
 struct Environment {
   glm::ivec2 size{0};               ///< twice as wide as high
-  std::vector<glm::vec3> radiance;  ///< linear Rec.709; row 0 is the one around +y
-  double rotation = 0.0;            ///< about +y, in degrees: is added to the azimuths
-  double intensity = 1.0;           ///< by which the radiance is multiplied
+  std::vector<glm::vec3> radiance;  ///< linear Rec.709; row 0 is nearest to +y
+  double rotation = 0.0;            ///< about +y, in degrees, added to the azimuths
+  double intensity = 1.0;           ///< factor of the radiance
 };
 
-/// Fails with ExitCode::Input where the file is no OpenEXR picture with R, G and B, twice as wide as high, or
-/// has pixels that are negative or not finite.
+/// Reads an environment. Fails with ExitCode::Input if the file is not an OpenEXR image with R, G and B that
+/// is twice as wide as high, or if it has negative or non-finite pixels.
 Environment readEnvironment(const std::filesystem::path& file);
 
 /// A pixel of an environment, or a part of one.
 struct EnvironmentPart {
-  glm::dvec3 direction;  ///< where it is in the world, of length 1
+  glm::dvec3 direction;  ///< unit vector in world space
   double solidAngle;
-  glm::dvec3 radiance;  ///< with the intensity
+  glm::dvec3 radiance;  ///< includes the intensity
 };
 
-/// Pixels are divided until there are at least 512 rows of parts: of all rows together the solid angles add
-/// up to 4 pi.
+/// The number of rows of parts. Pixels are subdivided until there are at least 512 rows; the solid angles of
+/// all rows add up to 4 pi.
 int environmentRows(const Environment& environment);
 std::vector<EnvironmentPart> environmentRow(const Environment& environment, int row);
 
-/// The mean radiance of each direction of a table, over the part of the sphere around a voxel that the
-/// direction stands for (directionShares in lighting.h): times the shares they add up to the mean over the
-/// sphere. In the order of directions.h; the same whatever the number of threads.
+/// For each direction of a table, in the order of directions.h, the mean radiance over the part of the sphere
+/// that it represents (directionShares in lighting.h). Weighted by the shares they add up to the mean over
+/// the sphere. The result does not depend on the number of threads.
 std::vector<glm::dvec3> directionRadiances(const Environment& environment, DirectionSet set,
                                            const glm::dmat4& indexToWorld);
 

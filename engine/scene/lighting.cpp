@@ -7,7 +7,8 @@ namespace freevoxels {
 
 namespace {
 
-/// Along the edge of a quad between four directions. The midpoint rule is then right to 1e-5 of a share.
+/// Number of sample points along the edge of a quad between four directions. The midpoint rule then has an
+/// error of 1e-5 of a fraction.
 constexpr int kQuadParts = 32;
 
 }  // namespace
@@ -40,7 +41,7 @@ std::vector<double> directionShares(DirectionSet set, const glm::dmat4& indexToW
   const glm::dmat3 toWorld(indexToWorld);
   std::vector<double> shares(std::size_t(directionCount(set)), 0.0);
   double whole = 0.0;
-  const int parts = 2 * int(set) * kQuadParts;  // along an edge of the cube
+  const int parts = 2 * int(set) * kQuadParts;  // sample points along an edge of the cube
   for (int face = 0; face < 6; ++face)
     for (int j = 0; j < parts; ++j)
       for (int i = 0; i < parts; ++i) {
@@ -48,7 +49,7 @@ std::vector<double> directionShares(DirectionSet set, const glm::dmat4& indexToW
         point[face / 2] = face % 2 == 0 ? -1.0 : 1.0;
         point[(face / 2 + 1) % 3] = (2.0 * i + 1.0) / parts - 1.0;
         point[(face / 2 + 2) % 3] = (2.0 * j + 1.0) / parts - 1.0;
-        // The solid angle of a part of the cube's face, but for the determinant, which all have.
+        // Solid angle of a part of the cube's face, up to the determinant, which is the same for all parts.
         const double angle = std::pow(glm::length(toWorld * point), -3.0);
         const DirectionBlend blend = bilinearDirections(set, point);
         for (std::size_t k = 0; k < blend.directions.size(); ++k)

@@ -7,20 +7,20 @@ namespace freevoxels {
 
 namespace {
 
-/// Rays beyond the outermost voxels on each side, for interpolation there.
+/// Distance in voxels that rays extend beyond the outermost voxels, for the interpolation there.
 constexpr double kMargin = 1.5;
-/// At half a voxel an interpolated depth is as good as one that is summed up for the voxel alone (within 0.5
-/// dB of the picture); at a whole one pictures of thin shells lose 3 dB.
+/// Distance between rays in voxels. At half a voxel an interpolated depth is as good as one summed up for the
+/// voxel alone (within 0.5 dB of the image); at a whole voxel images of thin shells lose 3 dB.
 constexpr double kFinestSpacing = 0.5;
-/// Of a fan, for every line of voxels along its axis.
+/// Largest number of rays of a face for every line of voxels along its axis.
 constexpr double kMostRaysPerLine = 6.0;
 
 struct Interval {
   double low, high;
 };
 
-/// Gives the fan the rays that cross what `covered` is of the farthest plane. They lie about the middle of
-/// the volume, so that those of a mirrored one are their mirror image.
+/// Chooses the rays that cross `covered`, the part of the farthest plane that the volume projects to. They
+/// are placed symmetrically about the middle of the volume, so that a mirrored volume has mirrored rays.
 void placeRays(FaceRays& fan, const std::array<Interval, 2>& covered, glm::ivec3 dimensions) {
   const auto length = [&](int side) {
     return covered[std::size_t(side)].high - covered[std::size_t(side)].low;
@@ -30,8 +30,8 @@ void placeRays(FaceRays& fan, const std::array<Interval, 2>& covered, glm::ivec3
   fan.spacing = std::max(kFinestSpacing, std::sqrt(length(0) * length(1) / mostRays));
   for (int side = 0; side < 2; ++side) {
     const auto [low, high] = covered[std::size_t(side)];
-    // Half a voxel apart, every second ray meets the voxels of the farthest plane, and along an axis those of
-    // all planes.
+    // If rays are half a voxel apart, every second ray passes through the voxels of the farthest plane; along
+    // an axis, through those of all planes.
     const double middle = 0.5 * (across[side] - 1);
     fan.origin[side] = middle + fan.spacing * (std::floor((low - middle) / fan.spacing) - 1.0);
     fan.rayCount[side] = int(std::ceil((high - fan.origin[side]) / fan.spacing)) + 2;
@@ -56,7 +56,7 @@ FaceRays parallelFan(glm::ivec3 dimensions, glm::dvec3 fromSource) {
   return fan;
 }
 
-/// No rays where the volume has no voxel in this part of all directions.
+/// The rays of one face; none if no voxel of the volume lies on it.
 FaceRays fanFrom(glm::dvec3 source, glm::ivec3 dimensions, int axis, int direction) {
   FaceRays fan{.axis = axis, .direction = direction};
   const double last = dimensions[axis] - 1;
@@ -68,8 +68,8 @@ FaceRays fanFrom(glm::dvec3 source, glm::ivec3 dimensions, int axis, int directi
   std::array<Interval, 2> covered;
   for (int side = 0; side < 2; ++side) {
     const int other = (axis + 1 + side) % 3;
-    // Offsets from the source on the farthest plane: largest for the nearest plane, or, on the source's own
-    // side of it, for the farthest; never beyond the diagonal of the cube around the source.
+    // The offset from the source on the farthest plane is largest for the nearest plane, or, on the source's
+    // own side, for the farthest. It never exceeds the diagonal of the cube around the source.
     const double low = -kMargin - source[other], high = dimensions[other] - 1 + kMargin - source[other];
     const double lowest = low * (low < 0.0 ? radius / nearest : 1.0);
     const double highest = high * (high > 0.0 ? radius / nearest : 1.0);

@@ -166,7 +166,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   frame.quads = 2.0 * reach > largestPoint || widest > double(device.limits().maxViewportDimensions[0]) ||
                 widest > double(device.limits().maxViewportDimensions[1]);
   frame.viewportMargin = frame.quads ? 0.0f : float(margin);
-  // BilinearCell the middle of the image, where nothing large cancels in 32-bit floats.
+  // Around the middle of the image, where nothing large cancels in 32-bit floats.
   const glm::dvec2 imageMiddle = 0.5 * glm::dvec2(settings.size);
   const glm::dvec3 rayX = rays.directionX, rayY = rays.directionY;
   const glm::dvec3 ray = rays.direction + imageMiddle.x * rayX + imageMiddle.y * rayY;

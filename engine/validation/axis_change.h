@@ -1,5 +1,5 @@
 #pragma once
-// The same field stored along other axes: index space permuted and mirrored, the world as it was.
+// A field stored along other axes: index space is permuted and mirrored, the world stays as it was.
 
 #include <glm/glm.hpp>
 
@@ -8,12 +8,12 @@
 namespace freevoxels {
 
 struct AxisChange {
-  glm::ivec3 axis{0, 1, 2};    ///< new axis i is the old axis axis[i] ...
-  glm::bvec3 mirrored{false};  ///< ... backwards
+  glm::ivec3 axis{0, 1, 2};    ///< new axis i is the old axis axis[i]
+  glm::bvec3 mirrored{false};  ///< whether new axis i is reversed
 
-  /// Of an old direction.
+  /// Transforms an old direction.
   glm::ivec3 direction(glm::ivec3 old) const;
-  /// Of an old voxel in a volume that had `dimensions`.
+  /// Transforms an old voxel of a volume that had `dimensions`.
   glm::ivec3 voxel(glm::ivec3 old, glm::ivec3 dimensions) const;
   Volume apply(const Volume& volume) const;
   ScalarBricks apply(const ScalarBricks& scalars) const;

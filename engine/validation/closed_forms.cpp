@@ -16,12 +16,12 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kInsideTolerance = 2e-3;    ///< of a homogeneous cube, whose footprints ripple by 0.3 %
-constexpr double kRippleTolerance = 3e-3;    ///< of a full layer of footprints (footprint.h)
-constexpr double kRoundingTolerance = 1e-5;  ///< of a few splats in 32-bit floats
-constexpr double kIntegralTolerance = 1e-4;  ///< of 300² pixels
+constexpr double kInsideTolerance = 2e-3;    ///< for a homogeneous cube, whose footprints ripple by 0.3 %
+constexpr double kRippleTolerance = 3e-3;    ///< for a full layer of footprints (footprint.h)
+constexpr double kRoundingTolerance = 1e-5;  ///< for a few splats in 32-bit floats
+constexpr double kIntegralTolerance = 1e-4;  ///< for 300² pixels
 
-/// Eq. 5 of a homogeneous box is sigma times the steps ahead times their length.
+/// Eq. 5 for a homogeneous box: sigma times the number of steps ahead times their length.
 Check checkTable(const StageMaker& make, AttenuationCode code) {
   const glm::ivec3 size(25, 19, 14);
   const double sigma = 3.0;

@@ -1,5 +1,5 @@
 #pragma once
-// What a frame leaves out must not show: pictures with culling against those of everything.
+// Checks that culling does not change images: frames with culling are compared with those of everything.
 
 #include "engine/validation/quality_scenes.h"
 #include "engine/validation/report.h"
@@ -7,12 +7,12 @@
 
 namespace freevoxels {
 
-/// The most that a pixel may differ, and the least PSNR in dB, with what is hidden left out at the default
-/// threshold; and the most where only what is outside of the image is.
+/// Largest difference of a pixel and least PSNR in dB with hidden blocks left out at the default threshold;
+/// and the largest difference if only what is outside of the image is left out.
 inline constexpr double kCullingDifference = 1e-2, kCullingPsnr = 50.0, kFrustumDifference = 1e-5;
 
-/// From far and near, orthographic, from inside and of a small part; how many blocks are considered, empty,
-/// outside, hidden, opened and drawn; the pictures of the view that differs most, and where.
+/// Views from far and near, orthographic, from inside and of a small part. Reports how many blocks are
+/// considered, empty, outside, hidden, opened and drawn, and the images and place of the largest difference.
 ReportSection cullingChecks(const Device& device, const QualityScene& scene, int pictureEdge);
 
 }  // namespace freevoxels

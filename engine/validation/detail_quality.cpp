@@ -16,14 +16,14 @@ namespace freevoxels {
 namespace {
 
 constexpr double kLeastPsnr = 35.0;
-/// A change between frames that all voxels show is no pop; less than a code of an 8-bit picture on top is
-/// none.
+/// A change between frames that all voxels show as well is not a step, nor is less than one code of an 8-bit
+/// image in addition.
 constexpr double kZoomMargin = 1.0 / 255.0;
 constexpr int kZoomFrames = 60, kZoomPicture = 64;
-constexpr double kZoomNear = 2.0, kZoomFar = 0.125;  ///< pixels a voxel
+constexpr double kZoomNear = 2.0, kZoomFar = 0.125;  ///< in pixels per voxel
 constexpr std::array<QualityView, 3> kViews{{{35, 25}, {200, 10}, {0, 0}}};
 
-/// Pixels that a voxel in the middle of the volume is wide.
+/// Width in pixels of a voxel in the middle of the volume.
 double pixelsPerVoxel(const Volume& volume, const Camera& camera, int pictureEdge) {
   const double height = 2.0 * std::tan(camera.verticalFov * std::numbers::pi / 360.0) *
                         glm::length(camera.lookAt - camera.position);
@@ -34,7 +34,7 @@ Image picture(Renderer& renderer, const Camera& camera, int edge, float lod) {
   return renderer.render(camera, {.size = glm::ivec2(edge), .lod = lod});
 }
 
-/// The volume fills the picture, which is as large as that makes it.
+/// The size of the image that the volume fills.
 Check checkAgainstVoxels(Renderer& renderer, const Volume& volume, double pixels, ReportTable& table) {
   Check worst{.name = fmt::format("level of detail 1: voxels of {:g} pixel", pixels),
               .figure = 1e9,
@@ -56,7 +56,7 @@ Check checkAgainstVoxels(Renderer& renderer, const Volume& volume, double pixels
   return worst;
 }
 
-/// The largest excess of a change from one frame to the next over that of the voxels.
+/// The largest excess of the change from one frame to the next over that of all voxels.
 Check checkZoom(Renderer& renderer, const Volume& volume, ReportPlot& plot) {
   Camera camera = viewCamera(volume, kViews[0]);
   const glm::dvec3 toEye = camera.position - camera.lookAt;

@@ -19,12 +19,13 @@ namespace freevoxels {
 namespace {
 
 constexpr float kKelvin = 1800.0f;
-/// Of a box seen face-on through its middle: what kernels of constant volumes are off (README.md), and codes.
+/// Tolerance for a box seen face-on through its middle: the kernels of a constant volume do not add up to a constant exactly
+/// (engine/docs/method.md), and codes are rounded.
 constexpr double kBoxTolerance = 1e-2;
 
 struct Medium {
   const char* name;
-  double densityScale;  ///< of the automatic one
+  double densityScale;  ///< as a factor of the automatic one
 };
 constexpr std::array<Medium, 2> kMedia{{{"flames and smoke", 1.0}, {"flames alone", 0.0}}};
 
@@ -42,7 +43,7 @@ Classification burning(const Volume& volume, double densityScale) {
   return classification;
 }
 
-/// The unit cube, of one temperature and density.
+/// A unit cube of one temperature and density.
 Volume hotBox(int resolution) {
   const glm::ivec3 n(resolution);
   Volume volume = makeVolume(n, cubeTransform(n), [](int, int, int) { return 1.0; });
@@ -52,7 +53,7 @@ Volume hotBox(int resolution) {
   return volume;
 }
 
-/// j (1 - exp(-sigma L)) / sigma, and j L where there is no extinction.
+/// j (1 - exp(-sigma L)) / sigma, or j L without extinction.
 Check checkBoxes(const Device& device, int resolution) {
   const Volume volume = hotBox(resolution);
   const Emission emission{.strength = 0.8};

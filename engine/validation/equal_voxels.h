@@ -1,6 +1,6 @@
 #pragma once
-// Boxes of equal voxels of size 1 looked at straight on: what a pixel far smaller than a voxel sees is the
-// sum, or the product, of a few footprints.
+// Boxes of equal voxels of size 1, seen straight on: a pixel far smaller than a voxel shows the sum, or the
+// product, of a few footprints.
 
 #include <glm/glm.hpp>
 
@@ -14,13 +14,13 @@ Volume constantVolume(glm::ivec3 dimensions, const glm::dmat4& transform, double
 
 Classification physical(double densityScale, glm::vec3 albedo);
 
-/// Extinction of a voxel of size 1 with this opacity.
+/// The extinction of a voxel of size 1 with this opacity.
 double extinctionOf(double opacity);
 
-/// Looks along -z through (x, y), orthographic, `height` world units high.
+/// An orthographic camera that looks along -z through (x, y), with an image `height` world units high.
 Camera lookingDown(double x, double y, double height);
 
-/// The footprint (engine/splatting/footprint.h) at this distance of the ray from the voxel's centre.
+/// The footprint (engine/scene/footprint.h) at this distance between the ray and the voxel's centre.
 double footprintAt(double distance);
 
 }  // namespace freevoxels

@@ -12,8 +12,8 @@ namespace {
 
 /// Oblique to all axes and diagonals.
 const glm::dvec3 kCourse = glm::normalize(glm::dvec3(-0.55, -0.35, -0.76));
-constexpr double kFarthest = 1.5;                       ///< longest edges of the box
-constexpr double kTurnBegins = 0.35, kTurnEnds = 0.65;  ///< of the way
+constexpr double kFarthest = 1.5;                       ///< in longest edges of the box
+constexpr double kTurnBegins = 0.35, kTurnEnds = 0.65;  ///< as fractions of the path
 
 glm::dvec3 turned(glm::dvec3 view, double angle) {
   return {view.x * std::cos(angle) + view.z * std::sin(angle), view.y * std::cos(angle),

@@ -14,7 +14,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kLeastPsnr = 40.0;  ///< dB, of any frame
+constexpr double kLeastPsnr = 40.0;  ///< in dB, for every frame
 constexpr double kMostWrongChange =
     0.015;  ///< twice the error at 42 dB; a layer of voxels that pops makes 0.05
 constexpr int kShownFrames = 6;
@@ -24,7 +24,7 @@ std::vector<QualityMethod> methods() {
   table.frame.attenuation = AttenuationLookup::Bilinear;
   const std::vector<QualityMethod>& all = qualityMethods();
   QualityMethod first = all.front();
-  first.order = ClassificationOrder::Pre;  // far away both look at blocks that are classified
+  first.order = ClassificationOrder::Pre;  // far away both classifications use blocks that are classified before interpolation
   return {first, table, all[sortedMethod(all)]};
 }
 
@@ -48,7 +48,7 @@ Check leastPsnr(const ReportPlot::Series& series) {
           .where = fmt::format("frame {:g}", worst.x)};
 }
 
-/// How much the pictures change from one frame to the next, and how much of that is wrong.
+/// How much the images change from one frame to the next, and how much of that is an error.
 ReportPlot changePlot(const std::vector<Image>& pictures, const std::vector<Image>& oracle) {
   ReportPlot plot{.caption = "Change since the frame before",
                   .xLabel = "frame",

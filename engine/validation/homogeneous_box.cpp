@@ -13,8 +13,8 @@ namespace {
 struct Box {
   glm::dvec3 low{-0.5}, high;
 
-  /// Until a ray with this direction is 2 voxels inside the face at `p` it stays 2 voxels away from the
-  /// others.
+  /// Whether a ray with this direction that enters at `p` stays 2 voxels away from the other faces until it
+  /// is 2 voxels inside.
   bool awayFromEdges(glm::dvec3 p, glm::dvec3 direction) const {
     const glm::dvec3 depth = glm::min(p - low, high - p), speed = glm::abs(direction);
     const int face = depth.x <= depth.y && depth.x <= depth.z ? 0 : depth.y <= depth.z ? 1 : 2;
@@ -25,7 +25,7 @@ struct Box {
 };
 
 struct Chord {
-  double length = 0.0;  ///< of ray direction
+  double length = 0.0;  ///< in lengths of the ray's direction
   bool interior = false;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// A box of constant extinction, whose pictures and tables are known in closed form (Beer-Lambert).
+// A box of constant extinction, whose images and tables are known in closed form (Beer-Lambert).
 
 #include <glm/glm.hpp>
 #include <vector>
@@ -10,21 +10,21 @@
 
 namespace freevoxels {
 
-/// World cube [-1/2, 1/2]³ along the longest axis, cubic voxels.
+/// Fills the world cube [-1/2, 1/2]³ along its longest axis, with cubic voxels.
 glm::dmat4 cubeTransform(glm::ivec3 dimensions);
 
-/// Voxels of different length along x, y and z, and axes that are not at right angles.
+/// A transform with voxels of different length along x, y and z, and axes that are not at right angles.
 glm::dmat4 shearedTransform(glm::ivec3 dimensions);
 
-/// How many voxels lie between a voxel and the outside along a direction.
+/// The number of voxels between a voxel and the outside along a direction.
 int voxelsAhead(glm::ivec3 voxel, glm::ivec3 direction, glm::ivec3 dimensions);
 
 struct BoxPicture {
   Image image;                 ///< 1 - exp(-sigma * chord), averaged over 4x4 rays a pixel
-  std::vector<bool> interior;  ///< pixels whose rays enter and leave away from the box's edges
+  std::vector<bool> interior;  ///< pixels whose rays enter and leave the box away from its edges
 };
 
-/// All of the volume's voxels have extinction `sigma`, the world around it none.
+/// All voxels of the volume have extinction `sigma`; the world around it has none.
 BoxPicture boxPicture(const Volume& volume, double sigma, glm::vec3 color, const Camera& camera,
                       glm::ivec2 size);
 

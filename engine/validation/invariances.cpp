@@ -20,11 +20,11 @@ namespace freevoxels {
 
 namespace {
 
-/// Sums of a few hundred 32-bit floats in another order, relative to the largest in the picture.
+/// Tolerance for sums of a few hundred 32-bit floats in another order, relative to the largest in the image.
 constexpr double kOrderTolerance = 1e-5;
 constexpr double kPictureTolerance = 1e-5;
-/// A code may round to either side when a line is swept by another shader; that moves a colour of a pixel
-/// where few voxels mix.
+/// Tolerance for codes that round to the other side when a line is swept by another shader, which changes the
+/// colour of a pixel where few voxels mix.
 constexpr double kAxesTolerance = 5e-3;
 
 struct Frame {
@@ -46,7 +46,7 @@ double largestOf(const std::vector<SplatSums>& sums, Component value) {
   return largest;
 }
 
-/// Every component relative to its largest in the picture.
+/// The difference of every component relative to its largest value in the image.
 MaxError sumsDifference(const std::vector<SplatSums>& a, const std::vector<SplatSums>& b, glm::ivec2 size) {
   FV_CHECK_EQ(a.size(), b.size());
   MaxError worst;
@@ -121,7 +121,7 @@ Check checkSlabs(const TableBytes& table, const TableBytes& ofSlabs) {
   return worst.atMost(0.0, "slabs of eight planes: the same table, bit for bit");
 }
 
-/// Optical depths that a depth8 byte stands for are this far from the byte's own: half a code, and rounding.
+/// Largest difference of an optical depth from that of its depth8 byte: half a code, and rounding.
 double codeWidth(int byte) {
   const double next = byte + 0.501;
   return kMaximumCodedDepth * (next * next - double(byte) * byte) / (255.0 * 255.0);
@@ -131,8 +131,8 @@ double codedDepth(int byte) {
   return kMaximumCodedDepth * byte * byte / (255.0 * 255.0);
 }
 
-/// What a voxel sees along d, itself, and what it sees the other way is the whole line, whichever of the
-/// line's voxels is asked.
+/// The depth along d, the voxel's own, and the depth along -d add up to that of the whole line, for every
+/// voxel of the line.
 Check checkOpposites(const Volume& volume, const std::vector<float>& extinction, const TableBytes& table) {
   const glm::ivec3 n = volume.dimensions;
   MaxError worst;
@@ -150,7 +150,7 @@ Check checkOpposites(const Volume& volume, const std::vector<float>& extinction,
           const std::size_t v = volume.at(x, y, z), w = volume.at(next.x, next.y, next.z);
           if (!(extinction[v] > 0.0f && extinction[w] > 0.0f)) continue;  // not stored
           const std::array<int, 4> bytes{ahead[v], behind[v], ahead[w], behind[w]};
-          if (std::ranges::find(bytes, 255) != bytes.end()) continue;  // 16 or more
+          if (std::ranges::find(bytes, 255) != bytes.end()) continue;  // its depth is 16 or more
           double allowance = 0.0;
           for (const int byte : bytes) allowance += codeWidth(byte);
           const double atV = codedDepth(bytes[0]) + double(extinction[v]) * length + codedDepth(bytes[1]);

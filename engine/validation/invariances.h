@@ -1,6 +1,6 @@
 #pragma once
-// What must not change the outcome: the order of the voxels, how they are grouped, the slabs of the sweeps,
-// running again, the axes that the field is stored along.
+// Checks of what must not change results: the order of the voxels, their grouping, the slabs of the sweeps,
+// repetition, and the axes along which the field is stored.
 
 #include "engine/validation/report.h"
 #include "engine/validation/validation_scene.h"
@@ -8,7 +8,7 @@
 
 namespace freevoxels {
 
-/// Frames have `size` pixels.
+/// `size` is that of the frames in pixels.
 ReportSection invariances(const Device& device, const ValidationScene& scene, glm::ivec2 size);
 
 }  // namespace freevoxels

@@ -17,31 +17,31 @@ namespace freevoxels {
 
 namespace {
 
-/// Voxels along the edges of a layer: footprints reach less than two voxels far.
+/// Number of voxels along the edges of a layer: footprints reach less than two voxels.
 constexpr int kLayerEdge = 7;
-/// The middle of a voxel, and between four.
+/// The two places: the middle of a voxel, and the point between four.
 constexpr std::array<glm::dvec2, 2> kPlaces{{{3.0, 3.0}, {3.5, 3.5}}};
 constexpr std::array<const char*, 2> kPlaceNames{"middle of a voxel", "between four voxels"};
 
-constexpr int kPixelsPerVoxel = 4;  ///< small enough that no footprint is widened
+constexpr int kPixelsPerVoxel = 4;  ///< so that no footprint is widened
 
 constexpr double kProductTolerance = 1e-4;
-constexpr double kRippleTolerance = 3e-3;  ///< of a full layer of footprints (footprint.h)
+constexpr double kRippleTolerance = 3e-3;  ///< for a full layer of footprints (footprint.h)
 
-/// Transmittances.
+/// Transmittances of a stack.
 struct Stack {
   double opacity = 0.0;
   int layers = 0;
   double exact = 0.0;                       ///< (1 - opacity)^layers, Eq. 8
-  std::array<double, 2> normalisedDepth{};  ///< optical depth at each of the places
+  std::array<double, 2> normalisedDepth{};  ///< optical depth at both places
   std::array<double, 2> sorted{};
-  std::array<double, 2> product{};  ///< what Eq. 9 makes of `sorted`
+  std::array<double, 2> product{};  ///< the prediction of Eq. 9 for `sorted`
 
   double normalised(std::size_t place) const { return std::exp(-normalisedDepth[place]); }
   std::string text() const { return fmt::format("{} layers of {}", layers, opacity); }
 };
 
-/// Every splat of every layer attenuates by itself.
+/// The product of Eq. 9: every splat of every layer attenuates independently.
 double productOfSplats(double opacity, int layers, glm::dvec2 at) {
   double layer = 1.0;
   for (int y = 0; y < kLayerEdge; ++y)
@@ -50,7 +50,8 @@ double productOfSplats(double opacity, int layers, glm::dvec2 at) {
   return std::pow(layer, layers);
 }
 
-/// All stacks side by side in one volume of density = extinction: opacities along x, layers along y.
+/// All stacks side by side in one volume whose density is its extinction: opacities along x, numbers of
+/// layers along y.
 Volume volumeOf(const LayerStacks& stacks) {
   const glm::ivec3 size(kLayerEdge * int(stacks.opacities.size()), kLayerEdge * int(stacks.layers.size()),
                         stacks.layers.back());
@@ -60,7 +61,7 @@ Volume volumeOf(const LayerStacks& stacks) {
   });
 }
 
-/// The volume from above; pixel centres are at multiples of 1 / kPixelsPerVoxel from voxel (0, 0).
+/// A view from above; pixel centres are at multiples of 1 / kPixelsPerVoxel from voxel (0, 0).
 struct View {
   glm::ivec2 size;
   Camera camera;
@@ -126,7 +127,7 @@ ReportTable transmittanceTable(const std::vector<Stack>& stacks) {
   return table;
 }
 
-/// What comes through too much between four voxels.
+/// The excess transmittance between four voxels.
 void addSortedLeak(const std::vector<Stack>& stacks, ReportPlot& plot) {
   for (const Stack& stack : stacks) {
     const std::string name = fmt::format("sorted, alpha {}", stack.opacity);
@@ -136,7 +137,7 @@ void addSortedLeak(const std::vector<Stack>& stacks, ReportPlot& plot) {
   }
 }
 
-/// At each number of layers, at the opacity where it is most.
+/// For each number of layers, at the opacity where it is largest.
 void addNormalisedLeak(const std::vector<Stack>& stacks, ReportPlot& plot) {
   std::map<int, double> leaks;
   for (const Stack& stack : stacks) {

@@ -17,10 +17,10 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kExtinctionTolerance = 1e-5;  ///< of sums of eight 32-bit floats
+constexpr double kExtinctionTolerance = 1e-5;  ///< for sums of eight 32-bit floats
 constexpr double kLightTolerance = 2e-3;       ///< half a step of 9 bits
-constexpr double kLightFloor = 1e-3;           ///< of the brightest: fainter blocks count as that
-constexpr double kColorTolerance = 1e-3;       ///< of 16-bit halves
+constexpr double kLightFloor = 1e-3;           ///< as a fraction of the brightest: fainter blocks count as that
+constexpr double kColorTolerance = 1e-3;       ///< for 16-bit halves
 constexpr double kCodeTolerance = 1.0;
 constexpr double kPictureTolerance = 1e-5;
 constexpr int kCameras = 24;
@@ -83,7 +83,7 @@ void compareTables(const LevelData& level, const LevelData& reference, int numbe
   }
 }
 
-/// Anywhere about the volume or in it, looking at a place in it.
+/// A random camera around or inside the volume, looking at a point in it.
 Camera randomCamera(const Volume& volume, std::mt19937& generator) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const auto place = [&](double beyond) {
@@ -96,7 +96,7 @@ Camera randomCamera(const Volume& volume, std::mt19937& generator) {
   return camera;
 }
 
-/// Each camera with a level of detail at which several levels are likely.
+/// Cameras with a level of detail for which several levels are likely to be drawn.
 Check checkCoverage(Renderer& renderer, const Volume& volume, const LevelData& voxels, glm::ivec2 size) {
   std::mt19937 generator(5);
   MaxError worst;
@@ -112,7 +112,7 @@ Check checkCoverage(Renderer& renderer, const Volume& volume, const LevelData& v
   return worst.atMost(0.0, "cut: voxels that are not covered once, from random places", "voxels");
 }
 
-/// From near enough for several levels.
+/// A view near enough for several levels.
 Check checkCutPicture(Renderer& renderer, const ValidationScene& scene, const LevelData& voxels,
                       std::span<const LevelData> levels, const TableSettings& table, glm::ivec2 size) {
   Camera camera =
@@ -131,15 +131,15 @@ Check checkCutPicture(Renderer& renderer, const ValidationScene& scene, const Le
       .atMost(kPictureTolerance, "cut: picture of several levels");
 }
 
-/// What half a byte keeps of a bound: no darker, and of linear8 0 for 0 alone.
+/// A bound as half a byte keeps it: never darker, and for linear8 0 only for 0.
 int packedBound(int code, bool largest) {
   return largest ? std::min((code + 15) / 16, 15) * 16 : code / 16 * 16;
 }
 
 using Bounds = std::vector<std::vector<int>>;  // [direction][block], any where nothing is held
 
-/// A bound is what half a byte keeps of the code of the most transparent voxel that holds anything; `own` is
-/// that of the children, one by one, and becomes the parents'.
+/// A bound is what half a byte keeps of the code of the block's most transparent occupied voxel. `own` has
+/// those of the children and is replaced by those of the parents.
 void compareBounds(const LevelData& level, const LevelData& children, int number,
                    const TableSettings& settings, Bounds& own, MaxError& worst) {
   const bool largest = settings.code == AttenuationCode::Linear8;

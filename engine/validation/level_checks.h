@@ -1,6 +1,6 @@
 #pragma once
-// The octree and its cuts (Subr et al. 2007, Section 3.2) against the plain double-precision version on the
-// CPU.
+// Checks of the octree and its cuts (Subr et al. 2007, Section 3.2) against the double-precision version on
+// the CPU.
 
 #include <span>
 #include <vector>
@@ -14,17 +14,17 @@
 
 namespace freevoxels {
 
-/// Every level given the one below it, the first given `voxels`: extinction and colours, whether the optical
-/// depth of the whole is kept, the table.
+/// Checks every level, given the one below it (`voxels` for the first): extinction and colours, conservation
+/// of the optical depth, the table.
 std::vector<Check> compareLevels(const Volume& volume, const LevelData& voxels,
                                  std::span<const LevelData> levels, const TableSettings& settings,
                                  const char* name);
 
-/// Voxels with extinction or light that are not in exactly one of the blocks.
+/// The occupied voxels that are not in exactly one of the blocks.
 std::size_t coverageErrors(const Volume& volume, std::span<const double> extinction,
                            std::span<const Block> blocks, std::span<const glm::dvec3> emission = {});
 
-/// Levels, coverage by the cuts of random cameras, and the sums of a cut of several levels.
+/// Checks levels, coverage by the cuts of random cameras, and the sums of a cut of several levels.
 ReportSection levelChecks(const Device& device, const ValidationScene& scene, glm::ivec2 size);
 
 }  // namespace freevoxels

@@ -20,8 +20,8 @@ namespace {
 
 constexpr float kDifferenceGain = 8.0f;
 constexpr double kBallRadius = 3.0;  ///< voxels
-/// Of the light that a ball takes from the fog, what may be missing beside its shadow. A shadow in voxels is
-/// wider than the ball's by the fog's footprints.
+/// The fraction of the light that a ball takes from the fog that may be missing beside its shadow. A shadow
+/// in voxels is wider than the ball's by the footprints of the fog.
 constexpr double kMostBeside = 0.1;
 constexpr double kMostLeak = 1e-3;
 constexpr int kSkyRows = 128;
@@ -44,7 +44,7 @@ Image amplified(const Image& a, const Image& b) {
   return difference;
 }
 
-/// From the side, all of a box of edge 1 in the picture.
+/// A view from the side that shows all of a box of edge 1.
 const Camera kBoxCamera{
     .position = {0.0, 0.0, 3.0}, .lookAt = {0.0, 0.0, 0.0}, .orthographic = true, .orthographicHeight = 1.0};
 
@@ -58,8 +58,8 @@ Volume foggyBall(int resolution, bool withBall) {
   });
 }
 
-/// Of the light that is missing because of the ball, the part that is not behind it. The light's way in the
-/// picture is `way`, of length 1; the ball itself does not count.
+/// The fraction of the missing light that is not behind the ball. `way` is the direction of the light in the
+/// image, of length 1; the ball itself does not count.
 double partBeside(const Image& fog, const Image& ball, int resolution, glm::dvec2 way) {
   double beside = 0.0, all = 0.0;
   for (int y = 0; y < fog.size.y; ++y)
@@ -102,7 +102,8 @@ void checkBall(const Device& device, int resolution, ReportSection& section) {
   section.pictures.push_back(std::move(pictures));
 }
 
-/// Scalar 1 in an opaque hollow ball, two voxels thick, 0.5 in it; nothing around it.
+/// Scalar 1 in the wall of an opaque hollow ball, which is two voxels thick, 0.5 inside it; no data around
+/// it.
 Volume hollowBall(int resolution) {
   const glm::ivec3 n(resolution);
   const glm::dvec3 middle = 0.5 * glm::dvec3(n - 1);
@@ -113,7 +114,7 @@ Volume hollowBall(int resolution) {
   });
 }
 
-/// White fog and a black wall, so that the fog's light is all that shows.
+/// White fog and a black wall, so that only the fog's light shows.
 Classification fogAndWall(const Volume& volume) {
   Classification classification;
   classification.transferFunction =
@@ -153,7 +154,7 @@ void checkHollow(const Device& device, int resolution, ReportSection& section) {
   }
 }
 
-/// With 0 where there is no data: scanners measure air.
+/// The volume with 0 instead of no data: scanners measure air.
 Volume filled(const Volume& volume) {
   return makeVolume(volume.dimensions, volume.indexToWorld, [&](int x, int y, int z) {
     const float scalar = volume.scalar(x, y, z);
@@ -165,15 +166,15 @@ Volume filled(const Volume& volume) {
 struct LitCase {
   std::string name;
   Lighting lighting;
-  double goal;              ///< PSNR of the worst view, dB
-  double meanGoal = 0.0;    ///< of the mean over the views; 0: none
+  double goal;              ///< least PSNR of the worst view, in dB
+  double meanGoal = 0.0;    ///< least mean PSNR over the views; 0 if there is none
   Draw draw = Draw::Splats;
 };
 
-/// The same lights look the same to the oracle, whatever their shadows are made of.
+/// The oracle's images, which do not depend on how shadows are computed.
 bool looksAlike(const Lighting& a, const Lighting& b) { return a.lights == b.lights && a.environment == b.environment; }
 
-/// Pictures that are lit in each of the ways.
+/// Images with each way of lighting.
 void compareToOracle(const Device& device, const QualityScene& scene, std::span<const QualityView> views,
                      int pictureEdge, const std::vector<LitCase>& cases, ReportSection& section) {
   ReportTable table{.caption = "PSNR against the oracle, dB", .columns = {"view"}, .rows = {}};

@@ -1,5 +1,5 @@
 #pragma once
-// How near lit pictures are to the oracle's, and whether shadows are where they should be.
+// Lit images compared with the oracle's, and the place of shadows.
 
 #include <span>
 
@@ -9,24 +9,24 @@
 
 namespace freevoxels {
 
-/// What lit pictures of volumes without parts of the size of a voxel have to reach, in dB: shadowed by the
-/// table, and exactly; and lit by a sky.
+/// Least PSNR in dB of lit images of volumes without structures of the size of a voxel: with shadows of the
+/// table, with exact shadows, and lit by a sky.
 inline constexpr double kTableLightPsnr = 32.0, kExactLightPsnr = 38.0, kEnvironmentPsnr = 42.0;
 
-/// One light from the side, from a few views.
+/// One light from the side, in several views.
 ReportSection lightQuality(const Device& device, const QualityScene& scene, int pictureEdge);
 
-/// Mean over the views, and the worst of them, of what is lit and opaque.
+/// Least mean over the views, and least worst view, of opaque lit volumes.
 inline constexpr double kOpaqueMeanPsnr = 35.0, kOpaqueWorstPsnr = 32.0;
 
-/// One and three lights with exact shadows on what is opaque within a few voxels.
+/// One and three lights with exact shadows on volumes that become opaque within a few voxels.
 ReportSection opaqueLightQuality(const Device& device, const QualityScene& scene, std::span<const QualityView> views,
                                  int pictureEdge);
 
-/// A sky with a sun, from one view: the oracle marches for it from every point of the volume.
+/// A sky with a sun, in one view: the oracle marches towards it from every point of the volume.
 ReportSection environmentQuality(const Device& device, const QualityScene& scene, int pictureEdge);
 
-/// The shadow of a small opaque ball in thin fog, which 26 directions draw as a star, and the light within an
+/// The shadow of a small opaque ball in thin fog, which 26 directions draw as a star, and the light inside an
 /// opaque hollow ball, where there is none; in volumes of `resolution`³ voxels.
 ReportSection shadowChecks(const Device& device, int resolution);
 

@@ -1,5 +1,5 @@
 #pragma once
-// The largest of many figures and where it was, and places as a report names them.
+// The largest of many errors and its place, and the names of places in reports.
 
 #include <cmath>
 #include <cstdint>
@@ -14,7 +14,7 @@ namespace freevoxels {
 
 class MaxError {
  public:
-  /// `where()` is asked for the place only if this is the worst so far. NaN is worse than anything.
+  /// Adds a figure. `where()` is only called if it is the largest so far. NaN is larger than anything.
   template <typename Where>
   void take(double figure, const Where& where) {
     if (figure <= figure_ || std::isnan(figure_)) return;
@@ -23,7 +23,7 @@ class MaxError {
   }
   double figure() const { return figure_; }
 
-  /// The figure against the most that it may be.
+  /// The check that the figure does not exceed its bound.
   Check atMost(double tolerance, std::string name, std::string unit = "") const {
     return {.name = std::move(name),
             .figure = figure_,
@@ -38,15 +38,15 @@ class MaxError {
   std::string where_;
 };
 
-/// "voxel (1, 2, 3)", of an index into Volume::values
+/// "voxel (1, 2, 3)", for an index (Volume::at).
 std::string voxelText(const Volume& volume, std::size_t voxel);
 /// "direction (1, 0, -0.5)"
 std::string directionText(DirectionSet set, int direction);
-/// "pixel (1, 2)", of an index in reading order
+/// "pixel (1, 2)", for an index in reading order.
 std::string pixelText(glm::ivec2 imageSize, std::size_t pixel);
 
-/// Largest difference of two pictures of one size, in premultiplied RGBA; colours of flames, which are
-/// brighter than 1, relative to the brightest component of `b`.
+/// Largest difference of two images of equal size in premultiplied RGBA. Colours of flames, which exceed 1,
+/// are compared relative to the brightest component of `b`.
 MaxError largestDifference(const Image& a, const Image& b);
 
 }  // namespace freevoxels

@@ -26,12 +26,12 @@ namespace {
 /// Figure 2: a cube of optical depth 3.5 from face to face.
 constexpr int kTableCubeEdge = 32;
 const glm::ivec2 kTablePicture(256);
-/// Sees the sides +y and +z, where the directions leave, and -x, where they come from.
+/// A camera that sees the sides +y and +z, which the directions point to, and -x, which they come from.
 constexpr QualityView kTableView{-35, 25};
 constexpr double kTableCubeExtinction = 3.5;
-/// Opaque enough for the surface to be seen, not for the edges to be hard.
+/// Opaque enough to show the surface, without hard edges.
 constexpr float kShownOpacity = 0.5f;
-/// No grey, so that both black and white voxels stand out.
+/// A background that is not grey, so that black and white voxels are both visible.
 const glm::vec3 kShownBackground(0.08f, 0.16f, 0.3f);
 /// Half a code of depth8 is worth at most 4 sqrt(tau) exp(-tau) / 255, largest at tau = 1/2.
 constexpr double kHalfCodeTransmittance = 0.007;
@@ -49,18 +49,18 @@ const glm::ivec2 kLitPicture(192), kJudgedPicture(64);
 constexpr QualityView kLitView{30, 8};
 const glm::dvec3 kToLight(-1.0, 0.8, 0.35), kRed(1.0, 0.12, 0.06);
 constexpr double kLitIntensity = 2.0 * kDefaultIrradiance;
-/// As in flesh: red goes far, blue does not.
+/// As in flesh, red light travels far and blue light does not.
 const glm::dvec3 kFleshTint(0.3, 1.0, 1.6);
 constexpr double kLeastBleeding = 1.2;
 
-/// Scalars are transmittances along a direction, out of the table.
+/// A volume whose scalars are the transmittances along a direction, from the table.
 Volume transmittances(const Volume& cube, const std::vector<std::uint8_t>& plane) {
   return makeVolume(cube.dimensions, cube.indexToWorld, [&](int x, int y, int z) {
     return std::exp(-decodeOpticalDepth(AttenuationCode::Depth8, plane[cube.at(x, y, z)]));
   });
 }
 
-/// Scalar 0 is black, 1 is white.
+/// A transfer function from black for 0 to white for 1.
 Classification asBrightness(const Volume& volume) {
   Classification classification;
   classification.transferFunction =
@@ -129,7 +129,7 @@ struct LitHead {
 
   LitHead(const StageMaker& make, int edge) : volume(makeProcedural("head", edge)) {
     classification.transferFunction = qualityTransferFunction(QualityColor::Bone, volume);
-    classification.order = ClassificationOrder::Pre;  // as splats have it
+    classification.order = ClassificationOrder::Pre;  // as splats use it
     outputs = make(volume, classification, {});
   }
   Camera camera() const { return viewCamera(volume, kLitView); }
@@ -149,7 +149,7 @@ Check checkLitHead(const LitHead& head, const Lighting& lighting) {
           .where = viewText(kLitView)};
 }
 
-/// Of the whole picture.
+/// The mean opacity of the image.
 double redOverBlue(const Image& image) {
   glm::dvec4 sum(0.0);
   for (const glm::vec4& pixel : image.pixels) sum += glm::dvec4(pixel);

@@ -6,15 +6,15 @@
 
 namespace freevoxels {
 
-/// Figure 2: what the attenuation table of a uniform, grey, translucent cube holds for three directions, as
-/// the brightness of its voxels; and against Beer-Lambert.
+/// Figure 2: the attenuation table of a uniform, grey, translucent cube in three directions, as the
+/// brightness of its voxels; compared with Beer-Lambert.
 ReportSection paperFigure2(const StageMaker& make);
 
-/// Figure 6: a uniform translucent cube of few voxels, blended back to front and as FreeVoxels; and how far
-/// the opacity of each is from the oracle's.
+/// Figure 6: a uniform translucent cube of few voxels, blended back to front and as FreeVoxels; and the
+/// difference of both opacities from the oracle's.
 ReportSection paperFigure6(const StageMaker& make);
 
-/// Figure 7: a head in red light, against the oracle; and in white light that turns red within it.
+/// Figure 7: a head in red light, compared with the oracle; and in white light that becomes red inside it.
 ReportSection paperFigure7(const StageMaker& make);
 
 }  // namespace freevoxels

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kTurntableElevation = 10.0;
 constexpr double kLargestJump = 1.0;  ///< dB
-/// Differences below 1/8 can be told apart.
+/// Scales differences so that those below 1/8 can be distinguished.
 constexpr float kDifferenceGain = 8.0f;
 
 std::vector<PictureFigures> figuresOf(const std::vector<Image>& pictures, const std::vector<Image>& oracle) {
@@ -29,7 +29,7 @@ std::vector<PictureFigures> figuresOf(const std::vector<Image>& pictures, const 
   return figures;
 }
 
-/// |test - reference| of the colours, opaque.
+/// An opaque image of |test - reference| of the colours.
 Image visibleDifference(const Image& test, const Image& reference) {
   Image difference = absoluteDifference(test, reference);
   for (glm::vec4& pixel : difference.pixels) pixel = glm::vec4(kDifferenceGain * glm::vec3(pixel), 1.0f);

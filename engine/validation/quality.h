@@ -1,5 +1,5 @@
 #pragma once
-// Pictures against the oracle (engine/reference/oracle.h): how near each method comes to what should be seen.
+// Images compared with the oracle (engine/reference/oracle.h), for each drawing method.
 
 #include <span>
 
@@ -13,8 +13,8 @@ namespace freevoxels {
 
 struct QualityRun {
   std::span<const QualityView> views;
-  int pictureEdge = 128;  ///< pixels, of square pictures
-  bool hasGoals = false;  ///< whether the methods' goals are meant for volumes and pictures of this size
+  int pictureEdge = 128;  ///< edge of the square images in pixels
+  bool hasGoals = false;  ///< whether the methods' goals apply to volumes and images of this size
 };
 
 struct QualityResult {
@@ -22,17 +22,17 @@ struct QualityResult {
   QualityFigures figures;
 };
 
-/// Every view is drawn once by the oracle and once by each method. Checks where there are goals, tables, and
-/// pictures of the view where the first method is worst.
+/// Draws every view once by the oracle and once by each method. Reports checks where there are goals, tables,
+/// and the images of the view in which the first method is worst.
 QualityResult pictureQuality(const StageMaker& make, const QualityScene& scene,
                              const std::vector<QualityMethod>& methods, const QualityRun& run);
 
-/// The largest step between neighbours of a closed series: the last one's neighbour is the first. `where` is
-/// the x of the earlier of the two.
+/// The largest step between neighbours of a closed series, in which the last is a neighbour of the first.
+/// `where` is the x of the earlier of the two.
 Check largestJump(const std::vector<glm::dvec2>& series, double tolerance, std::string name);
 
-/// A turn at elevation 10 in as many frames from one distance: PSNR of the first method, whose frames may
-/// differ by 1 dB from their neighbours, of the others with goals for every view, and of sorted blending.
+/// A turntable of `frames` frames at elevation 10 from one distance: PSNR of the first method, whose frames
+/// may differ by 1 dB from their neighbours, of the others with goals for every view, and of sorted blending.
 ReportSection turntableQuality(const StageMaker& make, const QualityScene& scene, int frames,
                                int pictureEdge);
 

@@ -51,7 +51,7 @@ std::string rangeText(const std::vector<PictureFigures>& figures) {
   return fmt::format("{:.1f}–{:.1f}", least.psnr, largest.psnr);
 }
 
-/// Over all views of all scenes that count.
+/// The mean over all views of all scenes that count.
 double meanPsnr(const std::vector<QualityFigures>& scenes, std::size_t method, bool onlyWithGoals) {
   std::vector<PictureFigures> all;
   for (const QualityFigures& scene : scenes)

@@ -1,5 +1,5 @@
 #pragma once
-// How near the oracle the methods' pictures are: the figures, and what is read off them.
+// The quality figures of the methods' images relative to the oracle's, and their tables and checks.
 
 #include <string>
 #include <vector>
@@ -11,41 +11,41 @@
 
 namespace freevoxels {
 
-/// What both pictures are laid over for FLIP: over black, pictures that are mostly empty would be judged at
-/// exposures that nobody looks at them with.
+/// The background of both images for FLIP. Over black, images that are mostly empty would be judged at
+/// exposures at which nobody looks at them.
 inline constexpr float kFlipBackground = 0.18f;
 
 struct PictureFigures {
-  double psnr = 0.0;  ///< dB, of premultiplied RGBA
+  double psnr = 0.0;  ///< in dB, of premultiplied RGBA
   double flip = 0.0;  ///< mean HDR-FLIP over grey
 };
 PictureFigures compareToOracle(const Image& picture, const Image& oracle);
 
-/// Of one scene.
+/// The figures of one scene.
 struct QualityFigures {
   std::string scene;
   bool thin = false;
-  int resolution = 0;  ///< voxels along an edge of the volume, before it was cropped
+  int resolution = 0;  ///< voxels along an edge of the volume before it is cropped
   bool hasGoals = false;
   std::vector<QualityView> views;
   std::vector<std::vector<PictureFigures>> figures;  ///< [method][view]
 
   double meanPsnr(std::size_t method) const;
   double meanFlip(std::size_t method) const;
-  /// View where the method's PSNR is least.
+  /// The view in which the method's PSNR is least.
   std::size_t worstView(std::size_t method) const;
 };
 
-/// Mean, least, where it is least, FLIP; a row a method.
+/// A table with a row for each method: mean, least, view of the least, FLIP.
 ReportTable methodTable(const QualityFigures& scene, const std::vector<QualityMethod>& methods);
-/// PSNR of every method in every view.
+/// A table of the PSNR of every method in every view.
 ReportTable viewTable(const QualityFigures& scene, const std::vector<QualityMethod>& methods);
 
-/// The goals that a single scene can meet or miss.
+/// Checks of the goals that apply to a single scene.
 std::vector<Check> sceneChecks(const QualityFigures& scene, const std::vector<QualityMethod>& methods);
 
-/// Least and largest PSNR of each method on each scene, the mean over all views of all scenes, and the goals
-/// for it. Scenes without goals do not count for those.
+/// Least and largest PSNR of each method on each scene, and the mean over all views of all scenes with its
+/// goal. Scenes without goals do not count for that.
 ReportSection summariseQuality(const std::vector<QualityFigures>& scenes,
                                const std::vector<QualityMethod>& methods);
 

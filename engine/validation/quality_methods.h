@@ -1,5 +1,5 @@
 #pragma once
-// The ways to draw that are compared with the oracle, and what their pictures have to reach.
+// The drawing methods that are compared with the oracle, and the goals for their images.
 
 #include <cstddef>
 #include <limits>
@@ -13,29 +13,30 @@
 
 namespace freevoxels {
 
-/// PSNR in dB, of premultiplied RGBA.
+/// Least PSNR in dB of premultiplied RGBA.
 struct QualityGoals {
   std::optional<double> mean;       ///< over all views of all volumes
-  std::optional<double> least;      ///< of any view of a volume that is not thin
-  std::optional<double> leastThin;  ///< of any view of a thin one
-  /// `leastThin` is no goal for volumes of more voxels along an edge: what is one voxel thick in a coarse
-  /// volume is several thick in a fine one, and shades by angles between which 26 directions cannot tell.
+  std::optional<double> least;      ///< for every view of a volume that is not thin
+  std::optional<double> leastThin;  ///< for every view of a thin volume
+  /// Largest number of voxels along an edge for which `leastThin` is a goal: what is one voxel thick in a
+  /// coarse volume is several thick in a fine one, and is shaded by angles that 26 directions cannot
+  /// distinguish.
   int thinResolution = std::numeric_limits<int>::max();
-  bool notBelowSorted = false;  ///< at least as good as sorted blending in every view
+  bool notBelowSorted = false;  ///< whether it must be as good as sorted blending in every view
 };
 
 struct QualityMethod {
   std::string name;
   TableSettings table;
-  FrameSettings frame;  ///< apart from the size
-  ClassificationOrder order = ClassificationOrder::Pre;  ///< that of the oracle is Post
+  FrameSettings frame;  ///< without the size
+  ClassificationOrder order = ClassificationOrder::Pre;  ///< the oracle uses Post
   QualityGoals goals;
 };
 
-/// The first is the default method. One is sorted blending.
+/// All methods. The first is the default method; one is sorted blending.
 const std::vector<QualityMethod>& qualityMethods();
 
-/// Where in a list that holds one sorted blending is.
+/// Index of sorted blending in a list that contains it.
 std::size_t sortedMethod(const std::vector<QualityMethod>& methods);
 
 }  // namespace freevoxels

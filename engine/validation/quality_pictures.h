@@ -1,5 +1,5 @@
 #pragma once
-// Square pictures of a scene from many cameras, to be compared.
+// Square images of a scene from many cameras, for comparison.
 
 #include <vector>
 
@@ -9,8 +9,8 @@
 
 namespace freevoxels {
 
-/// How much doubling the oracle's rays may still change a pixel: its pictures are then 80 dB from those of a
-/// quarter of this, for a third of the time, and what is measured with them is below 65 dB.
+/// The oracle's tolerance: its images then have 80 dB relative to those with a quarter of this tolerance, in
+/// a third of the time, and what is measured with them is below 65 dB.
 inline constexpr double kQualityTolerance = 4e-3;
 
 std::vector<Image> oraclePictures(const QualityScene& scene, const std::vector<Camera>& cameras,

@@ -12,7 +12,7 @@ namespace freevoxels {
 
 namespace {
 
-/// Of the volume whose voxels are what opacities refer to: one of another resolution shows the same medium.
+/// The resolution to whose voxels opacities refer, so that volumes of other resolutions show the same medium.
 constexpr double kUnitResolution = 64.0;
 
 constexpr std::array<QualityView, 12> kViews{{{0, 0},
@@ -106,7 +106,7 @@ QualityScene makeQualityScene(const QualitySubject& subject, int resolution, Vol
   TransferFunction function = qualityTransferFunction(subject.color, scene.volume);
   function.unitDistance *= resolution / kUnitResolution;
   scene.classification.transferFunction = std::move(function);
-  scene.classification.order = ClassificationOrder::Pre;  // as splats have it
+  scene.classification.order = ClassificationOrder::Pre;  // as splats use it
   return scene;
 }
 

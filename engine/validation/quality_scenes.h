@@ -1,5 +1,5 @@
 #pragma once
-// Volumes with their colours, and the views of them, on which picture quality is measured.
+// Volumes with their colours and views, for measuring image quality.
 
 #include <array>
 #include <span>
@@ -21,7 +21,7 @@ TransferFunction qualityTransferFunction(QualityColor color, const Volume& volum
 struct QualitySubject {
   const char* procedural;
   QualityColor color;
-  bool thin;  ///< parts of the size of a voxel: less is expected of its pictures
+  bool thin;  ///< whether it has structures of the size of a voxel, for which less quality is expected
 };
 inline constexpr std::array<QualitySubject, 4> kQualitySubjects{{{"head", QualityColor::Bone, false},
                                                                  {"shells", QualityColor::Cloud, false},
@@ -33,26 +33,26 @@ struct QualityScene {
   Volume volume;
   Classification classification;
   bool thin = false;
-  int resolution = 0;  ///< voxels along an edge of the volume, before it was cropped
+  int resolution = 0;  ///< voxels along an edge of the volume before it is cropped
 };
 
-/// `volume`, made of `resolution`³ voxels, is cropped to its active voxels. Its medium is the same at every
-/// resolution: opacities of the transfer function are of a 64th of the edge.
+/// Crops `volume`, which was made with `resolution`³ voxels, to its active voxels. The medium is the same for
+/// every resolution: opacities of the transfer function refer to a 64th of the edge.
 QualityScene makeQualityScene(const QualitySubject& subject, int resolution, Volume volume);
 
-/// In degrees, as for framingCamera.
+/// Angles in degrees, as for framingCamera.
 struct QualityView {
   double azimuth = kDefaultAzimuth, elevation = kDefaultElevation;
   double verticalFov = 35.0;
 };
-/// Along axes, at edges, at a corner, oblique, between lattice directions, and one with the eye close.
+/// Twelve views: along axes, at edges, at a corner, oblique, between lattice directions, and close.
 std::span<const QualityView> qualityViews();
-/// Fewer, of the same kinds.
+/// Fewer views of the same kinds.
 std::span<const QualityView> quickQualityViews();
 
-/// "(35, 25)", with the field of view where it is not the usual.
+/// "(35, 25)", with the field of view if it is not the default.
 std::string viewText(const QualityView& view);
-/// Of a square picture.
+/// The camera of a view, for a square image.
 Camera viewCamera(const Volume& volume, const QualityView& view);
 
 }  // namespace freevoxels

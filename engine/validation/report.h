@@ -1,5 +1,5 @@
 #pragma once
-// What a validation run found: verdicts, tables, plots and pictures, in the order they are told.
+// The results of a validation run: checks, tables, plots and images, in the order in which they are shown.
 
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -11,7 +11,7 @@
 
 namespace freevoxels {
 
-/// One figure against what it may be. A figure that is NaN never passes.
+/// A figure and its bound. A figure that is NaN never passes.
 struct Check {
   enum class Bound { AtMost, AtLeast };
 
@@ -20,27 +20,27 @@ struct Check {
   Bound bound = Bound::AtMost;
   double tolerance = 0.0;
   std::string unit;   ///< "codes", "dB", ...; may be empty
-  std::string where;  ///< where the figure is worst: a voxel, a pixel, a view; may be empty
+  std::string where;  ///< place of the worst figure: a voxel, a pixel, a view; may be empty
 
   bool passed() const { return bound == Bound::AtMost ? figure <= tolerance : figure >= tolerance; }
 };
 
 struct ReportTable {
   std::string caption;
-  std::vector<std::string> columns;            ///< the first names the rows
-  std::vector<std::vector<std::string>> rows;  ///< as many cells as columns
+  std::vector<std::string> columns;            ///< the first column has the names of the rows
+  std::vector<std::vector<std::string>> rows;  ///< each with as many cells as there are columns
 };
 
 struct ReportPlot {
   struct Series {
     std::string name;
-    std::vector<glm::dvec2> points;  ///< x ascending; the line is broken where one is not finite
+    std::vector<glm::dvec2> points;  ///< x ascending; the line is interrupted at points that are not finite
   };
   std::string caption, xLabel, yLabel;
   std::vector<Series> series;
 };
 
-/// Pictures side by side; embedded as PNG over `background` (linear).
+/// Images side by side, embedded as PNG over `background` (linear).
 struct ReportPictures {
   struct Picture {
     std::string caption;
@@ -72,12 +72,12 @@ struct Report {
   bool passed() const { return failures() == 0; }
 };
 
-/// One file that needs nothing else: style, plots (SVG) and pictures (PNG) are inside. Atomic. Fails with
+/// Writes a single HTML file that contains its style, plots (SVG) and images (PNG). Atomic. Fails with
 /// ExitCode::Output.
 void writeHtml(const std::filesystem::path& file, const Report& report);
 
-/// Everything but the pictures' pixels. Numbers read back as the same doubles; what JSON has no number for is
-/// one of the strings "NaN", "Infinity", "-Infinity". Atomic. Fails with ExitCode::Output.
+/// Writes everything but the images. Numbers are read back as the same doubles; those without a JSON form are
+/// the strings "NaN", "Infinity" and "-Infinity". Atomic. Fails with ExitCode::Output.
 void writeJson(const std::filesystem::path& file, const Report& report);
 
 }  // namespace freevoxels

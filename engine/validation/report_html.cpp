@@ -18,7 +18,7 @@ namespace freevoxels {
 namespace {
 
 constexpr const char* kTitle = "FreeVoxels validation report";
-/// Smaller pictures are shown in whole multiples of their size, so that their pixels can be seen.
+/// Smaller images are shown at whole multiples of their size, so that their pixels are visible.
 constexpr int kSmallPicture = 256;
 
 std::string plural(std::size_t count, const char* noun) {
@@ -32,12 +32,12 @@ std::string verdictText(std::size_t count, std::size_t failures) {
   return fmt::format("{} of {} failed", failures, plural(count, "check"));
 }
 
-/// Nothing where there is no text.
+/// Empty if there is no text.
 std::string afterwards(const char* before, const std::string& text, const char* after) {
   return text.empty() ? "" : before + escapeHtml(text) + after;
 }
 
-/// Cells of numbers stand under each other at their right ends.
+/// Cells with numbers are aligned to the right.
 bool isNumeric(const std::string& cell) {
   char* end = nullptr;
   std::strtod(cell.c_str(), &end);

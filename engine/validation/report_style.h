@@ -1,5 +1,5 @@
 #pragma once
-// How the page of a report looks: on a screen and on paper, with the fonts that are there.
+// The style sheet of a report, for screen and paper, with installed fonts.
 
 namespace freevoxels {
 

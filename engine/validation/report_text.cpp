@@ -11,7 +11,7 @@ namespace freevoxels {
 namespace {
 
 constexpr double kLargestWhole = 1e15, kSmallestPlain = 1e-3, kLargestPlain = 1e6;
-constexpr int kEnoughDigits = 17;  // any two doubles differ in them
+constexpr int kEnoughDigits = 17;  // distinguishes any two doubles
 
 std::string superscript(const std::string& number) {
   static const std::array<std::string, 10> kDigits = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};

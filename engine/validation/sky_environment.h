@@ -1,14 +1,15 @@
 #pragma once
-// A sky to light things with: brighter towards the horizon, a sun, and dark ground.
+// A procedural sky for lighting: brighter towards the horizon, with a sun, and dark ground.
 
 #include "engine/scene/environment.h"
 
 namespace freevoxels {
 
-/// Where the sun of makeSky is: degrees about +y from +z, and above the horizon; and half as wide as it is.
+/// The position of makeSky's sun: degrees about +y from +z, and above the horizon; and its angular radius in
+/// degrees.
 inline constexpr double kSkySunAzimuth = 60.0, kSkySunElevation = 25.0, kSkySunRadius = 3.0;
 
-/// `height` rows, twice as many columns. Half of the light that comes from above is the sun's.
+/// An environment with `height` rows and twice as many columns. The sun has half of the light from above.
 Environment makeSky(int height);
 
 }  // namespace freevoxels

@@ -24,22 +24,22 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A transfer function's -log(1 - alpha) in 32-bit floats loses up to 1 / (1 - kMaximumOpacity) = 4096 units
-/// in the last place of alpha, of 8.3 that are left.
+/// Tolerance for a transfer function's -log(1 - alpha) in 32-bit floats, which loses up to 1 / (1 -
+/// kMaximumOpacity) = 4096 units in the last place of alpha, of 8.3 that remain.
 constexpr double kExtinctionTolerance = 1e-4;
 /// Half a step of 9 bits.
 constexpr double kEmissionTolerance = 2e-3;
 constexpr double kCodeTolerance = 1.0;
-/// Codes of depths along rays that are less than this are finer than 32-bit floats can add up.
+/// Codes of smaller depths along rays are finer than 32-bit floats can add up.
 constexpr double kShallowDepth = 1e-3;
 constexpr double kSumsTolerance = 1e-4;
 constexpr double kPictureTolerance = 1e-5, kDistanceTolerance = 1e-5;
 
-/// An error in a pixel's sum counts relative to the pixel, but to no less than this part of the picture's
-/// largest: at the rim of a single footprint a sum is (1 - r²/R²)⁴ of an r that is nearly R, of which 32-bit
-/// floats keep few digits, and nobody sees any.
+/// An error in a pixel's sum is relative to that sum, but to no less than this fraction of the image's
+/// largest sum: at the rim of a single footprint a sum is (1 - r²/R²)⁴ for an r that is nearly R, of which
+/// 32-bit floats keep few digits, and which is invisible.
 constexpr double kSumsFloor = 5e-2;
-/// A mean distance is compared where the pixel has at least this alpha.
+/// Mean distances are compared in pixels with at least this alpha.
 constexpr float kLeastAlpha = 1e-3f;
 
 struct TableVariant {
@@ -53,16 +53,16 @@ constexpr std::array<TableVariant, 5> kTables{
      {"linear8, steps of one length", {AttenuationCode::Linear8, false}},
      {"depth8, 98 directions", {AttenuationCode::Depth8, true, DirectionSet::Directions98}}}};
 
-/// In parallel projection all voxels see the eye in one direction, so that rounding cannot choose another
-/// nearest one.
+/// In orthographic projection all voxels have the same direction to the eye, so that rounding cannot choose
+/// another nearest one.
 struct Method {
   const char* name;
-  std::size_t table;  ///< of kTables
+  std::size_t table;  ///< index into kTables
   bool orthographic;
   Composite composite;
   AttenuationLookup attenuation;
   bool gradient, depth;
-  bool inside = false;  ///< the eye is in the middle of the volume
+  bool inside = false;  ///< whether the eye is in the middle of the volume
 };
 constexpr std::array<Method, 5> kMethods{
     {{"default", 0, false, Composite::Normalised, AttenuationLookup::Bilinear, true, true},
@@ -71,7 +71,7 @@ constexpr std::array<Method, 5> kMethods{
      {"the paper's", 3, true, Composite::Additive, AttenuationLookup::Nearest, false, false},
      {"98 directions", 4, false, Composite::Normalised, AttenuationLookup::Bilinear, true, false}}};
 
-/// Of one scene and one table variant on the device.
+/// The device's results for one scene and one table variant.
 struct Outcome {
   const ValidationScene& scene;
   TableSettings settings;
@@ -91,7 +91,7 @@ double relativeDifference(double value, double reference) {
   return reference == 0.0 ? kInfinity : std::abs(value / reference - 1.0);
 }
 
-/// NaN if any is.
+/// The maximum, or NaN if any figure is NaN.
 double largestComponent(glm::dvec3 v) {
   return std::isnan(v.x + v.y + v.z) ? std::numeric_limits<double>::quiet_NaN() : std::max({v.x, v.y, v.z});
 }
@@ -106,7 +106,7 @@ Check checkExtinction(const Outcome& outcome) {
   return worst.atMost(kExtinctionTolerance, "classify: extinction", "relative");
 }
 
-/// Relative to the voxel's largest component, or the faintest that is stored.
+/// The error relative to the voxel's largest component, or to the faintest emission that is stored.
 Check checkEmission(const Outcome& outcome) {
   const Volume& volume = outcome.scene.volume;
   const Classification& classification = outcome.scene.classification;
@@ -142,7 +142,7 @@ Check checkVisible(const Outcome& outcome) {
   return check;
 }
 
-/// One direction of the table.
+/// Checks one direction of the table.
 struct PlaneDifference {
   int largest = 0;
   std::size_t where = 0, differing = 0, bytes = 0;
@@ -170,7 +170,7 @@ PlaneDifference comparePlanes(const Outcome& outcome, const std::vector<std::uin
   return result;
 }
 
-/// Adds a column to `rows`, which has a row for each of the 26 directions, unless the table has others.
+/// Adds a column to `rows`, which has a row for each of the 26 directions. Does nothing for other tables.
 Check checkTable(const Outcome& outcome, const char* name, std::vector<std::vector<std::string>>& rows) {
   const DirectionSet set = outcome.settings.directions;
   const TableBytes reference = referenceTable(outcome.scene.volume, outcome.extinction, outcome.settings);
@@ -221,7 +221,7 @@ Check checkDistance(const Image& picture, const Image& reference, const char* me
   return worst.atMost(kDistanceTolerance, fmt::format("resolve: distance, {}", method), "relative");
 }
 
-/// The difference, opaque and brightened for the eye.
+/// The difference as an opaque, brightened image.
 Image brightened(const Image& difference, float factor) {
   Image result = difference;
   for (glm::vec4& pixel : result.pixels)
@@ -239,7 +239,7 @@ ReportPictures showPictures(const Image& picture, const Image& reference, const 
           .background = glm::vec3(0.01f)};
 }
 
-/// The codes' difference; where they are shallower than kShallowDepth, in codes of that.
+/// The difference of the codes; for depths below kShallowDepth, in codes of that.
 double rayDifference(std::uint16_t a, std::uint16_t b) {
   const std::uint16_t deeper = std::max(a, b);
   double code = decodeRayDepth(deeper) - decodeRayDepth(std::uint16_t(deeper - 1));
@@ -247,7 +247,7 @@ double rayDifference(std::uint16_t a, std::uint16_t b) {
   return std::abs(decodeRayDepth(a) - decodeRayDepth(b)) / code;
 }
 
-/// From the camera's eye.
+/// Checks the depths along rays from the camera's eye.
 Check checkRays(const Outcome& outcome, const Camera& camera, const RayCodes& codes, const char* method) {
   const Volume& volume = outcome.scene.volume;
   const RaySource source = eyeSource(camera, volume.indexToWorld);
@@ -272,7 +272,8 @@ Check checkRays(const Outcome& outcome, const Camera& camera, const RayCodes& co
   return worst.atMost(kCodeTolerance, fmt::format("rays: {}", method), "codes");
 }
 
-/// Looks the way that `outside` does, from the middle of the box, where no voxel's centre is.
+/// A camera that looks in the direction of `outside` from the middle of the box, where no voxel has its
+/// centre.
 Camera cameraInside(const Volume& volume, const Camera& outside) {
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.dimensions - 1) + glm::dvec3(0.1, 0.2, 0.3);
   Camera camera = outside;

@@ -1,5 +1,5 @@
 #pragma once
-// Every stage on the device against its plain double-precision version on the CPU (engine/reference).
+// Checks every stage on the device against its double-precision version on the CPU (engine/reference).
 
 #include "engine/validation/report.h"
 #include "engine/validation/stage_outputs.h"
@@ -7,9 +7,9 @@
 
 namespace freevoxels {
 
-/// Each stage is judged given what the device made in the stage before it, so that an error shows where it is
-/// made and nowhere else. Tables are made with all four settings; frames, of `size` pixels, with the default
-/// method in perspective and with the paper's in parallel projection. Check names begin with the stage:
+/// Each stage is checked given the device's results of the previous stage, so that an error appears where it
+/// is made and nowhere else. Tables are made with all four settings; frames of `size` pixels with the default
+/// method in perspective and with the paper's in orthographic projection. Check names begin with the stage:
 /// "classify", "table", "visible voxels", "splat sums", "resolve".
 ReportSection stageChecks(const StageMaker& make, const ValidationScene& scene, glm::ivec2 size);
 

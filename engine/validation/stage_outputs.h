@@ -1,6 +1,6 @@
 #pragma once
-// What the checks look at: the outcome of every stage for one volume. The device's own come from the
-// Renderer; whoever checks the checks hands in others, broken on purpose.
+// The input of the checks: the results of every stage for one volume. The device's come from the Renderer;
+// tests of the checks supply results that are broken on purpose.
 
 #include <cstdint>
 #include <functional>
@@ -18,30 +18,30 @@
 
 namespace freevoxels {
 
-/// Bytes [direction][voxel], voxels in the order of Volume::values.
+/// Bytes [direction][voxel], voxels x fastest.
 using TableBytes = std::vector<std::vector<std::uint8_t>>;
 
 class StageOutputs {
  public:
   virtual ~StageOutputs() = default;
-  /// Of every voxel, per world unit.
+  /// Extinction of every voxel, per world unit.
   virtual std::vector<float> extinction() = 0;
-  /// The same of light; empty where no voxel sends out any.
+  /// Emission of every voxel, per world unit; empty if there is none.
   virtual std::vector<glm::dvec3> emission() = 0;
   virtual TableBytes table() = 0;
   virtual std::vector<std::uint32_t> visibleVoxels() = 0;
-  /// From the camera's eye.
+  /// Depths along rays from the camera's eye.
   virtual RayCodes rays(const Camera& camera) = 0;
-  /// Before the resolve, one a pixel.
+  /// The sums of every pixel before the resolve.
   virtual std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) = 0;
   virtual Image picture(const Camera& camera, const FrameSettings& settings) = 0;
 };
 
-/// Runs the stages. The volume need not outlive the call.
+/// Runs the stages. The volume is not needed after the call.
 using StageMaker =
     std::function<std::unique_ptr<StageOutputs>(const Volume&, const Classification&, const TableSettings&)>;
 
-/// By the Renderer, as everything else is drawn. `device` has to outlive what is made.
+/// Stages of the Renderer. `device` must outlive the result.
 StageMaker deviceStages(const Device& device);
 
 }  // namespace freevoxels

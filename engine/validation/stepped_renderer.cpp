@@ -10,7 +10,7 @@ namespace freevoxels {
 
 namespace {
 
-/// What compact_scan.comp writes for a list of `count` voxels.
+/// The arguments that compact_scan.comp writes for a list of `count` voxels.
 std::vector<shader::ChunkArguments> chunkArguments(std::size_t count, std::uint32_t chunks) {
   std::vector<shader::ChunkArguments> arguments;
   for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {

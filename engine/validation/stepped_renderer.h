@@ -1,6 +1,6 @@
 #pragma once
-// The passes one by one, for checks that draw chosen voxels in a chosen order, or that look at and replace
-// what one pass made before the next uses it.
+// Runs the passes one by one, for checks that draw chosen voxels in a chosen order, or that read or replace
+// the result of one pass before the next uses it.
 
 #include <cstdint>
 #include <span>
@@ -15,22 +15,21 @@
 
 namespace freevoxels {
 
-/// What the passes before the camera leave on the device.
+/// The device's results of the passes that do not depend on the camera.
 struct SteppedVolume {
   DeviceVolume volume;
   BlockList visible;
   AttenuationTable table;
-  std::vector<std::uint32_t> voxels;  ///< the visible ones, padded indices in the order of the list
+  std::vector<std::uint32_t> voxels;  ///< padded indices of the occupied voxels, in the order of the list
 };
 
 SteppedVolume prepareSteps(const Device& device, const Volume& volume, const Classification& classification,
                            const TableSettings& table);
 
-/// The same table again, swept in the thinnest slabs there are: bytes [direction][voxel] as downloadTable has
-/// them.
+/// The same table swept in the thinnest possible slabs: bytes [direction][voxel] as in downloadTable.
 std::vector<std::vector<std::uint8_t>> sweepThinSlabs(const Device& device, const SteppedVolume& steps);
 
-/// The sums of just these voxels (padded indices), drawn in this order. No more than are active.
+/// The sums of these voxels only (padded indices), drawn in this order; at most as many as are active.
 std::vector<SplatSums> drawVoxels(const Device& device, const SteppedVolume& steps,
                                   std::span<const std::uint32_t> voxels, const Camera& camera,
                                   const FrameSettings& settings);

@@ -14,31 +14,31 @@ namespace freevoxels {
 
 namespace {
 
-// In the units of the SVG's view box, which are about a pixel.
+// In units of the SVG's view box, which are about a pixel.
 constexpr double kWidth = 720.0, kPlotTop = 14.0, kPlotHeight = 300.0, kPlotLeft = 84.0, kPlotRight = 704.0;
 constexpr double kPlotBottom = kPlotTop + kPlotHeight;
 constexpr double kLegendTop = kPlotBottom + 56.0, kLegendRow = 22.0, kLegendSample = 34.0;
 constexpr double kLetter = 7.2;               // average width of a letter
-constexpr std::size_t kPointsWithMarks = 64;  // more of them would hide the line
+constexpr std::size_t kPointsWithMarks = 64;  // more marks would hide the line
 constexpr double kLargestCoordinate = 1e300;  // so that differences stay finite
 
 constexpr double kSmallestRange = 1e-300;                     // so that steps are not 0
 constexpr double kSmallestPlain = 1e-3, kLargestPlain = 1e6;  // axes beyond them count in powers of ten
-constexpr double kSlack = 1e-9;  // in steps: rounding must not add one where an end lies on a tick
+constexpr double kSlack = 1e-9;  // in steps: rounding must not add a step where an end lies on a tick
 
 constexpr std::array<const char*, 7> kColors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                                 "#E69F00", "#56B4E9", "#000000"};
 constexpr std::array<const char*, 4> kMarks = {"M-3.5,0a3.5,3.5 0 1,0 7,0a3.5,3.5 0 1,0 -7,0z",
                                                "M-3.2,-3.2h6.4v6.4h-6.4z", "M0,-4.4L4.2,3.2H-4.2z",
                                                "M0,-4.6L4.2,0L0,4.6L-4.2,0z"};
-/// Of every seven series, when the colours begin again.
+/// Marks change with every seven series, when the colours repeat.
 constexpr std::array<const char*, 3> kDashes = {"", "7 4", "2 3"};
 
 bool canShow(glm::dvec2 point) {
   return std::abs(point.x) <= kLargestCoordinate && std::abs(point.y) <= kLargestCoordinate;
 }
 
-/// Of what can be shown, a little wider where it is a single value.
+/// The range of the finite values, slightly wider for a single value.
 Ticks ticksOf(const ReportPlot& plot, int axis, int count) {
   double minimum = std::numeric_limits<double>::infinity(), maximum = -minimum;
   for (const ReportPlot::Series& series : plot.series)
@@ -57,7 +57,7 @@ Ticks ticksOf(const ReportPlot& plot, int axis, int count) {
   return ticksBetween(minimum, maximum, count);
 }
 
-/// As many digits for every tick of an axis as tell one from the next.
+/// The number of digits that distinguishes neighbouring ticks of an axis.
 std::string tickText(const Ticks& ticks, long long multiple) {
   const double size = std::max(std::abs(ticks.value(ticks.first)), std::abs(ticks.value(ticks.last)));
   const double value = ticks.value(multiple);
@@ -148,7 +148,7 @@ class PlotWriter {
       if (canShow(point)) mark(index, left(point.x), top(point.y));
   }
 
-  /// In rows, as many entries in each as have room.
+  /// Entries are placed in rows, as many in each as fit.
   void layLegend() {
     height_ = kLegendTop;
     if (plot_.series.size() < 2) return;

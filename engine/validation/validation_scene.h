@@ -1,5 +1,5 @@
 #pragma once
-// What a validation run looks at: volumes of bounded size with a classification each.
+// The scenes of a validation run: volumes of bounded size, each with a classification.
 
 #include <string>
 
@@ -16,9 +16,10 @@ struct ValidationScene {
 
 enum class SceneColor { Density, TransferFunction };
 
-/// With the automatic density scale and an albedo of three different components, or with a transfer function
-/// of many colours over the volume's range; with the light of its temperatures, if it has any. Longer than `maximumEdge` anywhere, the volume is cut to that
-/// around the centre of its active voxels, and the name says so.
+/// A scene with the automatic density scale and an albedo of three different components, or with a transfer
+/// function of many colours over the volume's range; with emission, if it has temperatures. A volume that is
+/// longer than `maximumEdge` along any axis is cut to that around the centre of its active voxels, and the
+/// name says so.
 ValidationScene makeValidationScene(Volume volume, SceneColor color, int maximumEdge);
 
 }  // namespace freevoxels

@@ -9,7 +9,7 @@ namespace freevoxels {
 
 namespace {
 
-/// A widened footprint reaches this much further, and rounding less than the rest. Pixels.
+/// Margin in pixels for widened footprints, which reach farther, and for rounding.
 constexpr double kMargin = kFootprintRadius + 0.5;
 
 std::array<glm::dvec4, 5> imagePlanes(glm::dvec3 middle, const PixelRays& rays, glm::ivec2 size) {
@@ -25,7 +25,7 @@ std::array<glm::dvec4, 5> imagePlanes(glm::dvec3 middle, const PixelRays& rays, 
   return planes;
 }
 
-/// Whether the kernels of all the voxels are on the inner side of all planes.
+/// Whether the kernels of all voxels are on the inner side of all planes.
 bool areAllInside(const std::array<glm::dvec4, 5>& planes, glm::ivec3 dimensions) {
   const glm::dvec3 half = 0.5 * glm::dvec3(dimensions - 1) + kFootprintRadius;
   return std::ranges::all_of(planes, [&](const glm::dvec4& plane) {
@@ -67,7 +67,7 @@ bool canHide(const TableSettings& table, std::span<const double> largestDepths,
           corners[std::size_t(i)][(face / 2 + 1) % 3] = a + i % 2;
           corners[std::size_t(i)][(face / 2 + 2) % 3] = b + i / 2;
         }
-        // No line of sight between them crosses a longer layer than the longest of them.
+        // A line of sight between these corners crosses no layer for longer than the longest of them.
         double longest = 0.0;
         for (const glm::ivec3 corner : corners) longest = std::max(longest, lengthOf(corner));
         if (std::ranges::all_of(corners, [&](glm::ivec3 corner) {

@@ -1,6 +1,6 @@
 #pragma once
-// What of the octree a frame leaves out before any splat is made: Subr et al. 2007, Section 3.3; what hides
-// behind others by the table itself, a plenoptic opacity function (Gao, Huang, Johnson, Moorhead 2003).
+// Which blocks of the octree a frame leaves out before any splat is made: Subr et al. 2007, Section 3.3.
+// Hidden blocks are found with the table, a plenoptic opacity function (Gao, Huang, Johnson, Moorhead 2003).
 
 #include <array>
 #include <glm/glm.hpp>
@@ -12,21 +12,22 @@
 namespace freevoxels {
 
 struct CullRule {
-  /// Index positions p with planes.xyz . (p - middle) + planes.w < 0 are left or right of the image, above or
-  /// below, or behind the eye; `middle` is the volume's. In pixels at distance 1; orthographic: in pixels.
+  /// Index positions p with planes.xyz . (p - middle) + planes.w < 0 are to the left or right of the image,
+  /// above or below it, or behind the eye; `middle` is that of the volume. In pixels at distance 1;
+  /// orthographic: in pixels.
   std::array<glm::dvec4, 5> planes{};
-  bool outside = false;      ///< some of the volume is no part of the image and can be left out
-  double hiddenDepth = 0.0;  ///< optical depth to the eye that hides a block; 0: none does
+  bool outside = false;      ///< whether a part of the volume is outside of the image and can be left out
+  double hiddenDepth = 0.0;  ///< optical depth to the eye from which on a block is hidden; 0 if none is
 
   bool leavesNothingOut() const { return !outside && hiddenDepth == 0.0; }
 };
 
-/// Blocks hide others where the table is read, from an eye outside of the volume's box: seen from inside, the
-/// table's transmittances, which count from the outside, are less than those to the eye.
+/// The rule of a frame. Blocks are only hidden if the table is read and the eye is outside of the volume's
+/// box: for an eye inside, the table's optical depths count to the outside and exceed those to the eye.
 CullRule cullRule(glm::ivec3 dimensions, const PixelRays& rays, const FrameSettings& settings);
 
-/// Whether anything can be dark in all four directions of the table around a line of sight, as the cut asks
-/// (shaders/table_occlusion.glsl), where no voxel has more than these optical depths before it, by direction.
+/// Whether any block can be hidden, that is, dark in all four table directions around a line of sight
+/// (shaders/table_occlusion.glsl), if no voxel has more than `largestDepths` in front of it, by direction.
 bool canHide(const TableSettings& table, std::span<const double> largestDepths,
              const glm::dmat3& indexToWorld, double hiddenDepth);
 

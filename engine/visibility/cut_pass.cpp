@@ -23,18 +23,18 @@ std::uint64_t groupsFor(std::uint64_t slots) {
 void makeLarger(const Device& device, Buffer& buffer, std::uint64_t bytes, const char* name,
                 VkBufferUsageFlags usage = 0) {
   if (buffer.bytes() >= bytes) return;
-  buffer = {};  // not both at once
+  buffer = {};  // free the old buffer before allocating the new one
   buffer = Buffer(device, bytes, MemoryUse::Device, name, usage);
 }
 
-/// Blocks of the finest level that could be drawn: every block that is drawn holds one of them at least, and
-/// shares it with no other.
+/// Upper bound of the number of drawn blocks: every drawn block contains at least one occupied block of the
+/// finest level, and shares it with no other.
 std::uint64_t mostDrawn(const CutInputs& inputs) {
   return std::max<std::uint64_t>(inputs.volume.stored[std::size_t(inputs.detail.finest)], 1);
 }
 
-/// What the table has to hold in each of its directions for the threshold's depth along a line of length 1 a
-/// layer; without path-length correction, along any.
+/// For each direction, the least stored optical depth that hides a block whose line of sight has length 1 a
+/// layer; without path-length correction, for any line of sight.
 void setDarkDepths(shader::CutFrame& frame, const CutInputs& inputs) {
   if (inputs.table == nullptr) return;
   const DirectionSet set = inputs.table->settings.directions;
@@ -107,7 +107,7 @@ void CutPass::makeRoom(const CutInputs& inputs) {
              VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
 }
 
-/// Level by level from the finest that is drawn.
+/// The levels in the order in which they are processed, from the finest that is drawn.
 std::vector<CutPass::Level> CutPass::planLevels(const CutInputs& inputs, Part part) {
   std::vector<Level> levels;
   std::uint64_t firstGroup = 0;
@@ -200,7 +200,7 @@ void CutPass::recordList(Commands& commands, std::span<const Level> levels, Part
   commands.barrier(kCompute, kCompute);
 }
 
-/// From the offsets of the levels' first workgroups, in both parts.
+/// Counts the drawn blocks of each level by the offsets of the levels' first workgroups, in both parts.
 std::vector<std::uint64_t> CutPass::drawnByLevel() const {
   std::vector<std::uint32_t> offsets(cut_.groupOffsets.bytes() / sizeof(std::uint32_t));
   download(device_, cut_.groupOffsets, std::as_writable_bytes(std::span(offsets)));

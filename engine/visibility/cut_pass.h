@@ -1,6 +1,7 @@
 #pragma once
-// The blocks that a frame draws, listed on the device: Subr et al. 2007, Section 3.3. In two parts, as what
-// is hidden is known for sure only when what hides it is drawn.
+// The list of blocks that a frame draws, made on the device: Subr et al. 2007, Section 3.3. Two-phase
+// occlusion culling: the blocks that the table calls hidden are deferred until the others are drawn, as only
+// then it is known which pixels they can still change.
 
 #include <array>
 #include <cstdint>
@@ -15,42 +16,45 @@
 
 namespace freevoxels {
 
-/// What a frame draws, and by what it chooses.
+/// The input of a cut: the volume and the rules of the frame.
 struct CutInputs {
   const DeviceVolume& volume;
-  const BlockList& voxels;    ///< the list of level 0
-  const LevelLists& lists;        ///< of the levels above
-  const AttenuationTable* table;  ///< with its levels; null where CullRule::hiddenDepth is 0
+  const BlockList& voxels;    ///< the occupied voxels
+  const LevelLists& lists;        ///< the occupied blocks of the levels above
+  const AttenuationTable* table;  ///< with its levels; null if CullRule::hiddenDepth is 0
   const shader::SetupFrame& setup;
   const shader::ResolvePush& rays;
   const DetailRule& detail;
   const CullRule& cull;
 };
 
-/// Counts of blocks of all levels: the coarsest, and those whose parent is neither drawn nor left out.
+/// Numbers of blocks of all levels that were considered: those of the coarsest level, and those whose parent
+/// was opened.
 struct CutCounts {
   std::uint64_t considered = 0;      ///< the sum of the others
-  std::uint64_t empty = 0;           ///< hold nothing
-  std::uint64_t outside = 0;         ///< left out with all that is in them: no part of the image
-  std::uint64_t hidden = 0;          ///< the same, behind others
-  std::uint64_t opened = 0;          ///< their children were considered
-  std::vector<std::uint64_t> drawn;  ///< by level, level 0 first
+  std::uint64_t empty = 0;           ///< not occupied
+  std::uint64_t outside = 0;         ///< left out with all blocks in them: outside of the image
+  std::uint64_t hidden = 0;          ///< left out with all blocks in them: hidden by others
+  std::uint64_t opened = 0;          ///< replaced by their children
+  std::vector<std::uint64_t> drawn;  ///< number of drawn blocks by level, level 0 first
 };
 
-/// COMPUTE cut_select.comp level by level from the coarsest, compact_scan.comp, cut_write.comp; after the
-/// first drawing tile_opacity.comp and the same again for what the table calls hidden. Nothing is read back.
+/// COMPUTE cut_select.comp level by level from the coarsest, compact_scan.comp, cut_write.comp. After the
+/// first drawing, tile_opacity.comp and the same passes for the deferred blocks. Nothing is read back.
 class CutPass {
  public:
   CutPass(const Device& device, AttenuationCode code);
 
-  /// Lists the blocks to draw first. They replace those of the last frame, on which no work may be under way.
+  /// Records the first phase. Its list replaces that of the last frame, on which no work may be in progress.
   void record(Commands& commands, const CutInputs& inputs);
-  /// Lists those that remain, behind the first: the sums of the first are in the targets, in layout GENERAL.
+  /// Records the second phase, which appends the deferred blocks that can still be seen. The targets, in
+  /// layout GENERAL, hold the sums of the first phase.
   void recordDeferred(Commands& commands, const CutInputs& inputs, const RenderTarget& colorEnergy,
                       const RenderTarget& opticalDepth);
-  /// Level by level in a fixed order. The first half of the chunks is for the first drawing.
+  /// The blocks to draw, level by level in a fixed order. The first half of the chunks belongs to the first
+  /// phase.
   const BlockList& blocks() const { return cut_; }
-  /// Of the last cut. Reads back.
+  /// The counts of the last cut. Reads back.
   CutCounts counts() const;
 
  private:
@@ -67,18 +71,18 @@ class CutPass {
   std::vector<std::uint64_t> drawnByLevel() const;
 
   const Device& device_;
-  std::array<std::array<Pipeline, 2>, 2> select_;  ///< by Part, and whether of the voxels
+  std::array<std::array<Pipeline, 2>, 2> select_;  ///< by Part, and for blocks or voxels
   Pipeline scan_, write_;
   TileOpacityPass cover_;
   Buffer frame_;                ///< shader::CutFrame
-  Buffer children_, deferred_;  ///< a byte a block above the voxels: as in cut_select.comp
-  Buffer masks_;                ///< uint: a bit a slot (candidate_slot.glsl) of the levels that are drawn
+  Buffer children_, deferred_;  ///< a byte for each block above the voxels, as in cut_select.comp
+  Buffer masks_;                ///< uint: a bit for each slot (cut_slot.glsl) of the levels that are drawn
   Buffer counts_;               ///< shader::CutCounts
-  BlockList cut_;           ///< groupOffsets twice, a part behind the other, each with its total
+  BlockList cut_;           ///< has groupOffsets for both parts, one after the other, each with its total
   int finest_ = 0;
-  std::uint32_t groupCount_ = 0;  ///< of the levels that are drawn
+  std::uint32_t groupCount_ = 0;  ///< number of workgroups of the levels that are drawn
   bool hasDeferred_ = false;
-  std::vector<std::uint32_t> firstGroups_;  ///< of the levels from `finest_` on
+  std::vector<std::uint32_t> firstGroups_;  ///< first workgroup of each level, starting with `finest_`
 };
 
 }  // namespace freevoxels

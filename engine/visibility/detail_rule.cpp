@@ -9,11 +9,11 @@ namespace freevoxels {
 
 namespace {
 
-/// What the device's rounding may move a distance by, and more, relative.
+/// Relative margin for the device's rounding of distances.
 constexpr double kMargin = 1e-3;
 
-/// Pixels that a voxel's edge is long at most at distance 1, at the sides of the image, where perspective
-/// stretches it; orthographic: anywhere.
+/// Largest length in pixels of a voxel's edge at distance 1, at the sides of the image, where perspective
+/// stretches it; for an orthographic camera anywhere.
 double pixelsPerEdge(const glm::dmat3& rows, const PixelRays& rays, glm::ivec2 imageSize) {
   double longest = 0.0;
   for (int axis = 0; axis < 2; ++axis)
@@ -22,7 +22,7 @@ double pixelsPerEdge(const glm::dmat3& rows, const PixelRays& rays, glm::ivec2 i
   return longest;
 }
 
-/// Least and largest nearestDistance of the blocks of a level.
+/// Smallest and largest nearestDistance of the blocks of a level.
 glm::dvec2 distances(const DetailRule& rule, const HierarchyLayout& hierarchy, int level) {
   const glm::ivec3 last = hierarchy.levels[std::size_t(level)].dimensions - 1;
   glm::dvec2 range(rule.nearestDistance({level, {0, 0, 0}}));

@@ -1,13 +1,13 @@
 #pragma once
-// Which parts of an image are covered by what is drawn already, so that the rest may be left out where it is
-// behind.
+// Finds the tiles of an image of which every pixel is covered by what is drawn so far, so that blocks behind
+// them can be left out.
 
 #include "engine/vulkan/commands.h"
 #include "shaders/frame_interface.h"
 
 namespace freevoxels {
 
-/// Of the image, rounded up.
+/// Number of tiles of an image, rounded up.
 glm::ivec2 coverTiles(glm::ivec2 imageSize);
 
 /// COMPUTE tile_opacity.comp
@@ -17,13 +17,13 @@ class TileOpacityPass {
 
   struct Inputs {
     const Buffer& counts;              ///< shader::CutCounts
-    const RenderTarget& colorEnergy;   ///< sums so far, in layout GENERAL
-    const RenderTarget& opticalDepth;  ///< the same
+    const RenderTarget& colorEnergy;   ///< C and E so far, in layout GENERAL
+    const RenderTarget& opticalDepth;  ///< T so far, in layout GENERAL
     const shader::ResolvePush& rays;
-    double hiddenDepth;  ///< optical depth of a covered pixel, at least
+    double hiddenDepth;  ///< least optical depth of a covered pixel
   };
   void record(Commands& commands, const Inputs& inputs);
-  /// uint a tile, row by row from the top: 1 where all pixels are covered.
+  /// uint for each tile, row by row from the top: 1 if all pixels are covered.
   const Buffer& tiles() const { return tiles_; }
 
  private:

@@ -23,7 +23,7 @@ constexpr std::array<std::array<double, 3>, 41> kObserver{
      {0.0007, 0.0002, 0.0000}, {0.0003, 0.0001, 0.0000}, {0.0002, 0.0001, 0.0000}, {0.0001, 0.0000, 0.0000},
      {0.0000, 0.0000, 0.0000}}};
 
-/// Planck's law seen by the observer, in any unit.
+/// Planck's law integrated over the observer's curves, in an arbitrary unit.
 glm::dvec3 integrate(double kelvin) {
   constexpr double kSecondRadiation = 1.438776877e7;  // h c / k, nanometre kelvin
   glm::dvec3 sum(0.0);
@@ -36,7 +36,8 @@ glm::dvec3 integrate(double kelvin) {
   return sum;
 }
 
-/// Of luminance 1: linear Rec.709 (ITU-R BT.709, white D65), where a deep red has no blue to lose.
+/// The colour in linear Rec.709 (ITU-R BT.709, white D65), scaled to luminance 1 and clipped to the gamut.
+/// The blue that is clipped from a deep red is negligible.
 glm::dvec3 chroma(glm::dvec3 xyz) {
   const glm::dmat3 toRec709(3.2404542, -0.9692660, 0.0556434, -1.5371385, 1.8760108, -0.2040259, -0.4985314,
                             0.0415560, 1.0572252);
@@ -44,7 +45,8 @@ glm::dvec3 chroma(glm::dvec3 xyz) {
   return color / glm::dot(color, glm::dvec3(0.2126729, 0.7151522, 0.0721750));
 }
 
-/// Even in 1 / temperature, over which the logarithm of the luminance is nearly a line (Wien).
+/// A table in equal steps of 1 / temperature, over which the logarithm of the luminance is nearly linear
+/// (Wien).
 class Table {
  public:
   Table() {

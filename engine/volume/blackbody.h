@@ -1,22 +1,24 @@
 #pragma once
-// The light of something hot: Planck's law seen by the CIE 1931 standard observer (2 degrees), in linear
+// The light of hot bodies: Planck's law seen by the CIE 1931 standard observer (2 degrees), in linear
 // Rec.709.
 
 #include <glm/glm.hpp>
 
 namespace freevoxels {
 
-/// Kelvin. What is colder sends out no light that an eye would see; what is hotter looks as if it were not.
+/// In kelvin. Below kColdestLight no visible light is emitted; above kHottestLight the light is that of
+/// kHottestLight.
 inline constexpr double kColdestLight = 500.0, kHottestLight = 40000.0;
 
-/// Kelvin, of a wood fire's hottest flames: luminances are relative to this temperature's.
+/// The temperature of the hottest flames of a wood fire, in kelvin. Luminances are relative to that of this
+/// temperature.
 inline constexpr double kReferenceTemperature = 2000.0;
 
-/// CIE XYZ of a black body from kColdestLight to kHottestLight, Y = 1 at kReferenceTemperature.
+/// CIE XYZ of a black body of kColdestLight to kHottestLight, with Y = 1 at kReferenceTemperature.
 glm::dvec3 blackbodyXyz(double kelvin);
 
-/// The same in linear Rec.709; colours outside of its gamut are cut to it at their luminance. Interpolated,
-/// to 1e-4 of the luminance; 0 of what is colder than kColdestLight.
+/// The light of a black body in linear Rec.709, interpolated to 1e-4 of its luminance, and 0 below
+/// kColdestLight. Colours outside of the gamut are clipped to it at the same luminance.
 glm::dvec3 blackbodyColor(double kelvin);
 
 }  // namespace freevoxels

@@ -18,7 +18,7 @@ namespace {
 
 constexpr glm::dvec3 kLuminance(0.2126, 0.7152, 0.0722);  // of linear Rec.709
 
-/// Piecewise linear, constant beyond the ends. `valueOf(point)` is what is interpolated.
+/// Interpolates piecewise linearly, constant beyond the ends. `valueOf(point)` is the interpolated value.
 template <typename Points, typename ValueOf>
 auto evaluate(const Points& points, double scalar, const ValueOf& valueOf) {
   FV_CHECK_LT(std::size_t(0), points.size());
@@ -41,7 +41,8 @@ ClassifiedVoxel classifyByTransfer(const TransferFunction& transfer, float scala
   return {-std::log1p(-std::min(opacity, kMaximumOpacity)) / transfer.unitDistance, color};
 }
 
-/// Of max(0, density) over the active voxels, summed in a fixed order: the same number in every run.
+/// The sum of max(0, density) over the active voxels, in a fixed order, so that every run gives the same
+/// number.
 double totalDensity(const Volume& volume) {
   using Range = tbb::blocked_range<std::size_t>;
   constexpr std::size_t kGrain = 32;
@@ -60,7 +61,7 @@ bool areKelvin(const TemperatureGrid& grid) {
   return !(grid.maximum > 0.0f) || double(grid.maximum) > kLeastKelvinMaximum;
 }
 
-/// Sums over all voxels: of the luminance that they send out, of its squares, and of it times the extinction.
+/// Sums over all voxels of the emitted luminance, its square, and its product with the extinction.
 struct LightSums {
   double light = 0.0, squares = 0.0, dimmed = 0.0;
 };

@@ -1,5 +1,6 @@
 #pragma once
-// Scalar -> (colour, extinction). Two ways: physical (density x scale, one albedo) and transfer function.
+// Classification: from scalars to extinction and colour, either physical (density x scale, one albedo) or by
+// a transfer function.
 
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -12,13 +13,14 @@
 
 namespace freevoxels {
 
-/// Opacities are clamped to this, so that extinction stays finite.
+/// Upper bound of opacity, so that extinction stays finite.
 inline constexpr double kMaximumOpacity = 1.0 - 1.0 / 4096.0;
 
-/// Extinctions are clamped to this, so that their products and sums stay finite in 32-bit floats.
+/// Upper bound of extinction, so that products and sums stay finite in 32-bit floats.
 inline constexpr double kMaximumExtinction = 1e30;
 
-/// Piecewise linear in the scalar, constant beyond the first and last point. Schema: README.md.
+/// A function that is piecewise linear in the scalar and constant beyond its first and last point.
+/// apps/manual/classification.md has the JSON schema.
 struct TransferFunction {
   struct OpacityPoint {
     float scalar;   ///< already mapped to the volume's scalars
@@ -33,15 +35,15 @@ struct TransferFunction {
   double unitDistance = 1.0;          ///< world length that `opacity` refers to
 };
 
-/// What voxels send out by their temperature, as black bodies do (blackbody.h).
+/// Emission of black bodies by temperature (blackbody.h).
 struct Emission {
-  double strength = 1.0;  ///< luminance per world unit of what has kReferenceTemperature
+  double strength = 1.0;  ///< luminance per world unit at kReferenceTemperature
   /// Kelvin = scale x value + offset.
   double temperatureScale = 1.0, temperatureOffset = 0.0;
 };
 
-/// What a transfer function is applied to. Post: scalars interpolated at samples, as far as they are gathered one by one;
-/// pre: voxels, whose extinction and colour are interpolated. Without a transfer function the two are the same.
+/// What a transfer function is applied to. Post: scalars interpolated at the samples of a ray. Pre: voxels,
+/// whose extinction and colour are then interpolated. Without a transfer function both are the same.
 enum class ClassificationOrder : int { Post = 0, Pre = 1 };
 
 class EmissionLight;
@@ -49,12 +51,13 @@ class EmissionLight;
 struct Classification {
   std::optional<TransferFunction> transferFunction;  ///< when set, the two below are not used
   double densityScale = 1.0;                         ///< extinction per world unit at density 1
-  glm::vec3 albedo{0.9f};  ///< linear Rec.709; the volume's grid of them has precedence where it is active
-  std::optional<Emission> emission = std::nullopt;  ///< of the volume's temperatures, if it has any
-  std::shared_ptr<const EmissionLight> emissionLight = nullptr;  ///< lights the medium with the emission; null: it lights nothing
-  ClassificationOrder order = ClassificationOrder::Post;  ///< Pre of volumes that shine, whatever this is
+  glm::vec3 albedo{0.9f};  ///< linear Rec.709; the volume's albedo grid takes precedence where it is active
+  std::optional<Emission> emission = std::nullopt;  ///< from the volume's temperatures, if it has any
+  /// The light of the emission on the medium; null if it lights nothing.
+  std::shared_ptr<const EmissionLight> emissionLight = nullptr;
+  ClassificationOrder order = ClassificationOrder::Post;  ///< ignored for volumes with emission, which are Pre
 
-  /// Whether samples of the volume are classified after interpolation.
+  /// Whether samples of the volume are classified after interpolation (Post applies).
   bool isPost(const Volume& volume) const;
 };
 
@@ -64,47 +67,49 @@ struct ClassifiedVoxel {
   glm::dvec3 emission{0.0};  ///< per world unit
 };
 
-/// Of a single scalar, in double precision: voxel_classifier.h has the voxels'. kInactiveVoxel gives extinction 0. A negative
-/// scalar counts as 0 in the physical way, as data with a transfer function.
+/// Classifies a single scalar in double precision; VoxelClassifier classifies voxels. kInactiveVoxel has
+/// extinction 0. A negative scalar is a density of 0, or data for a transfer function.
 ClassifiedVoxel classify(const Classification& classification, float scalar);
 
-/// Per world unit, linear Rec.709; 0 of kInactiveVoxel and of what is colder than kColdestLight, at most
-/// kMaximumExtinction.
+/// The emitted light per world unit, linear Rec.709, at most kMaximumExtinction; 0 for kInactiveVoxel and
+/// below kColdestLight.
 glm::dvec3 emittedLight(const Emission& emission, float temperature);
 
-/// The largest component of the light that any voxel sends out; 0 where none does.
+/// The largest component of the light that any voxel emits, or 0.
 double brightestLight(const Classification& classification, const Volume& volume);
-/// Linear, in 0..1.
+/// The albedo of a voxel, linear, in 0..1.
 glm::vec3 albedoOf(const Classification& classification, const AlbedoGrid& grid, glm::ivec3 voxel);
 
-/// Reads the JSON of README.md, section "Transfer functions". `range` defaults to the volume's minimum and
-/// maximum, `unit_distance` to its voxel size. Unknown keys, wrong types, points that do not ascend:
-/// ExitCode::Input, by name.
+/// Reads a transfer function from JSON (apps/manual/classification.md). `range` defaults to the volume's
+/// minimum and maximum, `unit_distance` to its voxel size. Unknown keys, wrong types and points that do not
+/// ascend fail with ExitCode::Input and the name of the key.
 TransferFunction readTransferFunction(const std::filesystem::path& file, const Volume& volume);
-/// The same of the JSON itself.
+/// Parses the text of such JSON.
 TransferFunction parseTransferFunction(const std::string& json, const Volume& volume);
-/// JSON that is read as the same function, in one line.
+/// One line of JSON that parses as the same function.
 std::string transferFunctionJson(const TransferFunction& function);
 
-/// The density scale at which a cube that holds the volume of the active voxels at their mean density has this optical depth.
-/// Where none is given it is kAutomaticOpticalDepth, of volumes that shine kShiningOpticalDepth, so that flames are seen.
+/// The density scale at which a cube that holds the volume of the active voxels at their mean density has
+/// this optical depth. The default is kAutomaticOpticalDepth, for volumes with emission kShiningOpticalDepth,
+/// so that flames remain visible.
 inline constexpr double kAutomaticOpticalDepth = 6.0, kShiningOpticalDepth = 2.0;
 double automaticDensityScale(const Volume& volume, double opticalDepth);
-/// Of a level set: the optical depth of a voxel inside.
+/// The optical depth of a voxel inside a level set.
 inline constexpr double kLevelSetOpticalDepth = 3.0;
 
-/// Of the smoke of a fire, where no albedo is given.
+/// The default albedo of volumes with emission.
 inline constexpr float kSmokeAlbedo = 0.5f;
 
-/// How temperatures become kelvin where that is not given. Grids of which no value is above
-/// kLeastKelvinMaximum are in no kelvin: 0 is kEmberTemperature and the largest kReferenceTemperature.
+/// The default mapping of temperature grids to kelvin. A grid without values above kLeastKelvinMaximum is not
+/// in kelvin: its 0 becomes kEmberTemperature and its largest value kReferenceTemperature.
 inline constexpr double kLeastKelvinMaximum = 200.0, kEmberTemperature = 1000.0;
 double automaticTemperatureOffset(const TemperatureGrid& grid);
 double automaticTemperatureScale(const TemperatureGrid& grid, double offset);
 
-/// The strength used when none is given (`emission` has another one): a cube that sends out all the light has
-/// luminance kAutomaticRadiance. It is as large as so many voxels of one temperature as would have this light
-/// and this sum of its squares, and dims it by the mean extinction where the light is.
+/// The default emission strength (that of `emission` is ignored): a cube that emits all the light of the
+/// volume has luminance kAutomaticRadiance. The cube is as large as that number of voxels of one temperature
+/// which has the same sum of light and the same sum of squares, and it is dimmed by the mean extinction where
+/// the light is.
 inline constexpr double kAutomaticRadiance = 2.0;
 double automaticEmissionStrength(const Volume& volume, const Classification& classification,
                                  const Emission& emission);

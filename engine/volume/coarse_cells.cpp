@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kMostSkipped = 8;  // groups of slices
 
-/// The least and the largest of some voxels' values; none where low > high.
+/// The range of the values of some voxels; empty if low > high.
 struct Range {
   float low = std::numeric_limits<float>::max(), high = kInactiveVoxel;
 
@@ -24,7 +24,7 @@ struct Range {
   }
 };
 
-/// Of the voxels from x on, before `end` or the row's end.
+/// The range of the voxels x to `end` - 1 of a row, or to the end of the row.
 Range rangeOf(const std::vector<float>& row, int x, int end) {
   Range range;
   for (const int last = std::min(end, int(row.size())); x < last; ++x) {
@@ -35,7 +35,8 @@ Range rangeOf(const std::vector<float>& row, int x, int end) {
   return range;
 }
 
-/// Marks the cells whose range of values `holds(low, high)`, with those of `reach` voxels more on their upper sides, 0 or 1.
+/// Marks the cells for whose range of values `holds(low, high)` is true. The range includes `reach` (0 or 1)
+/// more voxels at the cells' upper sides.
 template <typename Holds>
 void markCells(Cells& cells, const ScalarBricks& scalars, int edge, int reach, const Holds& holds) {
   const glm::ivec3 n = scalars.dimensions();

@@ -1,5 +1,6 @@
 #pragma once
-// Which cells of a volume a ray of the gather meets anything in, found on the host from ranges of the voxels' values.
+// Coarse cells of a volume, with which rays of the gather skip empty space. Computed on the host from the
+// range of the voxels' values.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -10,14 +11,14 @@
 
 namespace freevoxels {
 
-/// A byte for each cell of a box, x fastest.
+/// A byte for each cell of a box of cells, x fastest.
 struct Cells {
   glm::ivec3 dimensions{0};
   std::vector<std::uint8_t> values;
 
   explicit Cells(glm::ivec3 size)
       : dimensions(size), values(std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z)) {}
-  /// Of y and z.
+  /// Distances in `values` between neighbours along y and z.
   glm::ivec2 strides() const { return {dimensions.x, dimensions.x * dimensions.y}; }
   std::size_t index(glm::ivec3 cell) const {
     return std::size_t(cell.x) +
@@ -26,19 +27,22 @@ struct Cells {
   std::uint8_t at(glm::ivec3 cell) const { return values[index(cell)]; }
 };
 
-/// 1 where the cell of `edge` voxels along each axis has a voxel with a density above `density`, or with emission. With a transfer function, where
-/// a scalar interpolated from c * edge to (c + 1) * edge, both included, may have extinction: such scalars lie between those
-/// of the voxels there.
+/// Marks with 1 the cells of `edge` voxels along each axis that contain a voxel with a density above
+/// `density` or with emission. With a transfer function, marks the cells in which a scalar interpolated
+/// between c * edge and (c + 1) * edge, both included, may have extinction: interpolated scalars lie between
+/// those of the voxels.
 Cells metCells(const Volume& volume, const Classification& classification, int edge, float density = 0.0f);
 
-/// Cells of twice the edge: 1 where any of the eight is.
+/// Cells of twice the edge, 1 if any of their eight cells is 1.
 Cells coarserCells(const Cells& cells);
 
-/// 1 where the cell, or one of its neighbours from `low` to `high` along each axis, is.
+/// Marks with 1 the cells of which any neighbour at offsets `low` to `high` along each axis is 1; offset 0 is
+/// the cell itself.
 Cells spread(const Cells& cells, int low, int high);
 
-/// Groups of slices, from a position in a cell or its next neighbours on, in which no cell of `met` is met, at most 8; 0
-/// where `met` is 1. Such a ray moves by a cell a group and is in two at first.
+/// For each cell, the number of groups of slices (at most 8) that a ray can skip from a position in the cell
+/// or its next neighbours without entering a cell marked in `met`; 0 where `met` is 1. Such a ray moves by
+/// one cell a group and touches two at first.
 Cells groupsToSkip(const Cells& met);
 
 }  // namespace freevoxels

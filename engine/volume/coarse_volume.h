@@ -1,18 +1,18 @@
 #pragma once
-// A volume in fewer voxels, for a quick look at it.
+// A volume with fewer voxels, for quick images.
 
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
 
-/// What a voxel without data is to a mean.
+/// How voxels without data count in a mean.
 enum class WithoutData {
-  Zero,     ///< of densities: there is nothing there
-  Ignored,  ///< of values that are classified: there is no value there
+  Zero,     ///< as 0: for densities, where no data means empty space
+  Ignored,  ///< not at all: for values that are classified
 };
 
-/// Blocks of factor³ voxels, each their mean, for voxels, in the same place of the world. Temperatures and
-/// albedos are means of what is there.
+/// A volume whose voxels are the means of blocks of factor³ voxels, at the same place in the world.
+/// Temperatures and albedos are means of the voxels that have data.
 Volume coarseVolume(const Volume& volume, int factor, WithoutData withoutData);
 
 }  // namespace freevoxels

@@ -9,7 +9,7 @@ namespace freevoxels {
 
 namespace {
 
-// The handler may not allocate: all it needs is made beforehand.
+// A signal handler must not allocate memory, so its text is prepared beforehand.
 const char* guardedText = nullptr;
 std::size_t guardedSize = 0;
 
@@ -18,7 +18,7 @@ extern "C" void exitWithSentence(int) {
   _exit(int(ExitCode::Input));
 }
 
-/// "freevoxels: ", as messages begin.
+/// The beginning of every message: "freevoxels: ".
 std::string messagePrefix() {
   const std::string& program = spdlog::default_logger()->name();
   return program.empty() ? "" : program + ": ";

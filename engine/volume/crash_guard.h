@@ -6,8 +6,9 @@
 
 namespace freevoxels {
 
-/// While one lives, a crash of this process (SIGSEGV, SIGBUS, SIGABRT, SIGFPE) becomes one sentence on stderr
-/// and ExitCode::Input: for a library that crashes on damaged files. At most one at a time.
+/// As long as it exists, a crash of this process (SIGSEGV, SIGBUS, SIGABRT, SIGFPE) prints one sentence on
+/// stderr and exits with ExitCode::Input: for a library that crashes on damaged files. At most one may exist
+/// at a time.
 class CrashGuard {
  public:
   explicit CrashGuard(const std::string& sentence);

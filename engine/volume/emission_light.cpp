@@ -13,8 +13,8 @@ namespace {
 constexpr int kMostCells = 48;             // along the longest edge
 constexpr std::size_t kMostSources = 128;
 
-/// Squared radius, in edges of a cube, at which a source of the cube's emission is as bright as in the middle of a sphere of
-/// the same volume and emission.
+/// A source has this squared radius, in squared edges of its cube, so that it is not brighter than the middle
+/// of a sphere of the same volume and emission.
 const double kCore2 = std::pow(3.0 / (4.0 * std::numbers::pi), 2.0 / 3.0) / 3.0;
 
 struct Cell {
@@ -65,7 +65,8 @@ Cells cellsOf(const Volume& volume, const Classification& classification) {
   return cells;
 }
 
-/// Of groups of cells, cubes of as few as give no more than kMostSources of them.
+/// Joins the cells to sources: one for each cube of 1, 2, 4, ... cells along an edge, the smallest that gives
+/// at most kMostSources sources.
 std::vector<Source> sourcesOf(const Cells& cells, double cellEdge) {
   for (int group = 1;; group *= 2) {
     const glm::ivec3 groups = (cells.size + group - 1) / group;
@@ -91,7 +92,7 @@ std::vector<Source> sourcesOf(const Cells& cells, double cellEdge) {
   }
 }
 
-/// Of the cells between the middles of two, world length `length` apart.
+/// The optical depth between the centres of two cells that are `length` world units apart.
 double depthBetween(const Cells& cells, const glm::dvec3& from, const glm::dvec3& to, double length) {
   const int steps = std::max(1, int(std::ceil(glm::length(to - from))));
   double sum = 0.0;

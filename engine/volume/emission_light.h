@@ -1,7 +1,7 @@
 #pragma once
-// The light that a volume's own emission sends through it: what lights the smoke around a flame. Emission of many voxels is
-// joined to few sources, each of which lights cells of voxels through the extinction between the two, once; there is no
-// scattering from cell to cell.
+// The light of a volume's own emission on its medium, such as the smoke around a flame. The emission of all
+// voxels is joined to few sources. Each lights a grid of cells through the extinction between source and
+// cell. Cells do not light each other.
 
 #include <glm/glm.hpp>
 #include <vector>
@@ -13,14 +13,14 @@ namespace freevoxels {
 
 class EmissionLight {
  public:
-  /// Dark where nothing is emitted. `classification.emissionLight` is not looked at. Takes time: all voxels are read, and for every
-  /// cell with extinction the way to every source is marched.
+  /// Computes the light of all cells; 0 if nothing is emitted. `classification.emissionLight` is ignored.
+  /// This is slow: it reads all voxels and marches from every cell with extinction to every source.
   EmissionLight(const Volume& volume, const Classification& classification);
 
-  /// The mean over all directions of the radiance that arrives at a position in the world, linear Rec.709; interpolated
-  /// between cells.
+  /// The radiance that arrives at a position in world space, averaged over all directions, linear Rec.709,
+  /// interpolated between cells.
   glm::dvec3 at(const glm::dvec3& world) const;
-  /// The largest component of any cell.
+  /// The largest component of the radiance of any cell.
   double brightest() const { return brightest_; }
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// How a box of values lies in device buffers.
+// The layout of a box of values in device buffers.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -8,7 +8,7 @@
 
 namespace freevoxels {
 
-/// x fastest, rows padded to a multiple of kRowAlignment with voxels that hold nothing.
+/// x fastest. Rows are padded to a multiple of kRowAlignment with voxels without data.
 struct GridLayout {
   glm::ivec3 dimensions{0};
   int rowPitch = 0;
@@ -20,11 +20,11 @@ struct GridLayout {
   std::uint64_t voxels() const {
     return std::uint64_t(dimensions.x) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z);
   }
-  /// Voxels with the padding.
+  /// Number of voxels including the padding.
   std::uint64_t paddedVoxels() const {
     return std::uint64_t(rowPitch) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z);
   }
-  /// Of a voxel that is no padding: its index among all of them (Volume::at).
+  /// Converts the padded index of a voxel (not of padding) to its index among all voxels (Volume::at).
   std::uint32_t unpaddedIndex(std::uint32_t padded) const {
     return padded - padded / std::uint32_t(rowPitch) * std::uint32_t(rowPitch - dimensions.x);
   }

@@ -14,7 +14,7 @@ namespace {
 
 using Counts = std::vector<std::uint64_t>;
 
-/// Of a value in a histogram with so many bins.
+/// Index of the bin of a value among `bins` bins.
 std::size_t binOf(double value, double minimum, double maximum, std::size_t bins) {
   if (!(maximum > minimum)) return 0;
   const double place = (value - minimum) / (maximum - minimum) * double(bins);

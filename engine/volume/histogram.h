@@ -1,5 +1,5 @@
 #pragma once
-// How often each value is in a volume.
+// Histograms of a volume's values.
 
 #include <cstdint>
 #include <vector>
@@ -10,15 +10,15 @@ namespace freevoxels {
 
 struct Histogram {
   float minimum = 0.0f, maximum = 0.0f;  ///< of the active voxels
-  /// Of bins of equal width from one to the other, the last with the maximum in it.
+  /// Counts of bins of equal width from minimum to maximum. The last bin includes the maximum.
   std::vector<std::uint64_t> counts;
 
-  /// The largest count of any bin that the values from `low` to `high` are in; 0 where there is none.
+  /// The largest count among the bins that overlap `low` to `high`; 0 if there are none.
   std::uint64_t countBetween(double low, double high) const;
 };
 
-/// Of the active voxels; the same whatever the number of threads. All of a uniform volume are in the first
-/// bin. `bins` is at least 1.
+/// The histogram of the active voxels, with at least 1 bin. The result does not depend on the number of
+/// threads. All voxels of a uniform volume are in the first bin.
 Histogram histogramOf(const Volume& volume, int bins);
 
 }  // namespace freevoxels

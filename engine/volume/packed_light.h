@@ -1,5 +1,5 @@
 #pragma once
-// Light and albedos in 4 bytes: shaders/packed_light.glsl.
+// Light and albedos packed into 4 bytes (shaders/packed_light.glsl).
 
 #include <algorithm>
 #include <bit>
@@ -8,13 +8,13 @@
 
 namespace freevoxels {
 
-/// Of the brightest voxel's components, in the units that are stored.
+/// The largest component of the brightest voxel, in stored units.
 inline constexpr double kBrightest = 32768.0;
-/// The same of what is left out: a thousand such voxels on a ray are a sixtieth of one of the brightest.
+/// Light below this is stored as 0: a thousand such voxels on a ray are a sixtieth of one of the brightest.
 inline constexpr double kFaintest = kBrightest / (1 << 16);
 
-/// Components from 0 to kBrightest. The same bits as glm::packF3x9_E1x5, in a fifth of the time: without logarithms and
-/// powers.
+/// Packs components from 0 to kBrightest. Returns the same bits as glm::packF3x9_E1x5 in a fifth of the time,
+/// without logarithms and powers.
 inline std::uint32_t packColor(glm::dvec3 color) {
   const glm::vec3 parts(color);
   const float largest = std::max({parts.r, parts.g, parts.b});
@@ -25,7 +25,7 @@ inline std::uint32_t packColor(glm::dvec3 color) {
   const glm::uvec3 bits(parts * scale() + 0.5f);
   return bits.r | bits.g << 9 | bits.b << 18 | std::uint32_t(exponent) << 27;
 }
-/// 0 of what is fainter than kFaintest.
+/// Packs light; light fainter than kFaintest becomes 0.
 inline std::uint32_t packLight(glm::dvec3 light) {
   return std::max({light.r, light.g, light.b}) < kFaintest ? 0 : packColor(light);
 }

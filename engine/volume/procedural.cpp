@@ -70,9 +70,10 @@ float rodsDensity(vec3 position, float voxelSize) {
 struct Field {
   ProceduralKind kind;
   float (*density)(vec3 position, float voxelSize);
-  /// A distance within which it is 0, or null: boxes that are nearly empty are filled faster.
+  /// A distance within which the density is 0, or null. Boxes that are nearly empty are filled faster with
+  /// it.
   float (*clearance)(vec3 position) = nullptr;
-  float (*temperature)(vec3 position) = nullptr;  ///< kelvin, or null where there is none
+  float (*temperature)(vec3 position) = nullptr;  ///< in kelvin; null if the field has no temperatures
 };
 
 constexpr std::array<Field, 8> kFields{{

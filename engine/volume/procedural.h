@@ -1,5 +1,5 @@
 #pragma once
-// Volumes made in code, for demonstration and tests. All fill the world cube [-1/2, 1/2]³ or part of it.
+// Volumes computed in code, for demonstrations and tests. All lie in the world cube [-1/2, 1/2]³.
 
 #include <string>
 #include <string_view>
@@ -16,13 +16,14 @@ struct ProceduralKind {
 
 const std::vector<ProceduralKind>& proceduralKinds();
 
-/// The field `name` sampled at the voxel centres of a resolution³ grid, with its temperatures, if it has any.
-/// Voxels of value 0 are inactive.
-/// Unknown name or a resolution outside 1..2048: ExitCode::Usage.
+/// Samples the field `name` and its temperatures, if it has any, at the voxel centres of a resolution³ grid.
+/// Voxels of value 0 are inactive. An unknown name or a resolution outside of 1..2048 fails with
+/// ExitCode::Usage.
 Volume makeProcedural(std::string_view name, int resolution);
 
-/// A volume from a function of the continuous index position: tests fill it from a lambda that also predicts
-/// the answer, and which is called x fastest by one thread. Zero values are active too.
+/// Makes a volume from a function of the continuous index position. Tests use one lambda to fill it and to
+/// predict the answer. The function is called in the order of x fastest by one thread. Values of 0 are
+/// active.
 template <typename Function>
 Volume makeVolume(glm::ivec3 dimensions, const glm::dmat4& indexToWorld, Function&& valueAt) {
   Volume volume;

@@ -59,7 +59,7 @@ float puffDistance(vec3 p) {
   return -smoothMinimum(-distance, p.y - kBase, kJoin);
 }
 
-/// How far billows from `first` on and the fray can still move the surface, either way.
+/// How far the billows from index `first` on and the fraying can move the surface, inwards or outwards.
 float reach(std::size_t first) {
   float sum = 1.5f * kFray;
   for (std::size_t i = first; i < kBillows.size(); ++i) sum += 0.5f * kBillows[i].amplitude;

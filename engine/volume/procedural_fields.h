@@ -12,12 +12,12 @@ float cloudDensity(glm::vec3 position);
 
 /// A spiral of smoke from the bottom to the top, in about a twentieth of its box.
 float plumeDensity(glm::vec3 position);
-/// A distance within which there is none of it.
+/// A distance from `position` within which there is no smoke.
 float plumeClearance(glm::vec3 position);
 
-/// Smoke over a fire, thin where that is hot.
+/// Smoke over a fire, thin where the fire is hot.
 float fireDensity(glm::vec3 position);
-/// Kelvin; 0 where nothing burns.
+/// In kelvin; 0 where nothing burns.
 float fireTemperature(glm::vec3 position);
 
 /// A head in front view along -z, with nested tissues of different density: skin 0.1 to 0.2, brain 0.3 to

@@ -27,7 +27,7 @@ constexpr std::array<Tongue, 6> kTongues{{{0.0f, 0.0f, 0.12f, 0.70f},
                                           {-0.05f, -0.06f, 0.08f, 0.33f},
                                           {0.05f, 0.09f, 0.08f, 0.38f}}};
 
-/// Moved sideways as a flame is by the air, the more the higher.
+/// `position` moved sideways like a flame in the wind, more with growing height.
 vec3 bent(vec3 position, float height) {
   const vec3 slow = gradientNoise3(position * vec3(3.5f, 2.0f, 3.5f), 91u);
   const vec3 fast = gradientNoise3(position * vec3(10.0f, 5.0f, 10.0f), 92u);

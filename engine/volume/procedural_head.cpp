@@ -33,7 +33,7 @@ float neck(vec3 p, float radius, float top) {
   return std::max(glm::length(glm::vec2(p.x, p.z + 0.06f)) - radius, p.y - top);
 }
 
-/// Distances are to the right half of a symmetric head: x is folded.
+/// Signed distance to the skin. The head is symmetric: x is folded to its right half.
 float skinSurface(vec3 p) {
   const float cranium = ellipsoid(p, {0.0f, 0.13f, -0.03f}, {0.255f, 0.295f, 0.325f});
   const float face = ellipsoid(p, {0.0f, -0.08f, 0.09f}, {0.185f, 0.275f, 0.215f});

@@ -9,7 +9,7 @@ namespace freevoxels {
 /// Perlin's gradient noise, about -0.7..0.7.
 float gradientNoise(glm::vec3 p, std::uint32_t seed);
 
-/// Three of them, with seeds from `seed` on.
+/// Three values of gradient noise, with the seeds `seed`, `seed` + 1 and `seed` + 2.
 glm::vec3 gradientNoise3(glm::vec3 p, std::uint32_t seed);
 
 /// Octaves of gradient noise, each of half the amplitude, about -1..1.

@@ -35,7 +35,7 @@ vec3 axisAt(float t) {
   return {kAround * std::cos(angleAt(t)), glm::mix(kBottom, kTop, t), kAround * std::sin(angleAt(t))};
 }
 
-/// How the axis moves with t.
+/// The derivative of the axis with respect to t.
 vec3 alongAxis(float t) {
   const float speed = 2.0f * kPi * kTurns * kAround;
   return {-speed * std::sin(angleAt(t)), kTop - kBottom, speed * std::cos(angleAt(t))};
@@ -45,12 +45,12 @@ float radiusAt(float t) {
   return glm::mix(kNarrow, kWide, std::pow(t, 0.8f));
 }
 
-/// From the axis, of all smoke around that point.
+/// Largest distance of smoke from the axis at parameter t.
 float reachAt(float t) {
   return radiusAt(t) * (1.0f + kReach) + kWarp * t;
 }
 
-/// Of the point of the axis that is nearest, as far as a few steps from the height find it.
+/// Parameter t of the point of the axis that is nearest to p, as found by a few steps from p's height.
 float nearestOnAxis(vec3 p) {
   float t = std::clamp((p.y - kBottom) / (kTop - kBottom), 0.0f, 1.0f);
   for (int step = 0; step < 3; ++step) {
@@ -69,7 +69,7 @@ float plumeClearance(vec3 position) {
     const float t = float(i) / kPoints;
     clearance = std::min(clearance, glm::length(position - axisAt(t)) - reachAt(t));
   }
-  return clearance - 0.5f * glm::length(alongAxis(0.0f)) / kPoints;  // the axis between the points
+  return clearance - 0.5f * glm::length(alongAxis(0.0f)) / kPoints;  // for the axis between the sample points
 }
 
 float plumeDensity(vec3 position) {

@@ -1,5 +1,5 @@
 #pragma once
-// The scalars of a box of voxels, in bricks, of which only those take memory that hold data.
+// The scalars of a box of voxels, in bricks of which only those with data take memory.
 
 #include <tbb/parallel_for.h>
 
@@ -16,7 +16,8 @@
 
 namespace freevoxels {
 
-/// Marks voxels of the box that hold no data (inactive in OpenVDB): never drawn, whatever the classification.
+/// The scalar of voxels without data (inactive in OpenVDB). They are never drawn, whatever the
+/// classification.
 inline constexpr float kInactiveVoxel = -std::numeric_limits<float>::max();
 
 class ScalarBricks {
@@ -25,10 +26,10 @@ class ScalarBricks {
   using Brick = std::array<float, std::size_t(kEdge) * kEdge * kEdge>;  ///< x fastest
 
   ScalarBricks() = default;
-  /// Without data. The box's voxel (0,0,0) is voxel `corner` of its brick, 0 to kEdge - 1.
+  /// A box without data. Its voxel (0,0,0) is voxel `corner` of its brick, with components 0 to kEdge - 1.
   explicit ScalarBricks(glm::ivec3 dimensions, glm::ivec3 corner = glm::ivec3(0));
-  /// `scalarAt(voxel)` is called once for each voxel of the box, by several threads; but for those of bricks
-  /// of which `mayHoldData(its first voxel)` is false.
+  /// Makes bricks from a function. `scalarAt(voxel)` is called once for each voxel, by several threads,
+  /// except for the bricks for whose first voxel `mayHoldData` is false.
   template <typename Function, typename Predicate>
   static ScalarBricks make(glm::ivec3 dimensions, const Function& scalarAt, const Predicate& mayHoldData);
   template <typename Function>
@@ -37,42 +38,44 @@ class ScalarBricks {
   }
 
   const glm::ivec3& dimensions() const { return dimensions_; }
-  /// Bricks along the axes, whether or not they are there.
+  /// Number of bricks along the axes, whether or not they exist.
   const glm::ivec3& cells() const { return cellCount_; }
-  /// Place of the box's voxel (0,0,0) in its brick.
+  /// Position of the box's voxel (0,0,0) in its brick.
   const glm::ivec3& corner() const { return corner_; }
   float at(glm::ivec3 voxel) const {
     const glm::ivec3 place = voxel + corner_;
     const std::int32_t number = numbers_[cellIndex(place / kEdge)];
     return number < 0 ? kInactiveVoxel : bricks_[std::size_t(number)][indexInBrick(place % kEdge)];
   }
-  /// Makes the voxel's brick, if it is not there.
+  /// Sets a voxel, making its brick if it does not exist.
   void set(glm::ivec3 voxel, float scalar) {
     const glm::ivec3 place = voxel + corner_;
     makeBrick(place / kEdge)[indexInBrick(place % kEdge)] = scalar;
   }
-  /// Brick `cell` of the box, made if it is not there; good until the next is made, or for as many bricks as
-  /// were reserved. Its voxels beyond the box must stay inactive.
+  /// Returns brick `cell`, making it if it does not exist. The reference is valid until the next brick is
+  /// made, or for as many bricks as were reserved. Voxels of the brick beyond the box must stay inactive.
   Brick& makeBrick(glm::ivec3 cell);
   void reserve(std::size_t bricks);
 
-  /// Those that are there, in the order in which they were made.
+  /// The existing bricks, in the order in which they were made.
   std::span<Brick> bricks() { return bricks_; }
   std::span<const Brick> bricks() const { return bricks_; }
-  /// The place in the box of a brick's first voxel; less than 0 where the brick begins before the box.
+  /// Position in the box of a brick's first voxel; negative if the brick begins before the box.
   glm::ivec3 firstVoxel(std::size_t brick) const { return cells_[brick] * kEdge - corner_; }
-  /// Of bricks of the box; those of boxes with the same `corner` are the same voxels.
+  /// Position of a brick among the bricks of the box. Boxes of equal `corner` have the same voxels in the
+  /// same bricks.
   glm::ivec3 cell(std::size_t brick) const { return cells_[brick]; }
-  /// Null where there is none.
+  /// The brick at a cell, or null if it does not exist.
   const Brick* brickAt(glm::ivec3 cell) const {
     const std::int32_t number = numbers_.empty() ? -1 : numbers_[cellIndex(cell)];
     return number < 0 ? nullptr : &bricks_[std::size_t(number)];
   }
-  /// The voxels of a row, in the order of x; `row` has as many.
+  /// Copies the voxels of a row in the order of x. `row` must have as many elements as the box has voxels
+  /// along x.
   void copyRow(int y, int z, std::span<float> row) const;
-  /// The same voxels in the box from `low` to `high`, beyond which there is no data.
+  /// The part of the box from voxel `low` to `high`. Beyond this box there is no data.
   ScalarBricks cropped(glm::ivec3 low, glm::ivec3 high) const;
-  /// On the host.
+  /// Bytes of host memory.
   std::uint64_t bytes() const { return bytesOf(bricks_.size(), dimensions_); }
   static std::uint64_t bytesOf(std::uint64_t bricks, glm::ivec3 dimensions) {
     const glm::u64vec3 cells((dimensions + kEdge - 1) / kEdge);
@@ -90,8 +93,8 @@ class ScalarBricks {
   }
 
   glm::ivec3 dimensions_{0}, corner_{0}, cellCount_{0};
-  std::vector<std::int32_t> numbers_;  ///< of the bricks by cell, -1 where there is none
-  std::vector<glm::ivec3> cells_;      ///< of the bricks
+  std::vector<std::int32_t> numbers_;  ///< index of each cell's brick, -1 if it does not exist
+  std::vector<glm::ivec3> cells_;      ///< cell of each brick
   std::vector<Brick> bricks_;
 };
 
@@ -100,7 +103,7 @@ ScalarBricks ScalarBricks::make(glm::ivec3 dimensions, const Function& scalarAt,
                                 const Predicate& mayHoldData) {
   ScalarBricks result(dimensions);
   const glm::ivec3 cells = result.cellCount_;
-  // A layer at a time, so that the bricks are in the same order in every run.
+  // Layer by layer, so that the bricks have the same order in every run.
   std::vector<std::optional<Brick>> layer(std::size_t(cells.x) * std::size_t(cells.y));
   for (int z = 0; z < cells.z; ++z) {
     tbb::parallel_for(std::size_t(0), layer.size(), [&](std::size_t i) {

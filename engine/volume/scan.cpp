@@ -16,12 +16,14 @@ namespace {
 constexpr int kClasses = 4;
 constexpr std::size_t kBins = 64;
 constexpr int kFineBins = 4096;
-constexpr double kOutliers = 0.0005;  // part of the voxels, above the values that are told apart
+constexpr double kOutliers = 0.0005;  // fraction of the voxels with the highest values, which are not distinguished
 
-/// Per 1/128 of the box's longest side, by the distance from the transparent class.
+/// Opacity per 1/128 of the box's longest side, by the number of classes between a class and the transparent
+/// one.
 constexpr std::array<float, kClasses> kOpacities{0.0f, 0.03f, 0.12f, 0.6f};
 constexpr double kLengthsAlongBox = 128.0;
-/// Half the width of the ramp at a threshold, in distances from it to the nearer of the two classes' means.
+/// Half the width of the opacity ramp at a threshold, as a fraction of the threshold's distance to the nearer
+/// of the two classes' means.
 constexpr double kRamp = 0.25;
 
 constexpr float kHuge = std::numeric_limits<float>::max();
@@ -29,14 +31,14 @@ constexpr float kHuge = std::numeric_limits<float>::max();
 const std::array<glm::vec3, kClasses> kColors{glm::vec3(0.30f, 0.45f, 0.75f), glm::vec3(0.85f, 0.42f, 0.28f),
                                               glm::vec3(0.95f, 0.72f, 0.42f), glm::vec3(0.98f, 0.94f, 0.85f)};
 
-/// A class of values: means and thresholds in bins.
+/// The classes' means and the thresholds between them, in bins.
 struct Classes {
   std::array<double, kClasses> means{};
   std::array<double, kClasses - 1> thresholds{};
 };
 
-/// The classes whose values differ least from their means, by dynamic programming: `best[k][end]` is the largest sum of
-/// weight x mean^2 with which k classes make up the bins before `end`.
+/// The classes with the least variance, by dynamic programming: `best[k][end]` is the largest sum of weight x
+/// mean^2 of k classes that make up the bins before `end`.
 Classes classesOf(std::span<const double> weights) {
   const std::size_t n = weights.size();
   FV_CHECK_LE(std::size_t(kClasses), n);
@@ -80,7 +82,7 @@ Classes classesOf(std::span<const double> weights) {
   return classes;
 }
 
-/// The values of the active voxels on the box's six sides.
+/// The values of the active voxels on the six sides of the box.
 std::vector<float> valuesOnSides(const Volume& volume) {
   std::vector<float> values;
   std::vector<float> row(std::size_t(volume.dimensions.x));
@@ -99,7 +101,7 @@ std::vector<float> valuesOnSides(const Volume& volume) {
   return values;
 }
 
-/// The class that most values are of; the lowest where none has half of them.
+/// The class that most values belong to, or the lowest if no class has half of them.
 int commonClass(std::span<const float> values, std::span<const double> thresholds) {
   std::array<std::size_t, kClasses> counts{};
   for (const float value : values)
@@ -108,7 +110,7 @@ int commonClass(std::span<const float> values, std::span<const double> threshold
   return 2 * *most > values.size() ? int(most - counts.begin()) : 0;
 }
 
-/// The value below which all but the outliers are.
+/// The value below which all voxels but the outliers are.
 double highestUsual(const Histogram& histogram) {
   std::uint64_t all = 0, below = 0;
   for (const std::uint64_t count : histogram.counts) all += count;

@@ -9,7 +9,7 @@ namespace freevoxels {
 namespace {
 
 constexpr int kCellsAlongLongestSide = 64;
-constexpr float kLeastDensity = 1.0f / 256.0f;  // of the largest
+constexpr float kLeastDensity = 1.0f / 256.0f;  // as a fraction of the largest density
 constexpr double kMargin = 0.13;
 
 }  // namespace

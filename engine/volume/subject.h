@@ -1,5 +1,5 @@
 #pragma once
-// What an image of a volume is to show: its box, or the part of it that is visible.
+// The part of a volume that an image is to show: its box, or the visible part.
 
 #include "engine/scene/camera.h"
 #include "engine/scene/orbit.h"
@@ -21,8 +21,8 @@ inline std::vector<Camera> framingOrbit(const Volume& volume, double azimuth, do
   return framingOrbit(boxOf(volume), azimuth, elevation, frames, aspect, base);
 }
 
-/// The parts of the volume that are seen, in cells of 1/64 of its longest side: those with extinction or emission, but for
-/// densities below 1/256 of the largest. The whole box where there are none.
+/// The visible parts of the volume, in cells of 1/64 of its longest side: cells with extinction or emission,
+/// except for densities below 1/256 of the largest. The whole box if there are none.
 Subject contentOf(const Volume& volume, const Classification& classification);
 
 }  // namespace freevoxels

@@ -20,7 +20,7 @@ using Json = nlohmann::json;
 
 constexpr std::array<std::string_view, 4> kKeys{"range", "opacity", "color", "unit_distance"};
 
-/// One key of the file, for messages and checked access.
+/// A key of the file, with checked access to its value and messages that name it.
 class Field {
  public:
   Field(const fs::path& file, std::string_view key, const Json& value)
@@ -86,7 +86,7 @@ void checkKeys(const fs::path& file, const Json& root) {
          file.string());
 }
 
-/// lo and hi: the scalars that x = 0 and x = 1 stand for.
+/// The scalars lo and hi at x = 0 and x = 1.
 std::array<double, 2> readRange(const fs::path& file, const Json& root, const Volume& volume) {
   if (!root.contains("range")) return {volume.minimum, volume.maximum};
   const Field field(file, "range", root["range"]);
@@ -122,7 +122,7 @@ TransferFunction makeTransferFunction(const fs::path& file, const Json& root, co
   return transfer;
 }
 
-/// The double of fewest digits that is read as this float.
+/// The double with the fewest digits that rounds to this float.
 double shortest(float value) {
   return std::stod(fmt::format("{}", value));
 }

@@ -11,7 +11,8 @@ namespace freevoxels {
 namespace {
 
 constexpr int kIntervals = shader::kTransferIntervals;
-/// Scalars further outside of the function's points than so many times their extent have the code of the range's end.
+/// Scalars that are farther outside of the function's points than this many times their extent get the code
+/// of the range's end.
 constexpr double kMostOutside = 4.0;
 
 }  // namespace

@@ -1,8 +1,9 @@
 #pragma once
-// A transfer function tabulated with its integrals over the scalar, for classification after interpolation: where a
-// scalar changes linearly from a to b along a stretch of a ray, the stretch's mean extinction is
-// (K(b) - K(a)) / (b - a) with K the integral of the extinction over the scalar, and the same of extinction times colour
-// (pre-integrated classification: Engel, Kraus and Ertl 2001, Section 3.2, without self-attenuation).
+// A transfer function tabulated with its integrals over the scalar, for classification after interpolation.
+// Where the scalar changes linearly from a to b along a stretch of a ray, the mean extinction of the stretch
+// is (K(b) - K(a)) / (b - a), with K the integral of the extinction over the scalar; likewise for extinction
+// times colour (pre-integrated classification: Engel, Kraus and Ertl 2001, Section 3.2, without
+// self-attenuation).
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -15,20 +16,21 @@ namespace freevoxels {
 /// Scalars become 16-bit codes, equally spaced between the two ends of the table's range.
 class TransferTable {
  public:
-  /// Over the scalars from `minimum` to `maximum`, but for what is far outside of the function's points: so that a few
-  /// outliers do not take the precision of the rest.
+  /// Tabulates the scalars from `minimum` to `maximum`, except for those far outside of the function's
+  /// points: a few outliers shall not take the precision of the others.
   TransferTable(const TransferFunction& function, float minimum, float maximum);
 
-  /// 1 to 65535; 0 is kInactiveVoxel's. Scalars beyond the range have the code of its end.
+  /// The code of a scalar, 1 to 65535, or 0 for kInactiveVoxel. Scalars beyond the range have the code of its
+  /// end.
   std::uint16_t code(float scalar) const;
-  /// Two of each of the shader::kTransferIntervals intervals: the integral up to its beginning, of extinction times
-  /// colour (rgb) and of extinction (a), in units of intervals; and their means over it. Extinctions are per world unit,
-  /// times `extinctionScale`.
+  /// Two texels for each of the shader::kTransferIntervals intervals: the integral up to its beginning, of
+  /// extinction times colour (rgb) and of extinction (a), in units of intervals; and their means over the
+  /// interval. Extinctions are per world unit, times `extinctionScale`.
   std::vector<glm::vec4> texels(double extinctionScale) const;
 
  private:
   double low_ = 0.0, high_ = 0.0;
-  std::vector<glm::dvec4> means_;  ///< over each interval: extinction times colour, extinction
+  std::vector<glm::dvec4> means_;  ///< of each interval: extinction times colour (rgb), extinction (a)
 };
 
 }  // namespace freevoxels

@@ -25,7 +25,7 @@ const VdbFile::Entry& chooseTemperature(const VdbFile& file, const std::string& 
        file.path().string(), names);
 }
 
-/// 0..1, and whether it was not there.
+/// A colour clamped to 0..1, and whether it was outside of that range.
 struct Clipped {
   glm::vec3 color;
   bool changed;
@@ -40,7 +40,7 @@ Clipped clip(const openvdb::Vec3s& value) {
 
 using Bricks = std::array<ScalarBricks::Brick*, 3>;
 
-/// Null beyond the box: no density is there.
+/// The three bricks of a leaf, or null if it is beyond the box and so has no density.
 std::optional<Bricks> bricksAt(AlbedoGrid& grid, glm::ivec3 origin, const openvdb::Coord& corner) {
   const glm::ivec3 cell = brickCell(origin, corner), first = cell * ScalarBricks::kEdge;
   const glm::ivec3 begin = origin & (ScalarBricks::kEdge - 1);

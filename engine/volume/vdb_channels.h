@@ -1,5 +1,5 @@
 #pragma once
-// Internal to the vdb_*.cpp files, as it includes OpenVDB: grids beside that of the densities, on its
+// Internal to the vdb_*.cpp files, since it includes OpenVDB: grids in addition to the densities, on the same
 // lattice.
 
 #include <optional>
@@ -12,11 +12,12 @@ namespace freevoxels {
 
 class VdbChannels {
  public:
-  /// Fails with ExitCode::Input where `file` has not what is asked for, or not on the lattice of `density`.
+  /// Fails with ExitCode::Input if `file` lacks a grid of `more`, or has it on another lattice than
+  /// `density`.
   VdbChannels(VdbFile& file, const VdbFile::Entry& density, const MoreGrids& more);
 
   void read();
-  /// Of the temperatures: where there is light there may be no density.
+  /// The box of the active temperatures, where there may be emission without density.
   openvdb::CoordBBox bounds() const;
   void addTo(Volume& volume) const;
 

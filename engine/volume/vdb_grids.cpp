@@ -24,8 +24,8 @@ namespace fs = std::filesystem;
 using openvdb::GridBase;
 using openvdb::io::GridDescriptor;
 
-/// OpenVDB warns through std::cerr, or std::cout where it was built with a logger. This program's own
-/// messages go through stdio and pass.
+/// Silences OpenVDB, which writes warnings to std::cerr, or to std::cout if it was built with a logger. This
+/// program's own messages use stdio and are not affected.
 class SilenceOpenVdb {
  public:
   SilenceOpenVdb() : cerr_(std::cerr.rdbuf(sink_.rdbuf())), cout_(std::cout.rdbuf(sink_.rdbuf())) {}
@@ -42,8 +42,8 @@ class SilenceOpenVdb {
   std::streambuf* cout_;
 };
 
-/// Delayed loading only adds work where every value is needed, and newer versions of OpenVDB have no such
-/// thing.
+/// Opens without delayed loading, which only costs time if every value is needed, and which newer versions of
+/// OpenVDB do not have.
 template <typename File>
 void openWithoutDelay(File& file) {
   if constexpr (requires { file.open(false); })
@@ -60,7 +60,7 @@ std::vector<GridBase::Ptr> readWholeStream(std::istream& input) {
     return *Stream(input).getGrids();
 }
 
-/// Text from a file as part of a sentence: one printable line that is not too long.
+/// Text from a file in a form that fits into a sentence: one printable line of limited length.
 std::string printable(std::string text) {
   constexpr std::size_t kLongest = 200;
   if (text.size() > kLongest) {
@@ -92,7 +92,7 @@ std::string listOf(const std::vector<VdbFile::Entry>& entries) {
   return list.empty() ? "none" : list;
 }
 
-/// Where a name is shared, OpenVDB's numbers tell the grids apart, or else their order in the file does.
+/// Distinguishes grids of equal name by OpenVDB's numbers if there are any, else by their order in the file.
 void nameEntries(std::vector<VdbFile::Entry>& entries) {
   std::map<std::string, int> uses, shown;
   for (VdbFile::Entry& entry : entries) {
@@ -140,7 +140,7 @@ void VdbFile::listGrids() {
 void VdbFile::readStreamedGrids() {
   guarded("its grids", [&] {
     std::ifstream input;
-    input.exceptions(std::ios::failbit | std::ios::badbit);  // else OpenVDB reads on past the end
+    input.exceptions(std::ios::failbit | std::ios::badbit);  // without exceptions OpenVDB reads on beyond the end of the file
     input.open(path_, std::ios::binary);
     streamed_ = readWholeStream<openvdb::io::Stream>(input);
     return GridBase::Ptr();
@@ -195,7 +195,7 @@ const VdbFile::Entry& VdbFile::chooseByDefault() const {
   }
   if (!densities.empty()) return firstOf(densities);
   if (reals.size() == 1) return *reals.front();
-  if (reals.empty() && entries_.size() == 1) return entries_.front();  // its refusal says why
+  if (reals.empty() && entries_.size() == 1) return entries_.front();  // readVdb will say why it cannot be drawn
   if (reals.empty())
     fail(ExitCode::Input, "'{}' has no float grid, only: {}; choose another file", path_.string(),
          listOf(entries_));
@@ -228,7 +228,8 @@ bool VdbFile::isOfBlender(const Entry& entry) {
   };
   const openvdb::MetaMap::Ptr ofFile = streamed_.empty() ? file_.getMetadata() : nullptr;
   const auto isLocal = grid->getMetadata<openvdb::BoolMetadata>(GridBase::META_IS_LOCAL_SPACE);
-  // Grids of its smoke caches are the only ones that are said to be in local space; those of its fluids have a base resolution.
+  // Blender's smoke caches are the only grids that claim to be in local space; its fluid caches have a base
+  // resolution.
   return (ofFile && creatorIsBlender(*ofFile)) || creatorIsBlender(*grid) || (isLocal && isLocal->value()) ||
          (*grid)["file_base_resolution"] != nullptr;
 }
@@ -275,7 +276,7 @@ std::string whyTransformUnusable(const openvdb::math::Transform& transform) {
   openvdb::Mat4d matrix;
   try {
     matrix = transform.baseMap()->getAffineMap()->getMat4();
-  } catch (const openvdb::ArithmeticError&) {  // a map of scales alone is not checked until here
+  } catch (const openvdb::ArithmeticError&) {  // a transform of scales alone is not checked before this
     return kSingular;
   }
   double lengths = 1.0;

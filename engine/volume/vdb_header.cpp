@@ -25,14 +25,14 @@ constexpr std::int64_t kMagic = 0x56444220;  // "VDB "
 constexpr std::uint32_t kOldestFormat = 222;
 constexpr std::size_t kUuidLength = 36;
 
-/// What is in the folder of a file, as far as it can be read.
+/// The names in the folder of a file, as far as it can be read.
 std::vector<std::string> namesBeside(const fs::path& file) {
   std::vector<std::string> names;
   std::error_code error;
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
     names.push_back(entry->path().filename().string());
-  std::ranges::sort(names);  // of equally near ones the first, whatever order the folder has
+  std::ranges::sort(names);  // so that the first of equally near names is chosen, whatever the order of the folder
   return names;
 }
 
@@ -70,7 +70,7 @@ constexpr std::array<ScanFormat, 13> kScanFormats{{{".nii", "a NIfTI scan"},
                                                    {".mrc", "an MRC map"},
                                                    {".raw", "values without a header"}}};
 
-/// Fails where the file's name is that of a scan.
+/// Fails if the file's name is that of a scan's format.
 void refuseScan(const fs::path& file) {
   std::string name = file.filename().string();
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
@@ -82,7 +82,7 @@ void refuseScan(const fs::path& file) {
            file.string(), format.name);
 }
 
-/// What a file that is not an OpenVDB file seems to be.
+/// Guesses the kind of a file that is not an OpenVDB file.
 std::string_view guessKind(const fs::path& file) {
   char bytes[512];
   std::ifstream stream(file, std::ios::binary);
@@ -109,13 +109,13 @@ struct TypeSize {
   std::uint32_t bytes;
 };
 
-/// OpenVDB reads these metadata types in their own size, whatever size the file says.
+/// OpenVDB reads these metadata types with their own size, whatever size the file states.
 constexpr TypeSize kMetadataTypes[] = {{"bool", 1},   {"float", 4},  {"double", 8}, {"int32", 4},
                                        {"int64", 8},  {"vec2i", 8},  {"vec2s", 8},  {"vec2d", 16},
                                        {"vec3i", 12}, {"vec3s", 12}, {"vec3d", 24}, {"vec4i", 16},
                                        {"vec4s", 16}, {"vec4d", 32}, {"mat4s", 64}, {"mat4d", 128}};
 
-/// What OpenVDB writes of a transform after the name of its type; frustums vary.
+/// Bytes that OpenVDB writes for a transform after the name of its type. Those of frustums vary.
 constexpr TypeSize kTransformTypes[] = {{"AffineMap", 128},         {"UnitaryMap", 128},
                                         {"ScaleMap", 120},          {"UniformScaleMap", 120},
                                         {"ScaleTranslateMap", 144}, {"UniformScaleTranslateMap", 144},
@@ -126,10 +126,11 @@ const TypeSize* find(std::span<const TypeSize> types, const std::string& type) {
   return found == types.end() ? nullptr : &*found;
 }
 
-/// The mask and the size of every leaf, for delayed loading: OpenVDB allocates what it counts.
+/// Skips the masks and sizes of leaves that are stored for delayed loading. OpenVDB allocates by their
+/// counts.
 void skipDelayedLoading(VdbReader& reader, std::uint32_t bytes) {
   constexpr std::uint64_t kSmallestLeaf = 64;
-  constexpr std::uint64_t kSmallestPacked = 128;  // OpenVDB pads what is shorter before it compresses it
+  constexpr std::uint64_t kSmallestPacked = 128;  // OpenVDB pads shorter data before compressing it
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   if (bytes == 0) return;
   const std::uint64_t end = reader.position() + bytes;
@@ -137,7 +138,7 @@ void skipDelayedLoading(VdbReader& reader, std::uint32_t bytes) {
   if (leaves > reader.size() / kSmallestLeaf) reader.failDamaged("its metadata counts {} leaves", leaves);
   for (const std::size_t bytesOfOne : {sizeof(std::int8_t), sizeof(std::int64_t)}) {
     const auto packed = reader.read<std::uint32_t>();
-    const bool isLeftOut = bytesOfOne > 1 && packed == kNone;  // only sizes can be
+    const bool isLeftOut = bytesOfOne > 1 && packed == kNone;  // only sizes can be left out
     if (packed == 0)
       reader.skip(leaves * bytesOfOne);
     else if (!isLeftOut)
@@ -147,7 +148,7 @@ void skipDelayedLoading(VdbReader& reader, std::uint32_t bytes) {
   reader.seek(end);
 }
 
-/// Whether the metadata say that values are stored as half.
+/// Skips metadata; returns whether they say that values are stored as half.
 bool skipMetadata(VdbReader& reader) {
   bool savedAsHalf = false;
   const auto count = reader.read<std::int32_t>();
@@ -168,14 +169,14 @@ bool skipMetadata(VdbReader& reader) {
   return savedAsHalf;
 }
 
-/// False for a transform whose end cannot be told.
+/// Skips a transform; returns false if its end is unknown.
 bool skipTransform(VdbReader& reader) {
   const TypeSize* known = find(kTransformTypes, reader.readString());
   if (known) reader.skip(known->bytes);
   return known;
 }
 
-/// The grid's descriptor, without the positions that follow.
+/// Reads the grid's descriptor, without the positions that follow.
 VdbHeader::Grid readDescriptor(VdbReader& reader) {
   constexpr std::string_view kHalfSuffix = "_HalfFloat";
   VdbHeader::Grid grid;
@@ -189,7 +190,7 @@ VdbHeader::Grid readDescriptor(VdbReader& reader) {
   return grid;
 }
 
-/// Everything of the grid up to its tree.
+/// Reads the grid up to its tree.
 void readGridStart(VdbReader& reader, VdbHeader::Grid& grid) {
   grid.compression = reader.read<std::uint32_t>();
   grid.valuesAreHalf = skipMetadata(reader);
@@ -203,14 +204,14 @@ VdbHeader::Grid readGridEntry(VdbReader& reader) {
   const auto end = reader.read<std::int64_t>();
   if (gridStart < std::int64_t(reader.position()) || blockStart < gridStart || end < blockStart)
     reader.failDamaged("its grids are not where its header says");
-  reader.seek(std::uint64_t(end));  // first of all: a truncated file is not called damaged
+  reader.seek(std::uint64_t(end));  // checked first, so that a truncated file is not called damaged
   reader.seek(std::uint64_t(gridStart));
   readGridStart(reader, grid);
   reader.seek(std::uint64_t(end));
   return grid;
 }
 
-/// One grid follows the other, so they are checked as far as the end of each can be told.
+/// Checks grids that follow each other, as long as the end of each is known.
 void checkStreamedGrids(VdbReader& reader, std::int32_t count) {
   bool canContinue = true;
   for (std::int32_t i = 0; i < count && canContinue; ++i) {

@@ -32,7 +32,7 @@ ValueRange join(const ValueRange& a, const ValueRange& b) {
   return {std::min(a.minimum, b.minimum), std::max(a.maximum, b.maximum)};
 }
 
-/// Of the finite active values.
+/// The range of the finite active values.
 ValueRange rangeOf(const FloatTree& tree) {
   std::vector<const FloatTree::LeafNodeType*> leaves;
   tree.getNodes(leaves);
@@ -82,7 +82,7 @@ void describeVoxels(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   info.maximum = values.maximum;
 }
 
-/// Of more voxels the bits take longer than the answer is worth.
+/// Boxes of more voxels are not counted: it would take too long.
 constexpr std::uint64_t kMostCounted = std::uint64_t(1) << 29;
 
 template <typename ToDensity>
@@ -119,7 +119,7 @@ std::uint64_t hostBytes(const FloatTree& tree, const std::vector<const FloatTree
   return ScalarBricks::bytesOf(bricks, dimensions);
 }
 
-/// The box that readVdb would make of the grid, and what of it holds anything.
+/// Describes the box that readVdb would return, and its occupied blocks.
 void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   const openvdb::FloatGrid::ConstPtr floats = asFloatGrid(grid);
   std::vector<const FloatTree::LeafNodeType*> leaves;
@@ -140,7 +140,7 @@ bool hasTemperatures(const VdbFile::Entry& entry) {
   return isReal(entry) && std::ranges::find(kTemperatureNames, entry.baseName) != kTemperatureNames.end();
 }
 
-/// Staggered vectors are velocities.
+/// Whether a grid can hold albedos. Staggered vectors are velocities.
 bool hasAlbedos(const VdbFile::Entry& entry, const openvdb::GridBase& grid) {
   return isColor(entry) && grid.getGridClass() != openvdb::GRID_STAGGERED;
 }

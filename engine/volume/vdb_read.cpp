@@ -37,7 +37,7 @@ glm::dmat4 indexToWorldOf(const FloatGrid& grid, glm::ivec3 indexOrigin) {
   return indexToWorld;
 }
 
-/// Of the box around what `toDensity` keeps and around `more`.
+/// Makes the volume of the box around the voxels that `toDensity` keeps and around `more`.
 template <typename ToDensity>
 Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::string& source,
                 const CoordBBox& more, std::uint64_t maximumVoxels) {

@@ -13,7 +13,7 @@ namespace freevoxels {
 /// Reads little-endian values and fails at the end of the file instead of reading past it.
 class VdbReader {
  public:
-  /// Fails with ExitCode::Input where the file cannot be opened.
+  /// Fails with ExitCode::Input if the file cannot be opened.
   explicit VdbReader(const std::filesystem::path& file);
 
   template <typename Value>
@@ -22,7 +22,7 @@ class VdbReader {
     readBytes(&value, sizeof(Value));
     return value;
   }
-  /// A name or the name of a type; longer than 64 KiB is damage.
+  /// Reads the name of a grid or type; one of more than 64 KiB is an error.
   std::string readString();
   void readBytes(void* bytes, std::size_t count);
   void skip(std::uint64_t bytes);
@@ -46,8 +46,8 @@ class VdbReader {
   std::ifstream stream_;
 };
 
-/// Skips `packed` bytes that Blosc has made of `unpacked` bytes. Its header must say so: Blosc and OpenVDB go
-/// by the header alone.
+/// Skips `packed` bytes that Blosc compressed from `unpacked` bytes. Fails if Blosc's header says otherwise,
+/// since Blosc and OpenVDB trust that header.
 void skipBlosc(VdbReader& reader, std::uint64_t packed, std::uint64_t unpacked);
 
 }  // namespace freevoxels

@@ -18,8 +18,8 @@ enum Compression : std::uint32_t { kZip = 1, kActiveMask = 2, kBlosc = 4 };
 struct ValueLayout {
   std::string_view treeType;
   std::uint32_t bytes;          ///< of one value
-  std::uint32_t halfBytes;      ///< of one value in a list that is saved as half
-  std::uint32_t leafBytes = 0;  ///< behind the mask of a leaf, or 0 where a list of values is there
+  std::uint32_t halfBytes;      ///< bytes of one value in a list that is saved as half
+  std::uint32_t leafBytes = 0;  ///< bytes behind the mask of a leaf; 0 if a list of values follows
 };
 
 constexpr ValueLayout kLayouts[] = {
@@ -108,9 +108,10 @@ class TreeCheck {
       checkValues(mask);
   }
 
-  /// A list of values, one for each bit of the mask, or for each bit that is on.
+  /// Checks a list of values, one for each bit of the mask, or for each bit that is on.
   void checkValues(MaskView active) {
-    // What the inactive values are: +-background, one value, two, or a mask that chooses between two.
+    // How inactive values are stored: +-background, one value, two values, or two values and a mask that
+    // chooses between them.
     enum Inactive : std::uint8_t {
       kOneValue = 2,
       kMask = 3,
@@ -125,13 +126,13 @@ class TreeCheck {
     if (inactive >= kMask && inactive <= kMaskAndTwo) reader_.skip(active.size_bytes());
     const bool isSparse = (compression_ & kActiveMask) && inactive != kAllStored;
     const std::uint64_t count = isSparse ? countOn(active) : 64 * active.size();
-    if (isHalf_ && count == 0) return;  // OpenVDB leaves out the size, too
+    if (isHalf_ && count == 0) return;  // OpenVDB also leaves out the size
     skipChunk(count * (isHalf_ ? layout_.halfBytes : layout_.bytes));
   }
 
   void skipChunk(std::uint64_t bytes) {
     if (!(compression_ & (kZip | kBlosc))) return reader_.skip(bytes);
-    const auto stored = reader_.read<std::int64_t>();  // negative: as it is
+    const auto stored = reader_.read<std::int64_t>();  // negative if the values are not compressed
     if (stored <= 0 && stored != -std::int64_t(bytes))
       reader_.failDamaged("{} bytes are given as {}", bytes, stored);
     if (stored <= 0)

@@ -16,7 +16,7 @@ using openvdb::Coord;
 using openvdb::FloatGrid;
 using Leaf = openvdb::FloatTree::LeafNodeType;
 
-/// The leaf at `corner` (a multiple of its size, in the file's index space), or null where no voxel of it is
+/// The leaf at `corner` (a multiple of its size, in the file's index space), or null if none of its voxels is
 /// active.
 std::unique_ptr<Leaf> makeLeaf(const Volume& volume, const ScalarBricks& scalars, const Coord& corner) {
   const glm::ivec3 first = glm::ivec3(corner.x(), corner.y(), corner.z()) - volume.indexOrigin;
@@ -34,7 +34,7 @@ std::unique_ptr<Leaf> makeLeaf(const Volume& volume, const ScalarBricks& scalars
   return leaf;
 }
 
-/// Of the leaves that a brick reaches into.
+/// The corners of all leaves that bricks overlap.
 std::set<Coord> leafCorners(const Volume& volume, const ScalarBricks& scalars) {
   const int mask = ~(int(Leaf::DIM) - 1);
   std::set<Coord> corners;
@@ -64,7 +64,7 @@ openvdb::math::Transform::Ptr transformOf(const Volume& volume) {
   return openvdb::math::Transform::createLinearTransform(matrix);
 }
 
-/// OpenVDB does not notice a full disk: what it has written must be long enough for its own header.
+/// OpenVDB does not notice a full disk: checks that the file is as long as its own header says.
 void checkComplete(const std::filesystem::path& file) {
   try {
     readVdbHeader(file);

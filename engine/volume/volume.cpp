@@ -21,7 +21,7 @@ Summary join(const Summary& a, const Summary& b) {
           std::max(a.maximum, b.maximum)};
 }
 
-/// Also replaces NaN and infinities by 0.
+/// Adds a value to the summary, and replaces it by 0 if it is NaN or infinite.
 void add(Summary& summary, float& value) {
   if (value == kInactiveVoxel) return;
   ++summary.active;

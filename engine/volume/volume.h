@@ -1,5 +1,5 @@
 #pragma once
-// A volume as the engine sees it: a box of scalars and where it stands in the world.
+// A volume in host memory: a box of scalars and its place in the world.
 
 #include <array>
 #include <cstdint>
@@ -12,31 +12,31 @@
 
 namespace freevoxels {
 
-/// Temperatures beside a volume's scalars.
+/// Temperatures in addition to a volume's scalars.
 struct TemperatureGrid {
   std::string name;
-  ScalarBricks values;  ///< as Volume::scalars, of the same box; in any unit
+  ScalarBricks values;  ///< like Volume::scalars, for the same box, in any unit
   std::uint64_t activeVoxels = 0, nanVoxels = 0;
   float minimum = 0.0f, maximum = 0.0f;  ///< of the active voxels
 };
 
-/// Albedos beside a volume's scalars, linear Rec.709 in 0..1.
+/// Albedos in addition to a volume's scalars, linear Rec.709 in 0..1.
 struct AlbedoGrid {
   std::string name;
-  std::array<ScalarBricks, 3> values;  ///< red, green and blue, each as Volume::scalars, of the same box
-  std::uint64_t clippedVoxels = 0;     ///< that were not in 0..1; NaN is 0
+  std::array<ScalarBricks, 3> values;  ///< red, green and blue, each like Volume::scalars, for the same box
+  std::uint64_t clippedVoxels = 0;     ///< voxels that were clamped to 0..1; NaN becomes 0
 };
 
 struct Volume {
   std::string source;  ///< file and grid, for messages and metadata: "cloud.vdb density[1]"
   glm::ivec3 dimensions{0};
-  glm::ivec3 indexOrigin{0};  ///< of voxel (0,0,0) in the file's own index space
-  /// Affine. Maps (i,j,k) of this box, 0 <= i < dimensions.x, to the world position of that voxel's centre.
+  glm::ivec3 indexOrigin{0};  ///< position of voxel (0,0,0) in the file's own index space
+  /// Affine. Maps the voxel (i,j,k) of this box, 0 <= i < dimensions.x, to the world position of its centre.
   glm::dmat4 indexToWorld{1.0};
-  glm::dvec3 up{0.0, 1.0, 0.0};  ///< of the world, as far as the file says
+  glm::dvec3 up{0.0, 1.0, 0.0};  ///< up direction in the world, as far as the file says
   std::string upReason;          ///< why it is not +y, as a clause: "Blender wrote the file"
-  bool isLevelSet = false;       ///< scalars are 1 inside of a level set and fall to 0 across its surface
-  ScalarBricks scalars;  ///< of the same dimensions. Finite, or kInactiveVoxel
+  bool isLevelSet = false;       ///< whether the file had a level set; scalars are then 1 inside and fall to 0 across its surface
+  ScalarBricks scalars;  ///< finite values, or kInactiveVoxel
 
   std::uint64_t activeVoxels = 0;
   std::uint64_t nanVoxels = 0;  ///< active voxels that were NaN or infinite; their value is 0 here
@@ -51,28 +51,29 @@ struct Volume {
     return std::size_t(dimensions.x) * std::size_t(dimensions.y) * std::size_t(dimensions.z);
   }
   float scalar(int x, int y, int z) const { return scalars.at({x, y, z}); }
-  /// Of a voxel among all of them, x fastest.
+  /// Index of a voxel among all voxels, x fastest.
   std::size_t at(int x, int y, int z) const {
     return std::size_t(x) +
            std::size_t(dimensions.x) * (std::size_t(y) + std::size_t(dimensions.y) * std::size_t(z));
   }
-  /// Edge of the cube that has a voxel's world volume: the Δ of design and paper.
+  /// Edge in world units of the cube with the volume of a voxel: the paper's Δ.
   double voxelSize() const;
 };
 
-/// Of all voxels, x fastest: for references and tests, which look at every one.
+/// The scalars of all voxels, x fastest: for references and tests that look at every voxel.
 std::vector<float> denseScalars(const Volume& volume);
 
 /// Fills activeVoxels, nanVoxels, negativeVoxels, minimum and maximum, and replaces NaN and infinities by 0.
 void summariseValues(Volume& volume);
-/// The same of temperatures.
+/// Does the same for temperatures.
 void summariseValues(TemperatureGrid& grid);
 
-/// Makes bricks of scalars, without data, where only `grid` has bricks: what has light alone is a voxel too.
+/// Makes empty bricks of scalars wherever `grid` has bricks, so that voxels with emission alone are drawn
+/// too.
 void coverBricks(Volume& volume, const ScalarBricks& grid);
 
-/// Drops the planes at the box's six sides that hold no active voxel of scalars or temperatures; every voxel
-/// keeps its place in the world. A volume without active voxels stays as it is.
+/// Removes the planes at the box's six sides that have no active voxel of scalars or temperatures. Every
+/// voxel keeps its place in the world. A volume without active voxels stays as it is.
 void cropToActive(Volume& volume);
 
 }  // namespace freevoxels

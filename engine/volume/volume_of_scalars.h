@@ -1,5 +1,5 @@
 #pragma once
-// Volumes of scalars that the caller has in memory, for those who read arrays.
+// Volumes from scalars in memory, for the library and the Python module.
 
 #include <glm/glm.hpp>
 
@@ -7,11 +7,13 @@
 
 namespace freevoxels {
 
-/// The affine map of voxels `spacing` world units apart along x, y and z, the centre of whose first one is at `origin`.
+/// The affine map from voxels that are `spacing` world units apart along x, y and z to the world. The centre
+/// of the first voxel is at `origin`.
 glm::dmat4 latticeTransform(const glm::dvec3& spacing, const glm::dvec3& origin);
 
-/// A volume named "the array" of these scalars (Volume::scalars), `indexToWorld` as Volume::indexToWorld. Fails with
-/// ExitCode::Input where no scalar is active, or `indexToWorld` is not finite or gives voxels no extent.
+/// Makes a volume named "the array" from scalars (Volume::scalars) and a transform (Volume::indexToWorld).
+/// Fails with ExitCode::Input if no scalar is active, or if `indexToWorld` is not finite or gives voxels no
+/// extent.
 Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld);
 
 }  // namespace freevoxels

@@ -13,7 +13,7 @@ namespace freevoxels {
 namespace {
 
 constexpr std::size_t kIntervals = 1 << 14;
-constexpr float kNoData = -1.0f;  // in place of a scalar's place
+constexpr float kNoData = -1.0f;  // the position of a voxel without data
 
 }  // namespace
 
@@ -61,8 +61,8 @@ VoxelClassifier::VoxelClassifier(const Classification& classification, const Vol
   if (classification.transferFunction) integral_.emplace(*classification.transferFunction, volume.minimum, volume.maximum);
 }
 
-/// Places of TransferIntegral; half-way to the neighbours. The colour is the mean over the range of all of them, weighted
-/// by extinction.
+/// Classifies by positions of TransferIntegral: of the voxel, and half-way to its neighbours. The colour is
+/// the mean over the range of all of them, weighted by extinction.
 ClassifiedVoxel VoxelClassifier::meanOver(float place, const std::array<float, 6>& halfWay) const {
   const auto [low, high] = std::ranges::minmax(halfWay);
   const float first = std::min(place, low), last = std::max(place, high);
@@ -102,7 +102,8 @@ ClassifiedVoxel VoxelClassifier::at(glm::ivec3 voxel) const {
   return result;
 }
 
-/// A neighbour without data counts as the voxel does. Of one scalar all over this is what the function says, exactly.
+/// A neighbour without data counts as equal to the voxel. In a uniform neighbourhood the result is exactly
+/// the function's value.
 ClassifiedVoxel VoxelClassifier::withNeighbours(float scalar, float place, const std::array<float, 6>& neighbours) const {
   std::array<float, 6> halfWay;
   bool even = true;
@@ -127,7 +128,7 @@ void VoxelClassifier::classifyBrick(std::size_t brick, std::span<float> extincti
   const ScalarBricks& scalars = volume_.scalars;
   std::ranges::fill(extinction, 0.0f);
   std::ranges::fill(colors, 0u);
-  // Places, with a layer of the bricks beside it.
+  // Positions of the brick's voxels and of one layer of voxels around it.
   std::array<float, std::size_t(m) * m * m> around;
   around.fill(kNoData);
   const auto copy = [&](const ScalarBricks::Brick* from, glm::ivec3 begin, glm::ivec3 end, glm::ivec3 to) {
@@ -148,7 +149,7 @@ void VoxelClassifier::classifyBrick(std::size_t brick, std::span<float> extincti
       to[axis] = up ? n + 1 : 1 - n;
       copy(scalars.brickAt(cell), begin, end, to);
     }
-  // Most bricks hold nothing.
+  // Most bricks have no extinction at all.
   float low = std::numeric_limits<float>::max(), high = kNoData;
   for (const float place : around) {
     low = std::min(low, place == kNoData ? low : place);

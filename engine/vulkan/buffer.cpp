@@ -15,7 +15,8 @@ constexpr VkDeviceSize kStagingBytes = VkDeviceSize(32) << 20;
 constexpr VkMemoryPropertyFlags kVisible =
     VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
 
-/// Index of a memory type among `allowedTypes`: the first that has what the use wishes for, best wish first.
+/// Index of the memory type for `use` among `allowedTypes`: the first type that has the preferred properties,
+/// in the order of preference.
 std::uint32_t findMemoryType(const Device& device, std::uint32_t allowedTypes, MemoryUse use) {
   std::array<VkMemoryPropertyFlags, 2> wishes{};
   switch (use) {

@@ -1,5 +1,5 @@
 #pragma once
-// Buffers, one allocation each, placed by what they are for.
+// Device buffers, each with its own allocation in memory that suits its use.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,12 +13,13 @@
 namespace freevoxels {
 
 enum class MemoryUse {
-  Device,    ///< read and written by the device; mapped too where it can be and Device::mapsOwnMemory
+  Device,    ///< read and written by the device; also mapped if possible and Device::mapsOwnMemory
   Upload,    ///< written by the host, read once by the device
   Readback,  ///< written by the device, read by the host
 };
 
-/// Bytes that a device counts as allocated. Fails with ExitCode::OutOfMemory beyond the device's limit.
+/// Owns bytes of the device's memory budget until it is destroyed. The constructor fails with
+/// ExitCode::OutOfMemory if the limit would be exceeded.
 class MemoryClaim {
  public:
   MemoryClaim() = default;
@@ -40,14 +41,15 @@ class MemoryClaim {
   std::uint64_t bytes_ = 0;
 };
 
-/// An allocation, which its device counts.
+/// A device memory allocation, counted in its device's memory budget.
 class DeviceMemory {
  public:
   DeviceMemory() = default;
-  /// Of the memory type that suits `use` best; with a device address if asked for.
+  /// Allocates from the memory type that suits `use` best; `deviceAddress` makes the memory usable for buffer
+  /// device addresses.
   DeviceMemory(const Device& device, const VkMemoryRequirements& needs, MemoryUse use, bool deviceAddress);
   VkDeviceMemory get() const { return memory_.get(); }
-  /// Can be mapped, and needs no flushing.
+  /// Whether the memory can be mapped and needs no flushing.
   bool hostCoherent() const { return hostCoherent_; }
 
  private:
@@ -59,14 +61,15 @@ class DeviceMemory {
 class Buffer {
  public:
   Buffer() = default;
-  /// Storage, transfer and device-address usage; `extra` adds others. `name` is shown by debuggers.
+  /// Creates a buffer with storage, transfer and device-address usage, plus the usage `extra`. Debuggers show
+  /// `name`.
   Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const char* name,
          VkBufferUsageFlags extra = 0);
 
   VkBuffer handle() const { return buffer_.get(); }
   VkDeviceSize bytes() const { return bytes_; }
   VkDeviceAddress address() const { return address_; }
-  /// Null where the memory is not mapped.
+  /// The host address of the buffer's memory, or null if it is not mapped. Valid as long as the buffer.
   std::byte* mapped() const { return mapped_; }
 
  private:
@@ -77,14 +80,13 @@ class Buffer {
   std::byte* mapped_ = nullptr;
 };
 
-/// A device address as shaders take it: the low word and the high word.
+/// Splits a device address into the low and high word that shaders take.
 inline glm::uvec2 addressWords(VkDeviceAddress address) {
   return {std::uint32_t(address), std::uint32_t(address >> 32)};
 }
 
-/// A buffer seen as texels, of four floats or of another format: loads through the texture
-/// path, which lavapipe gathers for all lanes at once where storage-buffer loads go lane by lane (sweeps take
-/// two thirds of the time).
+/// A view of a buffer as texels. Loads go through the texture path, which lavapipe vectorises across lanes,
+/// while storage-buffer loads go lane by lane: sweeps take two thirds of the time.
 class TexelView {
  public:
   TexelView() = default;
@@ -96,11 +98,12 @@ class TexelView {
   OwnedBufferView view_;
 };
 
-/// Copies host data into `buffer`: directly where it is mapped, else in pieces through one staging buffer.
-/// Waits.
+/// Copies host data into `buffer`: directly if it is mapped, otherwise in pieces through a staging buffer.
+/// Blocks until the copy is complete.
 void upload(const Device& device, const Buffer& buffer, std::span<const std::byte> data);
 
-/// Copies data.size() bytes of `buffer`, from byte `first` on, to the host. Waits.
+/// Copies data.size() bytes of `buffer`, starting at byte `first`, to the host. Blocks until the copy is
+/// complete.
 void download(const Device& device, const Buffer& buffer, std::span<std::byte> data, VkDeviceSize first = 0);
 
 }  // namespace freevoxels

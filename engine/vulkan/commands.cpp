@@ -9,7 +9,7 @@ namespace freevoxels {
 namespace {
 
 constexpr std::uint32_t kMaximumTimestamps = 4096;
-constexpr std::uint64_t kProgressInterval = 50'000'000;  // ns between two looks at what is done
+constexpr std::uint64_t kProgressInterval = 50'000'000;  // nanoseconds between two queries of the progress
 
 constexpr VkAccessFlags2 kAnyAccess = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
 
@@ -61,7 +61,8 @@ void Commands::writeTimestamp() {
 void Commands::beginPass(const std::string& name) {
   FV_CHECK_LT(passes_.size() + 1, std::size_t(kMaximumTimestamps));
   writeTimestamp();
-  // Lavapipe takes the time when it comes to a barrier, which may be behind work that was recorded later.
+  // Lavapipe writes the timestamp when it reaches a barrier, which without this one may be after work that
+  // was recorded later.
   barrier(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   passes_.push_back(name);
 }
@@ -112,7 +113,7 @@ void Commands::dispatchThreads(const Pipeline& pipeline, glm::ivec3 threads) {
 }
 
 void Commands::dispatchInvocations(const Pipeline& pipeline, std::uint64_t count, std::uint32_t layers) {
-  constexpr std::uint64_t kRow = 65535;  // workgroups that every device takes in one dimension
+  constexpr std::uint64_t kRow = 65535;  // workgroups that every device supports in one dimension
   const auto threads = std::uint64_t(pipeline.workgroup().x);
   const std::uint64_t groups = (count + threads - 1) / threads;
   const std::uint64_t rows = (groups + kRow - 1) / kRow;
@@ -165,8 +166,8 @@ void Commands::transition(VkImage image, VkImageLayout from, VkImageLayout to,
 
 void Commands::submitAndWait(const Progress& progress) {
   writeTimestamp();
-  // What the device wrote is there for the host, which may have it mapped, and for whatever is submitted
-  // next.
+  // Makes the device's writes visible to the host, which may have the memory mapped, and to later
+  // submissions.
   barrier(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
           VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT);
   VK_CHECK(vkEndCommandBuffer(buffer_));
@@ -196,7 +197,7 @@ void Commands::submitAndWait(const Progress& progress) {
     if (result != VK_TIMEOUT) VK_CHECK_RESULT(result, "vkWaitSemaphores");
     try {
       reportProgress(progress);
-    } catch (...) {  // whoever gives up has nothing in use behind
+    } catch (...) {  // wait before unwinding, so that no resource is freed while in use
       VK_CHECK(vkWaitSemaphores(device_.handle(), &wait, UINT64_MAX));
       throw;
     }

@@ -1,5 +1,5 @@
 #pragma once
-// Recording, submitting and timing work: one command buffer, submitted once.
+// Records, submits and times GPU work: one command buffer that is submitted once.
 
 #include <glm/glm.hpp>
 #include <span>
@@ -15,11 +15,12 @@
 
 namespace freevoxels {
 
-/// What a binding of set 0 points to: a whole buffer, its texels, a storage image in layout GENERAL, or a
+/// The resource of a binding of set 0: a whole buffer, its texels, a storage image in layout GENERAL, or a
 /// texture with its sampler.
 using Binding = std::variant<const Buffer*, const TexelView*, const RenderTarget*, const Texture*>;
 
-/// Between two timestamps of so many bits, which may have started again from 0 meanwhile.
+/// Ticks from `first` to `second`, two timestamps of `bits` valid bits that may have wrapped around once in
+/// between.
 std::uint64_t ticksBetween(std::uint64_t first, std::uint64_t second, std::uint32_t bits);
 
 class Commands {
@@ -30,23 +31,25 @@ class Commands {
 
   VkCommandBuffer handle() const { return buffer_; }
 
-  /// Everything recorded until the next beginPass is timed under this name. Passes of one name are added up.
+  /// Starts a timer under this name, which runs until the next beginPass. The times of passes with the same
+  /// name are added.
   void beginPass(const std::string& name);
 
-  /// `threads` invocations in each dimension, rounded up to workgroups.
+  /// Dispatches `threads` invocations in each dimension, rounded up to whole workgroups.
   template <typename Push>
   void dispatch(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
                 glm::ivec3 threads) {
     bind(pipeline, bindings, &push, sizeof(Push));
     dispatchThreads(pipeline, threads);
   }
-  /// The same of a pipeline without push constants.
+  /// Dispatches a pipeline that has no push constants.
   void dispatch(const Pipeline& pipeline, std::span<const Binding> bindings, glm::ivec3 threads) {
     bind(pipeline, bindings, nullptr, 0);
     dispatchThreads(pipeline, threads);
   }
-  /// `count` invocations in a row; the shader computes its index from gl_WorkGroupID.x + y *
-  /// gl_NumWorkGroups.x. As many again for each layer, gl_WorkGroupID.z.
+  /// Dispatches `count` invocations in one dimension, for each of `layers` layers (gl_WorkGroupID.z). A
+  /// shader computes its workgroup's index as gl_WorkGroupID.x + y * gl_NumWorkGroups.x, since one dimension
+  /// may have too few workgroups.
   template <typename Push>
   void dispatchLinear(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
                       std::uint64_t count, std::uint32_t layers = 1) {
@@ -62,23 +65,23 @@ class Commands {
   void bind(const Pipeline& pipeline, std::span<const Binding> bindings, const void* push,
             std::size_t pushBytes);
 
-  /// Writes a few kilobytes, recorded with the commands, before what is recorded next.
+  /// Records a write of up to 64 KiB into `buffer`. Later commands see it.
   template <typename Value>
   void update(const Buffer& buffer, const Value& value) {
     static_assert(sizeof(Value) <= 65536 && sizeof(Value) % 4 == 0);
     vkCmdUpdateBuffer(buffer_, buffer.handle(), 0, sizeof(Value), &value);
     barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   }
-  /// The whole buffer, of 4-byte words, before what is recorded next.
+  /// Records filling the whole buffer with 0. Later commands see it.
   void clear(const Buffer& buffer) {
     vkCmdFillBuffer(buffer_, buffer.handle(), 0, VK_WHOLE_SIZE, 0);
     barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   }
   void copy(const Buffer& from, const Buffer& to, VkBufferCopy region);
-  /// From layout GENERAL; leaves the target in TRANSFER_SRC_OPTIMAL.
+  /// Copies a target, which must be in layout GENERAL and is left in TRANSFER_SRC_OPTIMAL.
   void copy(const RenderTarget& from, const Buffer& to);
 
-  /// All writes of the `from` stages become visible to the `to` stages.
+  /// Makes all writes of the `from` stages visible to the `to` stages.
   void barrier(VkPipelineStageFlags2 from, VkPipelineStageFlags2 to);
   void transition(VkImage image, VkImageLayout from, VkImageLayout to, VkPipelineStageFlags2 fromStage,
                   VkPipelineStageFlags2 toStage);
@@ -87,10 +90,11 @@ class Commands {
     transition(target.handle(), from, to, fromStage, toStage);
   }
 
-  /// Ends the recording, runs it and waits; reports the passes as the device finishes them. Throws where the
-  /// device does, or `progress` when the device is done.
+  /// Ends the recording, submits it and blocks until it is complete, while reporting the passes as the device
+  /// finishes them. Throws if the device fails. An exception of `progress` is rethrown after the device has
+  /// finished, so that no resource is freed while in use.
   void submitAndWait(const Progress& progress = {});
-  /// Device time of each pass; after submitAndWait.
+  /// Device time of each pass in the order of recording. Only valid after submitAndWait.
   std::vector<StageTime> times() const;
 
  private:

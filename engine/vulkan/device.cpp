@@ -93,7 +93,7 @@ struct QueueFamily {
   std::uint32_t index, timestampBits;
 };
 
-/// A queue family that can do everything, compute and graphics, with timestamps.
+/// A queue family that supports compute, graphics and timestamps.
 std::optional<QueueFamily> findQueueFamily(VkPhysicalDevice physical) {
   std::uint32_t count = 0;
   vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
@@ -114,7 +114,7 @@ bool canBlend(VkPhysicalDevice physical, VkFormat format) {
   return (properties.optimalTilingFeatures & kNeeded) == kNeeded;
 }
 
-/// Everything that the engine needs of a device, in the order it is told to the user.
+/// The requirements that a device does not meet, in the order in which they are reported.
 std::vector<std::string> findRejections(VkPhysicalDevice physical,
                                         const VkPhysicalDeviceProperties& properties) {
   std::vector<std::string> reasons;
@@ -147,7 +147,7 @@ std::vector<std::string> findRejections(VkPhysicalDevice physical,
   return reasons;
 }
 
-/// Software Vulkan allocates from it, whatever the size of the heap that it reports: lavapipe says 2 GiB.
+/// The machine's memory. A CPU device allocates from it whatever heap size it reports (lavapipe: 2 GiB).
 std::uint64_t hostMemoryBytes() {
   return std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE));
 }

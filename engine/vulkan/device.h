@@ -1,5 +1,5 @@
 #pragma once
-// Choosing a physical device, and the logical device with its one queue.
+// The choice of a physical device, and the logical device with its single queue.
 
 #include <volk.h>
 
@@ -25,18 +25,20 @@ struct DeviceDescription {
   std::string type;  ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
   std::string uuid;  ///< 8-4-4-4-12 hexadecimal digits
   std::string driver;
-  std::uint64_t memoryBytes = 0;        ///< of the largest device-local heap; of a CPU three quarters of its memory
+  /// Size of the largest device-local heap; for a CPU device three quarters of the machine's memory.
+  std::uint64_t memoryBytes = 0;
   std::vector<std::string> rejections;  ///< why it cannot be used; empty if it can
 };
 
-/// In the order of `--device INDEX`.
+/// All Vulkan devices, in the order of `--device INDEX`.
 std::vector<DeviceDescription> listDevices(const Instance& instance);
 
 class Device {
  public:
-  /// `selector`: an index, UUID or (part of a) name; empty prefers a discrete GPU, then any GPU, then a CPU
-  /// device. Fails with ExitCode::Device and the reason why each device was rejected. Of more than
-  /// `memoryLimit` bytes nothing is allocated. `extensions` are enabled beside the engine's own.
+  /// Opens the device that `selector` names by index, UUID or part of its name; if it is empty, a discrete
+  /// GPU, else any GPU, else a CPU device. Fails with ExitCode::Device and the reason why each device was
+  /// rejected. At most `memoryLimit` bytes are allocated. `extensions` are enabled in addition to the
+  /// engine's own.
   Device(const Instance& instance, std::string_view selector,
          std::uint64_t memoryLimit = std::numeric_limits<std::uint64_t>::max(),
          std::span<const char* const> extensions = {});
@@ -48,32 +50,34 @@ class Device {
   VkPhysicalDevice physical() const { return physical_; }
   VkQueue queue() const { return queue_; }
   std::uint32_t queueFamily() const { return queueFamily_; }
-  /// Bits that a timestamp of the queue has.
+  /// Valid bits of the queue's timestamps.
   std::uint32_t timestampBits() const { return timestampBits_; }
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
   VkDeviceSize maximumAllocation() const { return maximumAllocation_; }
-  /// Bytes of the largest buffer that passes can bind, also as a texel buffer whose texels have `texelBytes`.
+  /// Bytes of the largest buffer that can be bound as a storage buffer and as a texel buffer with texels of
+  /// `texelBytes` bytes.
   std::uint64_t largestBinding(std::uint64_t texelBytes) const {
     return std::min({std::uint64_t(limits().maxStorageBufferRange), std::uint64_t(limits().maxTexelBufferElements) * texelBytes,
                      std::uint64_t(maximumAllocation_)});
   }
-  /// Bytes that may be allocated in all: the device's, or fewer where a limit is set.
+  /// Bytes that may be allocated in total: the device's memory, or the limit if that is less.
   std::uint64_t memoryBytes() const { return std::min(description_.memoryBytes, memoryLimit_); }
-  /// Of these, what is not allocated now, and the most that ever was.
+  /// Bytes of memoryBytes() that are not allocated at present, and the largest number of bytes that has been
+  /// allocated at any time.
   std::uint64_t availableBytes() const { return memoryBytes() - std::min(memoryBytes(), allocated_.load()); }
   std::uint64_t peakBytes() const { return peak_; }
   const DeviceDescription& description() const { return description_; }
   bool isCpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
-  /// Whether the host copies to and from MemoryUse::Device itself where it can. Not under validation, so that
-  /// tests go through staging buffers as GPUs do.
+  /// Whether the host maps memory of MemoryUse::Device where possible, instead of copying through staging
+  /// buffers. Off under validation, so that tests use staging buffers as discrete GPUs do.
   bool mapsOwnMemory() const { return mapsOwnMemory_; }
 
-  /// Counts an allocation. Fails with ExitCode::OutOfMemory beyond the limit.
+  /// Adds an allocation to the budget. Fails with ExitCode::OutOfMemory if the limit would be exceeded.
   void claim(std::uint64_t bytes) const;
   void release(std::uint64_t bytes) const { allocated_ -= bytes; }
 
-  /// All that were made: pipeline.h.
+  /// All pipelines made so far (pipeline.h).
   PipelineStore& pipelines() const { return *pipelines_; }
 
   /// Shows `name` in validation messages and debuggers.

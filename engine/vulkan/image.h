@@ -9,10 +9,10 @@
 
 namespace freevoxels {
 
-/// Of the formats that targets have.
+/// Bytes per pixel of a render target's format.
 std::uint64_t bytesPerPixel(VkFormat format);
 
-/// Fails with ExitCode::OutOfMemory where the device cannot make a target of this size at all.
+/// Fails with ExitCode::OutOfMemory if the device does not support a target of this size.
 void checkTargetFits(const Device& device, glm::ivec2 size, VkFormat format);
 
 class RenderTarget {

@@ -1,5 +1,5 @@
 #pragma once
-// What every two-dimensional image with one level is made of.
+// The Vulkan objects of a two-dimensional image with one level.
 
 #include <glm/glm.hpp>
 
@@ -15,7 +15,7 @@ struct ImageParts {
   OwnedImageView view;
 };
 
-/// On the device, in layout UNDEFINED. `name` is shown by debuggers.
+/// Creates an image in device memory, in layout UNDEFINED. Debuggers show `name`.
 ImageParts makeImageParts(const Device& device, glm::ivec2 size, VkFormat format, VkImageUsageFlags usage,
                           const char* name);
 

@@ -77,7 +77,7 @@ Instance::Instance(bool validation, std::span<const char* const> moreExtensions)
           VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
       .pfnUserCallback = onValidationMessage,
       .pUserData = &validationMessages_};
-  // Synchronisation validation is off by default, and missing barriers are what the CPU device forgives.
+  // Synchronisation validation is off by default. It finds missing barriers, which a CPU device forgives.
   const std::array enabled{VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
   const VkValidationFeaturesEXT features{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
                                          .pNext = &messenger,

@@ -9,11 +9,11 @@
 
 namespace freevoxels {
 
-/// True when the environment has FREEVOXELS_VALIDATION=1, as the tests do.
+/// Whether the environment variable FREEVOXELS_VALIDATION is 1, as in the tests.
 bool validationRequested();
 
-/// Fails with ExitCode::Device, and says what to install, where there is no Vulkan loader or no driver; also
-/// where validation is asked for and the layer is missing.
+/// The constructor fails with ExitCode::Device and says what to install if there is no Vulkan loader or no
+/// driver, or if validation is requested and its layer is missing.
 class Instance {
  public:
   explicit Instance(bool validation, std::span<const char* const> extensions = {});
@@ -23,7 +23,7 @@ class Instance {
 
   VkInstance handle() const { return instance_; }
   bool validates() const { return messenger_ != VK_NULL_HANDLE; }
-  /// Warnings and errors of the validation layer so far; each was also printed on stderr.
+  /// Number of warnings and errors of the validation layers so far. Each was also printed on stderr.
   std::uint64_t validationMessageCount() const { return validationMessages_; }
 
  private:

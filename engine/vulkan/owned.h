@@ -1,5 +1,5 @@
 #pragma once
-// Result checking and the one owner of Vulkan handles.
+// Checks of Vulkan results, and the owner type of Vulkan handles.
 
 #include <volk.h>
 
@@ -7,10 +7,11 @@
 
 namespace freevoxels {
 
-/// Throws for anything but VK_SUCCESS: OutOfMemory and device loss as the user's errors, the rest as ours.
+/// Throws unless `result` is VK_SUCCESS: Error for out of memory and device loss, InternalError otherwise.
 void checkVulkan(VkResult result, const char* call, const char* file, int line);
 
-/// A device child that is destroyed with its owner. `Destroy` is the address of volk's function pointer.
+/// Owns a handle that belongs to a device and destroys it. `Destroy` is the address of volk's function
+/// pointer.
 template <typename Handle, auto* Destroy>
 class Owned {
  public:
@@ -53,5 +54,5 @@ using OwnedSwapchain = Owned<VkSwapchainKHR, &vkDestroySwapchainKHR>;
 }  // namespace freevoxels
 
 #define VK_CHECK(call) VK_CHECK_RESULT((call), #call)
-// Of a call whose result has other meanings as well.
+// For calls for which VK_SUCCESS is not the only good result: the caller passes the result.
 #define VK_CHECK_RESULT(result, call) ::freevoxels::checkVulkan((result), call, __FILE__, __LINE__)

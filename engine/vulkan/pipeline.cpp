@@ -53,7 +53,7 @@ VkPipelineColorBlendAttachmentState blendState(Blend blend) {
                             VK_COLOR_COMPONENT_A_BIT};
 }
 
-/// Everything of a graphics pipeline but its shaders.
+/// The fixed-function state of a graphics pipeline.
 struct FixedState {
   FixedState(VkPrimitiveTopology topology, std::size_t attachments, Blend mode)
       : blends(attachments, blendState(mode)) {
@@ -137,7 +137,7 @@ PipelineParts makeLayout(const Device& device, std::initializer_list<const Shade
   return parts;
 }
 
-/// The one that was made of this before, or else one that is made now.
+/// Returns the stored pipeline for `key`, making it first if there is none.
 template <typename Make>
 Pipeline stored(const Device& device, const PipelineKey& key, const Make& make) {
   PipelineStore& store = device.pipelines();

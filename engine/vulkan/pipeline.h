@@ -26,13 +26,13 @@ struct PipelineInterface {
 /// Values of the specialisation constants 0, 1, 2, ...: ints or bools.
 using Specialisation = std::vector<std::uint32_t>;
 
-/// What a fragment does to an attachment.
+/// How a fragment is blended into an attachment.
 enum class Blend {
   Additive,  ///< source + destination
   Over,      ///< source + (1 - alpha of the fragment's output for this attachment) * destination
 };
 
-/// What a device keeps of a pipeline.
+/// The objects of a pipeline, owned by the device.
 struct PipelineParts {
   PipelineInterface interface;
   VkPipelineBindPoint bindPoint = VK_PIPELINE_BIND_POINT_COMPUTE;
@@ -42,17 +42,17 @@ struct PipelineParts {
   OwnedPipeline pipeline;
 };
 
-/// One of its device's pipelines, which live as long as it does.
+/// A reference to a pipeline of a device, valid as long as the device.
 class Pipeline {
  public:
   Pipeline() = default;
   explicit Pipeline(const PipelineParts& parts) : parts_(&parts) {}
 
-  /// None of a pipeline that is still to be made.
+  /// VK_NULL_HANDLE for a default-constructed pipeline.
   VkPipeline handle() const { return parts_ != nullptr ? parts_->pipeline.get() : VK_NULL_HANDLE; }
   VkPipelineLayout layout() const { return parts_->layout.get(); }
   VkPipelineBindPoint bindPoint() const { return parts_->bindPoint; }
-  /// That see the descriptors and the push constants.
+  /// The stages that access the descriptors and the push constants.
   VkShaderStageFlags stages() const;
   const PipelineInterface& interface() const { return parts_->interface; }
   /// Invocations of one workgroup; compute only.
@@ -72,12 +72,11 @@ struct PipelineKey {
   auto operator<=>(const PipelineKey&) const = default;
 };
 
-/// The pipelines of a device, kept for whoever wants the same again: lavapipe compiles one in up to a tenth
-/// of a second, each time.
+/// The pipelines of a device, kept for reuse: lavapipe takes up to a tenth of a second to compile one.
 struct PipelineStore {
   std::mutex mutex;
   std::map<PipelineKey, PipelineParts> made;
-  std::vector<StageTime> times;  ///< to make them
+  std::vector<StageTime> times;  ///< time to create the pipelines
 };
 
 Pipeline makeComputePipeline(const Device& device, const Shader& shader, const Specialisation& constants = {});

@@ -1,5 +1,5 @@
 #pragma once
-// A render target on the host.
+// Reads a render target back to the host.
 
 #include <cstdint>
 #include <cstring>
@@ -11,7 +11,8 @@
 
 namespace freevoxels {
 
-/// Copies a target to the host through a read-back buffer; recorded with the frame, read after it.
+/// Records the copy of a target into a read-back buffer with the frame; `read` returns the pixels after the
+/// frame is complete.
 class TargetReadback {
  public:
   TargetReadback(const Device& device, Commands& commands, const RenderTarget& target)

@@ -1,5 +1,5 @@
 #pragma once
-// Images that shaders sample, for user interfaces.
+// Sampled images, for user interfaces.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -11,13 +11,14 @@
 
 namespace freevoxels {
 
-/// 8-bit RGBA, sampled as the bytes are: linear between texels, constant beyond the edge.
+/// An 8-bit RGBA image without colour conversion, with linear filtering and clamping to the edge.
 class Texture {
  public:
   Texture() = default;
   Texture(const Device& device, glm::ivec2 size, const char* name);
 
-  /// 4 bytes a texel, row 0 is the top. To be called before it is sampled. Waits.
+  /// Uploads 4 bytes a texel, top row first. Must be called before the texture is sampled. Blocks until the
+  /// copy is complete.
   void upload(const Device& device, std::span<const std::uint8_t> texels);
 
   VkImageView view() const { return view_.get(); }

@@ -34,7 +34,7 @@ TEST(Blackbody, ChromaticitiesAreThoseOfThePlanckianLocus) {
   }
 }
 
-/// BilinearCell 2000 K luminance goes as Wien's law has it at an effective wavelength of about 580 nm.
+/// Around 2000 K luminance goes as Wien's law has it at an effective wavelength of about 580 nm.
 TEST(Blackbody, LuminancesAreRelativeToTheReference) {
   EXPECT_DOUBLE_EQ(blackbodyXyz(kReferenceTemperature).y, 1.0);
   const double slope =

@@ -1,4 +1,4 @@
-// A volume in, images of it from three sides out: README.md, section "Library".
+// A volume in, images of it from three sides out: apps/manual/library.md.
 
 #include <cstdio>
 #include <freevoxels/freevoxels.h>
