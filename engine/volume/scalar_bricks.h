@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -35,6 +36,12 @@ class ScalarBricks {
   static ScalarBricks make(glm::ivec3 dimensions, const Function& scalarAt) {
     return make(dimensions, scalarAt, [](glm::ivec3) { return true; });
   }
+  /// Of bricks that exist already, one for each of `cells`. Voxels of bricks that are beyond the box must be inactive.
+  static ScalarBricks of(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, std::vector<Brick> bricks);
+  /// The same of bricks in the memory of another owner, such as a mapped file, which `owner` keeps alive. They are used in place;
+  /// the first change of the object copies them.
+  static ScalarBricks inPlace(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, std::span<const Brick> bricks,
+                              std::shared_ptr<const void> owner);
 
   const glm::ivec3& dimensions() const { return dimensions_; }
   /// Bricks along the axes, whether or not they are there.
@@ -44,7 +51,7 @@ class ScalarBricks {
   float at(glm::ivec3 voxel) const {
     const glm::ivec3 place = voxel + corner_;
     const std::int32_t number = numbers_[cellIndex(place / kEdge)];
-    return number < 0 ? kInactiveVoxel : bricks_[std::size_t(number)][indexInBrick(place % kEdge)];
+    return number < 0 ? kInactiveVoxel : bricks()[std::size_t(number)][indexInBrick(place % kEdge)];
   }
   /// Makes the voxel's brick, if it is not there.
   void set(glm::ivec3 voxel, float scalar) {
@@ -57,8 +64,11 @@ class ScalarBricks {
   void reserve(std::size_t bricks);
 
   /// Those that are there, in the order in which they were made.
-  std::span<Brick> bricks() { return bricks_; }
-  std::span<const Brick> bricks() const { return bricks_; }
+  std::span<Brick> bricks() {
+    copyToOwn();
+    return bricks_;
+  }
+  std::span<const Brick> bricks() const { return owner_ ? foreign_ : bricks_; }
   /// The place in the box of a brick's first voxel; less than 0 where the brick begins before the box.
   glm::ivec3 firstVoxel(std::size_t brick) const { return cells_[brick] * kEdge - corner_; }
   /// Of bricks of the box; those of boxes with the same `corner` are the same voxels.
@@ -66,14 +76,14 @@ class ScalarBricks {
   /// Null where there is none.
   const Brick* brickAt(glm::ivec3 cell) const {
     const std::int32_t number = numbers_.empty() ? -1 : numbers_[cellIndex(cell)];
-    return number < 0 ? nullptr : &bricks_[std::size_t(number)];
+    return number < 0 ? nullptr : &bricks()[std::size_t(number)];
   }
   /// The voxels of a row, in the order of x; `row` has as many.
   void copyRow(int y, int z, std::span<float> row) const;
   /// The same voxels in the box from `low` to `high`, beyond which there is no data.
   ScalarBricks cropped(glm::ivec3 low, glm::ivec3 high) const;
-  /// On the host.
-  std::uint64_t bytes() const { return bytesOf(bricks_.size(), dimensions_); }
+  /// On the host; bricks in place count too.
+  std::uint64_t bytes() const { return bytesOf(bricks().size(), dimensions_); }
   static std::uint64_t bytesOf(std::uint64_t bricks, glm::ivec3 dimensions) {
     const glm::u64vec3 cells((dimensions + kEdge - 1) / kEdge);
     return bricks * sizeof(Brick) + cells.x * cells.y * cells.z * sizeof(std::int32_t);
@@ -89,10 +99,15 @@ class ScalarBricks {
                                      (std::size_t(cell.y) + std::size_t(cellCount_.y) * std::size_t(cell.z));
   }
 
+  void number(std::vector<glm::ivec3> cells);
+  void copyToOwn();
+
   glm::ivec3 dimensions_{0}, corner_{0}, cellCount_{0};
   std::vector<std::int32_t> numbers_;  ///< of the bricks by cell, -1 where there is none
   std::vector<glm::ivec3> cells_;      ///< of the bricks
-  std::vector<Brick> bricks_;
+  std::vector<Brick> bricks_;          ///< empty where `owner_` has them
+  std::shared_ptr<const void> owner_;  ///< keeps `foreign_` alive; null where the bricks are this object's
+  std::span<const Brick> foreign_;
 };
 
 template <typename Function, typename Predicate>

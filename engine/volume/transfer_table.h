@@ -19,6 +19,9 @@ class TransferTable {
   /// outliers do not take the precision of the rest.
   TransferTable(const TransferFunction& function, float minimum, float maximum);
 
+  /// The scalars of the least and the greatest code.
+  double low() const { return low_; }
+  double high() const { return high_; }
   /// 1 to 65535; 0 is kInactiveVoxel's. Scalars beyond the range have the code of its end.
   std::uint16_t code(float scalar) const;
   /// Two of each of the shader::kTransferIntervals intervals: the integral up to its beginning, of extinction times
