@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "engine/core/error.h"
+#include "engine/storage/baked_volume.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels {
@@ -15,6 +16,15 @@ namespace freevoxels {
 namespace {
 
 constexpr std::string_view kProceduralPrefix = "procedural:";
+
+Volume openBaked(const std::string& input, std::uint64_t maximumVoxels) {
+  const auto file = std::make_shared<const fvx::FvxFile>(input);
+  const int level = finestLevel(*file, maximumVoxels);
+  if (level > 0)
+    spdlog::warn("{} is drawn at a {}th of its resolution: its {} x {} x {} voxels are more than the {} that fit", input, 1 << level,
+                 file->dimensions(0).x, file->dimensions(0).y, file->dimensions(0).z, maximumVoxels);
+  return readBaked(file, level);
+}
 
 }  // namespace
 
@@ -50,8 +60,8 @@ Volume openProcedural(const std::string& name, std::optional<int> resolution, st
 void InputOptions::add(CLI::App& app) {
   app.add_option(
          "IN", input,
-         "OpenVDB file, or procedural:NAME ('freevoxels generate --list' has the names); may be left out "
-         "where a --scene has it")
+         "OpenVDB file, baked volume (.fvx), or procedural:NAME ('freevoxels generate --list' has the names); may be left "
+         "out where a --scene has it")
       ->group("Input");
   addResolution(app, resolution)->group("Input");
 }
@@ -67,6 +77,8 @@ void InputOptions::checkGiven() const {
 }
 
 void InputOptions::check() const {
+  if (grid && !proceduralName(input) && fvx::isFvx(input))
+    fail(ExitCode::Usage, "--grid chooses among the grids of an OpenVDB file, and '{}' is a baked volume", input);
   if (proceduralName(input)) {
     if (grid) fail(ExitCode::Usage, "--grid chooses among the grids of a file, and {} has one", input);
   } else if (resolution) {
@@ -77,6 +89,7 @@ void InputOptions::check() const {
 
 Volume InputOptions::open(std::uint64_t maximumVoxels, const MoreGrids& more) const {
   const std::optional<std::string> name = proceduralName(input);
+  if (!name && fvx::isFvx(input)) return openBaked(input, maximumVoxels);
   if (!name) return readVdb(input, grid.value_or(""), maximumVoxels, more);
   Volume volume = openProcedural(*name, resolution, maximumVoxels);
   if (!more.temperature) volume.temperature.reset();

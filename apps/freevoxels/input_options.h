@@ -1,5 +1,5 @@
 #pragma once
-// Where the volume comes from: an OpenVDB file, or `procedural:NAME`.
+// Where the volume comes from: an OpenVDB file, a baked volume (.fvx), or `procedural:NAME`.
 
 #include <cstdint>
 #include <optional>
@@ -38,7 +38,8 @@ struct InputOptions {
   void checkGiven() const;
   /// Refuses an option that does not apply to this input: ExitCode::Usage.
   void check() const;
-  /// A procedural volume has its temperatures where any are asked for.
+  /// A procedural volume has its temperatures where any are asked for, a baked one always, and its own albedos. Of a baked volume whose
+  /// box is too large the finest level that fits is opened, with a warning.
   Volume open(std::uint64_t maximumVoxels, const MoreGrids& more = {}) const;
   void describe(OptionList& options) const;
 };

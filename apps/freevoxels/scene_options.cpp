@@ -84,7 +84,7 @@ Scene SceneOptions::resolve(std::shared_ptr<const Volume> volume) const {
 Classification SceneOptions::resolveClassification(const Volume& volume) const {
   Classification result = classification.resolve(volume, emission.grid().has_value());
   result.emission = emission.resolve(volume, result);
-  if (result.emission && !classification.albedo) result.albedo = glm::vec3(kSmokeAlbedo);
+  if (result.emission && !classification.albedo && !volume.classification) result.albedo = glm::vec3(kSmokeAlbedo);
   return result;
 }
 
@@ -102,7 +102,7 @@ Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
 
 std::string SceneOptions::rendererText(const Scene& scene, const TableSettings& table) const {
   OptionList options;
-  classification.describe(options, scene.classification);
+  classification.describe(options, *scene.volume, scene.classification);
   emission.describe(options, *scene.volume, scene.classification.emission);
   options.emplace_back("table", tableText(table));
   // Blocks store what they scatter of the volume's own light with what they send out.
@@ -112,7 +112,7 @@ std::string SceneOptions::rendererText(const Scene& scene, const TableSettings& 
 
 void SceneOptions::warn(const Scene& scene) const {
   warnAboutValues(*scene.volume, !scene.classification.transferFunction);
-  if (scene.classification.transferFunction && !classification.transferFunction)
+  if (scene.classification.transferFunction && !classification.transferFunction && !scene.volume->classification)
     spdlog::info("{} looks like a scan: the transfer function is made from its histogram; change it with --transfer-function, or "
                  "show densities with --density-scale",
                  scene.volume->source);
@@ -128,7 +128,7 @@ void SceneOptions::save(const OptionList& options) const {
 OptionList SceneOptions::describe(const Scene& scene, const OptionList& method) const {
   OptionList options;
   input.describe(options);
-  classification.describe(options, scene.classification);
+  classification.describe(options, *scene.volume, scene.classification);
   emission.describe(options, *scene.volume, scene.classification.emission);
   camera.describe(options, scene.camera);
   lighting.describe(options, scene.lighting);
