@@ -8,9 +8,9 @@
 
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
+#include "engine/octree/device_volume.h"
 #include "engine/storage/fvx_writer.h"
 #include "engine/storage/hilbert.h"
-#include "engine/octree/device_volume.h"
 #include "engine/volume/transfer_table.h"
 #include "shaders/gather_interface.h"
 
