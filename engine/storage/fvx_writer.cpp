@@ -159,9 +159,9 @@ class ChunkEncoder {
 void setExtinctions(const Classification& classification, ChunkEntry& entry) {
   if (entry.activeVoxels == 0) return;
   const auto extinctionOf = [&](float scalar) { return float(classify(classification, scalar).extinction); };
-  const auto [low, high] = std::minmax(extinctionOf(entry.minimum), extinctionOf(entry.maximum));
-  entry.leastExtinction = low;
-  entry.mostExtinction = high;
+  const float low = extinctionOf(entry.minimum), high = extinctionOf(entry.maximum);
+  entry.leastExtinction = std::min(low, high);
+  entry.mostExtinction = std::max(low, high);
   if (!classification.transferFunction) return;
   for (const TransferFunction::OpacityPoint& point : classification.transferFunction->opacity) {
     if (point.scalar < entry.minimum || point.scalar > entry.maximum) continue;
