@@ -3,14 +3,24 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/freevoxels/progress_line.h"
 #include "engine/core/error.h"
-#include "engine/storage/baked_volume.h"
+#include "engine/storage/procedural_stream.h"
 
 namespace freevoxels {
+
+namespace {
+
+/// A procedural volume of more voxels is made chunk by chunk.
+constexpr std::uint64_t kMostVoxelsInMemory = std::uint64_t(1) << 27;
+/// Voxels along the longest edge of the same volume from which the classification is then found.
+constexpr int kSampleEdge = 256;
+
+}  // namespace
 
 void BakeCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bake", "Classify a volume once and write a file that opens at once");
@@ -35,7 +45,7 @@ void BakeCommand::add(CLI::App& app) {
   command->callback([this] { run(); });
 }
 
-std::string BakeCommand::provenance(const Volume& volume, const Classification& classification) const {
+BakeSettings BakeCommand::settings(const Volume& volume, const Classification& classification) const {
   OptionList options;
   scene_.input.describe(options);
   scene_.classification.describe(options, volume, classification);
@@ -46,7 +56,9 @@ std::string BakeCommand::provenance(const Volume& volume, const Classification& 
     json["file_bytes"] = std::filesystem::file_size(scene_.input.input);
     json["file_xxh3_64"] = fmt::format("{:016x}", fvx::hashOfFile(scene_.input.input));
   }
-  return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+  return {.keepScalars = keepScalars_,
+          .compress = compress_,
+          .provenance = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)};
 }
 
 void BakeCommand::run() {
@@ -61,21 +73,37 @@ void BakeCommand::run() {
 
   ProgressLine line(!messages_.quiet);
   line.begin("reading " + scene_.input.input);
-  const Volume volume = scene_.readVolume(machineMemoryBytes() / sizeof(float));
-  if (volume.classificationIsFixed)
-    fail(ExitCode::Usage, "'{}' was baked for one classification: bake the volume that it was made of, or bake it with --keep-scalars",
-         scene_.input.input);
-  const Scene scene{.volume = std::make_shared<const Volume>(volume), .classification = scene_.resolveClassification(volume)};
-  line.erase();
-  scene_.warn(scene);
-  {
-    const DeferredInterrupts wholeFile;
-    bakeVolume(file_, volume, scene.classification,
-               {.keepScalars = keepScalars_, .compress = compress_, .provenance = provenance(volume, scene.classification)},
-               line.progress());
-  }
+  const std::optional<std::string> name = proceduralName(scene_.input.input);
+  const glm::u64vec3 size(scene_.input.resolution.value_or(glm::ivec3(kDefaultResolution)));
+  if (name && size.x * size.y * size.z > kMostVoxelsInMemory)
+    bakeProcedural(*name, line.progress());
+  else
+    bake(line.progress());
   line.erase();
   if (!messages_.quiet) fmt::print("{}\n", file_);
+}
+
+void BakeCommand::bake(const Progress& progress) const {
+  const auto volume = std::make_shared<const Volume>(scene_.readVolume(machineMemoryBytes() / sizeof(float)));
+  if (volume->classificationIsFixed)
+    fail(ExitCode::Usage, "'{}' was baked for one classification: bake the volume that it was made of, or bake it with --keep-scalars",
+         scene_.input.input);
+  const Classification classification = scene_.resolveClassification(*volume);
+  scene_.warn({.volume = volume, .classification = classification});
+  const DeferredInterrupts wholeFile;
+  bakeVolume(file_, *volume, classification, settings(*volume, classification), progress);
+}
+
+void BakeCommand::bakeProcedural(const std::string& name, const Progress& progress) const {
+  const ProceduralField field(name, *scene_.input.resolution);
+  const glm::ivec3 size = field.dimensions();
+  const int factor = (std::max({size.x, size.y, size.z}) + kSampleEdge - 1) / kSampleEdge;
+  Volume sample = makeProcedural(name, glm::max(size / factor, 1));
+  if (!scene_.emission.grid()) sample.temperature.reset();
+  const Classification classification = scene_.resolveClassification(sample);
+  const StreamedVolume stream = proceduralStream(field, sample, classification);
+  const DeferredInterrupts wholeFile;
+  bakeStreamed(file_, stream, classification, settings(sample, classification), progress);
 }
 
 }  // namespace freevoxels

@@ -3,6 +3,7 @@
 
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/scene_options.h"
+#include "engine/storage/baked_volume.h"
 
 namespace freevoxels {
 
@@ -12,7 +13,11 @@ class BakeCommand {
 
  private:
   void run();
-  std::string provenance(const Volume& volume, const Classification& classification) const;
+  /// Of a volume that is held in memory, or of a procedural one that is too large for that, chunk by chunk.
+  void bake(const Progress& progress) const;
+  void bakeProcedural(const std::string& name, const Progress& progress) const;
+  /// Options of the file, for a volume with this classification.
+  BakeSettings settings(const Volume& volume, const Classification& classification) const;
 
   SceneOptions scene_;  ///< the volume and its classification; the rest stays as it is
   std::string file_;

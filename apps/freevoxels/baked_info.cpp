@@ -1,5 +1,7 @@
 #include "apps/freevoxels/baked_info.h"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 
 #include "apps/freevoxels/text_table.h"
@@ -26,6 +28,7 @@ std::string kindName(SectionKind kind) {
     case SectionKind::Provenance: return "provenance";
     case SectionKind::ChunkIndex: return "chunk index";
     case SectionKind::Chunks: return "chunks";
+    case SectionKind::ContentCells: return "content cells";
   }
   return fmt::format("unknown {}", std::uint32_t(kind));
 }

@@ -17,13 +17,12 @@ namespace {
 
 constexpr std::string_view kProceduralPrefix = "procedural:";
 
-Volume openBaked(const std::string& input, std::uint64_t maximumVoxels) {
-  const auto file = std::make_shared<const fvx::FvxFile>(input);
-  const int level = finestLevel(*file, maximumVoxels);
-  if (level > 0)
-    spdlog::warn("{} is drawn at a {}th of its resolution: its {} x {} x {} voxels are more than the {} that fit", input, 1 << level,
-                 file->dimensions(0).x, file->dimensions(0).y, file->dimensions(0).z, maximumVoxels);
-  return readBaked(file, level);
+Volume openBaked(const std::shared_ptr<const fvx::FvxFile>& file, std::uint64_t maximumVoxels, int level) {
+  const int fitting = finestLevel(*file, maximumVoxels);
+  if (fitting > level)
+    spdlog::warn("{} is opened at 1/{} of its resolution: the {} voxels of its box are more than the {} that fit",
+                 file->path().string(), 1 << fitting, resolutionText(file->dimensions(0)), maximumVoxels);
+  return readBaked(file, std::max(fitting, level));
 }
 
 }  // namespace
@@ -32,10 +31,14 @@ std::uint64_t machineMemoryBytes() {
   return std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE));
 }
 
-CLI::Option* addResolution(CLI::App& app, std::optional<int>& target) {
-  return addWholeNumber(app, "--resolution", "N", target,
-                        fmt::format("Voxels along an edge of a procedural volume [{}]", kDefaultResolution),
-                        {1.0, 2048.0});
+CLI::Option* addResolution(CLI::App& app, std::optional<glm::ivec3>& target) {
+  return addDimensions(app, "--resolution", target, kMostResolution,
+                       fmt::format("Voxels of a procedural volume, one number for a cube [{}]", kDefaultResolution));
+}
+
+std::string resolutionText(glm::ivec3 dimensions) {
+  const bool isCube = dimensions == glm::ivec3(dimensions.x);
+  return isCube ? fmt::format("{}", dimensions.x) : fmt::format("{}x{}x{}", dimensions.x, dimensions.y, dimensions.z);
 }
 
 std::optional<std::string> proceduralName(const std::string& input) {
@@ -43,16 +46,16 @@ std::optional<std::string> proceduralName(const std::string& input) {
   return input.substr(kProceduralPrefix.size());
 }
 
-Volume openProcedural(const std::string& name, std::optional<int> resolution, std::uint64_t maximumVoxels) {
-  const auto edge = std::uint64_t(resolution.value_or(kDefaultResolution));
-  const std::uint64_t needed = edge * edge * edge;
+Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolution, std::uint64_t maximumVoxels) {
+  const glm::ivec3 dimensions = resolution.value_or(glm::ivec3(kDefaultResolution));
+  const std::uint64_t needed = std::uint64_t(dimensions.x) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z);
   const std::uint64_t available =
       std::min<std::uint64_t>(maximumVoxels, machineMemoryBytes() / sizeof(float));
   if (needed > available)
     fail(ExitCode::OutOfMemory,
-         "procedural:{} has {} voxels at --resolution {}, and {} fit: lower --resolution", name, needed, edge,
-         available);
-  Volume volume = makeProcedural(name, int(edge));
+         "procedural:{} has {} voxels at --resolution {}, and {} fit: lower --resolution", name, needed,
+         resolutionText(dimensions), available);
+  Volume volume = makeProcedural(name, dimensions);
   cropToActive(volume);
   return volume;
 }
@@ -87,9 +90,14 @@ void InputOptions::check() const {
   }
 }
 
-Volume InputOptions::open(std::uint64_t maximumVoxels, const MoreGrids& more) const {
+std::shared_ptr<const fvx::FvxFile> InputOptions::baked() const {
+  if (proceduralName(input) || !fvx::isFvx(input)) return nullptr;
+  return std::make_shared<const fvx::FvxFile>(input);
+}
+
+Volume InputOptions::open(std::uint64_t maximumVoxels, const MoreGrids& more, int level) const {
   const std::optional<std::string> name = proceduralName(input);
-  if (!name && fvx::isFvx(input)) return openBaked(input, maximumVoxels);
+  if (const auto file = baked()) return openBaked(file, maximumVoxels, level);
   if (!name) return readVdb(input, grid.value_or(""), maximumVoxels, more);
   Volume volume = openProcedural(*name, resolution, maximumVoxels);
   if (!more.temperature) volume.temperature.reset();
@@ -100,7 +108,7 @@ void InputOptions::describe(OptionList& options) const {
   options.emplace_back("", input);
   if (grid) options.emplace_back("--grid", *grid);
   if (proceduralName(input))
-    options.emplace_back("--resolution", std::to_string(resolution.value_or(kDefaultResolution)));
+    options.emplace_back("--resolution", resolutionText(resolution.value_or(glm::ivec3(kDefaultResolution))));
 }
 
 void warnAboutValues(const Volume& volume, bool scalarsAreDensities) {

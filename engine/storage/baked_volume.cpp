@@ -26,21 +26,21 @@ using fvx::FvxFile;
 
 constexpr std::size_t kBatchChunks = 64;
 
-fvx::Encoding scalarEncoding(const Volume& volume, const Classification& classification, bool keepScalars) {
+fvx::Encoding scalarEncoding(const Volume& volume, glm::vec2 range, const Classification& classification, bool keepScalars) {
   if (keepScalars) return {};
   if (!classification.transferFunction) {
     const double depth = kStoredDepth * volume.voxelSize() * classification.densityScale;
     return {.kind = EncodingKind::Float16, .scale = depth > 0.0 ? 1.0 / depth : 1.0};
   }
-  const TransferTable table(*classification.transferFunction, volume.minimum, volume.maximum);
+  const TransferTable table(*classification.transferFunction, range[0], range[1]);
   return {.kind = EncodingKind::Linear16,
           .scale = (table.high() - table.low()) / shader::kScalarCodes,
           .offset = table.low()};
 }
 
-fvx::Encodings encodingsOf(const Volume& volume, const Classification& classification, bool keepScalars) {
+fvx::Encodings encodingsOf(const Volume& volume, glm::vec2 range, const Classification& classification, bool keepScalars) {
   fvx::Encodings encodings;
-  encodings[std::size_t(Channel::Scalars)] = scalarEncoding(volume, classification, keepScalars);
+  encodings[std::size_t(Channel::Scalars)] = scalarEncoding(volume, range, classification, keepScalars);
   // Light grows with a high power of the temperature.
   if (volume.temperature) encodings[std::size_t(Channel::Temperature)] = fvx::Encoding{};
   if (volume.albedo)
@@ -97,7 +97,7 @@ ChunkValues chunkOf(const Volume& volume, glm::ivec3 cell) {
 }
 
 /// Without what has bricks.
-Volume outlineOf(const Volume& volume, const Classification& classification, bool fixed) {
+Volume outlineOf(const Volume& volume) {
   Volume outline{.source = volume.source,
                  .dimensions = volume.dimensions,
                  .indexOrigin = volume.indexOrigin,
@@ -119,6 +119,20 @@ Volume outlineOf(const Volume& volume, const Classification& classification, boo
                                           .maximum = grid.maximum};
   }
   if (volume.albedo) outline.albedo = AlbedoGrid{.name = volume.albedo->name, .clippedVoxels = volume.albedo->clippedVoxels};
+  return outline;
+}
+
+/// With the classification, and with the counts and ranges of the chunks where it has none.
+Volume summarised(Volume outline, const Classification& classification, bool fixed, const fvx::FvxWriter& writer) {
+  const auto complete = [&](Channel channel, auto& grid) {
+    if (grid.activeVoxels != 0) return;
+    const fvx::FvxWriter::Summary sum = writer.summary(channel);
+    grid.activeVoxels = sum.activeVoxels;
+    grid.minimum = sum.minimum;
+    grid.maximum = sum.maximum;
+  };
+  complete(Channel::Scalars, outline);
+  if (outline.temperature) complete(Channel::Temperature, *outline.temperature);
   outline.classification = std::make_shared<const Classification>(classification);
   outline.classificationIsFixed = fixed;
   return outline;
@@ -201,9 +215,7 @@ void makeCoarse(Volume& volume, const FvxFile& file, int level) {
 }
 
 Volume readLevel(const std::shared_ptr<const FvxFile>& file, int level) {
-  Volume volume = file->description().volume;
-  volume.source = fmt::format("{} ({})", file->path().filename().string(), volume.source);
-  if (level > 0) makeCoarse(volume, *file, level);
+  Volume volume = bakedOutline(*file, level);
   volume.scalars = std::move(readChannel(file, Channel::Scalars, level).front());
   if (volume.temperature) volume.temperature->values = std::move(readChannel(file, Channel::Temperature, level).front());
   if (volume.albedo) std::ranges::move(readChannel(file, Channel::Albedo, level), volume.albedo->values.begin());
@@ -212,27 +224,50 @@ Volume readLevel(const std::shared_ptr<const FvxFile>& file, int level) {
 
 }  // namespace
 
-void bakeVolume(const std::filesystem::path& file, const Volume& volume, const Classification& classification,
-                const BakeSettings& settings, const Progress& progress) {
+void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volume, const Classification& classification,
+                  const BakeSettings& settings, const Progress& progress) {
+  const glm::ivec3 dimensions = volume.outline.dimensions;
+  const int longest = std::max({dimensions.x, dimensions.y, dimensions.z});
+  if (longest > fvx::kLongestEdge)
+    fail(ExitCode::Input, "{} is too long for a baked volume: {} voxels, and at most {} are possible; crop or resample it",
+         volume.outline.source, longest, fvx::kLongestEdge);
   const bool densities = !classification.transferFunction;
-  const fvx::WriteSettings write{.dimensions = volume.dimensions,
-                                 .encodings = encodingsOf(volume, classification, settings.keepScalars),
-                                 .withoutData = densities ? WithoutData::Zero : WithoutData::Ignored,
-                                 .leaveOutZeros = densities && !settings.keepScalars,
-                                 .compress = settings.compress};
-  const std::vector<glm::ivec3> cells = hilbertOrder((volume.dimensions + fvx::kChunkEdge - 1) / fvx::kChunkEdge);
+  const fvx::WriteSettings write{
+      .dimensions = dimensions,
+      .encodings = encodingsOf(volume.outline, volume.range, classification, settings.keepScalars),
+      .withoutData = densities ? WithoutData::Zero : WithoutData::Ignored,
+      .leaveOutZeros = densities && !settings.keepScalars,
+      .compress = settings.compress};
+  const std::vector<glm::ivec3> cells = hilbertOrder((dimensions + fvx::kChunkEdge - 1) / fvx::kChunkEdge);
   writeAtomically(file, [&](const std::filesystem::path& temporary) {
     fvx::FvxWriter writer(temporary.parent_path(), write);
     for (std::size_t first = 0; first < cells.size(); first += kBatchChunks) {
       if (progress) progress("baking", double(first) / double(cells.size()));
       std::vector<ChunkValues> batch(std::min(kBatchChunks, cells.size() - first));
-      tbb::parallel_for(std::size_t(0), batch.size(), [&](std::size_t i) { batch[i] = chunkOf(volume, cells[first + i]); });
+      tbb::parallel_for(std::size_t(0), batch.size(), [&](std::size_t i) { batch[i] = volume.chunk(cells[first + i]); });
       writer.add(batch);
     }
-    writer.finish(temporary,
-                  {.volume = outlineOf(volume, classification, !settings.keepScalars), .encodings = write.encodings},
-                  settings.provenance);
+    const fvx::Description description{.volume = summarised(volume.outline, classification, !settings.keepScalars, writer),
+                                       .encodings = write.encodings};
+    writer.finish(temporary, description, volume.content, settings.provenance);
   });
+}
+
+void bakeVolume(const std::filesystem::path& file, const Volume& volume, const Classification& classification,
+                const BakeSettings& settings, const Progress& progress) {
+  bakeStreamed(file,
+               {.outline = outlineOf(volume),
+                .content = contentCells(volume, classification),
+                .range = {volume.minimum, volume.maximum},
+                .chunk = [&](glm::ivec3 cell) { return chunkOf(volume, cell); }},
+               classification, settings, progress);
+}
+
+Volume bakedOutline(const FvxFile& file, int level) {
+  Volume volume = file.description().volume;
+  volume.source = fmt::format("{} ({})", file.path().filename().string(), volume.source);
+  if (level > 0) makeCoarse(volume, file, level);
+  return volume;
 }
 
 Volume readBaked(const std::shared_ptr<const FvxFile>& file, int level) {

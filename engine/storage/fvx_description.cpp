@@ -121,9 +121,8 @@ Volume readVolume(const Json& json) {
   Volume volume;
   volume.source = json.at("source");
   volume.dimensions = readTriple<int>(json.at("dimensions"));
-  constexpr int kLongest = kChunkEdge << (kMostLevels - 1);
   for (int axis = 0; axis < 3; ++axis)
-    if (volume.dimensions[axis] < 1 || volume.dimensions[axis] > kLongest)
+    if (volume.dimensions[axis] < 1 || volume.dimensions[axis] > kLongestEdge)
       throw std::runtime_error(fmt::format("an edge of {} voxels is impossible", volume.dimensions[axis]));
   volume.indexOrigin = readTriple<int>(json.at("index_origin"));
   readTransform(json.at("index_to_world"), volume);

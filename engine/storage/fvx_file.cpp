@@ -63,6 +63,7 @@ FvxFile::FvxFile(const fs::path& file) : path_(file) {
   description_ = parseDescription({reinterpret_cast<const char*>(description.data()), description.size()}, file);
   const std::span<const std::byte> provenance = required(SectionKind::Provenance, "provenance");
   provenance_ = {reinterpret_cast<const char*>(provenance.data()), provenance.size()};
+  content_ = readContent();
   dimensions_ = levelDimensions(description_.volume.dimensions);
   chunks_.resize(dimensions_.size());
   for (int level = 0; level < levels(); ++level)
@@ -117,6 +118,22 @@ std::span<const std::byte> FvxFile::required(SectionKind kind, const char* name)
   const Section* const section = find(kind);
   if (section == nullptr) failDamaged(fmt::format("it has no {}", name));
   return checked(*section);
+}
+
+ContentCells FvxFile::readContent() const {
+  const std::span<const std::byte> raw = required(SectionKind::ContentCells, "content cells");
+  ContentHeader header;
+  if (raw.size() < sizeof(header)) failDamaged("its content cells are too short");
+  std::memcpy(&header, raw.data(), sizeof(header));
+  constexpr int kMostCells = 1 << 10;
+  const glm::ivec3 cells = header.cells;
+  const bool possible = glm::all(glm::greaterThan(cells, glm::ivec3(0))) && glm::all(glm::lessThan(cells, glm::ivec3(kMostCells)));
+  const std::uint64_t count = possible ? std::uint64_t(cells.x) * std::uint64_t(cells.y) * std::uint64_t(cells.z) : 0;
+  if (!possible || raw.size() != sizeof(header) + (count + 7) / 8 || !(header.edge > 0.0)) failDamaged("its content cells are impossible");
+  ContentCells content{.cells = Cells(cells), .edge = header.edge};
+  for (std::size_t i = 0; i < count; ++i)
+    content.cells.values[i] = std::uint8_t(std::to_integer<int>(raw[sizeof(header) + i / 8]) >> i % 8 & 1);
+  return content;
 }
 
 std::span<const ChunkEntry> FvxFile::readIndex(Channel channel, int level) const {

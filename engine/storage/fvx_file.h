@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/storage/fvx_description.h"
+#include "engine/volume/subject.h"
 
 namespace freevoxels::fvx {
 
@@ -30,6 +31,7 @@ class FvxFile {
   const Header& header() const { return *reinterpret_cast<const Header*>(map_.data()); }
   std::span<const Section> sections() const { return std::span(header().sections).first(header().sectionCount); }
   const Description& description() const { return description_; }
+  const ContentCells& content() const { return content_; }
   std::string_view provenance() const { return provenance_; }
   bool hasChannel(Channel channel) const { return description_.encodings[std::size_t(channel)].has_value(); }
 
@@ -54,6 +56,7 @@ class FvxFile {
   const Section* find(SectionKind kind, Channel channel = {}, int level = 0) const;
   std::span<const std::byte> checked(const Section& section) const;
   std::span<const std::byte> required(SectionKind kind, const char* name) const;
+  ContentCells readContent() const;
   std::span<const ChunkEntry> readIndex(Channel channel, int level) const;
   void checkEntry(const ChunkEntry& entry, const Section& chunks, Channel channel, int level) const;
   [[noreturn]] void failDamaged(const std::string& what) const;
@@ -61,6 +64,7 @@ class FvxFile {
   std::filesystem::path path_;
   boost::iostreams::mapped_file_source map_;
   Description description_;
+  ContentCells content_{.cells = Cells(glm::ivec3(0))};
   std::string_view provenance_;
   std::vector<glm::ivec3> dimensions_;
   std::vector<std::array<std::span<const ChunkEntry>, kChannels>> chunks_;

@@ -22,7 +22,8 @@ inline constexpr std::uint64_t kPageBytes = 4096;      ///< sections begin at mu
 inline constexpr std::uint64_t kChunkAlignment = 64;   ///< chunks begin at multiples of this
 inline constexpr int kChunkEdge = 32;                  ///< voxels
 inline constexpr int kChunkBricks = 64;                ///< bricks of ScalarBricks in a chunk
-inline constexpr int kMostLevels = 10;                 ///< of the octree, level 0 included
+inline constexpr int kMostLevels = 9;                  ///< of the octree, level 0 included
+inline constexpr int kLongestEdge = kChunkEdge << (kMostLevels - 1);  ///< of a volume, voxels
 inline constexpr int kChunkVoxels = kChunkEdge * kChunkEdge * kChunkEdge;
 inline constexpr int kBrickVoxels = ScalarBricks::kEdge * ScalarBricks::kEdge * ScalarBricks::kEdge;
 static_assert(kChunkBricks * kBrickVoxels == kChunkVoxels);
@@ -32,6 +33,7 @@ enum class SectionKind : std::uint32_t {
   Provenance = 2,   ///< JSON: where it comes from, for people
   ChunkIndex = 3,   ///< ChunkEntry, in Hilbert order
   Chunks = 4,       ///< what the index refers to
+  ContentCells = 5,  ///< ContentHeader and a bit for each cell
 };
 
 enum class Channel : std::uint32_t { Scalars = 0, Temperature = 1, Albedo = 2 };
@@ -68,7 +70,15 @@ struct Header {
   std::array<Section, kMostSections> sections{};
 };
 static_assert(sizeof(Header) == kPageBytes);
-static_assert(2 + 2 * kChannels * kMostLevels <= kMostSections);
+static_assert(3 + 2 * kChannels * kMostLevels <= kMostSections);
+
+/// Cells of the volume in which something is seen (ContentCells of subject.h), followed by a bit for each, x fastest.
+struct ContentHeader {
+  glm::ivec3 cells{0};
+  std::uint32_t reserved = 0;
+  double edge = 1.0;  ///< voxels
+};
+static_assert(sizeof(ContentHeader) == 24);
 
 /// What is known of a chunk without its values.
 struct ChunkEntry {

@@ -170,6 +170,15 @@ void setExtinctions(const Classification& classification, ChunkEntry& entry) {
   }
 }
 
+std::vector<std::byte> contentBytes(const ContentCells& content) {
+  const ContentHeader header{.cells = content.cells.dimensions, .edge = content.edge};
+  std::vector<std::byte> bytes(sizeof(header) + (content.cells.values.size() + 7) / 8);
+  std::memcpy(bytes.data(), &header, sizeof(header));
+  for (std::size_t i = 0; i < content.cells.values.size(); ++i)
+    if (content.cells.values[i] != 0) bytes[sizeof(header) + i / 8] |= std::byte(1 << i % 8);
+  return bytes;
+}
+
 /// Chunks of a channel of a level.
 struct ChunkStore {
   std::unique_ptr<Spool> spool;
@@ -285,7 +294,19 @@ void FvxWriter::add(std::span<const ChunkValues> chunks) {
   }
 }
 
-void FvxWriter::finish(const std::filesystem::path& file, const Description& description, const std::string& provenance) {
+FvxWriter::Summary FvxWriter::summary(Channel channel) const {
+  Summary sum;
+  for (const ChunkEntry& entry : state_->stores.front()[std::size_t(channel)].entries) {
+    if (entry.activeVoxels == 0) continue;
+    sum.minimum = sum.activeVoxels == 0 ? entry.minimum : std::min(sum.minimum, entry.minimum);
+    sum.maximum = sum.activeVoxels == 0 ? entry.maximum : std::max(sum.maximum, entry.maximum);
+    sum.activeVoxels += entry.activeVoxels;
+  }
+  return sum;
+}
+
+void FvxWriter::finish(const std::filesystem::path& file, const Description& description, const ContentCells& content,
+                       const std::string& provenance) {
   State& state = *state_;
   state.pyramid.finish();
   SectionWriter writer(file);
@@ -294,6 +315,7 @@ void FvxWriter::finish(const std::filesystem::path& file, const Description& des
   };
   text(SectionKind::Description, toJson(description));
   text(SectionKind::Provenance, provenance);
+  writer.section(SectionKind::ContentCells, Channel(), 0, [&](const auto& take) { take(contentBytes(content)); });
   for (std::size_t level = state.stores.size(); level-- > 0;)
     for (std::size_t channel = 0; channel < kChannels; ++channel)
       if (state.settings.encodings[channel]) state.writeChunks(writer, level, channel, *description.volume.classification);

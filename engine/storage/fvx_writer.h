@@ -8,6 +8,7 @@
 
 #include "engine/storage/chunk_pyramid.h"
 #include "engine/storage/fvx_description.h"
+#include "engine/volume/subject.h"
 
 namespace freevoxels::fvx {
 
@@ -29,8 +30,15 @@ class FvxWriter {
 
   /// The next chunks of level 0, in Hilbert order (hilbert.h); those without data may be left out.
   void add(std::span<const ChunkValues> chunks);
-  /// Writes the file. Both texts are JSON; `provenance` is for people.
-  void finish(const std::filesystem::path& file, const Description& description, const std::string& provenance);
+  /// Of the chunks of level 0 so far; ranges of channels without active voxels are 0.
+  struct Summary {
+    std::uint64_t activeVoxels = 0;
+    float minimum = 0.0f, maximum = 0.0f;
+  };
+  Summary summary(Channel channel) const;
+  /// Writes the file. `provenance` is JSON, for people.
+  void finish(const std::filesystem::path& file, const Description& description, const ContentCells& content,
+              const std::string& provenance);
 
  private:
   struct State;
