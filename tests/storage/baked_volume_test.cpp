@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <map>
+#include <utility>
 
+#include "engine/storage/procedural_stream.h"
 #include "engine/volume/coarse_volume.h"
 #include "tests/limited_disk.h"
 #include "tests/refusal.h"
@@ -188,6 +188,36 @@ TEST(BakedVolume, FinestLevelIsTheFirstThatFits) {
   EXPECT_EQ(finestLevel(file, 70 * 41 * 37 - 1), 1);
   EXPECT_EQ(finestLevel(file, 18 * 11 * 10), 2);
   test::expectRefusal([&] { finestLevel(file, 100); }, ExitCode::OutOfMemory, {"a.fvx", "--memory-limit"});
+}
+
+TEST(BakedVolume, AStreamedVolumeIsTheOneThatIsHeldInMemory) {
+  const test::TemporaryFolder folder;
+  const glm::ivec3 size(70, 40, 50);
+  for (const char* name : {"plume", "fire"}) {
+    const ProceduralField field(name, size);
+    const Volume whole = makeProcedural(name, size);
+    bakeVolume(folder / "whole.fvx", whole, kDense, {});
+    bakeStreamed(folder / "streamed.fvx", proceduralStream(field, whole, kDense), kDense, {});
+    EXPECT_TRUE(test::readBytes(folder / "whole.fvx") == test::readBytes(folder / "streamed.fvx")) << name;
+  }
+}
+
+TEST(BakedVolume, WhatIsSeenIsInTheFileWhateverTheLevel) {
+  const test::TemporaryFolder folder;
+  const Volume volume = test::smoothVolume();
+  bakeVolume(folder / "a.fvx", volume, kDense, {});
+  const FvxFile file(folder / "a.fvx");
+  const Subject stored = subjectOf(file.content(), file.description().volume), found = contentOf(volume, kDense);
+  EXPECT_EQ(stored.points, found.points);
+  EXPECT_EQ(stored.centre, found.centre);
+  EXPECT_EQ(bakedOutline(file, 2).dimensions, glm::ivec3(18, 11, 10));
+}
+
+TEST(BakedVolume, AVolumeThatIsTooLongIsRefused) {
+  const test::TemporaryFolder folder;
+  const StreamedVolume volume{.outline = {.source = "long", .dimensions = {8193, 1, 1}}, .content = {.cells = Cells(glm::ivec3(1))}};
+  test::expectRefusal([&] { bakeStreamed(folder / "a.fvx", volume, kDense, {}); }, ExitCode::Input, {"long", "8193", "8192"});
+  EXPECT_EQ(folder.fileCount(), 0u);
 }
 
 TEST(BakedVolume, AFullDiskIsSaidAndLeavesNothing) {
