@@ -12,7 +12,8 @@ packages=(
   libglm-dev libfmt-dev libspdlog-dev nlohmann-json3-dev libcli11-dev
   libopenexr-dev libpng-dev
   libglfw3-dev libimgui-dev
-  libopenvdb-dev libtbb-dev libboost-iostreams-dev # OpenVDB's headers and CMake module need the last
+  libopenvdb-dev libtbb-dev libboost-iostreams-dev # OpenVDB's headers and CMake module need the last, too
+  libxxhash-dev libzstd-dev
   pybind11-dev python3-pybind11 python3-dev python3-numpy # the Python module
   help2man man-db # man pages, and their test
   libgtest-dev xvfb xdotool python3-openvdb

@@ -67,12 +67,16 @@ glm::dvec2 CameraOptions::angles() const {
 }
 
 std::vector<Camera> CameraOptions::resolve(const Volume& volume, const Classification& classification, int frames) const {
-  const Camera base = given(volume.up);
+  return resolve(volume.up, [&] { return contentOf(volume, classification); }, frames);
+}
+
+std::vector<Camera> CameraOptions::resolve(glm::dvec3 upOfVolume, const std::function<Subject()>& content, int frames) const {
+  const Camera base = given(upOfVolume);
   if (position && lookAt) {
     checkCamera(base);
     return orbitAboutUp(base, frames);
   }
-  Subject subject = contentOf(volume, classification);
+  Subject subject = content();
   if (position) {
     Camera start = base;
     start.lookAt = subject.centre;

@@ -1,6 +1,7 @@
 #pragma once
 // The camera and the size of its image.
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct CameraOptions {
   /// The cameras of a full turn, of equal steps about the axis through the look-at point along `up`. What is not given frames
   /// what is seen of the volume, from one distance for all frames, upright as the volume says.
   std::vector<Camera> resolve(const Volume& volume, const Classification& classification, int frames = 1) const;
+  /// The same of what is known of a volume without its values: its up direction and its content, which is asked for if it is needed.
+  std::vector<Camera> resolve(glm::dvec3 upOfVolume, const std::function<Subject()>& content, int frames) const;
   void describe(OptionList& options, const Camera& resolved) const;
   /// Of what `describe` said, makes of the eye's place the orbit that it turns in, unless it was given: a turn has another
   /// distance than its first frame.

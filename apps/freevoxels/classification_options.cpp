@@ -2,9 +2,33 @@
 
 #include <CLI/CLI.hpp>
 
+#include "engine/core/error.h"
 #include "engine/volume/scan.h"
 
 namespace freevoxels {
+
+namespace {
+
+/// What a baked volume was baked with, changed by the options.
+Classification bakedClassification(const ClassificationOptions& options, const Volume& volume) {
+  if (options.albedoGrid)
+    fail(ExitCode::Usage, "--albedo-grid chooses among the grids of an OpenVDB file, and {} is a baked volume: give it to 'freevoxels bake'",
+         volume.source);
+  Classification classification = *volume.classification;
+  const bool given = options.densityScale || options.albedo || options.transferFunction || options.order;
+  if (given && volume.classificationIsFixed)
+    fail(ExitCode::Usage,
+         "{} was baked for one classification, which --density-scale, --albedo, --transfer-function and --classification cannot "
+         "change: leave them out, or bake it with --keep-scalars",
+         volume.source);
+  if (options.densityScale || options.albedo) classification.transferFunction.reset();
+  if (options.densityScale) classification.densityScale = *options.densityScale;
+  if (options.albedo) classification.albedo = glm::vec3(*options.albedo);
+  if (options.order) classification.order = ClassificationOrder(*options.order);
+  return classification;
+}
+
+}  // namespace
 
 void ClassificationOptions::add(CLI::App& app) {
   CLI::Option* scale =
@@ -35,6 +59,7 @@ void ClassificationOptions::add(CLI::App& app) {
 
 Classification ClassificationOptions::resolve(const Volume& volume, bool shines) const {
   Classification classification;
+  if (volume.classification) classification = bakedClassification(*this, volume);
   if (transferFunction) {
     classification.transferFunction = isInlineJson(*transferFunction)
                                           ? parseTransferFunction(*transferFunction, volume)
@@ -42,6 +67,7 @@ Classification ClassificationOptions::resolve(const Volume& volume, bool shines)
     classification.order = ClassificationOrder(order.value_or(0));
     return classification;
   }
+  if (volume.classification) return classification;
   if (!densityScale && !albedo && !albedoGrid && !shines && looksLikeScan(volume)) {
     classification.transferFunction = scanTransferFunction(volume);
     classification.order = ClassificationOrder(order.value_or(0));
@@ -57,7 +83,8 @@ Classification ClassificationOptions::resolve(const Volume& volume, bool shines)
   return classification;
 }
 
-void ClassificationOptions::describe(OptionList& options, const Classification& resolved) const {
+void ClassificationOptions::describe(OptionList& options, const Volume& volume, const Classification& resolved) const {
+  if (volume.classificationIsFixed) return;
   if (resolved.transferFunction) {
     options.emplace_back("--transfer-function",
                          transferFunction ? *transferFunction : transferFunctionJson(*resolved.transferFunction));

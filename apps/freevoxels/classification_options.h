@@ -21,10 +21,11 @@ struct ClassificationOptions {
   std::optional<int> order;  ///< ClassificationOrder
 
   void add(CLI::App& app);
-  /// Reads the transfer function. Without options scans have scanTransferFunction, level sets are opaque, and others have the
+  /// Reads the transfer function. What is not given is as the volume's file says, if it does (Volume::classification); options are
+  /// refused with ExitCode::Usage where that is fixed. Otherwise, without options scans have scanTransferFunction, level sets are opaque, and others have the
   /// automatic density scale of volumes that shine, or do not.
   Classification resolve(const Volume& volume, bool shines) const;
-  void describe(OptionList& options, const Classification& resolved) const;
+  void describe(OptionList& options, const Volume& volume, const Classification& resolved) const;
 };
 
 }  // namespace freevoxels

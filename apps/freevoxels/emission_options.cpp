@@ -48,10 +48,14 @@ std::optional<std::string> EmissionOptions::grid() const {
 
 std::optional<Emission> EmissionOptions::resolve(const Volume& volume,
                                                  const Classification& classification) const {
-  if (!grid()) return std::nullopt;
-  if (!volume.temperature)
-    fail(ExitCode::Usage, "{} has no temperatures: leave --emission out, or take procedural:fire",
+  if (temperatureGrid && volume.classification)
+    fail(ExitCode::Usage,
+         "--temperature-grid chooses among the grids of an OpenVDB file, and {} is a baked volume: give it to 'freevoxels bake'",
          volume.source);
+  if (!grid()) return classification.emission;  // a baked volume's
+  if (!volume.temperature)
+    fail(ExitCode::Usage, "{} has no temperatures: leave --emission out, {}", volume.source,
+         volume.classification ? "or give it to 'freevoxels bake'" : "or take procedural:fire");
   const TemperatureGrid& grid = *volume.temperature;
   Emission result;
   result.temperatureOffset =
@@ -65,8 +69,8 @@ std::optional<Emission> EmissionOptions::resolve(const Volume& volume,
 void EmissionOptions::describe(OptionList& options, const Volume& volume,
                                const std::optional<Emission>& resolved) const {
   if (!resolved) return;
-  // A procedural volume's has no name.
-  if (!volume.temperature->name.empty()) options.emplace_back("--temperature-grid", volume.temperature->name);
+  // A procedural volume's has no name, and of a baked volume there is one grid.
+  if (!volume.temperature->name.empty() && !volume.classification) options.emplace_back("--temperature-grid", volume.temperature->name);
   options.emplace_back("--emission", numberText(resolved->strength));
   options.emplace_back("--temperature-scale", numberText(resolved->temperatureScale));
   options.emplace_back("--temperature-offset", numberText(resolved->temperatureOffset));

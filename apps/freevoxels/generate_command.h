@@ -14,7 +14,7 @@ class GenerateCommand {
   void run() const;
 
   std::string name_, file_;
-  std::optional<int> resolution_;
+  std::optional<glm::ivec3> resolution_;
   bool list_ = false;
   MessageOptions messages_;
 };

@@ -7,8 +7,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "apps/freevoxels/baked_info.h"
 #include "apps/freevoxels/input_options.h"
 #include "apps/freevoxels/text_table.h"
+#include "engine/core/error.h"
 #include "engine/renderer.h"
 #include "engine/volume/occupied_count.h"
 #include "engine/volume/vdb.h"
@@ -140,6 +142,7 @@ void InfoCommand::add(CLI::App& app) {
   input_.add(*command);
   scene_.add(*command);
   command->add_flag("--json", json_, "Print JSON for programs");
+  command->add_flag("--check", check_, "Read all of a baked volume (.fvx) and refuse it where anything is damaged");
   command->footer(
       "TABLE 26 and TABLE 98 are the FreeVoxel table of the grid with so many directions, ON DEVICE all\n"
       "device memory of the volume with it at most. BYTES/VOXEL is what is kept for each voxel that holds\n"
@@ -147,13 +150,28 @@ void InfoCommand::add(CLI::App& app) {
       "--emission adds 4 for each voxel and block, --albedo-grid 4 for a voxel and 8 for a block.\n"
       "Examples:\n"
       "  freevoxels info cloud.vdb\n"
-      "  freevoxels info procedural:cloud --resolution 256 --json\n");
+      "  freevoxels info procedural:cloud --resolution 256 --json\n"
+      "  freevoxels info cloud.fvx --check\n");
   command->callback([this] { run(); });
+}
+
+void InfoCommand::describeBaked() const {
+  input_.check();
+  const fvx::FvxFile file(input_.input);
+  if (check_) file.checkAll();
+  if (json_)
+    fmt::print("{}\n", bakedJson(file).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  else
+    printBaked(file);
+  if (check_ && !json_) fmt::print("\nall checksums are right\n");
 }
 
 void InfoCommand::run() const {
   scene_.apply([](const std::string&) { return true; });
   input_.checkGiven();
+  const bool isBaked = !proceduralName(input_.input) && fvx::isFvx(input_.input);
+  if (isBaked) return describeBaked();
+  if (check_) fail(ExitCode::Usage, "--check is for baked volumes (.fvx), and '{}' is none", input_.input);
   const std::vector<GridInfo> grids = describeInput(input_);
   if (!json_) {
     printTable(grids);

@@ -12,10 +12,11 @@ class InfoCommand {
 
  private:
   void run() const;
+  void describeBaked() const;
 
   InputOptions input_;
   SceneFileOptions scene_;
-  bool json_ = false;
+  bool json_ = false, check_ = false;
 };
 
 }  // namespace freevoxels

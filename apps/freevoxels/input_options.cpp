@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "engine/core/error.h"
+#include "engine/storage/baked_volume.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels {
@@ -16,16 +17,28 @@ namespace {
 
 constexpr std::string_view kProceduralPrefix = "procedural:";
 
+Volume openBaked(const std::shared_ptr<const fvx::FvxFile>& file, std::uint64_t maximumVoxels, int level) {
+  const int fitting = finestLevel(*file, maximumVoxels);
+  if (fitting > level)
+    spdlog::warn("{} is opened at 1/{} of its resolution: the {} voxels of its box are more than the {} that fit",
+                 file->path().string(), 1 << fitting, resolutionText(file->dimensions(0)), maximumVoxels);
+  return readBaked(file, std::max(fitting, level));
+}
+
 }  // namespace
 
 std::uint64_t machineMemoryBytes() {
   return std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE));
 }
 
-CLI::Option* addResolution(CLI::App& app, std::optional<int>& target) {
-  return addWholeNumber(app, "--resolution", "N", target,
-                        fmt::format("Voxels along an edge of a procedural volume [{}]", kDefaultResolution),
-                        {1.0, 2048.0});
+CLI::Option* addResolution(CLI::App& app, std::optional<glm::ivec3>& target) {
+  return addDimensions(app, "--resolution", target, kMostResolution,
+                       fmt::format("Voxels of a procedural volume, one number for a cube [{}]", kDefaultResolution));
+}
+
+std::string resolutionText(glm::ivec3 dimensions) {
+  const bool isCube = dimensions == glm::ivec3(dimensions.x);
+  return isCube ? fmt::format("{}", dimensions.x) : fmt::format("{}x{}x{}", dimensions.x, dimensions.y, dimensions.z);
 }
 
 std::optional<std::string> proceduralName(const std::string& input) {
@@ -33,16 +46,16 @@ std::optional<std::string> proceduralName(const std::string& input) {
   return input.substr(kProceduralPrefix.size());
 }
 
-Volume openProcedural(const std::string& name, std::optional<int> resolution, std::uint64_t maximumVoxels) {
-  const auto edge = std::uint64_t(resolution.value_or(kDefaultResolution));
-  const std::uint64_t needed = edge * edge * edge;
+Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolution, std::uint64_t maximumVoxels) {
+  const glm::ivec3 dimensions = resolution.value_or(glm::ivec3(kDefaultResolution));
+  const std::uint64_t needed = std::uint64_t(dimensions.x) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z);
   const std::uint64_t available =
       std::min<std::uint64_t>(maximumVoxels, machineMemoryBytes() / sizeof(float));
   if (needed > available)
     fail(ExitCode::OutOfMemory,
-         "procedural:{} has {} voxels at --resolution {}, and {} fit: lower --resolution", name, needed, edge,
-         available);
-  Volume volume = makeProcedural(name, int(edge));
+         "procedural:{} has {} voxels at --resolution {}, and {} fit: lower --resolution", name, needed,
+         resolutionText(dimensions), available);
+  Volume volume = makeProcedural(name, dimensions);
   cropToActive(volume);
   return volume;
 }
@@ -50,8 +63,8 @@ Volume openProcedural(const std::string& name, std::optional<int> resolution, st
 void InputOptions::add(CLI::App& app) {
   app.add_option(
          "IN", input,
-         "OpenVDB file, or procedural:NAME ('freevoxels generate --list' has the names); may be left out "
-         "where a --scene has it")
+         "OpenVDB file, baked volume (.fvx), or procedural:NAME ('freevoxels generate --list' has the names); may be left "
+         "out where a --scene has it")
       ->group("Input");
   addResolution(app, resolution)->group("Input");
 }
@@ -67,6 +80,8 @@ void InputOptions::checkGiven() const {
 }
 
 void InputOptions::check() const {
+  if (grid && !proceduralName(input) && fvx::isFvx(input))
+    fail(ExitCode::Usage, "--grid chooses among the grids of an OpenVDB file, and '{}' is a baked volume", input);
   if (proceduralName(input)) {
     if (grid) fail(ExitCode::Usage, "--grid chooses among the grids of a file, and {} has one", input);
   } else if (resolution) {
@@ -75,8 +90,14 @@ void InputOptions::check() const {
   }
 }
 
-Volume InputOptions::open(std::uint64_t maximumVoxels, const MoreGrids& more) const {
+std::shared_ptr<const fvx::FvxFile> InputOptions::baked() const {
+  if (proceduralName(input) || !fvx::isFvx(input)) return nullptr;
+  return std::make_shared<const fvx::FvxFile>(input);
+}
+
+Volume InputOptions::open(std::uint64_t maximumVoxels, const MoreGrids& more, int level) const {
   const std::optional<std::string> name = proceduralName(input);
+  if (const auto file = baked()) return openBaked(file, maximumVoxels, level);
   if (!name) return readVdb(input, grid.value_or(""), maximumVoxels, more);
   Volume volume = openProcedural(*name, resolution, maximumVoxels);
   if (!more.temperature) volume.temperature.reset();
@@ -87,7 +108,7 @@ void InputOptions::describe(OptionList& options) const {
   options.emplace_back("", input);
   if (grid) options.emplace_back("--grid", *grid);
   if (proceduralName(input))
-    options.emplace_back("--resolution", std::to_string(resolution.value_or(kDefaultResolution)));
+    options.emplace_back("--resolution", resolutionText(resolution.value_or(glm::ivec3(kDefaultResolution))));
 }
 
 void warnAboutValues(const Volume& volume, bool scalarsAreDensities) {

@@ -1,34 +1,38 @@
 #pragma once
-// Where the volume comes from: an OpenVDB file, or `procedural:NAME`.
+// Where the volume comes from: an OpenVDB file, a baked volume (.fvx), or `procedural:NAME`.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "apps/freevoxels/option_values.h"
+#include "engine/storage/fvx_file.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
 
-inline constexpr int kDefaultResolution = 128;
+inline constexpr int kDefaultResolution = 128, kMostResolution = 2048;
 
 std::uint64_t machineMemoryBytes();
 
-/// `--resolution N` of a procedural volume.
-CLI::Option* addResolution(CLI::App& app, std::optional<int>& target);
+/// `--resolution` of a procedural volume.
+CLI::Option* addResolution(CLI::App& app, std::optional<glm::ivec3>& target);
+/// "128", or "2048x2048x512" of one that is no cube.
+std::string resolutionText(glm::ivec3 dimensions);
 
 /// NAME of "procedural:NAME", or nothing for a file.
 std::optional<std::string> proceduralName(const std::string& input);
 
 /// makeProcedural, but refused with ExitCode::OutOfMemory before anything is allocated where the volume
 /// exceeds `maximumVoxels` or this machine's memory.
-Volume openProcedural(const std::string& name, std::optional<int> resolution, std::uint64_t maximumVoxels);
+Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolution, std::uint64_t maximumVoxels);
 
 struct InputOptions {
   std::string input;
   std::optional<std::string> grid;
-  std::optional<int> resolution;
+  std::optional<glm::ivec3> resolution;
 
   /// IN and --resolution.
   void add(CLI::App& app);
@@ -38,8 +42,11 @@ struct InputOptions {
   void checkGiven() const;
   /// Refuses an option that does not apply to this input: ExitCode::Usage.
   void check() const;
-  /// A procedural volume has its temperatures where any are asked for.
-  Volume open(std::uint64_t maximumVoxels, const MoreGrids& more = {}) const;
+  /// A procedural volume has its temperatures where any are asked for, a baked one always, and its own albedos. Of a baked volume whose
+  /// box is too large at `level` the finest level that fits is opened, with a warning.
+  Volume open(std::uint64_t maximumVoxels, const MoreGrids& more = {}, int level = 0) const;
+  /// Null where the input is no baked volume.
+  std::shared_ptr<const fvx::FvxFile> baked() const;
   void describe(OptionList& options) const;
 };
 

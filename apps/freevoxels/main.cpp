@@ -1,7 +1,8 @@
-// The command-line program: freevoxels render | turntable | oracle | compare | info | generate | devices.
+// The command-line program: freevoxels render | turntable | oracle | compare | info | generate | bake | devices.
 
 #include <CLI/CLI.hpp>
 
+#include "apps/freevoxels/bake_command.h"
 #include "apps/freevoxels/compare_command.h"
 #include "apps/freevoxels/devices_command.h"
 #include "apps/freevoxels/generate_command.h"
@@ -19,6 +20,7 @@ int main(int argc, char** argv) {
   freevoxels::CompareCommand compare;
   freevoxels::InfoCommand info;
   freevoxels::GenerateCommand generate;
+  freevoxels::BakeCommand bake;
   freevoxels::DevicesCommand devices;
   render.add(app);
   turntable.add(app);
@@ -26,6 +28,7 @@ int main(int argc, char** argv) {
   compare.add(app);
   info.add(app);
   generate.add(app);
+  bake.add(app);
   devices.add(app);
   app.require_subcommand(1);
   app.footer(

@@ -167,6 +167,21 @@ CLI::Option* addSize(CLI::App& app, const std::string& name, glm::ivec2& target,
                     });
 }
 
+CLI::Option* addDimensions(CLI::App& app, const std::string& name, std::optional<glm::ivec3>& target, int maximum,
+                           const std::string& description) {
+  return addNumbers(app,
+                    {.option = name,
+                     .form = "WxHxD",
+                     .count = 3,
+                     .range = {1.0, double(maximum)},
+                     .whole = true,
+                     .mayBeOne = true,
+                     .separator = 'x'},
+                    description, [&target](const std::vector<double>& values) {
+                      target = glm::ivec3(values[0], values[1], values[2]);
+                    });
+}
+
 CLI::Option* addText(CLI::App& app, const std::string& name, const std::string& form,
                      std::optional<std::string>& target, const std::string& description) {
   return app

@@ -47,6 +47,9 @@ std::optional<glm::dvec3> namedColor(const std::string& text);
 /// "WxH" in pixels, or one number for a square.
 CLI::Option* addSize(CLI::App& app, const std::string& name, glm::ivec2& target, int maximum,
                      const std::string& description);
+/// "WxHxD" voxels, or one number for a cube.
+CLI::Option* addDimensions(CLI::App& app, const std::string& name, std::optional<glm::ivec3>& target, int maximum,
+                           const std::string& description);
 CLI::Option* addText(CLI::App& app, const std::string& name, const std::string& form,
                      std::optional<std::string>& target, const std::string& description);
 

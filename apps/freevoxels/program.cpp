@@ -89,7 +89,7 @@ std::string unknownOption(const CLI::App& command, int argc, char** argv) {
 
 /// What is said about a first word that is no command.
 std::string unknownCommand(const CLI::App& app, const std::string& word) {
-  if (word.ends_with(".vdb") || std::filesystem::is_regular_file(word))
+  if (word.ends_with(".vdb") || word.ends_with(".fvx") || std::filesystem::is_regular_file(word))
     return fmt::format("'{}' is a file, not a command; to draw it: {} render {} image.png", word, app.get_name(), word);
   return fmt::format("there is no command '{}'{}", word, suggestion(word, commandNames(app)));
 }

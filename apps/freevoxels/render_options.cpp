@@ -9,6 +9,7 @@
 
 #include "apps/freevoxels/progress_line.h"
 #include "engine/octree/volume_limits.h"
+#include "engine/core/error.h"
 #include "engine/renderer.h"
 #include "engine/vulkan/pipeline.h"
 
@@ -80,10 +81,10 @@ void RenderOptions::run(const FrameFiles& outputs) const {
     if (file) fmt::print("{}\n", *file);
 }
 
-Scene RenderOptions::open(const Device& opened, ProgressLine& line, RunReport& report) const {
+Scene RenderOptions::open(const Device& opened, int level, ProgressLine& line, RunReport& report) const {
   line.begin("reading " + scene.input.input);
   const StageTimer timer(report.stages, "read volume");
-  return scene.open(maximumVoxels(opened));
+  return scene.open(maximumVoxels(opened), level);
 }
 
 OptionList RenderOptions::describe(const Scene& view) const {
@@ -99,14 +100,35 @@ void RenderOptions::write(const Image& image, const Scene& view, const std::vect
                                  {{"device", description.name}, {"driver", description.driver}});
 }
 
-void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunReport& report) const {
+FrameSettings RenderOptions::frameSettings() const {
   FrameSettings settings{.size = scene.camera.size, .depth = scene.output.wantsDepth()};
   method.apply(settings);
-  checkFrameFits(opened, settings);
+  return settings;
+}
 
+/// A baked volume is drawn from the finest level that shows and that the device can hold.
+void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunReport& report) const {
+  const FrameSettings settings = frameSettings();
+  checkFrameFits(opened, settings);
+  const std::shared_ptr<const fvx::FvxFile> file = scene.input.baked();
+  const int levels = file ? file->levels() : 1;
+  const RunReport before = report;
+  for (int level = scene.finestLevelSeen(double(settings.lod), int(outputs.size()));; ++level) {
+    try {
+      return drawLevel(opened, outputs, level, report);
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::OutOfMemory || level + 1 >= levels) throw;
+      spdlog::warn("{}; drawing it at 1/{} of its resolution", error.what(), 1 << (level + 1));
+      report = before;
+    }
+  }
+}
+
+void RenderOptions::drawLevel(const Device& opened, const FrameFiles& outputs, int level, RunReport& report) const {
+  FrameSettings settings = frameSettings();
   ProgressLine line(!messages.quiet);
-  Scene view = open(opened, line, report);
-  const std::vector<Camera> cameras = scene.camera.resolve(*view.volume, view.classification, int(outputs.size()));
+  Scene view = open(opened, level, line, report);
+  const std::vector<Camera> cameras = scene.cameras(*view.volume, view.classification, int(outputs.size()));
   view.camera = cameras.front();
   settings.lighting = view.lighting;
   report.device = opened.description();

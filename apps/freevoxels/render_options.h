@@ -32,7 +32,9 @@ struct RenderOptions {
  private:
   void check(const FrameFiles& outputs) const;
   void draw(const Device& device, const FrameFiles& outputs, RunReport& report) const;
-  Scene open(const Device& device, ProgressLine& line, RunReport& report) const;
+  void drawLevel(const Device& device, const FrameFiles& outputs, int level, RunReport& report) const;
+  FrameSettings frameSettings() const;
+  Scene open(const Device& device, int level, ProgressLine& line, RunReport& report) const;
   OptionList describe(const Scene& scene) const;
   void write(const Image& image, const Scene& scene, const std::vector<std::string>& files,
              const DeviceDescription& device) const;

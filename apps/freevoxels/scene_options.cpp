@@ -2,9 +2,14 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+
 #include "apps/freevoxels/program.h"
 #include "engine/core/error.h"
+#include "engine/storage/baked_volume.h"
+#include "engine/visibility/detail_rule.h"
 #include "engine/volume/emission_light.h"
+#include "engine/volume/subject.h"
 
 namespace freevoxels {
 
@@ -70,8 +75,33 @@ SceneOptions SceneOptions::withOutputs(std::vector<std::string> files) const {
   return options;
 }
 
-Volume SceneOptions::readVolume(std::uint64_t maximumVoxels) const {
-  return input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.albedoGrid});
+Volume SceneOptions::readVolume(std::uint64_t maximumVoxels, int level) const {
+  return input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.albedoGrid}, level);
+}
+
+int SceneOptions::finestLevelSeen(double lod, int frames) const {
+  const std::shared_ptr<const fvx::FvxFile> baked = input.baked();
+  if (!baked) return 0;
+  const Volume outline = bakedOutline(*baked);
+  const Classification classified = resolveClassification(outline);
+  if (classified.transferFunction) return 0;
+  const HierarchyLayout hierarchy(outline.dimensions);
+  int level = baked->levels() - 1;
+  for (const Camera& one : cameras(outline, classified, frames))
+    level = std::min(level, detailRule(hierarchy, pixelRays(one, camera.size, outline.indexToWorld), camera.size, lod).finest);
+  return level;
+}
+
+std::vector<Camera> SceneOptions::cameras(const Volume& volume, const Classification& classified, int frames) const {
+  const auto content = [&] {
+    // Another density scale leaves the content as it is; a transfer function does not.
+    const bool asBaked = volume.classification && (volume.classificationIsFixed || (!classified.transferFunction &&
+                                                                                    !volume.classification->transferFunction));
+    if (!asBaked) return contentOf(volume, classified);
+    const std::shared_ptr<const fvx::FvxFile> baked = input.baked();
+    return subjectOf(baked->content(), baked->description().volume);
+  };
+  return camera.resolve(volume.up, content, frames);
 }
 
 Scene SceneOptions::resolve(std::shared_ptr<const Volume> volume) const {
@@ -84,25 +114,25 @@ Scene SceneOptions::resolve(std::shared_ptr<const Volume> volume) const {
 Classification SceneOptions::resolveClassification(const Volume& volume) const {
   Classification result = classification.resolve(volume, emission.grid().has_value());
   result.emission = emission.resolve(volume, result);
-  if (result.emission && !classification.albedo) result.albedo = glm::vec3(kSmokeAlbedo);
+  if (result.emission && !classification.albedo && !volume.classification) result.albedo = glm::vec3(kSmokeAlbedo);
   return result;
 }
 
 void SceneOptions::resolveView(Scene& scene) const {
-  scene.camera = camera.resolve(*scene.volume, scene.classification).front();
+  scene.camera = cameras(*scene.volume, scene.classification).front();
   scene.lighting = lighting.resolve(*scene.volume, scene.classification, scene.camera);
   scene.classification.emissionLight = nullptr;
   if (scene.classification.emission && scene.lighting)
     scene.classification.emissionLight = std::make_shared<const EmissionLight>(*scene.volume, scene.classification);
 }
 
-Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
-  return resolve(std::make_shared<const Volume>(readVolume(maximumVoxels)));
+Scene SceneOptions::open(std::uint64_t maximumVoxels, int level) const {
+  return resolve(std::make_shared<const Volume>(readVolume(maximumVoxels, level)));
 }
 
 std::string SceneOptions::rendererText(const Scene& scene, const TableSettings& table) const {
   OptionList options;
-  classification.describe(options, scene.classification);
+  classification.describe(options, *scene.volume, scene.classification);
   emission.describe(options, *scene.volume, scene.classification.emission);
   options.emplace_back("table", tableText(table));
   // Blocks store what they scatter of the volume's own light with what they send out.
@@ -112,7 +142,7 @@ std::string SceneOptions::rendererText(const Scene& scene, const TableSettings& 
 
 void SceneOptions::warn(const Scene& scene) const {
   warnAboutValues(*scene.volume, !scene.classification.transferFunction);
-  if (scene.classification.transferFunction && !classification.transferFunction)
+  if (scene.classification.transferFunction && !classification.transferFunction && !scene.volume->classification)
     spdlog::info("{} looks like a scan: the transfer function is made from its histogram; change it with --transfer-function, or "
                  "show densities with --density-scale",
                  scene.volume->source);
@@ -128,7 +158,7 @@ void SceneOptions::save(const OptionList& options) const {
 OptionList SceneOptions::describe(const Scene& scene, const OptionList& method) const {
   OptionList options;
   input.describe(options);
-  classification.describe(options, scene.classification);
+  classification.describe(options, *scene.volume, scene.classification);
   emission.describe(options, *scene.volume, scene.classification.emission);
   camera.describe(options, scene.camera);
   lighting.describe(options, scene.lighting);

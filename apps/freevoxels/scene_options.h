@@ -44,15 +44,20 @@ struct SceneOptions {
   void check(const std::vector<std::string>& moreOutputs = {}) const;
   /// The same scene with other files to write.
   SceneOptions withOutputs(std::vector<std::string> files) const;
-  /// Reads the volume, with the grids that the options need.
-  Volume readVolume(std::uint64_t maximumVoxels) const;
+  /// Reads the volume, with the grids that the options need; of a baked one an octree level, which other volumes do not have.
+  Volume readVolume(std::uint64_t maximumVoxels, int level = 0) const;
+  /// The level of a baked volume from which on all is drawn in frames with this level of detail (FrameSettings::lod), so that nothing
+  /// of a finer one has to be read. 0 of other volumes, and where the levels are of scalars that are classified by a transfer function.
+  int finestLevelSeen(double lod, int frames) const;
+  /// As CameraOptions::resolve; a baked volume's content is read from its file, so that it does not depend on the level.
+  std::vector<Camera> cameras(const Volume& volume, const Classification& classification, int frames = 1) const;
   /// Reads what else there is to read.
   Scene resolve(std::shared_ptr<const Volume> volume) const;
   /// The two halves of it: how a volume is classified, and how it is seen and lit, `scene` having the other half.
   Classification resolveClassification(const Volume& volume) const;
   void resolveView(Scene& scene) const;
   /// Both.
-  Scene open(std::uint64_t maximumVoxels) const;
+  Scene open(std::uint64_t maximumVoxels, int level = 0) const;
   /// Everything that a Renderer of the scene depends on, beside its volume: scenes of equal text share one.
   std::string rendererText(const Scene& scene, const TableSettings& table) const;
   /// One warning each for values of the scene's volume that are not drawn as they are.

@@ -46,7 +46,7 @@ bool hasKeys(const CLI::Option& option) {
 }
 
 char separatorOf(const CLI::Option& option) {
-  return option.get_type_name() == "WxH" ? 'x' : ',';
+  return option.get_type_name().starts_with("WxH") ? 'x' : ',';
 }
 
 /// What is not a file's name: a volume that is made, and JSON.

@@ -98,9 +98,10 @@ int main(int argc, char** argv) {
   DeviceOptions device;
   validate::Extent extent;
   ReportFiles files;
-  app.add_option("FILE", extent.files, "OpenVDB files to check as well, the middle of those that are large");
+  app.add_option("FILE", extent.files, "OpenVDB files or baked volumes to check as well, the middle of those that are large");
   app.add_flag("--quick", extent.quick, "Small volumes and pictures");
-  addResolution(app, extent.resolution)->description("Voxels along an edge of the procedural volumes");
+  addWholeNumber(app, "--resolution", "N", extent.resolution, "Voxels along an edge of the procedural volumes",
+                 {1.0, double(kMostResolution)});
   addText(app, "--only", "TEXT", extent.only, "Sections whose name contains this, as 'light' or 'stages of cloud'");
   files.add(app);
   device.add(app);

@@ -80,7 +80,7 @@ std::vector<int> resolutions(const Extent& extent, int quick) {
 
 QualityScene openQualityScene(const Device& device, const QualitySubject& subject, int resolution) {
   return makeQualityScene(subject, resolution,
-                          openProcedural(subject.procedural, resolution, maximumVoxels(device)));
+                          openProcedural(subject.procedural, glm::ivec3(resolution), maximumVoxels(device)));
 }
 
 /// Pictures have more than a pixel a voxel: with less, no method shows what it can.
@@ -214,7 +214,7 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
       if (resolution == kLarge && !extent.resolution && !scene.alsoLarge) continue;
       addScene(jobs, device, fmt::format("{} at {}^3", scene.name, resolution), picture,
                [resolution, &scene, &device] {
-                 return makeValidationScene(openProcedural(scene.name, resolution, maximumVoxels(device)),
+                 return makeValidationScene(openProcedural(scene.name, glm::ivec3(resolution), maximumVoxels(device)),
                                             scene.color, resolution);
                });
     }
@@ -227,7 +227,7 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
   if (!extent.resolution) addFlight(jobs, device, extent);
   for (const std::string& file : extent.files) {
     const auto scene = std::make_shared<ValidationScene>(
-        makeValidationScene(readVdb(file, "", maximumVoxels(device)), SceneColor::Density,
+        makeValidationScene(InputOptions{.input = file}.open(maximumVoxels(device)), SceneColor::Density,
                             extent.quick ? kQuickFileEdge : kWholeFileEdge));
     addScene(jobs, device, file, picture, [scene] { return *scene; });
     const int edge = extent.quick ? kQuickQualityPicture : kWholeQualityPicture;

@@ -71,7 +71,7 @@ void saveTurn(const Instance& instance, const DeviceOptions& device, const Pictu
   request.scene = sceneInto(picture, files);
   request.scene.check();
   const std::vector<Camera> cameras =
-      request.scene.camera.resolve(*picture.scene.volume, picture.scene.classification, frames);
+      request.scene.cameras(*picture.scene.volume, picture.scene.classification, frames);
 
   const std::unique_ptr<Device> opened = device.open(instance);
   VolumeCache volumes(request.scene, picture.scene.volume);

@@ -12,6 +12,14 @@
 
 namespace freevoxels {
 
+struct ProceduralFunctions {
+  ProceduralKind kind;
+  float (*density)(glm::vec3 position, float voxelSize);
+  /// A distance within which it is 0, or null: boxes that are nearly empty are filled faster.
+  float (*clearance)(glm::vec3 position) = nullptr;
+  float (*temperature)(glm::vec3 position) = nullptr;  ///< kelvin, or null where there is none
+};
+
 namespace {
 
 using glm::vec3;
@@ -67,16 +75,7 @@ float rodsDensity(vec3 position, float voxelSize) {
   return coverage(nearest - kRadius) * coverage(end);
 }
 
-struct Field {
-  ProceduralKind kind;
-  float (*density)(vec3 position, float voxelSize);
-  /// A distance within which the density is 0, or null. Boxes that are nearly empty are filled faster with
-  /// it.
-  float (*clearance)(vec3 position) = nullptr;
-  float (*temperature)(vec3 position) = nullptr;  ///< in kelvin; null if the field has no temperatures
-};
-
-constexpr std::array<Field, 8> kFields{{
+constexpr std::array<ProceduralFunctions, 8> kFields{{
     {{"cube", "a uniform cube of density 1"}, cubeDensity},
     {{"cloud", "a fractal cumulus cloud"}, [](vec3 position, float) { return cloudDensity(position); }},
     {{"plume", "a spiral of smoke in a box that is nearly empty"},
@@ -92,9 +91,13 @@ constexpr std::array<Field, 8> kFields{{
     {{"head", "a head of ellipsoids with an opaque skull"}, headDensity},
 }};
 
-const Field& fieldNamed(std::string_view name) {
+float activeIf(float value) {
+  return value == 0.0f ? kInactiveVoxel : value;
+}
+
+const ProceduralFunctions& fieldNamed(std::string_view name) {
   std::string names;
-  for (const Field& field : kFields) {
+  for (const ProceduralFunctions& field : kFields) {
     if (field.kind.name == name) return field;
     names += fmt::format("{}{}", names.empty() ? "" : ", ", field.kind.name);
   }
@@ -106,41 +109,61 @@ const Field& fieldNamed(std::string_view name) {
 const std::vector<ProceduralKind>& proceduralKinds() {
   static const std::vector<ProceduralKind> kinds = [] {
     std::vector<ProceduralKind> list;
-    for (const Field& field : kFields) list.push_back(field.kind);
+    for (const ProceduralFunctions& field : kFields) list.push_back(field.kind);
     return list;
   }();
   return kinds;
 }
 
-Volume makeProcedural(std::string_view name, int resolution) {
-  const Field& field = fieldNamed(name);
-  if (resolution < 1 || resolution > kLargestResolution)
-    fail(ExitCode::Usage, "the resolution of '{}' is {}; choose one from 1 to {}", name, resolution,
+ProceduralField::ProceduralField(std::string_view name, glm::ivec3 dimensions)
+    : functions_(&fieldNamed(name)), dimensions_(dimensions) {
+  const int longest = std::max({dimensions.x, dimensions.y, dimensions.z});
+  const int shortest = std::min({dimensions.x, dimensions.y, dimensions.z});
+  if (shortest < 1 || longest > kLargestResolution)
+    fail(ExitCode::Usage, "the resolution of '{}' is {}; choose one from 1 to {}", name, shortest < 1 ? shortest : longest,
          kLargestResolution);
+  voxelSize_ = 1.0 / longest;
+  firstCentre_ = 0.5 * voxelSize_ - 0.5 * glm::dvec3(dimensions) / double(longest);
+}
 
-  Volume volume;
-  volume.source = fmt::format("procedural:{}", name);
-  volume.dimensions = glm::ivec3(resolution);
-  const double voxelSize = 1.0 / resolution;
-  const double firstCenter = 0.5 * voxelSize - 0.5;
-  volume.indexToWorld = glm::dmat4(voxelSize);
-  volume.indexToWorld[3] = glm::dvec4(glm::dvec3(firstCenter), 1.0);
-  const auto center = [&](int index) { return float(firstCenter + voxelSize * index); };
-  const auto place = [&](glm::ivec3 v) { return vec3(center(v.x), center(v.y), center(v.z)); };
-  const auto activeIf = [](float value) { return value == 0.0f ? kInactiveVoxel : value; };
-  const auto scalarAt = [&](glm::ivec3 v) { return activeIf(field.density(place(v), float(voxelSize))); };
-  const auto mayHoldData = [&](glm::ivec3 first) {
-    if (field.clearance == nullptr) return true;
-    const double half = 0.5 * (ScalarBricks::kEdge - 1);
-    const vec3 middle(firstCenter + voxelSize * (glm::dvec3(first) + half));
-    return double(field.clearance(middle)) <= std::sqrt(3.0) * half * voxelSize;
-  };
-  volume.scalars = ScalarBricks::make(volume.dimensions, scalarAt, mayHoldData);
+glm::dmat4 ProceduralField::indexToWorld() const {
+  glm::dmat4 result(voxelSize_);
+  result[3] = glm::dvec4(firstCentre_, 1.0);
+  return result;
+}
+
+glm::vec3 ProceduralField::place(glm::ivec3 voxel) const {
+  return firstCentre_ + voxelSize_ * glm::dvec3(voxel);
+}
+
+bool ProceduralField::hasTemperatures() const {
+  return functions_->temperature != nullptr;
+}
+
+float ProceduralField::density(glm::ivec3 voxel) const {
+  return activeIf(functions_->density(place(voxel), float(voxelSize_)));
+}
+
+float ProceduralField::temperature(glm::ivec3 voxel) const {
+  return activeIf(functions_->temperature(place(voxel)));
+}
+
+bool ProceduralField::mayHoldData(glm::ivec3 first) const {
+  if (functions_->clearance == nullptr) return true;
+  const double half = 0.5 * (ScalarBricks::kEdge - 1);
+  const vec3 middle(firstCentre_ + voxelSize_ * (glm::dvec3(first) + half));
+  return double(functions_->clearance(middle)) <= std::sqrt(3.0) * half * voxelSize_;
+}
+
+Volume makeProcedural(std::string_view name, glm::ivec3 dimensions) {
+  const ProceduralField field(name, dimensions);
+  const auto mayHoldData = [&](glm::ivec3 first) { return field.mayHoldData(first); };
+  Volume volume{.source = fmt::format("procedural:{}", name), .dimensions = dimensions, .indexToWorld = field.indexToWorld()};
+  volume.scalars = ScalarBricks::make(dimensions, [&](glm::ivec3 v) { return field.density(v); }, mayHoldData);
   summariseValues(volume);
-  if (field.temperature == nullptr) return volume;
-  const auto temperatureAt = [&](glm::ivec3 v) { return activeIf(field.temperature(place(v))); };
+  if (!field.hasTemperatures()) return volume;
   volume.temperature = TemperatureGrid{
-      .name = "", .values = ScalarBricks::make(volume.dimensions, temperatureAt, mayHoldData)};
+      .name = "", .values = ScalarBricks::make(dimensions, [&](glm::ivec3 v) { return field.temperature(v); }, mayHoldData)};
   summariseValues(*volume.temperature);
   coverBricks(volume, volume.temperature->values);
   return volume;

@@ -16,10 +16,38 @@ struct ProceduralKind {
 
 const std::vector<ProceduralKind>& proceduralKinds();
 
-/// Samples the field `name` and its temperatures, if it has any, at the voxel centres of a resolution³ grid.
-/// Voxels of value 0 are inactive. An unknown name or a resolution outside of 1..2048 fails with
-/// ExitCode::Usage.
-Volume makeProcedural(std::string_view name, int resolution);
+/// A field sampled at the voxel centres of a grid whose longest edge is that of the world cube and whose middle is the cube's:
+/// voxel by voxel, for those who cannot hold all of them. May be called by several threads.
+class ProceduralField {
+ public:
+  /// Unknown name or a dimension outside 1..2048: ExitCode::Usage.
+  ProceduralField(std::string_view name, glm::ivec3 dimensions);
+
+  glm::ivec3 dimensions() const { return dimensions_; }
+  /// As Volume::indexToWorld.
+  glm::dmat4 indexToWorld() const;
+  bool hasTemperatures() const;
+  /// kInactiveVoxel where the density is 0; of the temperature, in kelvin, where nothing burns.
+  float density(glm::ivec3 voxel) const;
+  float temperature(glm::ivec3 voxel) const;
+  /// False of a brick of ScalarBricks::kEdge voxels a side only where all are inactive.
+  bool mayHoldData(glm::ivec3 firstVoxel) const;
+
+ private:
+  glm::vec3 place(glm::ivec3 voxel) const;
+
+  const struct ProceduralFunctions* functions_;  // of all fields that there are
+  glm::ivec3 dimensions_;
+  double voxelSize_;
+  glm::dvec3 firstCentre_;
+};
+
+/// All voxels of a field, with its temperatures, if it has any.
+Volume makeProcedural(std::string_view name, glm::ivec3 dimensions);
+/// On a grid of resolution³ voxels.
+inline Volume makeProcedural(std::string_view name, int resolution) {
+  return makeProcedural(name, glm::ivec3(resolution));
+}
 
 /// Makes a volume from a function of the continuous index position. Tests use one lambda to fill it and to
 /// predict the answer. The function is called in the order of x fastest by one thread. Values of 0 are

@@ -1,6 +1,9 @@
 #include "engine/volume/scalar_bricks.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "engine/core/error.h"
 
 namespace freevoxels {
 
@@ -10,12 +13,45 @@ ScalarBricks::ScalarBricks(glm::ivec3 dimensions, glm::ivec3 corner)
       cellCount_((dimensions + corner + kEdge - 1) / kEdge),
       numbers_(std::size_t(cellCount_.x) * std::size_t(cellCount_.y) * std::size_t(cellCount_.z), -1) {}
 
+ScalarBricks ScalarBricks::of(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, std::vector<Brick> bricks) {
+  FV_CHECK_EQ(cells.size(), bricks.size());
+  ScalarBricks result(dimensions);
+  result.number(std::move(cells));
+  result.bricks_ = std::move(bricks);
+  return result;
+}
+
+ScalarBricks ScalarBricks::inPlace(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, std::span<const Brick> bricks,
+                                   std::shared_ptr<const void> owner) {
+  FV_CHECK_EQ(cells.size(), bricks.size());
+  FV_CHECK_EQ(owner != nullptr, true);
+  ScalarBricks result(dimensions);
+  result.number(std::move(cells));
+  result.owner_ = std::move(owner);
+  result.foreign_ = bricks;
+  return result;
+}
+
+void ScalarBricks::number(std::vector<glm::ivec3> cells) {
+  cells_ = std::move(cells);
+  for (std::size_t i = 0; i < cells_.size(); ++i) numbers_[cellIndex(cells_[i])] = std::int32_t(i);
+}
+
+void ScalarBricks::copyToOwn() {
+  if (!owner_) return;
+  bricks_.assign(foreign_.begin(), foreign_.end());
+  foreign_ = {};
+  owner_.reset();
+}
+
 void ScalarBricks::reserve(std::size_t bricks) {
+  copyToOwn();
   cells_.reserve(bricks);
   bricks_.reserve(bricks);
 }
 
 ScalarBricks::Brick& ScalarBricks::makeBrick(glm::ivec3 cell) {
+  copyToOwn();
   std::int32_t& number = numbers_[cellIndex(cell)];
   if (number < 0) {
     number = std::int32_t(bricks_.size());
@@ -28,12 +64,12 @@ ScalarBricks::Brick& ScalarBricks::makeBrick(glm::ivec3 cell) {
 ScalarBricks ScalarBricks::cropped(glm::ivec3 low, glm::ivec3 high) const {
   const glm::ivec3 place = low + corner_;
   ScalarBricks result(high - low + 1, place % kEdge);
-  result.reserve(bricks_.size());
-  for (std::size_t i = 0; i < bricks_.size(); ++i) {
+  result.reserve(bricks().size());
+  for (std::size_t i = 0; i < bricks().size(); ++i) {
     const glm::ivec3 cell = cells_[i] - place / kEdge;
     if (glm::all(glm::greaterThanEqual(cell, glm::ivec3(0))) &&
         glm::all(glm::lessThan(cell, result.cellCount_)))
-      result.makeBrick(cell) = bricks_[i];
+      result.makeBrick(cell) = bricks()[i];
   }
   return result;
 }

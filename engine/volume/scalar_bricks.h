@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,6 +37,12 @@ class ScalarBricks {
   static ScalarBricks make(glm::ivec3 dimensions, const Function& scalarAt) {
     return make(dimensions, scalarAt, [](glm::ivec3) { return true; });
   }
+  /// Of bricks that exist already, one for each of `cells`. Voxels of bricks that are beyond the box must be inactive.
+  static ScalarBricks of(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, std::vector<Brick> bricks);
+  /// The same of bricks in the memory of another owner, such as a mapped file, which `owner` keeps alive. They are used in place;
+  /// the first change of the object copies them.
+  static ScalarBricks inPlace(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, std::span<const Brick> bricks,
+                              std::shared_ptr<const void> owner);
 
   const glm::ivec3& dimensions() const { return dimensions_; }
   /// Number of bricks along the axes, whether or not they exist.
@@ -45,7 +52,7 @@ class ScalarBricks {
   float at(glm::ivec3 voxel) const {
     const glm::ivec3 place = voxel + corner_;
     const std::int32_t number = numbers_[cellIndex(place / kEdge)];
-    return number < 0 ? kInactiveVoxel : bricks_[std::size_t(number)][indexInBrick(place % kEdge)];
+    return number < 0 ? kInactiveVoxel : bricks()[std::size_t(number)][indexInBrick(place % kEdge)];
   }
   /// Sets a voxel, making its brick if it does not exist.
   void set(glm::ivec3 voxel, float scalar) {
@@ -57,10 +64,13 @@ class ScalarBricks {
   Brick& makeBrick(glm::ivec3 cell);
   void reserve(std::size_t bricks);
 
-  /// The existing bricks, in the order in which they were made.
-  std::span<Brick> bricks() { return bricks_; }
-  std::span<const Brick> bricks() const { return bricks_; }
-  /// Position in the box of a brick's first voxel; negative if the brick begins before the box.
+  /// Those that are there, in the order in which they were made.
+  std::span<Brick> bricks() {
+    copyToOwn();
+    return bricks_;
+  }
+  std::span<const Brick> bricks() const { return owner_ ? foreign_ : bricks_; }
+  /// The place in the box of a brick's first voxel; less than 0 where the brick begins before the box.
   glm::ivec3 firstVoxel(std::size_t brick) const { return cells_[brick] * kEdge - corner_; }
   /// Position of a brick among the bricks of the box. Boxes of equal `corner` have the same voxels in the
   /// same bricks.
@@ -68,15 +78,15 @@ class ScalarBricks {
   /// The brick at a cell, or null if it does not exist.
   const Brick* brickAt(glm::ivec3 cell) const {
     const std::int32_t number = numbers_.empty() ? -1 : numbers_[cellIndex(cell)];
-    return number < 0 ? nullptr : &bricks_[std::size_t(number)];
+    return number < 0 ? nullptr : &bricks()[std::size_t(number)];
   }
   /// Copies the voxels of a row in the order of x. `row` must have as many elements as the box has voxels
   /// along x.
   void copyRow(int y, int z, std::span<float> row) const;
   /// The part of the box from voxel `low` to `high`. Beyond this box there is no data.
   ScalarBricks cropped(glm::ivec3 low, glm::ivec3 high) const;
-  /// Bytes of host memory.
-  std::uint64_t bytes() const { return bytesOf(bricks_.size(), dimensions_); }
+  /// On the host; bricks in place count too.
+  std::uint64_t bytes() const { return bytesOf(bricks().size(), dimensions_); }
   static std::uint64_t bytesOf(std::uint64_t bricks, glm::ivec3 dimensions) {
     const glm::u64vec3 cells((dimensions + kEdge - 1) / kEdge);
     return bricks * sizeof(Brick) + cells.x * cells.y * cells.z * sizeof(std::int32_t);
@@ -92,10 +102,15 @@ class ScalarBricks {
                                      (std::size_t(cell.y) + std::size_t(cellCount_.y) * std::size_t(cell.z));
   }
 
+  void number(std::vector<glm::ivec3> cells);
+  void copyToOwn();
+
   glm::ivec3 dimensions_{0}, corner_{0}, cellCount_{0};
-  std::vector<std::int32_t> numbers_;  ///< index of each cell's brick, -1 if it does not exist
-  std::vector<glm::ivec3> cells_;      ///< cell of each brick
-  std::vector<Brick> bricks_;
+  std::vector<std::int32_t> numbers_;  ///< of the bricks by cell, -1 where there is none
+  std::vector<glm::ivec3> cells_;      ///< of the bricks
+  std::vector<Brick> bricks_;          ///< empty where `owner_` has them
+  std::shared_ptr<const void> owner_;  ///< keeps `foreign_` alive; null where the bricks are this object's
+  std::span<const Brick> foreign_;
 };
 
 template <typename Function, typename Predicate>

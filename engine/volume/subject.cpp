@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "engine/volume/coarse_cells.h"
 
 namespace freevoxels {
 
@@ -23,10 +22,19 @@ Subject boxOf(const Volume& volume) {
   return subject;
 }
 
-Subject contentOf(const Volume& volume, const Classification& classification) {
+ContentCells contentCells(const Volume& volume, const Classification& classification) {
   const glm::ivec3 n = volume.dimensions;
   const int edge = (std::max({n.x, n.y, n.z}) + kCellsAlongLongestSide - 1) / kCellsAlongLongestSide;
-  const Cells cells = metCells(volume, classification, edge, kLeastDensity * volume.maximum);
+  return {.cells = metCells(volume, classification, edge, kLeastDensity * volume.maximum), .edge = double(edge)};
+}
+
+Subject contentOf(const Volume& volume, const Classification& classification) {
+  return subjectOf(contentCells(volume, classification), volume);
+}
+
+Subject subjectOf(const ContentCells& content, const Volume& volume) {
+  const glm::ivec3 n = volume.dimensions;
+  const Cells& cells = content.cells;
   Subject subject = boxOf(volume);
   subject.margin = kMargin;
 
@@ -40,8 +48,8 @@ Subject contentOf(const Volume& volume, const Classification& classification) {
       if (first == end) continue;
       const auto* last = end - 1;
       while (*last == 0) --last;
-      const glm::dvec3 from = glm::dvec3(first - row, y, z) * double(edge) - 0.5;
-      const glm::dvec3 to = glm::min(glm::dvec3(last - row + 1, y + 1, z + 1) * double(edge), glm::dvec3(n)) - 0.5;
+      const glm::dvec3 from = glm::dvec3(first - row, y, z) * content.edge - 0.5;
+      const glm::dvec3 to = glm::min(glm::dvec3(last - row + 1, y + 1, z + 1) * content.edge, glm::dvec3(n)) - 0.5;
       low = glm::min(low, from);
       high = glm::max(high, to);
       for (int corner = 0; corner < 8; ++corner) {

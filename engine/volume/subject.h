@@ -4,6 +4,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/orbit.h"
 #include "engine/volume/classification.h"
+#include "engine/volume/coarse_cells.h"
 
 namespace freevoxels {
 
@@ -21,8 +22,18 @@ inline std::vector<Camera> framingOrbit(const Volume& volume, double azimuth, do
   return framingOrbit(boxOf(volume), azimuth, elevation, frames, aspect, base);
 }
 
-/// The visible parts of the volume, in cells of 1/64 of its longest side: cells with extinction or emission,
-/// except for densities below 1/256 of the largest. The whole box if there are none.
+/// The parts of a volume that are seen, in cells of about 1/64 of its longest side: those with extinction or emission, but for
+/// densities below 1/256 of the largest.
+struct ContentCells {
+  Cells cells;       ///< 1 where something is seen
+  double edge = 1.0;  ///< of a cell, voxels
+};
+ContentCells contentCells(const Volume& volume, const Classification& classification);
+
+/// The cells in which something is seen; the whole box where there are none. Of `volume` the box is read, not the values.
+Subject subjectOf(const ContentCells& content, const Volume& volume);
+
+/// The same of a volume's own cells.
 Subject contentOf(const Volume& volume, const Classification& classification);
 
 }  // namespace freevoxels

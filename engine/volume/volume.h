@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,7 +13,9 @@
 
 namespace freevoxels {
 
-/// Temperatures in addition to a volume's scalars.
+struct Classification;
+
+/// Temperatures beside a volume's scalars.
 struct TemperatureGrid {
   std::string name;
   ScalarBricks values;  ///< like Volume::scalars, for the same box, in any unit
@@ -46,6 +49,11 @@ struct Volume {
 
   std::optional<TemperatureGrid> temperature;
   std::optional<AlbedoGrid> albedo;
+
+  /// How the volume's file says that it is classified; null where the file leaves that to the user, as OpenVDB's do.
+  std::shared_ptr<const Classification> classification;
+  /// The values are as exact as `classification` needs them, and not exact enough for another one.
+  bool classificationIsFixed = false;
 
   std::size_t voxelCount() const {
     return std::size_t(dimensions.x) * std::size_t(dimensions.y) * std::size_t(dimensions.z);

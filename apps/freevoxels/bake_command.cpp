@@ -1,0 +1,109 @@
+#include "apps/freevoxels/bake_command.h"
+
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "apps/freevoxels/progress_line.h"
+#include "engine/core/error.h"
+#include "engine/storage/procedural_stream.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// A procedural volume of more voxels is made chunk by chunk.
+constexpr std::uint64_t kMostVoxelsInMemory = std::uint64_t(1) << 27;
+/// Voxels along the longest edge of the same volume from which the classification is then found.
+constexpr int kSampleEdge = 256;
+
+}  // namespace
+
+void BakeCommand::add(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("bake", "Classify a volume once and write a file that opens at once");
+  scene_.input.add(*command);
+  scene_.input.addGrid(*command);
+  command->add_option("OUT.fvx", file_, "File to write")->group("Output");
+  scene_.classification.add(*command);
+  scene_.emission.add(*command);
+  command
+      ->add_flag("--keep-scalars", keepScalars_,
+                 "Store the values as 32-bit floats, so that the classification can still be changed [16 bits a value, for this "
+                 "classification alone]")
+      ->group("Output");
+  command->add_flag("--compress", compress_, "Compress with Zstandard: smaller, and slower to open")->group("Output");
+  messages_.add(*command);
+  command->footer(
+      "Every command that takes a .vdb takes OUT.fvx in its place.\n"
+      "Examples:\n"
+      "  freevoxels bake cloud.vdb cloud.fvx --density-scale 40\n"
+      "  freevoxels bake scan.vdb scan.fvx --transfer-function bone.json --keep-scalars\n"
+      "  freevoxels bake procedural:cloud cloud.fvx --resolution 512 --compress\n");
+  command->callback([this] { run(); });
+}
+
+BakeSettings BakeCommand::settings(const Volume& volume, const Classification& classification) const {
+  OptionList options;
+  scene_.input.describe(options);
+  scene_.classification.describe(options, volume, classification);
+  scene_.emission.describe(options, volume, classification.emission);
+  nlohmann::ordered_json json{{"program", "freevoxels " + programVersion()}, {"volume", volume.source}};
+  for (const auto& [name, value] : optionMap(options)) json["options"][name] = value;
+  if (!proceduralName(scene_.input.input)) {
+    json["file_bytes"] = std::filesystem::file_size(scene_.input.input);
+    json["file_xxh3_64"] = fmt::format("{:016x}", fvx::hashOfFile(scene_.input.input));
+  }
+  return {.keepScalars = keepScalars_,
+          .compress = compress_,
+          .provenance = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)};
+}
+
+void BakeCommand::run() {
+  messages_.apply();
+  scene_.input.checkGiven();
+  if (file_.empty()) fail(ExitCode::Usage, "OUT.fvx is required: name a file to write");
+  if (std::filesystem::path(file_).extension() != ".fvx")
+    fail(ExitCode::Usage, "'{}' is not named .fvx, and bake writes baked volumes; name it so", file_);
+  scene_.checkLook();
+  checkOutput(file_);
+  if (!proceduralName(scene_.input.input)) checkDistinct({scene_.input.input, file_});
+
+  ProgressLine line(!messages_.quiet);
+  line.begin("reading " + scene_.input.input);
+  const std::optional<std::string> name = proceduralName(scene_.input.input);
+  const glm::u64vec3 size(scene_.input.resolution.value_or(glm::ivec3(kDefaultResolution)));
+  if (name && size.x * size.y * size.z > kMostVoxelsInMemory)
+    bakeProcedural(*name, line.progress());
+  else
+    bake(line.progress());
+  line.erase();
+  if (!messages_.quiet) fmt::print("{}\n", file_);
+}
+
+void BakeCommand::bake(const Progress& progress) const {
+  const auto volume = std::make_shared<const Volume>(scene_.readVolume(machineMemoryBytes() / sizeof(float)));
+  if (volume->classificationIsFixed)
+    fail(ExitCode::Usage, "'{}' was baked for one classification: bake the volume that it was made of, or bake it with --keep-scalars",
+         scene_.input.input);
+  const Classification classification = scene_.resolveClassification(*volume);
+  scene_.warn({.volume = volume, .classification = classification});
+  const DeferredInterrupts wholeFile;
+  bakeVolume(file_, *volume, classification, settings(*volume, classification), progress);
+}
+
+void BakeCommand::bakeProcedural(const std::string& name, const Progress& progress) const {
+  const ProceduralField field(name, *scene_.input.resolution);
+  const glm::ivec3 size = field.dimensions();
+  const int factor = (std::max({size.x, size.y, size.z}) + kSampleEdge - 1) / kSampleEdge;
+  Volume sample = makeProcedural(name, glm::max(size / factor, 1));
+  if (!scene_.emission.grid()) sample.temperature.reset();
+  const Classification classification = scene_.resolveClassification(sample);
+  const StreamedVolume stream = proceduralStream(field, sample, classification);
+  const DeferredInterrupts wholeFile;
+  bakeStreamed(file_, stream, classification, settings(sample, classification), progress);
+}
+
+}  // namespace freevoxels

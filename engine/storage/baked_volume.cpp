@@ -1,0 +1,291 @@
+#include "engine/storage/baked_volume.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+#include <new>
+
+#include "engine/core/atomic_file.h"
+#include "engine/core/error.h"
+#include "engine/octree/device_volume.h"
+#include "engine/storage/fvx_writer.h"
+#include "engine/storage/hilbert.h"
+#include "engine/volume/transfer_table.h"
+#include "shaders/gather_interface.h"
+
+namespace freevoxels {
+
+namespace {
+
+using fvx::Channel;
+using fvx::ChunkEntry;
+using fvx::ChunkValues;
+using fvx::EncodingKind;
+using fvx::FvxFile;
+
+constexpr std::size_t kBatchChunks = 64;
+
+fvx::Encoding scalarEncoding(const Volume& volume, glm::vec2 range, const Classification& classification, bool keepScalars) {
+  if (keepScalars) return {};
+  if (!classification.transferFunction) {
+    const double depth = kStoredDepth * volume.voxelSize() * classification.densityScale;
+    return {.kind = EncodingKind::Float16, .scale = depth > 0.0 ? 1.0 / depth : 1.0};
+  }
+  const TransferTable table(*classification.transferFunction, range[0], range[1]);
+  return {.kind = EncodingKind::Linear16,
+          .scale = (table.high() - table.low()) / shader::kScalarCodes,
+          .offset = table.low()};
+}
+
+fvx::Encodings encodingsOf(const Volume& volume, glm::vec2 range, const Classification& classification, bool keepScalars) {
+  fvx::Encodings encodings;
+  encodings[std::size_t(Channel::Scalars)] = scalarEncoding(volume, range, classification, keepScalars);
+  // Light grows with a high power of the temperature.
+  if (volume.temperature) encodings[std::size_t(Channel::Temperature)] = fvx::Encoding{};
+  if (volume.albedo)
+    encodings[std::size_t(Channel::Albedo)] =
+        fvx::Encoding{.kind = keepScalars ? EncodingKind::Float32 : EncodingKind::Float16};
+  return encodings;
+}
+
+/// Of a brick that begins at a voxel of the box. False where no voxel of it has a value.
+bool copyBrick(const ScalarBricks& scalars, glm::ivec3 first, float* values) {
+  constexpr int n = ScalarBricks::kEdge;
+  if (scalars.corner() == glm::ivec3(0)) {
+    const ScalarBricks::Brick* const brick = scalars.brickAt(first / n);
+    if (brick != nullptr) std::ranges::copy(*brick, values);
+    return brick != nullptr;
+  }
+  const glm::ivec3 end = glm::min(scalars.dimensions() - first, n);
+  bool any = false;
+  for (glm::ivec3 v(0); v.z < end.z; ++v.z)
+    for (v.y = 0; v.y < end.y; ++v.y)
+      for (v.x = 0; v.x < end.x; ++v.x) {
+        const float value = scalars.at(first + v);
+        values[ScalarBricks::indexInBrick(v)] = value;
+        any = any || value != kInactiveVoxel;
+      }
+  return any;
+}
+
+/// Empty where no voxel has a value.
+std::vector<float> chunkOf(std::span<const ScalarBricks* const> components, glm::ivec3 cell) {
+  constexpr int n = ScalarBricks::kEdge, m = fvx::kChunkEdge / n;
+  std::vector<float> values(components.size() * fvx::kChunkVoxels, kInactiveVoxel);
+  bool any = false;
+  for (std::size_t component = 0; component < components.size(); ++component)
+    for (int brick = 0; brick < fvx::kChunkBricks; ++brick) {
+      const glm::ivec3 first = cell * fvx::kChunkEdge + n * glm::ivec3(brick % m, brick / m % m, brick / (m * m));
+      if (glm::any(glm::greaterThanEqual(first, components[component]->dimensions()))) continue;
+      float* const to = &values[(component * fvx::kChunkBricks + std::size_t(brick)) * fvx::kBrickVoxels];
+      any = copyBrick(*components[component], first, to) || any;
+    }
+  if (!any) values.clear();
+  return values;
+}
+
+ChunkValues chunkOf(const Volume& volume, glm::ivec3 cell) {
+  ChunkValues chunk{.cell = cell};
+  const auto fill = [&](Channel channel, std::initializer_list<const ScalarBricks*> components) {
+    chunk.channels[std::size_t(channel)] = chunkOf(std::span(components.begin(), components.size()), cell);
+  };
+  fill(Channel::Scalars, {&volume.scalars});
+  if (volume.temperature) fill(Channel::Temperature, {&volume.temperature->values});
+  if (volume.albedo) fill(Channel::Albedo, {&volume.albedo->values[0], &volume.albedo->values[1], &volume.albedo->values[2]});
+  return chunk;
+}
+
+/// Without what has bricks.
+Volume outlineOf(const Volume& volume) {
+  Volume outline{.source = volume.source,
+                 .dimensions = volume.dimensions,
+                 .indexOrigin = volume.indexOrigin,
+                 .indexToWorld = volume.indexToWorld,
+                 .up = volume.up,
+                 .upReason = volume.upReason,
+                 .isLevelSet = volume.isLevelSet,
+                 .activeVoxels = volume.activeVoxels,
+                 .nanVoxels = volume.nanVoxels,
+                 .negativeVoxels = volume.negativeVoxels,
+                 .minimum = volume.minimum,
+                 .maximum = volume.maximum};
+  if (volume.temperature) {
+    const TemperatureGrid& grid = *volume.temperature;
+    outline.temperature = TemperatureGrid{.name = grid.name,
+                                          .activeVoxels = grid.activeVoxels,
+                                          .nanVoxels = grid.nanVoxels,
+                                          .minimum = grid.minimum,
+                                          .maximum = grid.maximum};
+  }
+  if (volume.albedo) outline.albedo = AlbedoGrid{.name = volume.albedo->name, .clippedVoxels = volume.albedo->clippedVoxels};
+  return outline;
+}
+
+/// With the classification, and with the counts and ranges of the chunks where it has none.
+Volume summarised(Volume outline, const Classification& classification, bool fixed, const fvx::FvxWriter& writer) {
+  const auto complete = [&](Channel channel, auto& grid) {
+    if (grid.activeVoxels != 0) return;
+    const fvx::FvxWriter::Summary sum = writer.summary(channel);
+    grid.activeVoxels = sum.activeVoxels;
+    grid.minimum = sum.minimum;
+    grid.maximum = sum.maximum;
+  };
+  complete(Channel::Scalars, outline);
+  if (outline.temperature) complete(Channel::Temperature, *outline.temperature);
+  outline.classification = std::make_shared<const Classification>(classification);
+  outline.classificationIsFixed = fixed;
+  return outline;
+}
+
+/// Where the bricks of a channel's chunks are, and how many come before those of each chunk.
+struct BrickPlaces {
+  std::vector<glm::ivec3> cells;
+  std::vector<std::size_t> first;  ///< by chunk
+
+  explicit BrickPlaces(std::span<const ChunkEntry> chunks) {
+    constexpr int m = fvx::kChunkEdge / ScalarBricks::kEdge;
+    for (const ChunkEntry& chunk : chunks) {
+      first.push_back(cells.size());
+      for (int brick = 0; brick < fvx::kChunkBricks; ++brick)
+        if ((chunk.brickMask >> brick & 1u) != 0)
+          cells.push_back(chunk.cell * m + glm::ivec3(brick % m, brick / m % m, brick / (m * m)));
+    }
+  }
+};
+
+/// Whether all bricks are in the map one after the other, as floats.
+bool isInPlace(const FvxFile& file, Channel channel, std::span<const ChunkEntry> chunks) {
+  if (file.description().encodings[std::size_t(channel)]->kind != EncodingKind::Float32 || chunks.empty()) return false;
+  std::uint64_t next = chunks.front().offset;
+  return fvx::valuesPerVoxel(channel) == 1 && std::ranges::all_of(chunks, [&](const ChunkEntry& chunk) {
+    return chunk.codec == fvx::Codec::None && chunk.offset == std::exchange(next, chunk.offset + chunk.storedBytes);
+  });
+}
+
+/// One for each value of a voxel.
+std::vector<ScalarBricks> readChannel(const std::shared_ptr<const FvxFile>& file, Channel channel, int level) {
+  const std::span<const ChunkEntry> chunks = file->chunks(channel, level);
+  BrickPlaces places(chunks);
+  const glm::ivec3 dimensions = file->dimensions(level);
+  const std::size_t count = places.cells.size(), components = std::size_t(fvx::valuesPerVoxel(channel));
+  if (isInPlace(*file, channel, chunks)) {
+    std::vector<std::span<const std::byte>> bytes(chunks.size());
+    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t i) {
+      std::vector<std::byte> unused;
+      bytes[i] = file->read(channel, chunks[i], unused);
+    });
+    const std::span bricks(reinterpret_cast<const ScalarBricks::Brick*>(bytes.front().data()), count);
+    return {ScalarBricks::inPlace(dimensions, std::move(places.cells), bricks, file)};
+  }
+  const fvx::Encoding& encoding = *file->description().encodings[std::size_t(channel)];
+  const fvx::Decoder decoder(encoding);
+  std::vector<std::vector<ScalarBricks::Brick>> bricks(components, std::vector<ScalarBricks::Brick>(count));
+  tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t i) {
+    std::vector<std::byte> unpacked;
+    std::span<const std::byte> bytes = file->read(channel, chunks[i], unpacked);
+    const std::size_t brickBytes = fvx::kBrickVoxels * encoding.bytesPerValue();
+    for (std::size_t brick = 0; brick < std::size_t(chunks[i].bricks()); ++brick)
+      for (std::size_t component = 0; component < components; ++component) {
+        decoder.decode(bytes.first(brickBytes), bricks[component][places.first[i] + brick]);
+        bytes = bytes.subspan(brickBytes);
+      }
+  });
+  std::vector<ScalarBricks> result;
+  for (std::vector<ScalarBricks::Brick>& values : bricks)
+    result.push_back(ScalarBricks::of(dimensions, places.cells, std::move(values)));
+  return result;
+}
+
+std::uint64_t activeVoxels(std::span<const ChunkEntry> chunks) {
+  std::uint64_t sum = 0;
+  for (const ChunkEntry& chunk : chunks) sum += chunk.activeVoxels;
+  return sum;
+}
+
+/// As if the blocks of a level were voxels.
+void makeCoarse(Volume& volume, const FvxFile& file, int level) {
+  const double edge = double(1 << level);
+  const glm::dmat4 toMiddle = glm::translate(glm::dmat4(1.0), glm::dvec3(0.5 * (edge - 1.0)));
+  volume.indexToWorld = volume.indexToWorld * glm::scale(toMiddle, glm::dvec3(edge));
+  volume.dimensions = file.dimensions(level);
+  volume.indexOrigin = glm::ivec3(0);
+  volume.activeVoxels = activeVoxels(file.chunks(Channel::Scalars, level));
+  if (volume.temperature) volume.temperature->activeVoxels = activeVoxels(file.chunks(Channel::Temperature, level));
+}
+
+Volume readLevel(const std::shared_ptr<const FvxFile>& file, int level) {
+  Volume volume = bakedOutline(*file, level);
+  volume.scalars = std::move(readChannel(file, Channel::Scalars, level).front());
+  if (volume.temperature) volume.temperature->values = std::move(readChannel(file, Channel::Temperature, level).front());
+  if (volume.albedo) std::ranges::move(readChannel(file, Channel::Albedo, level), volume.albedo->values.begin());
+  return volume;
+}
+
+}  // namespace
+
+void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volume, const Classification& classification,
+                  const BakeSettings& settings, const Progress& progress) {
+  const glm::ivec3 dimensions = volume.outline.dimensions;
+  const int longest = std::max({dimensions.x, dimensions.y, dimensions.z});
+  if (longest > fvx::kLongestEdge)
+    fail(ExitCode::Input, "{} is too long for a baked volume: {} voxels, and at most {} are possible; crop or resample it",
+         volume.outline.source, longest, fvx::kLongestEdge);
+  const bool densities = !classification.transferFunction;
+  const fvx::WriteSettings write{
+      .dimensions = dimensions,
+      .encodings = encodingsOf(volume.outline, volume.range, classification, settings.keepScalars),
+      .withoutData = densities ? WithoutData::Zero : WithoutData::Ignored,
+      .leaveOutZeros = densities && !settings.keepScalars,
+      .compress = settings.compress};
+  const std::vector<glm::ivec3> cells = hilbertOrder((dimensions + fvx::kChunkEdge - 1) / fvx::kChunkEdge);
+  writeAtomically(file, [&](const std::filesystem::path& temporary) {
+    fvx::FvxWriter writer(temporary.parent_path(), write);
+    for (std::size_t first = 0; first < cells.size(); first += kBatchChunks) {
+      if (progress) progress("baking", double(first) / double(cells.size()));
+      std::vector<ChunkValues> batch(std::min(kBatchChunks, cells.size() - first));
+      tbb::parallel_for(std::size_t(0), batch.size(), [&](std::size_t i) { batch[i] = volume.chunk(cells[first + i]); });
+      writer.add(batch);
+    }
+    const fvx::Description description{.volume = summarised(volume.outline, classification, !settings.keepScalars, writer),
+                                       .encodings = write.encodings};
+    writer.finish(temporary, description, volume.content, settings.provenance);
+  });
+}
+
+void bakeVolume(const std::filesystem::path& file, const Volume& volume, const Classification& classification,
+                const BakeSettings& settings, const Progress& progress) {
+  bakeStreamed(file,
+               {.outline = outlineOf(volume),
+                .content = contentCells(volume, classification),
+                .range = {volume.minimum, volume.maximum},
+                .chunk = [&](glm::ivec3 cell) { return chunkOf(volume, cell); }},
+               classification, settings, progress);
+}
+
+Volume bakedOutline(const FvxFile& file, int level) {
+  Volume volume = file.description().volume;
+  volume.source = fmt::format("{} ({})", file.path().filename().string(), volume.source);
+  if (level > 0) makeCoarse(volume, file, level);
+  return volume;
+}
+
+Volume readBaked(const std::shared_ptr<const FvxFile>& file, int level) {
+  FV_CHECK_LT(level, file->levels());
+  try {
+    return readLevel(file, level);
+  } catch (const std::bad_alloc&) {
+    fail(ExitCode::OutOfMemory, "not enough memory for level {} of '{}'; free some", level, file->path().string());
+  }
+}
+
+int finestLevel(const fvx::FvxFile& file, std::uint64_t maximumVoxels) {
+  for (int level = 0; level < file.levels(); ++level) {
+    const glm::u64vec3 n(file.dimensions(level));
+    if (n.x * n.y * n.z <= maximumVoxels) return level;
+  }
+  fail(ExitCode::OutOfMemory, "'{}' is too large: not even its coarsest level fits into {} voxels; raise --memory-limit",
+       file.path().string(), maximumVoxels);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,63 @@
+#pragma once
+// The levels of the octree above the voxels while chunks of the voxels stream by in Hilbert order: the eight children of a chunk
+// are consecutive in that order, so that one unfinished chunk of each level is all that has to be held.
+
+#include <array>
+#include <functional>
+#include <glm/glm.hpp>
+#include <optional>
+#include <vector>
+
+#include "engine/storage/fvx_format.h"
+#include "engine/volume/coarse_volume.h"
+
+namespace freevoxels::fvx {
+
+/// The values of kChunkEdge^3 voxels; kInactiveVoxel beyond the volume.
+struct ChunkValues {
+  glm::ivec3 cell{0};
+  /// By Channel: [component][brick][voxel of the brick], x fastest in the last two. Empty where no voxel has a value.
+  std::array<std::vector<float>, kChannels> channels;
+
+  /// Of a voxel of the chunk, in a component.
+  static std::size_t index(glm::ivec3 voxel) {
+    constexpr int n = ScalarBricks::kEdge, m = kChunkEdge / n;
+    const glm::ivec3 brick = voxel / n;
+    return std::size_t(brick.x + m * (brick.y + m * brick.z)) * kBrickVoxels + ScalarBricks::indexInBrick(voxel % n);
+  }
+  bool empty() const;
+};
+
+/// Dimensions of each level, level 0 first: halved and rounded up until one chunk holds all.
+std::vector<glm::ivec3> levelDimensions(glm::ivec3 dimensions);
+
+/// The means of 2^3 voxels each of a chunk, as the eighth of its parent chunk that they are: kChunkEdge / 2 voxels along each axis,
+/// x fastest. Voxels beyond `dimensions`, those of the chunk's level, do not count.
+struct ChunkEighth {
+  glm::ivec3 cell{0};  ///< of the chunk
+  std::array<std::vector<float>, kChannels> channels;
+};
+ChunkEighth coarser(const ChunkValues& chunk, glm::ivec3 dimensions, WithoutData withoutData);
+
+class ChunkPyramid {
+ public:
+  /// `emit` receives each chunk of the levels above 0 when it is complete, those of a level in Hilbert order.
+  using Emit = std::function<void(int level, const ChunkValues&)>;
+  ChunkPyramid(glm::ivec3 dimensions, WithoutData withoutData, Emit emit);
+
+  /// Of the chunks of level 0, in Hilbert order; empty ones may be left out.
+  void add(const ChunkEighth& eighth) { add(eighth, 1); }
+  /// After the last one.
+  void finish();
+
+ private:
+  void add(const ChunkEighth& eighth, std::size_t level);
+  void complete(std::size_t level);
+
+  std::vector<glm::ivec3> dimensions_;
+  WithoutData withoutData_;
+  Emit emit_;
+  std::vector<std::optional<ChunkValues>> pending_;  ///< by level
+};
+
+}  // namespace freevoxels::fvx

@@ -1,0 +1,39 @@
+#pragma once
+// The description section of a baked volume: everything that a reader needs but the chunks, as JSON.
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/storage/fvx_encoding.h"
+#include "engine/storage/fvx_format.h"
+#include "engine/volume/classification.h"
+#include "engine/volume/volume.h"
+
+namespace freevoxels::fvx {
+
+/// By Channel. Without a value the file has no such channel; the scalars are always there.
+using Encodings = std::array<std::optional<Encoding>, kChannels>;
+
+/// Values of a voxel in a channel: three of albedos.
+inline constexpr int valuesPerVoxel(Channel channel) {
+  return channel == Channel::Albedo ? 3 : 1;
+}
+
+struct Description {
+  Volume volume;  ///< without bricks, with its classification
+  Encodings encodings;
+
+  std::size_t brickBytes(Channel channel) const {
+    return std::size_t(kBrickVoxels) * std::size_t(valuesPerVoxel(channel)) *
+           encodings[std::size_t(channel)]->bytesPerValue();
+  }
+};
+
+std::string toJson(const Description& description);
+/// Fails with ExitCode::Input, naming `file`, where something is missing or impossible.
+Description parseDescription(std::string_view json, const std::filesystem::path& file);
+
+}  // namespace freevoxels::fvx

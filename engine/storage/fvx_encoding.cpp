@@ -1,0 +1,66 @@
+#include "engine/storage/fvx_encoding.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <glm/gtc/packing.hpp>
+
+#include "engine/core/error.h"
+#include "engine/volume/scalar_bricks.h"
+
+namespace freevoxels::fvx {
+
+namespace {
+
+constexpr std::uint16_t kNoHalf = 0xffff, kNoCode = 0;
+constexpr double kLargestHalf = 65504.0, kLargestCode = 65535.0;
+
+std::uint16_t halfOf(double value, double scale) {
+  return glm::packHalf1x16(float(std::clamp(value / scale, -kLargestHalf, kLargestHalf)));
+}
+
+std::uint16_t codeOf(double value, const Encoding& encoding) {
+  if (!(encoding.scale > 0.0)) return 1;
+  return std::uint16_t(std::clamp((value - encoding.offset) / encoding.scale + 1.5, 1.0, kLargestCode));
+}
+
+}  // namespace
+
+void encode(const Encoding& encoding, std::span<const float> values, std::span<std::byte> bytes) {
+  FV_CHECK_EQ(bytes.size(), values.size() * encoding.bytesPerValue());
+  if (encoding.kind == EncodingKind::Float32) {
+    std::memcpy(bytes.data(), values.data(), bytes.size());
+    return;
+  }
+  const bool halves = encoding.kind == EncodingKind::Float16;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::uint16_t code = halves ? kNoHalf : kNoCode;
+    if (values[i] != kInactiveVoxel) code = halves ? halfOf(values[i], encoding.scale) : codeOf(values[i], encoding);
+    std::memcpy(&bytes[2 * i], &code, sizeof(code));
+  }
+}
+
+Decoder::Decoder(const Encoding& encoding) {
+  if (encoding.kind == EncodingKind::Float32) return;
+  values_.resize(1 << 16);
+  for (std::size_t code = 0; code < values_.size(); ++code)
+    values_[code] = encoding.kind == EncodingKind::Float16
+                        ? float(double(glm::unpackHalf1x16(std::uint16_t(code))) * encoding.scale)
+                        : float(encoding.offset + (double(code) - 1.0) * encoding.scale);
+  values_[encoding.kind == EncodingKind::Float16 ? kNoHalf : kNoCode] = kInactiveVoxel;
+}
+
+void Decoder::decode(std::span<const std::byte> bytes, std::span<float> values) const {
+  FV_CHECK_EQ(bytes.size(), values.size() * (values_.empty() ? 4 : 2));
+  if (values_.empty()) {
+    std::memcpy(values.data(), bytes.data(), bytes.size());
+    return;
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::uint16_t code;
+    std::memcpy(&code, &bytes[2 * i], sizeof(code));
+    values[i] = values_[code];
+  }
+}
+
+}  // namespace freevoxels::fvx

@@ -1,0 +1,73 @@
+#pragma once
+// A baked volume that is open for reading: mapped into memory, so that only what is used is read from the disk.
+
+#include <boost/iostreams/device/mapped_file.hpp>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/storage/fvx_description.h"
+#include "engine/volume/subject.h"
+
+namespace freevoxels::fvx {
+
+/// Whether a file is to be read as a baked volume: by its name, or by its first bytes.
+bool isFvx(const std::filesystem::path& file);
+
+/// XXH3-64 of all bytes of a file. Fails with ExitCode::Input where it cannot be read.
+std::uint64_t hashOfFile(const std::filesystem::path& file);
+
+class FvxFile {
+ public:
+  /// Checks the header, the description and the index of the chunks. Fails with ExitCode::Input, in one sentence that says how, on a
+  /// file that is foreign, of a later major version, incomplete or damaged.
+  explicit FvxFile(const std::filesystem::path& file);
+  FvxFile(const FvxFile&) = delete;
+  FvxFile& operator=(const FvxFile&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+  const Header& header() const { return *reinterpret_cast<const Header*>(map_.data()); }
+  std::span<const Section> sections() const { return std::span(header().sections).first(header().sectionCount); }
+  const Description& description() const { return description_; }
+  const ContentCells& content() const { return content_; }
+  std::string_view provenance() const { return provenance_; }
+  bool hasChannel(Channel channel) const { return description_.encodings[std::size_t(channel)].has_value(); }
+
+  /// The octree's levels; level 0 are the voxels.
+  int levels() const { return int(dimensions_.size()); }
+  glm::ivec3 dimensions(int level) const { return dimensions_[std::size_t(level)]; }
+  /// In Hilbert order; none of a channel that the file does not have.
+  std::span<const ChunkEntry> chunks(Channel channel, int level) const {
+    return chunks_[std::size_t(level)][std::size_t(channel)];
+  }
+  /// The bricks of a chunk as they are stored, in the order of the bits of its mask. Fails with ExitCode::Input where it is damaged.
+  /// `unpacked` takes them where they are compressed; else they are in the map, which lives as long as this object.
+  std::span<const std::byte> read(Channel channel, const ChunkEntry& chunk, std::vector<std::byte>& unpacked) const;
+  /// Fails with ExitCode::Input where anything of the file is damaged. Reads all of it.
+  void checkAll() const;
+
+ private:
+  std::span<const std::byte> bytes(std::uint64_t offset, std::uint64_t count) const {
+    return std::as_bytes(std::span(map_.data() + offset, count));
+  }
+  void checkHeader() const;
+  const Section* find(SectionKind kind, Channel channel = {}, int level = 0) const;
+  std::span<const std::byte> checked(const Section& section) const;
+  std::span<const std::byte> required(SectionKind kind, const char* name) const;
+  ContentCells readContent() const;
+  std::span<const ChunkEntry> readIndex(Channel channel, int level) const;
+  void checkEntry(const ChunkEntry& entry, const Section& chunks, Channel channel, int level) const;
+  [[noreturn]] void failDamaged(const std::string& what) const;
+
+  std::filesystem::path path_;
+  boost::iostreams::mapped_file_source map_;
+  Description description_;
+  ContentCells content_{.cells = Cells(glm::ivec3(0))};
+  std::string_view provenance_;
+  std::vector<glm::ivec3> dimensions_;
+  std::vector<std::array<std::span<const ChunkEntry>, kChannels>> chunks_;
+};
+
+}  // namespace freevoxels::fvx

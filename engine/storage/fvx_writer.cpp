@@ -1,0 +1,325 @@
+#include "engine/storage/fvx_writer.h"
+
+#include <fcntl.h>
+#include <tbb/parallel_for.h>
+#include <unistd.h>
+#include <xxhash.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <limits>
+#include <system_error>
+
+#include "engine/core/checked_file.h"
+#include "engine/core/error.h"
+
+namespace freevoxels::fvx {
+
+namespace {
+
+constexpr int kZstdLevel = 3;
+
+std::uint64_t roundUp(std::uint64_t bytes, std::uint64_t alignment) {
+  return (bytes + alignment - 1) / alignment * alignment;
+}
+
+/// A file without a name, which is gone when it is closed or the program ends.
+class Spool {
+ public:
+  explicit Spool(const std::filesystem::path& folder) {
+    std::string name = (folder / ".freevoxels-bake.XXXXXX").string();
+    const int descriptor = mkstemp(name.data());
+    if (descriptor < 0) throwErrno();
+    unlink(name.c_str());
+    file_ = fdopen(descriptor, "w+b");
+    if (file_ == nullptr) {
+      close(descriptor);
+      throwErrno();
+    }
+  }
+  ~Spool() { std::fclose(file_); }
+  Spool(const Spool&) = delete;
+  Spool& operator=(const Spool&) = delete;
+
+  std::uint64_t bytes() const { return bytes_; }
+  void append(std::span<const std::byte> bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) throwErrno();
+    bytes_ += bytes.size();
+  }
+  /// Everything from the beginning, a piece at a time.
+  template <typename Function>
+  void readAll(const Function& take) {
+    if (std::fflush(file_) != 0 || std::fseek(file_, 0, SEEK_SET) != 0) throwErrno();
+    std::vector<std::byte> piece(std::size_t(1) << 20);
+    for (std::uint64_t left = bytes_; left > 0;) {
+      const std::size_t count = std::min<std::uint64_t>(piece.size(), left);
+      if (std::fread(piece.data(), 1, count, file_) != count) throwErrno();
+      take(std::span<const std::byte>(piece).first(count));
+      left -= count;
+    }
+  }
+
+ private:
+  [[noreturn]] static void throwErrno() { throw std::system_error(errno ? errno : EIO, std::generic_category()); }
+
+  std::FILE* file_ = nullptr;
+  std::uint64_t bytes_ = 0;
+};
+
+struct EncodedChunk {
+  ChunkEntry entry;
+  std::vector<std::byte> bytes;  ///< as they are stored; empty where there is nothing to store
+};
+
+/// By bits as in ChunkEntry::brickMask, where `holds(value)` is true of some value of the brick.
+template <typename Holds>
+std::uint64_t bricksThat(const std::vector<float>& values, const Holds& holds) {
+  std::uint64_t mask = 0;
+  for (std::size_t first = 0; first < values.size(); first += kBrickVoxels)
+    if (std::any_of(values.begin() + std::ptrdiff_t(first), values.begin() + std::ptrdiff_t(first + kBrickVoxels), holds))
+      mask |= std::uint64_t(1) << first / kBrickVoxels % kChunkBricks;
+  return mask;
+}
+
+void compress(std::size_t bytesPerValue, std::vector<std::byte>& bytes, ChunkEntry& entry) {
+  std::vector<std::byte> planes(bytes.size());
+  const std::size_t values = bytes.size() / bytesPerValue;
+  for (std::size_t plane = 0; plane < bytesPerValue; ++plane)
+    for (std::size_t i = 0; i < values; ++i) planes[plane * values + i] = bytes[i * bytesPerValue + plane];
+  std::vector<std::byte> packed(ZSTD_compressBound(bytes.size()));
+  const std::size_t size = ZSTD_compress(packed.data(), packed.size(), planes.data(), planes.size(), kZstdLevel);
+  if (ZSTD_isError(size)) throw std::runtime_error(ZSTD_getErrorName(size));
+  if (size >= bytes.size()) return;
+  packed.resize(size);
+  bytes = std::move(packed);
+  entry.codec = Codec::PlanesZstd;
+}
+
+class ChunkEncoder {
+ public:
+  explicit ChunkEncoder(const WriteSettings& settings) : settings_(settings) {}
+
+  EncodedChunk encode(const ChunkValues& chunk, std::size_t channel) const {
+    const std::vector<float>& values = chunk.channels[channel];
+    EncodedChunk result{.entry = {.cell = chunk.cell, .brickMask = maskOf(chunk, channel)}};
+    ChunkEntry& entry = result.entry;
+    if (entry.brickMask == 0) return result;
+    const Encoding& encoding = *settings_.encodings[channel];
+    const std::size_t components = std::size_t(valuesPerVoxel(Channel(channel)));
+    const std::size_t brickBytes = kBrickVoxels * encoding.bytesPerValue();
+    const std::vector<float> nothing(kBrickVoxels, kInactiveVoxel);
+    entry.bytes = std::uint64_t(entry.bricks()) * components * brickBytes;
+    result.bytes.resize(entry.bytes);
+    entry.minimum = std::numeric_limits<float>::max();
+    entry.maximum = -entry.minimum;
+    std::span<std::byte> rest(result.bytes);
+    for (std::size_t brick = 0; brick < kChunkBricks; ++brick) {
+      if ((entry.brickMask >> brick & 1u) == 0) continue;
+      for (std::size_t component = 0; component < components; ++component) {
+        const std::size_t first = (component * kChunkBricks + brick) * kBrickVoxels;
+        const std::span<const float> from =
+            values.empty() ? std::span<const float>(nothing) : std::span(values).subspan(first, kBrickVoxels);
+        freevoxels::fvx::encode(encoding, from, rest.first(brickBytes));
+        rest = rest.subspan(brickBytes);
+        summarise(from, component == 0, entry);
+      }
+    }
+    if (entry.activeVoxels == 0) entry.minimum = entry.maximum = 0.0f;
+    if (settings_.compress) compress(encoding.bytesPerValue(), result.bytes, entry);
+    entry.storedBytes = result.bytes.size();
+    entry.hash = XXH3_64bits(result.bytes.data(), result.bytes.size());
+    return result;
+  }
+
+ private:
+  /// Scalars are there wherever temperatures are: what sends out light is a voxel too.
+  std::uint64_t maskOf(const ChunkValues& chunk, std::size_t channel) const {
+    const auto isActive = [](float value) { return value != kInactiveVoxel; };
+    if (Channel(channel) != Channel::Scalars) return bricksThat(chunk.channels[channel], isActive);
+    const std::uint64_t temperatures = bricksThat(chunk.channels[std::size_t(Channel::Temperature)], isActive);
+    if (!settings_.leaveOutZeros) return temperatures | bricksThat(chunk.channels[channel], isActive);
+    return temperatures | bricksThat(chunk.channels[channel], [](float value) { return value > 0.0f; });
+  }
+
+  static void summarise(std::span<const float> values, bool count, ChunkEntry& entry) {
+    for (const float value : values) {
+      if (value == kInactiveVoxel) continue;
+      if (count) ++entry.activeVoxels;
+      entry.minimum = std::min(entry.minimum, value);
+      entry.maximum = std::max(entry.maximum, value);
+    }
+  }
+
+  const WriteSettings& settings_;
+};
+
+/// The extinctions that scalars between two may have.
+void setExtinctions(const Classification& classification, ChunkEntry& entry) {
+  if (entry.activeVoxels == 0) return;
+  const auto extinctionOf = [&](float scalar) { return float(classify(classification, scalar).extinction); };
+  const float low = extinctionOf(entry.minimum), high = extinctionOf(entry.maximum);
+  entry.leastExtinction = std::min(low, high);
+  entry.mostExtinction = std::max(low, high);
+  if (!classification.transferFunction) return;
+  for (const TransferFunction::OpacityPoint& point : classification.transferFunction->opacity) {
+    if (point.scalar < entry.minimum || point.scalar > entry.maximum) continue;
+    entry.leastExtinction = std::min(entry.leastExtinction, extinctionOf(point.scalar));
+    entry.mostExtinction = std::max(entry.mostExtinction, extinctionOf(point.scalar));
+  }
+}
+
+std::vector<std::byte> contentBytes(const ContentCells& content) {
+  const ContentHeader header{.cells = content.cells.dimensions, .edge = content.edge};
+  std::vector<std::byte> bytes(sizeof(header) + (content.cells.values.size() + 7) / 8);
+  std::memcpy(bytes.data(), &header, sizeof(header));
+  for (std::size_t i = 0; i < content.cells.values.size(); ++i)
+    if (content.cells.values[i] != 0) bytes[sizeof(header) + i / 8] |= std::byte(1 << i % 8);
+  return bytes;
+}
+
+/// Chunks of a channel of a level.
+struct ChunkStore {
+  std::unique_ptr<Spool> spool;
+  std::vector<ChunkEntry> entries;  ///< offsets in the spool
+};
+
+/// Writes sections one after the other, and the header at the end.
+class SectionWriter {
+ public:
+  explicit SectionWriter(const std::filesystem::path& file) : file_(file) { pad(kPageBytes); }
+
+  std::uint64_t next() const { return position_; }
+
+  /// `write` calls its argument with the section's bytes, a piece at a time.
+  template <typename Write>
+  void section(SectionKind kind, Channel channel, std::size_t level, const Write& write) {
+    Section section{.kind = kind, .channel = channel, .level = std::uint32_t(level), .offset = position_};
+    const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> hash(XXH3_createState(), XXH3_freeState);
+    XXH3_64bits_reset(hash.get());
+    write([&](std::span<const std::byte> bytes) {
+      XXH3_64bits_update(hash.get(), bytes.data(), bytes.size());
+      file_.write(bytes.data(), bytes.size());
+      position_ += bytes.size();
+    });
+    section.bytes = position_ - section.offset;
+    section.hash = XXH3_64bits_digest(hash.get());
+    header_.sections[header_.sectionCount++] = section;
+    pad(roundUp(position_, kPageBytes) - position_);
+  }
+
+  void finish() {
+    header_.fileBytes = position_;
+    header_.hash = XXH3_64bits(&header_, sizeof(header_));
+    file_.seek(0);
+    file_.write(&header_, sizeof(header_));
+    file_.close();
+  }
+
+ private:
+  void pad(std::uint64_t bytes) {
+    const std::vector<std::byte> zeros(bytes);
+    file_.write(zeros.data(), zeros.size());
+    position_ += bytes;
+  }
+
+  CheckedFile file_;
+  std::uint64_t position_ = 0;
+  Header header_;
+};
+
+}  // namespace
+
+struct FvxWriter::State {
+  WriteSettings settings;
+  std::vector<glm::ivec3> dimensions;  ///< by level
+  std::vector<std::array<ChunkStore, kChannels>> stores;  ///< by level
+  ChunkEncoder encoder{settings};
+  ChunkPyramid pyramid{settings.dimensions, settings.withoutData, [this](int level, const ChunkValues& chunk) {
+                         for (std::size_t channel = 0; channel < kChannels; ++channel)
+                           if (settings.encodings[channel]) store(std::size_t(level), channel, encoder.encode(chunk, channel));
+                       }};
+
+  State(const std::filesystem::path& folder, const WriteSettings& given)
+      : settings(given), dimensions(levelDimensions(given.dimensions)), stores(dimensions.size()) {
+    FV_CHECK_LE(dimensions.size(), std::size_t(kMostLevels));
+    for (auto& level : stores)
+      for (std::size_t channel = 0; channel < kChannels; ++channel)
+        if (settings.encodings[channel]) level[channel].spool = std::make_unique<Spool>(folder);
+  }
+
+  void store(std::size_t level, std::size_t channel, EncodedChunk&& chunk) {
+    if (chunk.bytes.empty()) return;
+    ChunkStore& to = stores[level][channel];
+    chunk.entry.offset = to.spool->bytes();
+    to.entries.push_back(chunk.entry);
+    chunk.bytes.resize(roundUp(chunk.bytes.size(), kChunkAlignment));
+    to.spool->append(chunk.bytes);
+  }
+
+  void writeChunks(SectionWriter& file, std::size_t level, std::size_t channel, const Classification& classification) {
+    ChunkStore& from = stores[level][channel];
+    const std::uint64_t indexBytes = from.entries.size() * sizeof(ChunkEntry);
+    const std::uint64_t first = file.next() + roundUp(indexBytes, kPageBytes);
+    for (ChunkEntry& entry : from.entries) {
+      entry.offset += first;
+      if (Channel(channel) == Channel::Scalars) setExtinctions(classification, entry);
+    }
+    file.section(SectionKind::ChunkIndex, Channel(channel), level,
+                 [&](const auto& take) { take(std::as_bytes(std::span(from.entries))); });
+    file.section(SectionKind::Chunks, Channel(channel), level, [&](const auto& take) { from.spool->readAll(take); });
+  }
+};
+
+FvxWriter::FvxWriter(const std::filesystem::path& folder, const WriteSettings& settings)
+    : state_(std::make_unique<State>(folder, settings)) {}
+
+FvxWriter::~FvxWriter() = default;
+
+void FvxWriter::add(std::span<const ChunkValues> chunks) {
+  State& state = *state_;
+  std::vector<std::array<EncodedChunk, kChannels>> encoded(chunks.size());
+  std::vector<ChunkEighth> eighths(chunks.size());
+  tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t i) {
+    if (chunks[i].empty()) return;
+    for (std::size_t channel = 0; channel < kChannels; ++channel)
+      if (state.settings.encodings[channel]) encoded[i][channel] = state.encoder.encode(chunks[i], channel);
+    eighths[i] = coarser(chunks[i], state.settings.dimensions, state.settings.withoutData);
+  });
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    if (chunks[i].empty()) continue;
+    for (std::size_t channel = 0; channel < kChannels; ++channel) state.store(0, channel, std::move(encoded[i][channel]));
+    state.pyramid.add(eighths[i]);
+  }
+}
+
+FvxWriter::Summary FvxWriter::summary(Channel channel) const {
+  Summary sum;
+  for (const ChunkEntry& entry : state_->stores.front()[std::size_t(channel)].entries) {
+    if (entry.activeVoxels == 0) continue;
+    sum.minimum = sum.activeVoxels == 0 ? entry.minimum : std::min(sum.minimum, entry.minimum);
+    sum.maximum = sum.activeVoxels == 0 ? entry.maximum : std::max(sum.maximum, entry.maximum);
+    sum.activeVoxels += entry.activeVoxels;
+  }
+  return sum;
+}
+
+void FvxWriter::finish(const std::filesystem::path& file, const Description& description, const ContentCells& content,
+                       const std::string& provenance) {
+  State& state = *state_;
+  state.pyramid.finish();
+  SectionWriter writer(file);
+  const auto text = [&](SectionKind kind, const std::string& json) {
+    writer.section(kind, Channel(), 0, [&](const auto& take) { take(std::as_bytes(std::span(json))); });
+  };
+  text(SectionKind::Description, toJson(description));
+  text(SectionKind::Provenance, provenance);
+  writer.section(SectionKind::ContentCells, Channel(), 0, [&](const auto& take) { take(contentBytes(content)); });
+  for (std::size_t level = state.stores.size(); level-- > 0;)
+    for (std::size_t channel = 0; channel < kChannels; ++channel)
+      if (state.settings.encodings[channel]) state.writeChunks(writer, level, channel, *description.volume.classification);
+  writer.finish();
+}
+
+}  // namespace freevoxels::fvx

@@ -1,0 +1,130 @@
+// Baked volumes as a user makes and draws them.
+
+#include <nlohmann/json.hpp>
+
+#include "engine/image/image.h"
+#include "tests/commands/program_runner.h"
+#include "tests/image_measures.h"
+
+namespace freevoxels::test {
+
+namespace {
+
+const std::filesystem::path kData = FREEVOXELS_DATA_DIR;
+constexpr double kSamePicture = 60.0;  // dB
+
+class BakeCommand : public CommandTest {
+ protected:
+  Image picture(const std::string& name) const { return readExr(folder / name); }
+};
+
+TEST_F(BakeCommand, KeptScalarsDrawTheSamePictureToTheBit) {
+  expectSuccess(run("bake procedural:cloud @a.fvx --resolution 64 --keep-scalars --quiet"));
+  for (const std::string look : {"", " --unlit", " --unlit --draw splats"}) {
+    const std::string options = " --size 80x60 --quiet --float" + look;
+    expectSuccess(run("render procedural:cloud @original.exr --resolution 64" + options));
+    expectSuccess(run("render @a.fvx @baked.exr" + options));
+    EXPECT_EQ(largestDifference(picture("baked.exr"), picture("original.exr")), 0.0) << options;
+  }
+}
+
+TEST_F(BakeCommand, SixteenBitsDrawTheSamePictureTo60Decibels) {
+  struct Case {
+    std::string volume, classification;
+  };
+  for (const Case& look : {Case{"procedural:cloud", "--density-scale 30"}, Case{"procedural:fire", "--emission 3"},
+                           Case{"procedural:head", R"(--transfer-function {"opacity":[[0,0],[0.3,0.02],[1,0.6]]})"}}) {
+    expectSuccess(run("bake " + look.volume + " @a.fvx --resolution 64 --quiet " + look.classification));
+    expectSuccess(run("render " + look.volume + " @original.exr --resolution 64 --size 80 --quiet --float " + look.classification));
+    expectSuccess(run("render @a.fvx @baked.exr --size 80 --quiet --float"));
+    EXPECT_GE(psnr(picture("baked.exr"), picture("original.exr")), kSamePicture) << look.volume;
+  }
+}
+
+TEST_F(BakeCommand, CompressedFilesDrawTheSamePicture) {
+  expectSuccess(run("bake procedural:cloud @plain.fvx --resolution 48 --quiet"));
+  expectSuccess(run("bake procedural:cloud @packed.fvx --resolution 48 --quiet --compress"));
+  for (const std::string name : {"plain", "packed"}) expectSuccess(run("render @" + name + ".fvx @" + name + ".exr --size 48 --quiet"));
+  EXPECT_EQ(largestDifference(picture("plain.exr"), picture("packed.exr")), 0.0);
+}
+
+TEST_F(BakeCommand, AFixedClassificationCannotBeChangedAndAKeptOneCan) {
+  expectSuccess(run("bake procedural:cloud @fixed.fvx --resolution 32 --quiet"));
+  expectSuccess(run("bake procedural:cloud @kept.fvx --resolution 32 --keep-scalars --quiet"));
+  for (const std::string option : {"--density-scale 9", "--albedo 1,0,0", R"(--transfer-function {"opacity":[[0,0],[1,1]]})",
+                                   "--classification pre"}) {
+    expectCleanRefusal("render @fixed.fvx @a.png --size 16 " + option, ExitCode::Usage, "--keep-scalars");
+    expectSuccess(run("render @kept.fvx @kept.exr --size 16 --quiet " + option));
+    std::filesystem::remove(folder / "kept.exr");
+  }
+  for (const std::string option : {"--grid density", "--temperature-grid heat", "--albedo-grid color"})
+    expectCleanRefusal("render @kept.fvx @a.png --size 16 " + option, ExitCode::Usage, option.substr(0, option.find(' ')));
+}
+
+TEST_F(BakeCommand, EveryCommandTakesABakedVolume) {
+  expectSuccess(run("bake procedural:cloud @a.fvx --resolution 32 --quiet"));
+  expectSuccess(run("turntable @a.fvx @turn_#.png --frames 2 --size 24 --quiet"));
+  expectSuccess(run("oracle @a.fvx @truth.exr --size 16 --quiet --unlit"));
+  expectSuccess(run("render @a.fvx @a.png --size 24 --quiet --save-scene @scene.json"));
+  expectSuccess(run("render --scene @scene.json @again.png --quiet"));
+  EXPECT_EQ(readBytes(folder / "a.png"), readBytes(folder / "again.png"));
+  expectRefusal(run("bake @a.fvx @b.fvx"), ExitCode::Usage, "--keep-scalars");
+}
+
+TEST_F(BakeCommand, InfoPrintsAndChecksAFile) {
+  expectSuccess(run("bake procedural:cloud @a.fvx --resolution 40x24x32 --density-scale 7 --quiet"));
+  const ProgramResult text = run("info @a.fvx --check");
+  expectSuccess(text);
+  for (const char* part : {"format 1.0", "40x24x32", "float16", "fixed", "chunk index", "all checksums are right"})
+    EXPECT_NE(text.out.find(part), std::string::npos) << part << " in " << text.out;
+  const nlohmann::json json = nlohmann::json::parse(run("info @a.fvx --json").out);
+  EXPECT_EQ(json["description"]["classification"]["density_scale"], 7.0);
+  EXPECT_EQ(json["provenance"]["options"]["resolution"], "40x24x32");
+  std::string bytes = readBytes(folder / "a.fvx");
+  bytes[bytes.size() - 4096] = char(bytes[bytes.size() - 4096] ^ 1);
+  writeBytes(folder / "a.fvx", bytes);
+  expectRefusal(run("info @a.fvx --check"), ExitCode::Input, "damaged");
+  expectRefusal(run("render @a.fvx @a.png --size 16"), ExitCode::Input, "damaged");
+  expectRefusal(run("info procedural:cloud --check"), ExitCode::Usage, "--check");
+}
+
+TEST_F(BakeCommand, ACoarserLevelIsDrawnWhereItShowsTheSameOrWhereMemoryIsShort) {
+  expectSuccess(run("bake procedural:cloud @a.fvx --resolution 128 --quiet"));
+  const std::string options = " --size 40 --unlit --float --quiet";
+  expectSuccess(run("render procedural:cloud @original.exr --resolution 128" + options));
+  expectSuccess(run("render @a.fvx @far.exr --timings @t.json" + options));
+  EXPECT_LT(nlohmann::json::parse(readBytes(folder / "t.json"))["voxels"], 128 * 128 * 128 / 7);
+  EXPECT_GE(psnr(picture("far.exr"), picture("original.exr")), kSamePicture);
+  const ProgramResult limited = run("render @a.fvx @near.exr --size 200 --unlit --memory-limit 4");
+  EXPECT_EQ(limited.exitCode, 0) << limited.err;
+  EXPECT_NE(limited.err.find("of its resolution"), std::string::npos) << limited.err;
+}
+
+TEST_F(BakeCommand, BadOutputsAreRefused) {
+  expectCleanRefusal("bake procedural:cloud @a.vdb", ExitCode::Usage, ".fvx");
+  expectCleanRefusal("bake procedural:cloud @missing/a.fvx", ExitCode::Output, "missing");
+  expectCleanRefusal("bake procedural:cloud", ExitCode::Usage, "OUT.fvx");
+}
+
+TEST_F(BakeCommand, AnInterruptedBakeLeavesNothing) {
+  runAndInterrupt(words("bake procedural:cloud @a.fvx --resolution 200 --quiet"), SIGKILL, 400);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.fvx"));
+}
+
+TEST_F(BakeCommand, RealFogVolumesDrawTheSamePictureTo60Decibels) {
+  if (!std::filesystem::is_directory(kData)) GTEST_SKIP() << "there are no real volumes in " << kData;
+  for (const std::string name : {"wdas_cloud_sixteenth", "smoke1", "dragon_with_xform", "usd_smoke_000003", "usd_densityAndHeat",
+                                 "blender_fluid_0050", "grids_arnold"}) {
+    const std::string file = (kData / (name + ".vdb")).string();
+    if (!std::filesystem::exists(file)) continue;
+    SCOPED_TRACE(name);
+    expectSuccess(run("bake " + file + " @a.fvx --quiet"));
+    expectSuccess(run("render " + file + " @original.exr --size 128 --quiet --float"));
+    expectSuccess(run("render @a.fvx @baked.exr --size 128 --quiet --float"));
+    EXPECT_GE(psnr(picture("baked.exr"), picture("original.exr")), kSamePicture);
+  }
+}
+
+}  // namespace
+
+}  // namespace freevoxels::test

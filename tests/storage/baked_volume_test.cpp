@@ -1,0 +1,234 @@
+#include "engine/storage/baked_volume.h"
+
+#include <gtest/gtest.h>
+
+#include <utility>
+
+#include "engine/storage/procedural_stream.h"
+#include "engine/volume/coarse_volume.h"
+#include "tests/limited_disk.h"
+#include "tests/refusal.h"
+#include "tests/storage/baked_fixture.h"
+#include "tests/temporary_folder.h"
+
+namespace freevoxels {
+namespace {
+
+using fvx::Channel;
+using fvx::ChunkEntry;
+using fvx::FvxFile;
+
+const Classification kDense{.densityScale = 0.7, .albedo = glm::vec3(0.3f, 0.5f, 0.9f)};
+
+Classification banded() {
+  TransferFunction function{.unitDistance = 0.3};
+  function.opacity = {{0.1f, 0.0f}, {0.9f, 0.5f}, {1.7f, 0.1f}};
+  function.color = {{0.0f, glm::vec3(1, 0, 0)}, {2.0f, glm::vec3(0, 1, 0.25f)}};
+  return {.transferFunction = function, .order = ClassificationOrder::Pre};
+}
+
+TEST(BakedVolume, KeptScalarsTemperaturesAndAlbedosAreTheSameBits) {
+  const test::TemporaryFolder folder;
+  const Volume volume = test::volumeOfAllChannels();
+  for (const bool compress : {false, true}) {
+    const Volume baked =
+        test::bakedAndRead(folder / "a.fvx", volume, kDense, {.keepScalars = true, .compress = compress});
+    test::expectSameVoxels(baked.scalars, volume.scalars);
+    test::expectSameVoxels(baked.temperature->values, volume.temperature->values);
+    for (std::size_t c = 0; c < 3; ++c) test::expectSameVoxels(baked.albedo->values[c], volume.albedo->values[c]);
+    for (std::size_t brick = 0; brick < volume.temperature->values.bricks().size(); ++brick)
+      EXPECT_NE(baked.scalars.brickAt(volume.temperature->values.cell(brick)), nullptr) << "light without a brick of scalars";
+  }
+}
+
+TEST(BakedVolume, DescriptionIsThatOfTheVolume) {
+  const test::TemporaryFolder folder;
+  Volume volume = test::volumeOfAllChannels();
+  volume.up = {0, 0, 1};
+  volume.upReason = "a test says so";
+  volume.indexOrigin = {-3, 5, 7};
+  Classification classification = kDense;
+  classification.emission = Emission{.strength = 2.5, .temperatureScale = 0.1, .temperatureOffset = 7.0};
+  const Volume baked = test::bakedAndRead(folder / "a.fvx", volume, classification, {});
+  EXPECT_EQ(baked.source, "a.fvx (test volume)");
+  EXPECT_EQ(baked.dimensions, volume.dimensions);
+  EXPECT_EQ(baked.indexOrigin, volume.indexOrigin);
+  EXPECT_EQ(baked.indexToWorld, volume.indexToWorld);
+  EXPECT_EQ(baked.up, volume.up);
+  EXPECT_EQ(baked.upReason, volume.upReason);
+  EXPECT_EQ(baked.activeVoxels, volume.activeVoxels);
+  EXPECT_EQ(baked.minimum, volume.minimum);
+  EXPECT_EQ(baked.maximum, volume.maximum);
+  EXPECT_EQ(baked.temperature->name, "heat");
+  EXPECT_EQ(baked.temperature->maximum, volume.temperature->maximum);
+  EXPECT_EQ(baked.albedo->clippedVoxels, 3u);
+  EXPECT_TRUE(baked.classificationIsFixed);
+  EXPECT_EQ(baked.classification->densityScale, kDense.densityScale);
+  EXPECT_EQ(baked.classification->albedo, kDense.albedo);
+  EXPECT_EQ(baked.classification->emission->temperatureScale, 0.1);
+}
+
+TEST(BakedVolume, TransferFunctionIsKeptExactly) {
+  const test::TemporaryFolder folder;
+  const Volume baked = test::bakedAndRead(folder / "a.fvx", test::smoothVolume(), banded(), {});
+  const Classification wanted = banded();
+  ASSERT_TRUE(baked.classification->transferFunction);
+  EXPECT_EQ(transferFunctionJson(*baked.classification->transferFunction), transferFunctionJson(*wanted.transferFunction));
+  EXPECT_EQ(baked.classification->order, ClassificationOrder::Pre);
+}
+
+TEST(BakedVolume, DensitiesIn16BitsAreWithinAHalfsPrecision) {
+  const test::TemporaryFolder folder;
+  const Volume volume = test::smoothVolume();
+  const Volume baked = test::bakedAndRead(folder / "a.fvx", volume, kDense, {});
+  for (glm::ivec3 v(0); v.z < volume.dimensions.z; ++v.z)
+    for (v.y = 0; v.y < volume.dimensions.y; ++v.y)
+      for (v.x = 0; v.x < volume.dimensions.x; ++v.x) {
+        const double density = std::max(volume.scalars.at(v), 0.0f);
+        ASSERT_NEAR(std::max(baked.scalars.at(v), 0.0f), density, 1e-6 + density / 2047.0);
+      }
+}
+
+TEST(BakedVolume, ScalarsOfATransferFunctionIn16BitsAreWithinHalfACode) {
+  const test::TemporaryFolder folder;
+  const Volume volume = test::smoothVolume();
+  const Volume baked = test::bakedAndRead(folder / "a.fvx", volume, banded(), {});
+  test::expectSameVoxels(volume.scalars, baked.scalars, 0.51 / 65534.0, double(volume.maximum - volume.minimum));
+}
+
+TEST(BakedVolume, FloatsAreUsedInThePlaceWhereTheFileIsMapped) {
+  const test::TemporaryFolder folder;
+  bakeVolume(folder / "a.fvx", test::smoothVolume(), kDense, {.keepScalars = true});
+  auto file = std::make_shared<const FvxFile>(folder / "a.fvx");
+  const auto* const first = reinterpret_cast<const char*>(&file->header());
+  const auto* const end = first + file->header().fileBytes;
+  Volume volume = readBaked(file);
+  const auto isMapped = [&] {
+    const auto* const bricks = reinterpret_cast<const char*>(std::as_const(volume.scalars).bricks().data());
+    return bricks >= first && bricks < end;
+  };
+  EXPECT_TRUE(isMapped());
+  file.reset();  // the volume keeps it
+  const float before = volume.scalar(1, 2, 3);
+  volume.scalars.set({1, 2, 3}, 42.0f);
+  EXPECT_FALSE(isMapped());
+  EXPECT_EQ(volume.scalar(1, 2, 3), 42.0f);
+  EXPECT_NE(before, 42.0f);
+}
+
+TEST(BakedVolume, LevelsAreMeansOfTheLevelBelow) {
+  const test::TemporaryFolder folder;
+  const Volume volume = test::smoothVolume();
+  for (const bool densities : {true, false}) {
+    bakeVolume(folder / "a.fvx", volume, densities ? kDense : banded(), {.keepScalars = true});
+    const auto file = std::make_shared<const FvxFile>(folder / "a.fvx");
+    ASSERT_EQ(file->levels(), 3);
+    Volume expected = volume;
+    for (int level = 1; level < file->levels(); ++level) {
+      expected = coarseVolume(expected, 2, densities ? WithoutData::Zero : WithoutData::Ignored);
+      const Volume coarse = readBaked(file, level);
+      EXPECT_EQ(coarse.dimensions, expected.dimensions);
+      EXPECT_LT(glm::length(coarse.indexToWorld[3] - expected.indexToWorld[3]), 1e-12);
+      EXPECT_EQ(coarse.indexToWorld[0], expected.indexToWorld[0]);
+      test::expectSameVoxels(coarse.scalars, expected.scalars);
+      EXPECT_EQ(coarse.activeVoxels, expected.activeVoxels);
+    }
+  }
+}
+
+TEST(BakedVolume, ChunkIndexSaysWhatIsInAChunk) {
+  const test::TemporaryFolder folder;
+  const Volume volume = test::smoothVolume();
+  bakeVolume(folder / "a.fvx", volume, kDense, {.keepScalars = true});
+  const FvxFile file(folder / "a.fvx");
+  std::uint64_t active = 0;
+  const auto chunks = file.chunks(Channel::Scalars, 0);
+  EXPECT_EQ(chunks.size(), 8u);  // of 3 x 2 x 2; the last four have no data
+  for (const ChunkEntry& chunk : chunks) {
+    active += chunk.activeVoxels;
+    EXPECT_LE(chunk.minimum, chunk.maximum);
+    EXPECT_GE(chunk.minimum, volume.minimum);
+    EXPECT_LE(chunk.maximum, volume.maximum);
+    EXPECT_FLOAT_EQ(chunk.leastExtinction, float(kDense.densityScale) * chunk.minimum);
+    EXPECT_FLOAT_EQ(chunk.mostExtinction, float(kDense.densityScale) * chunk.maximum);
+    EXPECT_EQ(chunk.offset % 64, 0u);
+  }
+  EXPECT_EQ(active, volume.activeVoxels);
+}
+
+TEST(BakedVolume, ACroppedVolumeIsAlignedToItsBox) {
+  const test::TemporaryFolder folder;
+  Volume volume = test::smoothVolume();
+  volume.scalars = volume.scalars.cropped({3, 5, 9}, {34, 40, 36});
+  volume.dimensions = volume.scalars.dimensions();
+  ASSERT_NE(volume.scalars.corner(), glm::ivec3(0));
+  const Volume baked = test::bakedAndRead(folder / "a.fvx", volume, kDense, {.keepScalars = true});
+  EXPECT_EQ(baked.scalars.corner(), glm::ivec3(0));
+  test::expectSameVoxels(baked.scalars, volume.scalars);
+}
+
+TEST(BakedVolume, TheSameVolumeGivesTheSameBytes) {
+  const test::TemporaryFolder folder;
+  for (const char* name : {"a.fvx", "b.fvx"}) bakeVolume(folder / name, test::volumeOfAllChannels(), kDense, {.compress = true});
+  EXPECT_TRUE(test::readBytes(folder / "a.fvx") == test::readBytes(folder / "b.fvx"));
+}
+
+TEST(BakedVolume, CompressedFilesAreSmaller) {
+  const test::TemporaryFolder folder;
+  bakeVolume(folder / "a.fvx", test::smoothVolume(), kDense, {.keepScalars = true});
+  bakeVolume(folder / "b.fvx", test::smoothVolume(), kDense, {.keepScalars = true, .compress = true});
+  EXPECT_LT(std::filesystem::file_size(folder / "b.fvx"), std::filesystem::file_size(folder / "a.fvx"));
+}
+
+TEST(BakedVolume, FinestLevelIsTheFirstThatFits) {
+  const test::TemporaryFolder folder;
+  bakeVolume(folder / "a.fvx", test::smoothVolume(), kDense, {});
+  const FvxFile file(folder / "a.fvx");
+  EXPECT_EQ(finestLevel(file, 70 * 41 * 37), 0);
+  EXPECT_EQ(finestLevel(file, 70 * 41 * 37 - 1), 1);
+  EXPECT_EQ(finestLevel(file, 18 * 11 * 10), 2);
+  test::expectRefusal([&] { finestLevel(file, 100); }, ExitCode::OutOfMemory, {"a.fvx", "--memory-limit"});
+}
+
+TEST(BakedVolume, AStreamedVolumeIsTheOneThatIsHeldInMemory) {
+  const test::TemporaryFolder folder;
+  const glm::ivec3 size(70, 40, 50);
+  for (const char* name : {"plume", "fire"}) {
+    const ProceduralField field(name, size);
+    const Volume whole = makeProcedural(name, size);
+    bakeVolume(folder / "whole.fvx", whole, kDense, {});
+    bakeStreamed(folder / "streamed.fvx", proceduralStream(field, whole, kDense), kDense, {});
+    EXPECT_TRUE(test::readBytes(folder / "whole.fvx") == test::readBytes(folder / "streamed.fvx")) << name;
+  }
+}
+
+TEST(BakedVolume, WhatIsSeenIsInTheFileWhateverTheLevel) {
+  const test::TemporaryFolder folder;
+  const Volume volume = test::smoothVolume();
+  bakeVolume(folder / "a.fvx", volume, kDense, {});
+  const FvxFile file(folder / "a.fvx");
+  const Subject stored = subjectOf(file.content(), file.description().volume), found = contentOf(volume, kDense);
+  EXPECT_EQ(stored.points, found.points);
+  EXPECT_EQ(stored.centre, found.centre);
+  EXPECT_EQ(bakedOutline(file, 2).dimensions, glm::ivec3(18, 11, 10));
+}
+
+TEST(BakedVolume, AVolumeThatIsTooLongIsRefused) {
+  const test::TemporaryFolder folder;
+  const StreamedVolume volume{.outline = {.source = "long", .dimensions = {8193, 1, 1}}, .content = {.cells = Cells(glm::ivec3(1))}};
+  test::expectRefusal([&] { bakeStreamed(folder / "a.fvx", volume, kDense, {}); }, ExitCode::Input, {"long", "8193", "8192"});
+  EXPECT_EQ(folder.fileCount(), 0u);
+}
+
+TEST(BakedVolume, AFullDiskIsSaidAndLeavesNothing) {
+  const test::TemporaryFolder folder;
+  if (!test::canLimitDisks(folder.path())) GTEST_SKIP() << "no disk can be limited here";
+  EXPECT_EXIT(test::exitWithErrorOnLimitedDisk(folder.path(), 65536,
+                                               [](const std::filesystem::path& disk) {
+                                                 bakeVolume(disk / "a.fvx", test::smoothVolume(), kDense, {.keepScalars = true});
+                                               }),
+              testing::ExitedWithCode(int(ExitCode::Output)), "No space left");
+}
+
+}  // namespace
+}  // namespace freevoxels
