@@ -69,7 +69,7 @@ void addScene(std::vector<SectionJob>& jobs, const Device& device, const std::st
   jobs.push_back({fmt::format("stages of {}", name),
                   [=, &device] { return stageChecks(deviceStages(device), makeScene(), picture); }});
   jobs.push_back({fmt::format("gather of {}", name),
-                  [=, &device] { return gatherChecks(deviceStages(device), makeScene(), picture); }});
+                  [=, &device] { return gatherChecks(deviceGather(device), makeScene(), picture); }});
   jobs.push_back({fmt::format("invariances of {}", name),
                   [=, &device] { return invariances(device, makeScene(), picture); }});
   jobs.push_back({fmt::format("levels of {}", name),

@@ -10,6 +10,7 @@
 #include "engine/image/metrics.h"
 #include "engine/reference/reference_gather.h"
 #include "engine/reference/reference_hierarchy.h"
+#include "engine/renderer.h"
 #include "engine/validation/max_error.h"
 #include "engine/validation/stage_frames.h"
 #include "engine/volume/subject.h"
@@ -142,19 +143,19 @@ void checkImage(const Image& image, const Image& reference, const std::string& s
 }
 
 /// What the frame misses where its rays end early.
-Check checkEnd(StageOutputs& device, const Camera& camera, const FrameSettings& whole, const Image& image, const char* frame) {
+Check checkEnd(GatherOutputs& device, const Camera& camera, const FrameSettings& whole, const Image& image, const char* frame) {
   FrameSettings settings = whole;
   settings.cullThreshold = FrameSettings{}.cullThreshold;
-  const MaxError worst = largestDifference(device.picture(camera, settings), image);
+  const MaxError worst = largestDifference(device.frame(camera, settings).image, image);
   return worst.atMost(kEndTolerance * double(settings.cullThreshold), fmt::format("gather rays: early end, {}", frame));
 }
 
-void checkFrame(StageOutputs& device, const ValidationScene& scene, const Classification& classification, const Frame& frame,
+void checkFrame(GatherOutputs& device, const ValidationScene& scene, const Classification& classification, const Frame& frame,
                 glm::ivec2 size, ReportSection& section) {
   const FrameSettings settings{
       .size = size, .draw = Draw::Gather, .composite = frame.composite, .lod = frame.lod, .cullThreshold = 0.0f, .depth = true};
   const Camera camera = cameraOf(scene.volume, frame.view, double(size.x) / size.y);
-  const GatherStages stages = device.gather(camera, settings);
+  const GatherStages stages = device.frame(camera, settings);
   const ReferenceGather reference(scene.volume, classification, camera, settings);
   section.checks.push_back(checkLattice(stages.lattice, reference.lattice(), frame.name));
   if (stages.lattice.samples != reference.lattice().samples) return;
@@ -183,15 +184,33 @@ constexpr const char* kExplanation =
     "image. Sums are relative to the sample's own, or to 5 % of the largest where that is more. Rays go on to the end of the "
     "volume, but for the check of their early end, which compares with the frame of whole rays.";
 
+class RendererGather : public GatherOutputs {
+ public:
+  RendererGather(const Device& device, const Volume& volume, const Classification& classification)
+      : renderer_(device, volume, classification, {}) {}
+  GatherStages frame(const Camera& camera, const FrameSettings& settings) override {
+    return renderer_.renderGatherStages(camera, settings);
+  }
+
+ private:
+  Renderer renderer_;
+};
+
 }  // namespace
 
-ReportSection gatherChecks(const StageMaker& make, const ValidationScene& scene, glm::ivec2 size) {
+GatherMaker deviceGather(const Device& device) {
+  return [&device](const Volume& volume, const Classification& classification) {
+    return std::make_unique<RendererGather>(device, volume, classification);
+  };
+}
+
+ReportSection gatherChecks(const GatherMaker& make, const ValidationScene& scene, glm::ivec2 size) {
   ReportSection section{.title = fmt::format("Gather: {}", scene.name), .text = kExplanation};
   for (const ClassificationOrder order : {ClassificationOrder::Pre, ClassificationOrder::Post}) {
     Classification classification = scene.classification;
     classification.order = order;
     if (order == ClassificationOrder::Post && !classification.isPost(scene.volume)) continue;
-    const auto device = make(scene.volume, classification, {});
+    const auto device = make(scene.volume, classification);
     for (const Frame& frame : kFrames)
       if (frame.order == order) checkFrame(*device, scene, classification, frame, size, section);
   }

@@ -20,9 +20,6 @@ class RendererOutputs : public StageOutputs {
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
     return renderer_.renderSums(camera, settings);
   }
-  GatherStages gather(const Camera& camera, const FrameSettings& settings) override {
-    return renderer_.renderGatherStages(camera, settings);
-  }
   Image picture(const Camera& camera, const FrameSettings& settings) override {
     return renderer_.render(camera, settings);
   }

@@ -10,7 +10,6 @@
 #include "engine/image/image.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/render_settings.h"
-#include "engine/gathering/gather_stages.h"
 #include "engine/scene/source_rays.h"
 #include "engine/splatting/splat_sums.h"
 #include "engine/volume/classification.h"
@@ -35,8 +34,6 @@ class StageOutputs {
   virtual RayCodes rays(const Camera& camera) = 0;
   /// Before the resolve, one a pixel.
   virtual std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) = 0;
-  /// Of a frame that is drawn by gathering.
-  virtual GatherStages gather(const Camera& camera, const FrameSettings& settings) = 0;
   virtual Image picture(const Camera& camera, const FrameSettings& settings) = 0;
 };
 

@@ -1,12 +1,8 @@
 // The checks are checked: every stage is broken on purpose, and the checks of that stage notice, and no
 // others.
 
-#include <bit>
-#include <utility>
-
 #include "engine/reference/reference_table.h"
 #include "engine/validation/closed_forms.h"
-#include "engine/validation/gather_checks.h"
 #include "engine/validation/stage_checks.h"
 #include "tests/device/device_fixture.h"
 #include "tests/device/test_volumes.h"
@@ -97,61 +93,6 @@ void resolveWithoutNormalising(SteppedStages& stages) {
   };
 }
 
-/// Rays begin at the volume's second slice.
-void skipTheFirstSlice(SteppedStages& stages) {
-  stages.gathering.alterSamples = [](shader::GatherFrame& frame) {
-    for (shader::GatherAxis& axis : frame.axes) {
-      ++axis.slices[1][frame.finest].x;
-      --axis.slices[0][frame.finest].y;
-    }
-  };
-}
-
-/// The slice in front of the border between two levels is in both.
-void countALevelsBorderTwice(SteppedStages& stages) {
-  stages.gathering.alterSamples = [](shader::GatherFrame& frame) {
-    for (shader::GatherAxis& axis : frame.axes)
-      for (int level = frame.finest + 1; level <= frame.coarsest; ++level) {
-        if (axis.slices[1][level].x > 0) --axis.slices[1][level].x;
-        ++axis.slices[0][level].y;
-      }
-  };
-}
-
-/// Of the two neighbours of a sample along the first side.
-void swapWeights(SteppedStages& stages) {
-  stages.gathering.alterQuads = [](const Device& device, const GatherVolume::Quads& quads) {
-    const Buffer& buffer = quads.medium.pieces.front();
-    std::vector<std::uint32_t> pairs(buffer.bytes() / sizeof(std::uint32_t));
-    download(device, buffer, std::as_writable_bytes(std::span(pairs)));
-    for (std::uint32_t& pair : pairs) pair = std::rotl(pair, 16);
-    upload(device, buffer, std::as_bytes(std::span(pairs)));
-  };
-}
-
-/// What the gather keeps of a voxel is made from another extinction.
-void shadeThickerBlocks(SteppedStages& stages) {
-  stages.gathering.alterMedium = [altered = false](const Device& device, BuiltVolume& built) mutable {
-    if (std::exchange(altered, true) || !built.hasBlocks()) return;
-    std::vector<float> extinction(built.volume.extinction.bytes() / sizeof(float));
-    download(device, built.volume.extinction, std::as_writable_bytes(std::span(extinction)));
-    for (float& value : extinction) value *= 1.01f;
-    upload(device, built.volume.extinction, std::as_bytes(std::span(extinction)));
-  };
-}
-
-/// As if slices were seen from straight in front.
-void leaveTheStencilOut(SteppedStages& stages) {
-  stages.gathering.alterStencil = [](shader::GatherFrame& frame) {
-    for (shader::GatherAxis& axis : frame.axes) axis.tilt = glm::vec2(axis.tiltDepth = 0.0f);
-    frame.pixelsPerVoxel = 1e9f;
-  };
-}
-
-void shiftTheLattice(SteppedStages& stages) {
-  stages.gathering.alterUpsampling = [](shader::GatherFrame& frame) { frame.firstSample.x += 0.1f * frame.pitch; };
-}
-
 struct Defect {
   const char* name;
   const char* stage;  ///< with which the names of the checks begin that must notice
@@ -174,12 +115,6 @@ constexpr Defect kDefects[] = {
     {"TheOtherCodeRead", "splat sums", readTheOtherCode},
     {"ASplatDropped", "splat sums", dropOneSplat},
     {"ColoursNotNormalised", "resolve", resolveWithoutNormalising},
-    {"ASliceSkipped", "gather samples", skipTheFirstSlice},
-    {"ALevelsBorderCountedTwice", "gather samples", countALevelsBorderTwice},
-    {"WeightsSwapped", "gather samples", swapWeights},
-    {"BlocksThicker", "gather blocks", shadeThickerBlocks},
-    {"StencilLeftOut", "gather stencil", leaveTheStencilOut},
-    {"LatticeShifted", "gather image", shiftTheLattice},
 };
 
 class Mutation : public DeviceTest, public testing::WithParamInterface<Defect> {
@@ -208,9 +143,8 @@ class Mutation : public DeviceTest, public testing::WithParamInterface<Defect> {
 };
 
 TEST_P(Mutation, IsNoticedByTheChecksOfItsStageAndNoOthers) {
-  const ValidationScene scene = Mutation::scene(SceneColor::TransferFunction);
-  std::vector<Check> failed = failedChecks(stageChecks(stages(GetParam()), scene, kFrame));
-  std::ranges::copy(failedChecks(gatherChecks(stages(GetParam()), scene, kFrame)), std::back_inserter(failed));
+  const auto failed =
+      failedChecks(stageChecks(stages(GetParam()), scene(SceneColor::TransferFunction), kFrame));
   EXPECT_TRUE(std::ranges::any_of(
       failed, [](const Check& check) { return check.name.starts_with(GetParam().stage); }));
   for (const Check& check : failed) {
@@ -232,11 +166,9 @@ TEST_F(MutationTest, ClosedFormsNoticeWhatIsWrongInEveryVoxel) {
 
 TEST_F(MutationTest, WithoutOneEverythingPasses) {
   std::vector<Check> checks = closedForms(stages({}), kCubeEdge).checks;
-  for (const StageMaker& make : {stages({}), deviceStages(device())}) {
-    std::ranges::copy(stageChecks(make, scene(SceneColor::TransferFunction), kFrame).checks, std::back_inserter(checks));
-    for (const SceneColor color : {SceneColor::TransferFunction, SceneColor::Density})
-      std::ranges::copy(gatherChecks(make, scene(color), kFrame).checks, std::back_inserter(checks));
-  }
+  for (const StageMaker& make : {stages({}), deviceStages(device())})
+    std::ranges::copy(stageChecks(make, scene(SceneColor::TransferFunction), kFrame).checks,
+                      std::back_inserter(checks));
   for (const Check& check : checks)
     EXPECT_TRUE(check.passed()) << check.name << ": " << check.figure << " at " << check.where;
 }

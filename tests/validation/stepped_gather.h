@@ -1,5 +1,5 @@
 #pragma once
-// A gathered frame pass by pass, as stepped_stages.h is of splats: a test alters what one pass reads, and those after it go on
+// A gathered frame pass by pass: a test alters what one pass reads, and those after it go on
 // with what it made.
 
 #include <functional>
@@ -8,19 +8,20 @@
 #include "engine/gathering/gather_pass.h"
 #include "engine/gathering/gather_stages.h"
 #include "engine/octree/volume_builder.h"
+#include "engine/validation/gather_checks.h"
 #include "engine/vulkan/target_readback.h"
 
 namespace freevoxels::test {
 
-struct SteppedGather {
+struct SteppedGather : GatherOutputs {
   static constexpr VkPipelineStageFlags2 kStage = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   const Device& device;
   const Volume& source;
   Classification classification;
+  std::vector<StageTime> times;
   BuiltVolume built;
   GatherPass pass;
   std::optional<GatherVolume> volume;
-  std::vector<StageTime> times;
 
   /// What the checks are told that blocks are made of is not altered.
   std::function<void(const Device&, BuiltVolume&)> alterMedium;
@@ -31,7 +32,8 @@ struct SteppedGather {
   SteppedGather(const Device& on, const Volume& of, const Classification& how)
       : device(on), source(of), classification(how), built(buildVolume(on, of, how, times)), pass(on) {}
 
-  GatherStages frame(const Camera& camera, FrameSettings settings) {
+  GatherStages frame(const Camera& camera, const FrameSettings& wanted) override {
+    FrameSettings settings = wanted;
     settings.attenuation = AttenuationLookup::Exact;
     if (settings.lod > 0.0f && !built.hasBlocks()) buildBlocks(device, source, classification, built, times);
     const FrameConstants constants = makeFrameConstants(device, built.volume, {}, camera, settings);
@@ -45,7 +47,7 @@ struct SteppedGather {
     for (int level = 0; built.hasBlocks() && level <= constants.detail.coarsest; ++level)
       medium.push_back(downloadMedium(device, built.volume, level));
     if (alterMedium) alterMedium(device, built);
-    if (!volume) volume.emplace(device, source, classification, built, times);
+    volume.emplace(device, source, classification, built, times);  // what was altered for another frame is not kept
     volume->prepare(shading, times);
     run([&](Commands& commands) { volume->record(commands, shading); });
     volume->describe(rays);
@@ -70,6 +72,7 @@ struct SteppedGather {
     });
     step(alterUpsampling, [&](Commands& commands, const shader::GatherFrame& f) { pass.recordUpsampling(commands, f, targets); });
     GatherStages stages = downloadGatherStages(device, built, *volume, pass);
+    stages.lattice = {.samples = rays.samples, .pitch = double(rays.pitch), .first = rays.firstSample};
     for (std::size_t level = 0; level < stages.medium.size() && level < medium.size(); ++level)
       if (stages.blocks[level].exists()) stages.medium[level] = medium[level];
     stages.image = readImage(targets, settings);

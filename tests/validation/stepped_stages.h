@@ -11,7 +11,6 @@
 #include "engine/reference/reference_splats.h"
 #include "engine/validation/stage_outputs.h"
 #include "engine/validation/stepped_renderer.h"
-#include "tests/validation/stepped_gather.h"
 
 namespace freevoxels::test {
 
@@ -23,7 +22,6 @@ struct SteppedStages : StageOutputs {
   std::vector<std::uint32_t> drawn;          ///< what is drawn, padded
   std::function<void(RayCodes&)> alterRays;  ///< of what the checks see: a frame sweeps its own
   std::function<Image(const std::vector<SplatSums>&, const FrameSettings&)> resolve = referenceResolve;
-  SteppedGather gathering;
 
   SteppedStages(const Device& on, Volume volume, const Classification& classification,
                 const TableSettings& table)
@@ -31,8 +29,7 @@ struct SteppedStages : StageOutputs {
         source(std::move(volume)),
         steps(prepareSteps(device, source, classification, table)),
         listed(steps.voxels),
-        drawn(steps.voxels),
-        gathering(device, source, classification) {}
+        drawn(steps.voxels) {}
 
   std::vector<float> extinction() override {
     const LevelData voxels = downloadMedium(device, steps.volume, 0);
@@ -54,9 +51,7 @@ struct SteppedStages : StageOutputs {
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
     return drawVoxels(device, steps, drawn, camera, settings);
   }
-  GatherStages gather(const Camera& camera, const FrameSettings& settings) override { return gathering.frame(camera, settings); }
   Image picture(const Camera& camera, const FrameSettings& settings) override {
-    if (drawsByGathering(settings)) return gather(camera, settings).image;
     return resolve(sums(camera, settings), settings);
   }
 
