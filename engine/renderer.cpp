@@ -317,6 +317,14 @@ std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSet
   return sums.read(frame.constants);
 }
 
+GatherStages Renderer::renderGatherStages(const Camera& camera, const FrameSettings& settings) {
+  FV_CHECK_EQ(int(settings.draw), int(Draw::Gather));
+  Image image = render(camera, settings);
+  GatherStages stages = downloadGatherStages(state_->device, state_->built, *state_->gatherVolume, *state_->gather);
+  stages.image = std::move(image);
+  return stages;
+}
+
 VolumeMemory Renderer::memory() const {
   return state_->memoryOfVolume();
 }

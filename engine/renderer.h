@@ -8,6 +8,7 @@
 
 #include "engine/core/stages.h"
 #include "engine/image/image.h"
+#include "engine/gathering/gather_stages.h"
 #include "engine/memory_planner.h"
 #include "engine/octree/hierarchy_layout.h"
 #include "engine/octree/level_data.h"
@@ -42,6 +43,10 @@ class Renderer {
   /// One a pixel, row 0 is the top: what render() resolves. `settings.composite` must not be Sorted. Sums of
   /// the parts of a volume add up to those of the whole; so nothing is left out as hidden.
   std::vector<SplatSums> renderSums(const Camera& camera, const FrameSettings& settings);
+
+  /// What render() makes by gathering, with the stages before the image: for tests and validation. `settings` must be drawn by
+  /// gathering.
+  GatherStages renderGatherStages(const Camera& camera, const FrameSettings& settings);
 
   /// With the table, whether or not a frame has read it.
   VolumeMemory memory() const;

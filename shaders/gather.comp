@@ -286,11 +286,13 @@ void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
   addPart(sums, mediumAt(quad, weights, extinctionsOf(quad), ray.toEye), ray.layer * partInFront(ahead), ahead, lit, ray.toEye);
 }
 
-// Of blocks that are classified and lit at samples: the stretch from the slice before. Along it the depth towards a light
+// Of blocks that are classified and lit at samples: the stretch from the slice before to `slice`, which holds nothing where it is
+// not `within` the level's slices. Along it the depth towards a light
 // changes as the depth towards the eye does, both being integrals of the same extinction.
 void addLitStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within) {
+  const int there = within ? slice : slice - int(ray.direction);
   vec4 weights;
-  const int quad = quadAt(level, ray.origin + ray.slope * float(slice), slice, weights);
+  const int quad = quadAt(level, ray.origin + ray.slope * float(there), there, weights);
   const vec4 extinctions = extinctionsOf(quad);
   Found found = last;
   found.medium = within ? mediumAt(quad, weights, extinctions, ray.toEye) : vec4(0.0);
@@ -327,7 +329,6 @@ Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye
   const int quad = quadAt(level, position, slice, weights);
   const uvec2 pairs = mediumQuad(quad);
   const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
-  const bool whole = all(notEqual(codes, uvec4(0)));
   Found found;
   if (kSampled) {
     found.depths = depthsTowardsLights(quad, weights);
@@ -335,6 +336,8 @@ Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye
   }
   [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = codes[i] != 0 ? weights[i] : 0.0;
   found.coverage = weights.x + weights.y + weights.z + weights.w;
+  // Beyond the sides of the volume a quad has weights for two of its blocks only.
+  const bool whole = all(notEqual(codes, uvec4(0))) && found.coverage > 0.9999;
   const vec4 scalars = (vec4(codes) - 1.0) * (float(kTransferIntervals) / float(kScalarCodes));
   found.scalar = max(dot(weights, scalars) / max(found.coverage, 1e-20), 0.0);
   // The bilinear function of the quad, continued beyond it.
@@ -409,9 +412,11 @@ float changeAcross(float scalar, float reach) {
 }
 
 // Scalars change linearly from a slice to the middle of the stretch and on to the next slice, so that integrals of the
-// transfer function give the means. In the middle both slices' functions count half.
+// transfer function give the means. In the middle both slices' functions count half. A slice that is not `within` the level's
+// slices has no data.
 void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within) {
-  Found found = scalarAt(level, ray.origin + ray.slope * float(slice), slice, 0.5 * ray.direction * ray.slope, ray.toEye);
+  const int there = within ? slice : slice - int(ray.direction);
+  Found found = scalarAt(level, ray.origin + ray.slope * float(there), there, 0.5 * ray.direction * ray.slope, ray.toEye);
   found.arriving = vec4(-1.0);
   if (!within) found.coverage = 0.0;
   const float coverage = 0.5 * (last.coverage + found.coverage);
@@ -542,9 +547,9 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
       const int rest = left - min(left, ray.group);
       do {
         if (!scalars && kSampled)
-          addLitStretch(sums, last, level, ray, clamp(slice, slices.x, slices.y), slice != final + direction);
+          addLitStretch(sums, last, level, ray, slice, slice != final + direction);
         else if (scalars)
-          addStretch(sums, last, level, ray, clamp(slice, slices.x, slices.y), slice != final + direction);
+          addStretch(sums, last, level, ray, slice, slice != final + direction);
         else
           addSlice(sums, level, ray, slice);
         slice += direction;

@@ -15,6 +15,7 @@
 #include "engine/validation/detail_quality.h"
 #include "engine/validation/emission_checks.h"
 #include "engine/validation/fly_through_quality.h"
+#include "engine/validation/gather_checks.h"
 #include "engine/validation/invariances.h"
 #include "engine/validation/leakage.h"
 #include "engine/validation/level_checks.h"
@@ -67,6 +68,8 @@ void addScene(std::vector<SectionJob>& jobs, const Device& device, const std::st
               glm::ivec2 picture, const MakeScene& makeScene) {
   jobs.push_back({fmt::format("stages of {}", name),
                   [=, &device] { return stageChecks(deviceStages(device), makeScene(), picture); }});
+  jobs.push_back({fmt::format("gather of {}", name),
+                  [=, &device] { return gatherChecks(deviceGather(device), makeScene(), picture); }});
   jobs.push_back({fmt::format("invariances of {}", name),
                   [=, &device] { return invariances(device, makeScene(), picture); }});
   jobs.push_back({fmt::format("levels of {}", name),

@@ -1,7 +1,7 @@
 #include "engine/gathering/gather_pass.h"
 
 #include <algorithm>
-#include <array>
+#include <span>
 
 #include "embedded/gather.h"
 #include "embedded/gather_stencil.h"
@@ -22,10 +22,6 @@ Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume) 
 /// Of the stencil and the upsampling, which have the same bindings.
 Pipeline makeImagePass(const Device& device, const Shader& code, bool withDistance, bool second, bool third = false) {
   return makeComputePipeline(device, code, {withDistance, second, third});
-}
-
-bool isLatticeOfPixels(const shader::GatherFrame& frame) {
-  return frame.pitch == 1.0f && frame.samples == frame.size;
 }
 
 }  // namespace
@@ -66,10 +62,14 @@ void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
   sums.distanceTexels = TexelView(device_, sums.distances, VK_FORMAT_R32_SFLOAT);
 }
 
-void GatherPass::recordGather(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
-  makeRoom(gathered_, std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y));
-  commands.beginPass("gather");
+void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
+  lattice_ = {.samples = frame.samples, .pitch = double(frame.pitch), .first = frame.firstSample};
+  direct_ = lattice_.isPixels(frame.size);
   commands.update(frame_, frame);
+}
+
+void GatherPass::recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
+  makeRoom(gathered_, std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y));
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
     const GatherVolume::Quads& quads = volume.quads(axis);
@@ -88,33 +88,33 @@ void GatherPass::recordGather(Commands& commands, const GatherVolume& volume, co
   commands.barrier(kCompute, kCompute);
 }
 
-void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets) {
-  const bool direct = isLatticeOfPixels(frame), withDistance = targets.distance.exists();
-  const Sums& any = gathered_;
-  if (!direct) {
-    makeRoom(smoothed_, std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y));
-    makeRoom(rows_, std::uint64_t(frame.size.x) * std::uint64_t(frame.samples.y));
-  }
-  const auto bindings = [&](const Sums& from, const Sums& to) {
-    return std::array<Binding, 7>{&frame_,
-                                  &from.colorEnergyTexels,
-                                  &from.distanceTexels,
-                                  &to.colorEnergyTexels,
-                                  &to.distanceTexels,
-                                  &targets.colorEnergy,
-                                  withDistance ? &targets.distance : &targets.colorEnergy};
-  };
-  commands.beginPass("gather image");
+std::vector<Binding> GatherPass::imageBindings(const Sums& from, const Sums& to, const SplatTargets& targets) const {
+  return {&frame_,
+          &from.colorEnergyTexels,
+          &from.distanceTexels,
+          &to.colorEnergyTexels,
+          &to.distanceTexels,
+          &targets.colorEnergy,
+          targets.distance.exists() ? &targets.distance : &targets.colorEnergy};
+}
+
+void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets) {
+  if (!direct_) makeRoom(smoothed_, std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y));
   const Pipeline stencil =
-      makeImagePass(device_, shaders::gather_stencil, withDistance, direct, scalars);
-  commands.dispatch(stencil, bindings(gathered_, direct ? any : smoothed_), glm::ivec3(frame.samples, 1));
-  if (direct) return;
+      makeImagePass(device_, shaders::gather_stencil, targets.distance.exists(), direct_, scalars);
+  commands.dispatch(stencil, imageBindings(gathered_, direct_ ? gathered_ : smoothed_, targets), glm::ivec3(frame.samples, 1));
+  commands.barrier(kCompute, kCompute);
+}
+
+void GatherPass::recordUpsampling(Commands& commands, const shader::GatherFrame& frame, const SplatTargets& targets) {
+  if (direct_) return;
+  makeRoom(rows_, std::uint64_t(frame.size.x) * std::uint64_t(frame.samples.y));
   for (const bool alongY : {false, true}) {
-    commands.barrier(kCompute, kCompute);
     const Pipeline upsample =
-        makeImagePass(device_, shaders::gather_upsample, withDistance, alongY);
-    commands.dispatch(upsample, alongY ? bindings(rows_, any) : bindings(smoothed_, rows_),
+        makeImagePass(device_, shaders::gather_upsample, targets.distance.exists(), alongY);
+    commands.dispatch(upsample, imageBindings(alongY ? rows_ : smoothed_, alongY ? gathered_ : rows_, targets),
                       {frame.size.x, alongY ? frame.size.y : frame.samples.y, 1});
+    commands.barrier(kCompute, kCompute);
   }
 }
 
@@ -122,9 +122,29 @@ void GatherPass::record(Commands& commands, const GatherVolume& volume, const sh
                         const SplatTargets& targets) {
   for (const RenderTarget* target : targets.all())
     commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kCompute, kCompute);
-  recordGather(commands, volume, frame);
-  recordImage(commands, frame, volume.hasScalars(), targets);
+  commands.beginPass("gather");
+  begin(commands, frame);
+  recordSamples(commands, volume, frame);
+  commands.beginPass("gather image");
+  recordStencil(commands, frame, volume.hasScalars(), targets);
+  recordUpsampling(commands, frame, targets);
   commands.barrier(kCompute, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+}
+
+std::vector<GatherSums> GatherPass::download(const Sums& sums) const {
+  const std::size_t count = std::size_t(lattice_.samples.x) * std::size_t(lattice_.samples.y);
+  std::vector<glm::vec4> colorEnergy(count);
+  std::vector<float> distances(count);
+  freevoxels::download(device_, sums.colorEnergy, std::as_writable_bytes(std::span(colorEnergy)));
+  freevoxels::download(device_, sums.distances, std::as_writable_bytes(std::span(distances)));
+  std::vector<GatherSums> result;
+  for (std::size_t i = 0; i < count; ++i)
+    result.push_back({.color = glm::dvec3(colorEnergy[i]), .energy = double(colorEnergy[i].a), .distance = double(distances[i])});
+  return result;
+}
+
+std::vector<GatherSums> GatherPass::downloadSmoothed() const {
+  return direct_ ? std::vector<GatherSums>() : download(smoothed_);
 }
 
 }  // namespace freevoxels

@@ -3,6 +3,7 @@
 // stencil restores the round footprint of splats, and the sums are upsampled to the pixels. The transmittance to the
 // eye is that of each sample's own ray: Subr et al. 2007, Section 2.1, Eq. 4, without an attenuation table.
 
+#include "engine/gathering/gather_stages.h"
 #include "engine/gathering/gather_volume.h"
 #include "engine/splatting/splat_pass.h"
 
@@ -24,9 +25,20 @@ class GatherPass {
   void record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
               const SplatTargets& targets);
 
+  /// The steps of record(), for tests that alter what lies between them: begin() writes the frame that the steps after it read.
+  /// The targets have to be in layout GENERAL.
+  void begin(Commands& commands, const shader::GatherFrame& frame);
+  void recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
+  void recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets);
+  /// Nothing where the lattice is that of the pixels.
+  void recordUpsampling(Commands& commands, const shader::GatherFrame& frame, const SplatTargets& targets);
+
+  /// Of the last frame; for validation and tests. The downloads wait.
+  const GatherLattice& lattice() const { return lattice_; }
+  std::vector<GatherSums> downloadGathered() const { return download(gathered_); }
+  std::vector<GatherSums> downloadSmoothed() const;
+
  private:
-  void recordGather(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
-  void recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets);
 
   /// C and E (four floats), and the sum of e times distance, of samples.
   struct Sums {
@@ -34,8 +46,12 @@ class GatherPass {
     TexelView colorEnergyTexels, distanceTexels;
   };
   void makeRoom(Sums& sums, std::uint64_t samples);
+  std::vector<GatherSums> download(const Sums& sums) const;
+  std::vector<Binding> imageBindings(const Sums& from, const Sums& to, const SplatTargets& targets) const;
 
   const Device& device_;
+  GatherLattice lattice_;  ///< of the last frame
+  bool direct_ = false;    ///< whether that was the lattice of the pixels
   Buffer frame_;  ///< shader::GatherFrame
   Sums gathered_, smoothed_, rows_;
 };

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "engine/attenuation/attenuation_table.h"
+#include "engine/gathering/gather_stages.h"
 #include "engine/lighting/ambient_pass.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/splatting/splat_pass.h"
@@ -56,6 +57,9 @@ class GatherVolume {
     std::uint32_t lightLevels = 0;
     std::uint64_t bytes() const;
   };
+  /// By level, of the levels that the last frame read as blocks; others are empty. For validation and tests. Waits.
+  std::vector<GatherBlocks> downloadBlocks() const;
+
   const TexelView& skips() const { return skipTexels_; }
   const TexelView& brickNumbers() const { return brickNumberTexels_; }
   const Quads& quads(int axis) const { return quads_[std::size_t(axis)]; }

@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <optional>
 
 #include "engine/core/error.h"
-#include "engine/image/metrics.h"
 #include "engine/reference/reference_rays.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/reference/reference_table.h"
 #include "engine/validation/lattice_steps.h"
 #include "engine/validation/max_error.h"
+#include "engine/validation/stage_frames.h"
 #include "engine/volume/packed_light.h"
 #include "engine/volume/subject.h"
 #include "engine/volume/voxel_classifier.h"
@@ -22,10 +21,8 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Tolerance for a transfer function's -log(1 - alpha) in 32-bit floats, which loses up to 1 / (1 -
-/// kMaximumOpacity) = 4096 units in the last place of alpha, of 8.3 that remain.
+/// A transfer function's -log(1 - alpha) in 32-bit floats loses up to 1 / (1 - kMaximumOpacity) = 4096 units
+/// in the last place of alpha, of 8.3 that are left.
 constexpr double kExtinctionTolerance = 1e-4;
 /// Half a step of 9 bits.
 constexpr double kEmissionTolerance = 2e-3;
@@ -85,16 +82,6 @@ struct Outcome {
   }
   std::vector<std::uint32_t> visible;
 };
-
-double relativeDifference(double value, double reference) {
-  if (value == reference) return 0.0;
-  return reference == 0.0 ? kInfinity : std::abs(value / reference - 1.0);
-}
-
-/// The maximum, or NaN if any figure is NaN.
-double largestComponent(glm::dvec3 v) {
-  return std::isnan(v.x + v.y + v.z) ? std::numeric_limits<double>::quiet_NaN() : std::max({v.x, v.y, v.z});
-}
 
 Check checkExtinction(const Outcome& outcome) {
   const Volume& volume = outcome.scene.volume;
@@ -221,25 +208,7 @@ Check checkDistance(const Image& picture, const Image& reference, const char* me
   return worst.atMost(kDistanceTolerance, fmt::format("resolve: distance, {}", method), "relative");
 }
 
-/// The difference as an opaque, brightened image.
-Image brightened(const Image& difference, float factor) {
-  Image result = difference;
-  for (glm::vec4& pixel : result.pixels)
-    pixel = glm::vec4(glm::min(factor * glm::vec3(pixel), glm::vec3(1.0f)), 1.0f);
-  return result;
-}
-
-ReportPictures showPictures(const Image& picture, const Image& reference, const char* method) {
-  constexpr float kBrightness = 1e4f;
-  return {.caption = fmt::format("Method: {}", method),
-          .pictures = {{"device", picture},
-                       {"reference, from the device's table", reference},
-                       {fmt::format("difference x {:g}", kBrightness),
-                        brightened(absoluteDifference(picture, reference), kBrightness)}},
-          .background = glm::vec3(0.01f)};
-}
-
-/// The difference of the codes; for depths below kShallowDepth, in codes of that.
+/// The codes' difference; where they are shallower than kShallowDepth, in codes of that.
 double rayDifference(std::uint16_t a, std::uint16_t b) {
   const std::uint16_t deeper = std::max(a, b);
   double code = decodeRayDepth(deeper) - decodeRayDepth(std::uint16_t(deeper - 1));
@@ -270,17 +239,6 @@ Check checkRays(const Outcome& outcome, const Camera& camera, const RayCodes& co
     }
   }
   return worst.atMost(kCodeTolerance, fmt::format("rays: {}", method), "codes");
-}
-
-/// A camera that looks in the direction of `outside` from the middle of the box, where no voxel has its
-/// centre.
-Camera cameraInside(const Volume& volume, const Camera& outside) {
-  const glm::dvec3 middle = 0.5 * glm::dvec3(volume.dimensions - 1) + glm::dvec3(0.1, 0.2, 0.3);
-  Camera camera = outside;
-  camera.position = glm::dvec3(volume.indexToWorld * glm::dvec4(middle, 1.0));
-  camera.lookAt = camera.position + (outside.lookAt - outside.position);
-  camera.verticalFov = 60.0;
-  return camera;
 }
 
 void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, ReportSection& section) {
@@ -316,7 +274,8 @@ void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, R
   section.checks.push_back(largestDifference(picture, resolved)
                                .atMost(kPictureTolerance, fmt::format("resolve: RGBA, {}", method.name)));
   if (method.depth) section.checks.push_back(checkDistance(picture, resolved, method.name));
-  section.pictures.push_back(showPictures(picture, referenceResolve(reference, settings), method.name));
+  section.pictures.push_back(comparedPictures(picture, referenceResolve(reference, settings), fmt::format("Method: {}", method.name),
+                                              "reference, from the device's table"));
 }
 
 constexpr const char* kExplanation =

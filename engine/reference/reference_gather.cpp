@@ -1,0 +1,312 @@
+#include "engine/reference/reference_gather.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/core/error.h"
+#include "engine/octree/hierarchy_layout.h"
+#include "shaders/gather_interface.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr double kSamplesPerVoxel = 2.0, kLeastPitch = 1.15;
+/// A camera near to the volume has a lattice for this part of the way to the farthest corner.
+constexpr double kNearReference = 0.75;
+/// A ray marches along the main axis as long as its component there is at least this part of its largest one.
+constexpr double kLeastAlongMain = 0.5;
+/// A transfer function's mean is that of the two ends where they are fewer intervals apart.
+constexpr double kLeastChange = 16.0;
+
+std::array<int, 2> sidesOf(int axis) {
+  return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
+}
+
+glm::dvec2 onSides(glm::dvec3 v, int axis) {
+  const std::array<int, 2> sides = sidesOf(axis);
+  return {v[sides[0]], v[sides[1]]};
+}
+
+/// (1 - exp(-x)) / x
+double meanTransmittance(double x) {
+  return x < 1e-6 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
+}
+
+/// What of a tent with a half width of 1, whose middle is `ahead` of the eye, is in front of the eye.
+double partOfTent(double ahead) {
+  const double a = std::clamp(ahead, -1.0, 1.0);
+  return a < 0.0 ? 0.5 * (1.0 + a) * (1.0 + a) : 1.0 - 0.5 * (1.0 - a) * (1.0 - a);
+}
+
+std::array<glm::dvec3, 8> cornersOf(glm::dvec3 low, glm::dvec3 high) {
+  std::array<glm::dvec3, 8> corners;
+  for (int i = 0; i < 8; ++i) corners[std::size_t(i)] = glm::mix(low, high, glm::dvec3(i & 1, i >> 1 & 1, i >> 2));
+  return corners;
+}
+
+/// A stretch of constant extinction (a) and source term (rgb), both per world unit. `distance` is that of its middle.
+void addPart(GatherSums& sums, double& transmittance, glm::dvec4 medium, double length, double distance) {
+  const double depth = medium.a * length, through = std::exp(-depth);
+  sums.color += transmittance * length * meanTransmittance(depth) * glm::dvec3(medium);
+  sums.distance += transmittance * -std::expm1(-depth) * std::max(distance, 0.0);
+  transmittance *= through;
+}
+
+}  // namespace
+
+/// The slices of one level that a ray's march reads: from `first` to `end` - 1 in the order of the march.
+struct ReferenceGather::Slab {
+  int axis = 0, sign = 1;
+  double edge = 1.0;  ///< of a block, voxels
+  int first = 0, count = 0;
+
+  int slice(int number) const { return first + sign * number; }
+  /// The distance at which the ray meets the middle of a slice.
+  double distance(const Ray& ray, double slice) const {
+    return ((slice + 0.5) * edge - 0.5 - ray.origin[axis]) / ray.direction[axis];
+  }
+  /// Where that is on the sides, in blocks.
+  glm::dvec2 position(const Ray& ray, double slice) const {
+    return (onSides(ray.origin + distance(ray, slice) * ray.direction, axis) + 0.5) / edge - 0.5;
+  }
+  /// World length of the ray between two slices.
+  double layer(const Ray& ray) const { return edge * ray.worldLength / std::abs(ray.direction[axis]); }
+  /// Slices from the eye plane, less than 0 behind it.
+  double ahead(const Ray& ray, double slice) const { return distance(ray, slice) * std::abs(ray.direction[axis]) / edge; }
+};
+
+/// What a ray finds on a slice of scalars, in intervals of the transfer function's table.
+struct ReferenceGather::Scalar {
+  double coverage = 0.0;  ///< by voxels with data
+  double value = 0.0, ahead = 0.0, behind = 0.0;  ///< there, and in the slice's plane half a slice further on and before
+};
+
+GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec3 voxels, glm::dvec3 albedo) {
+  GatherBlocks blocks{.dimensions = medium.dimensions, .extinction = {}, .source = {}};
+  glm::ivec3 cell;
+  for (cell.z = 0; cell.z < medium.dimensions.z; ++cell.z)
+    for (cell.y = 0; cell.y < medium.dimensions.y; ++cell.y)
+      for (cell.x = 0; cell.x < medium.dimensions.x; ++cell.x) {
+        const std::size_t i = medium.at(cell);
+        const Block block{level, cell};
+        const double inside = boxOf(block, voxels).voxels() / std::pow(double(block.edge()), 3.0);
+        const glm::dvec3 color = medium.colors.empty() ? albedo : medium.colors[i];
+        const glm::dvec3 emission = medium.emission.empty() ? glm::dvec3(0.0) : medium.emission[i];
+        blocks.extinction.push_back(inside * medium.extinction[i]);
+        blocks.source.push_back(inside * (medium.extinction[i] * color + emission));
+      }
+  return blocks;
+}
+
+ReferenceGather::ReferenceGather(const Volume& volume, const Classification& classification, const Camera& camera,
+                                 const FrameSettings& settings)
+    : volume_(volume),
+      size_(settings.size),
+      middle_(0.5 * glm::dvec2(settings.size)),
+      rays_(pixelRays(camera, settings.size, volume.indexToWorld)),
+      linear_(volume.indexToWorld),
+      detail_(detailRule(HierarchyLayout(volume.dimensions), rays_, settings.size, double(settings.lod))) {
+  FV_CHECK_EQ(settings.lighting.has_value(), false);
+  const Ray middle = rayThrough(glm::dvec2(0.0));
+  toPixel_ = glm::inverse(rays_.orthographic ? glm::dmat3(rays_.originX, rays_.originY, middle.direction)
+                                             : glm::dmat3(rays_.directionX, rays_.directionY, middle.direction));
+  mainAxis_ = majorAxis(middle.direction);
+  const std::array<int, 2> sides = sidesOf(mainAxis_);
+  pixelsPerVoxel_ = std::min(glm::length(glm::dvec2(toPixel_[sides[0]])), glm::length(glm::dvec2(toPixel_[sides[1]])));
+
+  double mean = 0.0, farthest = 0.0;
+  for (const glm::dvec3& corner : cornersOf(glm::dvec3(0.0), glm::dvec3(volume.dimensions - 1))) {
+    const double distance = (toPixel_ * (corner - middle.origin)).z;
+    mean += distance / 8.0;
+    farthest = std::max(farthest, distance);
+  }
+  const double reference = rays_.orthographic ? 1.0 : std::max(mean, kNearReference * farthest);
+  const double pitch = std::min(pixelsPerVoxel_ / (kSamplesPerVoxel * reference), double(std::max(size_.x, size_.y)));
+  lattice_ = {.samples = size_, .pitch = 1.0, .first = 0.5 - middle_};
+  if (pitch > kLeastPitch) {
+    lattice_.pitch = double(float(pitch));  // what the device's samples are placed by
+    lattice_.samples = glm::ivec2(glm::floor(glm::dvec2(size_ - 1) / lattice_.pitch)) + 4;
+    lattice_.first -= lattice_.pitch;
+  }
+
+  constexpr double kEverywhere = 1e9;
+  seenLow_ = glm::dvec2(kEverywhere);
+  seenHigh_ = glm::dvec2(-kEverywhere);
+  for (const glm::dvec3& corner : cornersOf(glm::dvec3(-1.0), glm::dvec3(volume.dimensions))) {
+    const glm::dvec3 pixel = toPixel_ * (corner - middle.origin);
+    const bool beside = !rays_.orthographic && !(pixel.z > 1e-6);
+    const glm::dvec2 position = rays_.orthographic ? glm::dvec2(pixel) : glm::dvec2(pixel) / pixel.z;
+    seenLow_ = beside ? glm::dvec2(-kEverywhere) : glm::min(seenLow_, position - 1.0);
+    seenHigh_ = beside ? glm::dvec2(kEverywhere) : glm::max(seenHigh_, position + 1.0);
+  }
+  if (classification.isPost(volume)) {
+    table_.emplace(*classification.transferFunction, volume.minimum, volume.maximum);
+    texels_ = table_->texels(1.0);
+  }
+}
+
+ReferenceGather::Ray ReferenceGather::rayThrough(glm::dvec2 position) const {
+  const glm::dvec2 pixel = middle_ + position;
+  Ray ray{.origin = rays_.origin + pixel.x * rays_.originX + pixel.y * rays_.originY,
+          .direction = rays_.direction + pixel.x * rays_.directionX + pixel.y * rays_.directionY,
+          .worldLength = 0.0};
+  ray.worldLength = glm::length(linear_ * ray.direction);
+  return ray;
+}
+
+int ReferenceGather::axisOf(glm::dvec2 position, const Ray& ray) const {
+  const bool seen = glm::all(glm::greaterThanEqual(position, seenLow_)) && glm::all(glm::lessThanEqual(position, seenHigh_));
+  const glm::dvec3 size = glm::abs(ray.direction);
+  const bool isMain = size[mainAxis_] >= kLeastAlongMain * std::max({size.x, size.y, size.z});
+  return !seen || isMain ? mainAxis_ : majorAxis(ray.direction);
+}
+
+/// A border between voxels, where the march comes to a level: the first multiple of the edge of its blocks from which on such
+/// blocks are small on the image for every ray of the lattice.
+int ReferenceGather::firstVoxel(const Ray& ray, int axis, int level) const {
+  const int voxels = volume_.dimensions[axis], sign = ray.direction[axis] > 0.0 ? 1 : -1, edge = 1 << level;
+  if (level <= detail_.finest) return sign > 0 ? 0 : voxels;
+  if (level > detail_.coarsest) return sign > 0 ? voxels : 0;
+  double steepest = 0.0;
+  for (const glm::dvec2 corner : {glm::dvec2(-1, -1), glm::dvec2(1, -1), glm::dvec2(-1, 1), glm::dvec2(1, 1)})
+    steepest = std::max(steepest, std::abs(rayThrough(corner * (middle_ + 2.0 * lattice_.pitch)).direction[axis]));
+  const double border = ray.origin[axis] + 0.5 + sign * edge * steepest / detail_.edgePerDistance;
+  const double number = sign > 0 ? std::ceil(border / edge) : std::floor(border / edge);
+  return int(std::clamp(number, 0.0, double((voxels + edge - 1) / edge))) * edge;
+}
+
+ReferenceGather::Slab ReferenceGather::slabOf(const Ray& ray, int axis, int level) const {
+  Slab slab{.axis = axis, .sign = ray.direction[axis] > 0.0 ? 1 : -1, .edge = double(1 << level)};
+  const int near = firstVoxel(ray, axis, level), far = firstVoxel(ray, axis, level + 1);
+  if (slab.sign * (far - near) <= 0) return slab;
+  const int edge = 1 << level, low = std::min(near, far) / edge, end = (std::max(near, far) + edge - 1) / edge;
+  slab.first = slab.sign > 0 ? low : end - 1;
+  slab.count = end - low;
+  return slab;
+}
+
+void ReferenceGather::marchBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab,
+                                  const GatherBlocks& blocks) const {
+  const std::array<int, 2> sides = sidesOf(slab.axis);
+  for (int number = 0; number < slab.count; ++number) {
+    const int slice = slab.slice(number);
+    const double part = partOfTent(slab.ahead(ray, slice));
+    if (part <= 0.0 || slice >= blocks.dimensions[slab.axis]) continue;
+    const glm::dvec2 position = slab.position(ray, slice), low = glm::floor(position);
+    glm::dvec4 medium(0.0);
+    for (int corner = 0; corner < 4; ++corner) {
+      glm::ivec3 cell;
+      cell[slab.axis] = slice;
+      cell[sides[0]] = int(low.x) + (corner & 1);
+      cell[sides[1]] = int(low.y) + (corner >> 1);
+      if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(cell, blocks.dimensions))) continue;
+      const glm::dvec2 away = glm::abs(position - glm::dvec2(cell[sides[0]], cell[sides[1]]));
+      const std::size_t block =
+          std::size_t(cell.x) + std::size_t(blocks.dimensions.x) *
+                                    (std::size_t(cell.y) + std::size_t(blocks.dimensions.y) * std::size_t(cell.z));
+      medium += (1.0 - away.x) * (1.0 - away.y) * glm::dvec4(blocks.source[block], blocks.extinction[block]);
+    }
+    addPart(sums, transmittance, medium, part * slab.layer(ray), slab.distance(ray, slice));
+  }
+}
+
+ReferenceGather::Scalar ReferenceGather::scalarAt(const Ray& ray, const Slab& slab, int slice) const {
+  const std::array<int, 2> sides = sidesOf(slab.axis);
+  const glm::dvec2 position = slab.position(ray, slice), low = glm::floor(position), part = position - low;
+  std::array<double, 4> values{}, weights{};
+  bool whole = true;
+  for (int corner = 0; corner < 4; ++corner) {
+    const glm::dvec2 side(corner & 1, corner >> 1);
+    glm::ivec3 voxel;
+    voxel[slab.axis] = slice;
+    voxel[sides[0]] = int(low.x + side.x);
+    voxel[sides[1]] = int(low.y + side.y);
+    const bool inside = glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) && glm::all(glm::lessThan(voxel, volume_.dimensions));
+    const int code = inside ? table_->code(volume_.scalars.at(voxel)) : 0;
+    const glm::dvec2 shares = glm::mix(1.0 - part, part, side);
+    whole = whole && code != 0;
+    if (code == 0) continue;
+    weights[std::size_t(corner)] = shares.x * shares.y;
+    values[std::size_t(corner)] = double(code - 1) * shader::kTransferIntervals / shader::kScalarCodes;
+  }
+  Scalar found;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    found.coverage += weights[i];
+    sum += weights[i] * values[i];
+  }
+  if (found.coverage > 0.0) found.value = sum / found.coverage;
+  found.ahead = found.behind = found.value;
+  if (!whole) return found;
+  const glm::dvec2 halfStep = slab.position(ray, slice + 0.5 * slab.sign) - position;
+  const auto bilinear = [&](glm::dvec2 at) {
+    return glm::mix(glm::mix(values[0], values[1], at.x), glm::mix(values[2], values[3], at.x), at.y);
+  };
+  found.ahead = bilinear(part + halfStep);
+  found.behind = bilinear(part - halfStep);
+  return found;
+}
+
+glm::dvec4 ReferenceGather::mediumAt(double scalar) const {
+  return texels_[2 * std::size_t(std::clamp(int(scalar), 0, shader::kTransferIntervals - 1)) + 1];
+}
+
+glm::dvec4 ReferenceGather::integralUpTo(double scalar) const {
+  const int interval = std::clamp(int(scalar), 0, shader::kTransferIntervals - 1);
+  return glm::dvec4(texels_[2 * std::size_t(interval)]) + (scalar - interval) * mediumAt(scalar);
+}
+
+glm::dvec4 ReferenceGather::meanBetween(double from, double to) const {
+  if (std::abs(to - from) <= kLeastChange) return 0.5 * (mediumAt(from) + mediumAt(to));
+  return (integralUpTo(to) - integralUpTo(from)) / (to - from);
+}
+
+/// From slice to slice, in two halves: the scalar is linear up to the middle, where both slices' functions count half, and on
+/// from there. Extinction falls with the share of voxels that have data, which is linear all the way.
+void ReferenceGather::marchScalars(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab) const {
+  Scalar last;
+  for (int number = 0; number <= slab.count; ++number) {
+    const int slice = slab.slice(number);
+    const Scalar found = number < slab.count ? scalarAt(ray, slab, slice) : Scalar();
+    const Scalar& first = last.coverage > 0.0 ? last : found;
+    const Scalar& second = found.coverage > 0.0 ? found : last;
+    const bool both = last.coverage > 0.0 && found.coverage > 0.0;
+    const double middle =
+        both ? std::clamp(0.5 * (last.ahead + found.behind), 0.0, double(shader::kTransferIntervals)) : first.value;
+    for (const double part : {0.25, 0.75}) {
+      const glm::dvec4 mean = part < 0.5 ? meanBetween(first.value, middle) : meanBetween(middle, second.value);
+      const double from = slab.ahead(ray, slice) - 1.25 + part;  // slices in front of the eye where the half begins
+      const double length = std::clamp(from + 0.5, 0.0, 0.5) * slab.layer(ray) * glm::mix(last.coverage, found.coverage, part);
+      addPart(sums, transmittance, mean, length, slab.distance(ray, slice + slab.sign * (part - 1.0)));
+    }
+    last = found;
+  }
+}
+
+std::vector<GatherSums> ReferenceGather::samples(std::span<const GatherBlocks> blocks) const {
+  std::vector<GatherSums> result(std::size_t(lattice_.samples.x) * std::size_t(lattice_.samples.y));
+  tbb::parallel_for(0, lattice_.samples.y, [&](int y) {
+    for (int x = 0; x < lattice_.samples.x; ++x) {
+      const glm::dvec2 position = positionOf({x, y});
+      const Ray ray = rayThrough(position);
+      const int axis = axisOf(position, ray);
+      GatherSums& sums = result[std::size_t(x) + std::size_t(lattice_.samples.x) * std::size_t(y)];
+      double transmittance = 1.0;
+      for (int level = detail_.finest; level <= detail_.coarsest; ++level) {
+        const Slab slab = slabOf(ray, axis, level);
+        if (level == 0 && hasScalars())
+          marchScalars(sums, transmittance, ray, slab);
+        else
+          marchBlocks(sums, transmittance, ray, slab, blocks[std::size_t(level)]);
+      }
+      sums.energy = 1.0 - transmittance;
+    }
+  });
+  return result;
+}
+
+}  // namespace freevoxels

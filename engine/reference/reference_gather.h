@@ -1,0 +1,81 @@
+#pragma once
+// A frame by gathering, stage by stage, on the CPU in double precision. It follows the method's description and shares no
+// code with the shaders: every sample's ray is intersected with every slice of voxels, nothing is skipped, and no ray ends
+// early, so that it is the device's frame at a cull threshold of 0. Frames without lights.
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/gathering/gather_stages.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/render_settings.h"
+#include "engine/visibility/detail_rule.h"
+#include "engine/volume/classification.h"
+#include "engine/volume/transfer_table.h"
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+/// What the blocks of a level should be stored as, before rounding: extinction and extinction times colour, plus emission,
+/// each times the part of the block that is inside of the volume. `albedo` is the colour of levels that have none of their own.
+GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec3 voxels, glm::dvec3 albedo);
+
+class ReferenceGather {
+ public:
+  /// Keeps a reference to the volume.
+  ReferenceGather(const Volume& volume, const Classification& classification, const Camera& camera,
+                  const FrameSettings& settings);
+
+  const GatherLattice& lattice() const { return lattice_; }
+  /// The levels of the octree that the frame reads.
+  const DetailRule& detail() const { return detail_; }
+  /// Whether voxels are classified after interpolation; the blocks of level 0 are not read then.
+  bool hasScalars() const { return table_.has_value(); }
+
+  /// Marches the ray of every sample. `blocks` is indexed by level.
+  std::vector<GatherSums> samples(std::span<const GatherBlocks> blocks) const;
+  /// Restores the round footprint.
+  std::vector<GatherSums> smoothed(const std::vector<GatherSums>& samples) const;
+  /// Interpolates smoothed samples at the pixels and resolves. Image::depth is always made.
+  Image image(const std::vector<GatherSums>& smoothed) const;
+
+ private:
+  /// Points origin + t direction, t being the distance from the eye plane.
+  struct Ray {
+    glm::dvec3 origin, direction;
+    double worldLength;  ///< of `direction`
+  };
+  struct Slab;
+  struct Scalar;
+  Ray rayThrough(glm::dvec2 position) const;
+  int axisOf(glm::dvec2 position, const Ray& ray) const;
+  Slab slabOf(const Ray& ray, int axis, int level) const;
+  int firstVoxel(const Ray& ray, int axis, int level) const;
+  void marchBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab, const GatherBlocks& blocks) const;
+  void marchScalars(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab) const;
+  Scalar scalarAt(const Ray& ray, const Slab& slab, int slice) const;
+  glm::dvec4 mediumAt(double scalar) const;
+  glm::dvec4 integralUpTo(double scalar) const;
+  glm::dvec4 meanBetween(double from, double to) const;
+  glm::dvec2 positionOf(glm::ivec2 sample) const { return lattice_.first + lattice_.pitch * glm::dvec2(sample); }
+  glm::dvec3 missingCovariance(glm::dvec2 position, double distance) const;
+  GatherSums smoothedAt(const std::vector<GatherSums>& samples, glm::ivec2 sample) const;
+  std::vector<GatherSums> interpolated(const std::vector<GatherSums>& from, glm::ivec2 fromSize, int side) const;
+
+  const Volume& volume_;
+  glm::ivec2 size_;
+  glm::dvec2 middle_;  ///< of the image, pixels
+  PixelRays rays_;
+  glm::dmat3 linear_;   ///< from index space to the world
+  glm::dmat3 toPixel_;  ///< index offset -> (x t, y t, t), orthographic (x, y, t), with x and y from the image's middle
+  DetailRule detail_;
+  int mainAxis_ = 0;
+  double pixelsPerVoxel_ = 1.0;  ///< perspective: times the distance
+  GatherLattice lattice_;
+  glm::dvec2 seenLow_, seenHigh_;
+  std::optional<TransferTable> table_;
+  std::vector<glm::vec4> texels_;  ///< of the table, per world unit
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,145 @@
+// ReferenceGather's part from the sums of the samples to the image.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "engine/reference/reference_gather.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// Variance in voxels, squared, of a splat's round kernel along one axis. A slice's tent has it across the slice.
+constexpr double kKernelVariance = 0.1624;
+/// What the coarse stencil needs more than that.
+constexpr double kStrength = 1.2;
+constexpr double kMostVariance = 0.8;  ///< that a stencil of 3x3 samples can add, squares of the pitch
+constexpr double kLeastTransmittance = 1e-6;
+constexpr double kUnknown = -1.0;
+
+/// Adds samples with weights of both signs. The mean distance of the result stays between those of the samples.
+class WeightedSum {
+ public:
+  void add(double weight, const GatherSums& sample) {
+    sum_.color += weight * sample.color;
+    sum_.energy += weight * sample.energy;
+    if (!(sample.energy > 0.0) || sample.distance < 0.0) return;
+    sum_.distance += weight * sample.distance;
+    nearest_ = std::min(nearest_, sample.distance / sample.energy);
+    farthest_ = std::max(farthest_, sample.distance / sample.energy);
+  }
+  GatherSums result() const {
+    GatherSums sum = sum_;
+    const bool known = sum.energy > 0.0 && nearest_ <= farthest_;
+    sum.distance = known ? std::clamp(sum.distance, sum.energy * nearest_, sum.energy * farthest_) : kUnknown;
+    return sum;
+  }
+
+ private:
+  GatherSums sum_;
+  double nearest_ = std::numeric_limits<double>::max(), farthest_ = 0.0;
+};
+
+/// Catmull-Rom: of the samples at -1, 0, 1 and 2.
+std::array<double, 4> cubicWeights(double x) {
+  const double x2 = x * x, x3 = x2 * x;
+  return {-0.5 * x + x2 - 0.5 * x3, 1.0 - 2.5 * x2 + 1.5 * x3, 0.5 * x + 2.0 * x2 - 1.5 * x3, -0.5 * x2 + 0.5 * x3};
+}
+
+}  // namespace
+
+/// (xx, xy, yy) in squares of the pitch: a tent seen obliquely lacks the kernel's variance along the image of the axis, and
+/// voxels that are smaller than a pixel are widened to it.
+glm::dvec3 ReferenceGather::missingCovariance(glm::dvec2 position, double distance) const {
+  const int axis = axisOf(position, rayThrough(position));
+  const double scale = rays_.orthographic ? 1.0 : 1.0 / distance;
+  const glm::dvec3 step = toPixel_[axis];
+  const glm::dvec2 tilt = scale * (glm::dvec2(step) - (rays_.orthographic ? 0.0 : step.z) * position);
+  const double pixels = scale * pixelsPerVoxel_, widening = std::max(1.0 - pixels * pixels, 0.0);
+  const double perSquare = kKernelVariance / (lattice_.pitch * lattice_.pitch);
+  const glm::dvec3 covariance =
+      perSquare * (kStrength * glm::dvec3(tilt.x * tilt.x, tilt.x * tilt.y, tilt.y * tilt.y) + glm::dvec3(widening, 0.0, widening));
+  const double sum = covariance.x + covariance.z;
+  return sum > kMostVariance ? kMostVariance / sum * covariance : covariance;
+}
+
+GatherSums ReferenceGather::smoothedAt(const std::vector<GatherSums>& samples, glm::ivec2 sample) const {
+  const auto neighbour = [&](int x, int y) -> const GatherSums& {
+    const glm::ivec2 place = glm::clamp(sample + glm::ivec2(x, y), glm::ivec2(0), lattice_.samples - 1);
+    return samples[std::size_t(place.x) + std::size_t(lattice_.samples.x) * std::size_t(place.y)];
+  };
+  double energy = 0.0, distances = 0.0;
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      energy += neighbour(x, y).energy;
+      distances += neighbour(x, y).distance;
+    }
+  glm::dvec3 covariance(0.0);
+  if (energy > 1e-20 && distances > 0.0) covariance = missingCovariance(positionOf(sample), distances / energy);
+  WeightedSum sum;
+  double depth = 0.0;
+  for (int y = -1; y <= 1; ++y)
+    for (int x = -1; x <= 1; ++x) {
+      // Half the second derivative along each direction: a quadratic's mean over a distribution of this covariance.
+      const double weight = x == 0 && y == 0 ? 1.0 - covariance.x - covariance.z
+                            : x != 0 && y != 0 ? 0.25 * x * y * covariance.y
+                            : x != 0           ? 0.5 * covariance.x
+                                               : 0.5 * covariance.z;
+      sum.add(weight, neighbour(x, y));
+      depth -= weight * std::log(std::max(1.0 - neighbour(x, y).energy, kLeastTransmittance));
+    }
+  GatherSums result = sum.result();
+  // Footprints add up optical depths; scalars are interpolated as they are.
+  if (hasScalars() || result.energy <= kLeastTransmittance) return result;
+  const double scale = -std::expm1(-std::max(depth, 0.0)) / result.energy;
+  return {.color = scale * result.color, .energy = scale * result.energy, .distance = scale * result.distance};
+}
+
+std::vector<GatherSums> ReferenceGather::smoothed(const std::vector<GatherSums>& samples) const {
+  std::vector<GatherSums> result;
+  for (int y = 0; y < lattice_.samples.y; ++y)
+    for (int x = 0; x < lattice_.samples.x; ++x) result.push_back(smoothedAt(samples, {x, y}));
+  return result;
+}
+
+/// From rows or columns of samples to those of pixels.
+std::vector<GatherSums> ReferenceGather::interpolated(const std::vector<GatherSums>& from, glm::ivec2 fromSize, int side) const {
+  glm::ivec2 size = fromSize;
+  size[side] = size_[side];
+  std::vector<GatherSums> result;
+  for (int y = 0; y < size.y; ++y)
+    for (int x = 0; x < size.x; ++x) {
+      glm::ivec2 place(x, y);
+      const double position = (place[side] + 0.5 - middle_[side] - lattice_.first[side]) / lattice_.pitch;
+      const int low = std::clamp(int(std::floor(position)), 1, lattice_.samples[side] - 3);
+      const std::array<double, 4> weights = cubicWeights(position - low);
+      WeightedSum sum;
+      for (int i = 0; i < 4; ++i) {
+        place[side] = low - 1 + i;
+        sum.add(weights[std::size_t(i)], from[std::size_t(place.x) + std::size_t(fromSize.x) * std::size_t(place.y)]);
+      }
+      result.push_back(sum.result());
+    }
+  return result;
+}
+
+Image ReferenceGather::image(const std::vector<GatherSums>& smoothed) const {
+  std::vector<GatherSums> pixels = smoothed;
+  if (!lattice_.isPixels(size_)) {
+    pixels = interpolated(pixels, lattice_.samples, 0);
+    pixels = interpolated(pixels, {size_.x, lattice_.samples.y}, 1);
+  }
+  Image image;
+  image.size = size_;
+  for (const GatherSums& pixel : pixels) {
+    const double alpha = std::clamp(pixel.energy, 0.0, 1.0);
+    image.pixels.emplace_back(glm::max(pixel.color, glm::dvec3(0.0)), alpha);
+    const bool known = alpha > 0.0 && pixel.distance >= 0.0;
+    image.depth.push_back(known ? float(pixel.distance / alpha) : std::numeric_limits<float>::infinity());
+  }
+  return image;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,101 @@
+#pragma once
+// A gathered frame pass by pass: a test alters what one pass reads, and those after it go on
+// with what it made.
+
+#include <functional>
+#include <optional>
+
+#include "engine/gathering/gather_pass.h"
+#include "engine/gathering/gather_stages.h"
+#include "engine/octree/volume_builder.h"
+#include "engine/validation/gather_checks.h"
+#include "engine/vulkan/target_readback.h"
+
+namespace freevoxels::test {
+
+struct SteppedGather : GatherOutputs {
+  static constexpr VkPipelineStageFlags2 kStage = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  const Device& device;
+  const Volume& source;
+  Classification classification;
+  std::vector<StageTime> times;
+  BuiltVolume built;
+  GatherPass pass;
+  std::optional<GatherVolume> volume;
+
+  /// What the checks are told that blocks are made of is not altered.
+  std::function<void(const Device&, BuiltVolume&)> alterMedium;
+  std::function<void(const Device&, const GatherVolume::Quads&)> alterQuads;
+  /// Of the frame as one pass reads it.
+  std::function<void(shader::GatherFrame&)> alterSamples, alterStencil, alterUpsampling;
+
+  SteppedGather(const Device& on, const Volume& of, const Classification& how)
+      : device(on), source(of), classification(how), built(buildVolume(on, of, how, times)), pass(on) {}
+
+  GatherStages frame(const Camera& camera, const FrameSettings& wanted) override {
+    FrameSettings settings = wanted;
+    settings.attenuation = AttenuationLookup::Exact;
+    if (settings.lod > 0.0f && !built.hasBlocks()) buildBlocks(device, source, classification, built, times);
+    const FrameConstants constants = makeFrameConstants(device, built.volume, {}, camera, settings);
+    shader::GatherFrame rays = makeGatherFrame(built.volume, camera, settings, constants.detail, constants.hiddenTransmittance);
+    const GatherVolume::Shading shading{.frame = constants,
+                                        .table = nullptr,
+                                        .lighting = nullptr,
+                                        .lights = nullptr,
+                                        .axes = {someRayHasAxis(rays, 0), someRayHasAxis(rays, 1), someRayHasAxis(rays, 2)}};
+    std::vector<LevelData> medium;
+    for (int level = 0; built.hasBlocks() && level <= constants.detail.coarsest; ++level)
+      medium.push_back(downloadMedium(device, built.volume, level));
+    if (alterMedium) alterMedium(device, built);
+    volume.emplace(device, source, classification, built, times);  // what was altered for another frame is not kept
+    volume->prepare(shading, times);
+    run([&](Commands& commands) { volume->record(commands, shading); });
+    volume->describe(rays);
+    if (alterQuads) alterQuads(device, volume->quads(rays.mainAxis));
+
+    const SplatTargets targets = makeImageTargets(device, settings);
+    run([&](Commands& commands) {
+      for (const RenderTarget* target : targets.all())
+        commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kStage, kStage);
+    });
+    const auto step = [&](const std::function<void(shader::GatherFrame&)>& alter, const auto& record) {
+      shader::GatherFrame altered = rays;
+      if (alter) alter(altered);
+      run([&](Commands& commands) {
+        pass.begin(commands, altered);
+        record(commands, altered);
+      });
+    };
+    step(alterSamples, [&](Commands& commands, const shader::GatherFrame& f) { pass.recordSamples(commands, *volume, f); });
+    step(alterStencil, [&](Commands& commands, const shader::GatherFrame& f) {
+      pass.recordStencil(commands, f, volume->hasScalars(), targets);
+    });
+    step(alterUpsampling, [&](Commands& commands, const shader::GatherFrame& f) { pass.recordUpsampling(commands, f, targets); });
+    GatherStages stages = downloadGatherStages(device, built, *volume, pass);
+    stages.lattice = {.samples = rays.samples, .pitch = double(rays.pitch), .first = rays.firstSample};
+    for (std::size_t level = 0; level < stages.medium.size() && level < medium.size(); ++level)
+      if (stages.blocks[level].exists()) stages.medium[level] = medium[level];
+    stages.image = readImage(targets, settings);
+    return stages;
+  }
+
+ private:
+  template <typename Record>
+  void run(const Record& record) {
+    Commands commands(device);
+    record(commands);
+    commands.submitAndWait();
+  }
+  Image readImage(const SplatTargets& targets, const FrameSettings& settings) const {
+    Commands commands(device);
+    const TargetReadback color(device, commands, targets.colorEnergy);
+    std::optional<TargetReadback> depth;
+    if (settings.depth) depth.emplace(device, commands, targets.distance);
+    commands.submitAndWait();
+    return {.size = settings.size,
+            .pixels = color.read<glm::vec4>(),
+            .depth = depth ? depth->read<float>() : std::vector<float>()};
+  }
+};
+
+}  // namespace freevoxels::test
