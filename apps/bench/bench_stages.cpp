@@ -39,7 +39,7 @@ double passTime(const std::vector<StageTime>& times, std::string_view name) {
   return sum;
 }
 
-/// Milliseconds of the last frame's passes.
+/// Milliseconds of the passes of the last frame.
 struct Frame {
   double cut = 1e30, draw = 1e30;
   double total() const { return cut + draw; }
@@ -67,7 +67,7 @@ Lighting directionalLights(int count) {
   return lighting;
 }
 
-/// Milliseconds from a volume in memory to its first picture of 1024 x 1024 pixels in memory.
+/// Milliseconds from a volume in memory to its first image of 1024 x 1024 pixels in memory.
 double firstImage(const Device& device, const Volume& volume, const Classification& classification, bool lit,
                   int runs) {
   FrameSettings settings{.size = {1024, 1024}, .draw = Draw::Auto};

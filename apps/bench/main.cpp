@@ -134,7 +134,7 @@ Results measure(const Device& device, const Extent& extent, const std::vector<st
   return results;
 }
 
-/// Of a GPU, most are less than a millisecond.
+/// With three decimals below 10 ms, as most stages of a GPU take less than a millisecond.
 std::string timeText(double milliseconds) {
   return fmt::format("{:.{}f}", milliseconds, milliseconds < 10.0 ? 3 : 1);
 }

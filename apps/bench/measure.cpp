@@ -9,7 +9,7 @@
 namespace freevoxels::bench {
 
 double least(int runs, const std::function<double()>& run) {
-  // A GPU that had nothing to do takes a while to come to its full clock.
+  // An idle GPU takes a while to reach its full clock rate.
   constexpr std::chrono::milliseconds kAtLeast(300);
   const auto start = std::chrono::steady_clock::now();
   double best = std::numeric_limits<double>::max();

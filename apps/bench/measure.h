@@ -1,6 +1,6 @@
 #pragma once
-// Timings that survive a noisy machine: the least of several runs, beside a copy of the same bytes in the
-// same run.
+// Timings for noisy machines: the least of several runs, compared with a copy of the same bytes in the same
+// run.
 
 #include <cstdint>
 #include <functional>
@@ -11,13 +11,13 @@ namespace freevoxels::bench {
 
 struct Result {
   std::string name;               ///< "26 sweeps 128^3"
-  double milliseconds = 0.0;      ///< least of the runs
-  double copyMilliseconds = 0.0;  ///< copying `bytes` with two threads; 0 = no such yardstick
-  double perSecond = 0.0;         ///< items a second, 0 = not counted
+  double milliseconds = 0.0;      ///< least of all runs
+  double copyMilliseconds = 0.0;  ///< time to copy `bytes` with two threads; 0 if there is no such comparison
+  double perSecond = 0.0;         ///< items a second; 0 if not counted
 };
 
 /// Milliseconds of the fastest of `runs` calls of `run`, which returns its own time in milliseconds; of more
-/// where these take less than a third of a second.
+/// calls if they take less than a third of a second together.
 double least(int runs, const std::function<double()>& run);
 
 /// Milliseconds to copy `bytes` with two threads, the fastest of a few runs.

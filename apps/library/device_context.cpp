@@ -10,7 +10,8 @@ DeviceContext::DeviceContext(const DeviceOptions& options) : instance(validation
 DeviceContext& deviceContext(const DeviceOptions& options) {
   static std::mutex opening;
   const std::lock_guard lock(opening);
-  // Never destroyed: Python, or static objects, may drop the last renderer after Vulkan's own static objects are gone.
+  // Never destroyed, because Python or static objects may release the last renderer after Vulkan's own static
+  // objects are gone.
   static auto& contexts = *new std::map<std::pair<std::string, int>, std::unique_ptr<DeviceContext>>;
   std::unique_ptr<DeviceContext>& context = contexts[{options.selector.value_or(""), options.memoryLimit.value_or(0)}];
   if (!context) context = std::make_unique<DeviceContext>(options);

@@ -1,5 +1,5 @@
 #pragma once
-// Vulkan devices that the renderers of one process share.
+// The Vulkan devices that all renderers of a process share.
 
 #include <memory>
 #include <mutex>
@@ -14,11 +14,11 @@ struct DeviceContext {
 
   Instance instance;
   std::unique_ptr<Device> device;
-  std::mutex mutex;  ///< to be held by the thread that uses `device`
+  std::mutex mutex;  ///< must be held by the thread that uses `device`
 };
 
-/// The context of these options, opened at the first call and kept until the process ends. Any thread may call it.
-/// Fails with ExitCode::Device.
+/// The context for these options. It is opened by the first call and kept until the process ends. Any thread
+/// may call this. Fails with ExitCode::Device.
 DeviceContext& deviceContext(const DeviceOptions& options);
 
 }  // namespace freevoxels

@@ -16,7 +16,7 @@ std::string groupOf(const CLI::Option& option) {
   return CLI::detail::to_lower(option.get_group());
 }
 
-/// "density_scale" of --density-scale.
+/// The keyword of an option: "density_scale" for --density-scale.
 std::string keywordOf(std::string name) {
   std::ranges::replace(name, '-', '_');
   return name;
@@ -26,7 +26,7 @@ std::string keywordOf(const CLI::Option& option) {
   return keywordOf(option.get_lnames().front());
 }
 
-/// Whether a value of the key "light" is one light, not the section of that name.
+/// Whether a value of the key "light" is a single light, rather than the section of that name.
 bool isLight(const Json& value) {
   return value.contains("direction") || value.contains("position");
 }

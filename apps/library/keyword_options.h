@@ -1,5 +1,5 @@
 #pragma once
-// Options of the command line given by name, as JSON values: scenes of the library, and what keyword arguments of Python become.
+// Options of the command line as JSON values: the scenes of the library, and the keyword arguments of Python.
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -12,20 +12,21 @@
 
 namespace freevoxels {
 
-/// Options of `freevoxels render`. They are read, checked and refused by the same code, so that a
-/// value that the command line takes is taken here, and the sentence of an error is the same.
+/// Options of `freevoxels render`, read and checked by the command line's code, so that the same values are
+/// accepted and errors have the same sentences.
 class KeywordOptions {
  public:
-  /// `keywords` is an object; `sections` are the sections of a scene file whose options it may give. A key is an option's name with '_' in place of '-' ("density_scale"), or a section of a
-  /// scene file (apps/scenes/README.md) whose value is an object of such keys: {"camera": {"orbit": [35, 25]}}. A scene
-  /// file, key "scene", supplies what the other keys leave out. `volume`, a file or "procedural:NAME", takes the place of
-  /// the scene file's. Fails with ExitCode::Usage for unknown keys and options
-  /// that exclude each other, with ExitCode::Input for values of a wrong type.
+  /// Reads the options from the object `keywords`. A key is the name of an option, with '-' or '_'
+  /// ("density_scale"), or a section of a scene file (apps/scenes/README.md) whose value is an object of such
+  /// keys: {"camera": {"orbit": [35, 25]}}. Only options of `sections` are accepted. The key "scene" names a
+  /// scene file that supplies what the other keys leave out. `volume`, a file or "procedural:NAME", replaces
+  /// that of the scene file. Fails with ExitCode::Usage for unknown keys and options that exclude each other,
+  /// with ExitCode::Input for values of a wrong type.
   KeywordOptions(const nlohmann::json& keywords, std::vector<std::string> sections, const std::string& volume = "");
   KeywordOptions(const KeywordOptions&) = delete;
   KeywordOptions& operator=(const KeywordOptions&) = delete;
 
-  /// What scene.resolveClassification reads of the options: frames of equal text share its result.
+  /// The options that scene.resolveClassification reads, as text: frames of equal text share its result.
   const std::string& classificationText() const { return classificationText_; }
 
   SceneOptions scene;

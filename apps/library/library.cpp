@@ -1,4 +1,4 @@
-// The public interface, over the engine. No exception of the engine's own leaves it.
+// The public interface. No exception type of the engine leaves it.
 
 #include <cmath>
 
@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Calls `work` and makes this interface's errors of the engine's.
+/// Calls `work` and converts the engine's errors to those of this interface.
 template <typename Work>
 auto translated(const Work& work) {
   try {

@@ -38,7 +38,7 @@ std::unique_ptr<KeywordOptions> SceneRenderer::read(const Json& more) const {
   Json merged = keywords_;
   merged.update(more);
   auto options = std::make_unique<KeywordOptions>(merged, kViewSections);
-  options->scene.input = {};  // whatever volume a scene file names
+  options->scene.input = {};  // the volume of a scene file is ignored
   options->scene.checkLook();
   return options;
 }
@@ -53,7 +53,7 @@ void SceneRenderer::makeRenderer(const KeywordOptions& options, const Progress& 
   options.scene.resolveView(scene_);
   const std::string text = options.scene.rendererText(scene_, options.method.table());
   if (renderer_ && text == rendererText_) return;
-  renderer_ = nullptr;  // the device need not hold two at once
+  renderer_ = nullptr;  // so that the device never holds two
   renderer_ = std::make_unique<Renderer>(*context_.device, *volume_, scene_.classification, options.method.table(), progress);
   rendererText_ = text;
 }

@@ -19,10 +19,10 @@ struct Half {
   explicit operator float() const { return glm::unpackHalf1x16(bits); }
 };
 
-/// What of an array is read without the GIL, while its owner holds a reference.
+/// The parts of an array that are read without the GIL, while its owner holds a reference.
 struct Source {
   const char* data;
-  glm::i64vec3 strides;  ///< bytes along x, y and z
+  glm::i64vec3 strides;  ///< distances in bytes along x, y and z
   glm::ivec3 dimensions;
 };
 
@@ -62,7 +62,7 @@ ScalarBricks bricksOf(const Source& source, std::optional<double> noData) {
 ScalarBricks readArray(const py::array& array, std::optional<double> noData) {
   const Source source = sourceOf(array);
   const py::dtype type = array.dtype();
-  if (type.byteorder() != '>')  // Debian's machines that this runs on are little-endian
+  if (type.byteorder() != '>')  // the supported machines are little-endian
     switch (type.kind()) {
       case 'b': return bricksOf<std::uint8_t>(source, noData);
       case 'u':

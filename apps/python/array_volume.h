@@ -1,5 +1,5 @@
 #pragma once
-// Volumes made of arrays that Python owns.
+// Volumes of NumPy arrays.
 
 #include <pybind11/numpy.h>
 
@@ -10,15 +10,17 @@
 
 namespace freevoxels {
 
-/// Where an array stands in the world, and which of its values are none.
+/// The place of an array in the world, and its marker of no data.
 struct ArrayPlacement {
-  /// Maps (x, y, z), the indices of a voxel in the reverse order of the array's axes, to the position of its centre.
+  /// Maps a voxel (x, y, z), its indices in the reverse order of the array's axes, to the position of its
+  /// centre.
   glm::dmat4 indexToWorld{1.0};
-  std::optional<double> noData;  ///< marks voxels that hold no data, as NaN always does
+  std::optional<double> noData;  ///< value of voxels without data, in addition to NaN
 };
 
-/// Reads an array with axes (z, y, x), of real numbers or bool in the machine's byte order and any strides, without copying it
-/// first; releases the GIL meanwhile. `temperature` has the same shape. Fails with ExitCode::Input for other arrays.
+/// Reads an array with axes (z, y, x), of real numbers or bool in the machine's byte order and with any
+/// strides, without copying it first. Releases the GIL meanwhile. `temperature` must have the same shape.
+/// Fails with ExitCode::Input for other arrays.
 Volume volumeOfArray(const pybind11::array& scalars, const std::optional<pybind11::array>& temperature,
                      const ArrayPlacement& placement);
 

@@ -142,8 +142,8 @@ void addRenderer(py::module_& module) {
       .def_property_readonly("device", &SceneRenderer::device, "Name of the Vulkan device.");
 }
 
-/// render(): the keywords of the volume are taken out of those of the frame. A file is read with all of them, as its scene decides
-/// which of its grids are needed.
+/// render(): takes the keywords of the volume out of those of the frame. A file is read with all keywords,
+/// since the scene decides which of its grids are needed.
 py::object renderOnce(const py::object& source, const py::object& progress, bool depth, py::kwargs keywords) {
   const py::object type = py::type::of<PythonVolume>();
   py::object volume = source;

@@ -23,7 +23,7 @@ py::array adopt(std::vector<Value>& values, std::vector<py::ssize_t> shape) {
   return py::array(py::dtype::of<float>(), std::move(shape), data, owner);
 }
 
-/// Needs no lock of its own: the GIL lets one message through at a time.
+/// Needs no lock, because the GIL lets only one message through at a time.
 class PythonLog : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override {
@@ -41,11 +41,11 @@ class PythonLog : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
 struct ExceptionClass {
   ExitCode code;
   const char* name;
-  PyObject* alsoBase;  ///< a class of Python's own that handlers may expect
+  PyObject* alsoBase;  ///< a standard class of Python that callers may expect
   const char* meaning;
 };
 
-/// The classes by ExitCode; others than those here are freevoxels.Error itself. References that the module shares.
+/// The exception classes by ExitCode, owned by the module. Other codes are freevoxels.Error itself.
 std::array<PyObject*, 8> exceptionClasses{};
 
 }  // namespace

@@ -1,5 +1,5 @@
 #pragma once
-// A section's checks for a person at a terminal.
+// The checks of a section as text for a terminal.
 
 #include <string>
 #include <vector>
@@ -8,7 +8,8 @@
 
 namespace freevoxels::validate {
 
-/// The section's title, then a line a check: verdict, name, figure, bound, unit, where it is worst.
+/// The section's title, then a line for each check: verdict, name, figure, bound, unit, and the place of the
+/// worst figure.
 std::vector<std::string> checkLines(const ReportSection& section);
 
 /// "1.2e-05 > 1e-05 relative, pixel (1, 2)"

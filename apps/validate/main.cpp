@@ -1,4 +1,4 @@
-// freevoxels-validate: whether this device draws what it should, stage by stage.
+// freevoxels-validate: checks stage by stage whether this device draws what it should.
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -35,7 +35,7 @@ Report runAll(const std::vector<SectionJob>& jobs) {
   return report;
 }
 
-/// The last line, and the exit code.
+/// Prints the last line and fails if a check failed.
 void conclude(const Report& report, double seconds) {
   std::size_t checks = 0, failed = 0;
   const Check* first = nullptr;
@@ -52,7 +52,7 @@ void conclude(const Report& report, double seconds) {
          validate::figureAgainstBound(*first));
 }
 
-/// Where the report goes, if anywhere.
+/// The files of the report, if any.
 struct ReportFiles {
   std::optional<std::string> html, json;
 
@@ -60,7 +60,7 @@ struct ReportFiles {
     addText(app, "--report", "FILE.html", html, "Write the report, pictures included, as one page");
     addText(app, "--json", "FILE", json, "Write the figures for programs");
   }
-  /// Before any work.
+  /// To be called before any work.
   void check(const std::vector<std::string>& inputs) const {
     std::vector<std::string> files = inputs;
     for (const auto& file : {html, json})

@@ -33,22 +33,23 @@ constexpr int kQuickFileEdge = 40, kWholeFileEdge = 128;
 constexpr int kQuickProcedural = 32, kMedium = 64, kLarge = 128;  ///< voxels along an edge
 constexpr int kQuickPicture = 80, kWholePicture = 96;
 constexpr int kQuickCube = 40, kWholeCube = 64;
-constexpr int kQuickQuality = 48;  ///< voxels along an edge where pictures meet the oracle
+constexpr int kQuickQuality = 48;  ///< voxels along an edge for comparisons with the oracle
 constexpr int kQuickQualityPicture = 96, kWholeQualityPicture = 160, kLargeQualityPicture = 256;
-/// Where a voxel is as large as the parts of a volume, no method has to reach anything.
+/// Least resolution with goals: in coarser volumes structures have the size of a voxel.
 constexpr int kLeastResolutionWithGoals = kLarge;
 constexpr int kQuickLightPicture = 64;
-constexpr int kQuickSky = 24;  ///< voxels along an edge, where the oracle takes its time for each
+constexpr int kQuickSky = 24;  ///< voxels along an edge for skies, for which the oracle is slow
 constexpr int kDetailResolution = kMedium;
 constexpr int kTurntableResolution = kMedium, kTurntableFrames = 72, kTurntablePicture = 64;
 constexpr int kQuickFlightFrames = 8, kWholeFlightFrames = 60, kFlightPicture = 64;
-constexpr int kFlightSubject = 2;  ///< of kQualitySubjects: the cloud
+constexpr int kFlightSubject = 2;  ///< index into kQualitySubjects: the cloud
 
 constexpr std::array<QualitySubject, 3> kCullingSubjects{{{"head", QualityColor::Skin, false},
                                                           {"head", QualityColor::Bone, false},
                                                           {"shells", QualityColor::Cloud, false}}};
 
-/// Of the large ones a full one, which is drawn in several chunks, and a sparse one say what size can change.
+/// Two of the volumes are also checked at a large size, to find errors that depend on size: a full one, which
+/// is drawn in several chunks, and a sparse one.
 struct ProceduralScene {
   const char* name;
   SceneColor color;
@@ -62,7 +63,7 @@ constexpr std::array<ProceduralScene, 7> kProcedural{{{"cube", SceneColor::Densi
                                                       {"fire", SceneColor::Density},
                                                       {"head", SceneColor::TransferFunction, true}}};
 
-/// `makeScene` is called when the job runs: a scene is in memory no longer than it is needed.
+/// `makeScene` is called when the job runs, so that a scene is only in memory while it is needed.
 template <typename MakeScene>
 void addScene(std::vector<SectionJob>& jobs, const Device& device, const std::string& name,
               glm::ivec2 picture, const MakeScene& makeScene) {
@@ -86,7 +87,7 @@ QualityScene openQualityScene(const Device& device, const QualitySubject& subjec
                           openProcedural(subject.procedural, glm::ivec3(resolution), maximumVoxels(device)));
 }
 
-/// Pictures have more than a pixel a voxel: with less, no method shows what it can.
+/// Images have more than a pixel a voxel, since with fewer pixels no method shows its quality.
 QualityRun qualityRun(const Extent& extent, int resolution) {
   const int whole = resolution >= kLarge ? kLargeQualityPicture : kWholeQualityPicture;
   return {.views = extent.quick ? quickQualityViews() : qualityViews(),
@@ -94,7 +95,7 @@ QualityRun qualityRun(const Extent& extent, int resolution) {
           .hasGoals = resolution >= kLeastResolutionWithGoals};
 }
 
-/// A job a volume, and one that sums up what those before it found.
+/// A job for each volume, and one that summarises their results.
 void addQuality(std::vector<SectionJob>& jobs, const Device& device, const Extent& extent) {
   const auto found = std::make_shared<std::vector<QualityFigures>>();
   for (const int resolution : resolutions(extent, kQuickQuality))
@@ -120,7 +121,7 @@ void addTurntable(std::vector<SectionJob>& jobs, const Device& device) {
                   }});
 }
 
-/// Of the volumes without parts of the size of a voxel.
+/// For the volumes without structures of the size of a voxel.
 void addDetail(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
   const int resolution = quick ? kQuickQuality : kDetailResolution;
   for (const QualitySubject& subject : kQualitySubjects) {
@@ -145,7 +146,7 @@ void addFlight(std::vector<SectionJob>& jobs, const Device& device, const Extent
                   }});
 }
 
-/// The opaque head, of which most is hidden, and the volumes as pictures of them are judged.
+/// For the opaque head, of which most is hidden, and for the volumes of the quality checks.
 void addCulling(std::vector<SectionJob>& jobs, const Device& device, const Extent& extent) {
   const int resolution = extent.quick ? kQuickQuality : kDetailResolution;
   const int edge = extent.quick ? kQuickQualityPicture : kLargeQualityPicture;
@@ -157,16 +158,16 @@ void addCulling(std::vector<SectionJob>& jobs, const Device& device, const Exten
   }
 }
 
-/// Of the volumes that are smooth, and opaque nowhere: kQualitySubjects' shells and cloud.
+/// For the volumes that are smooth and not opaque: shells and cloud of kQualitySubjects.
 void addLight(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
   const int resolution = quick ? kQuickProcedural : kDetailResolution;
-  // The oracle's shadow rays take their time: of the quick ones the cloud alone.
+  // The oracle's shadow rays are slow, so the quick run has the cloud only.
   for (const QualitySubject& subject : std::span(kQualitySubjects).subspan(quick ? 2 : 1, quick ? 1 : 2))
     jobs.push_back({fmt::format("light on {}", subject.procedural), [=, &device, &subject] {
                       return lightQuality(device, openQualityScene(device, subject, resolution),
                                           quick ? kQuickLightPicture : kQuickQualityPicture);
                     }});
-  // With steep transfer functions the oracle takes a quarter of a minute for a picture.
+  // With steep transfer functions the oracle takes a quarter of a minute for an image.
   for (const QualitySubject& subject : std::span(kCullingSubjects).first(quick ? 0 : 2)) {
     const char* const color = subject.color == QualityColor::Skin ? "skin" : "bone";
     jobs.push_back({fmt::format("light on the {}'s {}", subject.procedural, color), [=, &device, &subject] {

@@ -1,12 +1,14 @@
 #pragma once
 // The FreeVoxels library: volumes in, images out. Includes the standard library only.
 //
-// A scene is text: the JSON of a scene file, or the options of `freevoxels render` by name, with - or _, in any mixture:
+// A scene is JSON text with the keys of a scene file, or the options of `freevoxels render` by name (with -
+// or _), in any mixture:
 //   {"camera": {"orbit": [35, 25], "fov": 30}, "density-scale": 40, "light": {"direction": [1, 1, 1]}, "size": [800, 600]}
-// What it leaves out has the default of the command line, and both make the same image to the bit.
+// Keys that are left out have the command line's defaults. The images equal the command line's bit for bit.
 //
-// Every function may be called by any thread; frames of one device are drawn one after another. Failures are Error, but for
-// std::bad_alloc of the standard library. The device is opened by the first call that needs it, and kept until the process ends.
+// Any thread may call any function; frames of one device are drawn one after another. Failures are exceptions
+// of type Error, or std::bad_alloc. The device is opened by the first call that needs it, and kept until the
+// process ends.
 
 #include <array>
 #include <cstddef>
@@ -38,7 +40,7 @@ enum class ErrorKind : int {
   OutOfMemory = 6
 };
 
-/// what() is one sentence that names the file or option, and the remedy.
+/// what() is one sentence that names the file or option and the remedy.
 class FREEVOXELS_API Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, const std::string& sentence) : std::runtime_error(sentence), kind_(kind) {}
@@ -48,28 +50,28 @@ class FREEVOXELS_API Error : public std::runtime_error {
   ErrorKind kind_;
 };
 
-/// Called with the name of a stage and how much of the work is done, 0..1, about every 50 ms of it. An exception that it throws
-/// abandons the work and reaches the caller.
+/// Called about every 50 ms with the name of a stage and the fraction of the work that is done, 0..1. An
+/// exception that it throws cancels the work and is passed on to the caller.
 using Progress = std::function<void(std::string_view stage, double fraction)>;
 
-/// Where a box of values stands in the world.
+/// The place of a box of values in the world.
 struct Placement {
   std::array<double, 3> spacing{1.0, 1.0, 1.0};  ///< world units between voxels along x, y and z
   std::array<double, 3> origin{0.0, 0.0, 0.0};   ///< world position of the centre of voxel (0, 0, 0)
 };
 
-/// A volume in memory. Copies share it.
+/// A volume in memory. Copies share its data.
 class FREEVOXELS_API Volume {
  public:
-  /// Reads an OpenVDB file, or makes "procedural:NAME". `scene`: grid, resolution, and the scene of frames to come, of
-  /// which emission, temperature-grid and albedo-grid add grids to read.
+  /// Reads an OpenVDB file, or makes "procedural:NAME". `scene` has the grid, the resolution, and the scene
+  /// of later frames, of which emission, temperature-grid and albedo-grid decide what other grids are read.
   static Volume open(const std::filesystem::path& file, std::string_view scene = "{}");
-  /// Copies as many values as `dimensions` (x, y, z) has voxels, x fastest. NaN holds no data.
+  /// Copies the values of a box of `dimensions` (x, y, z) voxels, x fastest. NaN means no data.
   static Volume copy(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement = {});
 
   std::array<int, 3> dimensions() const;   ///< voxels along x, y and z
-  std::uint64_t activeVoxels() const;      ///< that hold data
-  std::pair<float, float> range() const;   ///< the least and the largest of their values
+  std::uint64_t activeVoxels() const;      ///< voxels with data
+  std::pair<float, float> range() const;   ///< smallest and largest of their values
   std::string source() const;              ///< file and grid, for messages
 
  private:
@@ -81,14 +83,15 @@ class FREEVOXELS_API Volume {
 
 struct Image {
   int width = 0, height = 0;
-  /// Four a pixel: linear Rec.709 red, green and blue, multiplied by alpha, and alpha; row 0 is the top.
+  /// Four values a pixel, top row first: linear Rec.709 red, green and blue, multiplied by alpha; and alpha.
   std::vector<float> pixels;
-  /// Empty, or one a pixel: mean distance along the viewing axis, in world units, of what is seen; infinite where there is nothing.
+  /// Empty, or one value a pixel: the mean distance along the viewing axis, in world units, of what is seen;
+  /// infinite where nothing is seen.
   std::vector<float> depth;
 };
 
-/// Draws one volume many times. What its frames have in common, the attenuation table above all, stays on the device and is made
-/// again only for a frame whose scene changes it.
+/// Draws images of one volume. What frames share, such as the attenuation table, stays on the device and is
+/// made again only if a frame's scene changes it.
 class FREEVOXELS_API Renderer {
  public:
   /// `scene` holds for every frame.
@@ -97,12 +100,12 @@ class FREEVOXELS_API Renderer {
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// `scene` takes the place of what the renderer's scene says of the same keys, for this frame.
+  /// Draws a frame. The keys of `scene` override those of the renderer's scene for this frame.
   Image render(std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {});
 
-  /// Stage and milliseconds, of what the last frame is drawn from and of that frame.
+  /// Stages and milliseconds of the last frame and of the data from which it was drawn.
   std::vector<std::pair<std::string, double>> timings() const;
-  /// Name of the Vulkan device.
+  /// The name of the Vulkan device.
   std::string device() const;
 
  private:
@@ -110,11 +113,11 @@ class FREEVOXELS_API Renderer {
   std::unique_ptr<State> state_;
 };
 
-/// Writes a .png, 8-bit sRGB over a background, or an .exr, linear, with depth where the image has it. The file is complete or
-/// not there. `scene`: background, exposure, tone-map, float.
+/// Writes a .png (8-bit sRGB over a background) or an .exr (linear, with depth if the image has it),
+/// atomically. `scene` has background, exposure, tone-map and float.
 FREEVOXELS_API void save(const std::filesystem::path& file, const Image& image, std::string_view scene = "{}");
 
-/// "0.1.0"
+/// The version, such as "0.1.0".
 FREEVOXELS_API std::string version();
 
 }  // namespace freevoxels::v1
