@@ -170,18 +170,17 @@ nlohmann::ordered_json toJson(const Device& device, const Results& results) {
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Measures every stage on one device: the least of several runs, and as a ratio to copying the same "
-      "bytes "
-      "with two threads of this machine in the same run.",
+      "Measures every stage on one device: the least time of several runs, and its ratio to copying the same number of bytes "
+      "with two threads in the same run.",
       "freevoxels-bench");
   DeviceOptions device;
   Extent extent;
   std::vector<std::string> wanted = stageNames();
   std::string json;
-  app.add_option("IN", extent.inputs, "Volumes to render whole: files, or procedural:NAME")
+  app.add_option("IN", extent.inputs, "Volumes for whole renders: files, or procedural:NAME")
       ->capture_default_str();
-  app.add_option("--json", json, "Also write the figures to this file");
-  app.add_option("--stages", wanted, "Only these, with commas between them [all]")
+  app.add_option("--json", json, "Write the figures as JSON to this file as well");
+  app.add_option("--stages", wanted, "Only these stages, separated by commas [all]")
       ->delimiter(',')
       ->check(CLI::IsMember(stageNames()));
   app.add_flag("--quick", extent.quick, "Smaller volumes and fewer runs");

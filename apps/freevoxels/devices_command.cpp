@@ -42,7 +42,7 @@ void printJson(const std::vector<DeviceDescription>& devices) {
 }  // namespace
 
 void DevicesCommand::add(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("devices", "List the Vulkan devices and why one cannot be used");
+  CLI::App* command = app.add_subcommand("devices", "List the Vulkan devices, and why a device cannot be used");
   command->add_flag("--json", json_, "Print JSON for programs");
   command->callback([this] { run(); });
 }

@@ -175,7 +175,7 @@ std::string layOut(const OrderedJson& value, int depth = 0) {
 void SceneFileOptions::add(CLI::App& app) {
   command_ = &app;
   addText(app, "--scene", "FILE.json", file,
-          "Takes what is not given here from a scene; apps/scenes/README.md has its keys")
+          "Read options that are not given from a scene file (see apps/scenes/README.md)")
       ->group("Scene");
 }
 
