@@ -1,6 +1,6 @@
 #version 460
 // First pass of the cut through the octree, one dispatch for each level, from the coarsest: which of the
-// level's candidates are drawn (a bit for each slot, cut_slot.glsl), and how many of each workgroup. Subr et
+// level's candidates are drawn (a bit for each slot, candidate_slot.glsl), and how many of each workgroup. Subr et
 // al. 2007, Section 3.3: the level is chosen by size on the image. Blocks outside of the image and hidden
 // blocks are left out with everything below them.
 //

@@ -71,7 +71,7 @@ void InputOptions::add(CLI::App& app) {
 
 void InputOptions::addGrid(CLI::App& app) {
   addText(app, "--grid", "NAME", grid,
-          "Grid of the file, NAME[k] where several share it [density, or the only float grid]")
+          "Grid of the file, NAME[k] if several have the name [density, or the only float grid]")
       ->group("Input");
 }
 

@@ -57,8 +57,8 @@ struct ReportFiles {
   std::optional<std::string> html, json;
 
   void add(CLI::App& app) {
-    addText(app, "--report", "FILE.html", html, "Write the report, pictures included, as one page");
-    addText(app, "--json", "FILE", json, "Write the figures for programs");
+    addText(app, "--report", "FILE.html", html, "Write the report with images as one HTML page");
+    addText(app, "--json", "FILE", json, "Write the figures as JSON");
   }
   /// To be called before any work.
   void check(const std::vector<std::string>& inputs) const {
@@ -92,20 +92,20 @@ void validateOn(const Device& device, const validate::Extent& extent, const Repo
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Checks on one device that every stage computes what it should: against double precision on the CPU, "
-      "against closed forms, and that what must not matter does not.",
+      "Checks on one device that every stage computes what it should: against double precision on the CPU, against closed forms, "
+      "and against invariances.",
       "freevoxels-validate");
   DeviceOptions device;
   validate::Extent extent;
   ReportFiles files;
   app.add_option("FILE", extent.files, "OpenVDB files or baked volumes to check as well, the middle of those that are large");
-  app.add_flag("--quick", extent.quick, "Small volumes and pictures");
+  app.add_flag("--quick", extent.quick, "Small volumes and images");
   addWholeNumber(app, "--resolution", "N", extent.resolution, "Voxels along an edge of the procedural volumes",
                  {1.0, double(kMostResolution)});
-  addText(app, "--only", "TEXT", extent.only, "Sections whose name contains this, as 'light' or 'stages of cloud'");
+  addText(app, "--only", "TEXT", extent.only, "Only the sections whose name contains TEXT, such as 'light' or 'stages of cloud'");
   files.add(app);
   device.add(app);
-  app.footer("Exit codes: 0 all checks passed, 7 some failed, others as of 'freevoxels'.");
+  app.footer("Exit codes: 0 all checks passed, 7 some failed, others like those of 'freevoxels'.");
   app.callback([&] {
     files.check(extent.files);
     device.withDevice([&](const Device& opened) { validateOn(opened, extent, files); });

@@ -9,7 +9,7 @@
 
 int main(int argc, char** argv) {
   CLI::App app(
-      "Looks at a volume in a window; everything in it can be changed, and taken away as a command line.",
+      "Shows a volume in a window, where all options can be changed, and writes the equivalent command line.",
       "freevoxels-view");
   freevoxels::ViewOptions options;
   options.add(app);

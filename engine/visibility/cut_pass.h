@@ -76,7 +76,7 @@ class CutPass {
   TileOpacityPass cover_;
   Buffer frame_;                ///< shader::CutFrame
   Buffer children_, deferred_;  ///< a byte for each block above the voxels, as in cut_select.comp
-  Buffer masks_;                ///< uint: a bit for each slot (cut_slot.glsl) of the levels that are drawn
+  Buffer masks_;                ///< uint: a bit for each slot (candidate_slot.glsl) of the levels that are drawn
   Buffer counts_;               ///< shader::CutCounts
   BlockList cut_;           ///< has groupOffsets for both parts, one after the other, each with its total
   int finest_ = 0;
