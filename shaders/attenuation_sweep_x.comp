@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "stored_codes.glsl"
 
-layout(constant_id = 1) const int kStepX = 1;  // of the march: 1 or -1
+layout(constant_id = 1) const int kStepX = 1;  // step of the march: 1 or -1
 
 layout(local_size_x = kSweepThreads) in;
 layout(scalar, push_constant) uniform Push { SweepPush push; };

@@ -27,7 +27,7 @@ TableLookup towardsSource(vec3 direction, int lookup, uvec2 beyond) {
                  inFull ? layer : frame.voxelSize, beyond);
 }
 
-// The mean over the voxels of a block that holds anything; `unsaturated` as depthTowards has it.
+// The mean optical depth of the voxels of an occupied block. `unsaturated` is as in depthTowards.
 float meanDepth(Block block, TableLookup towards, out float unsaturated) {
   const BlockLevel level = frame.levels[block.level];
   return depthTowards(towards, rankAt(level, blockAddress(level, block.cell)), unsaturated);

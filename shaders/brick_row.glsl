@@ -1,5 +1,6 @@
-// A row of a brick, a thread a row: the extinction of its voxels, which is density x scale, and their emission (packed_light.glsl).
-// Takes the bindings 0 to 2 and the push constants.
+// Reads a row of a brick, a thread for each row: densities (extinction is density x scale) and emission
+// (packed_light.glsl). Uses the bindings 0 to 2 and the push
+// constants.
 #ifndef BRICK_ROW_GLSL
 #define BRICK_ROW_GLSL
 #include "interface.h"

@@ -1,4 +1,4 @@
-// Whether a block is behind what is drawn already, by the tiles of tile_opacity.comp.
+// Whether a block is hidden by what is already drawn, by the tiles of tile_opacity.comp.
 #ifndef COVERED_BLOCK_GLSL
 #define COVERED_BLOCK_GLSL
 #include "cut_frame.glsl"

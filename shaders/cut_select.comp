@@ -16,12 +16,15 @@
 #include "covered_block.glsl"
 #include "table_occlusion.glsl"
 
-layout(constant_id = 1) const bool kDeferred = false;  // whether the cut goes on below the deferred blocks
-// Whether the level is that of the voxels. By itself, as lavapipe goes through branches that no thread takes.
+// Whether this is the second phase, which continues below the deferred blocks.
+layout(constant_id = 1) const bool kDeferred = false;
+// Whether the level is that of the voxels. A specialisation constant, because lavapipe executes branches that
+// no thread takes.
 layout(constant_id = 2) const bool kVoxels = false;
 
 layout(local_size_x = kCutThreads) in;
-// Of each block above the voxels a byte, four a word: which children to look at. And which of them are deferred.
+// A byte for each block above the voxels, four in a word: which of its children to test, and which of them
+// are deferred.
 layout(scalar, binding = 3) buffer Children { uint children[]; };
 layout(scalar, binding = 4) buffer Deferred { uint deferred[]; };
 layout(scalar, binding = 5) writeonly buffer Masks { uint masks[]; };

@@ -1,4 +1,5 @@
-// Optical depth between a block and the eye, exclusive of the block, and its gradient across the lines of sight.
+// Optical depth between a block and the eye, without the block itself, and its gradient across the lines of
+// sight.
 #ifndef DEPTH_TO_EYE_GLSL
 #define DEPTH_TO_EYE_GLSL
 #include "block_depth.glsl"

@@ -1,6 +1,7 @@
-// Optical depth from a block towards a general direction, interpolated between the directions of the table: Subr et al. 2007,
-// Section 3.3, which takes the nearest one. Binding PLANE_ADDRESSES_BINDING has the device address of each direction's codes, by cell
-// number, and behind the last cell that of the mask of runs that pruning kept: 0 if it kept all.
+// Optical depth from a block towards a general direction, from the directions of the table: Subr et al. 2007,
+// Section 3.3 (which takes the nearest one). Binding PLANE_ADDRESSES_BINDING has the device address of each
+// direction's codes by cell number, and behind the last cell that of the mask of runs that pruning kept, or 0
+// if it kept all.
 #ifndef DIRECTION_LOOKUP_GLSL
 #define DIRECTION_LOOKUP_GLSL
 #extension GL_EXT_buffer_reference : require
@@ -81,9 +82,9 @@ bool isAtEnd(TableLookup towards, ivec3 cell, uint place) {
 // Halves go towards 0, as in nearestDirection() of engine/scene/directions.h; GLSL's round() may take them either way.
 ivec3 nearestCell(vec3 point) { return ivec3(sign(point) * ceil(abs(point) - 0.5)); }
 
-// Between four directions of the table. Transmittances are interpolated, not depths: one dark direction would
-// darken all. `unsaturated` is the part of the transmittance that comes from directions whose code is not at its end: only that part
-// grows towards the eye by what a layer takes from it.
+// Interpolates between four table directions. Transmittances are interpolated, not depths: one dark direction
+// would otherwise darken all. `unsaturated` is the fraction of the transmittance that comes from directions
+// whose code is not at its end: only this part increases towards the eye from layer to layer.
 float depthTowards(TableLookup towards, uint rank, out float unsaturated) {
   const uint place = codePlace(towards.cells, rank);
   // The division may round to slightly more than 1.

@@ -34,8 +34,8 @@ vec3 extinctionGradient(Block block) {
   return gradient;
 }
 
-// What of a light reaches the parts of a block that the eye sees, were it on the light's side of the block, and on the
-// other one.
+// The fraction of a light that reaches the parts of a block that the eye sees, if the eye is on the light's
+// side of the block, and if it is on the other side.
 struct Sides {
   vec3 same, other;
 };
@@ -49,8 +49,8 @@ vec2 meansSeen(SeenBlock seen, float own) {
   return vec2(sameSide, otherSide) / selfAttenuation(seen.own);
 }
 
-// What of the light from a direction reaches what is seen of the block, in an octave of scattering that multiplies optical
-// depths by `scale`. `depth` and `unsaturated` as depthTowards has them.
+// The fraction of the light from a direction that reaches the visible parts of the block, in an octave of
+// scattering that multiplies optical depths by `scale`. `depth` and `unsaturated` are as in depthTowards.
 Sides lightReaching(SeenBlock seen, vec3 direction, float depth, float unsaturated, float scale) {
   const float layer = layerLength(direction);
   const bool inFull = frame.lighting.lookup == kLookupExact || frame.pathLengthCorrection != 0;
@@ -61,7 +61,7 @@ Sides lightReaching(SeenBlock seen, vec3 direction, float depth, float unsaturat
     const vec2 means = exp(-inFront) * meansSeen(seen, own);
     return Sides(vec3(means.x), vec3(means.y));
   }
-  // At the end of its code a depth may be any larger one, and a tint would let light through.
+  // At the end of its code a depth may be larger, and a tint would let light through.
   if (unsaturated == 0.0 || depth >= kMostRayDepth) return Sides(vec3(0.0), vec3(0.0));
   Sides sides;
   for (int c = 0; c < 3; ++c) {

@@ -1,4 +1,4 @@
-// What the sweeps that march along z or y share: a bundle of lattice lines that are neighbours in x, carried
+// Shared by the sweeps that march along z or y: a bundle of lattice lines that are neighbours in x, carried
 // by one thread.
 //
 // Lines that leave the box at a side enter it again at the opposite side with an optical depth of 0: as many
@@ -8,7 +8,7 @@
 // voxels. It therefore writes the quads of a window that moves by one quad every kPhases planes, and carries
 // kExtraLines lines more than it writes.
 //
-// A volume that is swept slab by slab keeps the lines' depths between slabs: a thread those of all lines that it carries.
+// If a volume is swept slab by slab, every thread stores the depths of all its lines between slabs.
 #ifndef LINE_BUNDLE_GLSL
 #define LINE_BUNDLE_GLSL
 #include "stored_codes.glsl"

@@ -1,4 +1,4 @@
-// 1 - exp(-x), also right for small x.
+// 1 - exp(-x), accurate for small x.
 #ifndef OPACITY_GLSL
 #define OPACITY_GLSL
 

@@ -1,4 +1,4 @@
-// Gradients in 4 bytes: three signed components of 9 bits, and the exponent that they share.
+// Gradients in 4 bytes: three signed components of 9 bits with a shared exponent.
 #ifndef PACKED_GRADIENT_GLSL
 #define PACKED_GRADIENT_GLSL
 

@@ -1,6 +1,6 @@
-// Light and albedos in 4 bytes, 9 bits a component with an exponent that they share (as VK_FORMAT_E5B9G9R9_UFLOAT_PACK32):
-// a component is at most 1/512 of the largest off. Light is in units in which the brightest voxel's is kBrightest
-// (engine/volume/packed_light.h).
+// Light and albedos in 4 bytes: 9 bits a component with a shared exponent (VK_FORMAT_E5B9G9R9_UFLOAT_PACK32).
+// The error of a component is at most 1/512 of the largest component. The unit of light is such that the
+// brightest voxel has kBrightest (engine/volume/packed_light.h).
 #ifndef PACKED_LIGHT_GLSL
 #define PACKED_LIGHT_GLSL
 

@@ -1,4 +1,5 @@
-// Optical depth between the source of a ray sweep and a position on one of its planes, and how it changes within the plane.
+// Optical depth between the source of a ray sweep and a position on one of its planes, and its derivatives
+// within the plane.
 #ifndef RAY_LOOKUP_GLSL
 #define RAY_LOOKUP_GLSL
 #include "catmull_rom.glsl"

@@ -16,8 +16,8 @@ layout(constant_id = 0) const bool kScalars = false;
 
 layout(local_size_x = kRaySweepThreads) in;
 layout(scalar, push_constant) uniform Push { RaySweepPush push; };
-layout(binding = 0) uniform samplerBuffer extinction;  // of the slab's voxels, with 0 around the volume; or scalars
-layout(scalar, binding = 1) buffer Carried { float carried[]; };  // from slab to slab, by ray
+layout(binding = 0) uniform samplerBuffer extinction;  // extinction of the slab's voxels, with 0 around the volume; or scalars
+layout(scalar, binding = 1) buffer Carried { float carried[]; };  // depth between slabs, by ray
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Depths { uint pairs[]; };
 
 // `plane` is counted from the first of the face.

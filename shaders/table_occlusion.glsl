@@ -1,5 +1,5 @@
-// Whether a block is hidden as far as the table knows, which is a plenoptic opacity function (Gao, Huang, Johnson, Moorhead 2003,
-// "Visibility culling using plenoptic opacity functions").
+// Whether the table, a plenoptic opacity function (Gao, Huang, Johnson, Moorhead 2003, "Visibility culling
+// using plenoptic opacity functions"), calls a block hidden.
 #ifndef TABLE_OCCLUSION_GLSL
 #define TABLE_OCCLUSION_GLSL
 #include "cut_frame.glsl"

@@ -1,4 +1,5 @@
-// A transfer function's integrals over the scalar, in intervals (engine/volume/transfer_table.h), in binding TRANSFER_TABLE_BINDING.
+// A transfer function's integrals over the scalar, in intervals (engine/volume/transfer_table.h), in binding
+// TRANSFER_TABLE_BINDING.
 #ifndef TRANSFER_TABLE_GLSL
 #define TRANSFER_TABLE_GLSL
 #include "gather_interface.h"

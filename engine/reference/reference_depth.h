@@ -25,11 +25,11 @@ class ReferenceDepth {
 
   /// The mean depth of the block's voxels.
   virtual double at(const Block& block) const = 0;
-  /// What part of the transmittance grows towards the eye by what a layer takes from it: that of stored
-  /// depths which are not at the end of their code, where they are the same a layer before.
+  /// The fraction of the transmittance whose stored depths change from layer to layer, because they are not
+  /// at the end of their code.
   virtual double unsaturated(const Block&) const { return 1.0; }
-  /// Change per voxel along an axis of the lattice layer: one that is not the largest component of the line
-  /// of sight.
+  /// The change per voxel along an axis of the lattice layer, which is not the axis of the largest component
+  /// of the line of sight.
   virtual double slope(const Block& block, int axis) const = 0;
   /// The world length of a layer of voxels in the stored depths, if it is `layerLength` in the line of sight.
   virtual double countedLength(double layerLength) const { return layerLength; }

@@ -30,8 +30,8 @@ class ReferenceLight {
 
  private:
   glm::dvec3 toLight(const RaySource& source, glm::dvec3 position) const;
-  /// What a block lets through towards a light, in the mean over what the eye sees of it. The middle layer
-  /// has `depth` before it; a layer counts as `counted` long.
+  /// A block's transmittance towards a light, averaged over the parts of it that the eye sees. `depth` is
+  /// that in front of the middle layer; `counted` is the length of a layer in that depth.
   glm::dvec3 lightReaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth,
                       double unsaturated, double counted, double scale) const;
   glm::dvec3 reachingFromAll(const Block& block, glm::dvec3 toEye) const;

@@ -169,7 +169,8 @@ DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& spl
 
 DepthToEye SplatSummer::depthBy(const ReferenceDepth& depths, const Block& block, const ProjectedSplat& splat,
                                 double extinction, int layers) const {
-  // The mean over a block is the depth of its middle layer: what lies in front of it has none of its own.
+  // The mean depth of a block is that of its middle layer: the layers of the block in front of that are
+  // subtracted.
   const double layer = projector_.layerLength(splat), unsaturated = depths.unsaturated(block) * extinction;
   const double before = 0.5 * (layers - 1) * unsaturated * depths.countedLength(layer);
   DepthToEye depth{.centre = std::max(depths.at(block) - before, 0.0)};
@@ -180,8 +181,8 @@ DepthToEye SplatSummer::depthBy(const ReferenceDepth& depths, const Block& block
     return depth;
   }
   const glm::dvec3 gradient = depths.gradient(block, splat.toEye, unsaturated * layer);
-  // It fades with the widening: a widened footprint stands for a pixel in which the depth changes often.
-  // The children of a block that is not widened may have been.
+  // The gradient is reduced with the widening: a widened footprint represents a pixel in which the depth
+  // changes several times. The children of a block that is not widened may have been widened.
   const double ofChildren = block.level == 0 ? 1.0 : std::min(splat.edge2 / 4.0, 1.0);
   const double fade = std::pow(splat.widening * ofChildren, 4.0);
   depth.perPixel = fade * glm::dvec2(glm::dot(gradient, splat.pixelX), glm::dot(gradient, splat.pixelY));
