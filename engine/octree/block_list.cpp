@@ -30,7 +30,7 @@ std::uint64_t threadsOf(const shader::CompactPush& push) {
   return std::uint64_t(push.groupCount) * shader::kOccupancyThreads;
 }
 
-/// The same as compact_scan.comp writes.
+/// The arguments that compact_scan.comp writes.
 shader::ChunkArguments chunkArguments(std::uint32_t first, std::uint32_t count) {
   return {.groupsX = (count + shader::kSplatThreads - 1) / shader::kSplatThreads,
           .groupsY = 1,

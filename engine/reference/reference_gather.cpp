@@ -15,11 +15,12 @@ namespace freevoxels {
 namespace {
 
 constexpr double kSamplesPerVoxel = 2.0, kLeastPitch = 1.15;
-/// A camera near to the volume has a lattice for this part of the way to the farthest corner.
+/// For a camera near the volume the lattice is made for this part of the distance to the farthest corner.
 constexpr double kNearReference = 0.75;
-/// A ray marches along the main axis as long as its component there is at least this part of its largest one.
+/// A ray marches along the main axis if its component along it is at least this part of its largest
+/// component.
 constexpr double kLeastAlongMain = 0.5;
-/// A transfer function's mean is that of the two ends where they are fewer intervals apart.
+/// The mean of a transfer function is that of both ends if they are fewer intervals apart than this.
 constexpr double kLeastChange = 16.0;
 
 std::array<int, 2> sidesOf(int axis) {
@@ -36,7 +37,8 @@ double meanTransmittance(double x) {
   return x < 1e-6 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
 }
 
-/// What of a tent with a half width of 1, whose middle is `ahead` of the eye, is in front of the eye.
+/// The part in front of the eye of a tent with a half width of 1, whose middle is `ahead` in front of the
+/// eye.
 double partOfTent(double ahead) {
   const double a = std::clamp(ahead, -1.0, 1.0);
   return a < 0.0 ? 0.5 * (1.0 + a) * (1.0 + a) : 1.0 - 0.5 * (1.0 - a) * (1.0 - a);
@@ -48,7 +50,8 @@ std::array<glm::dvec3, 8> cornersOf(glm::dvec3 low, glm::dvec3 high) {
   return corners;
 }
 
-/// A stretch of constant extinction (a) and source term (rgb), both per world unit. `distance` is that of its middle.
+/// A stretch with constant extinction (a) and source term (rgb), both per world unit. `distance` is that of
+/// its middle.
 void addPart(GatherSums& sums, double& transmittance, glm::dvec4 medium, double length, double distance) {
   const double depth = medium.a * length, through = std::exp(-depth);
   sums.color += transmittance * length * meanTransmittance(depth) * glm::dvec3(medium);
@@ -58,31 +61,32 @@ void addPart(GatherSums& sums, double& transmittance, glm::dvec4 medium, double 
 
 }  // namespace
 
-/// The slices of one level that a ray's march reads: from `first` to `end` - 1 in the order of the march.
+/// The slices of a level that a ray's march reads: `first` to `end` - 1 in the order of the march.
 struct ReferenceGather::Slab {
   int axis = 0, sign = 1;
-  double edge = 1.0;  ///< of a block, voxels
+  double edge = 1.0;  ///< edge of a block in voxels
   int first = 0, count = 0;
 
   int slice(int number) const { return first + sign * number; }
-  /// The distance at which the ray meets the middle of a slice.
+  /// The distance of the ray's intersection with the middle of a slice.
   double distance(const Ray& ray, double slice) const {
     return ((slice + 0.5) * edge - 0.5 - ray.origin[axis]) / ray.direction[axis];
   }
-  /// Where that is on the sides, in blocks.
+  /// The position of that intersection on the sides, in blocks.
   glm::dvec2 position(const Ray& ray, double slice) const {
     return (onSides(ray.origin + distance(ray, slice) * ray.direction, axis) + 0.5) / edge - 0.5;
   }
   /// World length of the ray between two slices.
   double layer(const Ray& ray) const { return edge * ray.worldLength / std::abs(ray.direction[axis]); }
-  /// Slices from the eye plane, less than 0 behind it.
+  /// Distance from the eye plane in slices, negative behind it.
   double ahead(const Ray& ray, double slice) const { return distance(ray, slice) * std::abs(ray.direction[axis]) / edge; }
 };
 
-/// What a ray finds on a slice of scalars, in intervals of the transfer function's table.
+/// The values of a ray on a slice of scalars, in intervals of the transfer function's table.
 struct ReferenceGather::Scalar {
   double coverage = 0.0;  ///< by voxels with data
-  double value = 0.0, ahead = 0.0, behind = 0.0;  ///< there, and in the slice's plane half a slice further on and before
+  /// The scalar there, and half a slice further on and before, continued in the slice's plane.
+  double value = 0.0, ahead = 0.0, behind = 0.0;
 };
 
 GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec3 voxels, glm::dvec3 albedo) {
@@ -128,7 +132,7 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
   const double pitch = std::min(pixelsPerVoxel_ / (kSamplesPerVoxel * reference), double(std::max(size_.x, size_.y)));
   lattice_ = {.samples = size_, .pitch = 1.0, .first = 0.5 - middle_};
   if (pitch > kLeastPitch) {
-    lattice_.pitch = double(float(pitch));  // what the device's samples are placed by
+    lattice_.pitch = double(float(pitch));  // the value by which the device's samples are placed
     lattice_.samples = glm::ivec2(glm::floor(glm::dvec2(size_ - 1) / lattice_.pitch)) + 4;
     lattice_.first -= lattice_.pitch;
   }
@@ -165,7 +169,7 @@ int ReferenceGather::axisOf(glm::dvec2 position, const Ray& ray) const {
   return !seen || isMain ? mainAxis_ : majorAxis(ray.direction);
 }
 
-/// A border between voxels, where the march comes to a level: the first multiple of the edge of its blocks from which on such
+/// The slice at which the march enters a level: the first multiple of its blocks' edge from which on such
 /// blocks are small on the image for every ray of the lattice.
 int ReferenceGather::firstVoxel(const Ray& ray, int axis, int level) const {
   const int voxels = volume_.dimensions[axis], sign = ray.direction[axis] > 0.0 ? 1 : -1, edge = 1 << level;
@@ -265,8 +269,9 @@ glm::dvec4 ReferenceGather::meanBetween(double from, double to) const {
   return (integralUpTo(to) - integralUpTo(from)) / (to - from);
 }
 
-/// From slice to slice, in two halves: the scalar is linear up to the middle, where both slices' functions count half, and on
-/// from there. Extinction falls with the share of voxels that have data, which is linear all the way.
+/// Marches from slice to slice in two halves: the scalar is linear up to the middle, where both slices'
+/// functions count half, and from there on. Extinction falls with the share of voxels with data, which is
+/// linear all the way.
 void ReferenceGather::marchScalars(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab) const {
   Scalar last;
   for (int number = 0; number <= slab.count; ++number) {
@@ -279,7 +284,7 @@ void ReferenceGather::marchScalars(GatherSums& sums, double& transmittance, cons
         both ? std::clamp(0.5 * (last.ahead + found.behind), 0.0, double(shader::kTransferIntervals)) : first.value;
     for (const double part : {0.25, 0.75}) {
       const glm::dvec4 mean = part < 0.5 ? meanBetween(first.value, middle) : meanBetween(middle, second.value);
-      const double from = slab.ahead(ray, slice) - 1.25 + part;  // slices in front of the eye where the half begins
+      const double from = slab.ahead(ray, slice) - 1.25 + part;  // in slices in front of the eye, at the beginning of the half
       const double length = std::clamp(from + 0.5, 0.0, 0.5) * slab.layer(ray) * glm::mix(last.coverage, found.coverage, part);
       addPart(sums, transmittance, mean, length, slab.distance(ray, slice + slab.sign * (part - 1.0)));
     }

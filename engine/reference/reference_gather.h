@@ -1,7 +1,8 @@
 #pragma once
-// A frame by gathering, stage by stage, on the CPU in double precision. It follows the method's description and shares no
-// code with the shaders: every sample's ray is intersected with every slice of voxels, nothing is skipped, and no ray ends
-// early, so that it is the device's frame at a cull threshold of 0. Frames without lights.
+// A gathered frame, stage by stage, on the CPU in double precision. It follows the method's description and
+// shares no code with the shaders: every sample's ray is intersected with every slice of voxels, nothing is
+// skipped and no ray ends early, so that it equals the device's frame for a cull threshold of 0. Only for
+// frames without lights.
 
 #include <optional>
 #include <span>
@@ -17,8 +18,9 @@
 
 namespace freevoxels {
 
-/// What the blocks of a level should be stored as, before rounding: extinction and extinction times colour, plus emission,
-/// each times the part of the block that is inside of the volume. `albedo` is the colour of levels that have none of their own.
+/// The values of the blocks of a level before they are rounded for storage: extinction, and extinction times
+/// colour plus emission, each times the part of the block that is inside of the volume. `albedo` is the
+/// colour of levels without their own.
 GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec3 voxels, glm::dvec3 albedo);
 
 class ReferenceGather {
@@ -30,21 +32,21 @@ class ReferenceGather {
   const GatherLattice& lattice() const { return lattice_; }
   /// The levels of the octree that the frame reads.
   const DetailRule& detail() const { return detail_; }
-  /// Whether voxels are classified after interpolation; the blocks of level 0 are not read then.
+  /// Whether voxels are classified after interpolation; the blocks of level 0 are then not read.
   bool hasScalars() const { return table_.has_value(); }
 
   /// Marches the ray of every sample. `blocks` is indexed by level.
   std::vector<GatherSums> samples(std::span<const GatherBlocks> blocks) const;
   /// Restores the round footprint.
   std::vector<GatherSums> smoothed(const std::vector<GatherSums>& samples) const;
-  /// Interpolates smoothed samples at the pixels and resolves. Image::depth is always made.
+  /// Interpolates smoothed samples at the pixels and resolves. Image::depth is always computed.
   Image image(const std::vector<GatherSums>& smoothed) const;
 
  private:
-  /// Points origin + t direction, t being the distance from the eye plane.
+  /// The points origin + t direction, with t the distance from the eye plane.
   struct Ray {
     glm::dvec3 origin, direction;
-    double worldLength;  ///< of `direction`
+    double worldLength;  ///< world length of `direction`
   };
   struct Slab;
   struct Scalar;
@@ -71,11 +73,11 @@ class ReferenceGather {
   glm::dmat3 toPixel_;  ///< index offset -> (x t, y t, t), orthographic (x, y, t), with x and y from the image's middle
   DetailRule detail_;
   int mainAxis_ = 0;
-  double pixelsPerVoxel_ = 1.0;  ///< perspective: times the distance
+  double pixelsPerVoxel_ = 1.0;  ///< for a perspective camera times the distance
   GatherLattice lattice_;
   glm::dvec2 seenLow_, seenHigh_;
   std::optional<TransferTable> table_;
-  std::vector<glm::vec4> texels_;  ///< of the table, per world unit
+  std::vector<glm::vec4> texels_;  ///< texels of the transfer table, per world unit
 };
 
 }  // namespace freevoxels

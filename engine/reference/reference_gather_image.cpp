@@ -1,4 +1,4 @@
-// ReferenceGather's part from the sums of the samples to the image.
+// The part of ReferenceGather from the sums of the samples to the image.
 
 #include <algorithm>
 #include <array>
@@ -11,11 +11,12 @@ namespace freevoxels {
 
 namespace {
 
-/// Variance in voxels, squared, of a splat's round kernel along one axis. A slice's tent has it across the slice.
+/// Variance in squared voxels of a splat's round kernel along one axis. A slice's tent has it across the
+/// slice.
 constexpr double kKernelVariance = 0.1624;
-/// What the coarse stencil needs more than that.
+/// Factor by which the coarse stencil exceeds the missing variance.
 constexpr double kStrength = 1.2;
-constexpr double kMostVariance = 0.8;  ///< that a stencil of 3x3 samples can add, squares of the pitch
+constexpr double kMostVariance = 0.8;  ///< largest variance that a stencil of 3x3 samples can add, in squares of the pitch
 constexpr double kLeastTransmittance = 1e-6;
 constexpr double kUnknown = -1.0;
 
@@ -42,7 +43,7 @@ class WeightedSum {
   double nearest_ = std::numeric_limits<double>::max(), farthest_ = 0.0;
 };
 
-/// Catmull-Rom: of the samples at -1, 0, 1 and 2.
+/// Catmull-Rom weights of the samples at -1, 0, 1 and 2.
 std::array<double, 4> cubicWeights(double x) {
   const double x2 = x * x, x3 = x2 * x;
   return {-0.5 * x + x2 - 0.5 * x3, 1.0 - 2.5 * x2 + 1.5 * x3, 0.5 * x + 2.0 * x2 - 1.5 * x3, -0.5 * x2 + 0.5 * x3};
@@ -50,8 +51,8 @@ std::array<double, 4> cubicWeights(double x) {
 
 }  // namespace
 
-/// (xx, xy, yy) in squares of the pitch: a tent seen obliquely lacks the kernel's variance along the image of the axis, and
-/// voxels that are smaller than a pixel are widened to it.
+/// The missing covariance (xx, xy, yy) in squares of the pitch: a tent seen obliquely lacks the kernel's
+/// variance along the image of the axis, and voxels that are smaller than a pixel are widened to it.
 glm::dvec3 ReferenceGather::missingCovariance(glm::dvec2 position, double distance) const {
   const int axis = axisOf(position, rayThrough(position));
   const double scale = rays_.orthographic ? 1.0 : 1.0 / distance;
@@ -82,7 +83,8 @@ GatherSums ReferenceGather::smoothedAt(const std::vector<GatherSums>& samples, g
   double depth = 0.0;
   for (int y = -1; y <= 1; ++y)
     for (int x = -1; x <= 1; ++x) {
-      // Half the second derivative along each direction: a quadratic's mean over a distribution of this covariance.
+      // Half the second derivative along each direction: the mean of a quadratic over a distribution of this
+      // covariance.
       const double weight = x == 0 && y == 0 ? 1.0 - covariance.x - covariance.z
                             : x != 0 && y != 0 ? 0.25 * x * y * covariance.y
                             : x != 0           ? 0.5 * covariance.x
@@ -104,7 +106,7 @@ std::vector<GatherSums> ReferenceGather::smoothed(const std::vector<GatherSums>&
   return result;
 }
 
-/// From rows or columns of samples to those of pixels.
+/// Interpolates rows or columns of samples to those of pixels.
 std::vector<GatherSums> ReferenceGather::interpolated(const std::vector<GatherSums>& from, glm::ivec2 fromSize, int side) const {
   glm::ivec2 size = fromSize;
   size[side] = size_[side];

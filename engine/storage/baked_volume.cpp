@@ -41,7 +41,7 @@ fvx::Encoding scalarEncoding(const Volume& volume, glm::vec2 range, const Classi
 fvx::Encodings encodingsOf(const Volume& volume, glm::vec2 range, const Classification& classification, bool keepScalars) {
   fvx::Encodings encodings;
   encodings[std::size_t(Channel::Scalars)] = scalarEncoding(volume, range, classification, keepScalars);
-  // Light grows with a high power of the temperature.
+  // Emission grows with a high power of the temperature.
   if (volume.temperature) encodings[std::size_t(Channel::Temperature)] = fvx::Encoding{};
   if (volume.albedo)
     encodings[std::size_t(Channel::Albedo)] =
@@ -49,7 +49,7 @@ fvx::Encodings encodingsOf(const Volume& volume, glm::vec2 range, const Classifi
   return encodings;
 }
 
-/// Of a brick that begins at a voxel of the box. False where no voxel of it has a value.
+/// Fills a brick that begins at a voxel of the box. Returns false if none of its voxels has a value.
 bool copyBrick(const ScalarBricks& scalars, glm::ivec3 first, float* values) {
   constexpr int n = ScalarBricks::kEdge;
   if (scalars.corner() == glm::ivec3(0)) {
@@ -69,7 +69,7 @@ bool copyBrick(const ScalarBricks& scalars, glm::ivec3 first, float* values) {
   return any;
 }
 
-/// Empty where no voxel has a value.
+/// Empty if no voxel has a value.
 std::vector<float> chunkOf(std::span<const ScalarBricks* const> components, glm::ivec3 cell) {
   constexpr int n = ScalarBricks::kEdge, m = fvx::kChunkEdge / n;
   std::vector<float> values(components.size() * fvx::kChunkVoxels, kInactiveVoxel);
@@ -96,7 +96,7 @@ ChunkValues chunkOf(const Volume& volume, glm::ivec3 cell) {
   return chunk;
 }
 
-/// Without what has bricks.
+/// A copy without bricks.
 Volume outlineOf(const Volume& volume) {
   Volume outline{.source = volume.source,
                  .dimensions = volume.dimensions,
@@ -122,7 +122,7 @@ Volume outlineOf(const Volume& volume) {
   return outline;
 }
 
-/// With the classification, and with the counts and ranges of the chunks where it has none.
+/// Adds the classification, and the counts and ranges of the chunks where they are missing.
 Volume summarised(Volume outline, const Classification& classification, bool fixed, const fvx::FvxWriter& writer) {
   const auto complete = [&](Channel channel, auto& grid) {
     if (grid.activeVoxels != 0) return;
@@ -138,7 +138,7 @@ Volume summarised(Volume outline, const Classification& classification, bool fix
   return outline;
 }
 
-/// Where the bricks of a channel's chunks are, and how many come before those of each chunk.
+/// The positions of the bricks of a channel's chunks, and the number of bricks before each chunk.
 struct BrickPlaces {
   std::vector<glm::ivec3> cells;
   std::vector<std::size_t> first;  ///< by chunk
@@ -154,7 +154,7 @@ struct BrickPlaces {
   }
 };
 
-/// Whether all bricks are in the map one after the other, as floats.
+/// Whether all bricks are consecutive in the mapped file, as floats.
 bool isInPlace(const FvxFile& file, Channel channel, std::span<const ChunkEntry> chunks) {
   if (file.description().encodings[std::size_t(channel)]->kind != EncodingKind::Float32 || chunks.empty()) return false;
   std::uint64_t next = chunks.front().offset;
@@ -163,7 +163,7 @@ bool isInPlace(const FvxFile& file, Channel channel, std::span<const ChunkEntry>
   });
 }
 
-/// One for each value of a voxel.
+/// One set of bricks for each value of a voxel.
 std::vector<ScalarBricks> readChannel(const std::shared_ptr<const FvxFile>& file, Channel channel, int level) {
   const std::span<const ChunkEntry> chunks = file->chunks(channel, level);
   BrickPlaces places(chunks);
@@ -203,7 +203,7 @@ std::uint64_t activeVoxels(std::span<const ChunkEntry> chunks) {
   return sum;
 }
 
-/// As if the blocks of a level were voxels.
+/// Makes the blocks of a level the voxels of a volume.
 void makeCoarse(Volume& volume, const FvxFile& file, int level) {
   const double edge = double(1 << level);
   const glm::dmat4 toMiddle = glm::translate(glm::dmat4(1.0), glm::dvec3(0.5 * (edge - 1.0)));

@@ -1,5 +1,5 @@
 #pragma once
-// Volumes in baked files and out of them: Subr et al. 2007, Section 5.
+// Writing and reading volumes in baked files: Subr et al. 2007, Section 5.
 
 #include <cstdint>
 #include <filesystem>
@@ -15,20 +15,22 @@
 namespace freevoxels {
 
 struct BakeSettings {
-  /// Values as 32-bit floats, so that every classification is as exact as of the volume itself. Else 16 bits a value, as exact as the
-  /// renderer's own for the one classification: halves of densities in units of optical depth, equally spaced numbers of scalars over
-  /// the transfer function's range.
+  /// Whether values are stored as 32-bit floats, so that every classification is as exact as with the
+  /// original volume. Otherwise they take 16 bits each, as exact as the renderer's own for the one
+  /// classification: halves of densities in units of optical depth, and equally spaced numbers of scalars
+  /// over the transfer function's range.
   bool keepScalars = false;
-  bool compress = false;  ///< each chunk with Zstandard
-  std::string provenance = "{}";  ///< JSON, for people
+  bool compress = false;  ///< whether each chunk is compressed with Zstandard
+  std::string provenance = "{}";  ///< JSON for readers of the file
 };
 
 /// The values of a chunk of the finest level; called by several threads.
 using ChunkSource = std::function<fvx::ChunkValues(glm::ivec3 cell)>;
 
-/// Writes a volume that need not fit into memory: its chunks are asked for once each, in Hilbert order, a few at a time. `outline` is
-/// the volume without values; its counts and ranges are found on the way. `content` is what is seen of it, and `range` the least and
-/// the greatest scalar as far as a transfer function is to tell them apart. Atomic (core/atomic_file.h).
+/// Writes a volume that need not fit into memory: each chunk is requested once, in Hilbert order, a few at a
+/// time. `outline` is the volume without values; its counts and ranges are computed on the way. `content` is
+/// the visible part, and `range` the least and the greatest scalar that a transfer function distinguishes.
+/// Atomic (core/atomic_file.h).
 struct StreamedVolume {
   Volume outline;
   ContentCells content;
@@ -42,15 +44,17 @@ void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volum
 void bakeVolume(const std::filesystem::path& file, const Volume& volume, const Classification& classification,
                 const BakeSettings& settings, const Progress& progress = {});
 
-/// The volume of a level of a baked file: the voxels, or of a level above 0 blocks of 2^level voxels along each axis, each their mean,
-/// in the same place of the world. Every chunk that is read is checked first. Values that are stored as floats and not compressed are
-/// used in place, and keep the file mapped. Fails with ExitCode::Input where a chunk is damaged.
+/// Reads a level of a baked file: the voxels, or for a level above 0 blocks of 2^level voxels along each
+/// axis, each their mean, at the same place in the world. Every chunk that is read is verified first. Values
+/// that are stored as floats without compression are used in place and keep the file mapped. Fails with
+/// ExitCode::Input if a chunk is damaged.
 Volume readBaked(const std::shared_ptr<const fvx::FvxFile>& file, int level = 0);
 
-/// readBaked without the values: what is known of the volume before any chunk is read.
+/// Returns what readBaked does without the values, before any chunk is read.
 Volume bakedOutline(const fvx::FvxFile& file, int level = 0);
 
-/// The finest level whose box has no more than `maximumVoxels` voxels. Fails with ExitCode::OutOfMemory where none has.
+/// The finest level whose box has at most `maximumVoxels` voxels. Fails with ExitCode::OutOfMemory if there
+/// is none.
 int finestLevel(const fvx::FvxFile& file, std::uint64_t maximumVoxels);
 
 }  // namespace freevoxels

@@ -14,7 +14,7 @@ std::size_t eighthIndex(glm::ivec3 voxel) {
   return std::size_t(voxel.x + kHalf * (voxel.y + kHalf * voxel.z));
 }
 
-/// Of the voxels of a chunk from `first` on, before `end`.
+/// The mean of the voxels of a chunk from `first` to `end` - 1.
 float meanOf(const float* values, glm::ivec3 first, glm::ivec3 end, WithoutData withoutData) {
   double sum = 0.0;
   int held = 0, all = 0;

@@ -16,10 +16,11 @@ namespace freevoxels::fvx {
 /// The values of kChunkEdge^3 voxels; kInactiveVoxel beyond the volume.
 struct ChunkValues {
   glm::ivec3 cell{0};
-  /// By Channel: [component][brick][voxel of the brick], x fastest in the last two. Empty where no voxel has a value.
+  /// By Channel: [component][brick][voxel of the brick], x fastest in the last two. Empty if no voxel has a
+  /// value.
   std::array<std::vector<float>, kChannels> channels;
 
-  /// Of a voxel of the chunk, in a component.
+  /// The value of a component at a voxel of the chunk.
   static std::size_t index(glm::ivec3 voxel) {
     constexpr int n = ScalarBricks::kEdge, m = kChunkEdge / n;
     const glm::ivec3 brick = voxel / n;
@@ -31,8 +32,8 @@ struct ChunkValues {
 /// Dimensions of each level, level 0 first: halved and rounded up until one chunk holds all.
 std::vector<glm::ivec3> levelDimensions(glm::ivec3 dimensions);
 
-/// The means of 2^3 voxels each of a chunk, as the eighth of its parent chunk that they are: kChunkEdge / 2 voxels along each axis,
-/// x fastest. Voxels beyond `dimensions`, those of the chunk's level, do not count.
+/// The means of each 2^3 voxels of a chunk, as the eighth of its parent chunk: kChunkEdge / 2 voxels along
+/// each axis, x fastest. Voxels beyond `dimensions`, which are those of the chunk's level, do not count.
 struct ChunkEighth {
   glm::ivec3 cell{0};  ///< of the chunk
   std::array<std::vector<float>, kChannels> channels;
@@ -45,9 +46,9 @@ class ChunkPyramid {
   using Emit = std::function<void(int level, const ChunkValues&)>;
   ChunkPyramid(glm::ivec3 dimensions, WithoutData withoutData, Emit emit);
 
-  /// Of the chunks of level 0, in Hilbert order; empty ones may be left out.
+  /// Adds a chunk of level 0. Chunks must come in Hilbert order; empty ones may be left out.
   void add(const ChunkEighth& eighth) { add(eighth, 1); }
-  /// After the last one.
+  /// To be called after the last chunk.
   void finish();
 
  private:
@@ -57,7 +58,7 @@ class ChunkPyramid {
   std::vector<glm::ivec3> dimensions_;
   WithoutData withoutData_;
   Emit emit_;
-  std::vector<std::optional<ChunkValues>> pending_;  ///< by level
+  std::vector<std::optional<ChunkValues>> pending_;  ///< unfinished chunk of each level
 };
 
 }  // namespace freevoxels::fvx

@@ -86,7 +86,7 @@ Json encodingsJson(const Encodings& encodings) {
   return json;
 }
 
-/// Channels of a later minor version are skipped.
+/// Channels of later minor versions are skipped.
 Encodings readEncodings(const Json& json) {
   Encodings encodings;
   for (const Json& channel : json) {

@@ -14,16 +14,16 @@
 
 namespace freevoxels::fvx {
 
-/// By Channel. Without a value the file has no such channel; the scalars are always there.
+/// By Channel. A channel without a value is not in the file; the scalars always are.
 using Encodings = std::array<std::optional<Encoding>, kChannels>;
 
-/// Values of a voxel in a channel: three of albedos.
+/// Number of values of a voxel in a channel: three for albedos, otherwise one.
 inline constexpr int valuesPerVoxel(Channel channel) {
   return channel == Channel::Albedo ? 3 : 1;
 }
 
 struct Description {
-  Volume volume;  ///< without bricks, with its classification
+  Volume volume;  ///< the volume without bricks
   Encodings encodings;
 
   std::size_t brickBytes(Channel channel) const {
@@ -33,7 +33,7 @@ struct Description {
 };
 
 std::string toJson(const Description& description);
-/// Fails with ExitCode::Input, naming `file`, where something is missing or impossible.
+/// Parses a description. Fails with ExitCode::Input, naming `file`, if something is missing or impossible.
 Description parseDescription(std::string_view json, const std::filesystem::path& file);
 
 }  // namespace freevoxels::fvx

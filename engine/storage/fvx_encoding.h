@@ -15,7 +15,7 @@ enum class EncodingKind {
   Linear16,  ///< integer c: the value is offset + (c - 1) * scale; 0 is a voxel without data
 };
 
-/// In the order of EncodingKind, as the file has them.
+/// The names in the file, in the order of EncodingKind.
 inline constexpr std::string_view kEncodingNames[]{"float32", "float16", "linear16"};
 
 struct Encoding {
@@ -25,7 +25,8 @@ struct Encoding {
   std::size_t bytesPerValue() const { return kind == EncodingKind::Float32 ? 4 : 2; }
 };
 
-/// Values beyond the encoding's range become the nearest one in it. `bytes` has bytesPerValue() for each value.
+/// Encodes values; those beyond the encoding's range become the nearest one in it. `bytes` has
+/// bytesPerValue() for each value.
 void encode(const Encoding& encoding, std::span<const float> values, std::span<std::byte> bytes);
 
 class Decoder {
@@ -34,7 +35,7 @@ class Decoder {
   void decode(std::span<const std::byte> bytes, std::span<float> values) const;
 
  private:
-  std::vector<float> values_;  ///< of each 16-bit code; empty for Float32
+  std::vector<float> values_;  ///< value of each 16-bit code; empty for Float32
 };
 
 }  // namespace freevoxels::fvx

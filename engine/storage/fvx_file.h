@@ -1,5 +1,6 @@
 #pragma once
-// A baked volume that is open for reading: mapped into memory, so that only what is used is read from the disk.
+// A baked volume that is open for reading. The file is mapped into memory, so that only what is used is read
+// from the disk.
 
 #include <boost/iostreams/device/mapped_file.hpp>
 #include <filesystem>
@@ -13,16 +14,16 @@
 
 namespace freevoxels::fvx {
 
-/// Whether a file is to be read as a baked volume: by its name, or by its first bytes.
+/// Whether a file is a baked volume, by its name or by its first bytes.
 bool isFvx(const std::filesystem::path& file);
 
-/// XXH3-64 of all bytes of a file. Fails with ExitCode::Input where it cannot be read.
+/// XXH3-64 of all bytes of a file. Fails with ExitCode::Input if it cannot be read.
 std::uint64_t hashOfFile(const std::filesystem::path& file);
 
 class FvxFile {
  public:
-  /// Checks the header, the description and the index of the chunks. Fails with ExitCode::Input, in one sentence that says how, on a
-  /// file that is foreign, of a later major version, incomplete or damaged.
+  /// Opens a file and checks header, description and the index of the chunks. Fails with ExitCode::Input and
+  /// one sentence if the file is not a baked volume, of a later major version, incomplete or damaged.
   explicit FvxFile(const std::filesystem::path& file);
   FvxFile(const FvxFile&) = delete;
   FvxFile& operator=(const FvxFile&) = delete;
@@ -35,17 +36,18 @@ class FvxFile {
   std::string_view provenance() const { return provenance_; }
   bool hasChannel(Channel channel) const { return description_.encodings[std::size_t(channel)].has_value(); }
 
-  /// The octree's levels; level 0 are the voxels.
+  /// Number of levels of the octree; level 0 are the voxels.
   int levels() const { return int(dimensions_.size()); }
   glm::ivec3 dimensions(int level) const { return dimensions_[std::size_t(level)]; }
-  /// In Hilbert order; none of a channel that the file does not have.
+  /// The chunks of a level in Hilbert order; none for a channel that the file does not have.
   std::span<const ChunkEntry> chunks(Channel channel, int level) const {
     return chunks_[std::size_t(level)][std::size_t(channel)];
   }
-  /// The bricks of a chunk as they are stored, in the order of the bits of its mask. Fails with ExitCode::Input where it is damaged.
-  /// `unpacked` takes them where they are compressed; else they are in the map, which lives as long as this object.
+  /// The stored bricks of a chunk, in the order of the bits of its mask. Compressed ones are written to
+  /// `unpacked`; others lie in the mapped file, which exists as long as this object. Fails with
+  /// ExitCode::Input if the chunk is damaged.
   std::span<const std::byte> read(Channel channel, const ChunkEntry& chunk, std::vector<std::byte>& unpacked) const;
-  /// Fails with ExitCode::Input where anything of the file is damaged. Reads all of it.
+  /// Reads the whole file and fails with ExitCode::Input if any part is damaged.
   void checkAll() const;
 
  private:

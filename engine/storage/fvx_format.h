@@ -1,5 +1,6 @@
 #pragma once
-// The bytes of a baked volume (.fvx): engine/docs/fvx_format.md describes them with their offsets. All numbers are little-endian.
+// The binary layout of baked volumes (.fvx), described with all offsets in engine/docs/fvx_format.md. Numbers
+// are little-endian.
 
 #include <array>
 #include <bit>
@@ -11,11 +12,11 @@ namespace freevoxels::fvx {
 
 static_assert(std::endian::native == std::endian::little, "baked volumes are written and mapped as they lie in memory");
 
-/// Transfers that take the file for text change or cut these bytes: as in PNG and KTX files.
+/// First bytes of a file. Transfers that treat it as text change or cut them, as in PNG and KTX files.
 inline constexpr std::array<std::uint8_t, 12> kIdentifier{0xab, 'F', 'V', 'X', ' ', '0', '1', 0xbb, '\r', '\n', 0x1a, '\n'};
 inline constexpr std::uint32_t kByteOrderMark = 0x04030201, kOtherByteOrderMark = 0x01020304;
 
-/// A reader takes files of its own major version and any minor version.
+/// A reader accepts files of its own major version and any minor version.
 inline constexpr std::uint16_t kMajorVersion = 1, kMinorVersion = 0;
 
 inline constexpr std::uint64_t kPageBytes = 4096;      ///< sections begin at multiples of this
@@ -29,10 +30,10 @@ inline constexpr int kBrickVoxels = ScalarBricks::kEdge * ScalarBricks::kEdge * 
 static_assert(kChunkBricks * kBrickVoxels == kChunkVoxels);
 
 enum class SectionKind : std::uint32_t {
-  Description = 1,  ///< JSON: what a reader needs to know of the volume
-  Provenance = 2,   ///< JSON: where it comes from, for people
+  Description = 1,  ///< JSON: everything that a reader needs to know of the volume
+  Provenance = 2,   ///< JSON: the origin of the file, for information
   ChunkIndex = 3,   ///< ChunkEntry, in Hilbert order
-  Chunks = 4,       ///< what the index refers to
+  Chunks = 4,       ///< the data that the index refers to
   ContentCells = 5,  ///< ContentHeader and a bit for each cell
 };
 
@@ -41,14 +42,14 @@ inline constexpr int kChannels = 3;
 
 enum class Codec : std::uint32_t {
   None = 0,
-  PlanesZstd = 1,  ///< all first bytes of the values, then all second bytes and so on, compressed with Zstandard
+  PlanesZstd = 1,  ///< first all first bytes of the values, then all second bytes and so on, compressed with Zstandard
 };
 
 /// An entry of the header's section table.
 struct Section {
   SectionKind kind{};
-  Channel channel{};       ///< of chunk sections; else 0
-  std::uint32_t level = 0;  ///< of the octree, of chunk sections; else 0
+  Channel channel{};       ///< for chunk sections; otherwise 0
+  std::uint32_t level = 0;  ///< level of the octree for chunk sections; otherwise 0
   std::uint32_t reserved0 = 0;
   std::uint64_t offset = 0;  ///< from the beginning of the file
   std::uint64_t bytes = 0;
@@ -72,7 +73,7 @@ struct Header {
 static_assert(sizeof(Header) == kPageBytes);
 static_assert(3 + 2 * kChannels * kMostLevels <= kMostSections);
 
-/// Cells of the volume in which something is seen (ContentCells of subject.h), followed by a bit for each, x fastest.
+/// The visible cells of the volume (ContentCells of subject.h), followed by a bit for each, x fastest.
 struct ContentHeader {
   glm::ivec3 cells{0};
   std::uint32_t reserved = 0;
@@ -80,17 +81,18 @@ struct ContentHeader {
 };
 static_assert(sizeof(ContentHeader) == 24);
 
-/// What is known of a chunk without its values.
+/// The index entry of a chunk.
 struct ChunkEntry {
-  glm::ivec3 cell{0};           ///< it begins with voxel kChunkEdge * cell of its level
+  glm::ivec3 cell{0};           ///< it starts at voxel kChunkEdge * cell of its level
   Codec codec = Codec::None;
-  std::uint64_t brickMask = 0;  ///< bit x + 4 (y + 4 z): there is brick (x,y,z) of the chunk, stored in the order of the bits
+  /// Bit x + 4 (y + 4 z): whether the chunk has brick (x,y,z); bricks are stored in the order of the bits.
+  std::uint64_t brickMask = 0;
   std::uint64_t offset = 0;     ///< from the beginning of the file
   std::uint64_t storedBytes = 0;
   std::uint64_t bytes = 0;  ///< after decompression
   std::uint64_t hash = 0;   ///< XXH3-64 of the stored bytes
   float minimum = 0.0f, maximum = 0.0f;                  ///< of the active values
-  float leastExtinction = 0.0f, mostExtinction = 0.0f;  ///< per world unit, of scalars between the two; else 0
+  float leastExtinction = 0.0f, mostExtinction = 0.0f;  ///< extinction per world unit of scalars between the two; otherwise 0
   std::uint32_t activeVoxels = 0;
   std::array<std::uint32_t, 5> reserved{};
 

@@ -25,7 +25,7 @@ std::uint64_t roundUp(std::uint64_t bytes, std::uint64_t alignment) {
   return (bytes + alignment - 1) / alignment * alignment;
 }
 
-/// A file without a name, which is gone when it is closed or the program ends.
+/// An unnamed file, which disappears when it is closed or the program ends.
 class Spool {
  public:
   explicit Spool(const std::filesystem::path& folder) {
@@ -48,7 +48,7 @@ class Spool {
     if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) throwErrno();
     bytes_ += bytes.size();
   }
-  /// Everything from the beginning, a piece at a time.
+  /// Reads the whole file, a piece at a time.
   template <typename Function>
   void readAll(const Function& take) {
     if (std::fflush(file_) != 0 || std::fseek(file_, 0, SEEK_SET) != 0) throwErrno();
@@ -70,10 +70,10 @@ class Spool {
 
 struct EncodedChunk {
   ChunkEntry entry;
-  std::vector<std::byte> bytes;  ///< as they are stored; empty where there is nothing to store
+  std::vector<std::byte> bytes;  ///< stored bytes; empty if there is nothing to store
 };
 
-/// By bits as in ChunkEntry::brickMask, where `holds(value)` is true of some value of the brick.
+/// The mask of the bricks (ChunkEntry::brickMask) of which any value satisfies `holds(value)`.
 template <typename Holds>
 std::uint64_t bricksThat(const std::vector<float>& values, const Holds& holds) {
   std::uint64_t mask = 0;
@@ -134,7 +134,8 @@ class ChunkEncoder {
   }
 
  private:
-  /// Scalars are there wherever temperatures are: what sends out light is a voxel too.
+  /// Bricks of scalars exist wherever there are temperatures, because voxels with emission alone are drawn
+  /// too.
   std::uint64_t maskOf(const ChunkValues& chunk, std::size_t channel) const {
     const auto isActive = [](float value) { return value != kInactiveVoxel; };
     if (Channel(channel) != Channel::Scalars) return bricksThat(chunk.channels[channel], isActive);
@@ -155,7 +156,7 @@ class ChunkEncoder {
   const WriteSettings& settings_;
 };
 
-/// The extinctions that scalars between two may have.
+/// The range of extinctions of the scalars between two scalars.
 void setExtinctions(const Classification& classification, ChunkEntry& entry) {
   if (entry.activeVoxels == 0) return;
   const auto extinctionOf = [&](float scalar) { return float(classify(classification, scalar).extinction); };
@@ -179,10 +180,10 @@ std::vector<std::byte> contentBytes(const ContentCells& content) {
   return bytes;
 }
 
-/// Chunks of a channel of a level.
+/// The chunks of a channel of a level.
 struct ChunkStore {
   std::unique_ptr<Spool> spool;
-  std::vector<ChunkEntry> entries;  ///< offsets in the spool
+  std::vector<ChunkEntry> entries;  ///< with offsets in the spool
 };
 
 /// Writes sections one after the other, and the header at the end.
@@ -192,7 +193,7 @@ class SectionWriter {
 
   std::uint64_t next() const { return position_; }
 
-  /// `write` calls its argument with the section's bytes, a piece at a time.
+  /// `write` passes the section's bytes to its argument, a piece at a time.
   template <typename Write>
   void section(SectionKind kind, Channel channel, std::size_t level, const Write& write) {
     Section section{.kind = kind, .channel = channel, .level = std::uint32_t(level), .offset = position_};

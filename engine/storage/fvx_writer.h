@@ -1,5 +1,5 @@
 #pragma once
-// Writes a baked volume chunk by chunk: at no time more than a few chunks are in memory.
+// Writes a baked volume chunk by chunk, with only a few chunks in memory at any time.
 
 #include <filesystem>
 #include <memory>
@@ -15,28 +15,29 @@ namespace freevoxels::fvx {
 struct WriteSettings {
   glm::ivec3 dimensions{0};
   Encodings encodings;
-  WithoutData withoutData = WithoutData::Zero;  ///< of scalars, in means
-  bool leaveOutZeros = false;  ///< bricks of scalars of which none is above 0, as well as those without data
+  WithoutData withoutData = WithoutData::Zero;  ///< how voxels without data count in means of scalars
+  /// Whether to leave out bricks of scalars of which none is above 0, in addition to those without data.
+  bool leaveOutZeros = false;
   bool compress = false;
 };
 
-/// Failures to write are std::system_error: to be used within writeAtomically (core/atomic_file.h).
+/// Throws std::system_error if it cannot write: to be used within writeAtomically (core/atomic_file.h).
 class FvxWriter {
  public:
-  /// Chunks are spooled to temporary files without names in `folder`, one for each level and channel, as their number is known at
-  /// the end only and coarse levels come first in the file.
+  /// Chunks are spooled to unnamed temporary files in `folder`, one for each level and channel, because their
+  /// number is known only at the end and coarse levels come first in the file.
   FvxWriter(const std::filesystem::path& folder, const WriteSettings& settings);
   ~FvxWriter();
 
-  /// The next chunks of level 0, in Hilbert order (hilbert.h); those without data may be left out.
+  /// Adds the next chunks of level 0, in Hilbert order (hilbert.h); those without data may be left out.
   void add(std::span<const ChunkValues> chunks);
-  /// Of the chunks of level 0 so far; ranges of channels without active voxels are 0.
+  /// Counts and ranges of the chunks of level 0 so far; ranges of channels without active voxels are 0.
   struct Summary {
     std::uint64_t activeVoxels = 0;
     float minimum = 0.0f, maximum = 0.0f;
   };
   Summary summary(Channel channel) const;
-  /// Writes the file. `provenance` is JSON, for people.
+  /// Writes the file. `provenance` is JSON for readers of the file.
   void finish(const std::filesystem::path& file, const Description& description, const ContentCells& content,
               const std::string& provenance);
 

@@ -6,7 +6,7 @@ namespace freevoxels {
 
 namespace {
 
-/// Empty where no voxel is active.
+/// Empty if no voxel is active.
 template <typename ValueAt>
 std::vector<float> chunkOf(const ProceduralField& field, glm::ivec3 cell, const ValueAt& valueAt) {
   constexpr int n = ScalarBricks::kEdge, m = fvx::kChunkEdge / n;

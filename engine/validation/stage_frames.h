@@ -1,5 +1,6 @@
 #pragma once
-// What the checks of stages share: a camera within the volume, how values are compared, and the pictures of a frame.
+// Shared by the checks of stages: a camera inside the volume, comparisons of values, and the images of a
+// frame.
 
 #include <glm/glm.hpp>
 
@@ -9,15 +10,16 @@
 
 namespace freevoxels {
 
-/// Looks the way that `outside` does, from the middle of the box, where no voxel's centre is.
+/// A camera that looks in the direction of `outside` from the middle of the box, where no voxel has its
+/// centre.
 Camera cameraInside(const Volume& volume, const Camera& outside);
 
-/// Infinite where only the reference is 0.
+/// The relative error; infinite if only the reference is 0.
 double relativeDifference(double value, double reference);
-/// NaN if any is.
+/// The maximum, or NaN if any figure is NaN.
 double largestComponent(glm::dvec3 v);
 
-/// The device's picture beside a reference, and the difference of the two, brightened for the eye.
+/// The device's image beside a reference, and their difference, brightened.
 ReportPictures comparedPictures(const Image& picture, const Image& reference, std::string caption, std::string referenceCaption);
 
 }  // namespace freevoxels

@@ -37,10 +37,11 @@ class ScalarBricks {
   static ScalarBricks make(glm::ivec3 dimensions, const Function& scalarAt) {
     return make(dimensions, scalarAt, [](glm::ivec3) { return true; });
   }
-  /// Of bricks that exist already, one for each of `cells`. Voxels of bricks that are beyond the box must be inactive.
+  /// Takes over existing bricks, one for each of `cells`. Voxels of bricks that are beyond the box must be
+  /// inactive.
   static ScalarBricks of(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, std::vector<Brick> bricks);
-  /// The same of bricks in the memory of another owner, such as a mapped file, which `owner` keeps alive. They are used in place;
-  /// the first change of the object copies them.
+  /// Uses bricks in the memory of another owner, such as a mapped file, which `owner` keeps alive. They are
+  /// used in place; the first change of the object copies them.
   static ScalarBricks inPlace(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, std::span<const Brick> bricks,
                               std::shared_ptr<const void> owner);
 

@@ -33,7 +33,7 @@ ContentCells contentCells(const Volume& volume, const Classification& classifica
 /// The cells in which something is seen; the whole box where there are none. Of `volume` the box is read, not the values.
 Subject subjectOf(const ContentCells& content, const Volume& volume);
 
-/// The same of a volume's own cells.
+/// The same for the cells of a volume.
 Subject contentOf(const Volume& volume, const Classification& classification);
 
 }  // namespace freevoxels

@@ -1,5 +1,5 @@
 #pragma once
-// Internal to the vdb_*.cpp files, as it includes OpenVDB: the values of a tree in bricks of a box.
+// Internal to the vdb_*.cpp files, since it includes OpenVDB: the values of a tree as bricks of a box.
 
 #include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
@@ -13,7 +13,7 @@ namespace freevoxels {
 
 using VdbLeaf = openvdb::FloatTree::LeafNodeType;
 
-/// The bricks lie on the lattice of the leaves: a leaf is a brick, and a tile is several.
+/// Bricks are on the lattice of the leaves: a leaf is a brick, and a tile is several.
 static_assert(ScalarBricks::kEdge == int(VdbLeaf::DIM));
 
 /// A box without data; `origin` is its first voxel in the file's index space.
@@ -21,13 +21,13 @@ inline ScalarBricks emptyBricks(glm::ivec3 dimensions, glm::ivec3 origin) {
   return ScalarBricks(dimensions, origin & (ScalarBricks::kEdge - 1));
 }
 
-/// The brick at a leaf's place.
+/// The cell of the brick at a leaf's position.
 inline glm::ivec3 brickCell(glm::ivec3 origin, const openvdb::Coord& corner) {
   constexpr int shift = VdbLeaf::LOG2DIM;
   return (glm::ivec3(corner.x(), corner.y(), corner.z()) >> shift) - (origin >> shift);
 }
 
-/// Calls `visit(corner)` for each place of a leaf in a tile.
+/// Calls `visit(corner)` for each position of a leaf in a tile.
 template <typename Visit>
 void forEachLeafIn(const openvdb::CoordBBox& tile, const Visit& visit) {
   constexpr int n = int(VdbLeaf::DIM);
@@ -45,7 +45,8 @@ void fillBrick(ScalarBricks::Brick& brick, const VdbLeaf& leaf, const ToDensity&
   }
 }
 
-/// What `toDensity` keeps of a tree, all of which is in the box. Leaves that hold nothing make no brick.
+/// The bricks of the voxels of a tree that `toDensity` keeps, all of which are inside the box. Leaves without
+/// such voxels make no brick.
 template <typename ToDensity>
 ScalarBricks bricksOf(const openvdb::FloatTree& tree, std::vector<const VdbLeaf*> leaves,
                       glm::ivec3 dimensions, glm::ivec3 origin, const ToDensity& toDensity) {

@@ -93,7 +93,7 @@ VkShaderStageFlags stagesOf(VkPipelineBindPoint bindPoint) {
              : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
 }
 
-/// What all stages need together.
+/// The bindings and push constants of all stages together.
 PipelineInterface interfaceOf(std::initializer_list<const Shader*> stages) {
   PipelineInterface interface;
   for (const Shader* stage : stages) {

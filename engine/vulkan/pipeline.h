@@ -62,7 +62,7 @@ class Pipeline {
   const PipelineParts* parts_ = nullptr;
 };
 
-/// What a pipeline is made from; its interface is in the code.
+/// Everything that distinguishes pipelines. The interface is part of the code.
 struct PipelineKey {
   std::array<const std::uint32_t*, 2> code{};  ///< compute, or vertex and fragment
   Specialisation constants;

@@ -12,11 +12,11 @@ namespace freevoxels {
 
 struct Shader {
   std::span<const std::uint32_t> words;  ///< SPIR-V
-  const char* name = "";                 ///< of the shader's file, for debuggers
-  /// Set 0: the type of binding i, or kNoBinding where only another stage of the pipeline has one.
+  const char* name = "";                 ///< name of the shader's file, for debuggers
+  /// The type of each binding of set 0, or kNoBinding if only another stage of the pipeline has it.
   std::span<const VkDescriptorType> bindings;
   std::uint32_t pushConstantBytes = 0;
-  glm::ivec3 workgroup{1};  ///< compute only: invocations of a workgroup
+  glm::ivec3 workgroup{1};  ///< invocations of a workgroup; compute only
 };
 
 inline constexpr VkDescriptorType kNoBinding = VK_DESCRIPTOR_TYPE_MAX_ENUM;
