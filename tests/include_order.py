@@ -16,6 +16,7 @@ ORDER = [
     "engine/scene",        # camera, lights, environment, settings: plain data
     "engine/volume",       # volume files, procedural volumes, classification
     "engine/octree",       # the volume on the device: occupied blocks and their medium
+    "engine/storage",      # baked volumes on disk, and the order of their chunks
     "engine/attenuation",  # the table: sweeps, levels, pruning; rays from a source
     "engine/visibility",   # level of detail, culling
     "engine/lighting",     # light at voxels and in cells
