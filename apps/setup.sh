@@ -10,7 +10,7 @@ packages=(
   libvulkan-dev libvulkan-volk-dev mesa-vulkan-drivers vulkan-validationlayers
   glslang-tools spirv-tools
   libglm-dev libfmt-dev libspdlog-dev nlohmann-json3-dev libcli11-dev
-  libopenexr-dev libpng-dev
+  libopenexr-dev libpng-dev libxxhash-dev
   libglfw3-dev libimgui-dev
   libopenvdb-dev libtbb-dev libboost-iostreams-dev # OpenVDB's headers and CMake module need the last, too
   libxxhash-dev libzstd-dev
@@ -18,6 +18,10 @@ packages=(
   help2man man-db # man pages, and their test
   libgtest-dev xvfb xdotool python3-openvdb
 )
+# Only freevoxels-mpi, and so all, needs Open MPI, which brings 38 packages.
+for target in "$@"; do
+  case $target in freevoxels-mpi | all) packages+=(libopenmpi-dev) ;; esac
+done
 
 say() { echo "setup: $*"; }
 
@@ -51,11 +55,13 @@ install_packages() {
   "${as_root[@]}" apt-get update -qq
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
     apt-get install -y -qq --no-install-recommends -o DPkg::Lock::Timeout=120 "${missing[@]}"
+  installed_packages=1
 }
 
 build() {
   cd "$root"
-  [ -f build/build.ninja ] || cmake --preset release
+  # Again where packages are new: without Open MPI there is no target freevoxels-mpi.
+  [ -f build/build.ninja ] && [ -z "${installed_packages:-}" ] || cmake --preset release
   cmake --build --preset release --target "$@"
 }
 

@@ -14,6 +14,7 @@
 #include "engine/octree/device_volume.h"
 #include "engine/splatting/depth_sort.h"
 #include "engine/splatting/resolve_pass.h"
+#include "engine/splatting/share_drawing.h"
 #include "engine/splatting/splat_pass.h"
 #include "engine/splatting/sums_readback.h"
 #include "engine/visibility/cut_pass.h"
@@ -37,6 +38,7 @@ struct Renderer::State {
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
   std::unique_ptr<DepthSort> sort;
+  std::unique_ptr<ShareDrawing> shares;
   std::optional<GatherVolume> gatherVolume;
   std::optional<GatherPass> gather;
   std::optional<LightPass> lights;
@@ -45,15 +47,19 @@ struct Renderer::State {
   struct Frame {
     FrameConstants constants;
     SplatTargets targets;
+    const AttenuationTable* table = nullptr;  ///< where the frame reads it
+    const Buffer* order = nullptr;            ///< of the voxels, where they are sorted
   };
   VolumeMemory memoryOfVolume() const;
   const BuiltVolume& builtWithBlocks(const Progress& progress = {});
   const AttenuationTable& sweptTable(const Progress& progress = {});
   const AttenuationTable& tableWithLevels(const Progress& progress = {});
-  void recordDrawing(Commands& commands, const Frame& frame, const AttenuationTable* read,
-                     const Buffer* order);
+  SplatPass::Inputs recordList(Commands& commands, const Frame& frame);
+  CutInputs cutInputs(const Frame& frame) const;
+  void recordDrawing(Commands& commands, const Frame& frame);
   FrameSettings resolved(const FrameSettings& settings);
   FrameConstants constantsOf(const Camera& camera, const FrameSettings& settings, const Progress& progress);
+  Frame prepareSplats(Commands& commands, const Camera& camera, const FrameSettings& settings, const Progress& progress);
   Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
                      const Progress& progress = {});
   SplatTargets recordGather(Commands& commands, const Camera& camera, const FrameSettings& settings,
@@ -110,39 +116,45 @@ const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progres
   return *table;
 }
 
-/// The splats of a frame. What the table calls hidden comes after the rest, where it is not covered.
-void Renderer::State::recordDrawing(Commands& commands, const Frame& frame, const AttenuationTable* read,
-                                    const Buffer* order) {
+CutInputs Renderer::State::cutInputs(const Frame& frame) const {
+  return {.volume = built.volume,
+          .voxels = built.visible,
+          .lists = built.lists,
+          .table = frame.table,
+          .setup = frame.constants.setup,
+          .rays = frame.constants.resolve,
+          .detail = frame.constants.detail,
+          .cull = frame.constants.cull};
+}
+
+/// The blocks to draw, without those that the table calls hidden.
+SplatPass::Inputs Renderer::State::recordList(Commands& commands, const Frame& frame) {
   const FrameConstants& constants = frame.constants;
   lastWasCut = !constants.detail.isOneLevel() || !constants.cull.leavesNothingOut();
   lastLevel = constants.detail.finest;
-  SplatPass::Inputs drawing{.volume = built.volume, .table = read, .order = order};
+  SplatPass::Inputs drawing{.volume = built.volume, .table = frame.table, .order = frame.order};
   if (constants.lit) drawing.lights = &lights->lights();
-  if (!lastWasCut) {
+  if (lastWasCut) {
+    if (!cutter) cutter.emplace(device, tableSettings.code);
+    cutter->record(commands, cutInputs(frame));
+    lastDrawn = &cutter->blocks();
+  } else {
     lastDrawn = &built.lists.of(lastLevel, built.visible);
-    drawing.visible = lastDrawn;
-    drawing.chunkCount = lastDrawn->chunkCount;
-    splats->record(commands, drawing, constants, frame.targets);
-    return;
   }
-  if (!cutter) cutter.emplace(device, tableSettings.code);
-  const CutInputs inputs{.volume = built.volume,
-                         .voxels = built.visible,
-                         .lists = built.lists,
-                         .table = read,
-                         .setup = constants.setup,
-                         .rays = constants.resolve,
-                         .detail = constants.detail,
-                         .cull = constants.cull};
-  cutter->record(commands, inputs);
-  lastDrawn = drawing.visible = &cutter->blocks();
-  drawing.chunkCount = lastDrawn->chunkCount / 2;
-  splats->record(commands, drawing, constants, frame.targets);
-  if (constants.cull.hiddenDepth == 0.0) return;
-  cutter->recordDeferred(commands, inputs, frame.targets.colorEnergy, frame.targets.opticalDepth);
+  drawing.visible = lastDrawn;
+  drawing.chunkCount = lastWasCut ? lastDrawn->chunkCount / 2 : lastDrawn->chunkCount;
+  return drawing;
+}
+
+/// The splats of a frame. What the table calls hidden comes after the rest, where it is not covered.
+void Renderer::State::recordDrawing(Commands& commands, const Frame& frame) {
+  SplatPass::Inputs drawing = recordList(commands, frame);
+  splats->record(commands, drawing, frame.constants, frame.targets);
+  if (frame.constants.cull.hiddenDepth == 0.0) return;
+  cutter->recordDeferred(commands, cutInputs(frame), frame.targets.colorEnergy, frame.targets.opticalDepth);
   drawing.firstChunk = drawing.chunkCount;
   drawing.continued = true;
-  splats->record(commands, drawing, constants, frame.targets);
+  splats->record(commands, drawing, frame.constants, frame.targets);
 }
 
 /// How lights are shadowed, if that is left to the volume and the device.
@@ -184,9 +196,9 @@ FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSet
   return makeFrameConstants(device, built.volume, tableSettings, camera, tableAlone);
 }
 
-/// Up to the sums in the targets; the sorted picture is made there, and has none.
-Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const Camera& camera,
-                                                     const FrameSettings& wanted, const Progress& progress) {
+/// All that a frame of splats needs before its blocks are listed and drawn.
+Renderer::State::Frame Renderer::State::prepareSplats(Commands& commands, const Camera& camera, const FrameSettings& wanted,
+                                                      const Progress& progress) {
   frameTimes.clear();
   builtWithBlocks(progress);
   checkSplatsFit(device, built.volume);
@@ -198,17 +210,26 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
   }
   if (sorted && !sort) sort = std::make_unique<DepthSort>(device, built.volume);
   Frame frame{.constants = constantsOf(camera, settings, progress), .targets = makeTargets(device, settings)};
-  if (sorted) sort->record(commands, built.volume, built.visible, camera);
-  const AttenuationTable* read = nullptr;
+  if (sorted) {
+    sort->record(commands, built.volume, built.visible, camera);
+    frame.order = &sort->voxels();
+  }
   if (frame.constants.readsTable())
-    read = frame.constants.readsLevels() ? &tableWithLevels(progress) : &sweptTable(progress);
+    frame.table = frame.constants.readsLevels() ? &tableWithLevels(progress) : &sweptTable(progress);
   if (settings.lighting)
     frame.constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, false, frameTimes);
   CullRule& cull = frame.constants.cull;
   if (cull.hiddenDepth > 0.0 &&
       !canHide(tableSettings, largestDepths, glm::dmat3(built.volume.indexToWorld), cull.hiddenDepth))
     cull.hiddenDepth = 0.0;
-  recordDrawing(commands, frame, read, sorted ? &sort->voxels() : nullptr);
+  return frame;
+}
+
+/// Up to the sums in the targets; the sorted picture is made there, and has none.
+Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
+                                                     const Progress& progress) {
+  Frame frame = prepareSplats(commands, camera, settings, progress);
+  recordDrawing(commands, frame);
   return frame;
 }
 
@@ -317,12 +338,24 @@ std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSet
   return sums.read(frame.constants);
 }
 
-GatherStages Renderer::renderGatherStages(const Camera& camera, const FrameSettings& settings) {
-  FV_CHECK_EQ(int(settings.draw), int(Draw::Gather));
-  Image image = render(camera, settings);
-  GatherStages stages = downloadGatherStages(state_->device, state_->built, *state_->gatherVolume, *state_->gather);
-  stages.image = std::move(image);
-  return stages;
+FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& wanted, const SharePart& part, const Progress& progress) {
+  FV_CHECK_LT(int(wanted.composite), int(Composite::Sorted));
+  FV_CHECK_LT(part.index, part.count);
+  FV_CHECK_LE(part.count, kShares);
+  checkCamera(camera);
+  checkFrameFits(state_->device, wanted);
+  State& state = *state_;
+  FrameSettings settings = wanted;
+  settings.cullThreshold = 0.0f;
+  Commands commands(state.device);
+  const State::Frame frame = state.prepareSplats(commands, camera, settings, progress);
+  if (!state.shares || state.shares->hasDistance() != settings.depth)
+    state.shares = std::make_unique<ShareDrawing>(state.device, state.built, settings.depth);
+  const SplatPass::Inputs drawing = state.recordList(commands, frame);
+  FixedSums layout = sumsLayout(state.built.volume, frame.constants, settings);
+  const std::optional<int> wholeLevel = state.lastWasCut ? std::nullopt : std::optional(state.lastLevel);
+  return state.shares->draw(commands, {*state.splats, drawing, wholeLevel, frame.constants, frame.targets, std::move(layout)}, part,
+                            state.frameTimes, progress);
 }
 
 VolumeMemory Renderer::memory() const {

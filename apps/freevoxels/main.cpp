@@ -1,4 +1,4 @@
-// The command-line program: freevoxels render | turntable | oracle | compare | info | generate | bake | devices.
+// The command-line program: freevoxels render | turntable | merge | oracle | compare | info | generate | devices.
 
 #include <CLI/CLI.hpp>
 
@@ -7,6 +7,7 @@
 #include "apps/freevoxels/devices_command.h"
 #include "apps/freevoxels/generate_command.h"
 #include "apps/freevoxels/info_command.h"
+#include "apps/freevoxels/merge_command.h"
 #include "apps/freevoxels/oracle_command.h"
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/render_command.h"
@@ -16,6 +17,7 @@ int main(int argc, char** argv) {
   CLI::App app("Draws volumes by order-independent FreeVoxel splatting.", "freevoxels");
   freevoxels::RenderCommand render;
   freevoxels::TurntableCommand turntable;
+  freevoxels::MergeCommand merge;
   freevoxels::OracleCommand oracle;
   freevoxels::CompareCommand compare;
   freevoxels::InfoCommand info;
@@ -24,6 +26,7 @@ int main(int argc, char** argv) {
   freevoxels::DevicesCommand devices;
   render.add(app);
   turntable.add(app);
+  merge.add(app);
   oracle.add(app);
   compare.add(app);
   info.add(app);

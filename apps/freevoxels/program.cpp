@@ -43,17 +43,17 @@ void setUpMessages(const std::string& program) {
   spdlog::set_default_logger(std::move(logger));
 }
 
-int report(ExitCode code, std::string sentence) {
-  std::ranges::replace(sentence, '\n', ' ');
-  spdlog::error("{}", sentence);
-  return int(code);
-}
+/// How a program ended; the sentence of an error.
+struct Outcome {
+  ExitCode code = ExitCode::Success;
+  std::string sentence;
+};
 
 /// Success, unless what was printed did not all arrive.
-int finish() {
+Outcome finish() {
   std::cout.flush();
-  if (std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return int(ExitCode::Success);
-  return report(ExitCode::Output, "cannot write to standard output: is the disk full?");
+  if (std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return {};
+  return {ExitCode::Output, "cannot write to standard output: is the disk full?"};
 }
 
 /// The command as far as it was understood: "freevoxels render".
@@ -94,7 +94,7 @@ std::string unknownCommand(const CLI::App& app, const std::string& word) {
   return fmt::format("there is no command '{}'{}", word, suggestion(word, commandNames(app)));
 }
 
-int reportUsage(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+Outcome usageError(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
   std::string sentence = error.what();
   const bool hasCommands = !commandNames(app).empty();
   const CLI::App& command = commandOf(app);
@@ -106,7 +106,26 @@ int reportUsage(const CLI::App& app, const CLI::ParseError& error, int argc, cha
     sentence = "a command is needed";
   if (sentence.size() > 1 && std::islower(static_cast<unsigned char>(sentence[1])))
     sentence[0] = char(std::tolower(static_cast<unsigned char>(sentence[0])));
-  return report(ExitCode::Usage, fmt::format("{} (see {} --help)", sentence, commandName(app)));
+  return {ExitCode::Usage, fmt::format("{} (see {} --help)", sentence, commandName(app))};
+}
+
+Outcome parseAndRun(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    return finish();
+  } catch (const CLI::Success& help) {
+    app.exit(help);
+    return finish();
+  } catch (const CLI::ParseError& error) {
+    return usageError(app, error, argc, argv);
+  } catch (const Error& error) {
+    return {error.code(), error.what()};
+  } catch (const std::bad_alloc&) {
+    return {ExitCode::OutOfMemory, "this machine's memory is full: use a smaller volume or image"};
+  } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return finish();
+    return {ExitCode::Internal, fmt::format("internal error, please report it: {}", error.what())};
+  }
 }
 
 volatile std::sig_atomic_t deferredSignal = 0;
@@ -130,28 +149,19 @@ std::string programVersion() {
   return FREEVOXELS_VERSION;
 }
 
-int runProgram(CLI::App& app, int argc, char** argv) {
+int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>& onFailure) {
   setUpMessages(app.get_name());
   app.get_formatter()->column_width(36);
   app.get_formatter()->label("REQUIRED", "");
   app.get_formatter()->label("TEXT", "");
   app.set_version_flag("--version", app.get_name() + " " + programVersion());
-  try {
-    app.parse(argc, argv);
-    return finish();
-  } catch (const CLI::Success& help) {
-    app.exit(help);
-    return finish();
-  } catch (const CLI::ParseError& error) {
-    return reportUsage(app, error, argc, argv);
-  } catch (const Error& error) {
-    return report(error.code(), error.what());
-  } catch (const std::bad_alloc&) {
-    return report(ExitCode::OutOfMemory, "this machine's memory is full: use a smaller volume or image");
-  } catch (const std::exception& error) {
-    if (std::ferror(stdout) != 0) return finish();
-    return report(ExitCode::Internal, fmt::format("internal error, please report it: {}", error.what()));
+  Outcome outcome = parseAndRun(app, argc, argv);
+  if (outcome.code != ExitCode::Success) {
+    if (onFailure) onFailure();
+    std::ranges::replace(outcome.sentence, '\n', ' ');
+    spdlog::error("{}", outcome.sentence);
   }
+  return int(outcome.code);
 }
 
 void MessageOptions::add(CLI::App& app) {

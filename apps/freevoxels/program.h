@@ -2,6 +2,7 @@
 // What every program does the same way: messages, exit codes, interrupts.
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -15,8 +16,8 @@ namespace freevoxels {
 std::string programVersion();
 
 /// Parses the arguments and runs the command they name; its callbacks throw. Every error becomes one line on
-/// stderr and its ExitCode. Adds --version to `app`.
-int runProgram(CLI::App& app, int argc, char** argv);
+/// stderr and its ExitCode; `onFailure` is called before it is printed. Adds --version to `app`.
+int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>& onFailure = {});
 
 /// --quiet and --verbose.
 struct MessageOptions {

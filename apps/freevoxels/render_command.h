@@ -7,6 +7,8 @@ namespace freevoxels {
 
 class RenderCommand {
  public:
+  /// `group` as RenderOptions has it.
+  explicit RenderCommand(ShareGroup* group = nullptr) { options_.group = group; }
   void add(CLI::App& app);
 
  private:

@@ -167,13 +167,17 @@ OptionList SceneOptions::describe(const Scene& scene, const OptionList& method) 
   return options;
 }
 
-void SceneOptions::write(const Image& image, const Scene& scene, const std::string& command,
-                         const OptionList& options, std::map<std::string, std::string> facts) const {
+ExrOptions SceneOptions::header(const Scene& scene, const std::string& command, const OptionList& options,
+                                std::map<std::string, std::string> facts) const {
   facts.emplace("volume", scene.volume->source);
-  ExrOptions exr =
-      exrMetadata(command, options, facts, scene.camera, double(image.size.x) / double(image.size.y));
+  ExrOptions exr = exrMetadata(command, options, facts, scene.camera, double(camera.size.x) / double(camera.size.y));
   exr.fullFloat = output.fullFloat;
-  output.write(image, exr);
+  return exr;
+}
+
+void SceneOptions::write(const Image& image, const Scene& scene, const std::string& command, const OptionList& options,
+                         std::map<std::string, std::string> facts) const {
+  output.write(image, header(scene, command, options, std::move(facts)));
 }
 
 }  // namespace freevoxels

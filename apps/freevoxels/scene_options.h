@@ -66,7 +66,9 @@ struct SceneOptions {
   void save(const OptionList& options) const;
   /// Everything resolved, with the options of the command's own between those of the camera and the outputs.
   OptionList describe(const Scene& scene, const OptionList& method = {}) const;
-  /// `command` and `facts` as for exrMetadata, which the volume's source joins.
+  /// The header of an .exr. `command` and `facts` as for exrMetadata, which the volume's source joins.
+  ExrOptions header(const Scene& scene, const std::string& command, const OptionList& options,
+                    std::map<std::string, std::string> facts) const;
   void write(const Image& image, const Scene& scene, const std::string& command, const OptionList& options,
              std::map<std::string, std::string> facts) const;
 };

@@ -26,8 +26,13 @@ void TurntableCommand::add(CLI::App& app) {
   addWholeNumber(*command, "--frames", "N", frames_, fmt::format("Frames of the turn [{}]", kDefaultFrames),
                  {1.0, double(kMaximumFrames)})
       ->group("Camera");
+  if (options_.group != nullptr)
+    addWholeNumber(*command, "--ranks-per-frame", "N", ranksPerFrame_,
+                   "Ranks that draw a frame together; groups of so many draw frames side by side [all]", {1.0, double(kShares)})
+        ->group("Device");
   command->footer(kExamples);
   command->callback([this] {
+    if (ranksPerFrame_) options_.group->splitFrames(*ranksPerFrame_);
     options_.scene.takeScene("_####.png");
     options_.run(frameNames(options_.scene.output.files, frames_.value_or(kDefaultFrames)));
   });

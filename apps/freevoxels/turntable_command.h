@@ -7,11 +7,13 @@ namespace freevoxels {
 
 class TurntableCommand {
  public:
+  /// `group` as RenderOptions has it.
+  explicit TurntableCommand(ShareGroup* group = nullptr) { options_.group = group; }
   void add(CLI::App& app);
 
  private:
   RenderOptions options_;
-  std::optional<int> frames_;
+  std::optional<int> frames_, ranksPerFrame_;
 };
 
 }  // namespace freevoxels

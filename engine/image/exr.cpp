@@ -2,17 +2,11 @@
 // or host.
 
 #include <ImathBox.h>
-#include <ImathMatrix.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfIO.h>
 #include <ImfInputFile.h>
-#include <ImfMatrixAttribute.h>
-#include <ImfOutputFile.h>
 #include <ImfStandardAttributes.h>
-#include <ImfStringAttribute.h>
-#include <ImfThreading.h>
 #include <half.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -21,11 +15,10 @@
 #include <array>
 #include <cstdint>
 #include <new>
-#include <thread>
 
 #include "engine/core/atomic_file.h"
-#include "engine/core/checked_file.h"
 #include "engine/core/error.h"
+#include "engine/image/exr_file.h"
 #include "engine/image/image.h"
 
 namespace freevoxels {
@@ -40,27 +33,6 @@ constexpr std::size_t kPixelsATask = 1 << 14;
 /// of the time.
 constexpr int kZipLevel = 3;
 
-/// OpenEXR swallows exceptions in its destructors; CheckedFile remembers them until close.
-class ExrStream : public Imf::OStream {
- public:
-  ExrStream(CheckedFile& file, const std::filesystem::path& name) : Imf::OStream(name.c_str()), file_(file) {}
-  void write(const char bytes[], int count) override { file_.write(bytes, std::size_t(count)); }
-  std::uint64_t tellp() override { return file_.tell(); }
-  void seekp(std::uint64_t position) override { file_.seek(position); }
-
- private:
-  CheckedFile& file_;
-};
-
-/// Lets OpenEXR compress and decompress blocks of scan lines in parallel.
-void useAllProcessors() {
-  static const bool once = [] {
-    Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency()));
-    return true;
-  }();
-  static_cast<void>(once);
-}
-
 Imf::Header makeHeader(const Image& image, const ExrOptions& options) {
   Imf::Header header(image.size.x, image.size.y);
   header.compression() = Imf::ZIP_COMPRESSION;
@@ -69,14 +41,7 @@ Imf::Header makeHeader(const Image& image, const ExrOptions& options) {
   for (const char* name : kColorChannels)
     header.channels().insert(name, Imf::Channel(options.fullFloat ? Imf::FLOAT : Imf::HALF));
   if (!image.depth.empty()) header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
-  for (const auto& [name, text] : options.metadata) header.insert(name, Imf::StringAttribute(text));
-  for (const auto& [name, matrix] : options.matrices) {
-    // glm's m[column][row] is, element by element, the transposed matrix that OpenEXR calls x[row][column].
-    Imath::M44f rowVector;
-    for (int i = 0; i < 4; ++i)
-      for (int j = 0; j < 4; ++j) rowVector.x[i][j] = matrix[i][j];
-    header.insert(name, Imf::M44fAttribute(rowVector));
-  }
+  insertOptions(header, options);
   return header;
 }
 
@@ -110,16 +75,7 @@ void encode(const std::filesystem::path& file, const Image& image, const ExrOpti
                                         ? makeSlice(Imf::FLOAT, &image.pixels[0].x + c, 4, width)
                                         : makeSlice(Imf::HALF, halves.data() + c, 4, width));
   if (!image.depth.empty()) frame.insert("Z", makeSlice(Imf::FLOAT, image.depth.data(), 1, width));
-
-  useAllProcessors();
-  CheckedFile output(file);
-  ExrStream stream(output, file);
-  {
-    Imf::OutputFile exr(stream, makeHeader(image, options));
-    exr.setFrameBuffer(frame);
-    exr.writePixels(image.size.y);
-  }  // the destructor writes the table of scan lines
-  output.close();
+  writeExrPixels(file, makeHeader(image, options), frame);
 }
 
 Image decode(const std::filesystem::path& file, std::int64_t maximumPixels) {

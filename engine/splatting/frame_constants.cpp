@@ -20,10 +20,10 @@ static_assert(shader::kLookupExact == int(AttenuationLookup::Exact));
 static_assert(shader::kCompositeAdditive == int(Composite::Additive));
 static_assert(shader::kCompositeSorted == int(Composite::Sorted));
 
-/// Image positions of the box's corners and the smallest distance from the eye plane.
+/// Image positions of the box's corners, and the range of their distances from the eye plane.
 struct ProjectedBox {
   glm::dvec2 low{std::numeric_limits<double>::max()}, high{std::numeric_limits<double>::lowest()};
-  double nearest = std::numeric_limits<double>::max();
+  double nearest = std::numeric_limits<double>::max(), farthest = std::numeric_limits<double>::lowest();
 };
 
 ProjectedBox projectBox(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions) {
@@ -36,6 +36,7 @@ ProjectedBox projectBox(const glm::dmat3& toPixel, const PixelRays& rays, glm::i
     box.low = glm::min(box.low, position);
     box.high = glm::max(box.high, position);
     box.nearest = std::min(box.nearest, pixel.z);
+    box.farthest = std::max(box.farthest, pixel.z);
   }
   return box;
 }
@@ -82,6 +83,17 @@ double brightestRay(const DeviceVolume& volume) {
     longest = std::max(longest, glm::length(glm::dmat3(volume.indexToWorld) *
                                             (signs * glm::dvec3(volume.layout.dimensions + 1))));
   return volume.emissionUnit * kBrightest * longest;
+}
+
+/// The pixels that splats can reach which are centred in the box and reach no further than `reach` pixels: all of them where the
+/// eye plane may cut a splat.
+void setCovered(FrameConstants& frame, const ProjectedBox& box, double reach, glm::ivec2 size) {
+  frame.coveredExtent = size;
+  if (!std::isfinite(reach)) return;
+  const glm::dvec2 last = glm::dvec2(size) - 1.0;
+  const glm::ivec2 first(glm::clamp(glm::floor(box.low - reach), glm::dvec2(0.0), last));
+  frame.coveredFirst = first;
+  frame.coveredExtent = glm::ivec2(glm::clamp(glm::ceil(box.high + reach), glm::dvec2(first), last)) - first + 1;
 }
 
 shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& table, const Camera& camera,
@@ -139,9 +151,11 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   frame.detail = detailRule(volume.hierarchy, rays, settings.size,
                             settings.composite == Composite::Sorted ? 0.0 : double(settings.lod));
   frame.cull = cullRule(volume.layout.dimensions, rays, settings);
-  const double brightest = std::max(brightestRay(volume), 1.0);
-  if (settings.culling) frame.hiddenTransmittance = double(settings.cullThreshold) / brightest;
-  if (frame.cull.hiddenDepth > 0.0) frame.cull.hiddenDepth += std::log(brightest);
+  frame.brightestRay = brightestRay(volume);
+  if (frame.cull.hiddenDepth > 0.0) {
+    frame.cull.hiddenDepth += std::log(std::max(frame.brightestRay, 1.0));
+    frame.hiddenTransmittance = std::exp(-frame.cull.hiddenDepth);
+  }
   if (!frame.eyeReadsTable()) frame.cull.hiddenDepth = 0.0;
   frame.resolve = {.ray = rays.direction,
                    .rayX = rays.directionX,
@@ -160,6 +174,9 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
 
   const double largestPoint = double(device.limits().pointSizeRange[1]);
   const double reach = largestHalfExtent(toPixel, rays, volume.layout.dimensions, frame.detail);
+  const ProjectedBox box = projectBox(toPixel, rays, volume.layout.dimensions);
+  setCovered(frame, box, reach, settings.size);
+  frame.farthest = box.farthest;
   const double margin = std::ceil(largestPoint / 2.0);
   const double widest = double(std::max(settings.size.x, settings.size.y)) + 2.0 * margin;
   frame.quads = 2.0 * reach > largestPoint || widest > double(device.limits().maxViewportDimensions[0]) ||

@@ -8,6 +8,7 @@
 #include "embedded/radix_count.h"
 #include "embedded/radix_scan.h"
 #include "embedded/radix_scatter.h"
+#include "engine/core/error.h"
 #include "shaders/interface.h"
 
 namespace freevoxels {
@@ -16,7 +17,6 @@ namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr int kThreads = shader::kSortGroups * shader::kSortThreads;
-static_assert(32 / shader::kSortBits % 2 == 0, "the last pass must end in SortPairs::keys and values");
 
 }  // namespace
 
@@ -40,10 +40,11 @@ RadixSort::RadixSort(const Device& device)
       scan_(makeComputePipeline(device, shaders::radix_scan)),
       scatter_(makeComputePipeline(device, shaders::radix_scatter)) {}
 
-void RadixSort::record(Commands& commands, const SortPairs& pairs) const {
+void RadixSort::record(Commands& commands, const SortPairs& pairs, int bits) const {
+  FV_CHECK_EQ(bits % (2 * shader::kSortBits), 0);  // the last pass must end in SortPairs::keys and values
   const Buffer *keys = &pairs.keys, *values = &pairs.values;
   const Buffer *sortedKeys = &pairs.spareKeys, *sortedValues = &pairs.spareValues;
-  for (std::uint32_t shift = 0; shift < 32; shift += shader::kSortBits) {
+  for (std::uint32_t shift = 0; shift < std::uint32_t(bits); shift += shader::kSortBits) {
     const shader::RadixPush push{shift};
     const std::array<Binding, 3> count{&pairs.count, keys, &pairs.offsets};
     const std::array<Binding, 1> scan{&pairs.offsets};

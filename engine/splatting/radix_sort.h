@@ -20,13 +20,13 @@ struct SortPairs {
 /// `capacity` of 0 counts as 1.
 SortPairs makeSortPairs(const Device& device, std::uint64_t capacity);
 
-/// COMPUTE radix_count.comp, radix_scan.comp, radix_scatter.comp, for each of a key's four digits
+/// COMPUTE radix_count.comp, radix_scan.comp, radix_scatter.comp, for each of a key's digits
 class RadixSort {
  public:
   explicit RadixSort(const Device& device);
-  /// Ascending keys; pairs with equal keys keep their order. Count, keys and values must be visible to
-  /// compute; leaves them so.
-  void record(Commands& commands, const SortPairs& pairs) const;
+  /// Ascending keys, of which the lower `bits` are looked at; pairs with equal keys keep their order. Count, keys and values must be
+  /// visible to compute; leaves them so. `bits` is a multiple of 2 kSortBits.
+  void record(Commands& commands, const SortPairs& pairs, int bits = 32) const;
 
  private:
   Pipeline count_, scan_, scatter_;

@@ -168,6 +168,7 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
     commands.beginPass("splat set-up");
     commands.barrier(kDraw, kCompute);
     commands.dispatchIndirect(setUp, setup, shader::SetupPush{chunk}, inputs.visible->chunks, arguments);
+    if (inputs.onSplats) inputs.onSplats(splats_, chunk);
     commands.beginPass("splat draw");
     commands.barrier(kCompute, kDraw);
     beginRendering(

@@ -2,6 +2,7 @@
 // Visible voxels to the sums of a frame: set-up and blended draw. Subr et al. 2007, Section 3.3 and 4.1.
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -48,6 +49,10 @@ struct FrameConstants {
   CullRule cull;
   /// Whether the levels of the table above the voxels are looked up.
   bool readsLevels() const { return detail.coarsest > 0 || cull.hiddenDepth > 0.0; }
+  /// The part of the image that splats can reach, at least one pixel.
+  glm::ivec2 coveredFirst{0}, coveredExtent{1};
+  double farthest = 0.0;     ///< distance of the volume's farthest corner from the eye plane, world units
+  double brightestRay = 0.0; ///< no pixel has more light that the volume sends out itself
   bool quads = false;  ///< some splat may be larger than the device's largest point
   float viewportMargin =
       0.0f;  ///< pixels around the image, so that points centred outside it are not clipped
@@ -80,6 +85,8 @@ class SplatPass {
     bool continued = false;  ///< the targets, in layout GENERAL, have the sums of what was drawn before
     const Buffer* lights = nullptr;  ///< shader::Light, of a frame that is lit
     const Buffer* order = nullptr;   ///< the visible voxels as they are to be drawn; null: as they are listed
+    /// Called where a chunk's splats are set up, with their buffer of shader::Splat and the chunk; may be empty.
+    std::function<void(const Buffer& splats, std::uint32_t chunk)> onSplats;
   };
   void record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,
               const SplatTargets& targets);

@@ -52,12 +52,6 @@ TEST(Hilbert, FirstEightToTheKIndicesFillACube) {
   }
 }
 
-TEST(Hilbert, ChildrenOfACellAreConsecutiveInTheOrderOfTheirParents) {
-  constexpr int kBits = 4;
-  for (std::uint64_t index = 0; index < std::uint64_t(1) << 3 * kBits; ++index)
-    ASSERT_EQ(hilbertIndex(hilbertCell(index, kBits) / 2u, kBits - 1), index / 8) << "index " << index;
-}
-
 TEST(Hilbert, OrderOfABoxHasEveryCellOnceAlongTheCurve) {
   const glm::ivec3 box(5, 9, 2);
   const std::vector<glm::ivec3> order = hilbertOrder(box);

@@ -1,0 +1,53 @@
+#include "apps/freevoxels/share_options.h"
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr const char* kGroup = "Shares";
+
+}  // namespace
+
+SharePart readSharePart(const std::string& name, const std::string& text) {
+  SharePart part;
+  const char* const end = text.data() + text.size();
+  const auto [slash, indexError] = std::from_chars(text.data(), end, part.index);
+  if (indexError == std::errc() && slash != end && *slash == '/') {
+    const auto [last, countError] = std::from_chars(slash + 1, end, part.count);
+    if (countError == std::errc() && last == end && 0 <= part.index && part.index < part.count && part.count <= kShares) return part;
+  }
+  fail(ExitCode::Usage, "{} takes I/N with 0 <= I < N <= {}, as 0/4, not '{}'", name, kShares, text);
+}
+
+std::string sharePartText(const SharePart& part) {
+  return fmt::format("{}/{}", part.index, part.count);
+}
+
+void ShareOptions::add(CLI::App& app) {
+  app.add_option_function<std::string>(
+         "--share", [this](const std::string& text) { part = readSharePart("--share", text); },
+         "Draw part I of N of the volume's blocks alone; the parts I = 0 to N - 1 are the whole, by splats and with the same bits for "
+         "every N")
+      ->take_last()
+      ->type_name("I/N")
+      ->group(kGroup);
+  app.add_flag("--sums", sums, "Write the sums of the part, an .exr that 'freevoxels merge' adds up with the others, instead of a picture")
+      ->group(kGroup);
+}
+
+FrameSettings sharedSettings(FrameSettings settings) {
+  if (settings.composite == Composite::Sorted)
+    fail(ExitCode::Usage, "a sorted image cannot be divided into shares: leave --composite sorted out");
+  if (settings.draw == Draw::Gather)
+    fail(ExitCode::Usage, "--draw gather cannot be divided into shares: leave it out, or use --draw splats");
+  settings.draw = Draw::Splats;
+  settings.cullThreshold = 0.0f;
+  return settings;
+}
+
+}  // namespace freevoxels

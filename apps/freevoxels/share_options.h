@@ -1,0 +1,32 @@
+#pragma once
+// Which part of the volume a command draws, and whether it writes the part's sums for `freevoxels merge`.
+
+#include <optional>
+#include <string>
+
+#include "apps/freevoxels/option_values.h"
+#include "engine/splatting/shares.h"
+#include "engine/scene/render_settings.h"
+
+namespace freevoxels {
+
+struct ShareOptions {
+  std::optional<SharePart> part;
+  bool sums = false;
+
+  void add(CLI::App& app);
+  /// Whether frames are drawn share by share.
+  bool isGiven() const { return part.has_value() || sums; }
+  /// All shares where the option is not given.
+  SharePart whole() const { return part.value_or(SharePart{}); }
+};
+
+/// "2/7" as the third of seven parts. Fails with ExitCode::Usage; `name` is what the sentence calls the text.
+SharePart readSharePart(const std::string& name, const std::string& text);
+std::string sharePartText(const SharePart& part);
+
+/// Settings of a frame that is drawn share by share: by splats, and none left out as hidden, which other shares' sums would have to
+/// tell. Fails with ExitCode::Usage where a method was asked for that cannot be divided.
+FrameSettings sharedSettings(FrameSettings settings);
+
+}  // namespace freevoxels

@@ -1,0 +1,46 @@
+// freevoxels-mpi render | turntable: the commands of freevoxels, drawn by all processes of an MPI job together.
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <thread>
+
+#include "apps/freevoxels/program.h"
+#include "apps/freevoxels/render_command.h"
+#include "apps/freevoxels/turntable_command.h"
+#include "apps/mpi/mpi_job.h"
+
+namespace {
+
+/// How long a rank waits for rank 0 to report the same error and to end the job.
+constexpr std::chrono::seconds kPatience{2};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  freevoxels::MpiJob job(argc, argv);
+  if (!job.leads() && std::freopen("/dev/null", "w", stdout) == nullptr) job.abort(1);
+
+  CLI::App app("Draws volumes as freevoxels does, by all processes of an MPI job together.", "freevoxels-mpi");
+  freevoxels::RenderCommand render(&job);
+  freevoxels::TurntableCommand turntable(&job);
+  render.add(app);
+  turntable.add(app);
+  app.require_subcommand(1);
+  app.footer(
+      "Examples:\n"
+      "  mpirun -n 4 freevoxels-mpi render cloud.vdb cloud.exr\n"
+      "  srun --mpi=pmix freevoxels-mpi turntable cloud.vdb orbit_####.png --ranks-per-frame 2\n"
+      "Every rank reads the volume; rank 0 prints and writes. The picture has the same bits for any number of ranks.");
+
+  const int exitCode = freevoxels::runProgram(app, argc, argv, [&] {
+    if (job.leads()) return;
+    std::this_thread::sleep_for(kPatience);
+    spdlog::default_logger()->set_pattern("freevoxels-mpi: on " + job.name() + ": %v");
+  });
+  if (exitCode != 0) job.abort(exitCode);
+  return 0;
+}

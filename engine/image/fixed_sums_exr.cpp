@@ -1,0 +1,148 @@
+// Files of sums: OpenEXR with 32-bit integer channels.
+
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputFile.h>
+#include <ImfIntAttribute.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfOutputFile.h>
+#include <ImfStringAttribute.h>
+
+#include <new>
+#include <string_view>
+
+#include "engine/core/atomic_file.h"
+#include "engine/core/error.h"
+#include "engine/image/exr_file.h"
+#include "engine/image/fixed_sums.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr std::array<const char*, kSumChannels> kNames{"red", "green", "blue", "energy", "depth", "distance"};
+constexpr std::int64_t kMostPixels = std::int64_t(1) << 30;
+constexpr const char* kMethod = "freevoxels:method";
+
+std::string digitsName(int channel) {
+  return fmt::format("freevoxels:digits.{}", kNames[std::size_t(channel)]);
+}
+
+/// The high and the low words of all values, as a file's channels have them.
+struct Words {
+  std::vector<std::uint32_t> high, low;
+};
+
+/// Slices of both words of every channel, addressed in the image's coordinates.
+Imf::FrameBuffer frameBuffer(Words& words, const FixedSums& sums) {
+  Imf::FrameBuffer frame;
+  const auto stride = std::size_t(sums.extent.x) * sizeof(std::uint32_t);
+  const std::ptrdiff_t before = std::ptrdiff_t(sums.first.y) * sums.extent.x + sums.first.x;
+  for (int c = 0; c < sums.channels; ++c) {
+    const std::ptrdiff_t place = std::ptrdiff_t(c) * std::ptrdiff_t(sums.pixelCount()) - before;
+    const auto insert = [&](const char* part, std::vector<std::uint32_t>& data) {
+      frame.insert(fmt::format("{}.{}", kNames[std::size_t(c)], part),
+                   Imf::Slice(Imf::UINT, reinterpret_cast<char*>(data.data() + place), sizeof(std::uint32_t), stride));
+    };
+    insert("high", words.high);
+    insert("low", words.low);
+  }
+  return frame;
+}
+
+Imf::Header makeHeader(const FixedSums& sums, const ExrOptions& options) {
+  const Imath::Box2i display({0, 0}, {sums.size.x - 1, sums.size.y - 1});
+  const glm::ivec2 last = sums.first + sums.extent - 1;
+  Imf::Header header(display, {{sums.first.x, sums.first.y}, {last.x, last.y}});
+  header.compression() = Imf::ZIP_COMPRESSION;
+  for (int c = 0; c < sums.channels; ++c) {
+    for (const char* part : {"high", "low"})
+      header.channels().insert(fmt::format("{}.{}", kNames[std::size_t(c)], part), Imf::Channel(Imf::UINT));
+    header.insert(digitsName(c), Imf::IntAttribute(sums.digits[std::size_t(c)]));
+  }
+  header.insert(kMethod, Imf::StringAttribute(sums.method));
+  insertOptions(header, options);
+  return header;
+}
+
+void encode(const std::filesystem::path& file, const FixedSums& sums, const ExrOptions& options) {
+  Words words{std::vector<std::uint32_t>(sums.values.size()), std::vector<std::uint32_t>(sums.values.size())};
+  for (std::size_t i = 0; i < sums.values.size(); ++i) {
+    words.high[i] = std::uint32_t(std::uint64_t(sums.values[i]) >> 32);
+    words.low[i] = std::uint32_t(std::uint64_t(sums.values[i]));
+  }
+  writeExrPixels(file, makeHeader(sums, options), frameBuffer(words, sums));
+}
+
+bool hasChannels(const Imf::Header& header) {
+  return header.channels().findChannel("energy.high") != nullptr && header.channels().findChannel("energy.low") != nullptr;
+}
+
+FixedSums readLayout(const std::filesystem::path& file, const Imf::Header& header) {
+  const Imath::Box2i window = header.dataWindow(), display = header.displayWindow();
+  FixedSums sums{.size = {display.max.x + 1, display.max.y + 1}, .first = {window.min.x, window.min.y}};
+  sums.extent = glm::ivec2(window.max.x, window.max.y) - sums.first + 1;
+  if (display.min.x != 0 || display.min.y != 0 || std::int64_t(sums.size.x) * sums.size.y > kMostPixels ||
+      glm::any(glm::lessThan(sums.first, glm::ivec2(0))) || glm::any(glm::greaterThan(sums.first + sums.extent, sums.size)))
+    fail(ExitCode::Input, "cannot read '{}': its rectangle of sums is not inside of its image; render this share again",
+         file.string());
+  sums.channels = header.channels().findChannel("distance.high") != nullptr ? kSumChannels : kSumChannels - 1;
+  for (int c = 0; c < sums.channels; ++c)
+    sums.digits[std::size_t(c)] = header.typedAttribute<Imf::IntAttribute>(digitsName(c)).value();
+  sums.method = header.typedAttribute<Imf::StringAttribute>(kMethod).value();
+  return sums;
+}
+
+SumsFile decode(const std::filesystem::path& file) {
+  Imf::InputFile exr(file.c_str());
+  const Imf::Header& header = exr.header();
+  if (!hasChannels(header))
+    fail(ExitCode::Input, "cannot read '{}' as sums: it is an image; write sums with 'freevoxels render --share I/N --sums'",
+         file.string());
+  SumsFile result{.sums = readLayout(file, header), .header = readOptions(header)};
+  FixedSums& sums = result.sums;
+  const std::size_t count = sums.pixelCount() * std::size_t(sums.channels);
+  Words words{std::vector<std::uint32_t>(count), std::vector<std::uint32_t>(count)};
+  exr.setFrameBuffer(frameBuffer(words, sums));
+  exr.readPixels(header.dataWindow().min.y, header.dataWindow().max.y);
+  sums.values.resize(count);
+  for (std::size_t i = 0; i < count; ++i) sums.values[i] = std::int64_t(std::uint64_t(words.high[i]) << 32 | words.low[i]);
+  return result;
+}
+
+/// What `read` returns; OpenEXR's exceptions become one sentence about the file.
+template <typename Read>
+auto guarded(const std::filesystem::path& file, const Read& read) {
+  try {
+    return read();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    fail(ExitCode::Input, "cannot read '{}': it is not a complete OpenEXR file of sums ({}); render this share again", file.string(),
+         error.what());
+  }
+}
+
+}  // namespace
+
+void writeSums(const std::filesystem::path& file, const FixedSums& sums, const ExrOptions& header) {
+  FV_CHECK_EQ(sums.values.size(), sums.pixelCount() * std::size_t(sums.channels));
+  writeAtomically(file, [&](const std::filesystem::path& temporary) { encode(temporary, sums, header); });
+}
+
+SumsFile readSums(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error))
+    fail(ExitCode::Input, "cannot read '{}': there is no such file; check its name", file.string());
+  return guarded(file, [&] { return decode(file); });
+}
+
+bool holdsSums(const std::filesystem::path& file) {
+  return guarded(file, [&] { return hasChannels(Imf::InputFile(file.c_str()).header()); });
+}
+
+}  // namespace freevoxels

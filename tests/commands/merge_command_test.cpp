@@ -1,0 +1,97 @@
+// freevoxels render --share I/N --sums and freevoxels merge: a distributed render without MPI.
+
+#include "engine/image/fixed_sums.h"
+#include "engine/image/image.h"
+#include "tests/commands/program_runner.h"
+
+namespace freevoxels::test {
+
+namespace {
+
+class MergeCommandTest : public CommandTest {
+ protected:
+  static constexpr const char* kScene =
+      "procedural:cloud --resolution 24 --size 64x48 --light direction=1,1,0.5 --ambient 0.1 --lod 2 --quiet ";
+
+  void renderPart(const std::string& file, const std::string& share, const std::string& more = "") const {
+    expectSuccess(run("render " + std::string(kScene) + "@" + file + " --share " + share + " --sums " + more));
+  }
+};
+
+}  // namespace
+
+TEST_F(MergeCommandTest, PartsOfAnyNumberGiveTheBitsOfTheWhole) {
+  expectSuccess(run("render " + std::string(kScene) + "@whole.png @whole.exr --float --aov depth --share 0/1"));
+  for (const int count : {2, 3}) {
+    std::string parts;
+    for (int index = 0; index < count; ++index) {
+      const std::string file = "part_" + std::to_string(count) + "_" + std::to_string(index) + ".exr";
+      renderPart(file, std::to_string(index) + "/" + std::to_string(count), "--aov depth");
+      parts = "@" + file + " " + parts;
+    }
+    expectSuccess(run("merge " + parts + "@merged.png @merged.exr --float"));
+    EXPECT_EQ(readBytes(folder / "merged.png"), readBytes(folder / "whole.png")) << count;
+    const Image merged = readExr(folder / "merged.exr"), whole = readExr(folder / "whole.exr");
+    EXPECT_EQ(merged.pixels, whole.pixels) << count;
+    EXPECT_EQ(merged.depth, whole.depth) << count;
+  }
+  // Of different numbers together: 1/2 is 1/4 and 3/4.
+  renderPart("quarter_0.exr", "0/4", "--aov depth");
+  renderPart("quarter_2.exr", "2/4", "--aov depth");
+  expectSuccess(run("merge @quarter_0.exr @part_2_1.exr @quarter_2.exr @mixed.png --quiet"));
+  EXPECT_EQ(readBytes(folder / "mixed.png"), readBytes(folder / "whole.png"));
+}
+
+TEST_F(MergeCommandTest, MissingAndDoubledSharesAreNamed) {
+  for (const char* index : {"0", "1", "2"}) renderPart(std::string("p") + index + ".exr", std::string(index) + "/3");
+  renderPart("again.exr", "1/3");
+  expectCleanRefusal("merge @p0.exr @p2.exr @a.png", ExitCode::Input, "share 1/3 is missing");
+  expectCleanRefusal("merge @p0.exr @p1.exr @p2.exr @again.exr @a.png", ExitCode::Input, "have the same shares, 1/3");
+}
+
+TEST_F(MergeCommandTest, PartsOfOtherPicturesAreRefused) {
+  renderPart("p0.exr", "0/256");
+  const auto expectDifference = [&](const std::string& more, const std::string& mention) {
+    renderPart("other.exr", "1/256", more);
+    expectCleanRefusal("merge @p0.exr @other.exr @a.png", ExitCode::Input, mention);
+  };
+  expectDifference("--orbit 10,20", "--camera-position");
+  expectDifference("--albedo 0.5,0.5,0.5", "--albedo");
+  expectDifference("--resolution 20", "volumes");
+  expectDifference("--composite additive", "--composite");
+  renderPart("p1.exr", "1/256");
+  std::string bytes = readBytes(folder / "p1.exr");
+  const std::string version = exrAttribute(bytes, "freevoxels:version");
+  ASSERT_NE(version, "");
+  const std::string name = std::string("freevoxels:version") + '\0' + "string" + '\0';
+  bytes[bytes.find(name) + name.size() + 4] ^= 1;
+  writeBytes(folder / "p1.exr", bytes);
+  expectCleanRefusal("merge @p0.exr @p1.exr @a.png", ExitCode::Input, "the version of freevoxels");
+}
+
+TEST_F(MergeCommandTest, NamesThatAreNoPartsOrNoPicturesAreRefused) {
+  renderPart("p0.exr", "0/2");
+  renderPart("p1.exr", "1/2");
+  expectSuccess(run("render " + std::string(kScene) + "@picture.exr"));
+  expectCleanRefusal("merge @p0.exr @p1.exr", ExitCode::Usage, "OUT is required");
+  expectCleanRefusal("merge @picture.exr @p1.exr @a.png", ExitCode::Usage, "picture.exr");
+  expectCleanRefusal("merge @p0.exr @a.png @p1.exr", ExitCode::Usage, "name all parts before the pictures");
+  expectCleanRefusal("merge @p0.exr @p1.exr @a.tif", ExitCode::Usage, "a.tif");
+  const std::string bytes = readBytes(folder / "p1.exr");
+  writeBytes(folder / "p1.exr", bytes.substr(0, bytes.size() - 100));
+  expectCleanRefusal("merge @p0.exr @p1.exr @a.png", ExitCode::Input, "p1.exr");
+}
+
+TEST_F(MergeCommandTest, WhatCannotBeSharedIsRefused) {
+  const std::string render = "render " + std::string(kScene);
+  expectCleanRefusal(render + "@a.exr --share 2/2 --sums", ExitCode::Usage, "--share takes I/N");
+  expectCleanRefusal(render + "@a.exr --share 0/257 --sums", ExitCode::Usage, "256");
+  expectCleanRefusal(render + "@a.exr --share 0 --sums", ExitCode::Usage, "--share takes I/N");
+  expectCleanRefusal(render + "@a.png --share 0/2 --sums", ExitCode::Usage, "--sums");
+  expectCleanRefusal(render + "@a.exr @b.exr --share 0/2 --sums", ExitCode::Usage, "--sums");
+  expectCleanRefusal(render + "@a.exr --share 0/2 --sums --composite sorted", ExitCode::Usage, "sorted");
+  expectCleanRefusal(render + "@a.exr --share 0/2 --sums --draw gather", ExitCode::Usage, "gather");
+  expectCleanRefusal(render + "@a.exr --share 0/2 --sums --float", ExitCode::Usage, "--float");
+}
+
+}  // namespace freevoxels::test

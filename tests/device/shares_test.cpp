@@ -1,0 +1,149 @@
+// Frames that are drawn share by share: the same bits for any number of processes, and the same image as one that is drawn at once.
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/renderer.h"
+#include "engine/volume/subject.h"
+#include "tests/device/device_fixture.h"
+#include "tests/device/test_volumes.h"
+#include "tests/refusal.h"
+
+namespace freevoxels {
+namespace {
+
+class SharesTest : public DeviceTest {
+ protected:
+  struct Scene {
+    std::string name;
+    Volume volume;
+    Classification classification;
+    Camera camera;
+    FrameSettings settings;
+  };
+
+  static FixedSums total(Renderer& renderer, const Scene& scene, int count) {
+    FixedSums sums = renderer.renderShares(scene.camera, scene.settings, {0, count});
+    for (int index = 1; index < count; ++index) sums += renderer.renderShares(scene.camera, scene.settings, {index, count});
+    return sums;
+  }
+
+  /// Sparse fog with a shadow, and an environment's worth of ambient light.
+  static Scene litFog() {
+    Scene scene{.name = "lit fog", .volume = randomVolume({40, 36, 44}, cubeTransform({40, 36, 44}), 0.3, 20.0)};
+    scene.camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
+    scene.settings = {.size = {64, 56}, .depth = true, .lighting = Lighting{.ambient = glm::dvec3(0.2)}};
+    scene.settings.lighting->lights = {{.place = {1.0, 0.7, 0.2}}, {.place = {0.1, 0.3, 0.9}, .atInfinity = false, .intensity = 2.0}};
+    scene.settings.lighting->surface = 0.5;
+    return scene;
+  }
+  /// Light of its own, seen from inside, near kernels cut by the eye plane.
+  static Scene fireFromInside() {
+    Scene scene{.name = "fire from inside", .volume = makeProcedural("fire", 32)};
+    scene.classification = {.densityScale = 20.0, .emission = Emission{.strength = 5.0}};
+    scene.camera.position = {0.03, -0.1, 0.02};
+    scene.camera.lookAt = {-0.3, 0.2, -0.2};
+    scene.camera.verticalFov = 70.0;
+    scene.settings = {.size = {48, 48}};
+    return scene;
+  }
+  /// Blocks of several levels in one frame, part of them outside of the image.
+  static Scene levels() {
+    Scene scene{.name = "levels", .volume = randomVolume({64, 64, 64}, cubeTransform({64, 64, 64}), 0.4, 8.0)};
+    scene.camera.position = {0.2, 0.1, 0.9};
+    scene.camera.lookAt = {0.2, 0.0, -0.5};
+    scene.camera.verticalFov = 40.0;
+    scene.settings = {.size = {56, 64}, .composite = Composite::Additive, .lod = 3.0f};
+    return scene;
+  }
+};
+
+TEST_F(SharesTest, SumsHaveTheSameBitsForAnyNumberOfProcesses) {
+  for (const Scene& scene : {litFog(), fireFromInside(), levels()}) {
+    SCOPED_TRACE(scene.name);
+    Renderer renderer(device(), scene.volume, scene.classification, {});
+    const FixedSums whole = renderer.renderShares(scene.camera, scene.settings, {});
+    for (const int count : {2, 3, 4, 7}) EXPECT_EQ(total(renderer, scene, count).values, whole.values) << count;
+    EXPECT_EQ(Renderer(device(), scene.volume, scene.classification, {}).renderShares(scene.camera, scene.settings, {}).values,
+              whole.values);
+    std::vector<std::int64_t> none(whole.values.size(), 0);
+    EXPECT_NE(whole.values, none);
+  }
+}
+
+TEST_F(SharesTest, EachOfAllSharesAloneAddsUpToTheWhole) {
+  Scene scene = litFog();
+  scene.settings.lighting.reset();
+  scene.settings.size = {24, 24};
+  Renderer renderer(device(), scene.volume, scene.classification, {});
+  EXPECT_EQ(total(renderer, scene, kShares).values, renderer.renderShares(scene.camera, scene.settings, {}).values);
+}
+
+TEST_F(SharesTest, TheImageIsThatOfAFrameThatIsDrawnAtOnce) {
+  for (Scene scene : {litFog(), fireFromInside(), levels()}) {
+    SCOPED_TRACE(scene.name);
+    Renderer renderer(device(), scene.volume, scene.classification, {});
+    const Image shared = resolveSums(renderer.renderShares(scene.camera, scene.settings, {}),
+                                     scene.settings.composite == Composite::Normalised);
+    scene.settings.cullThreshold = 0.0f;
+    const Image expected = renderer.render(scene.camera, scene.settings);
+    float brightest = 0.0f;
+    for (const glm::vec4& pixel : expected.pixels) brightest = std::max({brightest, pixel.r, pixel.g, pixel.b, pixel.a});
+    EXPECT_LE(largestDifference(shared, expected), 2e-5 * brightest);
+    ASSERT_EQ(shared.depth.size(), expected.depth.size());
+    for (std::size_t i = 0; i < shared.depth.size(); ++i)
+      if (expected.pixels[i].a > 1e-4f) EXPECT_NEAR(shared.depth[i], expected.depth[i], 1e-5 * expected.depth[i]);
+  }
+}
+
+TEST_F(SharesTest, NoShareIsEmptyAndNoneIsLeftOutUnnoticed) {
+  const Scene scene = levels();
+  Renderer renderer(device(), scene.volume, scene.classification, {});
+  const FixedSums whole = renderer.renderShares(scene.camera, scene.settings, {});
+  FixedSums fewer = renderer.renderShares(scene.camera, scene.settings, {0, 3});
+  EXPECT_NE(std::ranges::count_if(fewer.values, [](std::int64_t value) { return value != 0; }), 0);
+  fewer += renderer.renderShares(scene.camera, scene.settings, {2, 3});
+  EXPECT_NE(fewer.values, whole.values);
+}
+
+TEST_F(SharesTest, RectangleHoldsAllThatIsDrawn) {
+  Scene scene = litFog();
+  scene.camera.verticalFov *= 4.0;  // the volume in the middle of a larger image
+  scene.settings.size = {128, 96};
+  Renderer renderer(device(), scene.volume, scene.classification, {});
+  const FixedSums sums = renderer.renderShares(scene.camera, scene.settings, {});
+  EXPECT_LT(sums.pixelCount(), std::size_t(128 * 96 / 4));
+  scene.settings.cullThreshold = 0.0f;
+  EXPECT_LE(largestDifference(resolveSums(sums, true), renderer.render(scene.camera, scene.settings)), 2e-5);
+}
+
+/// Half a unit of each of 256 shares, against the frame's largest sums.
+TEST_F(SharesTest, RoundingIsBelowATenMillionthOfTheBrightest) {
+  for (const Scene& scene : {litFog(), fireFromInside(), levels()}) {
+    SCOPED_TRACE(scene.name);
+    Renderer renderer(device(), scene.volume, scene.classification, {});
+    const FixedSums sums = renderer.renderShares(scene.camera, scene.settings, {});
+    for (int channel = 0; channel < sums.channels; ++channel) {
+      double largest = 0.0;
+      for (std::size_t i = 0; i < sums.pixelCount(); ++i) largest = std::max(largest, sums.value(SumChannel(channel), i));
+      EXPECT_LT(0.5 * kShares * std::ldexp(1.0, -sums.digits[std::size_t(channel)]), 1e-7 * largest) << channel;
+    }
+  }
+}
+
+/// An opaque block, of which a single share has an optical depth beyond the range, and a volume with nothing in it.
+TEST_F(SharesTest, OpaqueAndEmptyVolumesResolveAsTheyAre) {
+  const auto cube = [](double density) { return makeVolume({20, 20, 20}, cubeTransform({20, 20, 20}), [&](int, int, int) { return density; }); };
+  const Volume opaque = cube(1e6), empty = cube(0.0);
+  const Camera camera = framingCamera(opaque, 35.0, 25.0, 1.0, {});
+  const FrameSettings settings{.size = {32, 32}};
+  Renderer ofOpaque(device(), opaque, {}, {});
+  const Image image = resolveSums(ofOpaque.renderShares(camera, settings, {}), true);
+  EXPECT_EQ(image.pixels[32 * 16 + 16].a, 1.0f);
+  EXPECT_LE(largestDifference(image, ofOpaque.render(camera, settings)), 1e-4);
+  Renderer ofEmpty(device(), empty, {}, {});
+  for (const glm::vec4& pixel : resolveSums(ofEmpty.renderShares(camera, settings, {1, 2}), true).pixels) EXPECT_EQ(pixel, glm::vec4(0.0f));
+}
+
+}  // namespace
+}  // namespace freevoxels

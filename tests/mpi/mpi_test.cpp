@@ -1,0 +1,146 @@
+// freevoxels-mpi, started by Open MPI's mpirun as on a cluster, all ranks on this machine.
+
+#include <csignal>
+#include <cstdlib>
+#include <sstream>
+#include <thread>
+
+#include "engine/image/image.h"
+#include "tests/commands/program_runner.h"
+#include "tests/limited_disk.h"
+
+namespace freevoxels::test {
+
+namespace {
+
+class MpiTest : public CommandTest {
+ protected:
+  void SetUp() override {
+    // One device thread a rank, as many ranks as wanted, also for root; no search for networks.
+    setenv("LP_NUM_THREADS", "1", 1);
+    setenv("OMPI_MCA_btl", "self,vader", 1);
+    setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+    setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  }
+  Arguments launch(int ranks, const std::string& text) const {
+    Arguments arguments{"--map-by", ":OVERSUBSCRIBE", "--bind-to", "none", "-n", std::to_string(ranks), FREEVOXELS_MPI_PROGRAM};
+    for (const std::string& word : words(text)) arguments.push_back(word);
+    return arguments;
+  }
+  ProgramResult runMpi(int ranks, const std::string& text) const { return runProgramFile(FREEVOXELS_MPIRUN, launch(ranks, text)); }
+
+  /// This exit code, one sentence of the program's own among the launcher's, and no file more than before.
+  void expectMpiRefusal(int ranks, const std::string& text, ExitCode code, const std::string& mention) const {
+    SCOPED_TRACE(text);
+    const std::size_t before = folder.fileCount();
+    const ProgramResult result = runMpi(ranks, text);
+    EXPECT_EQ(result.exitCode, int(code)) << result.err;
+    EXPECT_EQ(sentences(result.err), 1) << result.err;
+    EXPECT_NE(result.err.find(mention), std::string::npos) << result.err;
+    EXPECT_EQ(folder.fileCount(), before) << "files were left behind";
+  }
+  static int sentences(const std::string& text) {
+    int count = 0;
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) count += line.starts_with("freevoxels-mpi: ") ? 1 : 0;
+    return count;
+  }
+};
+
+constexpr const char* kLit = "procedural:fire --resolution 24 --size 64x64 --light direction=1,1,0.5 --ambient 0.1 --lod 3 --quiet ";
+constexpr const char* kInside =
+    "procedural:cloud --resolution 24 --size 48x64 --camera-position 0.05,0.1,0 --look-at 0.3,0,-0.2 --light direction=1,1,0.5 --quiet ";
+
+}  // namespace
+
+TEST_F(MpiTest, AnyNumberOfRanksGivesTheBitsOfOneProcess) {
+  expectSuccess(run("render " + std::string(kLit) + "@one.png @one.exr --float --aov depth --share 0/1"));
+  const Image one = readExr(folder / "one.exr");
+  for (const int ranks : {1, 2, 3, 4, 7}) {
+    const ProgramResult result = runMpi(ranks, "render " + std::string(kLit) + "@all.png @all.exr --float --aov depth");
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(readBytes(folder / "all.png"), readBytes(folder / "one.png")) << ranks;
+    const Image all = readExr(folder / "all.exr");
+    EXPECT_EQ(all.pixels, one.pixels) << ranks;
+    EXPECT_EQ(all.depth, one.depth) << ranks;
+  }
+}
+
+TEST_F(MpiTest, AnEyeInsideSeesTheBitsOfMergedShares) {
+  for (const char* index : {"0", "1"})
+    expectSuccess(run("render " + std::string(kInside) + "@part" + index + ".exr --sums --share " + index + "/2"));
+  expectSuccess(run("merge @part0.exr @part1.exr @merged.png --quiet"));
+  expectSuccess(runMpi(3, "render " + std::string(kInside) + "@all.png"));
+  EXPECT_EQ(readBytes(folder / "all.png"), readBytes(folder / "merged.png"));
+}
+
+TEST_F(MpiTest, FramesAreSplitOverGroupsOfRanks) {
+  const std::string turn = "turntable procedural:cloud --resolution 24 --size 48x36 --frames 3 ";
+  expectSuccess(run(turn + "@one_#.png --share 0/1 --quiet"));
+  const ProgramResult result = runMpi(3, turn + "@all_#.png --ranks-per-frame 1");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  std::string expected;
+  for (const char* frame : {"0", "1", "2"}) {
+    const std::string name = std::string("all_") + frame + ".png";
+    EXPECT_EQ(readBytes(folder / name), readBytes(folder / (std::string("one_") + frame + ".png")));
+    expected += (folder / name).string() + "\n";
+  }
+  EXPECT_EQ(result.out, expected);  // once, by rank 0
+}
+
+TEST_F(MpiTest, VerboseTellsLeastMeanAndMostOfEachStage) {
+  const ProgramResult result = runMpi(2, "render procedural:cube --resolution 16 --size 32x32 @a.png --verbose");
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(result.out, (folder / "a.png").string() + "\n");
+  for (const char* word : {"least", "mean", "most", "add up sums"}) EXPECT_NE(result.err.find(word), std::string::npos) << result.err;
+}
+
+TEST_F(MpiTest, ErrorsAreReportedOnceAndEndAllRanks) {
+  expectMpiRefusal(2, "render @none.vdb @a.png", ExitCode::Input, "none.vdb");
+  expectMpiRefusal(2, "render procedural:cube @none/a.png", ExitCode::Output, "none");
+  expectMpiRefusal(2, "render procedural:cube @a.png --composite sorted", ExitCode::Usage, "sorted");
+  expectMpiRefusal(2, "turntable procedural:cube @a_#.png --ranks-per-frame 3", ExitCode::Usage, "--ranks-per-frame");
+}
+
+/// Each rank reads a volume of its own: what a file system that has not caught up looks like.
+TEST_F(MpiTest, RanksWithDifferentFilesAreRefused) {
+  expectSuccess(run("generate cube @0.vdb --resolution 16 --quiet"));
+  expectSuccess(run("generate cloud @1.vdb --resolution 16 --quiet"));
+  const std::string command = std::string("exec ") + FREEVOXELS_MPI_PROGRAM + " render " + folder.path().string() +
+                              "/$OMPI_COMM_WORLD_RANK.vdb " + (folder / "a.png").string() + " --density-scale 1 --size 32x32";
+  Arguments arguments = launch(2, "");
+  arguments.pop_back();
+  for (const char* word : {"/bin/sh", "-c", command.c_str()}) arguments.emplace_back(word);
+  const ProgramResult result = runProgramFile(FREEVOXELS_MPIRUN, arguments);
+  EXPECT_EQ(result.exitCode, int(ExitCode::Input)) << result.err;
+  EXPECT_NE(result.err.find("rank 1"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("another volume"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
+TEST_F(MpiTest, ProcessesThatDoNotKnowEachOtherAreRefused) {
+  setenv("SLURM_STEP_NUM_TASKS", "4", 1);
+  const ProgramResult result = runProgramFile(FREEVOXELS_MPI_PROGRAM, words("render procedural:cube @a.png"));
+  unsetenv("SLURM_STEP_NUM_TASKS");
+  EXPECT_EQ(result.exitCode, int(ExitCode::Usage)) << result.err;
+  EXPECT_NE(result.err.find("4 processes were started, but each is alone"), std::string::npos) << result.err;
+  EXPECT_EQ(folder.fileCount(), 0u);
+}
+
+TEST_F(MpiTest, AKilledRankEndsTheJobAndLeavesNoFile) {
+  // Rank 1 is killed while the others draw.
+  const std::string command = std::string("if [ $OMPI_COMM_WORLD_RANK = 1 ]; then (sleep 1; kill -9 $$) & fi; exec ") +
+                              FREEVOXELS_MPI_PROGRAM + " turntable procedural:cloud --resolution 48 --size 512x512 --frames 1000 " +
+                              (folder / "a_####.exr").string() + " --quiet";
+  Arguments arguments = launch(3, "");
+  arguments.pop_back();
+  for (const char* word : {"/bin/sh", "-c", command.c_str()}) arguments.emplace_back(word);
+  const auto start = std::chrono::steady_clock::now();
+  const ProgramResult result = runProgramFile(FREEVOXELS_MPIRUN, arguments);
+  EXPECT_NE(result.exitCode, 0);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+    EXPECT_EQ(readExr(entry.path()).size, glm::ivec2(512, 512)) << entry.path();  // whole frames only
+}
+
+}  // namespace freevoxels::test
