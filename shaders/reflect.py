@@ -6,6 +6,7 @@
 
 Layouts are read from the Offset and ArrayStride decorations; scalar block layout makes them those of C++.
 """
+import pathlib
 import re
 import struct
 import sys
@@ -136,11 +137,9 @@ inline constexpr Shader {name}{{.words = {name}_words,
 
 def write_structs(out, files):
     shared = {}
-    with open(__file__.replace("reflect.py", "interface.h")) as first:
-        declared = set(re.findall(r"^struct (\w+)", first.read(), re.MULTILINE))
-    for other in ("frame_interface.h", "gather_interface.h", "ui_interface.h"):
-        with open(__file__.replace("reflect.py", other)) as more:
-            declared |= set(re.findall(r"^struct (\w+)", more.read(), re.MULTILINE))
+    folder = pathlib.Path(__file__).parent
+    headers = sorted(folder.glob("*interface.h"))
+    declared = {name for header in headers for name in re.findall(r"^struct (\w+)", header.read_text(), re.MULTILINE)}
     for file in files:
         for name, size in Module(file).structs():
             if name in declared and shared.setdefault(name, size) != size:
@@ -150,7 +149,7 @@ def write_structs(out, files):
         raise SystemExit(f"no shader has a layout of the shared structs {', '.join(missing)}")
     with open(out, "w") as source:
         source.write("// Made by shaders/reflect.py: the sizes of the shared structs, as the compiled shaders have them.\n")
-        source.write('#include "shaders/gather_interface.h"\n#include "shaders/ui_interface.h"\n')
+        source.writelines(f'#include "shaders/{header.name}"\n' for header in headers)
         for name, size in sorted(shared.items()):
             source.write(f"static_assert(sizeof(freevoxels::shader::{name}) == {size});\n")
 

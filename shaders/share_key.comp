@@ -3,21 +3,19 @@
 // number of drawn blocks of each share.
 #extension GL_GOOGLE_include_directive : require
 #include "share_interface.h"
-#include "blocks.glsl"
-#include "rank.glsl"
+#define OCCUPANCY_BINDING 3
+#include "occupancy.glsl"
 
 layout(local_size_x = kSortThreads) in;
 layout(scalar, push_constant) uniform Push { ShareKeyPush push; };
 layout(scalar, binding = 0) readonly buffer Frame { ShareFrame frame; };
 layout(scalar, binding = 1) readonly buffer Blocks { uint blocks[]; };
 layout(scalar, binding = 2) readonly buffer Chunks { ChunkArguments chunks[]; };
-layout(scalar, binding = 3) readonly buffer Occupancy { OccupancyWord occupancy[]; };
 layout(scalar, binding = 4) readonly buffer Shares { uint shares[]; };
 layout(scalar, binding = 5) writeonly buffer Count { uint count; };
 layout(scalar, binding = 6) writeonly buffer Keys { uint keys[]; };
 layout(scalar, binding = 7) writeonly buffer Values { uint values[]; };
 layout(scalar, binding = 8) buffer ShareCounts { uint shareCounts[]; };
-#include "occupancy.glsl"
 
 // One digit of the sort, one thread and one share each.
 shared uint histogram[kSortDigits];

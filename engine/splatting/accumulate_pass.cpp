@@ -99,17 +99,8 @@ FixedSums sumsLayout(const DeviceVolume& volume, const FrameConstants& frame, co
 AccumulatePass::AccumulatePass(const Device& device, bool withDistance)
     : device_(device),
       withDistance_(withDistance),
-      mark_(makeComputePipeline(device, {mark_tiles_spv, "mark tiles"},
-                                {.bindings = std::vector(5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                                 .pushConstantBytes = sizeof(shader::MarkPush)},
-                                {shader::kSplatThreads, 1, 1})),
-      accumulate_(makeComputePipeline(
-          device, {accumulate_sums_spv, "accumulate sums"},
-          {.bindings = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                        VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER,
-                        VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-           .pushConstantBytes = sizeof(shader::AccumulatePush)},
-          {shader::kResolveTile, shader::kResolveTile, 1}, {withDistance ? 1u : 0u})),
+      mark_(makeComputePipeline(device, shaders::mark_tiles)),
+      accumulate_(makeComputePipeline(device, shaders::accumulate_sums, {withDistance ? 1u : 0u})),
       overflow_(device, sizeof(std::uint32_t), MemoryUse::Device, "overflow of sums"),
       arguments_(device, sizeof(shader::TileArguments), MemoryUse::Device, "tiles of a share",
                  VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT) {}

@@ -52,10 +52,7 @@ shader::ChunkArguments drawArguments(std::uint32_t first, std::uint32_t count) {
 
 ShareList::ShareList(const Device& device, const BuiltVolume& built)
     : device_(device),
-      keys_(makeComputePipeline(device, {share_key_spv, "share keys"},
-                                {.bindings = std::vector(9, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER),
-                                 .pushConstantBytes = sizeof(shader::ShareKeyPush)},
-                                {shader::kSortThreads, 1, 1})),
+      keys_(makeComputePipeline(device, shaders::share_key)),
       sort_(device),
       frame_(device, sizeof(shader::ShareFrame), MemoryUse::Device, "share frame"),
       counts_(device, kCountBytes, MemoryUse::Device, "blocks of shares") {
