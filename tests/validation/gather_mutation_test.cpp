@@ -1,0 +1,133 @@
+// The checks of the gather are checked: every stage is broken on purpose, and the checks of that stage notice, and no others.
+
+#include <bit>
+#include <utility>
+
+#include "engine/validation/gather_checks.h"
+#include "tests/device/device_fixture.h"
+#include "tests/device/test_volumes.h"
+#include "tests/validation/stepped_gather.h"
+
+namespace freevoxels::test {
+namespace {
+
+/// Rays begin at the volume's second slice.
+void skipTheFirstSlice(SteppedGather& gather) {
+  gather.alterSamples = [](shader::GatherFrame& frame) {
+    for (shader::GatherAxis& axis : frame.axes) {
+      ++axis.slices[1][frame.finest].x;
+      --axis.slices[0][frame.finest].y;
+    }
+  };
+}
+
+/// The slice in front of the border between two levels is in both.
+void countALevelsBorderTwice(SteppedGather& gather) {
+  gather.alterSamples = [](shader::GatherFrame& frame) {
+    for (shader::GatherAxis& axis : frame.axes)
+      for (int level = frame.finest + 1; level <= frame.coarsest; ++level) {
+        if (axis.slices[1][level].x > 0) --axis.slices[1][level].x;
+        ++axis.slices[0][level].y;
+      }
+  };
+}
+
+/// Of the two neighbours of a sample along the first side.
+void swapWeights(SteppedGather& gather) {
+  gather.alterQuads = [](const Device& device, const GatherVolume::Quads& quads) {
+    const Buffer& buffer = quads.medium.pieces.front();
+    std::vector<std::uint32_t> pairs(buffer.bytes() / sizeof(std::uint32_t));
+    download(device, buffer, std::as_writable_bytes(std::span(pairs)));
+    for (std::uint32_t& pair : pairs) pair = std::rotl(pair, 16);
+    upload(device, buffer, std::as_bytes(std::span(pairs)));
+  };
+}
+
+void endRaysTooEarly(SteppedGather& gather) {
+  gather.alterSamples = [](shader::GatherFrame& frame) { frame.end *= 1.2f; };
+}
+
+/// What the gather keeps of a voxel is made from another extinction.
+void shadeThickerBlocks(SteppedGather& gather) {
+  gather.alterMedium = [altered = false](const Device& device, BuiltVolume& built) mutable {
+    if (std::exchange(altered, true) || !built.hasBlocks()) return;
+    std::vector<float> extinction(built.volume.extinction.bytes() / sizeof(float));
+    download(device, built.volume.extinction, std::as_writable_bytes(std::span(extinction)));
+    for (float& value : extinction) value *= 1.01f;
+    upload(device, built.volume.extinction, std::as_bytes(std::span(extinction)));
+  };
+}
+
+/// As if slices were seen from straight in front.
+void leaveTheStencilOut(SteppedGather& gather) {
+  gather.alterStencil = [](shader::GatherFrame& frame) {
+    for (shader::GatherAxis& axis : frame.axes) axis.tilt = glm::vec2(axis.tiltDepth = 0.0f);
+    frame.pixelsPerVoxel = 1e9f;
+  };
+}
+
+void shiftTheLattice(SteppedGather& gather) {
+  gather.alterUpsampling = [](shader::GatherFrame& frame) { frame.firstSample.x += 0.1f * frame.pitch; };
+}
+
+struct Defect {
+  const char* name;
+  const char* stage;  ///< with which the names of the checks begin that must notice
+  void (*apply)(SteppedGather&) = nullptr;
+};
+
+void PrintTo(const Defect& defect, std::ostream* stream) {
+  *stream << defect.name;
+}
+
+constexpr Defect kDefects[] = {
+    {"ASliceSkipped", "gather samples", skipTheFirstSlice},
+    {"ALevelsBorderCountedTwice", "gather samples", countALevelsBorderTwice},
+    {"WeightsSwapped", "gather samples", swapWeights},
+    {"RaysEndTooEarly", "gather samples", endRaysTooEarly},
+    {"BlocksThicker", "gather blocks", shadeThickerBlocks},
+    {"StencilLeftOut", "gather stencil", leaveTheStencilOut},
+    {"LatticeShifted", "gather image", shiftTheLattice},
+};
+
+class GatherMutation : public DeviceTest, public testing::WithParamInterface<Defect> {
+ protected:
+  static GatherMaker outputs(const Defect& defect) {
+    return [defect](const Volume& volume, const Classification& classification) {
+      auto made = std::make_unique<SteppedGather>(device(), volume, classification);
+      if (defect.apply) defect.apply(*made);
+      return made;
+    };
+  }
+  static ReportSection checks(const GatherMaker& make, SceneColor color) {
+    const glm::ivec3 size(13, 10, 9);
+    const Volume volume = randomVolume(size, shearedTransform(size), 0.6, 1.0);
+    return gatherChecks(make, makeValidationScene(volume, color, 100), {40, 32});
+  }
+};
+
+TEST_P(GatherMutation, IsNoticedByTheChecksOfItsStageAndNoOthers) {
+  int noticed = 0;
+  for (const Check& check : checks(outputs(GetParam()), SceneColor::TransferFunction).checks) {
+    if (check.passed()) continue;
+    ++noticed;
+    EXPECT_TRUE(check.name.starts_with(GetParam().stage)) << check.name << " failed at " << check.where;
+    EXPECT_NE(check.where, "") << check.name;
+  }
+  EXPECT_GT(noticed, 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, GatherMutation, testing::ValuesIn(kDefects),
+                         [](const auto& defect) { return std::string(defect.param.name); });
+
+using GatherMutationTest = GatherMutation;
+
+TEST_F(GatherMutationTest, WithoutOneEverythingPasses) {
+  for (const GatherMaker& make : {outputs({}), deviceGather(device())})
+    for (const SceneColor color : {SceneColor::TransferFunction, SceneColor::Density})
+      for (const Check& check : checks(make, color).checks)
+        EXPECT_TRUE(check.passed()) << check.name << ": " << check.figure << " at " << check.where;
+}
+
+}  // namespace
+}  // namespace freevoxels::test
