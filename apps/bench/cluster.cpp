@@ -26,18 +26,12 @@ double millisecondsOf(const Work& work) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-struct Subject {
-  std::string name, procedural;
-  QualityColor color;
-};
-
-Scaling measure(const Device& device, const Subject& subject, int resolution) {
-  const QualityScene scene =
-      makeQualityScene({subject.procedural, subject.color, false}, resolution, makeProcedural(subject.procedural, resolution));
+Scaling measure(const Device& device, const std::string& name, const QualitySubject& subject, int resolution) {
+  const QualityScene scene = makeQualityScene(subject, resolution, makeProcedural(subject.procedural, resolution));
   Renderer renderer(device, scene.volume, scene.classification, {});
   const Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
   const FrameSettings settings{.size = {1024, 1024}, .cullThreshold = 0.0f};
-  Scaling result{.volume = fmt::format("{} {}^3", subject.name, resolution)};
+  Scaling result{.volume = fmt::format("{} {}^3", name, resolution)};
   renderer.render(camera, settings);  // what is made once for a volume
   result.undivided = millisecondsOf([&] { renderer.render(camera, settings); });
   const FixedSums sums = renderer.renderShares(camera, settings, {0, kShares});
@@ -74,12 +68,9 @@ double reductionSeconds(const Network& network, int ranks, std::uint64_t bytes) 
 }
 
 std::vector<Scaling> cluster(const Device& device, int resolution) {
-  const std::vector<Subject> subjects{{"opaque head", "head", QualityColor::Skin},
-                                      {"cloud", "cloud", QualityColor::Cloud},
-                                      {"box of smoke", "plume", QualityColor::Cloud}};
-  std::vector<Scaling> results;
-  for (const Subject& subject : subjects) results.push_back(measure(device, subject, resolution));
-  return results;
+  return {measure(device, "opaque head", {"head", QualityColor::Skin, false}, resolution),
+          measure(device, "cloud", {"cloud", QualityColor::Cloud, false}, resolution),
+          measure(device, "box of smoke", {"plume", QualityColor::Cloud, false}, resolution)};
 }
 
 std::vector<std::string> tableLines(const std::vector<Scaling>& scalings) {
