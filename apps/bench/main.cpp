@@ -7,11 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/bench/bench_stages.h"
+#include "apps/bench/cluster.h"
 #include "apps/freevoxels/device_options.h"
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/text_table.h"
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
+#include "engine/validation/svg_plot.h"
 
 namespace {
 
@@ -166,6 +168,13 @@ nlohmann::ordered_json toJson(const Device& device, const Results& results) {
   return json;
 }
 
+/// Frames that are divided among ranks, instead of the stages.
+void measureCluster(const Device& device, bool quick, const std::string& svg) {
+  const std::vector<bench::Scaling> scalings = bench::cluster(device, quick ? 128 : 512);
+  for (const std::string& line : bench::tableLines(scalings)) fmt::print("{}\n", line);
+  if (!svg.empty()) writeTextAtomically(svg, svgPlot(bench::speedUpPlot(scalings)));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -176,18 +185,24 @@ int main(int argc, char** argv) {
   DeviceOptions device;
   Extent extent;
   std::vector<std::string> wanted = stageNames();
-  std::string json;
+  std::string json, svg;
+  bool cluster = false;
   app.add_option("IN", extent.inputs, "Volumes for whole renders: files, or procedural:NAME")
       ->capture_default_str();
   app.add_option("--json", json, "Write the figures as JSON to this file as well");
   app.add_option("--stages", wanted, "Only these stages, separated by commas [all]")
       ->delimiter(',')
       ->check(CLI::IsMember(stageNames()));
+  CLI::Option* const divided = app.add_flag(
+      "--cluster", cluster, "Instead of the stages, how a frame scales that is divided among 8 to 128 ranks, each drawn on this device");
+  app.add_option("--svg", svg, "Also plot the speed-ups of --cluster into this file")->needs(divided);
   app.add_flag("--quick", extent.quick, "Smaller volumes and fewer runs");
   device.add(app);
   app.callback([&] {
     if (!json.empty()) checkWritable(json);
+    if (!svg.empty()) checkWritable(svg);
     device.withDevice([&](const Device& opened) {
+      if (cluster) return measureCluster(opened, extent.quick, svg);
       const Results results = measure(opened, extent, wanted);
       fmt::print("{}\n", opened.description().name);
       for (const std::string& line : tableLines(results)) fmt::print("{}\n", line);
