@@ -338,6 +338,14 @@ std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSet
   return sums.read(frame.constants);
 }
 
+GatherStages Renderer::renderGatherStages(const Camera& camera, const FrameSettings& settings) {
+  FV_CHECK_EQ(int(settings.draw), int(Draw::Gather));
+  Image image = render(camera, settings);
+  GatherStages stages = downloadGatherStages(state_->device, state_->built, *state_->gatherVolume, *state_->gather);
+  stages.image = std::move(image);
+  return stages;
+}
+
 FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& wanted, const SharePart& part, const Progress& progress) {
   FV_CHECK_LT(int(wanted.composite), int(Composite::Sorted));
   FV_CHECK_LT(part.index, part.count);

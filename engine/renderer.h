@@ -46,6 +46,10 @@ class Renderer {
   /// the parts of a volume add up to those of the whole; so nothing is left out as hidden.
   std::vector<SplatSums> renderSums(const Camera& camera, const FrameSettings& settings);
 
+  /// What render() makes by gathering, with the stages before the image: for tests and validation. `settings` must be drawn by
+  /// gathering.
+  GatherStages renderGatherStages(const Camera& camera, const FrameSettings& settings);
+
   /// The sums of the shares of a part in fixed point: those of all parts add up to the same bits, however many parts there are, on
   /// devices of one kind. resolveSums makes the image. Drawn by splats, with nothing left out as hidden. `settings.composite` must
   /// not be Sorted. Fails with ExitCode::OutOfMemory.

@@ -1,4 +1,4 @@
-// The command-line program: freevoxels render | turntable | merge | oracle | compare | info | generate | devices.
+// The command-line program: freevoxels render | turntable | merge | oracle | compare | info | generate | bake | devices.
 
 #include <CLI/CLI.hpp>
 

@@ -178,13 +178,29 @@ void RenderOptions::drawFrame(Renderer& renderer, const Scene& view, const Frame
   scene.withOutputs(files).output.write(image, exr);
 }
 
+/// A baked volume is drawn from the finest level that shows and that the device can hold.
 void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunReport& report) const {
-  FrameSettings settings = frameSettings();
+  const FrameSettings settings = frameSettings();
   checkFrameFits(opened, settings);
+  const std::shared_ptr<const fvx::FvxFile> file = scene.input.baked();
+  const int levels = file ? file->levels() : 1;
+  const RunReport before = report;
+  for (int level = scene.finestLevelSeen(double(settings.lod), int(outputs.size()));; ++level) {
+    try {
+      return drawLevel(opened, outputs, level, report);
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::OutOfMemory || level + 1 >= levels) throw;
+      spdlog::warn("{}; drawing it at 1/{} of its resolution", error.what(), 1 << (level + 1));
+      report = before;
+    }
+  }
+}
 
+void RenderOptions::drawLevel(const Device& opened, const FrameFiles& outputs, int level, RunReport& report) const {
+  FrameSettings settings = frameSettings();
   ProgressLine line(!messages.quiet && leads());
-  Scene view = open(opened, line, report);
-  const std::vector<Camera> cameras = scene.camera.resolve(*view.volume, view.classification, int(outputs.size()));
+  Scene view = open(opened, level, line, report);
+  const std::vector<Camera> cameras = scene.cameras(*view.volume, view.classification, int(outputs.size()));
   view.camera = cameras.front();
   settings.lighting = view.lighting;
   report.device = opened.description();

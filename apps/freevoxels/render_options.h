@@ -42,11 +42,12 @@ struct RenderOptions {
   void checkShares(const FrameFiles& outputs) const;
   void agree(const RunReport& report) const;
   void draw(const Device& device, const FrameFiles& outputs, RunReport& report) const;
+  void drawLevel(const Device& device, const FrameFiles& outputs, int level, RunReport& report) const;
   void drawFrame(Renderer& renderer, const Scene& view, const FrameSettings& settings, const std::vector<std::string>& files,
                  const std::string& prefix, ProgressLine& line, RunReport& report) const;
   std::optional<FixedSums> drawSums(Renderer& renderer, const Camera& camera, const FrameSettings& settings,
                                     const Progress& progress, RunReport& report) const;
-  Scene open(const Device& device, ProgressLine& line, RunReport& report) const;
+  Scene open(const Device& device, int level, ProgressLine& line, RunReport& report) const;
   OptionList describe(const Scene& scene) const;
   ExrOptions header(const Scene& scene, const std::vector<std::string>& files, const RunReport& report) const;
 };

@@ -152,10 +152,9 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                             settings.composite == Composite::Sorted ? 0.0 : double(settings.lod));
   frame.cull = cullRule(volume.layout.dimensions, rays, settings);
   frame.brightestRay = brightestRay(volume);
-  if (frame.cull.hiddenDepth > 0.0) {
-    frame.cull.hiddenDepth += std::log(std::max(frame.brightestRay, 1.0));
-    frame.hiddenTransmittance = std::exp(-frame.cull.hiddenDepth);
-  }
+  const double brightest = std::max(frame.brightestRay, 1.0);
+  if (settings.culling) frame.hiddenTransmittance = double(settings.cullThreshold) / brightest;
+  if (frame.cull.hiddenDepth > 0.0) frame.cull.hiddenDepth += std::log(brightest);
   if (!frame.eyeReadsTable()) frame.cull.hiddenDepth = 0.0;
   frame.resolve = {.ray = rays.direction,
                    .rayX = rays.directionX,
