@@ -15,9 +15,11 @@
 
 namespace freevoxels {
 
-/// Registers OpenVDB's types. Must come before anything else of OpenVDB; costs nothing the second time.
+/// Registers OpenVDB's types and turns its messages off. Must come before anything else of OpenVDB; costs nothing the second
+/// time. Any thread may call it.
 void initialiseOpenVdb();
 
+/// Used by one thread at a time; threads may use objects of their own at the same time, also of one file.
 class VdbFile {
  public:
   struct Entry {
@@ -46,8 +48,7 @@ class VdbFile {
   void listGrids();
   void readStreamedGrids();
   void checkTree(const VdbHeader::Grid& grid) const;
-  /// Runs `read` with OpenVDB's own messages silenced and its exceptions and crashes turned into one
-  /// sentence.
+  /// Runs `read`, with OpenVDB's exceptions turned into one sentence, and a CrashNote in case that it crashes.
   openvdb::GridBase::Ptr guarded(const std::string& what,
                                  const std::function<openvdb::GridBase::Ptr()>& read) const;
   const Entry& chooseByDefault() const;
