@@ -96,9 +96,9 @@ void OutputOptions::describe(OptionList& options) const {
   if (wantsDepth()) options.emplace_back("--aov", "depth");
 }
 
-PngLook OutputOptions::look() const {
+DisplayLook OutputOptions::look() const {
   constexpr Background kDark{.top = {0.028f, 0.031f, 0.038f}, .bottom = {0.007f, 0.008f, 0.01f}};
-  PngLook look{.exposure = exposure.value_or(0.0), .toneMap = ToneMap(toneMap.value_or(int(ToneMap::None)))};
+  DisplayLook look{.exposure = exposure.value_or(0.0), .toneMap = ToneMap(toneMap.value_or(int(ToneMap::None)))};
   if (background)
     look.background = Background{.top = *background, .bottom = *background};
   else if (!transparent)

@@ -39,7 +39,7 @@ struct OutputOptions {
   /// (ExitCode::Output).
   void check() const;
   /// How a .png is made of a picture.
-  PngLook look() const;
+  DisplayLook look() const;
   bool wantsDepth() const { return aov.has_value(); }
   void describe(OptionList& options) const;
   /// Writes each file completely or not at all.

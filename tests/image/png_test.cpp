@@ -41,12 +41,12 @@ Png readStored(const std::filesystem::path& file) {
   return png;
 }
 
-PngLook over(glm::vec3 color) {
+DisplayLook over(glm::vec3 color) {
   return {.background = Background{color, color}};
 }
 
 std::vector<std::uint8_t> writeAndRead(const std::vector<glm::vec4>& pixels,
-                                       const PngLook& look = {}) {
+                                       const DisplayLook& look = {}) {
   const TemporaryFolder folder;
   Image image;
   image.size = {int(pixels.size()), 1};
@@ -116,7 +116,7 @@ TEST(Png, BackgroundChangesLinearlyFromTheTopEdgeToTheBottomEdge) {
 
 TEST(Png, ExposureBrightensThePictureButNotTheBackground) {
   EXPECT_EQ(writeAndRead({{0.125f, 0.045f, 0.0f, 1.0f}}, {.exposure = 2.0}), (Bytes{188, 118, 0, 255}));
-  PngLook look = over(glm::vec3(0.5f));
+  DisplayLook look = over(glm::vec3(0.5f));
   look.exposure = -1.0;
   EXPECT_EQ(writeAndRead({{1.0f, 0.36f, 0.0f, 1.0f}, glm::vec4(0.0f)}, look), (Bytes{188, 118, 0, 188, 188, 188}));
 }
@@ -138,7 +138,7 @@ TEST(Png, InMemoryIsWhatTheFileHolds) {
   Image image;
   image.size = {2, 1};
   image.pixels = {{0.5f, 0.18f, 0.002f, 1.0f}, {0.1f, 0.0f, 0.0f, 0.5f}};
-  for (const PngLook& look : {PngLook{}, over(glm::vec3(0.25f))}) {
+  for (const DisplayLook& look : {DisplayLook{}, over(glm::vec3(0.25f))}) {
     writePng(folder / "a.png", image, look);
     const Bytes bytes = encodePng(image, look);
     EXPECT_EQ(readBytes(folder / "a.png"), std::string(bytes.begin(), bytes.end()));

@@ -1,4 +1,4 @@
-#include "apps/view/sequence.h"
+#include "apps/freevoxels/sequence.h"
 
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
