@@ -4,7 +4,7 @@
 #include <string>
 
 #include "engine/image/image.h"
-#include "engine/splatting/camera.h"
+#include "engine/scene/camera.h"
 
 namespace freevoxels {
 
