@@ -188,6 +188,8 @@ int main(int argc, char** argv) {
   device.add(app);
   app.callback([&] {
     if (!json.empty()) checkWritable(json);
+    for (const std::string& input : extent.inputs)
+      if (!proceduralName(input)) listVdb(input);  // refuses a file that is missing or no volume before minutes of work
     device.withDevice([&](const Device& opened) {
       const Results results = measure(opened, extent, wanted);
       fmt::print("{}\n", opened.description().name);

@@ -57,6 +57,15 @@ Classification ClassificationOptions::resolve(const Volume& volume, bool shines)
   return classification;
 }
 
+void ClassificationOptions::take(const Classification& resolved) {
+  if (!resolved.transferFunction) {
+    densityScale = resolved.densityScale;
+    return;
+  }
+  transferFunction = transferFunctionJson(*resolved.transferFunction);  // with its range, which a file may leave to the volume
+  order = int(resolved.order);
+}
+
 void ClassificationOptions::describe(OptionList& options, const Classification& resolved) const {
   if (resolved.transferFunction) {
     options.emplace_back("--transfer-function",

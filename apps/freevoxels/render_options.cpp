@@ -1,16 +1,10 @@
 #include "apps/freevoxels/render_options.h"
 
-#include <spdlog/spdlog.h>
-
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <chrono>
-#include <span>
 
-#include "apps/freevoxels/progress_line.h"
-#include "engine/octree/volume_limits.h"
+#include "apps/freevoxels/frame_series.h"
 #include "engine/renderer.h"
-#include "engine/vulkan/pipeline.h"
 
 namespace freevoxels {
 
@@ -20,23 +14,6 @@ using Clock = std::chrono::steady_clock;
 
 double millisecondsSince(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-/// "frame 3 of 72: ", which starts what is said about one of several frames.
-std::string framePrefix(std::size_t frame, std::size_t frames) {
-  return frames == 1 ? "" : fmt::format("frame {} of {}: ", frame + 1, frames);
-}
-
-std::string whyNothingIsSeen(const Renderer& renderer) {
-  if (renderer.occupiedVoxelCount() == 0u) return "all voxels are transparent; raise --density-scale, or change --transfer-function";
-  return "the camera looks past the volume, or what it sees is transparent; leave out --camera-position and --look-at to frame it";
-}
-
-Progress prefixed(const Progress& progress, const std::string& prefix) {
-  if (!progress) return {};
-  return [progress, prefix](std::string_view stage, double fraction) {
-    progress(fmt::format("{}{}", prefix, stage), fraction);
-  };
 }
 
 }  // namespace
@@ -51,22 +28,33 @@ void RenderOptions::add(CLI::App& app) {
       ->group("Messages");
 }
 
-void RenderOptions::check(const FrameFiles& outputs) const {
-  std::vector<std::string> pictures;
-  for (const std::vector<std::string>& files : outputs)
-    pictures.insert(pictures.end(), files.begin(), files.end());
-  scene.withOutputs(std::move(pictures)).check(timings ? std::vector{*timings} : std::vector<std::string>{});
+FrameSettings RenderOptions::frameSettings() const {
+  FrameSettings settings{.size = scene.camera.size, .depth = scene.output.wantsDepth()};
+  method.apply(settings);
+  return settings;
 }
 
-void RenderOptions::run(const FrameFiles& outputs) const {
+void RenderOptions::check(std::span<const Frame> frames) const {
+  std::vector<std::string> images, volumes;
+  for (const Frame& frame : frames) {
+    images.insert(images.end(), frame.files.begin(), frame.files.end());
+    if (frame.input != frames.front().input) volumes.push_back(frame.input);
+  }
+  SceneOptions all = scene.withOutputs(std::move(images));
+  all.input.input = frames.front().input;
+  all.check(timings ? std::vector{*timings} : std::vector<std::string>{}, volumes);
+}
+
+void RenderOptions::run(std::span<const Frame> frames) const {
   const Clock::time_point start = Clock::now();
   messages.apply();
-  check(outputs);
+  check(frames);
 
   device.withDevice([&](const Device& opened) {
     RunReport report;
     report.stages.push_back({"open device", millisecondsSince(start), false});
-    draw(opened, outputs, report);
+    checkFrameFits(opened, frameSettings());
+    FrameSeries(*this, opened, report).draw(frames);
     report.totalMilliseconds = millisecondsSince(start);
     logStages(report);
     scene.save(report.options);
@@ -74,80 +62,8 @@ void RenderOptions::run(const FrameFiles& outputs) const {
   });
 
   if (messages.quiet) return;
-  for (const std::vector<std::string>& files : outputs)
-    for (const std::string& file : files) fmt::print("{}\n", file);
   for (const std::optional<std::string>& file : {scene.file.saved, timings})
     if (file) fmt::print("{}\n", *file);
-}
-
-Scene RenderOptions::open(const Device& opened, ProgressLine& line, RunReport& report) const {
-  line.begin("reading " + scene.input.input);
-  const StageTimer timer(report.stages, "read volume");
-  return scene.open(maximumVoxels(opened));
-}
-
-OptionList RenderOptions::describe(const Scene& view) const {
-  OptionList options;
-  method.describe(options);
-  return scene.describe(view, options);
-}
-
-void RenderOptions::write(const Image& image, const Scene& view, const std::vector<std::string>& files,
-                          const DeviceDescription& description) const {
-  // What a file says of its making is how `render` repeats this frame alone.
-  scene.withOutputs(files).write(image, view, "render", describe(view),
-                                 {{"device", description.name}, {"driver", description.driver}});
-}
-
-void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunReport& report) const {
-  FrameSettings settings{.size = scene.camera.size, .depth = scene.output.wantsDepth()};
-  method.apply(settings);
-  checkFrameFits(opened, settings);
-
-  ProgressLine line(!messages.quiet);
-  Scene view = open(opened, line, report);
-  const std::vector<Camera> cameras = scene.camera.resolve(*view.volume, view.classification, int(outputs.size()));
-  view.camera = cameras.front();
-  settings.lighting = view.lighting;
-  report.device = opened.description();
-  report.options = describe(view);
-  if (outputs.size() > 1) {
-    scene.camera.describeTurn(report.options);
-    report.options.emplace_back("--frames", fmt::format("{}", outputs.size()));
-  }
-  line.erase();
-  scene.warn(view);
-  logOptions(report.options);
-  mentionCpu(opened);
-
-  Renderer renderer(opened, *view.volume, view.classification, method.table(), line.progress());
-  const std::vector<StageTime> built = renderer.timings();
-  addTimes(report.stages, built);
-  for (std::size_t frame = 0; frame < outputs.size(); ++frame) {
-    view.camera = cameras[frame];
-    const std::string prefix = framePrefix(frame, outputs.size());
-    const Image image = renderer.render(view.camera, settings, prefixed(line.progress(), prefix));
-    if (std::ranges::none_of(image.pixels, [](glm::vec4 pixel) { return pixel.a > 0.0f || pixel.r + pixel.g + pixel.b > 0.0f; }))
-      spdlog::warn("{}nothing is seen: {}", prefix, whyNothingIsSeen(renderer));
-    const std::vector<StageTime> times = renderer.timings();
-    addTimes(report.stages, std::span(times).subspan(built.size()));
-    report.lackedRoomForRays |= renderer.lackedRoomForRays();
-    report.lackedRoomForGather |= renderer.lackedRoomForGather();
-
-    line.begin(prefix + "writing pictures");
-    std::vector<StageTime> writing;
-    {
-      const StageTimer timer(writing, "write pictures");
-      write(image, view, outputs[frame], report.device);
-    }
-    addTimes(report.stages, writing);
-  }
-  addTimes(report.stages, opened.pipelines().times);
-  report.visibleVoxels = renderer.occupiedVoxelCount();
-  report.voxels = view.volume->voxelCount();
-  report.memory = renderer.memory();
-  report.devicePeak = opened.peakBytes();
-  report.cut = renderer.cutCounts();
 }
 
 }  // namespace freevoxels

@@ -1,7 +1,8 @@
 #pragma once
-// What `render` and `turntable` are told alike, and do alike: pictures of one volume, whose table is made
-// once.
+// What `render` and `turntable` are told alike, and do alike: images of one volume, whose table is made once, or of several.
 
+#include <span>
+#include <string>
 #include <vector>
 
 #include "apps/freevoxels/device_options.h"
@@ -12,10 +13,11 @@
 
 namespace freevoxels {
 
-class ProgressLine;
-
-/// [frame]: the pictures to write it to.
-using FrameFiles = std::vector<std::vector<std::string>>;
+/// A volume, and the images of it to write: one view in several forms.
+struct Frame {
+  std::string input;
+  std::vector<std::string> files;
+};
 
 struct RenderOptions {
   SceneOptions scene;
@@ -23,19 +25,16 @@ struct RenderOptions {
   DeviceOptions device;
   MessageOptions messages;
   std::optional<std::string> timings;
+  bool fixedView = true;  ///< whether all frames are seen as the first one is where options leave that open
 
   void add(CLI::App& app);
-  /// Draws as many frames of a full turn as `outputs` has, which take the place of `scene.output.files`.
-  /// Refuses whatever can be refused before any work.
-  void run(const FrameFiles& outputs) const;
+  /// Draws the frames; those of one volume are the steps of a full turn. Refuses whatever can be refused before any work.
+  void run(std::span<const Frame> frames) const;
+  /// Without lighting.
+  FrameSettings frameSettings() const;
 
  private:
-  void check(const FrameFiles& outputs) const;
-  void draw(const Device& device, const FrameFiles& outputs, RunReport& report) const;
-  Scene open(const Device& device, ProgressLine& line, RunReport& report) const;
-  OptionList describe(const Scene& scene) const;
-  void write(const Image& image, const Scene& scene, const std::vector<std::string>& files,
-             const DeviceDescription& device) const;
+  void check(std::span<const Frame> frames) const;
 };
 
 }  // namespace freevoxels

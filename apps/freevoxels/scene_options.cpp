@@ -8,6 +8,17 @@
 
 namespace freevoxels {
 
+namespace {
+
+/// The light that the volume's own emission throws on it, where it is lit.
+void makeEmissionLight(Scene& scene) {
+  scene.classification.emissionLight = nullptr;
+  if (scene.classification.emission && scene.lighting)
+    scene.classification.emissionLight = std::make_shared<const EmissionLight>(*scene.volume, scene.classification);
+}
+
+}  // namespace
+
 void SceneOptions::add(CLI::App& app) {
   input.add(app);
   input.addGrid(app);
@@ -25,11 +36,11 @@ void SceneOptions::addLook(CLI::App& app) {
 }
 
 void SceneOptions::takeScene(const std::string& defaultEnding) {
-  if ((isExr(input.input) || isPng(input.input)) && file.hasVolume()) {
+  if (isImage(input.input) && file.hasVolume()) {
     output.files.insert(output.files.begin(), input.input);
     input.input.clear();
     file.leaveOut("IN");
-  } else if (isExr(input.input) || isPng(input.input)) {
+  } else if (isImage(input.input)) {
     fail(ExitCode::Usage, "IN is required: '{}' is an image, which OUT is; name an OpenVDB file before it, or procedural:NAME",
          input.input);
   }
@@ -39,7 +50,7 @@ void SceneOptions::takeScene(const std::string& defaultEnding) {
   }
   file.apply([this](const std::string& option) { return output.honours(option); });
   input.checkGiven();
-  if (output.files.empty()) fail(ExitCode::Usage, "OUT is required: name a picture to write, .exr or .png");
+  if (output.files.empty()) fail(ExitCode::Usage, "OUT is required: name an image to write, .exr, .png or .jpg");
 }
 
 void SceneOptions::checkLook() const {
@@ -51,14 +62,18 @@ void SceneOptions::checkLook() const {
   lighting.check();
 }
 
-void SceneOptions::check(const std::vector<std::string>& moreOutputs) const {
+void SceneOptions::check(const std::vector<std::string>& moreOutputs, const std::vector<std::string>& moreInputs) const {
   checkLook();
   output.check();
+  output.checkCrop(camera.size);
   std::vector<std::string> files = moreOutputs;
   if (file.saved) files.push_back(*file.saved);
   for (const std::string& written : files) checkOutput(written);
   files.insert(files.end(), output.files.begin(), output.files.end());
-  if (!proceduralName(input.input)) files.push_back(input.input);
+  std::vector<std::string> volumes = moreInputs;
+  volumes.push_back(input.input);
+  for (const std::string& volume : volumes)
+    if (!proceduralName(volume)) files.push_back(volume);
   for (const std::optional<std::string>& read : {file.file, lighting.environment})
     if (read) files.push_back(*read);
   checkDistinct(files);
@@ -91,9 +106,17 @@ Classification SceneOptions::resolveClassification(const Volume& volume) const {
 void SceneOptions::resolveView(Scene& scene) const {
   scene.camera = camera.resolve(*scene.volume, scene.classification).front();
   scene.lighting = lighting.resolve(*scene.volume, scene.classification, scene.camera);
-  scene.classification.emissionLight = nullptr;
-  if (scene.classification.emission && scene.lighting)
-    scene.classification.emissionLight = std::make_shared<const EmissionLight>(*scene.volume, scene.classification);
+  makeEmissionLight(scene);
+}
+
+Scene SceneOptions::resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const {
+  SceneOptions fixed = *this;
+  fixed.classification.take(other.classification);
+  if (other.classification.emission) fixed.emission.take(*other.classification.emission);
+  Scene scene{.volume = std::move(volume), .camera = other.camera, .lighting = other.lighting};
+  scene.classification = fixed.resolveClassification(*scene.volume);
+  makeEmissionLight(scene);
+  return scene;
 }
 
 Scene SceneOptions::open(std::uint64_t maximumVoxels) const {
@@ -118,6 +141,8 @@ void SceneOptions::warn(const Scene& scene) const {
                  scene.volume->source);
   if (!camera.up && !camera.position && !scene.volume->upReason.empty())
     spdlog::info("up is {}, as {}; change it with --up", numberText(scene.volume->up), scene.volume->upReason);
+  if (scene.lighting && scene.lighting->environment && scene.lighting->environment->negativeValues > 0)
+    spdlog::warn("values of '{}' below 0 count as 0: {} of them", *lighting.environment, scene.lighting->environment->negativeValues);
   EmissionOptions::warn(*scene.volume, scene.classification);
 }
 
@@ -137,11 +162,12 @@ OptionList SceneOptions::describe(const Scene& scene, const OptionList& method) 
   return options;
 }
 
-void SceneOptions::write(const Image& image, const Scene& scene, const std::string& command,
-                         const OptionList& options, std::map<std::string, std::string> facts) const {
+void SceneOptions::write(Image image, const Scene& scene, const std::string& command, const OptionList& options,
+                         std::map<std::string, std::string> facts) const {
   facts.emplace("volume", scene.volume->source);
-  ExrOptions exr =
-      exrMetadata(command, options, facts, scene.camera, double(image.size.x) / double(image.size.y));
+  const double aspect = double(image.size.x) / double(image.size.y);
+  addChannels(image, output.aovs, scene.camera);
+  ExrOptions exr = exrMetadata(command, options, facts, scene.camera, aspect);
   exr.fullFloat = output.fullFloat;
   output.write(image, exr);
 }

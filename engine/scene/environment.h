@@ -1,6 +1,7 @@
 #pragma once
 // Light from all around: a lat-long picture of radiance that comes from infinitely far away.
 
+#include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <vector>
@@ -17,10 +18,11 @@ struct Environment {
   std::vector<glm::vec3> radiance;  ///< linear Rec.709; row 0 is the one around +y
   double rotation = 0.0;            ///< about +y, in degrees: is added to the azimuths
   double intensity = 1.0;           ///< by which the radiance is multiplied
+  std::uint64_t negativeValues = 0;  ///< of the file, that count as 0: lossy compression makes values such as -6e-8
 };
 
 /// Fails with ExitCode::Input where the file is no OpenEXR picture with R, G and B, twice as wide as high, or
-/// has pixels that are negative or not finite.
+/// has pixels that are not finite.
 Environment readEnvironment(const std::filesystem::path& file);
 
 /// A pixel of an environment, or a part of one.

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/error.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -17,7 +18,7 @@ struct GridInfo {
   std::string valueType;  ///< "float", "half", "vec3s", "point data", ...
   std::string gridClass;  ///< "fog volume", "level set", "staggered", "unknown"
   std::uint64_t activeVoxels = 0;                 ///< active tiles counted as voxels
-  glm::ivec3 dimensions{0};                       ///< of the active bounding box; 0 where the grid is empty
+  glm::i64vec3 dimensions{0};                     ///< of the active bounding box; 0 where the grid is empty
   glm::ivec3 boundsMinimum{0}, boundsMaximum{0};  ///< inclusive, index space
   glm::dvec3 voxelSize{0.0};                      ///< world units along the three index axes
   bool hasRange = false;                          ///< the grid holds one real number a voxel
@@ -53,11 +54,17 @@ struct MoreGrids {
   std::optional<std::string> albedo;       ///< a vec3s, vec3h or vec3d grid
 };
 
+/// A volume that can be read, but in which nothing is to be drawn, as in frames of a simulation before its source begins.
+class EmptyVolumeError : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Reads one float or half grid as a dense box around its active voxels (active tiles counted as voxels).
 /// `gridName`: "NAME" or "NAME[k]"; empty means `density`, else the only float grid, else an error that lists
 /// the choice. A level set becomes fog: density 1 inside, 0 outside, linear over the one voxel at the
 /// surface. With temperatures the box is around their active voxels too. Fails with ExitCode::Input:
-/// `more` that is not there or has another transform, frustum transforms, other grid types, empty grids,
+/// `more` that is not there or has another transform, frustum transforms, other grid types, empty grids (EmptyVolumeError),
 /// unreadable files; and with ExitCode::OutOfMemory where the box exceeds `maximumVoxels`, before anything of
 /// that size is allocated.
 Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels,

@@ -72,7 +72,7 @@ void describeVoxels(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
   info.boundsMinimum = {box.min().x(), box.min().y(), box.min().z()};
   info.boundsMaximum = {box.max().x(), box.max().y(), box.max().z()};
-  info.dimensions = {box.dim().x(), box.dim().y(), box.dim().z()};
+  info.dimensions = glm::i64vec3(info.boundsMaximum) - glm::i64vec3(info.boundsMinimum) + std::int64_t(1);
   const openvdb::FloatGrid::ConstPtr floats = asFloatGrid(grid);
   if (!floats) return;
   const ValueRange values = rangeOf(floats->tree());
@@ -119,6 +119,9 @@ std::uint64_t hostBytes(const FloatTree& tree, const std::vector<const FloatTree
   return ScalarBricks::bytesOf(bricks, dimensions);
 }
 
+/// Voxels along an edge of a box whose number of voxels 64 bits hold.
+constexpr double kLongestEdge = 1 << 20;
+
 /// The box that readVdb would make of the grid, and what of it holds anything.
 void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   const openvdb::FloatGrid::ConstPtr floats = asFloatGrid(grid);
@@ -128,6 +131,12 @@ void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
     const openvdb::CoordBBox box = boundsOf(floats->tree(), leaves, toDensity);
     if (box.empty()) {
       info.unusable = kNothingInsideClause;
+      return;
+    }
+    const glm::dvec3 extent = glm::dvec3(box.max().x(), box.max().y(), box.max().z()) -
+                              glm::dvec3(box.min().x(), box.min().y(), box.min().z()) + 1.0;
+    if (std::max({extent.x, extent.y, extent.z}) > kLongestEdge) {
+      info.unusable = "its box is too large to number its voxels";
       return;
     }
     info.renderDimensions = {box.dim().x(), box.dim().y(), box.dim().z()};

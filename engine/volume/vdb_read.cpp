@@ -44,7 +44,8 @@ Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::st
   std::vector<const VdbLeaf*> leaves;
   grid.tree().getNodes(leaves);
   CoordBBox bounds = boundsOf(grid.tree(), leaves, toDensity);
-  if (bounds.empty()) fail(ExitCode::Input, "{} cannot be rendered: {}", source, kNothingInsideClause);
+  if (bounds.empty())
+    throw EmptyVolumeError(ExitCode::Input, fmt::format("{} cannot be rendered: {}", source, kNothingInsideClause));
   bounds.expand(more);
   checkSize(bounds, maximumVoxels, source);
 
@@ -58,8 +59,12 @@ Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::st
   return volume;
 }
 
+std::string whyUnusable(const VdbFile& file, const VdbFile::Entry& entry, const std::string& why) {
+  return fmt::format("grid '{}' of '{}' cannot be rendered: {}", entry.name, file.path().string(), why);
+}
+
 [[noreturn]] void failUnusable(const VdbFile& file, const VdbFile::Entry& entry, const std::string& why) {
-  fail(ExitCode::Input, "grid '{}' of '{}' cannot be rendered: {}", entry.name, file.path().string(), why);
+  throw Error(ExitCode::Input, whyUnusable(file, entry, why));
 }
 
 }  // namespace
@@ -75,7 +80,7 @@ Volume readVdb(const std::filesystem::path& path, const std::string& gridName, s
   VdbChannels channels(file, entry, more);
 
   const openvdb::GridBase::Ptr grid = file.read(entry);
-  if (grid->activeVoxelCount() == 0) failUnusable(file, entry, kEmptyGridClause);
+  if (grid->activeVoxelCount() == 0) throw EmptyVolumeError(ExitCode::Input, whyUnusable(file, entry, kEmptyGridClause));
   const FloatGrid::ConstPtr floats = asFloatGrid(grid);
   const std::string source = fmt::format("{} {}", path.filename().string(), entry.name);
   try {

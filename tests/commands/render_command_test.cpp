@@ -146,11 +146,7 @@ TEST_F(RenderCommand, GivesTheSameBytesWithoutValidation) {
 
 TEST_F(RenderCommand, TheRecordedCommandGivesTheSameBytes) {
   const std::string first = render("--float --paper --orbit 10,-20");
-  const std::string command = exrAttribute(first, "freevoxels:command");
-  ASSERT_TRUE(command.starts_with("freevoxels render ")) << command;
-  Arguments arguments = words(command.substr(std::string("freevoxels ").size()));
-  arguments.push_back((folder / "again.exr").string());
-  expectSuccess(runFreevoxels(arguments));
+  expectSuccess(runFreevoxels(recordedCommand(first, folder / "again.exr")));
   EXPECT_EQ(first, readBytes(folder / "again.exr"));
 }
 

@@ -304,5 +304,25 @@ TEST(PngDeathTest, FullDiskIsOneSentenceAndLeavesNoFile) {
               "cannot write '.*a.png': No space left on device");
 }
 
+TEST(Png, SixteenBitsHoldTheCurveToAStep) {
+  const TemporaryFolder folder;
+  Image image{.size = {256, 2}};
+  for (int i = 0; i < 512; ++i) {
+    const float light = std::pow(float(i) / 511.0f, 3.0f);
+    image.pixels.emplace_back(light, 0.5f * light, 0.0f, 1.0f);
+  }
+  for (const DisplayLook& look : {DisplayLook{}, over(glm::vec3(0.0f))}) {
+    writePng(folder / "a.png", image, look, 16);
+    EXPECT_EQ(readBytes(folder / "a.png")[24], 16) << "bits a sample";
+    const Image back = readPng(folder / "a.png");
+    ASSERT_EQ(back.size, image.size);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+      for (int c = 0; c < 4; ++c) {
+        const float step = std::abs(srgbFromLinear(back.pixels[i][c]) - srgbFromLinear(image.pixels[i][c])) * 65535.0f;
+        ASSERT_LE(step, 0.6f) << i << " " << c;
+      }
+  }
+}
+
 }  // namespace
 }  // namespace freevoxels

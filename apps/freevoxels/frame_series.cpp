@@ -1,0 +1,234 @@
+#include "apps/freevoxels/frame_series.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+#include "engine/octree/volume_limits.h"
+#include "engine/vulkan/pipeline.h"
+
+namespace freevoxels {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// "45 s", "2 min 5 s", "1 h 12 min".
+std::string timeText(std::chrono::duration<double> time) {
+  const auto seconds = std::int64_t(std::max(time.count(), 0.0) + 0.5);
+  if (seconds < 60) return fmt::format("{} s", seconds);
+  if (seconds < 3600) return fmt::format("{} min {} s", seconds / 60, seconds % 60);
+  return fmt::format("{} h {} min", seconds / 3600, seconds / 60 % 60);
+}
+
+std::string whyNothingIsSeen(const Renderer& renderer) {
+  if (renderer.occupiedVoxelCount() == 0u) return "all voxels are transparent; raise --density-scale, or change --transfer-function";
+  return "the camera looks past the volume, or what it sees is transparent; leave out --camera-position and --look-at to frame it";
+}
+
+bool showsNothing(const Image& image) {
+  return std::ranges::none_of(image.pixels, [](glm::vec4 pixel) { return pixel.a > 0.0f || pixel.r + pixel.g + pixel.b > 0.0f; });
+}
+
+Progress prefixed(const Progress& progress, const std::string& prefix) {
+  if (!progress) return {};
+  return [progress, prefix](std::string_view stage, double fraction) {
+    progress(fmt::format("{}{}", prefix, stage), fraction);
+  };
+}
+
+/// How many frames at the beginning are of one volume.
+std::size_t framesOfFirstVolume(std::span<const Frame> frames) {
+  const auto other = std::ranges::find_if(frames, [&](const Frame& frame) { return frame.input != frames.front().input; });
+  return std::size_t(other - frames.begin());
+}
+
+std::vector<std::string> volumesOf(std::span<const Frame> frames) {
+  std::vector<std::string> volumes;
+  for (; !frames.empty(); frames = frames.subspan(framesOfFirstVolume(frames))) volumes.push_back(frames.front().input);
+  return volumes;
+}
+
+}  // namespace
+
+VolumesAhead::VolumesAhead(const SceneOptions& scene, std::vector<std::string> inputs, std::uint64_t maximumVoxels)
+    : scene_(scene), inputs_(std::move(inputs)), maximumVoxels_(maximumVoxels) {
+  readNext();
+}
+
+void VolumesAhead::readNext() {
+  if (begun_ == inputs_.size()) return;
+  pending_ = std::async(std::launch::async, [this, input = inputs_[begun_]] {
+    SceneOptions scene = scene_;
+    scene.input.input = input;
+    return std::shared_ptr<const Volume>(std::make_shared<const Volume>(scene.readVolume(maximumVoxels_)));
+  });
+  ++begun_;
+}
+
+std::shared_ptr<const Volume> VolumesAhead::next() {
+  pending_.wait();
+  std::future<std::shared_ptr<const Volume>> read = std::move(pending_);
+  readNext();
+  return read.get();
+}
+
+FrameSeries::FrameSeries(const RenderOptions& options, const Device& device, RunReport& report)
+    : options_(options), device_(device), report_(report), line_(!options.messages.quiet) {}
+
+void FrameSeries::draw(std::span<const Frame> frames) {
+  frames_ = frames.size();
+  begun_ = Clock::now();
+  report_.device = device_.description();
+  drawFilm(frames);
+  addTimes(report_.stages, device_.pipelines().times);
+  report_.devicePeak = device_.peakBytes();
+}
+
+void FrameSeries::drawFilm(std::span<const Frame> frames) {
+  const std::vector<std::string> inputs = volumesOf(frames);
+  VolumesAhead volumes(options_.scene, inputs, maximumVoxels(device_));
+  std::size_t failed = 0;
+  for (const std::string& input : inputs) {
+    const std::span<const Frame> own = frames.first(framesOfFirstVolume(frames));
+    frames = frames.subspan(own.size());
+    try {
+      line_.begin(prefix() + "reading " + input);
+      std::shared_ptr<const Volume> volume;
+      {
+        const StageTimer timer(report_.stages, "read volume");
+        volume = volumes.next();
+      }
+      drawVolume(std::move(volume), own);
+    } catch (const EmptyVolumeError& error) {
+      if (inputs.size() == 1) throw;
+      line_.erase();
+      spdlog::warn("{}; it becomes an image of the background", error.what());
+      for (const Frame& frame : own) writeEmpty(frame);
+    } catch (const Error& error) {
+      if (inputs.size() == 1 || error.code() != ExitCode::Input) throw;
+      line_.erase();
+      spdlog::error("{}", error.what());
+      ++failed;
+    }
+  }
+  if (failed == 0 && waiting_.empty()) return;
+  if (failed == 0) fail(ExitCode::Input, "no frame of {} holds anything to draw", frames_);
+  fail(ExitCode::Input, "{} of {} volumes could not be drawn, for the reasons above", failed, inputs.size());
+}
+
+Scene FrameSeries::resolve(std::shared_ptr<const Volume> volume) const {
+  if (options_.fixedView && reference_) return options_.scene.resolveLike(*reference_, std::move(volume));
+  return options_.scene.resolve(std::move(volume));
+}
+
+OptionList FrameSeries::describe(const Scene& view, const std::string& input) const {
+  OptionList method;
+  options_.method.describe(method);
+  SceneOptions scene = options_.scene;
+  scene.input.input = input;
+  return scene.describe(view, method);
+}
+
+/// What is said about the first volume.
+void FrameSeries::begin(const Scene& view, std::size_t frames) {
+  report_.options = describe(view, options_.scene.input.input);
+  if (frames > 1) {
+    options_.scene.camera.describeTurn(report_.options);
+    report_.options.emplace_back("--frames", fmt::format("{}", frames));
+  }
+  line_.erase();
+  options_.scene.warn(view);
+  logOptions(report_.options);
+  mentionCpu(device_);
+}
+
+void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, std::span<const Frame> frames) {
+  Scene view = resolve(std::move(volume));
+  const bool isFirst = !reference_;
+  std::vector<Camera> cameras{view.camera};
+  if (frames.size() > 1) cameras = options_.scene.camera.resolve(*view.volume, view.classification, int(frames.size()));
+  view.camera = cameras.front();
+  line_.erase();
+  if (isFirst)
+    begin(view, frames.size());
+  else
+    warnAboutValues(*view.volume, !view.classification.transferFunction);
+  if (isFirst || !options_.fixedView) reference_ = view;
+
+  FrameSettings settings = options_.frameSettings();
+  settings.lighting = view.lighting;
+  Renderer renderer(device_, *view.volume, view.classification, options_.method.table(), prefixed(line_.progress(), prefix()));
+  const std::vector<StageTime> built = renderer.timings();
+  addTimes(report_.stages, built);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    view.camera = cameras[i];
+    drawFrame(renderer, view, settings, frames[i]);
+    const std::vector<StageTime> times = renderer.timings();
+    addTimes(report_.stages, std::span(times).subspan(built.size()));
+  }
+  addToReport(renderer, *view.volume);
+  for (const Frame* empty : std::exchange(waiting_, {})) writeEmpty(*empty);
+}
+
+void FrameSeries::drawFrame(Renderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame) {
+  Image image = renderer.render(view.camera, settings, prefixed(line_.progress(), prefix()));
+  if (showsNothing(image)) {
+    line_.erase();
+    spdlog::warn("{}nothing is seen: {}", frames_ == 1 ? "" : frame.files.front() + ": ", whyNothingIsSeen(renderer));
+  }
+  write(std::move(image), view, frame);
+}
+
+void FrameSeries::write(Image image, const Scene& view, const Frame& frame) {
+  line_.begin(prefix() + "writing " + frame.files.front());
+  const StageTimer timer(report_.stages, "write pictures");
+  // What a file says of its making is how `render` repeats this frame alone.
+  options_.scene.withOutputs(frame.files)
+      .write(std::move(image), view, "render", describe(view, frame.input),
+             {{"device", report_.device.name}, {"driver", report_.device.driver}});
+  ++written_;
+  line_.erase();
+  if (options_.messages.quiet) return;
+  for (const std::string& file : frame.files) fmt::print("{}\n", file);
+  std::fflush(stdout);
+}
+
+void FrameSeries::writeEmpty(const Frame& frame) {
+  if (!reference_) {
+    waiting_.push_back(&frame);
+    return;
+  }
+  const FrameSettings settings = options_.frameSettings();
+  const std::size_t pixels = std::size_t(settings.size.x) * std::size_t(settings.size.y);
+  Image image{.size = settings.size, .pixels = std::vector<glm::vec4>(pixels, glm::vec4(0.0f))};
+  if (settings.depth) image.depth.assign(pixels, std::numeric_limits<float>::infinity());
+  Scene view = *reference_;
+  Volume nothing;
+  nothing.source = std::filesystem::path(frame.input).filename().string();
+  view.volume = std::make_shared<const Volume>(std::move(nothing));
+  view.classification.emission.reset();
+  write(std::move(image), view, frame);
+}
+
+/// Of the last volume.
+void FrameSeries::addToReport(const Renderer& renderer, const Volume& volume) {
+  report_.lackedRoomForRays |= renderer.lackedRoomForRays();
+  report_.lackedRoomForGather |= renderer.lackedRoomForGather();
+  report_.visibleVoxels = renderer.occupiedVoxelCount();
+  report_.voxels = volume.voxelCount();
+  report_.memory = renderer.memory();
+  report_.cut = renderer.cutCounts();
+}
+
+/// "frame 3 of 72, 2 min 5 s left: ", which starts what is said while one of several frames is made.
+std::string FrameSeries::prefix() const {
+  if (frames_ == 1) return "";
+  std::string left;
+  if (written_ > 0) left = fmt::format(", {} left", timeText((Clock::now() - begun_) / double(written_) * double(frames_ - written_)));
+  return fmt::format("frame {} of {}{}: ", written_ + 1, frames_, left);
+}
+
+}  // namespace freevoxels
