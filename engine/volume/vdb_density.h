@@ -17,12 +17,14 @@ namespace freevoxels {
 /// What a voxel of a fog volume becomes in the box.
 struct FogToDensity {
   static constexpr int kMargin = 0;
+  static constexpr bool kKeepsInactive = false;  // whether it keeps any inactive voxel
   float operator()(float value, bool active) const { return active ? value : kInactiveVoxel; }
 };
 
 /// What a voxel of a level set becomes: 1 inside, 0 outside, linear over three voxels at the surface, so that gradients have
 /// its direction. Deep inside is inactive in OpenVDB.
 struct LevelSetToDensity {
+  static constexpr bool kKeepsInactive = true;
   static constexpr int kMargin = 2;  // voxels around it: light comes to its surface from outside
   float voxelSize;
   float operator()(float distance, bool active) const {
@@ -33,13 +35,31 @@ struct LevelSetToDensity {
   }
 };
 
-/// Calls `visit(box, value, active)` for each tile of the tree, at any level above the leaves. The background
+/// Calls `visit(box, density)` for the tiles of a node, each of `edge` voxels along an edge, that `toDensity` keeps.
+template <typename Node, typename ToDensity, typename Visit>
+void visitTilesOf(const Node& node, int edge, const ToDensity& toDensity, const Visit& visit) {
+  const auto visitIfKept = [&](const auto& tile, bool active) {
+    const float density = toDensity(*tile, active);
+    if (density != kInactiveVoxel) visit(openvdb::CoordBBox::createCube(tile.getCoord(), edge), density);
+  };
+  for (auto tile = node.cbeginValueOn(); tile; ++tile) visitIfKept(tile, true);
+  if constexpr (ToDensity::kKeepsInactive)  // they are tens of thousands of nothing in most nodes
+    for (auto tile = node.cbeginValueOff(); tile; ++tile) visitIfKept(tile, false);
+}
+
+/// Calls `visit(box, density)` for each tile of the tree, at any level above the leaves, that `toDensity` keeps. The background
 /// is no tile: it has no end.
-template <typename Visit>
-void visitTiles(const openvdb::FloatTree& tree, const Visit& visit) {
-  auto tile = tree.cbeginValueAll();
-  tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
-  for (; tile; ++tile) visit(tile.getBoundingBox(), tile.getValue(), tile.isValueOn());
+template <typename ToDensity, typename Visit>
+void visitTiles(const openvdb::FloatTree& tree, const ToDensity& toDensity, const Visit& visit) {
+  using Upper = openvdb::FloatTree::RootNodeType::ChildNodeType;
+  using Lower = Upper::ChildNodeType;
+  visitTilesOf(tree.root(), int(Upper::DIM), toDensity, visit);
+  std::vector<const Upper*> upper;
+  tree.getNodes(upper);
+  for (const Upper* node : upper) visitTilesOf(*node, int(Lower::DIM), toDensity, visit);
+  std::vector<const Lower*> lower;
+  tree.getNodes(lower);
+  for (const Lower* node : lower) visitTilesOf(*node, int(Lower::ChildNodeType::DIM), toDensity, visit);
 }
 
 /// Whether `toDensity` keeps a voxel of the leaf.
@@ -70,9 +90,7 @@ openvdb::CoordBBox boundsOf(const openvdb::FloatTree& tree,
   };
   openvdb::CoordBBox bounds =
       tbb::parallel_reduce(Range(0, leaves.size()), openvdb::CoordBBox(), expandByLeaves, join);
-  visitTiles(tree, [&](const openvdb::CoordBBox& box, float value, bool active) {
-    if (toDensity(value, active) != kInactiveVoxel) bounds.expand(box);
-  });
+  visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float) { bounds.expand(box); });
   if (!bounds.empty()) bounds.expand(ToDensity::kMargin);
   return bounds;
 }

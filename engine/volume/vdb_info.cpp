@@ -100,8 +100,8 @@ std::vector<std::uint64_t> storedBlocks(const FloatTree& tree,
   for (const FloatTree::LeafNodeType* leaf : leaves)
     for (auto voxel = leaf->cbeginValueAll(); voxel; ++voxel)
       if (toDensity(*voxel, voxel.isValueOn()) > 0.0f) hold(voxel.getCoord());
-  visitTiles(tree, [&](const openvdb::CoordBBox& box, float value, bool active) {
-    if (toDensity(value, active) > 0.0f)
+  visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float density) {
+    if (density > 0.0f)
       for (auto voxel = box.begin(); voxel; ++voxel) hold(*voxel);
   });
   return countOccupiedBlocks({bounds.dim().x(), bounds.dim().y(), bounds.dim().z()}, std::move(holding));
@@ -112,9 +112,8 @@ std::uint64_t hostBytes(const FloatTree& tree, const std::vector<const FloatTree
                         glm::ivec3 dimensions, const ToDensity& toDensity) {
   auto bricks = std::uint64_t(
       std::ranges::count_if(leaves, [&](const auto* leaf) { return holdsData(*leaf, toDensity); }));
-  visitTiles(tree, [&](const openvdb::CoordBBox& box, float value, bool active) {
-    if (toDensity(value, active) != kInactiveVoxel)
-      bricks += box.volume() / std::tuple_size_v<ScalarBricks::Brick>;
+  visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float) {
+    bricks += box.volume() / std::tuple_size_v<ScalarBricks::Brick>;
   });
   return ScalarBricks::bytesOf(bricks, dimensions);
 }

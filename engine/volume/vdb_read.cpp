@@ -1,4 +1,7 @@
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <new>
 
@@ -37,6 +40,29 @@ glm::dmat4 indexToWorldOf(const FloatGrid& grid, glm::ivec3 indexOrigin) {
   return indexToWorld;
 }
 
+/// Moves a volume near to the origin, and scales it, where its coordinates would leave double precision too few digits to tell
+/// its voxels apart, or single precision's range when they are squared; says so, as cameras and densities then count in other
+/// units.
+void normaliseWorld(Volume& volume) {
+  constexpr double kFarthest = 1e10;  // voxels from the origin
+  constexpr double kLargest = 1e9;    // world units of a voxel, and their inverse
+  const double voxel = volume.voxelSize();
+  const glm::dvec3 centre(volume.indexToWorld * glm::dvec4((glm::dvec3(volume.dimensions) - 1.0) / 2.0, 1.0));
+  if (glm::length(centre) > kFarthest * voxel) {
+    volume.indexToWorld[3] -= glm::dvec4(centre, 0.0);
+    spdlog::warn("{} is so far from the origin that its voxels can hardly be told apart: it is moved by {:g},{:g},{:g}, and so are the "
+                 "camera and the lights",
+                 volume.source, -centre.x, -centre.y, -centre.z);
+  }
+  if (voxel > kLargest || voxel < 1.0 / kLargest) {
+    const double scale = std::pow(10.0, -std::floor(std::log10(voxel)));
+    for (int column = 0; column < 4; ++column) volume.indexToWorld[column] = glm::dvec4(glm::dvec3(volume.indexToWorld[column]) * scale, column == 3);
+    spdlog::warn("voxels of {} are {:g} world units large: it is scaled by {:g}, so that the camera, the lights and the scale of "
+                 "densities count in units of {:g}",
+                 volume.source, voxel, scale, 1.0 / scale);
+  }
+}
+
 /// Of the box around what `toDensity` keeps and around `more`.
 template <typename ToDensity>
 Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::string& source,
@@ -54,6 +80,7 @@ Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::st
   volume.dimensions = {bounds.dim().x(), bounds.dim().y(), bounds.dim().z()};
   volume.indexOrigin = {bounds.min().x(), bounds.min().y(), bounds.min().z()};
   volume.indexToWorld = indexToWorldOf(grid, volume.indexOrigin);
+  normaliseWorld(volume);
   volume.scalars = bricksOf(grid.tree(), std::move(leaves), volume.dimensions, volume.indexOrigin, toDensity);
   summariseValues(volume);
   return volume;
