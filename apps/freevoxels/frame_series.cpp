@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 
@@ -30,6 +31,19 @@ std::string whyNothingIsSeen(const Renderer& renderer) {
 
 bool showsNothing(const Image& image) {
   return std::ranges::none_of(image.pixels, [](glm::vec4 pixel) { return pixel.a > 0.0f || pixel.r + pixel.g + pixel.b > 0.0f; });
+}
+
+/// Makes pixels black of which some number is NaN or infinite, which light beyond the range of single precision makes of them;
+/// returns how many there were.
+std::size_t clearPixelsThatAreNoNumbers(Image& image) {
+  std::size_t cleared = 0;
+  for (glm::vec4& pixel : image.pixels) {
+    const float sum = pixel.r + pixel.g + pixel.b + pixel.a;
+    if (std::isfinite(sum)) continue;
+    pixel = glm::vec4(0.0f);
+    ++cleared;
+  }
+  return cleared;
 }
 
 Progress prefixed(const Progress& progress, const std::string& prefix) {
@@ -175,10 +189,12 @@ void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, std::span<con
 
 void FrameSeries::drawFrame(Renderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame) {
   Image image = renderer.render(view.camera, settings, prefixed(line_.progress(), prefix()));
-  if (showsNothing(image)) {
-    line_.erase();
-    spdlog::warn("{}nothing is seen: {}", frames_ == 1 ? "" : frame.files.front() + ": ", whyNothingIsSeen(renderer));
-  }
+  const std::string name = frames_ == 1 ? "" : frame.files.front() + ": ";
+  line_.erase();
+  if (const std::size_t pixels = clearPixelsThatAreNoNumbers(image); pixels > 0)
+    spdlog::warn("{}{} pixels are beyond the range of numbers and become black: use less extreme lights, emission and distances", name,
+                 pixels);
+  if (showsNothing(image)) spdlog::warn("{}nothing is seen: {}", name, whyNothingIsSeen(renderer));
   write(std::move(image), view, frame);
 }
 

@@ -50,9 +50,9 @@ void normaliseWorld(Volume& volume) {
   const glm::dvec3 centre(volume.indexToWorld * glm::dvec4((glm::dvec3(volume.dimensions) - 1.0) / 2.0, 1.0));
   if (glm::length(centre) > kFarthest * voxel) {
     volume.indexToWorld[3] -= glm::dvec4(centre, 0.0);
-    spdlog::warn("{} is so far from the origin that its voxels can hardly be told apart: it is moved by {:g},{:g},{:g}, and so are the "
-                 "camera and the lights",
-                 volume.source, -centre.x, -centre.y, -centre.z);
+    spdlog::warn("{} is so far from the origin that its voxels can hardly be told apart: its middle, {:g},{:g},{:g}, becomes the "
+                 "origin, from which positions of cameras and lights count",
+                 volume.source, centre.x, centre.y, centre.z);
   }
   if (voxel > kLargest || voxel < 1.0 / kLargest) {
     const double scale = std::pow(10.0, -std::floor(std::log10(voxel)));

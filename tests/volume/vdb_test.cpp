@@ -396,6 +396,30 @@ TEST_F(Vdb, DimensionsBeyond32BitsAreCounted) {
   expectRefusal([&] { read(); }, ExitCode::OutOfMemory, {"too large"});
 }
 
+glm::dvec3 centreOf(const Volume& volume) {
+  return volume.indexToWorld * glm::dvec4((glm::dvec3(volume.dimensions) - 1.0) / 2.0, 1.0);
+}
+
+TEST_F(Vdb, AVolumeTooFarFromTheOriginIsMovedThere) {
+  const FloatGrid::Ptr grid = makeGrid("density");
+  grid->transform().postTranslate(openvdb::Vec3d(1e15, 0.0, -3.0));
+  write({grid});
+  EXPECT_LT(glm::length(centreOf(read())), 1.0);
+  grid->setTransform(openvdb::math::Transform::createLinearTransform());
+  grid->transform().postTranslate(openvdb::Vec3d(1e9, 0.0, 0.0));
+  write({grid});
+  EXPECT_NEAR(centreOf(read()).x, 1e9, 1.0) << "doubles still tell its voxels apart";
+}
+
+TEST_F(Vdb, VoxelsOfAnAbsurdSizeAreScaledByAPowerOfTen) {
+  const FloatGrid::Ptr grid = makeGrid("density");
+  for (const auto& [size, scaled] : {std::pair(3e11, 3.0), std::pair(3e20, 3.0), std::pair(1e9, 1e9), std::pair(2e-4, 2e-4)}) {
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(size));
+    write({grid});
+    EXPECT_NEAR(read().voxelSize(), scaled, 1e-9 * scaled) << size;
+  }
+}
+
 TEST_F(Vdb, ThreadsReadAtTheSameTimeWithoutDisturbingEachOther) {
   const std::string good = (folder / "good.vdb").string(), bad = (folder / "bad.vdb").string();
   write({makeGrid("density", 0.5f), makeGrid("density", 0.25f)});
