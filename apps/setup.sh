@@ -10,9 +10,10 @@ packages=(
   libvulkan-dev libvulkan-volk-dev mesa-vulkan-drivers vulkan-validationlayers
   glslang-tools spirv-tools
   libglm-dev libfmt-dev libspdlog-dev nlohmann-json3-dev libcli11-dev
-  libopenexr-dev libpng-dev libxxhash-dev
+  libopenexr-dev libpng-dev libjpeg62-turbo-dev
   libglfw3-dev libimgui-dev
   libopenvdb-dev libtbb-dev libboost-iostreams-dev # OpenVDB's headers and CMake module need the last, too
+  liblog4cplus-dev # turns the messages of OpenVDB off
   libxxhash-dev libzstd-dev
   pybind11-dev python3-pybind11 python3-dev python3-numpy # the Python module
   help2man man-db # man pages, and their test

@@ -201,6 +201,8 @@ int main(int argc, char** argv) {
   app.callback([&] {
     if (!json.empty()) checkWritable(json);
     if (!svg.empty()) checkWritable(svg);
+    for (const std::string& input : extent.inputs)
+      if (!proceduralName(input)) listVdb(input);  // refuses a file that is missing or no volume before minutes of work
     device.withDevice([&](const Device& opened) {
       if (cluster) return measureCluster(opened, extent.quick, svg);
       const Results results = measure(opened, extent, wanted);

@@ -83,6 +83,15 @@ Classification ClassificationOptions::resolve(const Volume& volume, bool shines)
   return classification;
 }
 
+void ClassificationOptions::take(const Classification& resolved) {
+  if (!resolved.transferFunction) {
+    densityScale = resolved.densityScale;
+    return;
+  }
+  transferFunction = transferFunctionJson(*resolved.transferFunction);  // with its range, which a file may leave to the volume
+  order = int(resolved.order);
+}
+
 void ClassificationOptions::describe(OptionList& options, const Volume& volume, const Classification& resolved) const {
   if (volume.classificationIsFixed) return;
   if (resolved.transferFunction) {

@@ -25,6 +25,8 @@ struct ClassificationOptions {
   /// refused with ExitCode::Usage where that is fixed. Otherwise, without options scans have scanTransferFunction, level sets are opaque, and others have the
   /// automatic density scale of volumes that shine, or do not.
   Classification resolve(const Volume& volume, bool shines) const;
+  /// Takes the place of what is not given: what was resolved for another volume.
+  void take(const Classification& resolved);
   void describe(OptionList& options, const Volume& volume, const Classification& resolved) const;
 };
 

@@ -66,6 +66,12 @@ std::optional<Emission> EmissionOptions::resolve(const Volume& volume,
   return result;
 }
 
+void EmissionOptions::take(const Emission& resolved) {
+  strength = resolved.strength;
+  temperatureScale = resolved.temperatureScale;
+  temperatureOffset = resolved.temperatureOffset;
+}
+
 void EmissionOptions::describe(OptionList& options, const Volume& volume,
                                const std::optional<Emission>& resolved) const {
   if (!resolved) return;

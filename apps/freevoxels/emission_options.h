@@ -21,6 +21,8 @@ struct EmissionOptions {
   std::optional<std::string> grid() const;
   /// What is not given defaults to the automatic values. `classification` is of what does not shine.
   std::optional<Emission> resolve(const Volume& volume, const Classification& classification) const;
+  /// Takes the place of what is not given: what was resolved for another volume.
+  void take(const Emission& resolved);
   void describe(OptionList& options, const Volume& volume, const std::optional<Emission>& resolved) const;
   /// One warning each for temperatures that are not drawn as they are, and where nothing sends out light.
   static void warn(const Volume& volume, const Classification& classification);

@@ -1,19 +1,19 @@
 #pragma once
-// The file names of a sequence: "orbit_####.png" is orbit_0000.png, orbit_0001.png, ...
+// The file names of a sequence: "orbit_####.png" and "orbit_%04d.png" are orbit_0000.png, orbit_0001.png, ...
 
 #include <string>
 #include <vector>
 
 namespace freevoxels {
 
-/// Of a full turn.
+/// Frames of a full turn.
 inline constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
 
-/// The pattern with the frame's number, padded with zeros, in place of the run of # in its file name; a
-/// number that needs more digits has them. ExitCode::Usage where the file name has no run of # or several.
-std::string frameName(const std::string& pattern, int frame);
+/// The pattern with a run of # in place of %d or %0Nd in its file name; any other text as it is.
+std::string withHashes(const std::string& pattern);
 
-/// [frame][pattern].
-std::vector<std::vector<std::string>> frameNames(const std::vector<std::string>& patterns, int frames);
+/// The pattern with the frame's number, padded with zeros, in place of the run of # (or %0Nd) in its file name; a
+/// number that needs more digits has them. ExitCode::Usage where the file name has no such place or several.
+std::string frameName(const std::string& pattern, int frame);
 
 }  // namespace freevoxels

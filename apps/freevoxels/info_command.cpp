@@ -26,7 +26,8 @@ GridInfo describeVolume(const Volume& volume) {
   grid.valueType = "float";
   grid.gridClass = "fog volume";
   grid.activeVoxels = volume.activeVoxels;
-  grid.dimensions = grid.renderDimensions = volume.dimensions;
+  grid.dimensions = volume.dimensions;
+  grid.renderDimensions = volume.dimensions;
   grid.boundsMinimum = volume.indexOrigin;
   grid.boundsMaximum = volume.indexOrigin + volume.dimensions - 1;
   for (int axis = 0; axis < 3; ++axis)
@@ -82,7 +83,8 @@ void printTable(const std::vector<GridInfo>& grids) {
                 "VALUES", "MEMORY", "TABLE 26", "ON DEVICE", "TABLE 98", "ON DEVICE", "BYTES/VOXEL", "USE"}}};
   for (const GridInfo& grid : grids) {
     const bool empty = grid.activeVoxels == 0;
-    const glm::ivec3 low = grid.boundsMinimum, high = grid.boundsMaximum, size = grid.dimensions;
+    const glm::ivec3 low = grid.boundsMinimum, high = grid.boundsMaximum;
+    const glm::i64vec3 size = grid.dimensions;
     table.rows.push_back(
         {grid.name, grid.valueType, grid.gridClass, fmt::format("{}", grid.activeVoxels),
          empty ? "-" : fmt::format("{}x{}x{}", size.x, size.y, size.z),

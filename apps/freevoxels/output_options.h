@@ -1,11 +1,12 @@
 #pragma once
-// The pictures that a command writes, their form chosen by extension.
+// The images that a command writes, their form chosen by extension.
 
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/freevoxels/aov.h"
 #include "apps/freevoxels/option_values.h"
 #include "engine/image/image.h"
 #include "engine/scene/camera.h"
@@ -15,6 +16,12 @@ namespace freevoxels {
 /// By extension, in any case.
 bool isExr(const std::string& file);
 bool isPng(const std::string& file);
+bool isJpeg(const std::string& file);
+/// Any of them.
+bool isImage(const std::string& file);
+
+/// What --png-bits takes.
+inline const std::vector<std::string> kPngBitsWords{"8", "16"};
 
 /// In the order of ToneMap.
 inline const std::vector<std::string> kToneMapWords{"none", "filmic", "aces"};
@@ -26,7 +33,9 @@ struct OutputOptions {
   std::optional<double> exposure;
   std::optional<int> toneMap;  ///< ToneMap
   bool fullFloat = false;
-  std::optional<int> aov;
+  std::optional<int> pngBits;  ///< index into kPngBitsWords
+  Aovs aovs;
+  std::optional<PixelRectangle> crop;
 
   void add(CLI::App& app);
   /// How they are written, without OUT.
@@ -38,18 +47,24 @@ struct OutputOptions {
   /// Before any work: extensions, options that no output can honour (ExitCode::Usage), folders
   /// (ExitCode::Output).
   void check() const;
-  /// How a .png is made of a picture.
-  PngLook look() const;
-  bool wantsDepth() const { return aov.has_value(); }
+  /// ExitCode::Usage where --crop is not inside an image of this size.
+  void checkCrop(glm::ivec2 imageSize) const;
+  /// How a .png or a .jpg is made of an image.
+  DisplayLook look() const;
+  /// Whether the image must be drawn with its depth.
+  bool wantsDepth() const { return aovs.needDepth(); }
   void describe(OptionList& options) const;
   /// Writes each file completely or not at all.
   void write(const Image& image, const ExrOptions& exr) const;
 };
 
-/// What an EXR says of its making: "freevoxels:NAME" for every option, the command without its outputs,
-/// versions, the device; and its camera's matrices. Holds nothing that differs between two runs of a command.
-/// `command` is its name, "render".
+/// What an EXR says of its making: "freevoxels:NAME" for every option, the command that makes it again as image.exr,
+/// versions, the device; and its camera's matrices. Holds nothing that differs between two runs of a command,
+/// nor the file's name. `command` is its name, "render".
 ExrOptions exrMetadata(const std::string& command, const OptionList& options,
                        const std::map<std::string, std::string>& facts, const Camera& camera, double aspect);
+
+/// The words of a command that writes one file, for a shell: OUT stands behind IN.
+std::string commandInto(const std::string& command, OptionList options, const std::string& file);
 
 }  // namespace freevoxels

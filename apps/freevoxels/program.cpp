@@ -1,5 +1,6 @@
 #include "apps/freevoxels/program.h"
 
+#include <fmt/ranges.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -15,29 +16,34 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <new>
+#include <optional>
 
+#include "apps/freevoxels/crash_report.h"
+#include "apps/freevoxels/failure.h"
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
 #include "engine/core/nearest_name.h"
+#include "engine/core/printable.h"
 
 namespace freevoxels {
 
 namespace {
 
-/// "%*" in the pattern: tells a warning from a remark.
-class WarningMark : public spdlog::custom_flag_formatter {
+/// "%*" in the pattern: the message, marked where it is a warning, without control characters of names from files.
+class MessageText : public spdlog::custom_flag_formatter {
  public:
   void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& text) override {
-    constexpr std::string_view kMark = "warning: ";
-    if (message.level == spdlog::level::warn) text.append(kMark.data(), kMark.data() + kMark.size());
+    const bool isWarning = message.level == spdlog::level::warn;
+    const std::string shown =
+        (isWarning ? "warning: " : "") + printable(std::string_view(message.payload.data(), message.payload.size()));
+    text.append(shown.data(), shown.data() + shown.size());
   }
-  std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<WarningMark>(); }
+  std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<MessageText>(); }
 };
 
 void setUpMessages(const std::string& program) {
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
-  formatter->add_flag<WarningMark>('*').set_pattern(program + ": %*%v");
+  formatter->add_flag<MessageText>('*').set_pattern(program + ": %*");
   auto logger = std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_sink_mt>());
   logger->set_formatter(std::move(formatter));
   spdlog::set_default_logger(std::move(logger));
@@ -74,15 +80,54 @@ std::vector<std::string> commandNames(const CLI::App& app) {
   return names;
 }
 
-/// "there is no option '--szie'; did you mean '--size'?" for the first argument that is like an option and is none; else empty.
-std::string unknownOption(const CLI::App& command, int argc, char** argv) {
-  std::vector<std::string> known;
+using Words = std::vector<std::string>;
+
+/// The command that the words name, or the program itself, before they are parsed.
+const CLI::App& commandIn(const CLI::App& app, const Words& words) {
+  const auto first = std::ranges::find_if(words, [](const std::string& word) { return !word.starts_with('-'); });
+  if (first == words.end()) return app;
+  const auto named = app.get_subcommands([&](const CLI::App* command) { return command->get_name() == *first; });
+  return named.empty() ? app : *named.front();
+}
+
+/// One name of each of the command's options that has one that begins with `start`.
+Words optionsBeginningWith(const CLI::App& command, const std::string& start) {
+  Words names;
   for (const CLI::Option* option : command.get_options())
-    for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument(argv[i]), name = argument.substr(0, argument.find('='));
-    if (!name.starts_with("--") || name.size() == 2 || command.get_option_no_throw(name) != nullptr) continue;
-    return fmt::format("there is no option '{}'{}", name, suggestion(name, known));
+    for (const std::string& name : option->get_lnames())
+      if (("--" + name).starts_with(start)) {
+        names.push_back("--" + name);
+        break;
+      }
+  return names;
+}
+
+/// "--res=64" and its name alone, "--res", where it is an option that the command does not have; else nothing.
+std::optional<std::string> unknownOptionName(const CLI::App& command, const std::string& word) {
+  std::string name = word.substr(0, word.find('='));
+  if (!name.starts_with("--") || name.size() == 2 || command.get_option_no_throw(name) != nullptr) return std::nullopt;
+  return name;
+}
+
+/// Completes beginnings of options that only one option has: "--res" is --resolution.
+void completeOptions(const CLI::App& app, Words& words) {
+  const CLI::App& command = commandIn(app, words);
+  for (std::string& word : words) {
+    if (word == "--") return;  // what follows are no options
+    const std::optional<std::string> name = unknownOptionName(command, word);
+    if (!name) continue;
+    if (const Words meant = optionsBeginningWith(command, *name); meant.size() == 1) word.replace(0, name->size(), meant.front());
+  }
+}
+
+/// "there is no option '--szie'; did you mean '--size'?" for the first word that is like an option and is none; else empty.
+std::string unknownOption(const CLI::App& command, const Words& words) {
+  for (const std::string& word : words) {
+    const std::optional<std::string> name = unknownOptionName(command, word);
+    if (!name) continue;
+    if (const Words meant = optionsBeginningWith(command, *name); meant.size() > 1)
+      return fmt::format("'{}' is the beginning of {}: write more of it", *name, fmt::join(meant, ", "));
+    return fmt::format("there is no option '{}'{}", *name, suggestion(*name, optionsBeginningWith(command, "--")));
   }
   return "";
 }
@@ -94,37 +139,35 @@ std::string unknownCommand(const CLI::App& app, const std::string& word) {
   return fmt::format("there is no command '{}'{}", word, suggestion(word, commandNames(app)));
 }
 
-Outcome usageError(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+Outcome usageError(const CLI::App& app, const CLI::ParseError& error, const Words& words) {
   std::string sentence = error.what();
   const bool hasCommands = !commandNames(app).empty();
   const CLI::App& command = commandOf(app);
-  if (hasCommands && &command == &app && argc > 1 && argv[1][0] != '-')
-    sentence = unknownCommand(app, argv[1]);
-  else if (const std::string unknown = unknownOption(command, argc, argv); !unknown.empty())
+  if (hasCommands && &command == &app && !words.empty() && !words.front().starts_with('-'))
+    sentence = unknownCommand(app, words.front());
+  else if (const std::string unknown = unknownOption(command, words); !unknown.empty())
     sentence = unknown;
-  else if (hasCommands && argc == 1)
+  else if (hasCommands && words.empty())
     sentence = "a command is needed";
   if (sentence.size() > 1 && std::islower(static_cast<unsigned char>(sentence[1])))
     sentence[0] = char(std::tolower(static_cast<unsigned char>(sentence[0])));
   return {ExitCode::Usage, fmt::format("{} (see {} --help)", sentence, commandName(app))};
 }
 
-Outcome parseAndRun(CLI::App& app, int argc, char** argv) {
+Outcome parseAndRun(CLI::App& app, Words words) {
+  completeOptions(app, words);
   try {
-    app.parse(argc, argv);
+    app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes the last word first
     return finish();
   } catch (const CLI::Success& help) {
     app.exit(help);
     return finish();
   } catch (const CLI::ParseError& error) {
-    return usageError(app, error, argc, argv);
-  } catch (const Error& error) {
-    return {error.code(), error.what()};
-  } catch (const std::bad_alloc&) {
-    return {ExitCode::OutOfMemory, "this machine's memory is full: use a smaller volume or image"};
-  } catch (const std::exception& error) {
-    if (std::ferror(stdout) != 0) return finish();
-    return {ExitCode::Internal, fmt::format("internal error, please report it: {}", error.what())};
+    return usageError(app, error, words);
+  } catch (...) {
+    const Failure failure = currentFailure();
+    if (failure.code == ExitCode::Internal && std::ferror(stdout) != 0) return finish();
+    return {failure.code, failure.sentence};
   }
 }
 
@@ -150,12 +193,13 @@ std::string programVersion() {
 }
 
 int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>& onFailure) {
+  reportCrashes(app.get_name());
   setUpMessages(app.get_name());
   app.get_formatter()->column_width(36);
   app.get_formatter()->label("REQUIRED", "");
   app.get_formatter()->label("TEXT", "");
   app.set_version_flag("--version", app.get_name() + " " + programVersion());
-  Outcome outcome = parseAndRun(app, argc, argv);
+  Outcome outcome = parseAndRun(app, Words(argv + 1, argv + argc));
   if (outcome.code != ExitCode::Success) {
     if (onFailure) onFailure();
     std::ranges::replace(outcome.sentence, '\n', ' ');

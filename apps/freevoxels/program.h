@@ -15,8 +15,9 @@ namespace freevoxels {
 /// "0.1.0"
 std::string programVersion();
 
-/// Parses the arguments and runs the command they name; its callbacks throw. Every error becomes one line on
-/// stderr and its ExitCode; `onFailure` is called before it is printed. Adds --version to `app`.
+/// Parses the arguments and runs the command they name; its callbacks throw. Options may be given by their beginning where no
+/// other one begins so. Every error, crashes included, becomes one line on stderr and its ExitCode; `onFailure` is called before
+/// it is printed. Adds --version to `app`.
 int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>& onFailure = {});
 
 /// --quiet and --verbose.

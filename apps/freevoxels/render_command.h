@@ -1,7 +1,8 @@
 #pragma once
-// freevoxels render IN OUT...
+// freevoxels render IN... OUT...
 
 #include "apps/freevoxels/render_options.h"
+#include "apps/freevoxels/sequence_options.h"
 
 namespace freevoxels {
 
@@ -13,6 +14,7 @@ class RenderCommand {
 
  private:
   RenderOptions options_;
+  SequenceOptions sequence_;
 };
 
 }  // namespace freevoxels

@@ -1,7 +1,8 @@
 #pragma once
-// What `render` and `turntable` are told alike, and do alike: pictures of one volume, whose table is made
-// once.
+// What `render` and `turntable` are told alike, and do alike: images of one volume, whose table is made once, or of several.
 
+#include <span>
+#include <string>
 #include <vector>
 
 #include "apps/freevoxels/device_options.h"
@@ -14,10 +15,11 @@
 
 namespace freevoxels {
 
-class ProgressLine;
-
-/// [frame]: the pictures to write it to.
-using FrameFiles = std::vector<std::vector<std::string>>;
+/// A volume, and the images of it to write: one view in several forms.
+struct Frame {
+  std::string input;
+  std::vector<std::string> files;
+};
 
 struct RenderOptions {
   SceneOptions scene;
@@ -25,31 +27,24 @@ struct RenderOptions {
   DeviceOptions device;
   MessageOptions messages;
   std::optional<std::string> timings;
+  bool fixedView = true;  ///< whether all frames are seen as the first one is where options leave that open
   ShareOptions shares;
   /// The processes among which every frame is divided; null: this process draws alone, what `shares` says. Lives longer.
   ShareGroup* group = nullptr;
 
   void add(CLI::App& app);
-  /// Draws as many frames of a full turn as `outputs` has, which take the place of `scene.output.files`.
-  /// Refuses whatever can be refused before any work.
-  void run(const FrameFiles& outputs) const;
+  /// Draws the frames; those of one volume are the steps of a full turn. Refuses whatever can be refused before any work.
+  void run(std::span<const Frame> frames) const;
+  /// Without lighting.
+  FrameSettings frameSettings() const;
+  /// Whether this process prints and writes: alone, or the first of its group.
+  bool leads() const { return group == nullptr || group->leads(); }
+  /// Whether frames are drawn as sums of shares.
+  bool drawsShares() const { return group != nullptr || shares.isGiven(); }
 
  private:
-  void check(const FrameFiles& outputs) const;
-  bool leads() const { return group == nullptr || group->leads(); }
-  bool drawsShares() const { return group != nullptr || shares.isGiven(); }
-  FrameSettings frameSettings() const;
-  void checkShares(const FrameFiles& outputs) const;
-  void agree(const RunReport& report) const;
-  void draw(const Device& device, const FrameFiles& outputs, RunReport& report) const;
-  void drawLevel(const Device& device, const FrameFiles& outputs, int level, RunReport& report) const;
-  void drawFrame(Renderer& renderer, const Scene& view, const FrameSettings& settings, const std::vector<std::string>& files,
-                 const std::string& prefix, ProgressLine& line, RunReport& report) const;
-  std::optional<FixedSums> drawSums(Renderer& renderer, const Camera& camera, const FrameSettings& settings,
-                                    const Progress& progress, RunReport& report) const;
-  Scene open(const Device& device, int level, ProgressLine& line, RunReport& report) const;
-  OptionList describe(const Scene& scene) const;
-  ExrOptions header(const Scene& scene, const std::vector<std::string>& files, const RunReport& report) const;
+  void check(std::span<const Frame> frames) const;
+  void checkShares(std::span<const Frame> frames) const;
 };
 
 }  // namespace freevoxels

@@ -13,6 +13,17 @@
 
 namespace freevoxels {
 
+namespace {
+
+/// The light that the volume's own emission throws on it, where it is lit.
+void makeEmissionLight(Scene& scene) {
+  scene.classification.emissionLight = nullptr;
+  if (scene.classification.emission && scene.lighting)
+    scene.classification.emissionLight = std::make_shared<const EmissionLight>(*scene.volume, scene.classification);
+}
+
+}  // namespace
+
 void SceneOptions::add(CLI::App& app) {
   input.add(app);
   input.addGrid(app);
@@ -30,11 +41,11 @@ void SceneOptions::addLook(CLI::App& app) {
 }
 
 void SceneOptions::takeScene(const std::string& defaultEnding) {
-  if ((isExr(input.input) || isPng(input.input)) && file.hasVolume()) {
+  if (isImage(input.input) && file.hasVolume()) {
     output.files.insert(output.files.begin(), input.input);
     input.input.clear();
     file.leaveOut("IN");
-  } else if (isExr(input.input) || isPng(input.input)) {
+  } else if (isImage(input.input)) {
     fail(ExitCode::Usage, "IN is required: '{}' is an image, which OUT is; name an OpenVDB file before it, or procedural:NAME",
          input.input);
   }
@@ -44,7 +55,7 @@ void SceneOptions::takeScene(const std::string& defaultEnding) {
   }
   file.apply([this](const std::string& option) { return output.honours(option); });
   input.checkGiven();
-  if (output.files.empty()) fail(ExitCode::Usage, "OUT is required: name a picture to write, .exr or .png");
+  if (output.files.empty()) fail(ExitCode::Usage, "OUT is required: name an image to write, .exr, .png or .jpg");
 }
 
 void SceneOptions::checkLook() const {
@@ -56,14 +67,18 @@ void SceneOptions::checkLook() const {
   lighting.check();
 }
 
-void SceneOptions::check(const std::vector<std::string>& moreOutputs) const {
+void SceneOptions::check(const std::vector<std::string>& moreOutputs, const std::vector<std::string>& moreInputs) const {
   checkLook();
   output.check();
+  output.checkCrop(camera.size);
   std::vector<std::string> files = moreOutputs;
   if (file.saved) files.push_back(*file.saved);
   for (const std::string& written : files) checkOutput(written);
   files.insert(files.end(), output.files.begin(), output.files.end());
-  if (!proceduralName(input.input)) files.push_back(input.input);
+  std::vector<std::string> volumes = moreInputs;
+  volumes.push_back(input.input);
+  for (const std::string& volume : volumes)
+    if (!proceduralName(volume)) files.push_back(volume);
   for (const std::optional<std::string>& read : {file.file, lighting.environment})
     if (read) files.push_back(*read);
   checkDistinct(files);
@@ -121,9 +136,17 @@ Classification SceneOptions::resolveClassification(const Volume& volume) const {
 void SceneOptions::resolveView(Scene& scene) const {
   scene.camera = cameras(*scene.volume, scene.classification).front();
   scene.lighting = lighting.resolve(*scene.volume, scene.classification, scene.camera);
-  scene.classification.emissionLight = nullptr;
-  if (scene.classification.emission && scene.lighting)
-    scene.classification.emissionLight = std::make_shared<const EmissionLight>(*scene.volume, scene.classification);
+  makeEmissionLight(scene);
+}
+
+Scene SceneOptions::resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const {
+  SceneOptions fixed = *this;
+  fixed.classification.take(other.classification);
+  if (other.classification.emission) fixed.emission.take(*other.classification.emission);
+  Scene scene{.volume = std::move(volume), .camera = other.camera, .lighting = other.lighting};
+  scene.classification = fixed.resolveClassification(*scene.volume);
+  makeEmissionLight(scene);
+  return scene;
 }
 
 Scene SceneOptions::open(std::uint64_t maximumVoxels, int level) const {
@@ -148,6 +171,8 @@ void SceneOptions::warn(const Scene& scene) const {
                  scene.volume->source);
   if (!camera.up && !camera.position && !scene.volume->upReason.empty())
     spdlog::info("up is {}, as {}; change it with --up", numberText(scene.volume->up), scene.volume->upReason);
+  if (scene.lighting && scene.lighting->environment && scene.lighting->environment->negativeValues > 0)
+    spdlog::warn("values of '{}' below 0 count as 0: {} of them", *lighting.environment, scene.lighting->environment->negativeValues);
   EmissionOptions::warn(*scene.volume, scene.classification);
 }
 
@@ -175,8 +200,9 @@ ExrOptions SceneOptions::header(const Scene& scene, const std::string& command, 
   return exr;
 }
 
-void SceneOptions::write(const Image& image, const Scene& scene, const std::string& command, const OptionList& options,
+void SceneOptions::write(Image image, const Scene& scene, const std::string& command, const OptionList& options,
                          std::map<std::string, std::string> facts) const {
+  addChannels(image, output.aovs, scene.camera);
   output.write(image, header(scene, command, options, std::move(facts)));
 }
 

@@ -40,8 +40,9 @@ struct SceneOptions {
   void takeScene(const std::string& defaultEnding = ".png");
   /// Options that are wrong with any volume and any file: ExitCode::Usage.
   void checkLook() const;
-  /// Before any work; `moreOutputs` are the files that the command writes besides pictures.
-  void check(const std::vector<std::string>& moreOutputs = {}) const;
+  /// Before any work; `moreOutputs` are the files that the command writes besides images, `moreInputs` the volumes that it reads
+  /// besides IN.
+  void check(const std::vector<std::string>& moreOutputs = {}, const std::vector<std::string>& moreInputs = {}) const;
   /// The same scene with other files to write.
   SceneOptions withOutputs(std::vector<std::string> files) const;
   /// Reads the volume, with the grids that the options need; of a baked one an octree level, which other volumes do not have.
@@ -58,6 +59,9 @@ struct SceneOptions {
   void resolveView(Scene& scene) const;
   /// Both.
   Scene open(std::uint64_t maximumVoxels, int level = 0) const;
+  /// As `resolve`, but with the camera, the lights and the scales of densities and temperatures or the transfer function of
+  /// another volume's scene, so that frames of one film fit together.
+  Scene resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const;
   /// Everything that a Renderer of the scene depends on, beside its volume: scenes of equal text share one.
   std::string rendererText(const Scene& scene, const TableSettings& table) const;
   /// One warning each for values of the scene's volume that are not drawn as they are.
@@ -69,7 +73,8 @@ struct SceneOptions {
   /// The header of an .exr. `command` and `facts` as for exrMetadata, which the volume's source joins.
   ExrOptions header(const Scene& scene, const std::string& command, const OptionList& options,
                     std::map<std::string, std::string> facts) const;
-  void write(const Image& image, const Scene& scene, const std::string& command, const OptionList& options,
+  /// Writes a whole image of the scene, with such a header.
+  void write(Image image, const Scene& scene, const std::string& command, const OptionList& options,
              std::map<std::string, std::string> facts) const;
 };
 

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 /// Groups of the help that say how a command is run, not what its pictures show.
-constexpr std::array<std::string_view, 5> kOfTheRun{"Options", "Scene", "Device", "Messages", "Window"};
+constexpr std::array<std::string_view, 6> kOfTheRun{"Options", "Scene", "Device", "Messages", "Window", "Sequence"};
 
 bool isFlag(const CLI::Option& option) {
   return option.get_items_expected_max() == 0;

@@ -19,7 +19,6 @@ struct RunReport {
   std::string contentHash;  ///< content_hash.h, of a run that draws shares
   DeviceDescription device;
   std::vector<StageTime> stages;
-  std::size_t buildStages = 0;  ///< of Renderer::timings, those that are not of a frame
   double totalMilliseconds = 0.0;
   std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::occupiedVoxelCount
   std::uint64_t voxels = 0;  ///< of the volume's box

@@ -34,7 +34,10 @@ void TurntableCommand::add(CLI::App& app) {
   command->callback([this] {
     if (ranksPerFrame_) options_.group->splitFrames(*ranksPerFrame_);
     options_.scene.takeScene("_####.png");
-    options_.run(frameNames(options_.scene.output.files, frames_.value_or(kDefaultFrames)));
+    std::vector<Frame> frames(std::size_t(frames_.value_or(kDefaultFrames)), {.input = options_.scene.input.input, .files = {}});
+    for (std::size_t i = 0; i < frames.size(); ++i)
+      for (const std::string& pattern : options_.scene.output.files) frames[i].files.push_back(frameName(pattern, int(i)));
+    options_.run(frames);
   });
 }
 

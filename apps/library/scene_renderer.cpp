@@ -26,9 +26,13 @@ void saveImage(const std::string& file, const Image& image, const Json& keywords
   KeywordOptions options(keywords, kOutputSections);
   OutputOptions& output = options.scene.output;
   output.files = {file};
-  if (!image.depth.empty() && isExr(file)) output.aov = 0;
+  output.aovs.depth = !image.depth.empty() && isExr(file);
+  if (output.aovs.position || output.aovs.normal)
+    fail(ExitCode::Usage, "an image does not know its camera, of which positions and normals are made: leave them out of 'aov'");
   output.check();
-  output.write(image, {.fullFloat = output.fullFloat});
+  Image withChannels = image;
+  addChannels(withChannels, output.aovs, Camera{});
+  output.write(withChannels, {.fullFloat = output.fullFloat});
 }
 
 SceneRenderer::SceneRenderer(std::shared_ptr<const Volume> volume, Json keywords)

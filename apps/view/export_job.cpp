@@ -1,6 +1,6 @@
 #include "apps/view/export_job.h"
 
-#include "apps/view/failure.h"
+#include "apps/freevoxels/failure.h"
 
 namespace freevoxels {
 

@@ -78,13 +78,9 @@ void ExportPanel::drawPictureFields(ViewState& state) {
           savedSentence(file)});
   }
   OutputOptions& output = state.scene.output;
-  bool depth = output.wantsDepth();
   state.changed |= ImGui::Checkbox(".exr of 32 bits", &output.fullFloat);
   ImGui::SameLine();
-  if (ImGui::Checkbox("with depth", &depth)) {
-    output.aov = depth ? std::optional(0) : std::nullopt;
-    state.changed = true;
-  }
+  state.changed |= ImGui::Checkbox("with depth", &output.aovs.depth);
   if (wants(Field::Scene, "Save scene", sceneName_)) {
     const std::string file = meantFile(sceneName_);
     want(

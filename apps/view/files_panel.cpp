@@ -3,7 +3,7 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
-#include "apps/view/failure.h"
+#include "apps/freevoxels/failure.h"
 #include "apps/view/file_field.h"
 #include "apps/view/opened_file.h"
 

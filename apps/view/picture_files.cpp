@@ -22,12 +22,6 @@ OptionList optionsOf(const SceneOptions& scene, const Picture& picture) {
   return scene.describe(picture.scene, method);
 }
 
-/// OUT stands behind IN.
-std::string commandInto(const std::string& command, OptionList options, const std::string& file) {
-  options.insert(options.begin() + 1, {"", file});
-  return "freevoxels " + command + " " + commandText(options);
-}
-
 std::vector<std::string> filesOfTurn(const std::string& pattern, int frames) {
   std::vector<std::string> files;
   for (int frame = 0; frame < frames; ++frame) files.push_back(frameName(pattern, frame));

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "apps/view/failure.h"
+#include "apps/freevoxels/failure.h"
 
 namespace freevoxels {
 

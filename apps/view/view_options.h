@@ -8,7 +8,7 @@
 #include "apps/freevoxels/method_options.h"
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/scene_options.h"
-#include "apps/view/sequence.h"
+#include "apps/freevoxels/sequence.h"
 
 namespace freevoxels {
 

@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <new>
+#include <optional>
+#include <random>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 
@@ -29,31 +31,18 @@ fs::path folderOf(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// At most the first `bytes` bytes of `text`, without an incomplete UTF-8 character at the end.
-std::string cutUtf8(const std::string& text, std::size_t bytes) {
-  if (text.size() <= bytes) return text;
-  const auto continues = [](char c) { return (static_cast<unsigned char>(c) & 0xc0u) == 0x80u; };
-  while (bytes > 0 && continues(text[bytes])) --bytes;
-  return text.substr(0, bytes);
-}
+/// Symbolic links are followed at most so often, as Linux does.
+constexpr int kMostLinks = 40;
 
-/// Returns a new name ".NAME.PID.NUMBER.tmp.EXT" in the folder of `target` at each call, so that threads that
-/// write files with similar names do not collide. NAME is cut so that the temporary name is not too long
-/// where the target's is not.
-fs::path temporaryPath(const fs::path& target) {
-  constexpr std::size_t kLongestStem = 100;
-  static std::atomic<unsigned> number = 0;
-  const std::string stem = cutUtf8(target.stem().string(), kLongestStem);
-  return folderOf(target) /
-         fmt::format(".{}.{}.{}.tmp{}", stem, getpid(), number++, target.extension().string());
-}
-
-/// Returns the path that the rename has to replace: the file that a symbolic link points to, not the link.
-fs::path followLink(const fs::path& destination) {
+/// The file that a symbolic link points to, whether or not it exists: writing replaces that file and keeps the link.
+fs::path followLinks(fs::path file) {
   std::error_code error;
-  if (!fs::is_symlink(destination, error)) return destination;
-  fs::path target = fs::canonical(destination, error);
-  return error ? destination : target;
+  for (int i = 0; i < kMostLinks && fs::is_symlink(file, error); ++i) {
+    const fs::path target = fs::read_symlink(file, error);
+    if (error) break;
+    file = folderOf(file) / target;  // an absolute target takes the place of the folder
+  }
+  return file;
 }
 
 /// A library's message in a form that fits into a sentence: one line without a full stop.
@@ -73,6 +62,8 @@ const char* remedyFor(int error) {
     case EPERM:
     case EROFS:
       return "change its permissions or choose another folder";
+    case EFBIG:
+      return "raise the limit on the size of files (ulimit -f)";
     case ENAMETOOLONG:
       return "choose a shorter name";
     default:
@@ -93,29 +84,96 @@ const char* remedyFor(int error) {
   fail(ExitCode::Output, "cannot write '{}': {}; {}", destination.string(), asClause(message), remedyFor(0));
 }
 
-/// Removes the file when it goes out of scope, unless `file` is null then.
-struct RemoveOnExit {
-  const fs::path* file;
-  ~RemoveOnExit() {
-    if (file != nullptr) unlink(file->c_str());
-  }
-};
-
-/// Opens, flushes to the disk and closes. Returns 0 or the error number.
-int flushToDisk(const fs::path& path) {
-  const int descriptor = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return errno;
-  int error = fsync(descriptor) == 0 ? 0 : errno;
-  // Some file systems cannot flush a folder; there is nothing to do about that.
-  if (error == EINVAL || error == ENOTSUP) error = 0;
-  if (close(descriptor) != 0 && error == 0) error = errno;
-  return error;
+[[noreturn]] void throwErrno() {
+  throw std::system_error(errno, std::generic_category());
 }
 
-void callWriter(const fs::path& destination, const fs::path& temporary,
-                const std::function<void(const fs::path&)>& write) {
+/// A name beside `target` that no other process and no other thread uses.
+fs::path unusedName(const fs::path& target) {
+  std::random_device random;
+  return folderOf(target) / fmt::format(".freevoxels-{:08x}{:08x}.tmp", random(), random());
+}
+
+/// Flushes to the disk. Some file systems cannot flush a folder: nothing can be done about that.
+void flushToDisk(int descriptor) {
+  if (fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP) throwErrno();
+}
+
+/// The new contents of a file, in its folder, until `publish` gives them its name. They have no name before that where the
+/// file system allows it (Linux's O_TMPFILE), so that a killed process leaves nothing behind; else a hidden, random one.
+/// Every member throws std::system_error.
+class PendingFile {
+ public:
+  explicit PendingFile(const fs::path& target) : target_(target) {
+    descriptor_ = open(folderOf(target).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0666);
+    path_ = fmt::format("/proc/self/fd/{}", descriptor_);
+    if (descriptor_ >= 0 && access(path_.c_str(), W_OK) == 0) return;
+    if (descriptor_ >= 0) close(descriptor_);
+    path_ = unusedName(target);
+    descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) throwErrno();
+    isNamed_ = true;
+  }
+  ~PendingFile() {
+    if (isNamed_) unlink(path_.c_str());
+    close(descriptor_);
+  }
+  PendingFile(const PendingFile&) = delete;
+  PendingFile& operator=(const PendingFile&) = delete;
+
+  /// Opening it opens the pending file.
+  const fs::path& path() const { return path_; }
+
+  void publish() {
+    takeModeOfTarget();
+    flushToDisk(descriptor_);
+    if (!isNamed_ && !linkAs(target_)) {
+      // A link cannot replace a file; renaming can. Being killed between the two calls would leave the hidden name.
+      const fs::path name = unusedName(target_);
+      if (!linkAs(name)) throwErrno();
+      path_ = name;
+      isNamed_ = true;
+    }
+    if (isNamed_ && std::rename(path_.c_str(), target_.c_str()) != 0) throwErrno();
+    isNamed_ = false;
+    flushFolder();
+  }
+
+ private:
+  /// Also its owner and group, where this process may set them.
+  void takeModeOfTarget() const {
+    struct stat status {};
+    if (fstat(descriptor_, &status) != 0) throwErrno();
+    if (status.st_size == 0) throw std::runtime_error("nothing was written");
+    if (stat(target_.c_str(), &status) != 0) return;
+    if (fchown(descriptor_, status.st_uid, status.st_gid) != 0 && errno != EPERM) throwErrno();
+    if (fchmod(descriptor_, status.st_mode & 07777) != 0 && errno != EPERM) throwErrno();
+  }
+
+  /// False where a file of that name exists.
+  bool linkAs(const fs::path& name) const {
+    if (linkat(AT_FDCWD, path_.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return true;
+    if (errno != EEXIST) throwErrno();
+    return false;
+  }
+
+  void flushFolder() const {
+    const int folder = open(folderOf(target_).c_str(), O_RDONLY | O_CLOEXEC);
+    if (folder < 0) return;  // one that may be written to but not read
+    fsync(folder);
+    close(folder);
+  }
+
+  const fs::path target_;
+  fs::path path_;
+  int descriptor_ = -1;
+  bool isNamed_ = false;
+};
+
+/// Turns the exceptions of `action` into sentences about `destination`.
+void reportAbout(const fs::path& destination, const std::function<void()>& action) {
   try {
-    write(temporary);
+    action();
   } catch (const Error&) {
     throw;
   } catch (const InternalError&) {
@@ -123,7 +181,9 @@ void callWriter(const fs::path& destination, const fs::path& temporary,
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::system_error& e) {
-    failBecause(destination, e.code().value());
+    const bool hasErrno = e.code().category() == std::generic_category() || e.code().category() == std::system_category();
+    if (hasErrno) failBecause(destination, e.code().value());
+    failBecause(destination, e.what());
   } catch (const std::exception& e) {
     failBecause(destination, e.what());
   }
@@ -133,14 +193,13 @@ void callWriter(const fs::path& destination, const fs::path& temporary,
 
 void writeAtomically(const std::filesystem::path& destination,
                      const std::function<void(const std::filesystem::path&)>& write) {
-  const fs::path target = followLink(destination);
-  const fs::path temporary = temporaryPath(target);
-  RemoveOnExit remove{&temporary};
-  callWriter(destination, temporary, write);
-  if (const int error = flushToDisk(temporary)) failBecause(destination, error);
-  if (std::rename(temporary.c_str(), target.c_str()) != 0) failBecause(destination, errno);
-  remove.file = nullptr;
-  flushToDisk(folderOf(target));
+  std::optional<PendingFile> pending;
+  reportAbout(destination, [&] { pending.emplace(followLinks(destination)); });
+  // While a sentence is made of a failure, the file is still there: it is what fills the disk.
+  reportAbout(destination, [&] {
+    write(pending->path());
+    pending->publish();
+  });
 }
 
 void writeTextAtomically(const std::filesystem::path& destination, std::string_view text) {
@@ -154,10 +213,12 @@ void writeTextAtomically(const std::filesystem::path& destination, std::string_v
 void checkWritable(const std::filesystem::path& destination) {
   if (!destination.has_filename())
     fail(ExitCode::Output, "cannot write '{}': it names no file; add a file name", destination.string());
-  const fs::path target = followLink(destination);
+  const fs::path target = followLinks(destination);
   const fs::path folder = folderOf(target);
   std::error_code error;
-  if (!fs::is_directory(folder, error))
+  const fs::file_status folderStatus = fs::status(folder, error);
+  if (folderStatus.type() == fs::file_type::none) failBecause(destination, error.value());
+  if (!fs::is_directory(folderStatus))
     fail(ExitCode::Output, "cannot write '{}': there is no folder '{}'; create it or choose another folder",
          destination.string(), folder.string());
   const fs::file_status status = fs::status(target, error);
@@ -170,11 +231,7 @@ void checkWritable(const std::filesystem::path& destination) {
   if (status.type() == fs::file_type::none) failBecause(destination, error.value());
 
   // Permissions do not tell everything (read-only and virtual file systems): only creating a file does.
-  const fs::path temporary = temporaryPath(target);
-  const int descriptor = open(temporary.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor < 0) failBecause(destination, errno);
-  close(descriptor);
-  unlink(temporary.c_str());
+  reportAbout(destination, [&] { const PendingFile probe(target); });
 }
 
 }  // namespace freevoxels

@@ -1,6 +1,6 @@
 #pragma once
-// Outputs are written under a temporary name beside their destination and renamed when complete, so that a
-// reader never sees half a file and a failed run leaves what was there before.
+// Outputs appear under their name when they are complete, so that a reader never sees half a file and a failed run leaves what
+// was there before.
 
 #include <filesystem>
 #include <functional>
@@ -8,11 +8,13 @@
 
 namespace freevoxels {
 
-/// Calls `write` with a temporary path in the folder of `destination`, flushes it to the disk and renames it
-/// to `destination`. The temporary keeps the extension of `destination`. Whatever `write` throws, the
-/// temporary is removed; an exception that is not an `Error` (a library's "disk full") becomes one with
-/// ExitCode::Output that names `destination` and the reason. InternalError and std::bad_alloc pass as they
-/// are. `write` must throw when it could not write everything: core/checked_file.h helps.
+/// Calls `write` with a path through which it opens and writes the new contents, flushes them to the disk and gives them the name
+/// `destination`. The path need not resemble `destination`: where the file system has files without a name (O_TMPFILE) it is
+/// one in /proc, and nothing is left of a process that is killed. A file that is replaced keeps its mode and, where possible,
+/// its owner; a symbolic link is kept and the file that it names is written, whether or not that exists. Whatever `write`
+/// throws, `destination` is as before; an exception that is not an `Error` (a library's "disk full") becomes one with
+/// ExitCode::Output that names `destination` and the reason. InternalError and std::bad_alloc pass as they are. `write` must
+/// throw when it could not write everything (core/checked_file.h helps); writing nothing is an error too.
 void writeAtomically(const std::filesystem::path& destination,
                      const std::function<void(const std::filesystem::path&)>& write);
 

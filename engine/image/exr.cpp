@@ -5,7 +5,10 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
+#include <ImfIO.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfPartType.h>
 #include <ImfStandardAttributes.h>
 #include <half.h>
 #include <tbb/blocked_range.h>
@@ -34,13 +37,16 @@ constexpr std::size_t kPixelsATask = 1 << 14;
 constexpr int kZipLevel = 3;
 
 Imf::Header makeHeader(const Image& image, const ExrOptions& options) {
-  Imf::Header header(image.size.x, image.size.y);
+  const glm::ivec2 whole = image.wholeSize.x > 0 ? image.wholeSize : image.size, last = image.offset + image.size - 1;
+  Imf::Header header(Imath::Box2i({0, 0}, {whole.x - 1, whole.y - 1}),
+                     Imath::Box2i({image.offset.x, image.offset.y}, {last.x, last.y}));
   header.compression() = Imf::ZIP_COMPRESSION;
   header.zipCompressionLevel() = kZipLevel;
   Imf::addChromaticities(header, Imf::Chromaticities());  // the default is Rec.709 with D65 white
   for (const char* name : kColorChannels)
     header.channels().insert(name, Imf::Channel(options.fullFloat ? Imf::FLOAT : Imf::HALF));
   if (!image.depth.empty()) header.channels().insert("Z", Imf::Channel(Imf::FLOAT));
+  for (const auto& [name, values] : image.channels) header.channels().insert(name, Imf::Channel(Imf::FLOAT));
   insertOptions(header, options);
   return header;
 }
@@ -58,54 +64,69 @@ std::vector<half> toHalf(const std::vector<glm::vec4>& pixels) {
   return halves;
 }
 
-/// A slice of interleaved pixels of `channels` values of type T.
+/// A slice of a window of pixels, each of which has `channels` interleaved values of type T; `base` is the first one's.
 template <typename T>
-Imf::Slice makeSlice(Imf::PixelType type, const T* base, std::size_t channels, std::size_t width,
-                     double fill = 0.0) {
-  return Imf::Slice(type, reinterpret_cast<char*>(const_cast<T*>(base)), sizeof(T) * channels,
-                    sizeof(T) * channels * width, 1, 1, fill);
+Imf::Slice makeSlice(Imf::PixelType type, const T* base, std::size_t channels, const Imath::Box2i& window, double fill = 0.0) {
+  return Imf::Slice::Make(type, base, window, sizeof(T) * channels, 0, 1, 1, fill);
 }
 
 void encode(const std::filesystem::path& file, const Image& image, const ExrOptions& options) {
-  const std::size_t width = std::size_t(image.size.x);
   const std::vector<half> halves = options.fullFloat ? std::vector<half>{} : toHalf(image.pixels);
+  const Imf::Header header = makeHeader(image, options);
+  const Imath::Box2i window = header.dataWindow();
   Imf::FrameBuffer frame;
   for (std::size_t c = 0; c < kColorChannels.size(); ++c)
-    frame.insert(kColorChannels[c], options.fullFloat
-                                        ? makeSlice(Imf::FLOAT, &image.pixels[0].x + c, 4, width)
-                                        : makeSlice(Imf::HALF, halves.data() + c, 4, width));
-  if (!image.depth.empty()) frame.insert("Z", makeSlice(Imf::FLOAT, image.depth.data(), 1, width));
-  writeExrPixels(file, makeHeader(image, options), frame);
+    frame.insert(kColorChannels[c], options.fullFloat ? makeSlice(Imf::FLOAT, &image.pixels[0].x + c, 4, window)
+                                                      : makeSlice(Imf::HALF, halves.data() + c, 4, window));
+  if (!image.depth.empty()) frame.insert("Z", makeSlice(Imf::FLOAT, image.depth.data(), 1, window));
+  for (const auto& [name, values] : image.channels) frame.insert(name, makeSlice(Imf::FLOAT, values.data(), 1, window));
+  writeExrPixels(file, header, frame);
 }
 
-Image decode(const std::filesystem::path& file, std::int64_t maximumPixels) {
-  Imf::InputFile exr(file.c_str());
-  const Imf::ChannelList& channels = exr.header().channels();
+/// Fails where the header is of no image that `decode` reads.
+void checkHeader(const std::filesystem::path& file, const Imf::Header& header, std::int64_t maximumPixels) {
+  if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE)
+    fail(ExitCode::Input, "cannot read '{}': it holds deep samples; flatten it first", file.string());
+  const Imf::ChannelList& channels = header.channels();
   if (!channels.findChannel("R") || !channels.findChannel("G") || !channels.findChannel("B"))
     fail(ExitCode::Input, "cannot read '{}': it has no channels R, G and B; choose a colour image",
          file.string());
-  const Imath::Box2i window = exr.header().dataWindow();
+  const Imath::Box2i window = header.dataWindow();
   const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
   const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;
   if (width * height > maximumPixels)
     fail(ExitCode::Input, "cannot read '{}': {}x{} pixels are too many; choose a smaller image",
          file.string(), width, height);
+}
 
+/// Reads the rows a band at a time, so that a file which ends early fails before the memory of all is taken.
+Image decode(const std::filesystem::path& file, std::int64_t maximumPixels) {
+  constexpr std::int64_t kPixelsOfABand = 1 << 20;
+  useAllProcessors();
+  Imf::MultiPartInputFile exr(file.c_str(), Imf::globalThreadCount(), false);
+  const Imf::Header& header = exr.header(0);
+  checkHeader(file, header, maximumPixels);
+  Imf::InputPart part(exr, 0);
+  const Imath::Box2i window = header.dataWindow();
+  const bool hasDepth = header.channels().findChannel("Z") != nullptr;
   Image image;
-  image.size = {int(width), int(height)};
-  image.pixels.resize(std::size_t(width * height));
-  // Slices are addressed by the coordinates of the data window, which need not start at 0.
-  const auto first = -(std::ptrdiff_t(window.min.y) * width + window.min.x);
-  Imf::FrameBuffer frame;
-  for (std::size_t c = 0; c < kColorChannels.size(); ++c)
-    frame.insert(kColorChannels[c], makeSlice(Imf::FLOAT, &image.pixels[0].x + c + 4 * first, 4,
-                                              std::size_t(width), c == 3 ? 1.0 : 0.0));
-  if (channels.findChannel("Z")) {
-    image.depth.resize(image.pixels.size());
-    frame.insert("Z", makeSlice(Imf::FLOAT, image.depth.data() + first, 1, std::size_t(width)));
+  image.size = {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
+  const auto width = std::size_t(image.size.x);
+  const int rows = int(std::max<std::int64_t>(kPixelsOfABand / image.size.x, 1));
+  for (std::int64_t first = window.min.y; first <= window.max.y; first += rows) {
+    const Imath::Box2i band({window.min.x, int(first)}, {window.max.x, int(std::min<std::int64_t>(first + rows - 1, window.max.y))});
+    const std::size_t before = image.pixels.size(), after = before + width * std::size_t(band.max.y - band.min.y + 1);
+    image.pixels.resize(after);
+    Imf::FrameBuffer frame;
+    for (std::size_t c = 0; c < kColorChannels.size(); ++c)
+      frame.insert(kColorChannels[c], makeSlice(Imf::FLOAT, &image.pixels[before].x + c, 4, band, c == 3 ? 1.0 : 0.0));
+    if (hasDepth) {
+      image.depth.resize(after);
+      frame.insert("Z", makeSlice(Imf::FLOAT, &image.depth[before], 1, band));
+    }
+    part.setFrameBuffer(frame);
+    part.readPixels(band.min.y, band.max.y);
   }
-  exr.setFrameBuffer(frame);
-  exr.readPixels(window.min.y, window.max.y);
   return image;
 }
 
@@ -116,6 +137,7 @@ void writeExr(const std::filesystem::path& file, const Image& image, const ExrOp
   FV_CHECK_LT(0, image.size.y);
   FV_CHECK_EQ(image.pixels.size(), std::size_t(image.size.x) * std::size_t(image.size.y));
   if (!image.depth.empty()) FV_CHECK_EQ(image.depth.size(), image.pixels.size());
+  for (const auto& [name, values] : image.channels) FV_CHECK_EQ(values.size(), image.pixels.size());
   writeAtomically(file, [&](const std::filesystem::path& temporary) { encode(temporary, image, options); });
 }
 

@@ -28,7 +28,8 @@ class ExrStream : public Imf::OStream {
   CheckedFile& file_;
 };
 
-/// Lets OpenEXR compress and decompress blocks of scan lines in parallel.
+}  // namespace
+
 void useAllProcessors() {
   static const bool once = [] {
     Imf::setGlobalThreadCount(int(std::thread::hardware_concurrency()));
@@ -36,8 +37,6 @@ void useAllProcessors() {
   }();
   static_cast<void>(once);
 }
-
-}  // namespace
 
 void insertOptions(Imf::Header& header, const ExrOptions& options) {
   for (const auto& [name, text] : options.metadata) header.insert(name, Imf::StringAttribute(text));

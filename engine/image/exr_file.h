@@ -11,6 +11,9 @@
 
 namespace freevoxels {
 
+/// Lets OpenEXR compress and decompress blocks of scan lines in parallel.
+void useAllProcessors();
+
 /// Adds metadata and matrices to a header.
 void insertOptions(Imf::Header& header, const ExrOptions& options);
 

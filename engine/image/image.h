@@ -18,7 +18,19 @@ struct Image {
   /// Empty, or one value a pixel: the mean distance from the eye along the viewing axis, in world units, of
   /// what is seen there (apps/manual/images.md); +infinity where nothing is seen.
   std::vector<float> depth;
+  std::map<std::string, std::vector<float>> channels;  ///< more of them by name, "N.X": one value a pixel
+  /// Of an image that is a part of another one: the size of that one, and where the top left pixel of this one is in it.
+  glm::ivec2 wholeSize{0}, offset{0};
 };
+
+/// Pixels of an image.
+struct PixelRectangle {
+  glm::ivec2 corner{0};  ///< top left
+  glm::ivec2 size{0};
+};
+
+/// The part of a whole image; `part` lies in it.
+Image cropped(const Image& image, const PixelRectangle& part);
 
 struct ExrOptions {
   bool fullFloat = false;  ///< 32-bit RGBA; otherwise half. Z is always 32-bit.
@@ -28,11 +40,12 @@ struct ExrOptions {
   std::map<std::string, glm::mat4> matrices;
 };
 
-/// Writes RGBA, and Z if the image has depth. Atomic. Fails with ExitCode::Output.
+/// RGBA, Z where there is depth, and the more channels, of 32 bits. A part of an image is the data window in the display window of the
+/// whole. Atomic. Fails with ExitCode::Output.
 void writeExr(const std::filesystem::path& file, const Image& image, const ExrOptions& options);
 
-/// Reads RGBA and, if present, Z of a scanline EXR of at most `maximumPixels` pixels. Fails with
-/// ExitCode::Input.
+/// RGBA and, where present, Z of the data window of a scanline EXR of at most so many pixels. Takes the memory of the part that
+/// is there: a short file cannot make it allocate what its header claims. Fails with ExitCode::Input.
 Image readExr(const std::filesystem::path& file, std::int64_t maximumPixels = std::int64_t(1) << 30);
 
 /// Reads any PNG (grey, palette, 8 or 16 bits, interlaced) as sRGB with straight alpha, whatever its chunks
@@ -51,23 +64,27 @@ struct Background {
 /// fit (2015).
 enum class ToneMap : int { None = 0, Filmic = 1, Aces = 2 };
 
-struct PngLook {
-  std::optional<Background> background;  ///< if there is none, the file has straight alpha
-  double exposure = 0.0;                 ///< in stops, applied to the image but not to the background
-  ToneMap toneMap = ToneMap::None;       ///< applied to each channel after the exposure
+/// How an image is shown.
+struct DisplayLook {
+  std::optional<Background> background;  ///< none: straight alpha
+  double exposure = 0.0;                 ///< stops that the picture, not the background, is brightened by
+  ToneMap toneMap = ToneMap::None;       ///< after that, of each channel
 };
 
-/// Writes 8-bit sRGB: composited over the background and opaque, or with straight alpha if there is no
-/// background. Atomic. Fails with ExitCode::Output.
-void writePng(const std::filesystem::path& file, const Image& image, const PngLook& look = {});
+/// sRGB of 8 or 16 bits a sample. Straight alpha without a background; composited over it and opaque with one. Atomic. Fails
+/// with ExitCode::Output.
+void writePng(const std::filesystem::path& file, const Image& image, const DisplayLook& look = {}, int bits = 8);
 
-/// The pixels that writePng writes, 4 bytes each.
-std::vector<std::uint8_t> srgbTexels(const Image& image, const PngLook& look = {});
+/// 8-bit sRGB over the background, or over black. Atomic. Fails with ExitCode::Output.
+void writeJpeg(const std::filesystem::path& file, const Image& image, const DisplayLook& look = {});
+
+/// What writePng's file shows, 4 bytes a pixel.
+std::vector<std::uint8_t> srgbTexels(const Image& image, const DisplayLook& look = {});
 
 /// Writes such texels as an opaque image, ignoring their alpha. Atomic. Fails with ExitCode::Output.
 void writePngTexels(const std::filesystem::path& file, glm::ivec2 size, std::span<const std::uint8_t> texels);
 
-/// The bytes of the file that writePng writes.
-std::vector<std::uint8_t> encodePng(const Image& image, const PngLook& look = {});
+/// The bytes of writePng's file.
+std::vector<std::uint8_t> encodePng(const Image& image, const DisplayLook& look = {});
 
 }  // namespace freevoxels

@@ -1,8 +1,6 @@
-// Reading PNG files as sRGB and writing 8-bit sRGB. The bytes written depend on the image only; there is no
-// time chunk.
+// sRGB PNG in and out. The bytes written depend on the image only: no time chunk.
 
 #include <png.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
@@ -22,7 +20,7 @@
 #include "engine/core/atomic_file.h"
 #include "engine/core/checked_file.h"
 #include "engine/core/error.h"
-#include "engine/image/image.h"
+#include "engine/image/display.h"
 #include "engine/image/srgb.h"
 
 namespace freevoxels {
@@ -35,75 +33,7 @@ constexpr std::int64_t kMaximumPixels = std::int64_t(1) << 30;
 /// half the time.
 constexpr int kCompressionLevel = 4;
 
-/// Clamps to 0..1; NaN becomes 0.
-float clampUnit(float value) {
-  return value > 0.0f ? std::min(value, 1.0f) : 0.0f;
-}
-
-float filmicCurve(float x) {
-  return (x * (0.15f * x + 0.05f) + 0.004f) / (x * (0.15f * x + 0.5f) + 0.06f) - 0.02f / 0.3f;
-}
-
-float toneMapped(ToneMap map, float light) {
-  constexpr float kFilmicExposure = 2.0f, kFilmicWhite = 11.2f;
-  switch (map) {
-    case ToneMap::None: return light;
-    case ToneMap::Filmic: return filmicCurve(kFilmicExposure * light) / filmicCurve(kFilmicWhite);
-    case ToneMap::Aces: return light * (2.51f * light + 0.03f) / (light * (2.43f * light + 0.59f) + 0.14f);
-  }
-  return light;
-}
-
-/// Converts rows of pixels to bytes.
-class RowWriter {
- public:
-  RowWriter(const Image& image, const PngLook& look)
-      : image_(image), look_(look), channels_(look.background ? 3 : 4), gain_(float(std::exp2(look.exposure))) {}
-
-  std::size_t channels() const { return channels_; }
-
-  void write(int row, std::uint8_t* bytes) const {
-    glm::vec3 behind(0.0f);
-    if (look_.background)
-      behind = glm::mix(look_.background->top, look_.background->bottom, (float(row) + 0.5f) / float(image_.size.y));
-    const glm::vec4* const pixels = &image_.pixels[std::size_t(row) * std::size_t(image_.size.x)];
-    for (int x = 0; x < image_.size.x; ++x) writePixel(shown(pixels[x]), behind, bytes + std::size_t(x) * channels_);
-  }
-
- private:
-  glm::vec4 shown(const glm::vec4& pixel) const {
-    glm::vec4 result = pixel;
-    for (int c = 0; c < 3; ++c) result[c] = toneMapped(look_.toneMap, gain_ * pixel[c]);
-    return result;
-  }
-
-  /// Alpha above 1, which the additive composite produces, counts as 1. A straight colour cannot exceed 1, so
-  /// light that is brighter than the opacity gets as much alpha as it needs.
-  void writePixel(const glm::vec4& pixel, const glm::vec3& behind, std::uint8_t* bytes) const {
-    const float needed = look_.background ? pixel.a : std::max({pixel.a, pixel.r, pixel.g, pixel.b});
-    const float alpha = clampUnit(needed);
-    for (int c = 0; c < 3; ++c) {
-      const float straight = alpha > 0.0f ? pixel[c] / alpha : 0.0f;
-      bytes[c] = srgbByteFromLinear(clampUnit(look_.background ? pixel[c] + (1.0f - alpha) * behind[c] : straight));
-    }
-    if (!look_.background) bytes[3] = byteFromUnit(alpha);
-  }
-
-  const Image& image_;
-  const PngLook& look_;
-  std::size_t channels_;
-  float gain_;
-};
-
-std::vector<std::uint8_t> toBytes(const Image& image, const PngLook& look) {
-  const RowWriter writer(image, look);
-  std::vector<std::uint8_t> bytes(image.pixels.size() * writer.channels());
-  const std::size_t rowBytes = std::size_t(image.size.x) * writer.channels();
-  tbb::parallel_for(0, image.size.y, [&](int row) { writer.write(row, bytes.data() + std::size_t(row) * rowBytes); });
-  return bytes;
-}
-
-/// Receives the next bytes of the file; may throw.
+/// Takes the file's next bytes; may throw.
 using Sink = std::function<void(const std::uint8_t* bytes, std::size_t count)>;
 
 /// The state of libpng's C callbacks. No exception may pass through libpng: it is stored here and rethrown by
@@ -227,6 +157,15 @@ Image decode(const std::filesystem::path& file, std::FILE* stream) {
   return image;
 }
 
+/// An image as it is stored, samples of 16 bits in the byte order of this machine.
+struct Samples {
+  glm::ivec2 size;
+  int channels, bits;
+  const std::uint8_t* bytes;
+
+  std::size_t rowBytes() const { return std::size_t(size.x) * std::size_t(channels) * std::size_t(bits / 8); }
+};
+
 class PngEncoder {
  public:
   explicit PngEncoder(PngTarget& target)
@@ -242,12 +181,12 @@ class PngEncoder {
   PngEncoder(const PngEncoder&) = delete;
   PngEncoder& operator=(const PngEncoder&) = delete;
 
-  /// Returns false after an error. Has no local objects that a long jump would fail to destroy.
-  bool write(glm::ivec2 size, int channels, const std::uint8_t* bytes) {
+  /// False after an error. Holds nothing that a long jump would fail to destroy.
+  bool write(const Samples& samples) {
     if (setjmp(png_jmpbuf(png_))) return false;
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
-    png_set_IHDR(png_, info_, png_uint_32(size.x), png_uint_32(size.y), 8,
-                 channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+    png_set_IHDR(png_, info_, png_uint_32(samples.size.x), png_uint_32(samples.size.y), samples.bits,
+                 samples.channels == 4 ? PNG_COLOR_TYPE_RGB_ALPHA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                  PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB_gAMA_and_cHRM(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
     // Trying all five filters in every row takes longer than compressing it and saves nothing, since rendered
@@ -255,8 +194,8 @@ class PngEncoder {
     png_set_filter(png_, PNG_FILTER_TYPE_BASE, PNG_FILTER_UP);
     png_set_compression_level(png_, kCompressionLevel);
     png_write_info(png_, info_);
-    for (std::size_t y = 0; y < std::size_t(size.y); ++y)
-      png_write_row(png_, bytes + y * std::size_t(size.x) * std::size_t(channels));
+    if (samples.bits == 16 && std::endian::native == std::endian::little) png_set_swap(png_);
+    for (std::size_t y = 0; y < std::size_t(samples.size.y); ++y) png_write_row(png_, samples.bytes + y * samples.rowBytes());
     png_write_end(png_, info_);
     return true;
   }
@@ -266,17 +205,23 @@ class PngEncoder {
   png_infop info_ = nullptr;
 };
 
-void encode(glm::ivec2 size, int channels, const std::vector<std::uint8_t>& bytes, const Sink& sink) {
-  FV_CHECK_LT(0, size.x);
-  FV_CHECK_LT(0, size.y);
-  FV_CHECK_EQ(bytes.size(), std::size_t(size.x) * std::size_t(size.y) * std::size_t(channels));
+void encode(const Samples& samples, const Sink& sink) {
+  FV_CHECK_LT(0, samples.size.x);
+  FV_CHECK_LT(0, samples.size.y);
   PngTarget target{sink};
   PngEncoder encoder(target);
-  if (!encoder.write(size, channels, bytes.data())) std::rethrow_exception(target.failure);
+  if (!encoder.write(samples)) std::rethrow_exception(target.failure);
 }
 
-void encode(const Image& image, const PngLook& look, const Sink& sink) {
-  encode(image.size, look.background ? 3 : 4, toBytes(image, look), sink);
+template <typename Sample>
+void encodeAs(const Image& image, const DisplayLook& look, const Sink& sink) {
+  FV_CHECK_EQ(image.pixels.size(), std::size_t(image.size.x) * std::size_t(image.size.y));
+  const std::vector<Sample> samples = displaySamples<Sample>(image, look);
+  encode({.size = image.size,
+          .channels = displayChannels(look),
+          .bits = 8 * int(sizeof(Sample)),
+          .bytes = reinterpret_cast<const std::uint8_t*>(samples.data())},
+         sink);
 }
 
 /// Atomic.
@@ -300,8 +245,8 @@ Image readPng(const std::filesystem::path& file) {
   return decode(file, stream.get());
 }
 
-std::vector<std::uint8_t> srgbTexels(const Image& image, const PngLook& look) {
-  const std::vector<std::uint8_t> bytes = toBytes(image, look);
+std::vector<std::uint8_t> srgbTexels(const Image& image, const DisplayLook& look) {
+  const std::vector<std::uint8_t> bytes = displaySamples<std::uint8_t>(image, look);
   if (!look.background) return bytes;
   std::vector<std::uint8_t> texels(image.pixels.size() * 4, 255);
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
@@ -309,25 +254,32 @@ std::vector<std::uint8_t> srgbTexels(const Image& image, const PngLook& look) {
   return texels;
 }
 
-std::vector<std::uint8_t> encodePng(const Image& image, const PngLook& look) {
+std::vector<std::uint8_t> encodePng(const Image& image, const DisplayLook& look) {
   std::vector<std::uint8_t> file;
-  encode(image, look, [&](const std::uint8_t* bytes, std::size_t count) {
+  encodeAs<std::uint8_t>(image, look, [&](const std::uint8_t* bytes, std::size_t count) {
     file.insert(file.end(), bytes, bytes + count);
   });
   return file;
 }
 
-void writePng(const std::filesystem::path& file, const Image& image, const PngLook& look) {
-  writeFile(file, [&](const Sink& sink) { encode(image, look, sink); });
+void writePng(const std::filesystem::path& file, const Image& image, const DisplayLook& look, int bits) {
+  FV_CHECK_EQ(bits == 8 || bits == 16, true);
+  writeFile(file, [&](const Sink& sink) {
+    if (bits == 16)
+      encodeAs<std::uint16_t>(image, look, sink);
+    else
+      encodeAs<std::uint8_t>(image, look, sink);
+  });
 }
 
 void writePngTexels(const std::filesystem::path& file, glm::ivec2 size,
                     std::span<const std::uint8_t> texels) {
+  FV_CHECK_EQ(texels.size(), 4 * std::size_t(size.x) * std::size_t(size.y));
   std::vector<std::uint8_t> opaque;
   opaque.reserve(texels.size() / 4 * 3);
   for (std::size_t i = 0; i < texels.size(); i += 4)
     opaque.insert(opaque.end(), texels.begin() + std::ptrdiff_t(i), texels.begin() + std::ptrdiff_t(i) + 3);
-  writeFile(file, [&](const Sink& sink) { encode(size, 3, opaque, sink); });
+  writeFile(file, [&](const Sink& sink) { encode({.size = size, .channels = 3, .bits = 8, .bytes = opaque.data()}, sink); });
 }
 
 }  // namespace freevoxels

@@ -53,13 +53,13 @@ Environment readEnvironment(const std::filesystem::path& file) {
   environment.radiance.reserve(image.pixels.size());
   for (std::size_t i = 0; i < image.pixels.size(); ++i) {
     const glm::vec3 pixel(image.pixels[i]);
-    for (int c = 0; c < 3; ++c)
-      if (!(std::isfinite(pixel[c]) && pixel[c] >= 0.0f))
-        fail(ExitCode::Input,
-             "environment '{}' holds {} in column {} of row {}, and radiance is finite and not negative: "
-             "repair the picture",
+    for (int c = 0; c < 3; ++c) {
+      if (!std::isfinite(pixel[c]))
+        fail(ExitCode::Input, "environment '{}' holds {} in column {} of row {}, and radiance is finite: repair the image",
              file.string(), pixel[c], i % std::size_t(image.size.x), i / std::size_t(image.size.x));
-    environment.radiance.push_back(pixel);
+      if (pixel[c] < 0.0f) ++environment.negativeValues;
+    }
+    environment.radiance.push_back(glm::max(pixel, 0.0f));
   }
   return environment;
 }

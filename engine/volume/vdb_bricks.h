@@ -51,9 +51,7 @@ template <typename ToDensity>
 ScalarBricks bricksOf(const openvdb::FloatTree& tree, std::vector<const VdbLeaf*> leaves,
                       glm::ivec3 dimensions, glm::ivec3 origin, const ToDensity& toDensity) {
   ScalarBricks result = emptyBricks(dimensions, origin);
-  visitTiles(tree, [&](const openvdb::CoordBBox& box, float value, bool active) {
-    const float density = toDensity(value, active);
-    if (density == kInactiveVoxel) return;
+  visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float density) {
     forEachLeafIn(box, [&](const openvdb::Coord& corner) {
       result.makeBrick(brickCell(origin, corner)).fill(density);
     });

@@ -1,6 +1,6 @@
 #pragma once
-// Internal to the vdb_*.cpp files, since it includes OpenVDB: the conversion of a grid's values to densities,
-// and the box of the voxels that are kept.
+// Internal to the vdb_*.cpp files, as it includes OpenVDB: what the voxels of a grid become, and the box of
+// those that are kept.
 
 #include <openvdb/openvdb.h>
 #include <tbb/blocked_range.h>
@@ -14,35 +14,55 @@
 
 namespace freevoxels {
 
-/// The density of a fog volume's voxel.
+/// What a voxel of a fog volume becomes in the box.
 struct FogToDensity {
   static constexpr int kMargin = 0;
+  static constexpr bool kKeepsInactive = false;  // whether it keeps any inactive voxel
   float operator()(float value, bool active) const { return active ? value : kInactiveVoxel; }
 };
 
-/// The density of a level set's voxel: 1 inside, 0 outside, linear over three voxels across the surface, so
-/// that gradients have its direction. OpenVDB stores voxels deep inside as inactive.
+/// What a voxel of a level set becomes: 1 inside, 0 outside, linear over three voxels at the surface, so that gradients have
+/// its direction. Deep inside is inactive in OpenVDB.
 struct LevelSetToDensity {
-  static constexpr int kMargin = 2;  // voxels around it, from which light reaches its surface
+  static constexpr bool kKeepsInactive = true;
+  static constexpr int kMargin = 2;  // voxels around it: light comes to its surface from outside
   float voxelSize;
   float operator()(float distance, bool active) const {
-    if (active && std::isnan(distance)) return distance;  // counted later and then set to 0, like every NaN
+    if (active && std::isnan(distance)) return distance;  // counted, and then 0, like every NaN
     constexpr float kRamp = 3.0f;  // voxels
     const float density = active ? std::clamp(0.5f - distance / (kRamp * voxelSize), 0.0f, 1.0f) : distance < 0.0f ? 1.0f : 0.0f;
     return density > 0.0f ? density : kInactiveVoxel;
   }
 };
 
-/// Calls `visit(box, value, active)` for each tile of the tree, at any level above the leaves, except for the
-/// unbounded background.
-template <typename Visit>
-void visitTiles(const openvdb::FloatTree& tree, const Visit& visit) {
-  auto tile = tree.cbeginValueAll();
-  tile.setMaxDepth(openvdb::FloatTree::ValueAllCIter::LEAF_DEPTH - 1);
-  for (; tile; ++tile) visit(tile.getBoundingBox(), tile.getValue(), tile.isValueOn());
+/// Calls `visit(box, density)` for the tiles of a node, each of `edge` voxels along an edge, that `toDensity` keeps.
+template <typename Node, typename ToDensity, typename Visit>
+void visitTilesOf(const Node& node, int edge, const ToDensity& toDensity, const Visit& visit) {
+  const auto visitIfKept = [&](const auto& tile, bool active) {
+    const float density = toDensity(*tile, active);
+    if (density != kInactiveVoxel) visit(openvdb::CoordBBox::createCube(tile.getCoord(), edge), density);
+  };
+  for (auto tile = node.cbeginValueOn(); tile; ++tile) visitIfKept(tile, true);
+  if constexpr (ToDensity::kKeepsInactive)  // they are tens of thousands of nothing in most nodes
+    for (auto tile = node.cbeginValueOff(); tile; ++tile) visitIfKept(tile, false);
 }
 
-/// Whether `toDensity` keeps any voxel of the leaf.
+/// Calls `visit(box, density)` for each tile of the tree, at any level above the leaves, that `toDensity` keeps. The background
+/// is no tile: it has no end.
+template <typename ToDensity, typename Visit>
+void visitTiles(const openvdb::FloatTree& tree, const ToDensity& toDensity, const Visit& visit) {
+  using Upper = openvdb::FloatTree::RootNodeType::ChildNodeType;
+  using Lower = Upper::ChildNodeType;
+  visitTilesOf(tree.root(), int(Upper::DIM), toDensity, visit);
+  std::vector<const Upper*> upper;
+  tree.getNodes(upper);
+  for (const Upper* node : upper) visitTilesOf(*node, int(Lower::DIM), toDensity, visit);
+  std::vector<const Lower*> lower;
+  tree.getNodes(lower);
+  for (const Lower* node : lower) visitTilesOf(*node, int(Lower::ChildNodeType::DIM), toDensity, visit);
+}
+
+/// Whether `toDensity` keeps a voxel of the leaf.
 template <typename ToDensity>
 bool holdsData(const openvdb::FloatTree::LeafNodeType& leaf, const ToDensity& toDensity) {
   for (auto voxel = leaf.cbeginValueAll(); voxel; ++voxel)
@@ -50,7 +70,7 @@ bool holdsData(const openvdb::FloatTree::LeafNodeType& leaf, const ToDensity& to
   return false;
 }
 
-/// The smallest box around the voxels that `toDensity` keeps, extended by its margin; empty if it keeps none.
+/// The smallest box around the voxels that `toDensity` keeps, and its margin; empty where it keeps none.
 template <typename ToDensity>
 openvdb::CoordBBox boundsOf(const openvdb::FloatTree& tree,
                             const std::vector<const openvdb::FloatTree::LeafNodeType*>& leaves,
@@ -70,14 +90,12 @@ openvdb::CoordBBox boundsOf(const openvdb::FloatTree& tree,
   };
   openvdb::CoordBBox bounds =
       tbb::parallel_reduce(Range(0, leaves.size()), openvdb::CoordBBox(), expandByLeaves, join);
-  visitTiles(tree, [&](const openvdb::CoordBBox& box, float value, bool active) {
-    if (toDensity(value, active) != kInactiveVoxel) bounds.expand(box);
-  });
+  visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float) { bounds.expand(box); });
   if (!bounds.empty()) bounds.expand(ToDensity::kMargin);
   return bounds;
 }
 
-/// Calls `action(toDensity)` with the conversion for the grid's class.
+/// Calls `action(toDensity)` with what the grid's class asks for.
 template <typename Action>
 auto withDensity(const openvdb::GridBase& grid, const Action& action) {
   if (grid.getGridClass() != openvdb::GRID_LEVEL_SET) return action(FogToDensity{});

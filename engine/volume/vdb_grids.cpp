@@ -1,5 +1,8 @@
 #include "engine/volume/vdb_grids.h"
 
+#ifdef FREEVOXELS_LOG4CPLUS
+#include <log4cplus/logger.h>
+#endif
 #include <openvdb/io/Stream.h>
 #include <spdlog/spdlog.h>
 
@@ -7,13 +10,13 @@
 #include <cctype>
 #include <cmath>
 #include <fstream>
-#include <iostream>
 #include <map>
 #include <new>
-#include <sstream>
+#include <span>
 
+#include "engine/core/crash_note.h"
 #include "engine/core/error.h"
-#include "engine/volume/crash_guard.h"
+#include "engine/core/printable.h"
 #include "engine/volume/vdb_tree_check.h"
 
 namespace freevoxels {
@@ -24,26 +27,8 @@ namespace fs = std::filesystem;
 using openvdb::GridBase;
 using openvdb::io::GridDescriptor;
 
-/// Silences OpenVDB, which writes warnings to std::cerr, or to std::cout if it was built with a logger. This
-/// program's own messages use stdio and are not affected.
-class SilenceOpenVdb {
- public:
-  SilenceOpenVdb() : cerr_(std::cerr.rdbuf(sink_.rdbuf())), cout_(std::cout.rdbuf(sink_.rdbuf())) {}
-  ~SilenceOpenVdb() {
-    std::cerr.rdbuf(cerr_);
-    std::cout.rdbuf(cout_);
-  }
-  SilenceOpenVdb(const SilenceOpenVdb&) = delete;
-  SilenceOpenVdb& operator=(const SilenceOpenVdb&) = delete;
-
- private:
-  std::ostringstream sink_;
-  std::streambuf* cerr_;
-  std::streambuf* cout_;
-};
-
-/// Opens without delayed loading, which only costs time if every value is needed, and which newer versions of
-/// OpenVDB do not have.
+/// Delayed loading only adds work where every value is needed, and newer versions of OpenVDB have no such
+/// thing.
 template <typename File>
 void openWithoutDelay(File& file) {
   if constexpr (requires { file.open(false); })
@@ -60,43 +45,42 @@ std::vector<GridBase::Ptr> readWholeStream(std::istream& input) {
     return *Stream(input).getGrids();
 }
 
-/// Text from a file in a form that fits into a sentence: one printable line of limited length.
-std::string printable(std::string text) {
+/// Text from a file as part of a sentence.
+std::string oneLine(const std::string& text) {
   constexpr std::size_t kLongest = 200;
-  if (text.size() > kLongest) {
-    std::size_t end = kLongest;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80)
-      --end;  // whole UTF-8 characters
-    text.replace(end, std::string::npos, "...");
-  }
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 32 || c == 127; }, ' ');
-  return text;
+  return printablePart(text, kLongest);
 }
 
 std::string valueTypeOf(const std::string& treeType, bool savedAsHalf) {
   const std::size_t begin = treeType.find('_');
   const std::size_t end = treeType.find('_', begin + 1);
-  if (!treeType.starts_with("Tree_") || end == std::string::npos) return printable(treeType);
+  if (!treeType.starts_with("Tree_") || end == std::string::npos) return oneLine(treeType);
   const std::string value = treeType.substr(begin + 1, end - begin - 1);
   if (value.starts_with("ptdata")) return "point data";
   if (value.starts_with("ptidx")) return "point index";
   if (value == "float" && savedAsHalf) return "half";
-  return printable(value);
+  return oneLine(value);
 }
 
 std::string listOf(const std::vector<VdbFile::Entry>& entries) {
+  constexpr std::size_t kMostListed = 20;
   std::string list;
-  for (const VdbFile::Entry& entry : entries)
+  for (const VdbFile::Entry& entry : std::span(entries).first(std::min(entries.size(), kMostListed)))
     list += fmt::format("{}'{}' ({})", list.empty() ? "" : ", ", entry.name, entry.valueType);
+  if (entries.size() > kMostListed) list += fmt::format(" and {} more", entries.size() - kMostListed);
   return list.empty() ? "none" : list;
 }
 
-/// Distinguishes grids of equal name by OpenVDB's numbers if there are any, else by their order in the file.
+std::string lowerCase(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return text;
+}
+
+/// Where a name is shared, OpenVDB's numbers tell the grids apart, or else their order in the file does.
 void nameEntries(std::vector<VdbFile::Entry>& entries) {
   std::map<std::string, int> uses, shown;
   for (VdbFile::Entry& entry : entries) {
-    entry.name = printable(entry.key);
+    entry.name = oneLine(entry.key);
     ++uses[entry.name];
   }
   for (VdbFile::Entry& entry : entries)
@@ -106,8 +90,15 @@ void nameEntries(std::vector<VdbFile::Entry>& entries) {
 }  // namespace
 
 void initialiseOpenVdb() {
-  const SilenceOpenVdb silence;
-  openvdb::initialize();
+  static const bool once = [] {
+    openvdb::initialize();
+#ifdef FREEVOXELS_LOG4CPLUS
+    // What OpenVDB warns of on the terminal is either of no consequence or fails later, in a sentence.
+    log4cplus::Logger::getInstance(LOG4CPLUS_TEXT("openvdb")).setLogLevel(log4cplus::OFF_LOG_LEVEL);
+#endif
+    return true;
+  }();
+  static_cast<void>(once);
 }
 
 VdbFile::VdbFile(const fs::path& path) : path_(path), file_(path.string()), header_(readVdbHeader(path)) {
@@ -125,7 +116,7 @@ VdbFile::VdbFile(const fs::path& path) : path_(path), file_(path.string()), head
 
 void VdbFile::listGrids() {
   for (const VdbHeader::Grid& grid : header_.grids)
-    entries_.push_back({.baseName = printable(GridDescriptor::stripSuffix(grid.uniqueName)),
+    entries_.push_back({.baseName = oneLine(GridDescriptor::stripSuffix(grid.uniqueName)),
                         .valueType = valueTypeOf(grid.type, grid.savedAsHalf),
                         .treeType = grid.type,
                         .key = GridDescriptor::nameAsString(grid.uniqueName)});
@@ -134,7 +125,7 @@ void VdbFile::listGrids() {
   for (const Entry& entry : entries_)
     if (++uses[entry.key] > 1)
       fail(ExitCode::Input, "'{}' has two grids under the one key '{}'; save it again with OpenVDB",
-           path_.string(), printable(entry.key));
+           path_.string(), oneLine(entry.key));
 }
 
 void VdbFile::readStreamedGrids() {
@@ -146,7 +137,7 @@ void VdbFile::readStreamedGrids() {
     return GridBase::Ptr();
   });
   for (const GridBase::Ptr& grid : streamed_)
-    entries_.push_back({.baseName = printable(grid->getName()),
+    entries_.push_back({.baseName = oneLine(grid->getName()),
                         .valueType = valueTypeOf(grid->type(), grid->saveFloatAsHalf()),
                         .treeType = grid->type(),
                         .key = grid->getName()});
@@ -155,9 +146,8 @@ void VdbFile::readStreamedGrids() {
 
 GridBase::Ptr VdbFile::guarded(const std::string& what, const std::function<GridBase::Ptr()>& read) const {
   try {
-    const SilenceOpenVdb silence;
-    const CrashGuard guard(fmt::format(
-        "cannot read {} of '{}': the file is damaged; copy or download it again", what, path_.string()));
+    const CrashNote note(fmt::format("cannot read {} of '{}': the file is damaged; copy or download it again", what,
+                                     printable(path_.string())));
     return read();
   } catch (const std::bad_alloc&) {
     fail(ExitCode::OutOfMemory,
@@ -168,7 +158,7 @@ GridBase::Ptr VdbFile::guarded(const std::string& what, const std::function<Grid
          path_.string());
   } catch (const std::exception& e) {
     fail(ExitCode::Input, "cannot read {} of '{}': {}; the file may be damaged", what, path_.string(),
-         printable(e.what()));
+         oneLine(e.what()));
   }
 }
 
@@ -181,7 +171,7 @@ const VdbFile::Entry& VdbFile::choose(const std::string& name) const {
     if (entry.baseName == name) sameName.push_back(&entry);
   }
   if (sameName.empty())
-    fail(ExitCode::Input, "'{}' has no grid '{}'; choose one of: {}", path_.string(), printable(name),
+    fail(ExitCode::Input, "'{}' has no grid '{}'; choose one of: {}", path_.string(), oneLine(name),
          listOf(entries_));
   return firstOf(sameName);
 }
@@ -191,8 +181,10 @@ const VdbFile::Entry& VdbFile::chooseByDefault() const {
   for (const Entry& entry : entries_) {
     if (!isReal(entry)) continue;
     reals.push_back(&entry);
-    if (entry.baseName == "density") densities.push_back(&entry);
+    if (lowerCase(entry.baseName) == "density") densities.push_back(&entry);
   }
+  const auto exact = [](const Entry* entry) { return entry->baseName == "density"; };
+  if (std::ranges::any_of(densities, exact)) std::erase_if(densities, std::not_fn(exact));
   if (!densities.empty()) return firstOf(densities);
   if (reals.size() == 1) return *reals.front();
   if (reals.empty() && entries_.size() == 1) return entries_.front();  // readVdb will say why it cannot be drawn
@@ -261,7 +253,7 @@ std::string whyTypeUnusable(const std::string& treeType, const std::string& valu
     return "it holds points, not a density field; rasterise the points to a density grid first";
   if (!GridBase::isRegistered(treeType))
     return fmt::format("this OpenVDB does not know grids of type '{}'; convert it to a float grid",
-                       printable(treeType));
+                       oneLine(treeType));
   if (valueType == "float" || valueType == "half" || valueType == "double") return {};
   if (valueType.starts_with("vec"))
     return fmt::format("it holds vectors ({}), not densities; choose a float grid", valueType);

@@ -202,7 +202,10 @@ VdbHeader::Grid readGridEntry(VdbReader& reader) {
   const auto gridStart = reader.read<std::int64_t>();
   const auto blockStart = reader.read<std::int64_t>();
   const auto end = reader.read<std::int64_t>();
-  if (gridStart < std::int64_t(reader.position()) || blockStart < gridStart || end < blockStart)
+  // A grid that shares the tree of another one (an instance) has no blocks of its own.
+  const bool sharesTree = !grid.parentName.empty() && blockStart == 0;
+  const bool blocksAreOutside = !sharesTree && (blockStart < gridStart || end < blockStart);
+  if (gridStart < std::int64_t(reader.position()) || end < gridStart || blocksAreOutside)
     reader.failDamaged("its grids are not where its header says");
   reader.seek(std::uint64_t(end));  // checked first, so that a truncated file is not called damaged
   reader.seek(std::uint64_t(gridStart));

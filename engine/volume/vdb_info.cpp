@@ -72,7 +72,7 @@ void describeVoxels(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
   info.boundsMinimum = {box.min().x(), box.min().y(), box.min().z()};
   info.boundsMaximum = {box.max().x(), box.max().y(), box.max().z()};
-  info.dimensions = {box.dim().x(), box.dim().y(), box.dim().z()};
+  info.dimensions = glm::i64vec3(info.boundsMaximum) - glm::i64vec3(info.boundsMinimum) + std::int64_t(1);
   const openvdb::FloatGrid::ConstPtr floats = asFloatGrid(grid);
   if (!floats) return;
   const ValueRange values = rangeOf(floats->tree());
@@ -100,8 +100,8 @@ std::vector<std::uint64_t> storedBlocks(const FloatTree& tree,
   for (const FloatTree::LeafNodeType* leaf : leaves)
     for (auto voxel = leaf->cbeginValueAll(); voxel; ++voxel)
       if (toDensity(*voxel, voxel.isValueOn()) > 0.0f) hold(voxel.getCoord());
-  visitTiles(tree, [&](const openvdb::CoordBBox& box, float value, bool active) {
-    if (toDensity(value, active) > 0.0f)
+  visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float density) {
+    if (density > 0.0f)
       for (auto voxel = box.begin(); voxel; ++voxel) hold(*voxel);
   });
   return countOccupiedBlocks({bounds.dim().x(), bounds.dim().y(), bounds.dim().z()}, std::move(holding));
@@ -112,14 +112,16 @@ std::uint64_t hostBytes(const FloatTree& tree, const std::vector<const FloatTree
                         glm::ivec3 dimensions, const ToDensity& toDensity) {
   auto bricks = std::uint64_t(
       std::ranges::count_if(leaves, [&](const auto* leaf) { return holdsData(*leaf, toDensity); }));
-  visitTiles(tree, [&](const openvdb::CoordBBox& box, float value, bool active) {
-    if (toDensity(value, active) != kInactiveVoxel)
-      bricks += box.volume() / std::tuple_size_v<ScalarBricks::Brick>;
+  visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float) {
+    bricks += box.volume() / std::tuple_size_v<ScalarBricks::Brick>;
   });
   return ScalarBricks::bytesOf(bricks, dimensions);
 }
 
-/// Describes the box that readVdb would return, and its occupied blocks.
+/// Voxels along an edge of a box whose number of voxels 64 bits hold.
+constexpr double kLongestEdge = 1 << 20;
+
+/// The box that readVdb would make of the grid, and what of it holds anything.
 void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   const openvdb::FloatGrid::ConstPtr floats = asFloatGrid(grid);
   std::vector<const FloatTree::LeafNodeType*> leaves;
@@ -128,6 +130,12 @@ void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
     const openvdb::CoordBBox box = boundsOf(floats->tree(), leaves, toDensity);
     if (box.empty()) {
       info.unusable = kNothingInsideClause;
+      return;
+    }
+    const glm::dvec3 extent = glm::dvec3(box.max().x(), box.max().y(), box.max().z()) -
+                              glm::dvec3(box.min().x(), box.min().y(), box.min().z()) + 1.0;
+    if (std::max({extent.x, extent.y, extent.z}) > kLongestEdge) {
+      info.unusable = "its box is too large to number its voxels";
       return;
     }
     info.renderDimensions = {box.dim().x(), box.dim().y(), box.dim().z()};

@@ -1,4 +1,7 @@
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <new>
 
@@ -37,14 +40,38 @@ glm::dmat4 indexToWorldOf(const FloatGrid& grid, glm::ivec3 indexOrigin) {
   return indexToWorld;
 }
 
-/// Makes the volume of the box around the voxels that `toDensity` keeps and around `more`.
+/// Moves a volume near to the origin, and scales it, where its coordinates would leave double precision too few digits to tell
+/// its voxels apart, or single precision's range when they are squared; says so, as cameras and densities then count in other
+/// units.
+void normaliseWorld(Volume& volume) {
+  constexpr double kFarthest = 1e10;  // voxels from the origin
+  constexpr double kLargest = 1e9;    // world units of a voxel, and their inverse
+  const double voxel = volume.voxelSize();
+  const glm::dvec3 centre(volume.indexToWorld * glm::dvec4((glm::dvec3(volume.dimensions) - 1.0) / 2.0, 1.0));
+  if (glm::length(centre) > kFarthest * voxel) {
+    volume.indexToWorld[3] -= glm::dvec4(centre, 0.0);
+    spdlog::warn("{} is so far from the origin that its voxels can hardly be told apart: its middle, {:g},{:g},{:g}, becomes the "
+                 "origin, from which positions of cameras and lights count",
+                 volume.source, centre.x, centre.y, centre.z);
+  }
+  if (voxel > kLargest || voxel < 1.0 / kLargest) {
+    const double scale = std::pow(10.0, -std::floor(std::log10(voxel)));
+    for (int column = 0; column < 4; ++column) volume.indexToWorld[column] = glm::dvec4(glm::dvec3(volume.indexToWorld[column]) * scale, column == 3);
+    spdlog::warn("voxels of {} are {:g} world units large: it is scaled by {:g}, so that the camera, the lights and the scale of "
+                 "densities count in units of {:g}",
+                 volume.source, voxel, scale, 1.0 / scale);
+  }
+}
+
+/// Of the box around what `toDensity` keeps and around `more`.
 template <typename ToDensity>
 Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::string& source,
                 const CoordBBox& more, std::uint64_t maximumVoxels) {
   std::vector<const VdbLeaf*> leaves;
   grid.tree().getNodes(leaves);
   CoordBBox bounds = boundsOf(grid.tree(), leaves, toDensity);
-  if (bounds.empty()) fail(ExitCode::Input, "{} cannot be rendered: {}", source, kNothingInsideClause);
+  if (bounds.empty())
+    throw EmptyVolumeError(ExitCode::Input, fmt::format("{} cannot be rendered: {}", source, kNothingInsideClause));
   bounds.expand(more);
   checkSize(bounds, maximumVoxels, source);
 
@@ -53,13 +80,18 @@ Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::st
   volume.dimensions = {bounds.dim().x(), bounds.dim().y(), bounds.dim().z()};
   volume.indexOrigin = {bounds.min().x(), bounds.min().y(), bounds.min().z()};
   volume.indexToWorld = indexToWorldOf(grid, volume.indexOrigin);
+  normaliseWorld(volume);
   volume.scalars = bricksOf(grid.tree(), std::move(leaves), volume.dimensions, volume.indexOrigin, toDensity);
   summariseValues(volume);
   return volume;
 }
 
+std::string whyUnusable(const VdbFile& file, const VdbFile::Entry& entry, const std::string& why) {
+  return fmt::format("grid '{}' of '{}' cannot be rendered: {}", entry.name, file.path().string(), why);
+}
+
 [[noreturn]] void failUnusable(const VdbFile& file, const VdbFile::Entry& entry, const std::string& why) {
-  fail(ExitCode::Input, "grid '{}' of '{}' cannot be rendered: {}", entry.name, file.path().string(), why);
+  throw Error(ExitCode::Input, whyUnusable(file, entry, why));
 }
 
 }  // namespace
@@ -75,7 +107,7 @@ Volume readVdb(const std::filesystem::path& path, const std::string& gridName, s
   VdbChannels channels(file, entry, more);
 
   const openvdb::GridBase::Ptr grid = file.read(entry);
-  if (grid->activeVoxelCount() == 0) failUnusable(file, entry, kEmptyGridClause);
+  if (grid->activeVoxelCount() == 0) throw EmptyVolumeError(ExitCode::Input, whyUnusable(file, entry, kEmptyGridClause));
   const FloatGrid::ConstPtr floats = asFloatGrid(grid);
   const std::string source = fmt::format("{} {}", path.filename().string(), entry.name);
   try {

@@ -274,7 +274,7 @@ void Device::claim(std::uint64_t bytes) const {
   if (allocated > memoryLimit_) {
     release(bytes);
     fail(ExitCode::OutOfMemory,
-         "{} MiB of device memory are needed and the limit is {} MiB: raise --memory-limit, or use a smaller "
+         "at least {} MiB of device memory are needed and the limit is {} MiB: raise --memory-limit, or use a smaller "
          "volume or --size",
          (allocated + 0xfffff) >> 20, memoryLimit_ >> 20);
   }

@@ -1,6 +1,7 @@
 #include "engine/vulkan/instance.h"
 
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 
 #include <array>
 #include <cstdlib>
@@ -26,6 +27,15 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onValidationMessage(VkDebugUtilsMessageSeverityFl
   return VK_FALSE;
 }
 
+/// Whether the address space or the number of threads is limited.
+bool processIsLimited() {
+  rlimit space{}, threads{};
+  getrlimit(RLIMIT_AS, &space);
+  getrlimit(RLIMIT_NPROC, &threads);
+  constexpr rlim_t kFewThreads = 64;
+  return space.rlim_cur != RLIM_INFINITY || threads.rlim_cur < kFewThreads;
+}
+
 bool layerAvailable(const char* name) {
   std::uint32_t count = 0;
   VK_CHECK(vkEnumerateInstanceLayerProperties(&count, nullptr));
@@ -47,6 +57,12 @@ void checkVulkan(VkResult result, const char* call, const char* file, int line) 
   if (result == VK_ERROR_DEVICE_LOST)
     fail(ExitCode::Device, "the device was lost ({} in {}): try again, or choose another with --device", name,
          call);
+  // What drivers answer that find too little of anything when they start; a limit set by the user is the likely reason.
+  if (result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_UNKNOWN)
+    fail(processIsLimited() ? ExitCode::OutOfMemory : ExitCode::Device,
+         "the Vulkan driver failed to start ({} in {}): raise the limits of this process on memory and threads (ulimit -v, ulimit "
+         "-u), or choose another device with --device",
+         name, call);
   throw InternalError(fmt::format("{}:{}: {} returned {}", file, line, call, name));
 }
 

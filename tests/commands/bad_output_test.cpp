@@ -93,4 +93,31 @@ TEST_F(BadOutput, AnInterruptLeavesNoTemporaryFile) {
   }
 }
 
+/// A killed program cannot tidy up: there must be nothing to tidy.
+TEST_F(BadOutput, AKilledProgramLeavesNoTemporaryFile) {
+  for (const int milliseconds : {50, 200, 400, 800}) {
+    SCOPED_TRACE(milliseconds);
+    runAndInterrupt(words("render procedural:cloud @a.exr --float --size 1024x1024 --resolution 64 --quiet"), SIGKILL, milliseconds);
+    for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
+      EXPECT_EQ(entry.path().filename(), "a.exr");
+  }
+}
+
+/// What a shell's ulimit does.
+ProgramResult runLimited(const char* limit, const Arguments& arguments) {
+  Arguments words{"-c", fmt::format("ulimit {}; exec \"$@\"", limit), "sh", FREEVOXELS_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return runProgramFile("/bin/bash", words);
+}
+
+TEST_F(BadOutput, LimitsOfTheShellEndInOneSentence) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "the address sanitizer needs the address space";
+#endif
+  const Arguments render = words(std::string(kRender) + "@a.exr");
+  expectRefusal(runLimited("-f 4", render), ExitCode::Output, "ulimit -f");
+  for (const char* space : {"-v 200000", "-v 400000"}) expectRefusal(runLimited(space, render), ExitCode::OutOfMemory, "ulimit -v");
+  EXPECT_EQ(folder.fileCount(), 0u);
+}
+
 }  // namespace freevoxels::test

@@ -36,8 +36,7 @@ TEST_F(EmissionCommand, TheHeaderRepeatsThePicture) {
   for (const char* part : {"--temperature-grid heat", "--temperature-scale 2000", "--emission ",
                            "--temperature-offset 1000", "--albedo 0.5,0.5,0.5"})
     EXPECT_NE(command.find(part), std::string::npos) << part << " in " << command;
-  Arguments arguments = words(command.substr(std::string("freevoxels ").size()));
-  arguments.push_back((folder / "b.exr").string());
+  Arguments arguments = recordedCommand(made, folder / "b.exr");
   arguments.emplace_back("--quiet");
   expectSuccess(runFreevoxels(arguments));
   EXPECT_EQ(readPicture(folder / "b.exr").pixels, readPicture(folder / "a.exr").pixels);

@@ -128,6 +128,17 @@ std::string exrAttribute(const std::string& bytes, const std::string& name) {
   return bytes.substr(length + 4, count);
 }
 
+Arguments recordedCommand(const std::string& bytes, const std::filesystem::path& output) {
+  std::istringstream command(exrAttribute(bytes, "freevoxels:command"));
+  Arguments arguments;
+  for (std::string word; command >> word;) arguments.push_back(word);
+  EXPECT_EQ(std::ranges::count(arguments, "image.exr"), 1) << command.str();
+  EXPECT_TRUE(command.str().starts_with("freevoxels ")) << command.str();
+  std::ranges::replace(arguments, "image.exr", output.string());
+  if (!arguments.empty()) arguments.erase(arguments.begin());
+  return arguments;
+}
+
 void expectSuccess(const ProgramResult& result) {
   EXPECT_EQ(result.exitCode, 0) << result.err;
 }

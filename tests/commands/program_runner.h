@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ Arguments words(const TemporaryFolder& folder, const std::string& words);
 
 /// Value of a string attribute in an EXR's header, empty where there is none.
 std::string exrAttribute(const std::string& bytes, const std::string& name);
+
+/// The arguments of the command that an EXR says it was made by, with `output` in place of image.exr.
+Arguments recordedCommand(const std::string& bytes, const std::filesystem::path& output);
 
 /// Done, and no words wasted on it: fails with what the program said.
 void expectSuccess(const ProgramResult& result);

@@ -146,11 +146,7 @@ TEST_F(RenderCommand, GivesTheSameBytesWithoutValidation) {
 
 TEST_F(RenderCommand, TheRecordedCommandGivesTheSameBytes) {
   const std::string first = render("--float --paper --orbit 10,-20");
-  const std::string command = exrAttribute(first, "freevoxels:command");
-  ASSERT_TRUE(command.starts_with("freevoxels render ")) << command;
-  Arguments arguments = words(command.substr(std::string("freevoxels ").size()));
-  arguments.push_back((folder / "again.exr").string());
-  expectSuccess(runFreevoxels(arguments));
+  expectSuccess(runFreevoxels(recordedCommand(first, folder / "again.exr")));
   EXPECT_EQ(first, readBytes(folder / "again.exr"));
 }
 
@@ -391,6 +387,38 @@ TEST_F(RenderCommand, WarnsOnceOfBadValues) {
   const ProgramResult mapped = run("render @bad.vdb @a.png --size 32x32 --transfer-function @t.json");
   expectSuccess(mapped);
   EXPECT_EQ(warnings(mapped.err), 1u) << mapped.err;  // negative scalars are data there
+}
+
+TEST_F(RenderCommand, LightBeyondTheRangeOfNumbersMakesBlackPixelsAndAWarning) {
+  const ProgramResult result = run(
+      "render procedural:fire @a.exr --float --resolution 12 --size 24 --albedo 1,1,1 --emission 1e38 --orthographic 1e6 --draw splats "
+      "--light position=1e-10,0.5,1e38,intensity=1e-30");
+  expectSuccess(result);
+  EXPECT_NE(result.err.find("beyond the range of numbers"), std::string::npos) << result.err;
+  for (const glm::vec4& pixel : readExr(folder / "a.exr").pixels) EXPECT_TRUE(std::isfinite(pixel.r + pixel.g + pixel.b + pixel.a));
+}
+
+TEST_F(RenderCommand, ACropIsThePartOfTheWholeToTheByte) {
+  const std::string view = std::string("render procedural:cloud --float --aov depth,position,normal,transmittance") + kSmall;
+  expectSuccess(run(view + "@whole.exr @whole.png"));
+  expectSuccess(run(view + "@part.exr @part.png --crop 20,11,30,25"));
+  const PixelRectangle part{{20, 11}, {30, 25}};
+  const Image whole = cropped(readExr(folder / "whole.exr"), part), cut = readExr(folder / "part.exr");
+  EXPECT_EQ(cut.pixels, whole.pixels);
+  EXPECT_EQ(cut.depth, whole.depth);
+  EXPECT_EQ(readPng(folder / "part.png").pixels, cropped(readPng(folder / "whole.png"), part).pixels);
+  EXPECT_NE(readBytes(folder / "part.exr").find("transmittance.Y"), std::string::npos);
+  for (const char* crop : {"0,0,65,48", "60,0,5,5", "0,0,0,5", "-1,0,5,5", "1,2,3"})
+    expectCleanRefusal(view + "@none.exr --crop " + crop, ExitCode::Usage, "--crop");
+}
+
+TEST_F(RenderCommand, ImagesMayBeJpegAndPngOf16Bits) {
+  expectSuccess(run(std::string("render procedural:cloud @a.jpg @b.JPEG @c.png --png-bits 16") + kSmall));
+  EXPECT_TRUE(readBytes(folder / "a.jpg").starts_with("\xff\xd8\xff"));
+  EXPECT_EQ(readBytes(folder / "a.jpg"), readBytes(folder / "b.JPEG"));
+  EXPECT_EQ(readBytes(folder / "c.png")[24], 16);
+  expectCleanRefusal("render procedural:cube @d.jpg --background transparent", ExitCode::Usage, "no alpha");
+  expectCleanRefusal("render procedural:cube @d.jpg --png-bits 16", ExitCode::Usage, "--png-bits");
 }
 
 }  // namespace freevoxels::test

@@ -272,8 +272,8 @@ TEST_F(SceneCommand, BadEnvironmentsAreRefused) {
   expectBad("--environment @none.exr", ExitCode::Input, "none.exr");
   write({4, 4}, 1.0f);
   expectBad("--environment @e.exr", ExitCode::Input, "twice as wide as high");
-  write({4, 2}, -1.0f);
-  expectBad("--environment @e.exr", ExitCode::Input, "not negative");
+  write({4, 2}, INFINITY);
+  expectBad("--environment @e.exr", ExitCode::Input, "radiance is finite");
   writeBytes(folder / "e.exr", "no picture");
   expectBad("--environment @e.exr", ExitCode::Input, "e.exr");
   expectBad("--environment-rotation 3", ExitCode::Usage, "--environment-rotation");
@@ -282,6 +282,23 @@ TEST_F(SceneCommand, BadEnvironmentsAreRefused) {
   expectBad("--environment @e.exr --environment-intensity -1", ExitCode::Usage, "--environment-intensity");
   expectBad("--environment @e.exr --environment-rotation nan", ExitCode::Usage, "--environment-rotation");
   expectCleanRefusal("render procedural:cube @e.exr --environment @e.exr", ExitCode::Usage, "same file");
+}
+
+/// Lossy compression makes such values of black.
+TEST_F(SceneCommand, ANegativeValueOfAnEnvironmentCountsAsNothingAndIsToldOnce) {
+  Image sky{.size = {8, 4}};
+  sky.pixels.assign(32, glm::vec4(1.0f));
+  const auto draw = [&](float value, const char* file) {
+    sky.pixels[9].g = value;
+    writeExr(folder / "sky.exr", sky, {.fullFloat = true});
+    const ProgramResult result =
+        run(std::string("render procedural:cube --resolution 8 --size 8x8 --environment @sky.exr @") + file);
+    expectSuccess(result);
+    return result.err;
+  };
+  EXPECT_EQ(draw(0.0f, "a.exr").find("below 0"), std::string::npos);
+  EXPECT_NE(draw(-6e-8f, "b.exr").find("below 0 count as 0: 1 of them"), std::string::npos);
+  EXPECT_EQ(readExr(folder / "a.exr").pixels, readExr(folder / "b.exr").pixels);
 }
 
 }  // namespace freevoxels::test

@@ -58,12 +58,8 @@ TEST_F(TurntableCommand, TheRecordedCommandRepeatsOneFrame) {
   turn("@####.exr --frames 5 --float --aov depth --paper --orbit 10,-20 --up 0.1,1,0");
   for (const char* name : {"0000.exr", "0003.exr"}) {
     const std::string frame = readBytes(folder / name);
-    const std::string command = exrAttribute(frame, "freevoxels:command");
-    ASSERT_TRUE(command.starts_with("freevoxels render ")) << command;
-    Arguments arguments = words(command.substr(std::string("freevoxels ").size()));
-    arguments.push_back((folder / "again.exr").string());
-    expectSuccess(runFreevoxels(arguments));
-    EXPECT_TRUE(frame == readBytes(folder / "again.exr")) << command;
+    expectSuccess(runFreevoxels(recordedCommand(frame, folder / "again.exr")));
+    EXPECT_TRUE(frame == readBytes(folder / "again.exr")) << name;
   }
 }
 

@@ -41,12 +41,12 @@ Png readStored(const std::filesystem::path& file) {
   return png;
 }
 
-PngLook over(glm::vec3 color) {
+DisplayLook over(glm::vec3 color) {
   return {.background = Background{color, color}};
 }
 
 std::vector<std::uint8_t> writeAndRead(const std::vector<glm::vec4>& pixels,
-                                       const PngLook& look = {}) {
+                                       const DisplayLook& look = {}) {
   const TemporaryFolder folder;
   Image image;
   image.size = {int(pixels.size()), 1};
@@ -116,7 +116,7 @@ TEST(Png, BackgroundChangesLinearlyFromTheTopEdgeToTheBottomEdge) {
 
 TEST(Png, ExposureBrightensThePictureButNotTheBackground) {
   EXPECT_EQ(writeAndRead({{0.125f, 0.045f, 0.0f, 1.0f}}, {.exposure = 2.0}), (Bytes{188, 118, 0, 255}));
-  PngLook look = over(glm::vec3(0.5f));
+  DisplayLook look = over(glm::vec3(0.5f));
   look.exposure = -1.0;
   EXPECT_EQ(writeAndRead({{1.0f, 0.36f, 0.0f, 1.0f}, glm::vec4(0.0f)}, look), (Bytes{188, 118, 0, 188, 188, 188}));
 }
@@ -138,7 +138,7 @@ TEST(Png, InMemoryIsWhatTheFileHolds) {
   Image image;
   image.size = {2, 1};
   image.pixels = {{0.5f, 0.18f, 0.002f, 1.0f}, {0.1f, 0.0f, 0.0f, 0.5f}};
-  for (const PngLook& look : {PngLook{}, over(glm::vec3(0.25f))}) {
+  for (const DisplayLook& look : {DisplayLook{}, over(glm::vec3(0.25f))}) {
     writePng(folder / "a.png", image, look);
     const Bytes bytes = encodePng(image, look);
     EXPECT_EQ(readBytes(folder / "a.png"), std::string(bytes.begin(), bytes.end()));
@@ -302,6 +302,26 @@ TEST(PngDeathTest, FullDiskIsOneSentenceAndLeavesNoFile) {
   EXPECT_EXIT(test::exitWithErrorOnLimitedDisk(folder.path(), 65536, write),
               testing::ExitedWithCode(int(ExitCode::Output)),
               "cannot write '.*a.png': No space left on device");
+}
+
+TEST(Png, SixteenBitsHoldTheCurveToAStep) {
+  const TemporaryFolder folder;
+  Image image{.size = {256, 2}};
+  for (int i = 0; i < 512; ++i) {
+    const float light = std::pow(float(i) / 511.0f, 3.0f);
+    image.pixels.emplace_back(light, 0.5f * light, 0.0f, 1.0f);
+  }
+  for (const DisplayLook& look : {DisplayLook{}, over(glm::vec3(0.0f))}) {
+    writePng(folder / "a.png", image, look, 16);
+    EXPECT_EQ(readBytes(folder / "a.png")[24], 16) << "bits a sample";
+    const Image back = readPng(folder / "a.png");
+    ASSERT_EQ(back.size, image.size);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+      for (int c = 0; c < 4; ++c) {
+        const float step = std::abs(srgbFromLinear(back.pixels[i][c]) - srgbFromLinear(image.pixels[i][c])) * 65535.0f;
+        ASSERT_LE(step, 0.6f) << i << " " << c;
+      }
+  }
 }
 
 }  // namespace

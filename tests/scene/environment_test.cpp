@@ -166,10 +166,14 @@ TEST(Environment, FilesComeBackAndBadOnesAreRefused) {
   EXPECT_EQ(environment.radiance[7], glm::vec3(0.5f, 1.0f, 2.0f));
   write({4, 4}, {1.0f, 1.0f, 1.0f, 1.0f});
   test::expectRefusal(read, ExitCode::Input, {"sky.exr", "4x4", "twice as wide as high"});
-  for (const float bad : {-1.0f, std::nanf(""), INFINITY}) {
+  for (const float bad : {std::nanf(""), INFINITY, -INFINITY}) {
     write({4, 2}, {1.0f, bad, 1.0f, 1.0f});
     test::expectRefusal(read, ExitCode::Input, {"sky.exr", "column 1 of row 0"});
   }
+  write({4, 2}, {1.0f, -6e-8f, -1.0f, 1.0f});
+  const Environment clamped = readEnvironment(folder / "sky.exr");
+  EXPECT_EQ(clamped.radiance[1], glm::vec3(1.0f, 0.0f, 0.0f));
+  EXPECT_EQ(clamped.negativeValues, 2u);
 }
 
 }  // namespace

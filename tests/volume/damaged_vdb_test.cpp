@@ -2,11 +2,9 @@
 #include <openvdb/io/Stream.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <fstream>
 #include <random>
 
-#include "engine/volume/crash_guard.h"
 #include "tests/volume/vdb_fixture.h"
 
 /// For the leak sanitizer: OpenVDB drops the nodes it was reading when a truncated stream throws.
@@ -195,27 +193,6 @@ TEST_F(VdbDeathTest, DamagedBytesGiveAVolumeOrOneSentence) {
   };
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   EXPECT_EXIT(tryAll(), testing::ExitedWithCode(0), "");
-}
-
-TEST(CrashGuardDeathTest, TurnsACrashIntoOneSentence) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
-  for (const int signal : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE}) {
-    const auto crash = [&] {
-      const CrashGuard guard("cannot read 'a.vdb': the file is damaged");
-      std::raise(signal);
-    };
-    EXPECT_EXIT(crash(), testing::ExitedWithCode(int(ExitCode::Input)),
-                "cannot read 'a.vdb': the file is damaged");
-  }
-}
-
-TEST(CrashGuardDeathTest, LeavesLaterCrashesAlone) {
-  GTEST_FLAG_SET(death_test_style, "threadsafe");
-  const auto crash = [] {
-    { const CrashGuard guard("cannot read 'a.vdb'"); }
-    std::raise(SIGABRT);
-  };
-  EXPECT_EXIT(crash(), testing::KilledBySignal(SIGABRT), "");
 }
 
 }  // namespace

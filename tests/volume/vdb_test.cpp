@@ -4,9 +4,13 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
+#include <atomic>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
+#include <iostream>
+#include <limits>
 #include <numbers>
+#include <thread>
 
 #include "engine/core/error.h"
 #include "engine/volume/procedural.h"
@@ -301,7 +305,7 @@ TEST_F(Vdb, InfoGivesTheFigures) {
   EXPECT_EQ(info.valueType, "float");
   EXPECT_EQ(info.gridClass, "fog volume");
   EXPECT_EQ(info.activeVoxels, 10u * 11u * 12u);
-  EXPECT_EQ(info.dimensions, glm::ivec3(10, 11, 12));
+  EXPECT_EQ(info.dimensions, glm::i64vec3(10, 11, 12));
   EXPECT_EQ(info.boundsMinimum, glm::ivec3(-2, 3, 4));
   EXPECT_EQ(info.boundsMaximum, glm::ivec3(7, 13, 15));
   EXPECT_EQ(info.voxelSize, glm::dvec3(0.25));
@@ -320,8 +324,8 @@ TEST_F(Vdb, InfoGivesTheBoxThatIsRendered) {
   write({named<FloatGrid>(sphere, "sphere"), makeGrid("fog"), outside});
   const std::vector<GridInfo> infos = describeVdb(file);
   EXPECT_EQ(infos.at(0).renderDimensions, read("sphere").dimensions);
-  EXPECT_EQ(infos.at(0).renderDimensions.x, infos.at(0).dimensions.x + 2) << "of the band of three voxels half counts, and a margin";
-  EXPECT_EQ(infos.at(1).renderDimensions, infos.at(1).dimensions);
+  EXPECT_EQ(infos.at(0).renderDimensions.x, int(infos.at(0).dimensions.x) + 2) << "of the band of three voxels half counts, and a margin";
+  EXPECT_EQ(glm::i64vec3(infos.at(1).renderDimensions), infos.at(1).dimensions);
   EXPECT_EQ(infos.at(2).renderDimensions, glm::ivec3(0));
   EXPECT_NE(infos.at(2).unusable.find("no voxel is inside"), std::string::npos);
   expectReadRefused({"outside", "no voxel is inside"}, "outside");
@@ -343,6 +347,103 @@ TEST_F(Vdb, AFullDiskIsReportedAndLeavesNothing) {
   };
   EXPECT_EXIT(test::exitWithErrorOnLimitedDisk(folder.path(), 65536, writeLarge),
               testing::ExitedWithCode(int(ExitCode::Output)), "cloud.vdb");
+}
+
+/// As files of instances have them: the second grid has the first one's tree and a transform of its own.
+TEST_F(Vdb, GridsThatShareATreeAreRead) {
+  const FloatGrid::Ptr first = makeGrid("density", 0.25f);
+  const FloatGrid::Ptr second = FloatGrid::create(first->treePtr());
+  second->setName("copy");
+  second->setTransform(openvdb::math::Transform::createLinearTransform(0.5));
+  write({first, second});
+  EXPECT_EQ(read().maximum, 0.25f);
+  const Volume copy = read("copy");
+  EXPECT_EQ(denseScalars(copy), denseScalars(read()));
+  EXPECT_NEAR(copy.voxelSize(), 0.5, 1e-12);
+  EXPECT_EQ(describeVdb(file).size(), 2u);
+}
+
+TEST_F(Vdb, TheDefaultGridIsDensityInAnyCaseAndInLowerCaseFirst) {
+  write({makeGrid("heat", 0.1f), makeGrid("Density", 0.2f)});
+  EXPECT_EQ(read().maximum, 0.2f);
+  write({makeGrid("Density", 0.2f), makeGrid("density", 0.3f), makeGrid("DENSITY", 0.4f)});
+  EXPECT_EQ(read().maximum, 0.3f);
+}
+
+TEST_F(Vdb, ControlCharactersOfNamesAreEscapedAndTheEscapedNameIsTaken) {
+  write({makeGrid("a\033[31m", 0.1f), makeGrid("b", 0.2f)});
+  const std::vector<GridInfo> infos = describeVdb(file);
+  ASSERT_EQ(infos[0].name, "a\\x1b[31m");
+  EXPECT_EQ(read(infos[0].name).maximum, 0.1f);
+  expectReadRefused({"'a\\x1b[31m'"}, "none");
+}
+
+TEST_F(Vdb, NamesThatInfoPrintsAreTaken) {
+  write({makeGrid("a", 0.1f), makeGrid("a", 0.2f), makeGrid("b[1]", 0.3f), makeGrid("c\001", 0.4f), makeGrid("c\002", 0.5f)});
+  std::vector<float> maxima;
+  for (const GridInfo& info : describeVdb(file)) maxima.push_back(read(info.name).maximum);
+  EXPECT_EQ(maxima, (std::vector<float>{0.1f, 0.2f, 0.3f, 0.4f, 0.5f}));
+}
+
+TEST_F(Vdb, DimensionsBeyond32BitsAreCounted) {
+  const FloatGrid::Ptr grid = makeGrid("density");
+  grid->tree().setValueOn(Coord(std::numeric_limits<int>::min(), 0, 0), 1.0f);
+  grid->tree().setValueOn(Coord(std::numeric_limits<int>::max(), 0, 0), 1.0f);
+  write({grid});
+  const GridInfo info = describeVdb(file).at(0);
+  EXPECT_EQ(info.dimensions.x, std::int64_t(1) << 32);
+  EXPECT_NE(info.unusable.find("too large"), std::string::npos);
+  expectRefusal([&] { read(); }, ExitCode::OutOfMemory, {"too large"});
+}
+
+glm::dvec3 centreOf(const Volume& volume) {
+  return volume.indexToWorld * glm::dvec4((glm::dvec3(volume.dimensions) - 1.0) / 2.0, 1.0);
+}
+
+TEST_F(Vdb, AVolumeTooFarFromTheOriginIsMovedThere) {
+  const FloatGrid::Ptr grid = makeGrid("density");
+  grid->transform().postTranslate(openvdb::Vec3d(1e15, 0.0, -3.0));
+  write({grid});
+  EXPECT_LT(glm::length(centreOf(read())), 1.0);
+  grid->setTransform(openvdb::math::Transform::createLinearTransform());
+  grid->transform().postTranslate(openvdb::Vec3d(1e9, 0.0, 0.0));
+  write({grid});
+  EXPECT_NEAR(centreOf(read()).x, 1e9, 1.0) << "doubles still tell its voxels apart";
+}
+
+TEST_F(Vdb, VoxelsOfAnAbsurdSizeAreScaledByAPowerOfTen) {
+  const FloatGrid::Ptr grid = makeGrid("density");
+  for (const auto& [size, scaled] : {std::pair(3e11, 3.0), std::pair(3e20, 3.0), std::pair(1e9, 1e9), std::pair(2e-4, 2e-4)}) {
+    grid->setTransform(openvdb::math::Transform::createLinearTransform(size));
+    write({grid});
+    EXPECT_NEAR(read().voxelSize(), scaled, 1e-9 * scaled) << size;
+  }
+}
+
+TEST_F(Vdb, ThreadsReadAtTheSameTimeWithoutDisturbingEachOther) {
+  const std::string good = (folder / "good.vdb").string(), bad = (folder / "bad.vdb").string();
+  write({makeGrid("density", 0.5f), makeGrid("density", 0.25f)});
+  fs::rename(file, good);
+  test::writeBytes(bad, test::readBytes(good).substr(0, 900));
+  std::atomic<int> read = 0, refused = 0;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i)
+    threads.emplace_back([&] {
+      for (int k = 0; k < 25; ++k) {
+        if (readVdb(good, "density[1]", kPlenty).maximum == 0.25f && listVdb(good).size() == 2) ++read;
+        try {
+          readVdb(bad, "", kPlenty);
+        } catch (const Error&) {
+          ++refused;
+        }
+      }
+    });
+  testing::internal::CaptureStdout();
+  for (int k = 0; k < 100; ++k) std::cout << "." << std::flush;
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), std::string(100, '.')) << "this program's own output is lost";
+  EXPECT_EQ(read, 100);
+  EXPECT_EQ(refused, 100);
 }
 
 }  // namespace

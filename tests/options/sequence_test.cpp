@@ -1,4 +1,6 @@
-#include "apps/view/sequence.h"
+#include "apps/freevoxels/sequence.h"
+
+#include "apps/freevoxels/frame_names.h"
 
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
@@ -70,6 +72,45 @@ TEST_F(SequenceTest, AFilesOwnNameIsNoPattern) {
   EXPECT_TRUE(isPattern(path("x#2.vdb")));
   EXPECT_FALSE(isPattern(path("x1.vdb")));
   EXPECT_FALSE(isPattern("#/x1.vdb")) << "the folder's name";
+}
+
+TEST_F(SequenceTest, PrintfsPatternIsOneOfHashes) {
+  EXPECT_EQ(withHashes("a/smoke_%04d.vdb"), "a/smoke_####.vdb");
+  EXPECT_EQ(withHashes("%d.vdb"), "#.vdb");
+  for (const char* none : {"100%.vdb", "%4d.vdb", "%x", "%05", "%00d", "%d/a.vdb", "smoke_####.vdb"})
+    EXPECT_EQ(withHashes(none), none);
+  EXPECT_EQ(frameName("f_%03d.png", 7), "f_007.png");
+  touch({"smoke_0002.vdb", "smoke_10.vdb"});
+  EXPECT_TRUE(isPattern(path("smoke_%04d.vdb")));
+  EXPECT_EQ(findSequence(path("smoke_%04d.vdb")).files, paths({"smoke_0002.vdb"}));
+}
+
+TEST_F(SequenceTest, RangesChooseFrames) {
+  touch({"f1.vdb", "f2.vdb", "f4.vdb", "f9.vdb"});
+  const Sequence all = findSequence(path("f#.vdb"));
+  const auto numbers = [&](const std::string& text) { return selectFrames(all, readFrameRange("--frames", text)).numbers; };
+  EXPECT_EQ(numbers("0-100"), (std::vector<int>{1, 2, 4, 9}));
+  EXPECT_EQ(numbers("2-4"), (std::vector<int>{2, 4}));
+  EXPECT_EQ(numbers("2-"), (std::vector<int>{2, 4, 9}));
+  EXPECT_EQ(numbers("1-9:2"), (std::vector<int>{1, 9}));
+  EXPECT_EQ(numbers("4"), (std::vector<int>{4}));
+  expectRefusal([&] { numbers("5-8"); }, ExitCode::Input, {"f#.vdb", "from 1 to 9"});
+  for (const char* bad : {"", "-", "-3", "4-2", "1-9:0", "1-9:", "a", "1,2", "1-9:2:3", "99999999999"})
+    expectRefusal([&] { readFrameRange("--frames", bad); }, ExitCode::Usage, {"--frames"});
+}
+
+TEST_F(SequenceTest, GapsAreNamed) {
+  const auto gaps = [](std::vector<int> numbers, const std::string& range = "") {
+    const Sequence sequence{.pattern = "", .files = {}, .numbers = std::move(numbers)};
+    return range.empty() ? gapsOf(sequence) : gapsOf(sequence, readFrameRange("", range));
+  };
+  EXPECT_EQ(gaps({1, 2, 3}), "");
+  EXPECT_EQ(gaps({5}), "");
+  EXPECT_EQ(gaps({1, 3, 4, 7, 8, 12}), "2, 5, 6, 9-11");
+  EXPECT_EQ(gaps({0, 10, 30}), "20") << "every tenth frame is there";
+  EXPECT_EQ(gaps({2, 4}, "1-6"), "1, 3, 5, 6");
+  EXPECT_EQ(gaps({2, 4}, "2-9:2"), "6, 8");
+  EXPECT_EQ(gaps({2, 3}, "2-"), "");
 }
 
 }  // namespace

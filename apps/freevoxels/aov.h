@@ -1,0 +1,29 @@
+#pragma once
+// What an .exr may hold beside colours and alpha (arbitrary output variables).
+
+#include <string>
+
+#include "engine/image/image.h"
+#include "engine/scene/camera.h"
+
+namespace freevoxels {
+
+struct Aovs {
+  bool depth = false;          ///< Z: mean distance along the viewing axis, in world units; +infinity where nothing is seen
+  bool position = false;       ///< P.X, P.Y, P.Z: the point in the world at that depth; 0 where nothing is seen
+  bool normal = false;         ///< N.X, N.Y, N.Z: unit normal, towards the eye, of the surface of these points; 0 like P
+  bool transmittance = false;  ///< transmittance.Y: 1 - alpha, not below 0
+
+  bool any() const { return depth || position || normal || transmittance; }
+  bool needDepth() const { return depth || position || normal; }
+};
+
+/// Reads "depth,normal". ExitCode::Usage where a word is none of the members; `option` is what the sentence calls it.
+Aovs readAovs(const std::string& option, const std::string& text);
+/// What readAovs reads.
+std::string aovText(const Aovs& aovs);
+
+/// Makes the channels of a whole image that `camera` saw from its colours and its depth; without `aovs.depth` it loses that.
+void addChannels(Image& image, const Aovs& aovs, const Camera& camera);
+
+}  // namespace freevoxels

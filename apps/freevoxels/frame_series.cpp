@@ -1,0 +1,338 @@
+#include "apps/freevoxels/frame_series.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "apps/freevoxels/share_group.h"
+#include "engine/core/error.h"
+#include "engine/octree/volume_limits.h"
+#include "engine/volume/content_hash.h"
+#include "engine/vulkan/pipeline.h"
+
+namespace freevoxels {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// "45 s", "2 min 5 s", "1 h 12 min".
+std::string timeText(std::chrono::duration<double> time) {
+  const auto seconds = std::int64_t(std::max(time.count(), 0.0) + 0.5);
+  if (seconds < 60) return fmt::format("{} s", seconds);
+  if (seconds < 3600) return fmt::format("{} min {} s", seconds / 60, seconds % 60);
+  return fmt::format("{} h {} min", seconds / 3600, seconds / 60 % 60);
+}
+
+std::string whyNothingIsSeen(const Renderer& renderer) {
+  if (renderer.occupiedVoxelCount() == 0u) return "all voxels are transparent; raise --density-scale, or change --transfer-function";
+  return "the camera looks past the volume, or what it sees is transparent; leave out --camera-position and --look-at to frame it";
+}
+
+bool showsNothing(const Image& image) {
+  return std::ranges::none_of(image.pixels, [](glm::vec4 pixel) { return pixel.a > 0.0f || pixel.r + pixel.g + pixel.b > 0.0f; });
+}
+
+/// Makes pixels black of which some number is NaN or infinite, which light beyond the range of single precision makes of them;
+/// returns how many there were.
+std::size_t clearPixelsThatAreNoNumbers(Image& image) {
+  std::size_t cleared = 0;
+  for (glm::vec4& pixel : image.pixels) {
+    const float sum = pixel.r + pixel.g + pixel.b + pixel.a;
+    if (std::isfinite(sum)) continue;
+    pixel = glm::vec4(0.0f);
+    ++cleared;
+  }
+  return cleared;
+}
+
+Progress prefixed(const Progress& progress, const std::string& prefix) {
+  if (!progress) return {};
+  return [progress, prefix](std::string_view stage, double fraction) {
+    progress(fmt::format("{}{}", prefix, stage), fraction);
+  };
+}
+
+/// How many frames at the beginning are of one volume.
+std::size_t framesOfFirstVolume(std::span<const Frame> frames) {
+  const auto other = std::ranges::find_if(frames, [&](const Frame& frame) { return frame.input != frames.front().input; });
+  return std::size_t(other - frames.begin());
+}
+
+std::vector<std::string> volumesOf(std::span<const Frame> frames) {
+  std::vector<std::string> volumes;
+  for (; !frames.empty(); frames = frames.subspan(framesOfFirstVolume(frames))) volumes.push_back(frames.front().input);
+  return volumes;
+}
+
+}  // namespace
+
+VolumesAhead::VolumesAhead(std::vector<std::string> inputs, Read read) : inputs_(std::move(inputs)), read_(std::move(read)) {
+  readNext();
+}
+
+void VolumesAhead::readNext() {
+  if (begun_ == inputs_.size()) return;
+  pending_ = std::async(std::launch::async, read_, inputs_[begun_]);
+  ++begun_;
+}
+
+std::shared_ptr<const Volume> VolumesAhead::next() {
+  pending_.wait();
+  std::future<std::shared_ptr<const Volume>> read = std::move(pending_);
+  readNext();
+  return read.get();
+}
+
+FrameSeries::FrameSeries(const RenderOptions& options, const Device& device, RunReport& report)
+    : options_(options), device_(device), report_(report), line_(!options.messages.quiet && options.leads()) {}
+
+void FrameSeries::draw(std::span<const Frame> frames) {
+  frames_ = frames.size();
+  begun_ = Clock::now();
+  report_.device = device_.description();
+  drawFilm(frames);
+  addTimes(report_.stages, device_.pipelines().times);
+  report_.devicePeak = device_.peakBytes();
+}
+
+void FrameSeries::drawFilm(std::span<const Frame> frames) {
+  const std::vector<std::string> inputs = volumesOf(frames);
+  VolumesAhead volumes(inputs, [this, turn = int(framesOfFirstVolume(frames))](const std::string& input) {
+    // Of a baked volume nothing finer is read than what shows.
+    const SceneOptions scene = sceneOf(input);
+    const int level = scene.finestLevelSeen(double(options_.frameSettings().lod), turn);
+    return std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level));
+  });
+  std::size_t failed = 0;
+  for (const std::string& input : inputs) {
+    const std::span<const Frame> own = frames.first(framesOfFirstVolume(frames));
+    frames = frames.subspan(own.size());
+    try {
+      line_.begin(prefix() + "reading " + input);
+      std::shared_ptr<const Volume> volume;
+      {
+        const StageTimer timer(report_.stages, "read volume");
+        volume = volumes.next();
+      }
+      drawFitting(std::move(volume), own);
+    } catch (const EmptyVolumeError& error) {
+      if (inputs.size() == 1) throw;
+      line_.erase();
+      spdlog::warn("{}; it becomes an image of the background", error.what());
+      for (const Frame& frame : own) writeEmpty(frame);
+    } catch (const Error& error) {
+      if (inputs.size() == 1 || error.code() != ExitCode::Input) throw;
+      line_.erase();
+      spdlog::error("{}", error.what());
+      ++failed;
+    }
+  }
+  if (failed == 0 && waiting_.empty()) return;
+  if (failed == 0) fail(ExitCode::Input, "no frame of {} holds anything to draw", frames_);
+  fail(ExitCode::Input, "{} of {} volumes could not be drawn, for the reasons above", failed, inputs.size());
+}
+
+/// A baked volume that the device cannot hold is drawn from a coarser level.
+void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<const Frame> frames) {
+  const SceneOptions scene = sceneOf(frames.front().input);
+  const std::shared_ptr<const fvx::FvxFile> file = scene.input.baked();
+  const int levels = file ? file->levels() : 1;
+  const RunReport before = report_;
+  const std::size_t drawn = drawn_;
+  for (int level = scene.finestLevelSeen(double(options_.frameSettings().lod), int(frames.size()));; ++level) {
+    try {
+      return drawVolume(std::move(volume), frames);
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::OutOfMemory || level + 1 >= levels) throw;
+      spdlog::warn("{}; drawing it at 1/{} of its resolution", error.what(), 1 << (level + 1));
+    }
+    report_ = before;
+    drawn_ = drawn;
+    volume = std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level + 1));
+  }
+}
+
+SceneOptions FrameSeries::sceneOf(const std::string& input) const {
+  SceneOptions scene = options_.scene;
+  scene.input.input = input;
+  return scene;
+}
+
+Scene FrameSeries::resolve(std::shared_ptr<const Volume> volume, const std::string& input) const {
+  const SceneOptions scene = sceneOf(input);
+  if (options_.fixedView && reference_) return scene.resolveLike(*reference_, std::move(volume));
+  return scene.resolve(std::move(volume));
+}
+
+OptionList FrameSeries::describe(const Scene& view, const std::string& input) const {
+  OptionList method;
+  options_.method.describe(method);
+  return sceneOf(input).describe(view, method);
+}
+
+/// What an .exr says of its making besides the options.
+std::map<std::string, std::string> FrameSeries::facts() const {
+  std::map<std::string, std::string> facts{{"device", report_.device.name}, {"driver", report_.device.driver}};
+  if (options_.drawsShares()) {
+    facts["share"] = sharePartText(options_.shares.whole());
+    facts["content"] = report_.contentHash;
+  }
+  return facts;
+}
+
+/// Fails where the processes of the group would not draw parts of one picture.
+void FrameSeries::agree(const Scene& view) {
+  if (options_.drawsShares()) {
+    const bool hasEnvironment = view.lighting && view.lighting->environment;
+    report_.contentHash =
+        contentHash(*view.volume, view.classification, hasEnvironment ? view.lighting->environment.get() : nullptr);
+  }
+  if (options_.group == nullptr) return;
+  options_.group->agree("another version of the program", programVersion());
+  options_.group->agree("another volume, transfer function or environment", report_.contentHash);
+  OptionList options;
+  for (const auto& [name, value] : report_.options)
+    if (!name.empty()) options.emplace_back(name, value);  // the volume's own name may differ from machine to machine
+  options_.group->agree("other options", commandText(options));
+}
+
+/// What is said about the first volume.
+void FrameSeries::begin(const Scene& view, std::size_t frames) {
+  report_.options = describe(view, options_.scene.input.input);
+  if (frames > 1) {
+    options_.scene.camera.describeTurn(report_.options);
+    report_.options.emplace_back("--frames", fmt::format("{}", frames));
+  }
+  line_.erase();
+  options_.scene.warn(view);
+  logOptions(report_.options);
+  mentionCpu(device_);
+}
+
+void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, std::span<const Frame> frames) {
+  Scene view = resolve(std::move(volume), frames.front().input);
+  const bool isFirst = !reference_;
+  std::vector<Camera> cameras{view.camera};
+  if (frames.size() > 1) cameras = sceneOf(frames.front().input).cameras(*view.volume, view.classification, int(frames.size()));
+  view.camera = cameras.front();
+  line_.erase();
+  if (isFirst)
+    begin(view, frames.size());
+  else
+    warnAboutValues(*view.volume, !view.classification.transferFunction);
+  agree(view);
+  if (isFirst || !options_.fixedView) reference_ = view;
+
+  FrameSettings settings = options_.frameSettings();
+  settings.lighting = view.lighting;
+  Renderer renderer(device_, *view.volume, view.classification, options_.method.table(), prefixed(line_.progress(), prefix()));
+  const std::vector<StageTime> built = renderer.timings();
+  addTimes(report_.stages, built);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (options_.group != nullptr && !options_.group->draws(drawn_)) {
+      ++drawn_;
+      continue;
+    }
+    view.camera = cameras[i];
+    drawFrame(renderer, view, settings, frames[i]);
+    const std::vector<StageTime> times = renderer.timings();
+    addTimes(report_.stages, std::span(times).subspan(built.size()));
+  }
+  addToReport(renderer, *view.volume);
+  for (const Frame* empty : std::exchange(waiting_, {})) writeEmpty(*empty);
+}
+
+/// The sums of this process, or of its whole group on the process that writes the frame; on the others of the group none.
+std::optional<FixedSums> FrameSeries::drawSums(Renderer& renderer, const Camera& camera, const FrameSettings& settings) {
+  ShareGroup* const group = options_.group;
+  const SharePart part = group != nullptr ? group->part() : options_.shares.whole();
+  FixedSums sums = renderer.renderShares(camera, settings, part, prefixed(line_.progress(), prefix()));
+  if (group == nullptr) return sums;
+  const StageTimer timer(report_.stages, "add up sums");
+  if (group->addUp(sums)) return sums;
+  return {};
+}
+
+void FrameSeries::drawFrame(Renderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame) {
+  Image image;
+  if (options_.drawsShares()) {
+    const std::optional<FixedSums> sums = drawSums(renderer, view.camera, settings);
+    if (!sums || options_.shares.sums) {
+      if (sums) {
+        const DeferredInterrupts wholeFile;
+        const StageTimer timer(report_.stages, "write pictures");
+        writeSums(frame.files.front(), *sums, options_.scene.withOutputs(frame.files).header(view, "render", describe(view, frame.input), facts()));
+        printNames(frame);
+      }
+      ++drawn_;
+      return;
+    }
+    image = resolveSums(*sums, settings.composite == Composite::Normalised);
+  } else {
+    image = renderer.render(view.camera, settings, prefixed(line_.progress(), prefix()));
+  }
+  const std::string name = frames_ == 1 ? "" : frame.files.front() + ": ";
+  line_.erase();
+  if (const std::size_t pixels = clearPixelsThatAreNoNumbers(image); pixels > 0)
+    spdlog::warn("{}{} pixels are beyond the range of numbers and become black: use less extreme lights, emission and distances", name,
+                 pixels);
+  if (showsNothing(image)) spdlog::warn("{}nothing is seen: {}", name, whyNothingIsSeen(renderer));
+  write(std::move(image), view, frame);
+}
+
+void FrameSeries::write(Image image, const Scene& view, const Frame& frame) {
+  line_.begin(prefix() + "writing " + frame.files.front());
+  const StageTimer timer(report_.stages, "write pictures");
+  // What a file says of its making is how `render` repeats this frame alone.
+  options_.scene.withOutputs(frame.files).write(std::move(image), view, "render", describe(view, frame.input), facts());
+  ++drawn_;
+  printNames(frame);
+}
+
+void FrameSeries::printNames(const Frame& frame) {
+  line_.erase();
+  if (options_.messages.quiet || !options_.leads()) return;
+  for (const std::string& file : frame.files) fmt::print("{}\n", file);
+  std::fflush(stdout);
+}
+
+void FrameSeries::writeEmpty(const Frame& frame) {
+  if (!reference_) {
+    waiting_.push_back(&frame);
+    return;
+  }
+  const FrameSettings settings = options_.frameSettings();
+  const std::size_t pixels = std::size_t(settings.size.x) * std::size_t(settings.size.y);
+  Image image{.size = settings.size, .pixels = std::vector<glm::vec4>(pixels, glm::vec4(0.0f))};
+  if (settings.depth) image.depth.assign(pixels, std::numeric_limits<float>::infinity());
+  Scene view = *reference_;
+  Volume nothing;
+  nothing.source = std::filesystem::path(frame.input).filename().string();
+  view.volume = std::make_shared<const Volume>(std::move(nothing));
+  view.classification.emission.reset();
+  write(std::move(image), view, frame);
+}
+
+/// Of the last volume.
+void FrameSeries::addToReport(const Renderer& renderer, const Volume& volume) {
+  report_.lackedRoomForRays |= renderer.lackedRoomForRays();
+  report_.lackedRoomForGather |= renderer.lackedRoomForGather();
+  report_.visibleVoxels = renderer.occupiedVoxelCount();
+  report_.voxels = volume.voxelCount();
+  report_.memory = renderer.memory();
+  report_.cut = renderer.cutCounts();
+}
+
+/// "frame 3 of 72, 2 min 5 s left: ", which starts what is said while one of several frames is made.
+std::string FrameSeries::prefix() const {
+  if (frames_ == 1) return "";
+  std::string left;
+  if (drawn_ > 0) left = fmt::format(", {} left", timeText((Clock::now() - begun_) / double(drawn_) * double(frames_ - drawn_)));
+  return fmt::format("frame {} of {}{}: ", drawn_ + 1, frames_, left);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,77 @@
+#pragma once
+// Draws the frames of a command on one device: one volume seen by one camera or by those of a turn, or the volumes of a film.
+
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/freevoxels/progress_line.h"
+#include "apps/freevoxels/render_options.h"
+#include "engine/image/fixed_sums.h"
+#include "engine/renderer.h"
+
+namespace freevoxels {
+
+/// Reads the volumes of frames in their order, each one while the one before it is drawn: two of them are in memory.
+class VolumesAhead {
+ public:
+  using Read = std::function<std::shared_ptr<const Volume>(const std::string& input)>;
+  /// `read` reads a volume, in a thread of its own.
+  VolumesAhead(std::vector<std::string> inputs, Read read);
+
+  /// The next volume. Throws what reading it threw, and can be called again for the one after it.
+  std::shared_ptr<const Volume> next();
+
+ private:
+  void readNext();
+
+  const std::vector<std::string> inputs_;
+  const Read read_;
+  std::size_t begun_ = 0;  ///< how many volumes are read or being read
+  std::future<std::shared_ptr<const Volume>> pending_;
+};
+
+class FrameSeries {
+ public:
+  /// All must outlive this object; `report` is filled by `draw`.
+  FrameSeries(const RenderOptions& options, const Device& device, RunReport& report);
+
+  /// Draws and writes every frame and prints the names of its files. Neighbouring frames of one volume share its table, and
+  /// are the steps of a full turn. Of several volumes, one that holds nothing becomes an image of the background, and one that
+  /// cannot be read is left out: its error is printed, and at the end ExitCode::Input is thrown.
+  void draw(std::span<const Frame> frames);
+
+ private:
+  void drawFilm(std::span<const Frame> frames);
+  void drawFitting(std::shared_ptr<const Volume> volume, std::span<const Frame> frames);
+  void drawVolume(std::shared_ptr<const Volume> volume, std::span<const Frame> frames);
+  void begin(const Scene& view, std::size_t frames);
+  void agree(const Scene& view);
+  void drawFrame(Renderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame);
+  std::optional<FixedSums> drawSums(Renderer& renderer, const Camera& camera, const FrameSettings& settings);
+  void write(Image image, const Scene& view, const Frame& frame);
+  void writeEmpty(const Frame& frame);
+  void printNames(const Frame& frame);
+  SceneOptions sceneOf(const std::string& input) const;
+  OptionList describe(const Scene& view, const std::string& input) const;
+  std::map<std::string, std::string> facts() const;
+  Scene resolve(std::shared_ptr<const Volume> volume, const std::string& input) const;
+  void addToReport(const Renderer& renderer, const Volume& volume);
+  std::string prefix() const;
+
+  const RenderOptions& options_;
+  const Device& device_;
+  RunReport& report_;
+  ProgressLine line_;
+  std::size_t frames_ = 0, drawn_ = 0;
+  std::chrono::steady_clock::time_point begun_;
+  std::optional<Scene> reference_;    ///< the first frame's with a fixed view, else the last one's
+  std::vector<const Frame*> waiting_;  ///< empty frames before any frame that says how they are seen
+};
+
+}  // namespace freevoxels

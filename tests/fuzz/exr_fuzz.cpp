@@ -1,0 +1,10 @@
+#include "engine/image/image.h"
+#include "tests/fuzz/fuzz_file.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  using namespace freevoxels;
+  constexpr std::int64_t kMostPixels = 1 << 16;
+  const fuzz::FuzzFile file(bytes, size);
+  fuzz::tryTo([&] { readExr(file.path(), kMostPixels); });
+  return 0;
+}

@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# Fuzzes the readers of files, each for so many seconds: needs Clang (apt-get install clang).
+#   bash tests/fuzz/run.sh SECONDS [vdb|exr|png|json]...     3600 for an hour each
+# What was found is kept in build-fuzz/corpus and begins the next run; a file that fails is in build-fuzz/failures.
+set -euo pipefail
+seconds="${1:?say for how many seconds}"
+shift
+kinds=("$@")
+[ $# -gt 0 ] || kinds=(vdb exr png json)
+here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
+build="$here/../../build-fuzz"
+
+cmake -S "$here" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ >/dev/null
+cmake --build "$build"
+mkdir -p "$build/failures"
+"$build/seeds" "$build/seeds-made"
+for kind in "${kinds[@]}"; do
+  mkdir -p "$build/corpus/$kind"
+  echo "fuzz: $kind for $seconds s"
+  "$build/${kind}_fuzz" -max_total_time="$seconds" -max_len=65536 -timeout=20 -rss_limit_mb=4096 -print_final_stats=1 \
+    -artifact_prefix="$build/failures/$kind-" "$build/corpus/$kind" "$build/seeds-made/$kind" 2>&1 |
+    grep -E "^stat::|ERROR|SUMMARY|runtime error|DONE|Test unit" || true
+  [ "${PIPESTATUS[0]}" -eq 0 ] || { echo "fuzz: $kind FAILED, see $build/failures"; exit 1; }
+done
+echo "fuzz: PASSED"

@@ -1,0 +1,83 @@
+// Writes small valid files for the fuzzers to begin with: seeds FOLDER, into FOLDER/{vdb,exr,png,json}.
+
+#include <openvdb/io/Stream.h>
+#include <openvdb/openvdb.h>
+#include <openvdb/tools/LevelSetSphere.h>
+
+#include <fstream>
+
+#include "engine/core/error.h"
+#include "engine/image/image.h"
+#include "engine/volume/vdb_grids.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace freevoxels;
+using openvdb::Coord;
+using openvdb::FloatGrid;
+
+FloatGrid::Ptr makeGrid(const std::string& name) {
+  const FloatGrid::Ptr grid = FloatGrid::create(0.0f);
+  grid->setName(name);
+  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  for (int i = 0; i < 12; ++i) grid->tree().setValueOn(Coord(i, i * i % 7, i % 3), 0.1f * float(i));
+  return grid;
+}
+
+openvdb::GridPtrVec assortedGrids() {
+  const FloatGrid::Ptr half = makeGrid("half"), tile = FloatGrid::create(), instance = FloatGrid::create(half->treePtr());
+  half->setSaveFloatAsHalf(true);
+  tile->setName("temperature");
+  tile->fill({Coord(0), Coord(15)}, 2.0f);
+  instance->setName("instance");
+  instance->setTransform(openvdb::math::Transform::createLinearTransform(0.5));
+  const auto velocity = openvdb::Vec3SGrid::create();
+  velocity->setName("velocity");
+  velocity->tree().setValueOn(Coord(1, 2, 3), openvdb::Vec3s(1.0f, 2.0f, 3.0f));
+  const auto mask = openvdb::BoolGrid::create();
+  mask->setName("mask");
+  mask->tree().setValueOn(Coord(1, 2, 3), true);
+  return {makeGrid("density"), half, tile, instance, velocity, mask};
+}
+
+void writeVolumes(const fs::path& folder) {
+  initialiseOpenVdb();
+  using namespace openvdb::io;
+  for (const std::uint32_t compression : {std::uint32_t(COMPRESS_NONE), std::uint32_t(COMPRESS_ZIP), std::uint32_t(COMPRESS_BLOSC | COMPRESS_ACTIVE_MASK)}) {
+    File file((folder / fmt::format("grids{}.vdb", compression)).string());
+    file.setCompression(compression);
+    file.write(assortedGrids());
+  }
+  File((folder / "one.vdb").string()).write({makeGrid("density")});
+  File((folder / "sphere.vdb").string()).write({openvdb::tools::createLevelSetSphere<FloatGrid>(2.0f, openvdb::Vec3f(0.0f), 0.5f)});
+  std::ofstream stream(folder / "stream.vdb", std::ios::binary);
+  Stream(stream).write(openvdb::GridPtrVec{makeGrid("density")});
+}
+
+void writeImages(const fs::path& folder) {
+  Image image{.size = {9, 7}};
+  for (int i = 0; i < 63; ++i) {
+    image.pixels.emplace_back(float(i) / 63.0f, 0.5f, 0.25f, 1.0f - float(i) / 100.0f);
+    image.depth.push_back(float(i));
+  }
+  writeExr(folder / "exr/half.exr", image, {});
+  writeExr(folder / "exr/float.exr", cropped(image, {{2, 1}, {5, 4}}), {.fullFloat = true, .metadata = {{"a", "b"}}});
+  writePng(folder / "png/alpha.png", image);
+  writePng(folder / "png/opaque.png", image, {.background = Background{}}, 16);
+}
+
+void writeFunctions(const fs::path& folder) {
+  std::ofstream(folder / "all.json") << R"({"range": [0, 1], "opacity": [[0, 0], [0.5, 0.2], [1, 1]], "color": [[0, 1, 0, 0], [1, 0, 0, 1]], "unit_distance": 0.5})";
+  std::ofstream(folder / "short.json") << R"({"opacity": [[0.25, 1e-3]], "color": [[0, 1, 1, 1]]})";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const fs::path folder = argc > 1 ? argv[1] : ".";
+  for (const char* kind : {"vdb", "exr", "png", "json"}) fs::create_directories(folder / kind);
+  writeVolumes(folder / "vdb");
+  writeImages(folder);
+  writeFunctions(folder / "json");
+}

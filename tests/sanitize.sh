@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# Builds with sanitizers and runs what they are for. Takes an hour the first time on two cores.
+#   bash tests/sanitize.sh address [CTEST OPTIONS...]   address and undefined behaviour: the tests of the CPU and of the programs
+#   bash tests/sanitize.sh thread                       threads that read volumes and images; needs Clang (apt-get install clang)
+set -euo pipefail
+root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
+cd "$root"
+case "${1:?say address or thread}" in
+  address)
+    shift
+    cmake --preset sanitize
+    cmake --build --preset sanitize --target freevoxels_unit_tests freevoxels_command_tests
+    # LLVM, which draws on the CPU, keeps what it has allocated: leaks are looked for in the tests of the CPU alone.
+    ctest --preset sanitize --tests-regex '^[A-Z]' --exclude-regex 'Command|Viewer|BadOutput|BadInput|Usage|MemoryLimit' "$@"
+    ASAN_OPTIONS=detect_leaks=0 ctest --preset sanitize --tests-regex 'Command|BadOutput|BadInput|Usage' "$@"
+    ;;
+  thread)
+    build="$root/build-threads"
+    cmake -S tests/fuzz -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DREADERS_SANITIZER=thread >/dev/null
+    cmake --build "$build"
+    "$build/seeds" "$build/seeds-made"
+    TSAN_OPTIONS="suppressions=$root/tests/fuzz/thread_suppressions.txt halt_on_error=1" "$build/threads" "$build/seeds-made"
+    ;;
+  *)
+    echo "say address or thread"
+    exit 2
+    ;;
+esac
