@@ -1,7 +1,7 @@
 #version 460
-// Adds the sums of one share, 32-bit floats, to those of all shares, 64-bit fixed point, and clears the share's for the next one. Each
-// share's sum of a pixel is rounded once; integers are added exactly, so their order does not matter. Only tiles are looked at that the
-// share's splats reach, as mark_tiles.comp found.
+// Adds the sums of one share (32-bit floats) to those of all shares (64-bit fixed point), and clears the
+// former for the next share. Each share's sum of a pixel is rounded once; integers are added exactly, so
+// their order does not matter. Only the tiles that the share's splats reach are read (mark_tiles.comp).
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require

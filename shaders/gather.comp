@@ -1,8 +1,8 @@
 #version 460
-// A thread per sample of the image's lattice marches its ray through the slices of blocks across the index axis that it
-// passes most slices of, and adds up what four blocks of each slice send to the eye, interpolated bilinearly, behind
-// what the ray has passed before: Subr et al. 2007, Section 2.1, Eq. 3 and 4, with the transmittance of the ray itself
-// in place of the attenuation table.
+// A thread for each sample of the image's lattice marches its ray through the slices of blocks across the
+// index axis of which it passes most slices. It adds the light that four blocks of each slice send to the
+// eye, interpolated bilinearly and dimmed by what the ray has passed before: Subr et al. 2007, Section 2.1,
+// Eq. 3 and 4, with the transmittance of the ray itself instead of the attenuation table.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #define TRANSFER_TABLE_BINDING 7
@@ -13,28 +13,30 @@
 #include "packed_gradient.glsl"
 #include "transfer_table.glsl"
 
-layout(constant_id = 0) const int kAxis = 2;        // rays with another axis are left to other dispatches
+layout(constant_id = 0) const int kAxis = 2;        // rays with another axis are marched by other dispatches
 layout(constant_id = 1) const bool kTowards = false;  // whether the light of blocks depends on the direction to the eye
-layout(constant_id = 2) const bool kColored = true;   // whether blocks have source terms of their own
+layout(constant_id = 2) const bool kColored = true;   // whether blocks have their own source terms
 layout(constant_id = 3) const bool kScalars = false;  // whether voxels are classified after interpolation
-layout(constant_id = 4) const bool kLit = false;      // whether voxels then have light, in place of source terms
-layout(constant_id = 6) const int kLights = 0;        // whose transmittance is found at samples
-layout(constant_id = 10) const int kOctaves = 1;      // of scattering
-layout(constant_id = 9) const int kAmbient = 0;       // channels of light from everywhere that is found at samples
-layout(constant_id = 7) const bool kTinted = false;   // whether every colour of light has an extinction of its own
+layout(constant_id = 4) const bool kLit = false;      // whether voxels then have light instead of source terms
+layout(constant_id = 6) const int kLights = 0;        // number of lights evaluated at samples
+layout(constant_id = 10) const int kOctaves = 1;      // orders of scattering
+layout(constant_id = 9) const int kAmbient = 0;       // channels of ambient light evaluated at samples
+layout(constant_id = 7) const bool kTinted = false;   // whether the extinction differs between the colours of light
 layout(constant_id = 8) const bool kSurfaces = false;
 layout(constant_id = 5) const bool kPieces = false;   // whether quads are in more than one piece
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 layout(binding = 1) uniform utextureBuffer brickNumbers;
-// Quads: of two neighbours along the first side each, of this position and of the next one along the second side.
+// Each quad has two neighbours along the first side, at this position and at the next one along the second
+// side.
 layout(binding = 2) uniform utextureBuffer mediumQuads;      // extinctions, four halves; or four codes of scalars
-layout(binding = 3) uniform utextureBuffer sourceQuads;      // four packed source terms, where kColored says so
-layout(binding = 4) uniform utextureBuffer towardsQuads;     // four times three bytes, where kTowards says so
+layout(binding = 3) uniform utextureBuffer sourceQuads;      // four packed source terms; only with kColored
+layout(binding = 4) uniform utextureBuffer towardsQuads;     // four times three bytes; only with kTowards
 layout(binding = 5, rgba32f) writeonly uniform imageBuffer colorEnergy;  // C, E
 layout(binding = 6, r32f) writeonly uniform imageBuffer distances;       // sum of e times distance
 
-// Codes of optical depths, 16 bits each: towards each light, then by channel of what ambient light has passed.
+// Codes of optical depths, 16 bits each: towards each light, then for each channel those that ambient light
+// has passed.
 layout(binding = 9) uniform utextureBuffer lightQuads0;
 layout(binding = 10) uniform utextureBuffer lightQuads1;
 layout(binding = 11) uniform utextureBuffer lightQuads2;
@@ -50,10 +52,10 @@ layout(binding = 8) uniform utextureBuffer skipCells;
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
 const bool kSampled = kLights > 0 || kAmbient > 0;
-const float kLeastShaded = 1.0 / 512.0;  // part of a pixel from which on the normal of a surface counts
-const float kMostlySurface = 0.95;        // from which on what else scatters light does not count
+const float kLeastShaded = 1.0 / 512.0;  // least part of a pixel for which the normal of a surface is computed
+const float kMostlySurface = 0.95;        // surface share from which on other scattering is neglected
 const float kOutside = 2.5;               // blocks
-const float kMostLightDepth = 0.99 * kOpaqueDepth;  // about the end of the code of rays
+const float kMostLightDepth = 0.99 * kOpaqueDepth;  // approximately the end of the code of depths along rays
 
 const int kPieceLog2 = kPieceBricksLog2 + 3 * kBrickLevels;  // quads
 const int kPieceMask = (1 << kPieceLog2) - 1;
@@ -62,17 +64,17 @@ const int kPieceMask = (1 << kPieceLog2) - 1;
 
 struct Ray {
   vec2 origin, slope;   // positions on the sides: origin + slope * slice, in blocks of the level
-  float direction;      // 1 or -1, of ascending or descending slices
-  int group;            // slices that are tested for emptiness together: no more than a cell's edge on any axis
-  float eye;            // where the ray starts, slices of the level
-  float layer;          // world length of a slice of the level on the ray, times the extinction's unit
-  vec3 toEye;           // in the world, of length 1
-  float edge;           // of a block, voxels
+  float direction;      // 1 for ascending slices, -1 for descending ones
+  int group;            // slices that are tested for emptiness together: at most a cell's edge on any axis
+  float eye;            // start of the ray, in slices of the level
+  float layer;          // world length of the ray in a slice of the level, times the unit of extinction
+  vec3 toEye;           // unit vector in world space
+  float edge;           // edge of a block in voxels
 };
 
-// The level's geometry, read once a level.
+// The geometry of a level, read once for each level.
 struct Slices {
-  ivec2 dimensions;     // of the sides, blocks
+  ivec2 dimensions;     // of the sides, in blocks
   int count;
   int firstCell;
   ivec3 cellStrides;    // of the sides and the axis
@@ -87,7 +89,7 @@ struct Sums {
   float transmittance;
 };
 
-// Weights of the two neighbours of a quad along a side; `low` becomes the quad that has them.
+// The weights of a quad's two neighbours along a side; sets `low` to the quad that has them.
 vec2 sideWeights(float position, int count, out int low) {
   const float first = floor(position);
   const float part = position - first;
@@ -97,7 +99,7 @@ vec2 sideWeights(float position, int count, out int low) {
   return weights;
 }
 
-// Of a block on the sides and the axis.
+// The position of a block on the sides and the axis.
 int brickAt(Slices level, ivec3 place) {
   const ivec3 cell = place >> kBrickLevels;
   return int(texelFetch(brickNumbers, level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
@@ -127,7 +129,7 @@ vec3 sourceAt(int quad, uvec4 packed, vec4 weights, vec3 toEye) {
   return source;
 }
 
-// The part of a slice's tent that is in front of the eye, which is `ahead` slices before it.
+// The part of a slice's tent that is in front of the eye, if the slice is `ahead` slices in front of it.
 float partInFront(float ahead) {
   const float a = clamp(ahead, -1.0, 1.0);
   return a >= 0.0 ? 0.5 + a - 0.5 * a * a : 0.5 * (1.0 + a) * (1.0 + a);
@@ -135,8 +137,8 @@ float partInFront(float ahead) {
 
 #include "gather_light.glsl"
 
-// What a part of the ray of this length adds, with a constant source term (rgb) and extinction (a), `ahead` slices from
-// the eye; what leaves it is the mean of its own transmittance.
+// Adds a part of the ray of this length with a constant source term (rgb) and extinction (a), `ahead` slices
+// from the eye. The light that leaves it is dimmed by the mean of its own transmittance.
 void addPart(inout Sums sums, vec4 medium, float length, float ahead, Lit lit, vec3 toEye) {
   const float depth = length * medium.a;
   const float through = exp(-depth);
@@ -175,20 +177,20 @@ vec3 ambientAt(int quad, vec4 weights) {
   return depths;
 }
 
-// What a ray found on a slice, for the stretch up to the next one.
+// The values of a ray on a slice, for the stretch to the next slice.
 struct Found {
-  float coverage;  // by voxels with data, 0..1; with 0 nothing else counts
-  float scalar;    // intervals of the transfer function's table
-  float ahead;     // what the scalar, in its plane, is half a slice further on
-  float behind;    // and half a slice before
-  vec4 integral;   // of extinction times colour and of extinction over the scalar
+  float coverage;  // by voxels with data, 0..1; if it is 0 the other values are undefined
+  float scalar;    // in intervals of the transfer function's table
+  float ahead;     // the scalar half a slice further on, continued in its plane
+  float behind;    // the scalar half a slice before
+  vec4 integral;   // integrals of extinction times colour (rgb) and of extinction (a) over the scalar
   vec4 medium;     // extinction times colour and extinction at the scalar
-  vec3 light;      // over that of a source term of 1
-  vec2 change;     // of the scalar per voxel along the sides
-  vec3 gradient;   // of the scalar, or of the extinction, per block, index space
+  vec3 light;      // relative to that of a source term of 1
+  vec2 change;     // change of the scalar per voxel along the sides
+  vec3 gradient;   // gradient of the scalar, or of the extinction, per block in index space
   bool hasGradient;
-  vec4 depths;     // optical depths towards the lights, of scalars from a layer further on; less than 0: nothing was found
-  vec4 arriving;   // of scalars, optical depths towards the lights; less than 0: not looked for
+  vec4 depths;     // optical depths towards the lights, for scalars from a layer further on; negative if unknown
+  vec4 arriving;   // for scalars, optical depths towards the lights; negative if not computed
   vec3 ambient;    // optical depths that ambient light has passed, by channel
 };
 
@@ -227,7 +229,7 @@ vec3 gradientAt(Slices level, vec2 position, int slice) {
   return gradient;
 }
 
-// Of both ends of a stretch.
+// The mean of both ends of a stretch.
 void findGradients(inout Found last, inout Found found, Slices level, Ray ray, int slice) {
   for (int i = last.hasGradient ? 1 : 0; i < 2; ++i) {
     const int at = clamp(i == 1 ? slice : slice - int(ray.direction), 0, level.count - 1);
@@ -242,16 +244,16 @@ vec3 normalOf(vec3 gradient) {
   return normal * inversesqrt(max(dot(normal, normal), 1e-30));
 }
 
-// `decrease` is how much the extinction decreases along a gradient, from a block before to a block behind, over the larger of
-// the two.
+// `decrease` is the decrease of the extinction along a gradient, from one block before to one block behind,
+// relative to the larger of the two.
 void setSurface(inout Lit lit, vec3 gradient, float decrease) {
   const vec3 normal = frame.gradientToWorld * (sign(decrease) * gradient);
   lit.normal = normal * inversesqrt(max(dot(normal, normal), 1e-30));
   lit.surface = frame.surface * min(2.0 * abs(decrease), 1.0);
 }
 
-// What lights a surface comes to it from outside: its own voxels, whose shadow on themselves is that of a staircase, are left
-// to the normal.
+// Light reaches a surface from outside: shadows of its own voxels, which would be those of a staircase, are
+// left to the normal.
 struct Outside {
   vec4 depths;
   vec3 ambient;
@@ -271,13 +273,13 @@ void lightFrom(inout Lit lit, Outside outside) {
   lit.ambientChange *= 1.0 - lit.surface;
 }
 
-// Source term and extinction, interpolated.
+// The interpolated source term and extinction.
 vec4 mediumAt(int quad, vec4 weights, vec4 extinctions, vec3 toEye) {
   const float extinction = dot(weights, extinctions);
   return vec4(kColored ? sourceAt(quad, sourceQuad(quad), weights, toEye) : extinction * frame.color, extinction);
 }
 
-// Of blocks that are classified: source term and extinction are the same all over a slice's layer.
+// For classified blocks: source term and extinction are constant in a slice's layer.
 void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
   vec4 weights;
   const int quad = quadAt(level, ray.origin + ray.slope * float(slice), slice, weights);
@@ -286,9 +288,8 @@ void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
   addPart(sums, mediumAt(quad, weights, extinctionsOf(quad), ray.toEye), ray.layer * partInFront(ahead), ahead, lit, ray.toEye);
 }
 
-// Of blocks that are classified and lit at samples: the stretch from the slice before to `slice`, which holds nothing where it is
-// not `within` the level's slices. Along it the depth towards a light
-// changes as the depth towards the eye does, both being integrals of the same extinction.
+// For classified blocks that are lit at samples: the stretch from the previous slice. The depth towards a
+// light changes along it as the depth towards the eye does, since both are integrals of the same extinction.
 void addLitStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within) {
   const int there = within ? slice : slice - int(ray.direction);
   vec4 weights;
@@ -323,7 +324,7 @@ void addLitStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int
   last = found;
 }
 
-// `halfStep` is what the ray moves along the sides in half a slice.
+// `halfStep` is the ray's movement along the sides in half a slice.
 Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye) {
   vec4 weights;
   const int quad = quadAt(level, position, slice, weights);
@@ -340,7 +341,7 @@ Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye
   const bool whole = all(notEqual(codes, uvec4(0))) && found.coverage > 0.9999;
   const vec4 scalars = (vec4(codes) - 1.0) * (float(kTransferIntervals) / float(kScalarCodes));
   found.scalar = max(dot(weights, scalars) / max(found.coverage, 1e-20), 0.0);
-  // The bilinear function of the quad, continued beyond it.
+  // The bilinear function of the quad, continued beyond the quad.
   const float twist = scalars.x - scalars.y - scalars.z + scalars.w;
   const vec2 change = vec2(mix(scalars.y - scalars.x, scalars.w - scalars.z, weights.z + weights.w),
                            mix(scalars.z - scalars.x, scalars.w - scalars.y, weights.y + weights.w));
@@ -351,7 +352,7 @@ Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye
   tableAt(found.scalar, found.integral, found.medium);
   found.light = vec3(1.0);
   if (kLit) {
-    // Voxels that hold nothing have no light: that of the others counts.
+    // Voxels that are not occupied have no light; that of the others counts.
     const uvec4 packed = sourceQuad(quad);
     [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = packed[i] != 0 ? weights[i] : 0.0;
     found.light = sourceAt(quad, packed, weights, toEye) / max(weights.x + weights.y + weights.z + weights.w, 1e-20);
@@ -359,7 +360,7 @@ Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye
   return found;
 }
 
-// The scalar at a position, index space, and the coverage by voxels with data.
+// The scalar at a position in index space, and the coverage by voxels with data.
 vec2 scalarNear(Slices level, vec3 position) {
   const float low = floor(position[kAxis]), part = position[kAxis] - low;
   vec2 sum = vec2(0.0);
@@ -376,8 +377,8 @@ vec2 scalarNear(Slices level, vec3 position) {
   return vec2(max(sum.x / max(sum.y, 1e-20), 0.0) * (float(kTransferIntervals) / float(kScalarCodes)), sum.y);
 }
 
-// Adds to the depths towards lights from a layer of voxels further on, where they are known, those up to there.
-// Where little shows the extinction is taken to be the same all the way.
+// Adds to the depths towards lights, which are known from a layer further on, the depths up to there. Where
+// little is visible, the extinction is taken as constant on this path.
 vec4 depthsAt(Slices level, Found at, vec3 position, bool shows) {
   vec4 depths = at.depths;
   [[unroll]] for (int i = 0; i < kMostSampleLights; ++i) {
@@ -403,7 +404,8 @@ vec4 depthsAt(Slices level, Found at, vec3 position, bool shows) {
   return depths;
 }
 
-// Of the extinction, over its larger value, from a scalar less `reach` to that and `reach` more.
+// The relative change of the extinction from a scalar less `reach` to that plus `reach`, relative to the
+// larger value.
 float changeAcross(float scalar, float reach) {
   vec4 integral, above, below;
   tableAt(min(scalar + reach, float(kTransferIntervals)), integral, above);
@@ -461,8 +463,8 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
         lightFrom(farLit, outside);
       }
     }
-    // Along a stretch the depth towards a light changes as the depth towards the eye does, both being integrals of the same
-    // extinction.
+    // Along a stretch the depth towards a light changes as the depth towards the eye does, since both are
+    // integrals of the same extinction.
     if (kLights > 0 && near.a + far.a > 0.0) {
       if (last.depths.x < 0.0) {
         vec4 weights;
@@ -484,8 +486,8 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
   last = found;
 }
 
-// How many groups of ray.group slices, from `slice` on in the ray's direction, hold nothing; 0 where the first may, or the
-// `before` slices in front of it.
+// The number of groups of ray.group slices, starting at `slice` in the ray's direction, that are empty; 0 if
+// the first, or the `before` slices in front of it, may not be.
 int emptyGroups(Slices level, Ray ray, int slice, int before) {
   const float first = float(slice) - ray.direction * float(before), last = float(slice) + ray.direction * float(ray.group - 1);
   const vec2 low = min(ray.origin + ray.slope * first, ray.origin + ray.slope * last);
@@ -494,7 +496,7 @@ int emptyGroups(Slices level, Ray ray, int slice, int before) {
                                        cell.z * level.skipStrides.z).x);
 }
 
-// The slices from `slices.x` to `slices.y` - 1 that the ray meets within the volume and in front of the eye.
+// The slices `slices.x` to `slices.y` - 1 that the ray meets inside the volume and in front of the eye.
 ivec2 slicesOnRay(Slices level, Ray ray, ivec2 slices) {
   vec2 range = vec2(slices) - vec2(0.0, 1.0);
   [[unroll]] for (int side = 0; side < 2; ++side) {
@@ -506,12 +508,12 @@ ivec2 slicesOnRay(Slices level, Ray ray, ivec2 slices) {
     range.x = max(range.x, ray.eye - 1.0);
   else
     range.y = min(range.y, ray.eye + 1.0);
-  // Beyond what 32 bits can count there is no slice.
+  // There are no slices beyond what 32 bits can count.
   range = clamp(range, vec2(slices) - vec2(1.0), vec2(slices) + vec2(1.0));
   return ivec2(max(int(floor(range.x)), slices.x), min(int(ceil(range.y)), slices.y - 1));
 }
 
-// Where scalars are marched, through a slice more, which ends the last stretch.
+// For scalars one more slice is marched, which ends the last stretch.
 void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool scalars) {
   const int direction = int(ray.direction);
   const int final = direction > 0 ? slices.y : slices.x;
@@ -529,7 +531,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
   last.hasGradient = false;
   last.depths = last.arriving = vec4(-1.0);
   last.ambient = vec3(0.0);
-  // Loops that end with their conditions: lavapipe runs a body once more, masked, where a loop begins with one.
+  // The loops test their conditions at the end: lavapipe executes the body of other loops once more, masked.
   do {
     int empty;
     do {
@@ -589,7 +591,7 @@ void main() {
   Sums sums = Sums(vec3(0.0), 0.0, 1.0);
   float distance = 0.0;  // sum of e times world distance from the eye plane
   for (int number = frame.finest; number <= frame.coarsest; ++number) {
-    // In blocks of the level, whose first one's middle is at half an edge less half a voxel.
+    // In blocks of the level, the centre of whose first is at half an edge minus half a voxel.
     const float edge = float(1 << number);
     const Slices level = slicesOf(number);
     Ray ray;
@@ -606,7 +608,7 @@ void main() {
     if (sums.transmittance > frame.end) march(sums, level, ray, slices, frame.end, kScalars && number == 0);
     distance += sums.distance * edge / abs(along);
   }
-  // A ray that ended before the volume did: what is behind counts as what is in front of it.
+  // For a ray that ended before the volume, what lies behind counts like what is in front.
   const float energy = 1.0 - sums.transmittance;
   const float whole = sums.transmittance > frame.end ? 1.0 : 1.0 / energy;
   const int place = index.x + index.y * frame.samples.x;

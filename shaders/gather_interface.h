@@ -1,6 +1,7 @@
 #ifndef FREEVOXELS_GATHER_INTERFACE_H
 #define FREEVOXELS_GATHER_INTERFACE_H
-// What C++ and the shaders of the gather share: engine/gathering/gather_pass.h describes the passes.
+// Structs and constants that C++ and the shaders of the gather share. engine/gathering/gather_pass.h
+// describes the passes.
 #include "frame_interface.h"
 
 #ifdef __cplusplus
@@ -9,96 +10,101 @@ namespace freevoxels::shader {
 
 FV_CONSTANT int kGatherTile = 8;          // samples along the edge of a workgroup of the passes over the lattice
 FV_CONSTANT int kShadeThreads = 64;
-// The gather reads blocks in bricks of 8^3, which are cells of the octree so many levels above.
+// The gather reads blocks in bricks of 8^3, which are cells of the octree this number of levels above the
+// blocks.
 FV_CONSTANT int kBrickLevels = 3;
 FV_CONSTANT int kGatherBrickEdge = 1 << kBrickLevels;
 FV_CONSTANT int kGatherBrickBlocks = kGatherBrickEdge * kGatherBrickEdge * kGatherBrickEdge;
-// Where there is nothing rays skip cells, so many levels above; as many slices as a cell has blocks along an edge are
-// tested together.
+// Rays skip empty cells, which are this number of levels above the blocks. As many slices are tested together
+// as a cell has blocks along an edge.
 FV_CONSTANT int kSkipLevels = 2;
 FV_CONSTANT int kSkipGroup = 1 << kSkipLevels;
 FV_CONSTANT int kBrickQuadsThreads = kGatherBrickEdge * kGatherBrickEdge;
-// Quads of more bricks than one texel buffer or allocation holds are in pieces of so many.
+// Quads of more bricks than a texel buffer or allocation can hold are split into pieces of this number of
+// bricks.
 FV_CONSTANT int kPieceBricksLog2 = 17;
 FV_CONSTANT int kMostPieces = 32;
-// Lights whose transmittance is found at samples, from quads of optical depths towards them.
+// Largest number of lights that are evaluated at samples, from quads of optical depths.
 FV_CONSTANT int kMostSampleLights = 4;
-// Quads of codes of light: a slot a light, then one for each channel of light from everywhere.
+// Quads of codes of light: a slot for each light, then one for each channel of ambient light.
 FV_CONSTANT int kMostLightSlots = kMostSampleLights + 3;
 FV_CONSTANT int kAmbientThreads = 64;
-// Classification after interpolation: a transfer function's intervals of the scalar, and the codes of scalars, 1 and above.
+// For classification after interpolation: the number of the transfer function's intervals of the scalar, and
+// that of the codes of scalars, which start at 1.
 FV_CONSTANT int kTransferIntervals = 4096;
 FV_CONSTANT int kScalarCodes = 65534;
 
-// Variance in voxels, squared, of the footprint's radial kernel along one axis; a slice's tent lacks it along the tilt.
+// Variance in squared voxels of the footprint's radial kernel along one axis. A slice's tent lacks it along
+// the tilt.
 FV_CONSTANT float kFootprintVariance = 0.1624f;
 
-// Rays march along the major axis of the image's middle unless the component along it is less than this part of their
-// largest one: so that a frame mostly reads one axis. And how many slices such rays then test together, as they move by
-// more than a block a slice.
+// A ray marches along the major axis of the image's middle, unless its component along that is less than this
+// fraction of its largest component: so most frames read one axis. The other constant is the number of slices
+// that such rays test together, as they move by more than a block a slice.
 FV_CONSTANT float kLeastAlong = 0.5f;
 FV_CONSTANT int kObliqueGroup = kSkipGroup / 2;
 
-// How rays meet the slices of blocks across one index axis. Pixel positions (x, y) are relative to the image's middle.
-// The sides are the other two axes in ascending order. All are affine: value . (1, x, y).
+// How rays meet the slices of blocks across one index axis. Pixel positions (x, y) are relative to the
+// image's middle. The sides are the other two axes in ascending order. Values are affine in the position:
+// value . (1, x, y).
 struct GatherAxis {
   vec3 along;          // component of the ray's direction along the axis, per world unit of distance from the eye plane
   vec3 eye;            // position of the ray's start along the axis, voxels
   vec3 slope[2];       // change of the sides' positions per slice, times `along`
   vec3 middle[2];      // the sides' positions in the plane at `middlePlane`, times `along`
-  vec2 tilt;           // what a step along the axis is on the image, in pixels times distance, at the image's middle
+  vec2 tilt;           // projection of a step along the axis to the image, in pixels times distance, at the image's middle
   float tiltDepth;     // change of the distance by that step
   float middlePlane;   // voxels
   uvec2 mediumPieces[kMostPieces], sourcePieces[kMostPieces], towardsPieces[kMostPieces];  // device addresses of quads
   uvec2 lightPieces[kMostLightSlots][kMostPieces];
-  ivec2 slices[2][kMaximumLevels];  // by the ray's sign along the axis (0: descending) and level: first, end; ascending
+  ivec2 slices[2][kMaximumLevels];  // by the ray's sign along the axis (0: descending) and level: first and end, ascending
 };
 
-// One level of the octree as the gather reads it. Brick numbers are those of the quads; 0 is empty.
+// A level of the octree for the gather. Brick numbers are those of the quads; 0 is empty.
 struct GatherLevel {
   ivec3 dimensions;     // blocks
-  int firstCell;        // of the table of brick numbers
+  int firstCell;        // first entry in the table of brick numbers
   ivec2 cellStrides;    // in that table, of y and z
-  int firstSkip;        // of the table of cells to skip: 0, or how many groups of slices nothing is met in
+  int firstSkip;        // first entry in the table of cells to skip, which has 0, or the number of empty groups of slices
   ivec2 skipStrides;    // in that table, of y and z
   ivec3 lastSkip;       // the last cell
 };
 
-// A light whose transmittance is found at samples.
+// A light that is evaluated at samples.
 struct SampleLight {
-  vec3 place;          // at infinity the direction towards it, in the world and of length 1; else index space
+  vec3 place;          // position in index space; at infinity the unit vector towards the light in world space
   int atInfinity;
-  vec3 color;          // times the irradiance, of a position at distance 1
-  vec3 across;         // at infinity the direction towards it in index space, across a layer of voxels
+  vec3 color;          // colour times irradiance, for a position at distance 1
+  vec3 across;         // at infinity the direction towards it in index space, of the length of a layer
 };
 
 struct GatherFrame {
   SampleLight lights[kMostSampleLights];
-  vec3 tint;              // of the extinction, on the way of the light
+  vec3 tint;              // factor of the extinction between light and voxel
   float phaseG;
-  float surface;          // how much of the lights is scattered as by surfaces
-  float nearestLight2;    // squared distance, world units, that a light has at least
-  vec3 ambient;           // mean radiance over all directions, and all octaves of scattering
-  float octaveScale;      // of an octave to the one before
+  float surface;          // fraction of the lights that is reflected like a surface
+  float nearestLight2;    // least squared distance to a light that counts, in world units
+  vec3 ambient;           // mean radiance over all directions, of all orders of scattering
+  float octaveScale;      // factor from one order of scattering to the next
   mat3 indexToWorld;      // linear part
   mat3 gradientToWorld;
-  uvec2 gradients;        // device address: of surface_gradients.comp
+  uvec2 gradients;        // device address of the output of surface_gradients.comp
   GatherAxis axes[3];
   GatherLevel levels[kMaximumLevels];
-  int finest, coarsest;   // levels that are read
-  vec3 worldRay[3];       // the ray's direction in the world: worldRay[0] + x worldRay[1] + y worldRay[2]
+  int finest, coarsest;   // range of the levels that are read
+  vec3 worldRay[3];       // the ray's direction in world space: worldRay[0] + x worldRay[1] + y worldRay[2]
   ivec2 samples;          // of the lattice
   ivec2 size;             // of the image, pixels
   vec2 firstSample;       // position of sample (0, 0), pixels from the image's middle
   float pitch;            // pixels between neighbouring samples
   float pixelsPerVoxel;   // at distance 1, or orthographic anywhere
-  float extinctionUnit;   // per world unit that a stored extinction of 1 is
-  float sourceUnit;       // radiance per stored source term over stored extinction
-  vec3 color;             // source term over extinction where all blocks have the same
+  float extinctionUnit;   // extinction per world unit of a stored 1
+  float sourceUnit;       // radiance of a source term that equals the stored extinction
+  vec3 color;             // source term over extinction, if all blocks have the same
   float end;              // transmittance at which rays end
   int orthographic;
   int mainAxis;           // the major axis of the ray in the image's middle
-  vec2 seenLow, seenHigh; // positions between which all rays are that meet the volume
+  vec2 seenLow, seenHigh; // range of pixel positions of the rays that meet the volume
 };
 
 // shade_blocks.comp
@@ -108,26 +114,26 @@ struct ShadePush {
   uvec2 towards;     // and of what depends on the direction to the eye
   uint firstRank;
   uint count;
-  float extinctionScale, sourceScale;  // from per world unit to what is stored
-  float meanLayer;   // world length that light crosses in a voxel, mean over directions
-  int lightOnly;     // 1: the source term is that of extinction and colour 1
+  float extinctionScale, sourceScale;  // factors from values per world unit to stored values
+  float meanLayer;   // mean world length of light in a voxel over all directions
+  int lightOnly;     // 1 if the source term is that of extinction and colour 1
 };
 
 // expand_scalars.comp
 struct ExpandScalarsPush {
-  ivec3 first;       // voxel, whose x is a multiple of 4; may be before those of the volume
+  ivec3 first;       // first voxel, whose x is a multiple of 4; may be outside of the volume
   ivec3 extent;      // in quads along x
   ivec3 dimensions;  // of the volume
-  ivec3 corner;      // place of the volume's first voxel in its brick of scalars
-  ivec3 cells;       // bricks of scalars along the axes
+  ivec3 corner;      // position of the volume's first voxel in its brick of scalars
+  ivec3 cells;       // number of bricks of scalars along the axes
   uvec2 bricks, codes;  // device addresses of the bricks' numbers by cell, and of 16 bits a voxel
 };
 
 // Codes of 16 bits a block, in bricks: of scalars, or of depths towards a light.
 struct CodeBricks {
-  uvec2 numbers, codes;  // device addresses: of the bricks' numbers by cell, of which 0 is empty, and of the codes
-  ivec3 corner;          // place of the first block in its brick
-  ivec3 cells;           // bricks along the axes
+  uvec2 numbers, codes;  // device addresses of the bricks' numbers by cell (0 is the empty brick) and of the codes
+  ivec3 corner;          // position of the first block in its brick
+  ivec3 cells;           // number of bricks along the axes
 };
 
 // surface_gradients.comp
@@ -145,7 +151,7 @@ struct LightDepthsPush {
   BlockLevel level;
   uint firstBrick;
   uint count;        // of bricks
-  int light;         // among all
+  int light;         // index of the light
   int edge;          // of a block, voxels
   ivec3 voxels;      // the volume's dimensions
   mat3 indexToWorld; // linear part
@@ -156,15 +162,15 @@ struct LightDepthsPush {
 // ambient_sweep.comp
 struct AmbientSweepPush {
   ivec3 cells;
-  ivec3 step;        // from cell to cell, the way of the light
+  ivec3 step;        // from cell to cell, in the direction of the light
   float stepLength;  // world units
-  vec3 share;        // of the unshadowed light that comes from this direction, by channel
-  float weight;      // part of the sphere that the direction stands for, over the sum of all octaves
+  vec3 share;        // fraction of the unshadowed light that comes from this direction, by channel
+  float weight;      // fraction of the sphere that the direction represents, divided by the sum of all orders of scattering
   int octaves;       // of scattering
   float octaveScale;
   float phaseG;
   mat3 cellToWorld;  // linear part
-  vec3 eye;          // cells; orthographic the direction towards it
+  vec3 eye;          // position of the eye in cells; for an orthographic camera the direction towards it
   int orthographic;
   vec3 tint;         // of the extinction, by channel
 };
@@ -175,7 +181,7 @@ struct AmbientCodesPush {
   int cellEdge;      // voxels
   int blockEdge;     // voxels
   int firstLight;    // of the channel
-  int firstWeight;   // of what the light is divided by; -1: of nothing
+  int firstWeight;   // first weight to divide by; -1 for none
   uint firstBrick;
   uint count;        // of bricks
   uvec2 codes;       // device address: 16 bits a block in bricks, x fastest
@@ -186,9 +192,9 @@ struct BrickQuadsPush {
   BlockLevel level;
   uint firstBrick;
   uint count;        // of bricks
-  uint firstQuad;    // where they begin at the addresses
+  uint firstQuad;    // index of the first quad
   uvec2 medium, source, towards;  // device addresses of quads
-  uvec2 sources, towardsEye;        // device addresses: what shade_blocks.comp made, by rank
+  uvec2 sources, towardsEye;        // device addresses of the output of shade_blocks.comp, by rank
   CodeBricks codes;
 };
 

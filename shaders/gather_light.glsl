@@ -1,22 +1,25 @@
-// Part of gather.comp, whose frame and constants it reads: what a light sends to the eye from a part of a ray.
+// Part of gather.comp, whose frame and constants it reads: the light that a part of a ray scatters to the
+// eye.
 #ifndef GATHER_LIGHT_GLSL
 #define GATHER_LIGHT_GLSL
 #include "surface_scattering.glsl"
 
-// The mean of exp(-depth) over a part along which the depth grows from 0 to x, of either sign.
+// The mean of exp(-depth) over a part along which the depth changes from 0 to x, of either sign.
 float meanTransmittance(float x) { return abs(x) < 0.02 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(-x)) / x; }
 
-// What a part of the ray is lit by: optical depths towards the lights at its beginning, and how they change along it.
+// The lighting of a part of a ray: optical depths towards the lights at its beginning, and their change along
+// it.
 struct Lit {
   vec4 begin, change;
-  vec3 ambientBegin, ambientChange;  // the same of what ambient light has passed, by channel
-  vec3 position;        // of its middle, index space
-  vec3 normal;          // of a surface there, outwards, in the world, of length 1
-  float surface;        // how much of one it is
-  vec4 outside;         // optical depths towards the lights from outside of it
+  vec3 ambientBegin, ambientChange;  // those that ambient light has passed, by channel
+  vec3 position;        // of its middle, in index space
+  vec3 normal;          // outward unit normal of a surface there, in world space
+  float surface;        // fraction that is reflected like a surface
+  vec4 outside;         // optical depths towards the lights from outside of the surface
 };
 
-// What a surface adds to the sum of lightOf(). Where it faces the light its own voxels do not shadow it, which on average takes half.
+// The addition of a surface to the sum of lightOf(). A surface that faces the light is not shadowed by its
+// own voxels, which would take half of the light on average.
 vec3 surfaceLight(Lit lit, int light, vec3 way, float depth, vec3 toEye) {
   const bool facing = dot(lit.normal, way) > 0.0;
   const float begin = facing ? lit.outside[light] : lit.begin[light], change = facing ? 0.0 : lit.change[light];
@@ -26,8 +29,8 @@ vec3 surfaceLight(Lit lit, int light, vec3 way, float depth, vec3 toEye) {
   return lit.surface * (facing ? 0.5 : 1.0) * surfaceScattering(lit.normal, way, toEye) * through;
 }
 
-// The mean over the part of what a light sends to the eye per albedo, times the transmittance of what is in front of it in the
-// part, whose optical depth is `depth`.
+// The mean over the part of the light that is scattered to the eye for albedo 1, times the transmittance of
+// what is in front within the part, whose optical depth is `depth`.
 vec3 lightOf(int light, Lit lit, float depth, vec3 toEye) {
   const SampleLight source = frame.lights[light];
   vec3 way = source.place;
@@ -38,7 +41,7 @@ vec3 lightOf(int light, Lit lit, float depth, vec3 toEye) {
     way *= inversesqrt(max(dot(way, way), 1e-30));
   }
   const float begin = lit.begin[light], change = lit.change[light];
-  // At the end of its code a depth may be any larger one, and a tint would let light through.
+  // At the end of its code a depth may be larger, and a tint would let light through.
   if (kTinted && begin + max(change, 0.0) >= kMostLightDepth) return vec3(0.0);
   vec3 sum = vec3(0.0);
   float scale = 1.0;

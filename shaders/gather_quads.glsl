@@ -2,7 +2,7 @@
 #ifndef GATHER_QUADS_GLSL
 #define GATHER_QUADS_GLSL
 
-// Texels are faster than addresses on lavapipe.
+// On lavapipe, texels are faster than addresses.
 uvec2 mediumQuad(int quad) {
   if (!kPieces) return texelFetch(mediumQuads, quad).xy;
   return MediumPiece(frame.axes[kAxis].mediumPieces[quad >> kPieceLog2]).values[quad & kPieceMask];

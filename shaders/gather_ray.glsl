@@ -12,7 +12,7 @@ vec3 alongAxes(vec3 position) {
   return vec3(dot(frame.axes[0].along, position), dot(frame.axes[1].along, position), dot(frame.axes[2].along, position));
 }
 
-// The axis that a ray marches along; rays that miss the volume have the main one.
+// The axis along which a ray marches; rays that miss the volume have the main axis.
 int marchAxis(vec3 position, vec3 along) {
   const vec3 size = abs(along);
   const bool seen = all(greaterThanEqual(position.yz, frame.seenLow)) && all(lessThanEqual(position.yz, frame.seenHigh));

@@ -1,6 +1,6 @@
-// A pixel from its sums: Subr et al. 2007, Eq. 10. The transmittance is exact, so E is the pixel's alpha and nothing has to be
-// normalised; only the interpolation may leave the range. A negative distance marks a sample without one (mean_distance.glsl). Takes
-// the bindings 5 and 6.
+// Computes a pixel from its sums: Subr et al. 2007, Eq. 10. The transmittance is exact, so E is the pixel's
+// alpha and nothing is normalised; only the interpolation may leave the valid range. A negative distance
+// means that there is none (mean_distance.glsl).
 #ifndef GATHER_RESOLVE_GLSL
 #define GATHER_RESOLVE_GLSL
 #include "gather_interface.h"

@@ -1,14 +1,15 @@
 #version 460
-// The round footprint of the lattice's sums: a slice's tent has the width of a splat's kernel across the slice, but seen
-// obliquely it is narrower along the tilt. A stencil of 3x3 samples adds the variance that is missing, at the mean
-// distance of what the sample shows. Voxels smaller than a pixel are widened to it, as footprints are.
+// Restores the round footprint of the lattice's sums: a slice's tent is as wide as a splat's kernel across
+// the slice, but seen obliquely it is narrower along the tilt. A stencil of 3x3 samples adds the missing
+// variance, at the mean distance of what the sample shows. Voxels smaller than a pixel are widened to a
+// pixel, as footprints are.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "gather_ray.glsl"
 #include "gather_resolve.glsl"
 #include "mean_distance.glsl"
 
-layout(constant_id = 1) const bool kDirect = false;  // the lattice is that of the pixels: write the image
+layout(constant_id = 1) const bool kDirect = false;  // whether the lattice is that of the pixels, so that the image is written
 layout(constant_id = 2) const bool kScalars = false;  // whether voxels are classified after interpolation
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
@@ -17,16 +18,16 @@ layout(binding = 2) uniform textureBuffer distances;    // sum of e times distan
 layout(binding = 3, rgba32f) writeonly uniform imageBuffer colorEnergyOut;
 layout(binding = 4, r32f) writeonly uniform imageBuffer distancesOut;
 
-const float kStencilStrength = 1.2;   // measured: higher than the missing variance, as the stencil is coarse
-const float kLeastTransmittance = 1e-6;  // that the stencil tells from 0
-const float kMostVariance = 0.8;      // beyond it the middle weight would come near to 0
+const float kStencilStrength = 1.2;   // measured; larger than the missing variance, because the stencil is coarse
+const float kLeastTransmittance = 1e-6;  // that the stencil distinguishes from 0
+const float kMostVariance = 0.8;      // beyond it the middle weight would be nearly 0
 
 int placeOf(ivec2 index) {
   const ivec2 inside = clamp(index, ivec2(0), frame.samples - 1);
   return inside.x + inside.y * frame.samples.x;
 }
 
-// Covariance (xx, xy, yy) that the sums lack, in squares of the lattice's pitch.
+// The covariance (xx, xy, yy) that the sums lack, in squares of the lattice's pitch.
 vec3 missingCovariance(vec3 position, float distance) {
   const int axis = marchAxis(position, alongAxes(position));
   const float scale = frame.orthographic != 0 ? 1.0 : 1.0 / distance;
@@ -49,7 +50,7 @@ void main() {
     colors[i] = texelFetch(colorEnergy, place);
     weighted[i] = texelFetch(distances, place).x;
   }
-  // Beside a silhouette only the neighbours know the distance.
+  // Beside a silhouette only the neighbours have a distance.
   float energy = 0.0, distance = 0.0;
   [[unroll]] for (int i = 0; i < 9; ++i) {
     energy += colors[i].a;
@@ -60,8 +61,9 @@ void main() {
   const float cross = 0.25 * covariance.y;
   const float weights[9] = float[9](cross, 0.5 * covariance.z, -cross, 0.5 * covariance.x, 1.0 - covariance.x - covariance.z,
                                     0.5 * covariance.x, -cross, 0.5 * covariance.z, cross);
-  // Footprints add up optical depths, so that is what the stencil is about: E and with it the colour follow. Scalars that are
-  // interpolated do not: there mean depths would widen what is opaque by a quarter of a voxel.
+  // Footprints add up optical depths, so the stencil is applied to these; E, and with it the colour, follow.
+  // For interpolated scalars it is applied to E: mean depths would widen opaque parts by a quarter of a
+  // voxel.
   vec4 color = vec4(0.0);
   float depth = 0.0;
   MeanDistance mean = kNoDistance;

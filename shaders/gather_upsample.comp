@@ -1,6 +1,6 @@
 #version 460
-// The lattice's sums at the pixels, by Catmull-Rom interpolation along one axis of the image: first along x, to rows of
-// the lattice with the image's width, then along y into the image.
+// Interpolates the lattice's sums at the pixels by Catmull-Rom along one axis of the image: first along x, to
+// rows of the lattice with the image's width, then along y into the image.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "catmull_rom.glsl"

@@ -1,5 +1,6 @@
 #version 460
-// Which tiles of the image the splats of a chunk reach: accumulate_sums.comp looks at no others.
+// Marks the tiles of the image that the splats of a chunk reach, so that accumulate_sums.comp reads no
+// others.
 #extension GL_GOOGLE_include_directive : require
 #include "share_interface.h"
 

@@ -1,6 +1,6 @@
 #version 460
-// What a voxel adds to a pixel's sums: Subr et al. 2007, Eq. 10. The ray's world length per index length is
-// common to all voxels of the pixel: resolve.comp multiplies by it.
+// The contribution of a voxel to a pixel's sums: Subr et al. 2007, Eq. 10. The ray's world length per index
+// length is common to all voxels of a pixel, so resolve.comp multiplies by it.
 #extension GL_GOOGLE_include_directive : require
 #include "frame_interface.h"
 #include "splat_weight.glsl"
@@ -11,8 +11,8 @@ layout(location = 1) out float opticalDepthSum;
 layout(location = 2) out float distanceSum;
 #endif
 
-// The optical depth on the pixel's own ray, to first order: what is half in the shadow of something shows its
-// lit half. Around the eye it grows along every ray by the voxel's own.
+// The optical depth on the pixel's own ray, to first order: a voxel that is half in the shadow of something
+// shows its lit half. Around the eye it grows along every ray by the voxel's own.
 float depthOnRay(float length2) {
   if (isCut()) return max(depthToEye.x + depthToEye.y * worldPerIndex(length2) * cutAhead(length2), 0.0);
   const vec2 d = gl_FragCoord.xy - centerDistance.xy;

@@ -1,5 +1,5 @@
 #version 460
-// A splat as a point sprite, or as a quad where points of its size are beyond the device: vertices pulled
+// Draws a splat as a point sprite, or as a quad if the device has no points of its size. Vertices are fetched
 // from the records.
 #extension GL_GOOGLE_include_directive : require
 #include "frame_interface.h"
@@ -25,7 +25,7 @@ void main() {
   vec2 position = splat.center;
   if (kQuads) {
     const vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 2.0 - 1.0;
-    // One near to the eye may reach far beyond the image.
+    // A splat near the eye may reach far beyond the image.
     position = clamp(position + corner * splat.halfExtent, push.viewportOrigin, push.viewportOrigin + push.viewportSize);
   }
   gl_Position = vec4((position - push.viewportOrigin) / push.viewportSize * 2.0 - 1.0, 0.0, 1.0);

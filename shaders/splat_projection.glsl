@@ -5,7 +5,7 @@
 #include "setup_frame.glsl"
 
 const float kBeyondImage = 1e6;  // pixels
-const float kBoundsSlack = 2.0;  // pixels: for rounding, and for what a footprint is widened by
+const float kBoundsSlack = 2.0;  // in pixels: margin for rounding and for widened footprints
 
 bool besideImage(vec2 low, vec2 high) {
   return any(lessThan(high, vec2(-kBoundsSlack))) || any(greaterThan(low, frame.imageSize + kBoundsSlack));
@@ -14,15 +14,15 @@ bool besideImage(vec2 low, vec2 high) {
 struct Footprint {
   vec2 center, halfExtent;
   vec3 conic;
-  float amplitude;  // 1, less where the footprint is widened
-  float edge2;      // square of the edge in pixels where it is shortest
+  float amplitude;  // 1, or less if the footprint is widened
+  float edge2;      // square of the edge in pixels in its shortest direction
   float distance;
-  float ahead;      // orthographic: the part of the kernel in front of the eye plane, about
-  bool cut;         // by a perspective camera's eye plane
+  float ahead;      // orthographic: the approximate part of the kernel in front of the eye plane
+  bool cut;         // whether a perspective camera's eye plane cuts the kernel
 };
 
-// A footprint narrower than the pixel lattice can sample is widened to it, with its integral kept: `shape`
-// holds the squared semi-axes (xx, xy, yy) in pixels, `scale` is |D|² at the centre.
+// Widens a footprint that is too narrow for the pixel lattice and keeps its integral. `shape` has the squared
+// semi-axes (xx, xy, yy) in pixels, `scale` is |D|² at the centre.
 void widenToPixel(inout Footprint footprint, vec3 shape, float scale) {
   const float before = shape.x * shape.z - shape.y * shape.y;
   const float largest = 0.5 * (shape.x + shape.z) + length(vec2(0.5 * (shape.x - shape.z), shape.y));
@@ -36,9 +36,9 @@ void widenToPixel(inout Footprint footprint, vec3 shape, float scale) {
   footprint.halfExtent *= sqrt(widened.xz / shape.xz);
 }
 
-// Where along an axis of the image rays can pass a kernel that the eye plane cuts: at x with
-// (k - x z)² <= R² |row - x rowZ|², k and z its centre's place along `row` and `rowZ`. That is not between two
-// roots, but on one side of them; on the other side is what lies behind the eye.
+// The positions x along an axis of the image at which rays can pass a kernel that the eye plane cuts: (k - x
+// z)² <= R² |row - x rowZ|², with k and z the position of its centre along `row` and `rowZ`. This is not the
+// range between two roots, but that on one side of them; on the other side is what lies behind the eye.
 vec2 cutBounds(float k, float z, vec3 row, vec3 rowZ) {
   const float radius2 = kSplatRadius * kSplatRadius;
   const float a = z * z - radius2 * dot(rowZ, rowZ);
@@ -53,8 +53,8 @@ vec2 cutBounds(float k, float z, vec3 row, vec3 rowZ) {
                       : vec2(-kBeyondImage, min(near, far) + kBoundsSlack);
 }
 
-// Its footprint is integrated along each pixel's ray from the eye on: `conic` is how far along the ray of the
-// pixel (0, 0), and more per pixel, the kernel's centre is, times |D|.
+// The footprint of a cut kernel is integrated along each pixel's ray from the eye on. `conic` is the distance
+// along the ray of pixel (0, 0) to the kernel's centre, times |D|, and its change per pixel.
 bool projectCut(vec3 q, vec3 pixel, inout Footprint footprint) {
   const mat3 rows = transpose(frame.indexToPixel);
   const vec2 x = cutBounds(pixel.x, pixel.z, rows[0], rows[2]);
@@ -66,10 +66,11 @@ bool projectCut(vec3 q, vec3 pixel, inout Footprint footprint) {
   return !besideImage(vec2(x.x, y.x), vec2(x.y, y.y));
 }
 
-// The kernel's sphere of radius R, times the edge of a block, around the index position `offset` (from the
-// volume's middle) seen from the eye: all rays D with |q x D|² <= R² |D|². Returns false behind the eye, and in
-// perspective beside the image: just ahead of the eye plane footprints there have bounds that reach far over it.
-// The eye plane may cut voxels' kernels, but none of a coarser block.
+// Projects the kernel's sphere of radius R, times the edge of a block, around the index position `offset`
+// (from the volume's middle) as seen from the eye: all rays D with |q x D|² <= R² |D|². Returns false behind
+// the eye, and for a perspective camera beside the image, since just in front of the eye plane the bounds of
+// such footprints would reach far over it. The eye plane may cut voxels' kernels, but none of a coarser
+// block.
 bool project(vec3 offset, float edge, out Footprint footprint) {
   const vec3 q = offset + frame.eyeToMiddle;
   const vec3 pixel = frame.indexToPixel * offset + frame.middleInPixels;

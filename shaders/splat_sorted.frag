@@ -1,5 +1,5 @@
 #version 460
-// A voxel in front of what its pixel holds already: Subr et al. 2007, Eq. 9, which leaks. Colours are
+// Blends a voxel in front of what its pixel holds already: Subr et al. 2007, Eq. 9, which leaks. Colours are
 // premultiplied; every output is blended with its own alpha: source + (1 - alpha) destination.
 #extension GL_GOOGLE_include_directive : require
 #include "frame_interface.h"
@@ -7,7 +7,7 @@
 
 layout(location = 0) out vec4 color;
 #ifdef WITH_DISTANCE
-layout(location = 1) out vec4 distanceSum;  // the target holds x alone; the blending takes alpha from here
+layout(location = 1) out vec4 distanceSum;  // the target has x only; the blending takes alpha from here
 #endif
 
 void main() {

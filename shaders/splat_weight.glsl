@@ -1,10 +1,9 @@
-// The footprint on the pixel's own ray, which is exact for perspective and for any voxel shape. Included by
-// the splats' fragment shaders, after interface.h.
+// The footprint on the pixel's own ray, which is exact for perspective and for any voxel shape.
 #ifndef SPLAT_WEIGHT_GLSL
 #define SPLAT_WEIGHT_GLSL
 #include "part_ahead.glsl"
 
-layout(constant_id = 0) const bool kQuads = false;  // only they can be cut
+layout(constant_id = 0) const bool kQuads = false;  // only quads can be cut
 
 layout(scalar, push_constant) uniform Push { SplatPush push; };
 
@@ -30,10 +29,11 @@ float worldPerIndex(float length2) {
 
 bool isCut() { return kQuads && conicDepth.w < 0.0; }
 
-// Index length from the eye to where the ray is nearest to the centre of a kernel that is cut.
+// Index length from the eye to the point of the ray nearest to the centre of a cut kernel.
 float cutAhead(float length2) { return dot(conicDepth.xyz, vec3(1.0, gl_FragCoord.xy)) * inversesqrt(length2); }
 
-// f(r) without its peak, r from the centre's distance |q| to the eye; from the eye on.
+// f(r) without its peak, with r from the distance |q| between centre and eye; only the part in front of the
+// eye.
 float cutWeight(float length2) {
   const float ahead = cutAhead(length2);
   const float halfChord2 = kSplatRadius * kSplatRadius - depthToEye.z + ahead * ahead;

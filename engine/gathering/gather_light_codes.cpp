@@ -1,5 +1,5 @@
-// GatherVolume's part of lights whose transmittance is found at samples: codes of optical depths towards them, and gradients of
-// surfaces.
+// The part of GatherVolume for lights that are evaluated at samples: codes of optical depths towards them,
+// and gradients of surfaces.
 
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ bool GatherVolume::lightsSamples(const DeviceVolume& volume, const Lighting* lig
   return lighting->lights.size() <= std::size_t(shader::kMostSampleLights) && lighting->attenuation == LightAttenuation::Exact;
 }
 
-/// Keeps the codes as long as the lights stand where they are.
+/// Keeps the codes until the lights move.
 void GatherVolume::prepareSampled(const Lighting* lighting, std::vector<StageTime>& times) {
   const std::vector<Light> lights = lighting != nullptr ? lighting->lights : std::vector<Light>();
   const int channels = lighting != nullptr && lighting->hasAmbient() ? AmbientPass::channelCount(*lighting) : 0;
@@ -55,7 +55,7 @@ void GatherVolume::dropLightCodes() {
   for (Quads& quads : quads_) quads.lightLevels = 0;
 }
 
-/// Finds the codes of all blocks of bricks, whether or not they hold anything.
+/// Computes the codes of all blocks of bricks, occupied or not.
 void GatherVolume::recordLightCodes(Commands& commands, const Shading& shading) {
   if (ambientChannels_ > 0 && ambient_->record(commands, *shading.lighting, shading.frame.eye)) dropLightCodes();
   if ((wantedLevels_ & ~lightLevels_) == 0) return;

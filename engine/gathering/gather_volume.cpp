@@ -19,8 +19,8 @@ namespace {
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
 
-/// Radiance that a stored source term equal to the stored extinction means: 1, or more where halves would not hold the
-/// brightest voxel. Lights are as bright as they are at the least distance that counts.
+/// The radiance of a stored source term that equals the stored extinction: 1, or more if half floats could
+/// not hold the brightest voxel. Lights are as bright as at the least distance that counts.
 double sourceUnit(const DeviceVolume& volume, const Lighting* lighting) {
   double brightest = volume.emissionUnit * kBrightest * volume.voxelSize;
   if (lighting != nullptr) {
@@ -33,14 +33,14 @@ double sourceUnit(const DeviceVolume& volume, const Lighting* lighting) {
   return std::max(brightest * kStoredDepth / kBrightest, 1.0);
 }
 
-/// Of the device's memory one part in so many may hold quads that the frame does not read.
+/// Quads that the current frame does not read may take one part in this many of the device's memory.
 constexpr std::uint64_t kKeptShare = 4;
 
 bool dependsOnView(const Lighting& lighting) {
   return lighting.phaseG != 0.0 || lighting.surface > 0.0;
 }
 
-/// World length of a voxel's layer along its major axis, mean over all directions: about 1.2 voxel edges.
+/// World length of a voxel's layer along its major axis, averaged over all directions: about 1.2 voxel edges.
 float meanLayer(const DeviceVolume& volume) {
   return float(1.2 * volume.voxelSize);
 }
@@ -64,15 +64,15 @@ GatherVolume::GatherVolume(const Device& device, const Volume& volume, const Cla
          std::uint64_t(bricksPerPiece_) * shader::kMostPieces * shader::kGatherBrickBlocks);
 }
 
-/// Which cells of the octree are bricks, and which are skipped. A position in a cell stays in that and its next neighbours
-/// along the axes upwards for an edge more, so that these decide. What lights a surface is looked up up to two blocks outside
-/// of it, so that bricks reach a cell to skip further.
+/// Finds the cells of the octree that are bricks, and those that rays skip. A position in a cell stays for
+/// one more edge in that cell and its next neighbours along the positive axes, so these decide. The light of
+/// a surface is looked up up to two blocks outside of it, so bricks extend one cell farther.
 void GatherVolume::makeBricks(std::vector<StageTime>& times) {
   const StageTimer timer(times, "bricks");
   const HierarchyLayout& hierarchy = built_.volume.hierarchy;
   const int top = hierarchy.top(), finest = std::min(shader::kSkipLevels, top);
   Cells cells = metCells(volume_, classification_, 1 << finest);
-  std::vector<Cells> met, around{spread(cells, 0, 1)};  // by level above the finest
+  std::vector<Cells> met, around{spread(cells, 0, 1)};  // by level, starting above the finest
   for (int level = finest; level <= top; ++level) {
     met.push_back(spread(cells, 0, 1));
     around.push_back(spread(coarserCells(spread(cells, -1, 0)), 0, 1));
@@ -114,9 +114,9 @@ void GatherVolume::makeBricks(std::vector<StageTime>& times) {
   make(skips_, skipTexels_, std::as_bytes(std::span(skips)), VK_FORMAT_R8_UINT, "cells to skip");
 }
 
-/// Scalars without light need none for the voxels.
+/// Scalars without light need no source terms for voxels.
 void GatherVolume::makeSources() {
-  const std::uint64_t blocks = built_.volume.storedBlocks() + 1;  // no buffer is empty
+  const std::uint64_t blocks = built_.volume.storedBlocks() + 1;  // so that no buffer is empty
   if (shadesLevel(0) || wantedLevels_ != 1u) {
     if (sources_.bytes() == 0)
       sources_ = Buffer(device_, blocks * sizeof(glm::uvec2), MemoryUse::Device, "source terms");
@@ -148,7 +148,7 @@ void GatherVolume::shade(Commands& commands, const Shading& shading, int level) 
 }
 
 bool GatherVolume::hasColors() const {
-  const bool onlyScalars = hasScalars() && wantedLevels_ == 1u;  // which have their colours in the transfer function
+  const bool onlyScalars = hasScalars() && wantedLevels_ == 1u;  // whose colours come from the transfer function
   return lit_ || (built_.volume.hasColors && !onlyScalars) || built_.volume.hasEmission();
 }
 
@@ -200,7 +200,7 @@ void GatherVolume::prepare(const Shading& shading, std::vector<StageTime>& times
     dropOtherAxes(shading.axes, 0);
     makeRoomForAll();
   }
-  // A turntable comes back to the other axes.
+  // Kept, because a turntable returns to the other axes.
   dropOtherAxes(shading.axes, device_.memoryBytes() / kKeptShare);
 }
 
@@ -210,7 +210,7 @@ std::uint64_t GatherVolume::Quads::bytes() const {
   return sum;
 }
 
-/// Frees quads that hold nothing of use, and those beyond `most` bytes.
+/// Frees quads that are out of date, and then those beyond `most` bytes.
 void GatherVolume::dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t most) {
   std::uint64_t kept = 0;
   for (std::size_t axis = 0; axis < quads_.size(); ++axis) {
@@ -227,7 +227,7 @@ std::uint64_t GatherVolume::QuadStore::bytes() const {
   return sum;
 }
 
-/// Of a quad where there is no need, as a binding needs a buffer.
+/// A minimal store for quads that are not needed, because a binding needs a buffer.
 GatherVolume::QuadStore GatherVolume::makeStore(bool needed, std::uint64_t quadBytes, VkFormat format, const char* name) const {
   QuadStore store;
   const std::uint32_t bricks = firstBricks_.back();
@@ -239,7 +239,7 @@ GatherVolume::QuadStore GatherVolume::makeStore(bool needed, std::uint64_t quadB
   return store;
 }
 
-/// Takes the memory of an axis that holds nothing of use, where there is one.
+/// Reuses the memory of an axis whose quads are out of date, if there is one.
 void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
   const std::uint64_t count = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks;
   const auto fits = [&](const Quads& there) {
@@ -298,7 +298,7 @@ void GatherVolume::recordQuads(Commands& commands, int axis) {
   quads.levels |= wantedLevels_;
 }
 
-/// The quads of bricks of a level, piece by piece.
+/// Records the quads of a level's bricks, piece by piece.
 void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::uint32_t first, std::uint32_t end,
                                 const std::optional<shader::CodeBricks>& codes, const QuadStore& medium, bool colored) {
   if (first == end) return;

@@ -1,6 +1,7 @@
 #pragma once
-// What the gather keeps of a volume: bricks of 8^3 blocks that are not empty, and in them, for the axis that rays march
-// along, quads of neighbouring blocks with their extinction and the light that they send to the eye.
+// The gather's data of a volume: bricks of 8^3 blocks that are not empty; and in them, for the axis along
+// which rays march, quads of neighbouring blocks with their extinction and the light that they send to the
+// eye.
 
 #include <algorithm>
 #include <array>
@@ -16,44 +17,45 @@
 
 namespace freevoxels {
 
-/// COMPUTE shade_blocks.comp and brick_quads.comp for the first frame and for every one whose light or
-/// axes differ from the frame before. Belongs to one volume, which must outlive it.
+/// COMPUTE shade_blocks.comp and brick_quads.comp, for the first frame and for every frame whose light or
+/// axes differ from those of the previous one. Belongs to one volume, which must outlive it.
 class GatherVolume {
  public:
-  /// Finds the bricks, and adds how long that took to `times`. Keeps references to all others. Fails with ExitCode::OutOfMemory.
+  /// Finds the bricks and adds the time of that to `times`. The other arguments must outlive this object.
+  /// Fails with ExitCode::OutOfMemory.
   GatherVolume(const Device& device, const Volume& volume, const Classification& classification, const BuiltVolume& built,
                std::vector<StageTime>& times);
 
-  /// What a frame needs to be shaded. `lighting` and `lights` are null of a frame that is not lit.
+  /// The input of shading a frame. `lighting` and `lights` are null without lighting.
   struct Shading {
     const FrameConstants& frame;
-    const AttenuationTable* table;  ///< null where no light reads it
+    const AttenuationTable* table;  ///< null if no light needs it
     const Lighting* lighting;
     const Buffer* lights;  ///< shader::Light
-    std::array<bool, 3> axes;  ///< that rays march along
+    std::array<bool, 3> axes;  ///< axes along which rays march
   };
-  /// Whether the transmittance of all lights is found at the gather's samples: of few from their rays, and of light from
-  /// everywhere. More lights, and lit volumes with emission, are shaded by voxel.
+  /// Whether the transmittance of all lights is evaluated at the samples: for few lights from their rays, and
+  /// for ambient light. With more lights, and for lit volumes with emission, shading is per voxel.
   static bool lightsSamples(const DeviceVolume& volume, const Lighting* lighting);
-  /// Allocates what the frame needs, and adds the time of what it makes on the host to `times`. Fails with
+  /// Allocates what the frame needs and adds the time of work on the host to `times`. Fails with
   /// ExitCode::OutOfMemory.
   void prepare(const Shading& shading, std::vector<StageTime>& times);
-  /// Shades the blocks of the levels that the frame reads, as far as what the frame before left does not serve. After
-  /// prepare() with the same arguments.
+  /// Records the shading of the blocks that the frame reads, except for those that are still valid. Must be
+  /// called after prepare() with the same arguments.
   void record(Commands& commands, const Shading& shading);
 
-  /// An array of quads: as many pieces as it takes, and texels where it is one.
+  /// An array of quads in one or more pieces, with texels if it is one piece.
   struct QuadStore {
     std::vector<Buffer> pieces;
     TexelView texels;
     std::uint64_t bytes() const;
     VkDeviceAddress address(std::uint32_t piece) const { return pieces[std::min<std::size_t>(piece, pieces.size() - 1)].address(); }
   };
-  /// The quads of an axis.
+  /// The quads of one axis.
   struct Quads {
     QuadStore medium, source, towards;
-    std::array<QuadStore, shader::kMostLightSlots> light;  ///< codes of light: see lightCodes_
-    std::uint32_t levels = 0;  ///< a bit for each level that is there
+    std::array<QuadStore, shader::kMostLightSlots> light;  ///< codes of light (lightCodes_)
+    std::uint32_t levels = 0;  ///< a bit for each level that exists
     std::uint32_t lightLevels = 0;
     std::uint64_t bytes() const;
   };
@@ -63,11 +65,11 @@ class GatherVolume {
   const TexelView& skips() const { return skipTexels_; }
   const TexelView& brickNumbers() const { return brickNumberTexels_; }
   const Quads& quads(int axis) const { return quads_[std::size_t(axis)]; }
-  /// Fills in what the frame has of the volume: the units of what is stored, and the levels that it reads.
+  /// Fills in the frame's constants of the volume: the units of stored values, and the levels that it reads.
   void describe(shader::GatherFrame& frame) const;
   /// Whether source terms depend on the direction to the eye.
   bool hasTowards() const { return lit_ && !viewDependent_; }
-  /// Whether blocks have source terms of their own; else all have the same albedo.
+  /// Whether blocks have their own source terms; otherwise all have the same albedo.
   bool hasColors() const;
   /// Whether voxels are classified after interpolation: quads of the finest level then hold codes of scalars.
   bool hasScalars() const;
@@ -76,11 +78,11 @@ class GatherVolume {
   int ambientChannels() const { return ambientChannels_; }
   int octaves() const { return lighting_ ? lighting_->scattering : 1; }
   bool isTinted() const { return lighting_ && lighting_->tint != glm::dvec3(1.0); }
-  /// Whether lights are scattered by surfaces at samples.
+  /// Whether surfaces are lit at samples.
   bool hasSurfaces() const { return sampleLights() > 0 && lighting_->surface > 0.0; }
   /// Whether quads are in more than one piece, of shader::kPieceBricksLog2 each.
   bool inPieces() const { return bricksPerPiece_ < firstBricks_.back(); }
-  /// TransferTable::texels(); any texels where there are no scalars.
+  /// TransferTable::texels(); arbitrary texels without scalars.
   const TexelView& transferTable() const;
 
  private:
@@ -94,7 +96,8 @@ class GatherVolume {
   QuadStore makeStore(bool needed, std::uint64_t quadBytes, VkFormat format, const char* name) const;
   void shade(Commands& commands, const Shading& shading, int level);
   void recordShading(Commands& commands, const Shading& shading);
-  /// Whether the level's blocks have source terms: scalars without light have their colours in the transfer function.
+  /// Whether the level's blocks have source terms. The colours of scalars without light come from the
+  /// transfer function.
   bool shadesLevel(int level) const;
   std::optional<shader::CodeBricks> scalarCodes(int level) const;
   void recordQuads(Commands& commands, int axis);
@@ -113,27 +116,27 @@ class GatherVolume {
   const BuiltVolume& built_;
   Pipeline shadePass_;
   Buffer frame_;  ///< shader::SetupFrame
-  Buffer brickNumbers_;  ///< by level and cell; 0 is the empty brick
-  Buffer skips_;         ///< bytes by level and cell: groups of slices to skip
+  Buffer brickNumbers_;  ///< number of the brick by level and cell; 0 is the empty brick
+  Buffer skips_;         ///< bytes by level and cell: number of groups of slices to skip
   Buffer brickCells_;    ///< ivec4: each brick's first block
   Buffer sources_;       ///< by rank: packed source term, extinction as a half
   Buffer towards_;       ///< by rank: three signed normalised bytes
   TexelView brickNumberTexels_, skipTexels_, brickCellTexels_;
   std::vector<shader::GatherLevel> levels_;
-  std::vector<std::uint32_t> firstBricks_;  ///< of each level, and the number of all
+  std::vector<std::uint32_t> firstBricks_;  ///< first brick of each level, and the total number
   std::uint32_t bricksPerPiece_ = 0;
   std::array<Quads, 3> quads_;
-  // What the source terms are of.
+  // What the source terms were made for:
   std::uint32_t shadedLevels_ = 0;  ///< a bit for each level
   std::uint32_t wantedLevels_ = 0;
   bool lit_ = false, viewDependent_ = false;
   double sourceUnit_ = 1.0;
   std::optional<Lighting> lighting_;
-  std::vector<Light> sampled_;  ///< lights whose transmittance is found at samples
-  int ambientChannels_ = 0;     ///< of light from everywhere that is found at samples; 0: there is none
+  std::vector<Light> sampled_;  ///< lights that are evaluated at samples
+  int ambientChannels_ = 0;     ///< channels of ambient light evaluated at samples; 0 if there is none
   std::optional<AmbientPass> ambient_;
-  /// 16 bits a block, in bricks: sqrt(optical depth / kOpaqueDepth) towards each light, and for each ambient channel of
-  /// -log of what part of the unshadowed light reaches it.
+  /// 16 bits a block, in bricks: sqrt(optical depth / kOpaqueDepth) towards each light, and for each ambient
+  /// channel that of -log of the fraction of the unshadowed light that reaches it.
   std::array<Buffer, shader::kMostLightSlots> lightCodes_;
   std::uint32_t lightLevels_ = 0;
   Buffer gradients_;  ///< 4 bytes a block, in bricks; empty until surfaces are lit at samples

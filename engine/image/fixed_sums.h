@@ -13,53 +13,56 @@
 
 namespace freevoxels {
 
-/// What is summed in a pixel; splat_sums.h defines the quantities. Distance is there only where an image with depth is wanted.
+/// The sums of a pixel; splat_sums.h defines the quantities. Distance exists only for images with depth.
 enum class SumChannel : int { Red = 0, Green = 1, Blue = 2, Energy = 3, OpticalDepth = 4, Distance = 5 };
 inline constexpr int kSumChannels = 6;
 
 /// Binary digits behind the point, by channel: an integer i of a channel stands for i / 2^digits.
 using SumDigits = std::array<std::int32_t, kSumChannels>;
 
-/// A value that is added to the sums is at most 2^kValueBits - 1 in its channel's unit, so that 256 of them, one a share, stay below
-/// 2^63.
+/// A value that is added to the sums is at most 2^kValueBits - 1 in its channel's unit, so that 256 values,
+/// one for each share, stay below 2^63.
 inline constexpr int kValueBits = 55;
 
 struct FixedSums {
   glm::ivec2 size{0};                ///< of the image, pixels
   glm::ivec2 first{0}, extent{0};    ///< the rectangle of the image outside of which all sums are 0
-  int channels = kSumChannels;       ///< kSumChannels, or one less: without Distance
+  int channels = kSumChannels;       ///< kSumChannels, or one less without Distance
   SumDigits digits{};
-  /// How the transmittances were computed, as far as a device's memory decides that: sums of different methods must not be added.
+  /// How the transmittances were computed, if that depends on a device's memory: sums of different methods
+  /// must not be added.
   std::string method;
   std::vector<std::int64_t> values;  ///< [channel][row of the rectangle, from the top][column]
 
   std::size_t pixelCount() const { return std::size_t(extent.x) * std::size_t(extent.y); }
   /// The value of pixel `i` of the rectangle.
   double value(SumChannel channel, std::size_t i) const;
-  /// Whether the sums of `other` may be added to these: everything but the values is equal.
+  /// Whether the sums of `other` may be added to these: everything except the values is equal.
   bool isLike(const FixedSums& other) const;
-  /// `other` must be alike.
+  /// Adds `other`, which must be addable.
   FixedSums& operator+=(const FixedSums& other);
 };
 
-/// The sums become the image's pixels, as resolve.comp does it, in double precision on the host. Normalised: alpha is
-/// 1 - exp(-optical depth) and the colour is C alpha / E; else alpha is E and the colour is C. With depth where there are distances.
+/// Resolves the sums to an image, as resolve.comp does, in double precision on the host. Normalised: alpha is
+/// 1 - exp(-optical depth) and the colour is C alpha / E; otherwise alpha is E and the colour is C. The image
+/// has depth if there are distances.
 Image resolveSums(const FixedSums& sums, bool normalised);
 
-/// A file of sums: its image, and what the header says about it.
+/// A file of sums: the sums and the header.
 struct SumsFile {
   FixedSums sums;
   ExrOptions header;  ///< metadata and matrices
 };
 
-/// An OpenEXR file whose data window is the rectangle, with two channels of unsigned 32-bit integers for every 64-bit sum
-/// ("red.high", "red.low"), without loss. Atomic. Fails with ExitCode::Output.
+/// Writes an OpenEXR file whose data window is the rectangle, with two channels of unsigned 32-bit integers
+/// for every 64-bit sum ("red.high", "red.low"), without loss. Atomic. Fails with ExitCode::Output.
 void writeSums(const std::filesystem::path& file, const FixedSums& sums, const ExrOptions& header);
 
-/// Fails with ExitCode::Input where the file is not such a file or not complete.
+/// Reads such a file. Fails with ExitCode::Input if it is not one or not complete.
 SumsFile readSums(const std::filesystem::path& file);
 
-/// Whether an existing file is an OpenEXR file with channels of sums. Fails with ExitCode::Input where it cannot be read.
+/// Whether an existing file is an OpenEXR file with channels of sums. Fails with ExitCode::Input if it cannot
+/// be read.
 bool holdsSums(const std::filesystem::path& file);
 
 }  // namespace freevoxels

@@ -1,12 +1,14 @@
 #pragma once
-// Sums of one share after the other, drawn into float targets, become the fixed-point sums of all of them.
+// Adds the sums of one share after the other, which are drawn into float targets, to the fixed-point sums of
+// all shares.
 
 #include "engine/image/fixed_sums.h"
 #include "engine/splatting/splat_pass.h"
 
 namespace freevoxels {
 
-/// What no pixel's sums exceed, in the units of splat_sums.h, from constants that every process of a distributed render knows.
+/// Upper bounds of every pixel's sums, in the units of splat_sums.h, computed from constants that every
+/// process of a distributed render knows.
 ///
 /// A voxel's e_v is at most A/s times the length of the pixel's ray in its kernel, s being the length of a lattice layer, and A is at
 /// most 1; the lengths of all kernels on a ray add up to the ray's length in the volume. So E is at most the number of layers that a
@@ -14,8 +16,8 @@ namespace freevoxels {
 /// where a voxel's light is averaged over its kernel, the surface of something with an optical depth of more than 64 a layer can have
 /// a larger E: accumulate_sums.comp then reduces C, E and the distances of that share and pixel alike, which keeps its colour.
 struct SumBounds {
-  double layers = 1.0;     ///< of voxels that a ray crosses
-  double radiance = 1.0;   ///< of a voxel's colour as it is lit
+  double layers = 1.0;     ///< number of voxel layers that a ray crosses
+  double radiance = 1.0;   ///< of a lit voxel's colour
   double emission = 0.0;   ///< radiance of a pixel by the medium's own light
   double farthest = 1.0;   ///< distance of any voxel from the eye plane, world units
 };
@@ -35,13 +37,14 @@ class AccumulatePass {
  public:
   AccumulatePass(const Device& device, bool withDistance);
 
-  /// Sets all sums to 0. `layout` says what there will be; its values are not read.
+  /// Sets all sums to 0. `layout` describes the sums; its values are not read.
   void recordClear(Commands& commands, FixedSums layout);
-  /// Notes which tiles of the image the splats of a draw chunk reach.
+  /// Marks the tiles of the image that the splats of a draw chunk reach.
   void recordMarks(Commands& commands, const Buffer& splats, const BlockList& list, std::uint32_t chunk);
-  /// Adds the share's sums that are in the marked tiles of the targets, and sets those to 0. The targets are in layout GENERAL.
+  /// Adds the share's sums in the marked tiles of the targets, and sets those to 0. The targets are in layout
+  /// GENERAL.
   void record(Commands& commands, const FrameConstants& frame, const SplatTargets& targets);
-  /// When the recorded commands are done. Waits.
+  /// Reads the sums back, after the recorded commands are complete. Blocks until the copy is complete.
   FixedSums read() const;
 
  private:
@@ -51,7 +54,7 @@ class AccumulatePass {
   FixedSums layout_;
   Buffer sums_;      ///< int64 [channel][pixel of the rectangle]
   Buffer overflow_;  ///< uint
-  Buffer reached_;   ///< uint a tile of the image: whether it is in `tiles_`; all 0 between shares
+  Buffer reached_;   ///< uint for each tile of the image: whether it is in `tiles_`; all 0 between shares
   Buffer tiles_;     ///< uint: the tiles that the share reaches
   Buffer arguments_; ///< shader::TileArguments
 };

@@ -1,4 +1,4 @@
-// The frame's constants: the camera's rays in index space, relative to the volume's middle, and how splats
+// The constants of a frame: the camera's rays in index space, relative to the volume's middle, and how splats
 // are drawn.
 
 #include <algorithm>
@@ -49,12 +49,11 @@ struct LengthSquared {
   glm::dvec3 linear, squares;
 };
 
-/// No splat of the volume reaches further than this from its centre, in pixels. For a perspective camera a
-/// kernel at distance t reaches at most R |K0 - x K2| / (t - R |K2|) along x (splat_projection.glsl has the
-/// bound itself).
+/// Upper bound of a splat's extent from its centre, in pixels. For a perspective camera a kernel at distance
+/// t reaches at most R |K0 - x K2| / (t - R |K2|) along x (splat_projection.glsl has the bound).
 double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions,
                          const DetailRule& detail) {
-  const double widened = kFootprintRadius;  // a widened footprint grows by no more than this
+  const double widened = kFootprintRadius;  // a widened footprint is larger by at most this
   const glm::dmat3 rows = glm::transpose(toPixel);
   if (rays.orthographic)
     return kFootprintRadius * Block{.level = detail.coarsest}.edge() *
@@ -68,14 +67,14 @@ double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::
     for (double end : {box.low[axis], box.high[axis]})
       steepest = std::max(steepest, glm::length(rows[axis] - end * rows[2]));
   const double voxels = kFootprintRadius * steepest / clearance;
-  // The edge of a block that is drawn is at most this times its distance.
+  // The edge of a drawn block is at most this times its distance.
   const double steepestBlock = detail.coarsest > 0 ? kFootprintRadius * detail.edgePerDistance : 0.0;
   const double blocks = steepestBlock * steepest / (1.0 - steepestBlock * glm::length(rows[2]));
   return std::max(voxels, blocks) + widened;
 }
 
-/// No ray through the volume has more light of its own; without it, no more than its colours, which are at
-/// most 1.
+/// Upper bound of the light of any ray through the volume: that of its emission, or without emission of its
+/// colours, which are at most 1.
 double brightestRay(const DeviceVolume& volume) {
   double longest = 0.0;
   for (const glm::dvec3 signs :
@@ -181,7 +180,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   frame.quads = 2.0 * reach > largestPoint || widest > double(device.limits().maxViewportDimensions[0]) ||
                 widest > double(device.limits().maxViewportDimensions[1]);
   frame.viewportMargin = frame.quads ? 0.0f : float(margin);
-  // Around the middle of the image, where nothing large cancels in 32-bit floats.
+  // Relative to the middle of the image, so that no large terms cancel in 32-bit floats.
   const glm::dvec2 imageMiddle = 0.5 * glm::dvec2(settings.size);
   const glm::dvec3 rayX = rays.directionX, rayY = rays.directionY;
   const glm::dvec3 ray = rays.direction + imageMiddle.x * rayX + imageMiddle.y * rayY;

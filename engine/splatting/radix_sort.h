@@ -1,5 +1,5 @@
 #pragma once
-// Sorting of key-value pairs on the device: least significant digit first, eight bits a pass, stable.
+// Stable radix sort of key-value pairs on the device, from the least significant digit, eight bits a pass.
 
 #include <cstdint>
 
@@ -8,16 +8,16 @@
 
 namespace freevoxels {
 
-/// Pairs to sort, and the room that it takes: 16 bytes a pair.
+/// The pairs to sort, and temporary memory: 16 bytes a pair.
 struct SortPairs {
-  Buffer count;                   ///< one uint, at most `capacity`; the device may write it
+  Buffer count;                   ///< one uint: number of pairs, at most `capacity`; the device may write it
   Buffer keys, values;            ///< uint; sorted in place
   Buffer spareKeys, spareValues;  ///< uint
   Buffer offsets;                 ///< uint [kSortGroups][kSortDigits]
-  std::uint64_t capacity = 0;     ///< pairs
+  std::uint64_t capacity = 0;     ///< largest number of pairs
 };
 
-/// `capacity` of 0 counts as 1.
+/// Allocates the buffers. A `capacity` of 0 counts as 1.
 SortPairs makeSortPairs(const Device& device, std::uint64_t capacity);
 
 /// COMPUTE radix_count.comp, radix_scan.comp, radix_scatter.comp, for each of a key's digits

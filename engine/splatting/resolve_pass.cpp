@@ -12,7 +12,7 @@ ResolvePass::ResolvePass(const Device& device, bool withDistance)
       pipeline_(makeComputePipeline(device, shaders::resolve, {withDistance ? 1u : 0u})) {}
 
 void ResolvePass::record(Commands& commands, const FrameConstants& frame, const SplatTargets& targets) const {
-  // Where there is no T or no distance, it is not read: the other one takes its place.
+  // Without T or without distances the binding is not read; the other target is bound in its place.
   const std::array<Binding, 3> images{
       &targets.colorEnergy, targets.opticalDepth.exists() ? &targets.opticalDepth : &targets.distance,
       withDistance_ ? &targets.distance : &targets.opticalDepth};

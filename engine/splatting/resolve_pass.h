@@ -1,12 +1,12 @@
 #pragma once
-// Sums to picture. Additive: Subr et al. 2007, Eq. 10 and 11; normalised: resolve.comp.
+// From the sums of a frame to its image. Additive: Subr et al. 2007, Eq. 10 and 11; normalised: resolve.comp.
 
 #include "engine/splatting/splat_pass.h"
 
 namespace freevoxels {
 
-/// COMPUTE resolve.comp, in place: colorEnergy becomes premultiplied RGBA, distance the mean distance. A
-/// sorted frame without distances needs none.
+/// COMPUTE resolve.comp, in place: colorEnergy becomes premultiplied RGBA, distance the mean distance. Not
+/// needed for a sorted frame without distances.
 class ResolvePass {
  public:
   ResolvePass(const Device& device, bool withDistance);

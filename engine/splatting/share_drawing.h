@@ -10,20 +10,21 @@ namespace freevoxels {
 
 class ShareDrawing {
  public:
-  /// All frames have to be of one volume.
+  /// All frames must be of the same volume.
   ShareDrawing(const Device& device, const BuiltVolume& built, bool withDistance)
       : device_(device), withDistance_(withDistance), list_(device, built), accumulate_(device, withDistance) {}
 
   struct Inputs {
     SplatPass& splats;
     SplatPass::Inputs drawing;  ///< all blocks of the frame; none may be left out as hidden by others
-    std::optional<int> wholeLevel;  ///< where they are all blocks of a level
+    std::optional<int> wholeLevel;  ///< the level, if these are all blocks of a level
     const FrameConstants& frame;
     const SplatTargets& targets;
     FixedSums layout;           ///< the image, the rectangle and the digits; without values
   };
-  /// Submits `commands`, which make the blocks' list, with what is recorded here. Then draws the shares of `part` one after the other:
-  /// each into cleared float targets, in the order of the list, and from there into the sums. Waits.
+  /// Submits `commands`, which make the list of blocks, together with the commands recorded here. Then draws
+  /// the shares of `part` one after the other: each into cleared float targets in the order of the list, from
+  /// which it is added to the sums. Blocks until the device is done.
   FixedSums draw(Commands& commands, Inputs inputs, const SharePart& part, std::vector<StageTime>& times, const Progress& progress);
 
   bool hasDistance() const { return withDistance_; }

@@ -16,21 +16,22 @@ namespace freevoxels {
 /// COMPUTE share_key.comp and those of RadixSort
 class ShareList {
  public:
-  /// Deals the volume's chunks to the shares. Reads back the lists of blocks that cover chunks.
+  /// Distributes the volume's chunks to the shares. Reads back the lists of blocks that cover chunks.
   ShareList(const Device& device, const BuiltVolume& built);
 
-  /// Groups the first `chunkCount` draw chunks of `drawn`. Within a share blocks keep their order. Where they are all blocks of a
-  /// level, `wholeLevel`, they stay grouped for the frames that follow.
+  /// Groups the blocks of the first `chunkCount` draw chunks of `drawn` by share. Within a share blocks keep
+  /// their order. If they are all blocks of a level, `wholeLevel`, they stay grouped for later frames.
   void record(Commands& commands, const DeviceVolume& volume, const BlockList& drawn, std::uint32_t chunkCount,
               std::optional<int> wholeLevel);
 
-  /// When the recorded commands are done: makes the draw chunks of these shares, which chunks() has afterwards. Waits.
+  /// After the recorded commands are complete: makes the draw chunks of these shares, which chunks() then
+  /// has. Blocks until the device is done.
   void select(const SharePart& part);
   /// The draw chunks of the selected shares, one share behind the other.
   const BlockList& chunks() const { return selected_; }
   /// uint: the indices of all blocks, grouped by share, to which the draw chunks refer.
   const Buffer& blocks() const { return pairs_.values; }
-  /// Of each selected share that has blocks, in ascending order of the shares: how many draw chunks it has.
+  /// The number of draw chunks of each selected share that has blocks, in ascending order of the shares.
   const std::vector<std::uint32_t>& chunksOfShares() const { return chunksOfShares_; }
 
  private:
@@ -42,9 +43,9 @@ class ShareList {
   SortPairs pairs_;
   Buffer frame_;        ///< shader::ShareFrame
   Buffer shares_;       ///< uint: the share of each chunk, ChunkShares::shares
-  Buffer counts_;       ///< uint [kShares]: drawn blocks
-  std::optional<int> recordedLevel_, groupedLevel_;  ///< whose blocks are grouped, where they are a level's
-  BlockList selected_;  ///< draw chunks alone
+  Buffer counts_;       ///< uint [kShares]: number of drawn blocks
+  std::optional<int> recordedLevel_, groupedLevel_;  ///< the level whose blocks are grouped, if they are those of a level
+  BlockList selected_;  ///< draw chunks only
   std::vector<std::uint32_t> chunksOfShares_;
 };
 

@@ -1,7 +1,8 @@
 #pragma once
-// The static distribution of an octree's blocks among the processes of a distributed render: Subr et al. 2007, Section 4.4. Blocks are
-// dealt in chunks, level by level along the Hilbert curve, to a fixed number of shares (kShares, engine/storage/hilbert.h), whatever
-// the number of processes. Process I of N draws the shares I, I + N, I + 2N and so on.
+// The static distribution of an octree's blocks among the processes of a distributed render: Subr et al.
+// 2007, Section 4.4. Blocks are distributed in chunks, level by level along the Hilbert curve, to a fixed
+// number of shares (kShares, engine/storage/hilbert.h), whatever the number of processes. Process I of N
+// draws the shares I, I + N, I + 2N and so on.
 
 #include <algorithm>
 #include <cstdint>
@@ -13,8 +14,8 @@
 
 namespace freevoxels {
 
-/// A chunk of level l is what a block of level l + kChunkLevels covers: 8 x 8 x 8 blocks of level l. Levels so near to the top that
-/// there is no such block have one chunk, which the top block covers.
+/// A chunk of level l is the part that a block of level l + kChunkLevels covers: 8 x 8 x 8 blocks of level l.
+/// Levels so near to the top that there is no such block have one chunk, which the top block covers.
 inline constexpr int kChunkLevels = 3;
 
 /// The level of the blocks that cover the chunks of `level`.
@@ -22,14 +23,14 @@ inline int chunkLevel(const HierarchyLayout& hierarchy, int level) {
   return std::min(level + kChunkLevels, hierarchy.top());
 }
 
-/// The share of every chunk that holds anything.
+/// The share of every occupied chunk.
 struct ChunkShares {
-  std::vector<std::uint32_t> first;   ///< by level: the place of the level's first chunk in `shares`
+  std::vector<std::uint32_t> first;   ///< by level: index of the level's first chunk in `shares`
   std::vector<std::uint32_t> shares;  ///< the chunks of a level in ascending order of the indices of the blocks that cover them
 };
 
-/// `occupied[level]` has the indices (HierarchyLayout::indexOf) of the level's blocks that hold anything, ascending; only the levels
-/// that chunkLevel returns are read.
+/// `occupied[level]` has the ascending indices (HierarchyLayout::indexOf) of the level's occupied blocks;
+/// only the levels that chunkLevel returns are read.
 ChunkShares dealChunks(const HierarchyLayout& hierarchy, std::span<const std::vector<std::uint32_t>> occupied);
 
 /// The shares that one of `count` processes draws. 0 <= index < count <= kShares.

@@ -1,12 +1,12 @@
 #pragma once
-// The sums of a frame before the resolve: Subr et al. 2007, Section 4.1, Eq. 10. Sums of any parts of a
-// volume are added and resolved once.
+// The sums of a frame before the resolve: Subr et al. 2007, Section 4.1, Eq. 10. Sums of parts of a volume
+// are added and then resolved once.
 
 #include <glm/glm.hpp>
 
 namespace freevoxels {
 
-/// The sums of one pixel; lengths are of the world. Additive over any partition of the voxels.
+/// The sums of one pixel, with world lengths. They are additive over any partition of the voxels.
 struct SplatSums {
   glm::dvec3 color{0.0};  ///< C
   double energy = 0.0;    ///< E
