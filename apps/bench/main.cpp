@@ -101,7 +101,7 @@ Results whole(const Device& device, const Extent& extent) {
   Results results;
   if (!extent.quick) {  // a twentieth of more than 512³ voxels, and all of 512³
     results.push_back(
-        bench::wholeRender(device, {.input = "procedural:plume", .grid = {}, .resolution = 640}, false, 1));
+        bench::wholeRender(device, {.input = "procedural:plume", .grid = {}, .resolution = glm::ivec3(640)}, false, 1));
     results.push_back(bench::wholeScan(device, 512, false, 1));
   }
   for (const bool lit : {false, true}) {
