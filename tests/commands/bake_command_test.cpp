@@ -11,7 +11,8 @@ namespace freevoxels::test {
 namespace {
 
 const std::filesystem::path kData = FREEVOXELS_DATA_DIR;
-constexpr double kSamePicture = 60.0;  // dB
+constexpr double kSamePicture = 60.0;       // dB
+constexpr double kSameFromAfar = 55.0;  // of levels of the file in place of levels of the voxels, in dB
 
 class BakeCommand : public CommandTest {
  protected:
@@ -88,7 +89,7 @@ TEST_F(BakeCommand, ACoarserLevelIsDrawnWhereItShowsTheSameOrWhereMemoryIsShort)
   expectSuccess(run("render procedural:cloud @original.exr --resolution 128" + options));
   expectSuccess(run("render @a.fvx @far.exr --timings @t.json" + options));
   EXPECT_LT(nlohmann::json::parse(readBytes(folder / "t.json"))["voxels"], 128 * 128 * 128 / 7);
-  EXPECT_GE(psnr(picture("far.exr"), picture("original.exr")), kSamePicture);
+  EXPECT_GE(psnr(picture("far.exr"), picture("original.exr")), kSameFromAfar);
   const ProgramResult limited = run("render @a.fvx @near.exr --size 64 --unlit --memory-limit 4");
   EXPECT_EQ(limited.exitCode, 0) << limited.err;
   EXPECT_NE(limited.err.find("of its resolution"), std::string::npos) << limited.err;
