@@ -10,6 +10,7 @@
 #include "apps/freevoxels/share_group.h"
 #include "engine/core/error.h"
 #include "engine/octree/volume_limits.h"
+#include "engine/storage/baked_volume.h"
 #include "engine/volume/content_hash.h"
 #include "engine/vulkan/pipeline.h"
 
@@ -102,9 +103,9 @@ void FrameSeries::draw(std::span<const Frame> frames) {
 void FrameSeries::drawFilm(std::span<const Frame> frames) {
   const std::vector<std::string> inputs = volumesOf(frames);
   VolumesAhead volumes(inputs, [this, turn = int(framesOfFirstVolume(frames))](const std::string& input) {
-    // Of a baked volume nothing finer is read than what shows.
+    // Of a baked volume nothing finer is read than is needed.
     const SceneOptions scene = sceneOf(input);
-    const int level = scene.finestLevelSeen(double(options_.frameSettings().lod), turn);
+    const int level = scene.finestLevelNeeded(double(options_.frameSettings().lod), turn);
     return std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level));
   });
   std::size_t failed = 0;
@@ -143,10 +144,11 @@ void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<co
   const int levels = file ? file->levels() : 1;
   const RunReport before = report_;
   const std::size_t drawn = drawn_;
-  for (int level = scene.finestLevelSeen(double(options_.frameSettings().lod), int(frames.size()));; ++level) {
+  for (int level = scene.finestLevelNeeded(double(options_.frameSettings().lod), int(frames.size()));; ++level) {
     try {
       return drawVolume(std::move(volume), frames);
     } catch (const Error& error) {
+      if (file) level = std::max(level, finestLevel(*file, maximumVoxels(device_)));  // which is the one that was opened
       if (error.code() != ExitCode::OutOfMemory || level + 1 >= levels) throw;
       spdlog::warn("{}; drawing it at 1/{} of its resolution", error.what(), 1 << (level + 1));
     }

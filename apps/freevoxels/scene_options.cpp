@@ -94,7 +94,7 @@ Volume SceneOptions::readVolume(std::uint64_t maximumVoxels, int level) const {
   return input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.albedoGrid}, level);
 }
 
-int SceneOptions::finestLevelSeen(double lod, int frames) const {
+int SceneOptions::finestLevelNeeded(double lod, int frames) const {
   const std::shared_ptr<const fvx::FvxFile> baked = input.baked();
   if (!baked) return 0;
   const Volume outline = bakedOutline(*baked);
@@ -104,7 +104,8 @@ int SceneOptions::finestLevelSeen(double lod, int frames) const {
   int level = baked->levels() - 1;
   for (const Camera& one : cameras(outline, classified, frames))
     level = std::min(level, detailRule(hierarchy, pixelRays(one, camera.size, outline.indexToWorld), camera.size, lod).finest);
-  return level;
+  // One level finer than what is drawn, as the footprints of what is drawn are those of the opened level's voxels.
+  return std::max(level - 1, 0);
 }
 
 std::vector<Camera> SceneOptions::cameras(const Volume& volume, const Classification& classified, int frames) const {

@@ -47,9 +47,9 @@ struct SceneOptions {
   SceneOptions withOutputs(std::vector<std::string> files) const;
   /// Reads the volume, with the grids that the options need; of a baked one an octree level, which other volumes do not have.
   Volume readVolume(std::uint64_t maximumVoxels, int level = 0) const;
-  /// The level of a baked volume from which on all is drawn in frames with this level of detail (FrameSettings::lod), so that nothing
-  /// of a finer one has to be read. 0 of other volumes, and where the levels are of scalars that are classified by a transfer function.
-  int finestLevelSeen(double lod, int frames) const;
+  /// The level of a baked volume that frames with this level of detail (FrameSettings::lod) need: one finer than the finest of which
+  /// anything is drawn. 0 of other volumes, and where the levels are of scalars that are classified by a transfer function.
+  int finestLevelNeeded(double lod, int frames) const;
   /// As CameraOptions::resolve; a baked volume's content is read from its file, so that it does not depend on the level.
   std::vector<Camera> cameras(const Volume& volume, const Classification& classification, int frames = 1) const;
   /// Reads what else there is to read.

@@ -22,7 +22,6 @@ class FvxTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
-        cls.path = lambda name: os.path.join(cls.folder.name, name)
         run("generate", "cloud", cls.path("cloud.vdb"), "--resolution", "48")
         run("bake", cls.path("cloud.vdb"), cls.path("kept.fvx"), "--keep-scalars")
         run("bake", cls.path("cloud.vdb"), cls.path("small.fvx"), "--density-scale", "30")
@@ -34,6 +33,10 @@ class FvxTest(unittest.TestCase):
                 for y in range(low[1], high[1] + 1):
                     for x in range(low[0], high[0] + 1):
                         cls.densities[x, y, z] = item.value
+
+    @classmethod
+    def path(cls, name):
+        return os.path.join(cls.folder.name, name)
 
     @classmethod
     def tearDownClass(cls):
