@@ -99,6 +99,8 @@ std::vector<Frame> SequenceOptions::plan(SceneOptions& scene) const {
     hasPattern = true;
     for (NumberedVolume& volume : framesOf(input, frames)) volumes.push_back(std::move(volume));
   }
+  for (std::size_t i = 1; i < volumes.size(); ++i)
+    if (volumes[i].file == volumes[i - 1].file) fail(ExitCode::Usage, "'{}' is named twice: name it once", volumes[i].file);
   if (frames && !hasPattern) fail(ExitCode::Usage, "--frames chooses among the files of a pattern: name one, as in smoke_####.vdb");
 
   const auto placed = [&](const std::string& file) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/core/input_file.h"
 
 namespace freevoxels {
 
@@ -51,11 +52,7 @@ nlohmann::json parseJson(std::string_view kind, std::string_view name, std::stri
 }
 
 nlohmann::json readJson(std::string_view kind, const fs::path& file) {
-  std::error_code error;
-  if (!fs::exists(file, error))
-    fail(ExitCode::Input, "there is no {} '{}'; check the name", kind, file.string());
-  if (!fs::is_regular_file(file, error))
-    fail(ExitCode::Input, "{} '{}' is not a file; name a .json file", kind, file.string());
+  checkInputFile(kind, file);
   std::ifstream stream(file);
   if (!stream) fail(ExitCode::Input, "cannot open {} '{}'; check its permissions", kind, file.string());
   const std::string text(std::istreambuf_iterator<char>(stream), {});

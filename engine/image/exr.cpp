@@ -21,6 +21,7 @@
 
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
+#include "engine/core/input_file.h"
 #include "engine/image/exr_file.h"
 #include "engine/image/image.h"
 
@@ -142,9 +143,7 @@ void writeExr(const std::filesystem::path& file, const Image& image, const ExrOp
 }
 
 Image readExr(const std::filesystem::path& file, std::int64_t maximumPixels) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    fail(ExitCode::Input, "cannot read '{}': there is no such file; check its name", file.string());
+  checkInputFile("image", file);
   try {
     return decode(file, maximumPixels);
   } catch (const Error&) {

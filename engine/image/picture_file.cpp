@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "engine/core/error.h"
+#include "engine/core/input_file.h"
 #include "engine/image/image.h"
 
 namespace freevoxels {
@@ -31,9 +32,7 @@ Image cropped(const Image& image, const PixelRectangle& part) {
 
 Image readPicture(const std::filesystem::path& file) {
   constexpr std::string_view kPng = "\x89PNG", kExr = "\x76\x2f\x31\x01";
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    fail(ExitCode::Input, "cannot read '{}': there is no such file; check its name", file.string());
+  checkInputFile("image", file);
   std::array<char, 4> start{};
   std::ifstream stream(file, std::ios::binary);
   stream.read(start.data(), start.size());

@@ -20,6 +20,7 @@
 #include "engine/core/atomic_file.h"
 #include "engine/core/checked_file.h"
 #include "engine/core/error.h"
+#include "engine/core/input_file.h"
 #include "engine/image/display.h"
 #include "engine/image/srgb.h"
 
@@ -236,9 +237,7 @@ void writeFile(const std::filesystem::path& file, const std::function<void(const
 }  // namespace
 
 Image readPng(const std::filesystem::path& file) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(file, error))
-    fail(ExitCode::Input, "cannot read '{}': there is no such file; check its name", file.string());
+  checkInputFile("image", file);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
   if (!stream)
     fail(ExitCode::Input, "cannot read '{}': {}; check its permissions", file.string(), std::strerror(errno));

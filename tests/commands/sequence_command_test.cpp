@@ -21,7 +21,7 @@ class SequenceCommand : public CommandTest {
   void write(const std::string& name, float factor) const {
     Volume cloud = makeProcedural("cloud", 12);
     Volume volume = makeVolume(cloud.dimensions, cloud.indexToWorld, [&](int x, int y, int z) {
-      const float value = cloud.at({x, y, z});
+      const float value = cloud.scalars.at({x, y, z});
       return value == kInactiveVoxel ? value : factor * value;
     });
     writeVdb(folder / name, volume, "density");
@@ -113,7 +113,8 @@ TEST_F(SequenceCommand, WhatMakesNoSenseIsRefusedBeforeAnyWork) {
   expectCleanRefusal("render @s1.vdb @i.png --format exr", ExitCode::Usage, "--format");
   expectCleanRefusal("render @s1.vdb --format gif", ExitCode::Usage, "gif");
   expectCleanRefusal("render @none_#.vdb @i#.png", ExitCode::Input, "none_#.vdb");
-  expectCleanRefusal("render @s1.vdb @s2.vdb @i#.png @s2.vdb", ExitCode::Usage, "same file");
+  expectCleanRefusal("render @s1.vdb @s2.vdb @i#.png @s2.vdb", ExitCode::Usage, "named twice");
+  expectCleanRefusal("render @s1.vdb @s2.vdb @i#.png @s1.vdb", ExitCode::Usage, "same file");
 }
 
 TEST_F(SequenceCommand, ProgressSaysHowMuchTimeIsLeft) {

@@ -1,3 +1,5 @@
+#include <ImfChannelList.h>
+#include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>

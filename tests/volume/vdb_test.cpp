@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cmath>
+#include <fstream>
 #include <glm/gtc/matrix_transform.hpp>
 #include <iostream>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <thread>
@@ -444,6 +447,37 @@ TEST_F(Vdb, ThreadsReadAtTheSameTimeWithoutDisturbingEachOther) {
   EXPECT_EQ(testing::internal::GetCapturedStdout(), std::string(100, '.')) << "this program's own output is lost";
   EXPECT_EQ(read, 100);
   EXPECT_EQ(refused, 100);
+}
+
+std::size_t openDescriptors() {
+  return std::size_t(std::distance(fs::directory_iterator("/proc/self/fd"), fs::directory_iterator()));
+}
+
+/// Resident in memory.
+std::size_t residentBytes() {
+  std::size_t all = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> all >> resident;
+  return resident * std::size_t(sysconf(_SC_PAGESIZE));
+}
+
+TEST_F(Vdb, TwoHundredVolumesInOneProcessLeaveMemoryAndDescriptorsFlat) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "the address sanitizer keeps freed memory";
+#endif
+  writeVdb(file, makeProcedural("cloud", 40), "density");
+  const std::string broken = (folder / "broken.vdb").string(), whole = test::readBytes(file);
+  test::writeBytes(broken, whole.substr(0, whole.size() / 2));
+  const auto open = [&](int times) {
+    for (int i = 0; i < times; ++i) {
+      EXPECT_GT(read().activeVoxels, 0u);
+      expectRefusal([&] { readVdb(broken, "", kPlenty); }, ExitCode::Input, {"broken.vdb"});
+    }
+  };
+  open(20);  // what is allocated once
+  const std::size_t descriptors = openDescriptors(), bytes = residentBytes();
+  open(180);
+  EXPECT_EQ(openDescriptors(), descriptors);
+  EXPECT_LT(residentBytes(), bytes + (std::size_t(8) << 20));
 }
 
 }  // namespace
