@@ -48,11 +48,15 @@ class DeviceMemory {
   DeviceMemory(const Device& device, const VkMemoryRequirements& needs, MemoryUse use, bool deviceAddress);
   VkDeviceMemory get() const { return memory_.get(); }
   /// Can be mapped, and needs no flushing.
-  bool hostCoherent() const { return hostCoherent_; }
+  bool hostCoherent() const { return (properties_ & kHostCoherent) == kHostCoherent; }
+  /// And the host reads it at the speed of its own memory, not past its caches (write-combined).
+  bool hostCached() const { return hostCoherent() && (properties_ & VK_MEMORY_PROPERTY_HOST_CACHED_BIT) != 0; }
 
  private:
   MemoryClaim claim_;  // until the memory is freed, or could not be allocated
-  bool hostCoherent_ = false;
+  static constexpr VkMemoryPropertyFlags kHostCoherent =
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  VkMemoryPropertyFlags properties_ = 0;
   OwnedMemory memory_;
 };
 
@@ -68,6 +72,8 @@ class Buffer {
   VkDeviceAddress address() const { return address_; }
   /// Null where the memory is not mapped.
   std::byte* mapped() const { return mapped_; }
+  /// The same for reading: null as well where that would be slow, so that a copy into MemoryUse::Readback is better.
+  const std::byte* readable() const { return memory_.hostCached() ? mapped_ : nullptr; }
 
  private:
   DeviceMemory memory_;

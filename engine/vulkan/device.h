@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <span>
@@ -17,6 +18,7 @@
 
 namespace freevoxels {
 
+class Queue;
 struct PipelineStore;
 
 struct DeviceDescription {
@@ -25,7 +27,9 @@ struct DeviceDescription {
   std::string type;  ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
   std::string uuid;  ///< 8-4-4-4-12 hexadecimal digits
   std::string driver;
-  std::uint64_t memoryBytes = 0;        ///< of the largest device-local heap; of a CPU three quarters of its memory
+  /// That this process may use of the largest device-local heap: all of it, or where the driver knows how much other
+  /// processes use (VK_EXT_memory_budget) what these leave. Of a CPU three quarters of its memory.
+  std::uint64_t memoryBytes = 0;
   std::vector<std::string> rejections;  ///< why it cannot be used; empty if it can
 };
 
@@ -36,17 +40,19 @@ class Device {
  public:
   /// `selector`: an index, UUID or (part of a) name; empty prefers a discrete GPU, then any GPU, then a CPU
   /// device. Fails with ExitCode::Device and the reason why each device was rejected. Of more than
-  /// `memoryLimit` bytes nothing is allocated. `extensions` are enabled beside the engine's own.
+  /// `memoryLimit` bytes nothing is allocated. `extensions` are enabled beside the engine's own. Compiled pipelines of a
+  /// GPU are kept in a file in `cacheFolder` (PipelineCache), unless that is empty.
   Device(const Instance& instance, std::string_view selector,
          std::uint64_t memoryLimit = std::numeric_limits<std::uint64_t>::max(),
-         std::span<const char* const> extensions = {});
+         std::span<const char* const> extensions = {}, const std::filesystem::path& cacheFolder = {});
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
   VkDevice handle() const { return device_; }
   VkPhysicalDevice physical() const { return physical_; }
-  VkQueue queue() const { return queue_; }
+  /// Which all threads that use the device share.
+  Queue& queue() const { return *queue_; }
   std::uint32_t queueFamily() const { return queueFamily_; }
   /// Bits that a timestamp of the queue has.
   std::uint32_t timestampBits() const { return timestampBits_; }
@@ -58,7 +64,8 @@ class Device {
     return std::min({std::uint64_t(limits().maxStorageBufferRange), std::uint64_t(limits().maxTexelBufferElements) * texelBytes,
                      std::uint64_t(maximumAllocation_)});
   }
-  /// Bytes that may be allocated in all: the device's, or fewer where a limit is set.
+  /// Bytes that may be allocated in all: what the device had for this process when it was opened, or fewer where a limit
+  /// is set.
   std::uint64_t memoryBytes() const { return std::min(description_.memoryBytes, memoryLimit_); }
   /// Of these, what is not allocated now, and the most that ever was.
   std::uint64_t availableBytes() const { return memoryBytes() - std::min(memoryBytes(), allocated_.load()); }
@@ -90,7 +97,7 @@ class Device {
   mutable std::atomic<std::uint64_t> allocated_ = 0, peak_ = 0;
   std::uint32_t queueFamily_ = 0, timestampBits_ = 0;
   VkDevice device_ = VK_NULL_HANDLE;
-  VkQueue queue_ = VK_NULL_HANDLE;
+  std::unique_ptr<Queue> queue_;
   std::unique_ptr<PipelineStore> pipelines_;
 };
 
