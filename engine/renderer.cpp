@@ -40,11 +40,13 @@ struct Renderer::State {
   std::optional<GatherVolume> gatherVolume;
   std::optional<GatherPass> gather;
   std::optional<LightPass> lights;
+  TargetPool targetPool;
+  TargetReadback colorReadback, distanceReadback;
   std::vector<StageTime> buildTimes, frameTimes;
 
   struct Frame {
     FrameConstants constants;
-    SplatTargets targets;
+    std::shared_ptr<const SplatTargets> targets;
   };
   VolumeMemory memoryOfVolume() const;
   const BuiltVolume& builtWithBlocks(const Progress& progress = {});
@@ -56,10 +58,11 @@ struct Renderer::State {
   FrameConstants constantsOf(const Camera& camera, const FrameSettings& settings, const Progress& progress);
   Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
                      const Progress& progress = {});
-  SplatTargets recordGather(Commands& commands, const Camera& camera, const FrameSettings& settings,
-                            const Progress& progress);
-  SplatTargets recordImage(Commands& commands, const Camera& camera, const FrameSettings& settings,
-                           const Progress& progress);
+  void prepareGather(const GatherVolume::Shading& shading, const Progress& progress);
+  std::shared_ptr<const SplatTargets> recordGather(Commands& commands, const Camera& camera,
+                                                   const FrameSettings& settings, const Progress& progress);
+  std::shared_ptr<const SplatTargets> recordImage(Commands& commands, const Camera& camera,
+                                                  const FrameSettings& settings, const Progress& progress);
 };
 
 VolumeMemory Renderer::State::memoryOfVolume() const {
@@ -122,7 +125,7 @@ void Renderer::State::recordDrawing(Commands& commands, const Frame& frame, cons
     lastDrawn = &built.lists.of(lastLevel, built.visible);
     drawing.visible = lastDrawn;
     drawing.chunkCount = lastDrawn->chunkCount;
-    splats->record(commands, drawing, constants, frame.targets);
+    splats->record(commands, drawing, constants, *frame.targets);
     return;
   }
   if (!cutter) cutter.emplace(device, tableSettings.code);
@@ -137,12 +140,12 @@ void Renderer::State::recordDrawing(Commands& commands, const Frame& frame, cons
   cutter->record(commands, inputs);
   lastDrawn = drawing.visible = &cutter->blocks();
   drawing.chunkCount = lastDrawn->chunkCount / 2;
-  splats->record(commands, drawing, constants, frame.targets);
+  splats->record(commands, drawing, constants, *frame.targets);
   if (constants.cull.hiddenDepth == 0.0) return;
-  cutter->recordDeferred(commands, inputs, frame.targets.colorEnergy, frame.targets.opticalDepth);
+  cutter->recordDeferred(commands, inputs, frame.targets->colorEnergy, frame.targets->opticalDepth);
   drawing.firstChunk = drawing.chunkCount;
   drawing.continued = true;
-  splats->record(commands, drawing, constants, frame.targets);
+  splats->record(commands, drawing, constants, *frame.targets);
 }
 
 /// How lights are shadowed, if that is left to the volume and the device.
@@ -197,13 +200,14 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
     resolve = std::make_unique<ResolvePass>(device, settings.depth);
   }
   if (sorted && !sort) sort = std::make_unique<DepthSort>(device, built.volume);
-  Frame frame{.constants = constantsOf(camera, settings, progress), .targets = makeTargets(device, settings)};
+  Frame frame{.constants = constantsOf(camera, settings, progress),
+              .targets = targetPool.take(device, settings, sorted ? TargetKind::Image : TargetKind::Sums)};
   if (sorted) sort->record(commands, built.volume, built.visible, camera);
   const AttenuationTable* read = nullptr;
   if (frame.constants.readsTable())
     read = frame.constants.readsLevels() ? &tableWithLevels(progress) : &sweptTable(progress);
   if (settings.lighting)
-    frame.constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, false, frameTimes);
+    frame.constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, false, frameTimes, progress);
   CullRule& cull = frame.constants.cull;
   if (cull.hiddenDepth > 0.0 &&
       !canHide(tableSettings, largestDepths, glm::dmat3(built.volume.indexToWorld), cull.hiddenDepth))
@@ -212,9 +216,27 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
   return frame;
 }
 
+/// What the gather keeps of the volume for further frames is made by a submission of its own, so that a frame that is
+/// abandoned while its image is drawn leaves it complete.
+void Renderer::State::prepareGather(const GatherVolume::Shading& shading, const Progress& progress) {
+  try {
+    if (!gatherVolume) gatherVolume.emplace(device, hostVolume, classification, built, frameTimes);
+    gatherVolume->prepare(shading, frameTimes);
+    Commands commands(device);
+    gatherVolume->record(commands, shading);
+    if (commands.empty()) return;
+    commands.submitAndWait(progress);
+    addTimes(frameTimes, commands.times());
+  } catch (...) {
+    gatherVolume.reset();
+    throw;
+  }
+}
+
 /// The image in the targets, without their optical depth.
-SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& camera, const FrameSettings& wanted,
-                                           const Progress& progress) {
+std::shared_ptr<const SplatTargets> Renderer::State::recordGather(Commands& commands, const Camera& camera,
+                                                                  const FrameSettings& wanted,
+                                                                  const Progress& progress) {
   frameTimes.clear();
   lastDrawn = nullptr;
   lastLackedRays = false;
@@ -227,7 +249,7 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
     builtWithBlocks(progress);
     constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
   }
-  SplatTargets targets = makeImageTargets(device, settings);
+  const std::shared_ptr<const SplatTargets> targets = targetPool.take(device, settings, TargetKind::Image);
   shader::GatherFrame lattice =
       makeGatherFrame(built.volume, camera, settings, constants.detail, constants.hiddenTransmittance);
   const bool ofScalars = built.volume.scalarBricks.has_value() && lightsSamples;
@@ -235,29 +257,23 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
   if (constants.lightsReadTable && !lightsSamples)
     read = constants.detail.coarsest > 0 ? &tableWithLevels(progress) : &sweptTable(progress);
   if (settings.lighting)
-    constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, ofScalars, frameTimes);
+    constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, ofScalars, frameTimes, progress);
   const GatherVolume::Shading shading{
       .frame = constants,
       .table = read,
       .lighting = settings.lighting ? &*settings.lighting : nullptr,
       .lights = settings.lighting ? &lights->lights() : nullptr,
       .axes = {someRayHasAxis(lattice, 0), someRayHasAxis(lattice, 1), someRayHasAxis(lattice, 2)}};
-  try {
-    if (!gatherVolume) gatherVolume.emplace(device, hostVolume, classification, built, frameTimes);
-    gatherVolume->prepare(shading, frameTimes);
-  } catch (const Error&) {
-    gatherVolume.reset();
-    throw;
-  }
+  prepareGather(shading, progress);
   if (!gather) gather.emplace(device);
-  gatherVolume->record(commands, shading);
   gatherVolume->describe(lattice);
-  gather->record(commands, *gatherVolume, lattice, targets);
+  gather->record(commands, *gatherVolume, lattice, *targets);
   return targets;
 }
 
-SplatTargets Renderer::State::recordImage(Commands& commands, const Camera& camera, const FrameSettings& settings,
-                                          const Progress& progress) {
+std::shared_ptr<const SplatTargets> Renderer::State::recordImage(Commands& commands, const Camera& camera,
+                                                                 const FrameSettings& settings,
+                                                                 const Progress& progress) {
   lastLackedGather = false;
   if (drawsByGathering(settings)) {
     try {
@@ -269,8 +285,8 @@ SplatTargets Renderer::State::recordImage(Commands& commands, const Camera& came
   }
   Frame frame = recordSplats(commands, camera, settings, progress);
   if (settings.composite != Composite::Sorted || settings.depth)
-    resolve->record(commands, frame.constants, frame.targets);
-  return std::move(frame.targets);
+    resolve->record(commands, frame.constants, *frame.targets);
+  return frame.targets;
 }
 
 Renderer::Renderer(const Device& device, const Volume& volume, const Classification& classification,
@@ -287,18 +303,39 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   checkFrameFits(state_->device, settings);
   State& state = *state_;
   Commands commands(state.device);
-  const SplatTargets targets = state.recordImage(commands, camera, settings, progress);
+  const std::shared_ptr<const SplatTargets> targets = state.recordImage(commands, camera, settings, progress);
   commands.beginPass("read back");
-  const TargetReadback color(state.device, commands, targets.colorEnergy);
-  std::optional<TargetReadback> depth;
-  if (settings.depth) depth.emplace(state.device, commands, targets.distance);
+  state.colorReadback.record(state.device, commands, targets->colorEnergy);
+  if (settings.depth) state.distanceReadback.record(state.device, commands, targets->distance);
   commands.submitAndWait(progress);
   addTimes(state.frameTimes, commands.times());
 
   const StageTimer timer(state.frameTimes, "copy to host");
   return {.size = settings.size,
+          .pixels = state.colorReadback.read<glm::vec4>(),
+          .depth = settings.depth ? state.distanceReadback.read<float>() : std::vector<float>()};
+}
+
+std::shared_ptr<const SplatTargets> Renderer::renderOnDevice(const Camera& camera, const FrameSettings& settings,
+                                                             const Progress& progress) {
+  checkCamera(camera);
+  checkFrameFits(state_->device, settings);
+  Commands commands(state_->device);
+  std::shared_ptr<const SplatTargets> targets = state_->recordImage(commands, camera, settings, progress);
+  commands.submitAndWait(progress);
+  addTimes(state_->frameTimes, commands.times());
+  return targets;
+}
+
+Image downloadImage(const Device& device, const SplatTargets& targets) {
+  Commands commands(device);
+  TargetReadback color, distance;
+  color.record(device, commands, targets.colorEnergy);
+  if (targets.distance.exists()) distance.record(device, commands, targets.distance);
+  commands.submitAndWait();
+  return {.size = targets.colorEnergy.size(),
           .pixels = color.read<glm::vec4>(),
-          .depth = depth ? depth->read<float>() : std::vector<float>()};
+          .depth = targets.distance.exists() ? distance.read<float>() : std::vector<float>()};
 }
 
 std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSettings& settings) {
@@ -311,7 +348,7 @@ std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSet
   whole.cullThreshold = 0.0f;
   const State::Frame frame = state.recordSplats(commands, camera, whole);
   commands.beginPass("read back");
-  const SumsReadback sums(state.device, commands, frame.targets);
+  const SumsReadback sums(state.device, commands, *frame.targets);
   commands.submitAndWait();
   addTimes(state.frameTimes, commands.times());
   return sums.read(frame.constants);

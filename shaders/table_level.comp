@@ -6,6 +6,7 @@
 // And its bounds: the code of the most transparent voxel, which says what can be left out behind others.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_8bit_storage : require
+#extension GL_KHR_memory_scope_semantics : require
 #include "interface.h"
 #include "attenuation_code.glsl"
 #include "blocks.glsl"
@@ -104,9 +105,11 @@ bool isWanted(uint direction) {
   return direction / kPerThread == gl_WorkGroupID.z && direction < push.directionCount;
 }
 
-// Few are darker than all before them.
+// Few are darker than all before them. The load is atomic, as other invocations write meanwhile.
 void takeDarkest(uint direction, uint code) {
-  if (code > maxCodePerDirection[direction]) atomicMax(maxCodePerDirection[direction], code);
+  const uint known =
+      atomicLoad(maxCodePerDirection[direction], gl_ScopeDevice, gl_StorageSemanticsBuffer, gl_SemanticsRelaxed);
+  if (code > known) atomicMax(maxCodePerDirection[direction], code);
 }
 
 // By direction, of a thread's blocks.

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <span>
 
+#include "apps/freevoxels/background_writer.h"
 #include "apps/freevoxels/progress_line.h"
 #include "engine/octree/volume_limits.h"
 #include "engine/renderer.h"
@@ -123,10 +124,11 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
   Renderer renderer(opened, *view.volume, view.classification, method.table(), line.progress());
   const std::vector<StageTime> built = renderer.timings();
   addTimes(report.stages, built);
+  BackgroundWriter writer;
   for (std::size_t frame = 0; frame < outputs.size(); ++frame) {
     view.camera = cameras[frame];
     const std::string prefix = framePrefix(frame, outputs.size());
-    const Image image = renderer.render(view.camera, settings, prefixed(line.progress(), prefix));
+    Image image = renderer.render(view.camera, settings, prefixed(line.progress(), prefix));
     if (std::ranges::none_of(image.pixels, [](glm::vec4 pixel) { return pixel.a > 0.0f || pixel.r + pixel.g + pixel.b > 0.0f; }))
       spdlog::warn("{}nothing is seen: {}", prefix, whyNothingIsSeen(renderer));
     const std::vector<StageTime> times = renderer.timings();
@@ -135,14 +137,13 @@ void RenderOptions::draw(const Device& opened, const FrameFiles& outputs, RunRep
     report.lackedRoomForGather |= renderer.lackedRoomForGather();
 
     line.begin(prefix + "writing pictures");
-    std::vector<StageTime> writing;
-    {
-      const StageTimer timer(writing, "write pictures");
-      write(image, view, outputs[frame], report.device);
-    }
-    addTimes(report.stages, writing);
+    writer.start([this, image = std::move(image), view, &files = outputs[frame], &device = report.device] {
+      write(image, view, files, device);
+    });
   }
-  addTimes(report.stages, opened.pipelines().times);
+  writer.finish();
+  addTimes(report.stages, writer.times());
+  addTimes(report.stages, opened.pipelines().times());
   report.visibleVoxels = renderer.occupiedVoxelCount();
   report.voxels = view.volume->voxelCount();
   report.memory = renderer.memory();

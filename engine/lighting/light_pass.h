@@ -30,7 +30,8 @@ class LightPass {
   /// Of settings whose lighting is not Auto; the rays of lights are of the volume's `scalars`, or of its classified voxels. Waits for what it has to make; no frame may be under way. Adds
   /// the times of that to `times`.
   shader::FrameLighting prepare(const DeviceVolume& volume, const TableSettings& table,
-                                const FrameSettings& settings, bool scalars, std::vector<StageTime>& times);
+                                const FrameSettings& settings, bool scalars, std::vector<StageTime>& times,
+                                const Progress& progress);
   /// shader::Light, of the last frame.
   const Buffer& lights() const { return lights_; }
 

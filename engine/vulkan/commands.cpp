@@ -15,9 +15,12 @@ constexpr std::uint64_t kProgressInterval = 50'000'000;  // nanoseconds between 
 /// Milliseconds of a workgroup in a pass that was not measured yet.
 constexpr double kUnknownCpuCost = 0.05, kUnknownGpuCost = 0.001;
 
+constexpr VkPipelineStageFlags2 kAnyStage =
+    VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
+
 VkAccessFlags2 writesOf(VkPipelineStageFlags2 stages) {
   VkAccessFlags2 access = 0;
-  if (stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) access |= VK_ACCESS_2_MEMORY_WRITE_BIT;
+  if (stages & kAnyStage) access |= VK_ACCESS_2_MEMORY_WRITE_BIT;
   if (stages & VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT) access |= VK_ACCESS_2_SHADER_WRITE_BIT;
   if (stages & VK_PIPELINE_STAGE_2_TRANSFER_BIT) access |= VK_ACCESS_2_TRANSFER_WRITE_BIT;
   if (stages & VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT) access |= VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
@@ -29,7 +32,7 @@ VkAccessFlags2 readsOf(VkPipelineStageFlags2 stages) {
                                              VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |
                                              VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
   VkAccessFlags2 access = 0;
-  if (stages & VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT) access |= VK_ACCESS_2_MEMORY_READ_BIT;
+  if (stages & kAnyStage) access |= VK_ACCESS_2_MEMORY_READ_BIT;
   if (stages & kShaders) access |= VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT;
   if (stages & VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT) access |= VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT;
   if (stages & VK_PIPELINE_STAGE_2_TRANSFER_BIT) access |= VK_ACCESS_2_TRANSFER_READ_BIT;

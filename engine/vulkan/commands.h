@@ -44,6 +44,8 @@ class Commands {
 
   /// The command buffer that is being recorded: until the next call of a member function.
   VkCommandBuffer handle() const { return buffer_; }
+  /// Command buffers that were begun.
+  std::size_t slices() const { return slices_; }
   /// Whether no pass was begun.
   bool empty() const { return passes_.empty(); }
 

@@ -67,8 +67,9 @@ void PipelineCache::save() {
   if (bytes == saved_) return;
   saved_ = std::move(bytes);
   const Header header{.bytes = saved_.size(), .checksum = checksumOf(saved_)};
-  std::string text(reinterpret_cast<const char*>(&header), sizeof(header));
-  text.append(saved_.begin(), saved_.end());
+  std::string text(sizeof(header) + saved_.size(), '\0');
+  std::memcpy(text.data(), &header, sizeof(header));
+  std::memcpy(text.data() + sizeof(header), saved_.data(), saved_.size());
   std::error_code error;
   std::filesystem::create_directories(file_.parent_path(), error);
   try {
