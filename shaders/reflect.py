@@ -138,7 +138,7 @@ def write_structs(out, files):
     shared = {}
     with open(__file__.replace("reflect.py", "interface.h")) as first:
         declared = set(re.findall(r"^struct (\w+)", first.read(), re.MULTILINE))
-    for other in ("frame_interface.h", "gather_interface.h", "ui_interface.h"):
+    for other in ("display_interface.h", "frame_interface.h", "gather_interface.h", "ui_interface.h"):
         with open(__file__.replace("reflect.py", other)) as more:
             declared |= set(re.findall(r"^struct (\w+)", more.read(), re.MULTILINE))
     for file in files:
@@ -150,7 +150,7 @@ def write_structs(out, files):
         raise SystemExit(f"no shader has a layout of the shared structs {', '.join(missing)}")
     with open(out, "w") as source:
         source.write("// Made by shaders/reflect.py: the sizes of the shared structs, as the compiled shaders have them.\n")
-        source.write('#include "shaders/gather_interface.h"\n#include "shaders/ui_interface.h"\n')
+        source.write('#include "shaders/display_interface.h"\n#include "shaders/gather_interface.h"\n#include "shaders/ui_interface.h"\n')
         for name, size in sorted(shared.items()):
             source.write(f"static_assert(sizeof(freevoxels::shader::{name}) == {size});\n")
 

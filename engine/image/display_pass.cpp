@@ -14,11 +14,7 @@ static_assert(int(ToneMap::Filmic) == shader::kToneMapFilmic);
 static_assert(int(ToneMap::Aces) == shader::kToneMapAces);
 
 DisplayPass::DisplayPass(const Device& device)
-    : pipeline_(makeComputePipeline(device, {display_spv, "display"},
-                                    {.bindings = {VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE,
-                                                  VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-                                     .pushConstantBytes = sizeof(shader::DisplayPush)},
-                                    {shader::kDisplayTile, shader::kDisplayTile, 1})),
+    : pipeline_(makeComputePipeline(device, shaders::display)),
       srgb_(device, srgbBuckets().size_bytes(), MemoryUse::Device, "sRGB table") {
   upload(device, srgb_, std::as_bytes(srgbBuckets()));
 }
