@@ -97,7 +97,7 @@ class FrameTest : public CommandsTest {
     std::vector<FrameSettings> kinds;
     for (const Draw draw : {Draw::Gather, Draw::Splats}) {
       kinds.push_back({.size = {70, 50}, .draw = draw});
-      kinds.push_back({.size = {70, 50}, .depth = true, .draw = draw, .lighting = lit});
+      kinds.push_back({.size = {70, 50}, .draw = draw, .depth = true, .lighting = lit});
     }
     return kinds;
   }
