@@ -42,11 +42,13 @@ struct Renderer::State {
   std::optional<GatherVolume> gatherVolume;
   std::optional<GatherPass> gather;
   std::optional<LightPass> lights;
+  TargetPool targetPool;
+  TargetReadback colorReadback, distanceReadback;
   std::vector<StageTime> buildTimes, frameTimes;
 
   struct Frame {
     FrameConstants constants;
-    SplatTargets targets;
+    std::shared_ptr<const SplatTargets> targets;
     const AttenuationTable* table = nullptr;  ///< where the frame reads it
     const Buffer* order = nullptr;            ///< of the voxels, where they are sorted
   };
@@ -62,10 +64,11 @@ struct Renderer::State {
   Frame prepareSplats(Commands& commands, const Camera& camera, const FrameSettings& settings, const Progress& progress);
   Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
                      const Progress& progress = {});
-  SplatTargets recordGather(Commands& commands, const Camera& camera, const FrameSettings& settings,
-                            const Progress& progress);
-  SplatTargets recordImage(Commands& commands, const Camera& camera, const FrameSettings& settings,
-                           const Progress& progress);
+  void prepareGather(const GatherVolume::Shading& shading, const Progress& progress);
+  std::shared_ptr<const SplatTargets> recordGather(Commands& commands, const Camera& camera,
+                                                   const FrameSettings& settings, const Progress& progress);
+  std::shared_ptr<const SplatTargets> recordImage(Commands& commands, const Camera& camera,
+                                                  const FrameSettings& settings, const Progress& progress);
 };
 
 VolumeMemory Renderer::State::memoryOfVolume() const {
@@ -149,12 +152,12 @@ SplatPass::Inputs Renderer::State::recordList(Commands& commands, const Frame& f
 /// The splats of a frame. What the table calls hidden comes after the rest, where it is not covered.
 void Renderer::State::recordDrawing(Commands& commands, const Frame& frame) {
   SplatPass::Inputs drawing = recordList(commands, frame);
-  splats->record(commands, drawing, frame.constants, frame.targets);
+  splats->record(commands, drawing, frame.constants, *frame.targets);
   if (frame.constants.cull.hiddenDepth == 0.0) return;
-  cutter->recordDeferred(commands, cutInputs(frame), frame.targets.colorEnergy, frame.targets.opticalDepth);
+  cutter->recordDeferred(commands, cutInputs(frame), frame.targets->colorEnergy, frame.targets->opticalDepth);
   drawing.firstChunk = drawing.chunkCount;
   drawing.continued = true;
-  splats->record(commands, drawing, frame.constants, frame.targets);
+  splats->record(commands, drawing, frame.constants, *frame.targets);
 }
 
 /// How lights are shadowed, if that is left to the volume and the device.
@@ -209,7 +212,8 @@ Renderer::State::Frame Renderer::State::prepareSplats(Commands& commands, const 
     resolve = std::make_unique<ResolvePass>(device, settings.depth);
   }
   if (sorted && !sort) sort = std::make_unique<DepthSort>(device, built.volume);
-  Frame frame{.constants = constantsOf(camera, settings, progress), .targets = makeTargets(device, settings)};
+  Frame frame{.constants = constantsOf(camera, settings, progress),
+              .targets = targetPool.take(device, settings, sorted ? TargetKind::Image : TargetKind::Sums)};
   if (sorted) {
     sort->record(commands, built.volume, built.visible, camera);
     frame.order = &sort->voxels();
@@ -217,7 +221,7 @@ Renderer::State::Frame Renderer::State::prepareSplats(Commands& commands, const 
   if (frame.constants.readsTable())
     frame.table = frame.constants.readsLevels() ? &tableWithLevels(progress) : &sweptTable(progress);
   if (settings.lighting)
-    frame.constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, false, frameTimes);
+    frame.constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, false, frameTimes, progress);
   CullRule& cull = frame.constants.cull;
   if (cull.hiddenDepth > 0.0 &&
       !canHide(tableSettings, largestDepths, glm::dmat3(built.volume.indexToWorld), cull.hiddenDepth))
@@ -233,9 +237,27 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
   return frame;
 }
 
+/// What the gather keeps of the volume for further frames is made by a submission of its own, so that a frame that is
+/// abandoned while its image is drawn leaves it complete.
+void Renderer::State::prepareGather(const GatherVolume::Shading& shading, const Progress& progress) {
+  try {
+    if (!gatherVolume) gatherVolume.emplace(device, hostVolume, classification, built, frameTimes);
+    gatherVolume->prepare(shading, frameTimes);
+    Commands commands(device);
+    gatherVolume->record(commands, shading);
+    if (commands.empty()) return;
+    commands.submitAndWait(progress);
+    addTimes(frameTimes, commands.times());
+  } catch (...) {
+    gatherVolume.reset();
+    throw;
+  }
+}
+
 /// The image in the targets, without their optical depth.
-SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& camera, const FrameSettings& wanted,
-                                           const Progress& progress) {
+std::shared_ptr<const SplatTargets> Renderer::State::recordGather(Commands& commands, const Camera& camera,
+                                                                  const FrameSettings& wanted,
+                                                                  const Progress& progress) {
   frameTimes.clear();
   lastDrawn = nullptr;
   lastLackedRays = false;
@@ -248,7 +270,7 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
     builtWithBlocks(progress);
     constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
   }
-  SplatTargets targets = makeImageTargets(device, settings);
+  const std::shared_ptr<const SplatTargets> targets = targetPool.take(device, settings, TargetKind::Image);
   shader::GatherFrame lattice =
       makeGatherFrame(built.volume, camera, settings, constants.detail, constants.hiddenTransmittance);
   constants.detail.finest = lattice.finest;
@@ -257,29 +279,23 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
   if (constants.lightsReadTable && !lightsSamples)
     read = constants.detail.coarsest > 0 ? &tableWithLevels(progress) : &sweptTable(progress);
   if (settings.lighting)
-    constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, ofScalars, frameTimes);
+    constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, ofScalars, frameTimes, progress);
   const GatherVolume::Shading shading{
       .frame = constants,
       .table = read,
       .lighting = settings.lighting ? &*settings.lighting : nullptr,
       .lights = settings.lighting ? &lights->lights() : nullptr,
       .axes = {someRayHasAxis(lattice, 0), someRayHasAxis(lattice, 1), someRayHasAxis(lattice, 2)}};
-  try {
-    if (!gatherVolume) gatherVolume.emplace(device, hostVolume, classification, built, frameTimes);
-    gatherVolume->prepare(shading, frameTimes);
-  } catch (const Error&) {
-    gatherVolume.reset();
-    throw;
-  }
+  prepareGather(shading, progress);
   if (!gather) gather.emplace(device);
-  gatherVolume->record(commands, shading);
   gatherVolume->describe(lattice);
-  gather->record(commands, *gatherVolume, lattice, targets);
+  gather->record(commands, *gatherVolume, lattice, *targets);
   return targets;
 }
 
-SplatTargets Renderer::State::recordImage(Commands& commands, const Camera& camera, const FrameSettings& settings,
-                                          const Progress& progress) {
+std::shared_ptr<const SplatTargets> Renderer::State::recordImage(Commands& commands, const Camera& camera,
+                                                                 const FrameSettings& settings,
+                                                                 const Progress& progress) {
   lastLackedGather = false;
   if (drawsByGathering(settings)) {
     try {
@@ -291,8 +307,8 @@ SplatTargets Renderer::State::recordImage(Commands& commands, const Camera& came
   }
   Frame frame = recordSplats(commands, camera, settings, progress);
   if (settings.composite != Composite::Sorted || settings.depth)
-    resolve->record(commands, frame.constants, frame.targets);
-  return std::move(frame.targets);
+    resolve->record(commands, frame.constants, *frame.targets);
+  return frame.targets;
 }
 
 Renderer::Renderer(const Device& device, const Volume& volume, const Classification& classification,
@@ -309,18 +325,39 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   checkFrameFits(state_->device, settings);
   State& state = *state_;
   Commands commands(state.device);
-  const SplatTargets targets = state.recordImage(commands, camera, settings, progress);
+  const std::shared_ptr<const SplatTargets> targets = state.recordImage(commands, camera, settings, progress);
   commands.beginPass("read back");
-  const TargetReadback color(state.device, commands, targets.colorEnergy);
-  std::optional<TargetReadback> depth;
-  if (settings.depth) depth.emplace(state.device, commands, targets.distance);
+  state.colorReadback.record(state.device, commands, targets->colorEnergy);
+  if (settings.depth) state.distanceReadback.record(state.device, commands, targets->distance);
   commands.submitAndWait(progress);
   addTimes(state.frameTimes, commands.times());
 
   const StageTimer timer(state.frameTimes, "copy to host");
   return {.size = settings.size,
+          .pixels = state.colorReadback.read<glm::vec4>(),
+          .depth = settings.depth ? state.distanceReadback.read<float>() : std::vector<float>()};
+}
+
+std::shared_ptr<const SplatTargets> Renderer::renderOnDevice(const Camera& camera, const FrameSettings& settings,
+                                                             const Progress& progress) {
+  checkCamera(camera);
+  checkFrameFits(state_->device, settings);
+  Commands commands(state_->device);
+  std::shared_ptr<const SplatTargets> targets = state_->recordImage(commands, camera, settings, progress);
+  commands.submitAndWait(progress);
+  addTimes(state_->frameTimes, commands.times());
+  return targets;
+}
+
+Image downloadImage(const Device& device, const SplatTargets& targets) {
+  Commands commands(device);
+  TargetReadback color, distance;
+  color.record(device, commands, targets.colorEnergy);
+  if (targets.distance.exists()) distance.record(device, commands, targets.distance);
+  commands.submitAndWait();
+  return {.size = targets.colorEnergy.size(),
           .pixels = color.read<glm::vec4>(),
-          .depth = depth ? depth->read<float>() : std::vector<float>()};
+          .depth = targets.distance.exists() ? distance.read<float>() : std::vector<float>()};
 }
 
 std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSettings& settings) {
@@ -333,7 +370,7 @@ std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSet
   whole.cullThreshold = 0.0f;
   const State::Frame frame = state.recordSplats(commands, camera, whole);
   commands.beginPass("read back");
-  const SumsReadback sums(state.device, commands, frame.targets);
+  const SumsReadback sums(state.device, commands, *frame.targets);
   commands.submitAndWait();
   addTimes(state.frameTimes, commands.times());
   return sums.read(frame.constants);
@@ -363,7 +400,7 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
   const SplatPass::Inputs drawing = state.recordList(commands, frame);
   FixedSums layout = sumsLayout(state.built.volume, frame.constants, settings);
   const std::optional<int> wholeLevel = state.lastWasCut ? std::nullopt : std::optional(state.lastLevel);
-  return state.shares->draw(commands, {*state.splats, drawing, wholeLevel, frame.constants, frame.targets, std::move(layout)}, part,
+  return state.shares->draw(commands, {*state.splats, drawing, wholeLevel, frame.constants, *frame.targets, std::move(layout)}, part,
                             state.frameTimes, progress);
 }
 

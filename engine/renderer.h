@@ -17,6 +17,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/render_settings.h"
 #include "engine/scene/source_rays.h"
+#include "engine/splatting/frame_targets.h"
 #include "engine/splatting/splat_sums.h"
 #include "engine/visibility/cut_pass.h"
 #include "engine/volume/classification.h"
@@ -25,8 +26,8 @@
 
 namespace freevoxels {
 
-/// Fails with ExitCode::OutOfMemory where this device cannot hold such a frame: before any other work.
-void checkFrameFits(const Device& device, const FrameSettings& settings);
+/// The image of a frame that was left on the device. Waits.
+Image downloadImage(const Device& device, const SplatTargets& targets);
 
 class Renderer {
  public:
@@ -40,7 +41,13 @@ class Renderer {
   Renderer(const Device&, Volume&&, const Classification&, const TableSettings&, const Progress& = {}) = delete;
   ~Renderer();
 
+  /// Draws a frame and waits for it. `progress` is called every few 10 ms, and may abandon the frame by an exception, which
+  /// is passed on; the next frame makes again what was not complete.
   Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
+  /// The same frame, which stays on the device, complete, in layout GENERAL. The renderer draws into these targets again
+  /// when nobody else holds them.
+  std::shared_ptr<const SplatTargets> renderOnDevice(const Camera& camera, const FrameSettings& settings,
+                                                     const Progress& progress = {});
 
   /// One a pixel, row 0 is the top: what render() resolves. `settings.composite` must not be Sorted. Sums of
   /// the parts of a volume add up to those of the whole; so nothing is left out as hidden.

@@ -7,6 +7,7 @@
 // Also computes the bounds: the code of a block's most transparent voxel, by which hidden blocks are found.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_shader_8bit_storage : require
+#extension GL_KHR_memory_scope_semantics : require
 #include "interface.h"
 #include "attenuation_code.glsl"
 #include "blocks.glsl"
@@ -105,9 +106,11 @@ bool isWanted(uint direction) {
   return direction / kPerThread == gl_WorkGroupID.z && direction < push.directionCount;
 }
 
-// A plain read first avoids most atomics: few codes exceed all before them.
+// Few are darker than all before them. The load is atomic, as other invocations write meanwhile.
 void takeDarkest(uint direction, uint code) {
-  if (code > maxCodePerDirection[direction]) atomicMax(maxCodePerDirection[direction], code);
+  const uint known =
+      atomicLoad(maxCodePerDirection[direction], gl_ScopeDevice, gl_StorageSemanticsBuffer, gl_SemanticsRelaxed);
+  if (code > known) atomicMax(maxCodePerDirection[direction], code);
 }
 
 // By direction, for a thread's blocks.

@@ -3,6 +3,8 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cstdlib>
+#include <filesystem>
 #include <limits>
 
 #include "engine/core/error.h"
@@ -20,10 +22,23 @@ void DeviceOptions::add(CLI::App& app) {
       ->group("Device");
 }
 
-std::unique_ptr<Device> DeviceOptions::open(const Instance& instance) const {
+namespace {
+
+/// Where programs of this user keep what they can make again; empty where that is not known.
+std::filesystem::path cacheFolder() {
+  if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder != nullptr && folder[0] == '/')
+    return std::filesystem::path(folder) / "freevoxels";
+  if (const char* home = std::getenv("HOME"); home != nullptr && home[0] == '/')
+    return std::filesystem::path(home) / ".cache" / "freevoxels";
+  return {};
+}
+
+}  // namespace
+
+std::unique_ptr<Device> DeviceOptions::open(const Instance& instance, std::span<const char* const> extensions) const {
   const std::uint64_t limit =
       memoryLimit ? std::uint64_t(*memoryLimit) << 20 : std::numeric_limits<std::uint64_t>::max();
-  return std::make_unique<Device>(instance, selector.value_or(""), limit);
+  return std::make_unique<Device>(instance, selector.value_or(""), limit, extensions, cacheFolder());
 }
 
 void withInstance(const std::function<void(const Instance&)>& work, std::span<const char* const> extensions) {

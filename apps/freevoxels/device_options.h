@@ -15,7 +15,8 @@ struct DeviceOptions {
   std::optional<int> memoryLimit;  ///< MiB
 
   void add(CLI::App& app);
-  std::unique_ptr<Device> open(const Instance& instance) const;
+  /// `extensions` are enabled beside the engine's own.
+  std::unique_ptr<Device> open(const Instance& instance, std::span<const char* const> extensions = {}) const;
   /// Opens the device and calls `work` with it. With FREEVOXELS_VALIDATION=1 any message of the validation
   /// layer is an internal error in the end.
   void withDevice(const std::function<void(const Device&)>& work) const;

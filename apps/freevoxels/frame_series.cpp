@@ -96,7 +96,8 @@ void FrameSeries::draw(std::span<const Frame> frames) {
   begun_ = Clock::now();
   report_.device = device_.description();
   drawFilm(frames);
-  addTimes(report_.stages, device_.pipelines().times);
+  addTimes(report_.stages, writer_.times());
+  addTimes(report_.stages, device_.pipelines().times());
   report_.devicePeak = device_.peakBytes();
 }
 
@@ -132,6 +133,7 @@ void FrameSeries::drawFilm(std::span<const Frame> frames) {
       ++failed;
     }
   }
+  finishWriting();
   if (failed == 0 && waiting_.empty()) return;
   if (failed == 0) fail(ExitCode::Input, "no frame of {} holds anything to draw", frames_);
   fail(ExitCode::Input, "{} of {} volumes could not be drawn, for the reasons above", failed, inputs.size());
@@ -286,13 +288,21 @@ void FrameSeries::drawFrame(Renderer& renderer, const Scene& view, const FrameSe
   write(std::move(image), view, frame);
 }
 
+/// Writes while the next frame is drawn.
 void FrameSeries::write(Image image, const Scene& view, const Frame& frame) {
   line_.begin(prefix() + "writing " + frame.files.front());
-  const StageTimer timer(report_.stages, "write pictures");
+  finishWriting();
   // What a file says of its making is how `render` repeats this frame alone.
-  options_.scene.withOutputs(frame.files).write(std::move(image), view, "render", describe(view, frame.input), facts());
+  writer_.start([scene = options_.scene.withOutputs(frame.files), image = std::move(image), view,
+                 options = describe(view, frame.input), facts = facts()] { scene.write(image, view, "render", options, facts); });
+  written_ = &frame;
   ++drawn_;
-  printNames(frame);
+}
+
+/// Waits until the frame before is written, and prints the names of its files.
+void FrameSeries::finishWriting() {
+  writer_.finish();
+  if (const Frame* const written = std::exchange(written_, nullptr)) printNames(*written);
 }
 
 void FrameSeries::printNames(const Frame& frame) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/freevoxels/background_writer.h"
 #include "apps/freevoxels/progress_line.h"
 #include "apps/freevoxels/render_options.h"
 #include "engine/image/fixed_sums.h"
@@ -56,6 +57,7 @@ class FrameSeries {
   std::optional<FixedSums> drawSums(Renderer& renderer, const Camera& camera, const FrameSettings& settings);
   void write(Image image, const Scene& view, const Frame& frame);
   void writeEmpty(const Frame& frame);
+  void finishWriting();
   void printNames(const Frame& frame);
   SceneOptions sceneOf(const std::string& input) const;
   OptionList describe(const Scene& view, const std::string& input) const;
@@ -71,6 +73,8 @@ class FrameSeries {
   std::size_t frames_ = 0, drawn_ = 0;
   std::chrono::steady_clock::time_point begun_;
   std::optional<Scene> reference_;    ///< the first frame's with a fixed view, else the last one's
+  BackgroundWriter writer_;
+  const Frame* written_ = nullptr;  ///< that `writer_` is writing
   std::vector<const Frame*> waiting_;  ///< empty frames before any frame that says how they are seen
 };
 

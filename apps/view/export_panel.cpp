@@ -26,9 +26,8 @@ std::string savedSentence(const std::string& file) {
 
 }  // namespace
 
-ExportPanel::ExportPanel(const Instance& instance, const DeviceOptions& device, int turnFrames,
-                         std::function<void()> finished)
-    : instance_(instance), device_(device), turnFrames_(turnFrames), job_(std::move(finished)) {}
+ExportPanel::ExportPanel(const Device& device, int turnFrames, std::function<void()> finished)
+    : device_(device), turnFrames_(turnFrames), job_(std::move(finished)) {}
 
 void ExportPanel::takeKeys() {
   if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false) && !ImGui::GetIO().WantTextInput) cancel();
@@ -74,7 +73,7 @@ bool ExportPanel::wants(Field field, const char* button, std::string& name) {
 void ExportPanel::drawPictureFields(ViewState& state) {
   if (wants(Field::Picture, "Save picture", pictureName_)) {
     const std::string file = meantFile(pictureName_);
-    want({[file](const Picture& picture, const Progress&) { savePicture(picture, file); },
+    want({[this, file](const Picture& picture, const Progress&) { savePicture(device_, picture, file); },
           savedSentence(file)});
   }
   OutputOptions& output = state.scene.output;
@@ -92,7 +91,7 @@ void ExportPanel::drawTurn(const Picture* picture) {
   if (wants(Field::Turn, "Save turn", turnName_)) {
     const std::string pattern = meantFile(turnName_);
     want({[this, pattern, frames = turnFrames_](const Picture& of, const Progress& progress) {
-            saveTurn(instance_, device_, of, pattern, frames, progress);
+            saveTurn(device_, of, pattern, frames, progress);
           },
           fmt::format("saved {} frames: {}", turnFrames_, pattern)});
   }

@@ -6,7 +6,6 @@
 #include <memory>
 #include <string>
 
-#include "apps/freevoxels/device_options.h"
 #include "apps/view/export_job.h"
 #include "apps/view/view_state.h"
 
@@ -15,8 +14,7 @@ namespace freevoxels {
 class ExportPanel {
  public:
   /// `finished` is called, by another thread, when something has been written.
-  ExportPanel(const Instance& instance, const DeviceOptions& device, int turnFrames,
-              std::function<void()> finished);
+  ExportPanel(const Device& device, int turnFrames, std::function<void()> finished);
 
   /// Into the current Dear ImGui window. What is wanted of a picture is written when it is complete. Ctrl+S,
   /// Ctrl+E and Ctrl+T ask for the names of a picture, a scene and a turn; Escape gives up what is being
@@ -42,8 +40,7 @@ class ExportPanel {
   void cancel();
   void begin(const ViewState& state);
 
-  const Instance& instance_;
-  const DeviceOptions& device_;
+  const Device& device_;
   std::string pictureName_ = "picture.png", sceneName_ = "scene.json", turnName_ = "turn_####.png";
   int turnFrames_;
   Field focus_ = Field::None;

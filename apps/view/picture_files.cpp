@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "apps/freevoxels/background_writer.h"
 #include "apps/freevoxels/frame_names.h"
 #include "apps/freevoxels/render_options.h"
 
@@ -42,10 +43,10 @@ std::string turnCommandOf(const Picture& picture, const std::string& pattern, in
   return commandInto("turntable", options, pattern);
 }
 
-void savePicture(const Picture& picture, const std::string& file) {
+void savePicture(const Device& device, const Picture& picture, const std::string& file) {
   const SceneOptions scene = sceneInto(picture, {file});
   scene.check();
-  scene.write(picture.image, picture.scene, "render", optionsOf(scene, picture),
+  scene.write(downloadImage(device, *picture.image), picture.scene, "render", optionsOf(scene, picture),
               {{"device", picture.device.name}, {"driver", picture.device.driver}});
 }
 
@@ -58,8 +59,8 @@ void saveScene(const Picture& picture, const std::string& file) {
   render.scene.save(picture.options);
 }
 
-void saveTurn(const Instance& instance, const DeviceOptions& device, const Picture& picture,
-              const std::string& pattern, int frames, const Progress& progress) {
+void saveTurn(const Device& device, const Picture& picture, const std::string& pattern, int frames,
+              const Progress& progress) {
   const std::vector<std::string> files = filesOfTurn(pattern, frames);
   PictureRequest request = picture.request;
   request.scene = sceneInto(picture, files);
@@ -67,17 +68,20 @@ void saveTurn(const Instance& instance, const DeviceOptions& device, const Pictu
   const std::vector<Camera> cameras =
       request.scene.cameras(*picture.scene.volume, picture.scene.classification, frames);
 
-  const std::unique_ptr<Device> opened = device.open(instance);
   VolumeCache volumes(request.scene, picture.scene.volume);
-  PictureMaker maker(*opened, volumes);
+  PictureMaker maker(device, volumes);
+  BackgroundWriter writer;
   for (int frame = 0; frame < frames; ++frame) {
     const double start = double(frame) / frames;
     const Progress ofFrame = [&](std::string_view stage, double fraction) {
       progress(fmt::format("frame {} of {}: {}", frame + 1, frames, stage), start + fraction / frames);
     };
     request.scene.camera.look(cameras[std::size_t(frame)]);
-    savePicture(maker.make(request, ofFrame), files[std::size_t(frame)]);
+    writer.start([&device, picture = maker.make(request, ofFrame), &file = files[std::size_t(frame)]] {
+      savePicture(device, picture, file);
+    });
   }
+  writer.finish();
 }
 
 }  // namespace freevoxels

@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "apps/freevoxels/device_options.h"
 #include "apps/view/picture_maker.h"
 
 namespace freevoxels {
@@ -14,12 +13,12 @@ std::string commandOf(const Picture& picture, const std::string& file);
 /// in all of its frames.
 std::string turnCommandOf(const Picture& picture, const std::string& pattern, int frames);
 
-/// Into an .exr or a .png, with all that `freevoxels render` would write. Fails as that does.
-void savePicture(const Picture& picture, const std::string& file);
+/// Of a picture on this device into an .exr or a .png, with all that `freevoxels render` would write. Fails as that does.
+void savePicture(const Device& device, const Picture& picture, const std::string& file);
 /// What `freevoxels render --save-scene` writes.
 void saveScene(const Picture& picture, const std::string& file);
-/// The frames that turnCommandOf's command makes, on a device of its own.
-void saveTurn(const Instance& instance, const DeviceOptions& device, const Picture& picture,
-              const std::string& pattern, int frames, const Progress& progress);
+/// The frames that turnCommandOf's command makes.
+void saveTurn(const Device& device, const Picture& picture, const std::string& pattern, int frames,
+              const Progress& progress);
 
 }  // namespace freevoxels

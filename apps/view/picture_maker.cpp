@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "engine/image/display_pass.h"
 #include "engine/volume/coarse_volume.h"
 
 namespace freevoxels {
@@ -58,7 +59,8 @@ Picture PictureMaker::make(const PictureRequest& request, const Progress& progre
                          .depth = request.scene.output.wantsDepth(),
                          .lighting = picture.scene.lighting};
   request.method.apply(settings);
-  picture.image = renderer_->render(picture.scene.camera, settings, progress);
+  picture.image = renderer_->renderOnDevice(picture.scene.camera, settings, progress);
+  picture.shown = {picture.image, &picture.image->colorEnergy};
   OptionList method;
   request.method.describe(method);
   picture.options = request.scene.describe(picture.scene, method);
@@ -67,8 +69,9 @@ Picture PictureMaker::make(const PictureRequest& request, const Progress& progre
   picture.cut = renderer_->cutCounts();
   picture.visibleVoxels = renderer_->occupiedVoxelCount();
   if (request.diagnosis.shown != Shown::Picture)
-    picture.diagnosis = diagnoser_.make(request.diagnosis, *renderer_, *coarse_, request.method.table(),
-                                        picture.scene.camera, settings);
+    picture.shown = std::make_shared<const RenderTarget>(
+        uploadImage(device_, diagnoser_.make(request.diagnosis, *renderer_, *coarse_, request.method.table(),
+                                             picture.scene.camera, settings)));
   picture.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return picture;

@@ -30,9 +30,9 @@ struct Picture {
   Scene scene;               ///< as resolved; its volume is the whole one
   OptionList options;        ///< that make the same pixels
   DeviceDescription device;  ///< that made it
-  Image image;
-  std::optional<Image> diagnosis;  ///< what is shown in its place
-  std::optional<Image> compared;
+  std::shared_ptr<const SplatTargets> image;     ///< on the device, which must outlive the picture
+  std::shared_ptr<const RenderTarget> shown;     ///< the same image, or the diagnosis in its place
+  std::shared_ptr<const RenderTarget> compared;  ///< of the other method, or null
   std::vector<StageTime> times;
   double milliseconds = 0.0;  ///< in all, but for reading files
   VolumeMemory memory;

@@ -8,21 +8,15 @@ namespace freevoxels {
 
 namespace {
 
-struct Ended {};
+struct Abandoned {};
 
 /// Before, nobody could read what is being done.
 constexpr std::chrono::milliseconds kWorthSaying{250};
 
 }  // namespace
 
-RenderThread::RenderThread(const Instance& instance, const DeviceOptions& device, VolumeCache& volumes,
-                           std::function<void()> finished)
-    : instance_(instance),
-      deviceOptions_(device),
-      volumes_(volumes),
-      finished_(std::move(finished)),
-      device_(device.open(instance)),
-      thread_([this] { run(); }) {}
+RenderThread::RenderThread(const Device& device, VolumeCache& volumes, std::function<void()> finished)
+    : device_(device), volumes_(volumes), finished_(std::move(finished)), thread_([this] { run(); }) {}
 
 RenderThread::~RenderThread() {
   {
@@ -41,6 +35,18 @@ void RenderThread::ask(PictureRequest request) {
   asked_.notify_one();
 }
 
+void RenderThread::abandon() {
+  const std::lock_guard lock(mutex_);
+  waiting_.reset();
+  abandons_ = busy_;
+}
+
+std::chrono::milliseconds RenderThread::busyFor() const {
+  const std::lock_guard lock(mutex_);
+  if (!busy_) return {};
+  return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::steady_clock::now() - begun_);
+}
+
 std::optional<RenderThread::Result> RenderThread::take() {
   const std::lock_guard lock(mutex_);
   return std::exchange(result_, std::nullopt);
@@ -55,12 +61,11 @@ std::optional<std::pair<std::string, double>> RenderThread::activity() const {
 std::shared_ptr<const Picture> RenderThread::makePicture(const PictureRequest& request) {
   const Progress progress = [this](std::string_view stage, double fraction) {
     const std::lock_guard lock(mutex_);
-    if (ends_) throw Ended();
+    if (ends_ || abandons_) throw Abandoned();
     activity_.emplace(std::string(stage), fraction);
   };
-  if (!device_) device_ = deviceOptions_.open(instance_);
   const auto makerOf = [this](std::unique_ptr<PictureMaker>& maker) -> PictureMaker& {
-    if (!maker) maker = std::make_unique<PictureMaker>(*device_, volumes_);
+    if (!maker) maker = std::make_unique<PictureMaker>(device_, volumes_);
     return *maker;
   };
   auto picture = std::make_shared<Picture>(makerOf(maker_).make(request, progress));
@@ -73,25 +78,22 @@ std::shared_ptr<const Picture> RenderThread::makePicture(const PictureRequest& r
   other.diagnosis = {};
   const bool sameTable = tableText(other.method.table()) == tableText(request.method.table());
   Picture compared = makerOf(sameTable ? maker_ : comparing_).make(other, progress);
-  picture->compared = std::move(compared.image);
+  picture->compared = std::move(compared.shown);
   picture->milliseconds += compared.milliseconds;
   return picture;
 }
 
-RenderThread::Result RenderThread::answer(const PictureRequest& request) {
+/// Nothing where it was abandoned.
+std::optional<RenderThread::Result> RenderThread::answer(const PictureRequest& request) {
   Result result{.number = request.number};
   try {
     result.picture = makePicture(request);
-  } catch (const Ended&) {  // nobody takes a result
+  } catch (const Abandoned&) {
+    return std::nullopt;
   } catch (...) {
     const Failure failure = currentFailure();
     result.problem = failure.sentence;
     result.code = failure.code;
-    if (failure.code == ExitCode::Device) {  // lost: the next request opens it again
-      maker_ = nullptr;
-      comparing_ = nullptr;
-      device_ = nullptr;
-    }
   }
   return result;
 }
@@ -103,11 +105,14 @@ void RenderThread::run() {
     if (ends_) return;
     const PictureRequest request = *std::exchange(waiting_, std::nullopt);
     activity_.emplace("drawing", 0.0);
+    busy_ = true;
+    abandons_ = false;
     begun_ = std::chrono::steady_clock::now();
     lock.unlock();
-    Result result = answer(request);
+    std::optional<Result> result = answer(request);
     lock.lock();
-    result_ = std::move(result);
+    busy_ = false;
+    if (result) result_ = std::move(result);
     activity_.reset();
     lock.unlock();
     finished_();

@@ -10,7 +10,6 @@
 #include <string>
 #include <thread>
 
-#include "apps/freevoxels/device_options.h"
 #include "apps/view/picture_maker.h"
 #include "engine/core/error.h"
 
@@ -25,16 +24,19 @@ class RenderThread {
     ExitCode code = ExitCode::Success;       ///< and what `freevoxels render` would end with
   };
 
-  /// On a device of its own. `finished` is called by the thread whenever there is a result.
-  RenderThread(const Instance& instance, const DeviceOptions& device, VolumeCache& volumes,
-               std::function<void()> finished);
-  /// Gives up the picture that is being made, and waits until the device is done with what it has begun.
+  /// On a device that other threads use as well. `finished` is called by the thread whenever there is a result.
+  RenderThread(const Device& device, VolumeCache& volumes, std::function<void()> finished);
+  /// Abandons the picture that is being made, and waits until the device has completed the slice that it is executing.
   ~RenderThread();
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
 
   /// Takes the place of a request that has not been begun.
   void ask(PictureRequest request);
+  /// Abandons the picture that is being made and the request that waits, if any: no result comes of them.
+  void abandon();
+  /// How long the picture that is being made has taken by now; 0 while none is.
+  std::chrono::milliseconds busyFor() const;
   /// The last one since the last call.
   std::optional<Result> take();
   /// What it is doing, and how much of that is done; nothing while it waits, or has just begun.
@@ -42,20 +44,18 @@ class RenderThread {
 
  private:
   void run();
-  Result answer(const PictureRequest& request);
+  std::optional<Result> answer(const PictureRequest& request);
   std::shared_ptr<const Picture> makePicture(const PictureRequest& request);
 
-  const Instance& instance_;
-  const DeviceOptions& deviceOptions_;
+  const Device& device_;
   VolumeCache& volumes_;
   const std::function<void()> finished_;
-  std::unique_ptr<Device> device_;
   std::unique_ptr<PictureMaker> maker_;
   std::unique_ptr<PictureMaker> comparing_;  ///< with another table
 
   mutable std::mutex mutex_;  ///< of all below
   std::condition_variable asked_;
-  bool ends_ = false;
+  bool ends_ = false, busy_ = false, abandons_ = false;
   std::optional<PictureRequest> waiting_;
   std::optional<Result> result_;
   std::optional<std::pair<std::string, double>> activity_;

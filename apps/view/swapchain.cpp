@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/vulkan/image_parts.h"
@@ -40,8 +41,16 @@ Swapchain::Swapchain(const Instance& instance, const Device& device, const Windo
 
 Swapchain::~Swapchain() {
   views_.clear();
-  swapchain_ = {};
+  destroy(retired_);
+  destroy(swapchain_);
   vkDestroySurfaceKHR(instance_.handle(), surface_, nullptr);
+}
+
+/// When all that was submitted, and presented, is complete.
+void Swapchain::destroy(OwnedSwapchain& swapchain) const {
+  if (swapchain.get() == VK_NULL_HANDLE) return;
+  device_.queue().waitIdle();
+  swapchain = {};
 }
 
 void Swapchain::makeSurface() {
@@ -80,7 +89,7 @@ bool Swapchain::make() {
   }
   views_.clear();
   if (extent.width == 0 || extent.height == 0) {
-    swapchain_ = {};
+    destroy(swapchain_);
     return false;
   }
   readable_ = (surface.supportedUsageFlags & VK_IMAGE_USAGE_TRANSFER_SRC_BIT) != 0;
@@ -103,7 +112,8 @@ bool Swapchain::make() {
       .oldSwapchain = swapchain_.get()};
   VkSwapchainKHR made = VK_NULL_HANDLE;
   VK_CHECK(vkCreateSwapchainKHR(device_.handle(), &info, nullptr, &made));
-  swapchain_ = OwnedSwapchain(device_.handle(), made);
+  destroy(retired_);  // of a change before this one
+  retired_ = std::exchange(swapchain_, OwnedSwapchain(device_.handle(), made));
   size_ = {int(extent.width), int(extent.height)};
 
   std::uint32_t count = 0;
@@ -117,7 +127,8 @@ bool Swapchain::make() {
 bool Swapchain::recreate(VkResult problem) {
   if (problem == VK_ERROR_SURFACE_LOST_KHR) {
     views_.clear();
-    swapchain_ = {};
+    destroy(retired_);
+    destroy(swapchain_);
     vkDestroySurfaceKHR(instance_.handle(), surface_, nullptr);
     surface_ = VK_NULL_HANDLE;
     makeSurface();
@@ -144,6 +155,7 @@ bool Swapchain::acquire() {
   if (result != VK_SUBOPTIMAL_KHR) VK_CHECK_RESULT(result, "vkAcquireNextImageKHR");
   VK_CHECK(vkWaitForFences(device_.handle(), 1, &fence, VK_TRUE, UINT64_MAX));
   VK_CHECK(vkResetFences(device_.handle(), 1, &fence));
+  destroy(retired_);
   return true;
 }
 
@@ -153,7 +165,7 @@ void Swapchain::present() {
                               .swapchainCount = 1,
                               .pSwapchains = &swapchain,
                               .pImageIndices = &current_};
-  const VkResult result = vkQueuePresentKHR(device_.queue(), &info);
+  const VkResult result = device_.queue().present(info);
   if (isStale(result)) {
     recreate(result);
   } else if (result != VK_SUBOPTIMAL_KHR) {

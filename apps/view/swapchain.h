@@ -41,6 +41,7 @@ class Swapchain {
   void makeSurface();
   bool make();
   bool recreate(VkResult problem);
+  void destroy(OwnedSwapchain& swapchain) const;
 
   const Instance& instance_;
   const Device& device_;
@@ -50,6 +51,7 @@ class Swapchain {
   bool readable_ = false;
   glm::ivec2 size_{0};
   OwnedSwapchain swapchain_;
+  OwnedSwapchain retired_;  ///< the one before, until an image of swapchain_ was acquired
   std::vector<VkImage> images_;
   std::vector<OwnedImageView> views_;
   OwnedFence acquired_;

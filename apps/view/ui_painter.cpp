@@ -103,11 +103,13 @@ void UiPainter::record(Commands& commands, const ImDrawData& triangles, glm::ive
   }
 }
 
-void UiPainter::draw(const ImDrawData& triangles, const Swapchain& target) {
+void UiPainter::draw(const ImDrawData& triangles, const Swapchain& target,
+                     const std::function<void(Commands&)>& recordTextures) {
   upload(triangles);
   constexpr VkPipelineStageFlags2 kAll = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   constexpr VkPipelineStageFlags2 kOutput = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
   Commands commands(device_);
+  recordTextures(commands);
   commands.beginPass("user interface");
   commands.transition(target.image(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
                       kAll, kOutput);

@@ -3,6 +3,8 @@
 
 #include <imgui.h>
 
+#include <functional>
+
 #include "apps/view/swapchain.h"
 #include "engine/vulkan/commands.h"
 #include "engine/vulkan/pipeline.h"
@@ -20,8 +22,9 @@ class UiPainter {
   /// After Dear ImGui has its fonts.
   UiPainter(const Device& device, VkFormat format);
 
-  /// Clears the acquired image and draws into it, up to layout PRESENT_SRC_KHR. Waits.
-  void draw(const ImDrawData& triangles, const Swapchain& target);
+  /// Clears the acquired image and draws into it, up to layout PRESENT_SRC_KHR, behind what `recordTextures` records. Waits.
+  void draw(const ImDrawData& triangles, const Swapchain& target,
+            const std::function<void(Commands&)>& recordTextures);
 
  private:
   void upload(const ImDrawData& triangles);

@@ -24,6 +24,7 @@ constexpr float kFontPixels = 13.0f;
 constexpr float kSidebar = 340.0f;
 
 constexpr double kQuickMilliseconds = 45.0;       // that a whole picture may take while something moves
+constexpr std::chrono::milliseconds kNotQuick{150};  // after which one that was quick before is no longer
 constexpr std::chrono::milliseconds kStill{120};  // before the whole picture is begun
 constexpr std::chrono::milliseconds kPaint{60};  // between frames while a picture is made that is wanted soon
 constexpr double kIdleSeconds = 0.25;            // between frames in which nothing happens
@@ -38,15 +39,15 @@ std::string titleOf(const ViewState& state) {
 Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const ViewOptions& options)
     : options_(options),
       window_(windows, "FreeVoxels", kWindowSize),
-      device_(instance, options.device.selector.value_or(""), std::numeric_limits<std::uint64_t>::max(),
-              kDeviceExtensions),
-      swapchain_(instance, device_, window_),
+      device_(options.device.open(instance, kDeviceExtensions)),
+      swapchain_(instance, *device_, window_),
+      display_(*device_),
       state_{.scene = options.scene, .method = options.method, .sequence = options.sequence},
       files_(!options.screenshot),
-      takeAway_(instance, options_.device, options.frames.value_or(kDefaultFrames), Window::wake),
-      volumes_(maximumVoxels(device_)),
-      quick_(instance, options_.device, volumes_, Window::wake),
-      whole_(instance, options_.device, volumes_, Window::wake) {
+      takeAway_(*device_, options.frames.value_or(kDefaultFrames), Window::wake),
+      volumes_(maximumVoxels(*device_)),
+      quick_(*device_, volumes_, Window::wake),
+      whole_(*device_, volumes_, Window::wake) {
   ImGuiIO& io = ImGui::GetIO();
   io.IniFilename = nullptr;
   ImFontConfig font;
@@ -55,7 +56,7 @@ Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const View
   ImGui::StyleColorsDark();
   ImGui::GetStyle().ScaleAllSizes(window_.contentScale());
   files_.remember(state_.sequence ? state_.sequence->pattern : state_.scene.input.input);
-  painter_ = std::make_unique<UiPainter>(device_, swapchain_.format());
+  painter_ = std::make_unique<UiPainter>(*device_, swapchain_.format());
 }
 
 void Viewer::show(const std::shared_ptr<const Picture>& picture) {
@@ -64,21 +65,27 @@ void Viewer::show(const std::shared_ptr<const Picture>& picture) {
   rate_.add(Clock::now());
   state_.picturesPerSecond = rate_.perSecond();
   spdlog::debug("{} picture, {}x{}: {:.1f} ms, {:.1f} a second", picture == state_.whole ? "whole" : "quick",
-                picture->image.size.x, picture->image.size.y, picture->milliseconds,
+                picture->shown->size().x, picture->shown->size().y, picture->milliseconds,
                 state_.picturesPerSecond);
   const bool isAsked = picture->request.number == lastRequest_ && !state_.changed;
   if (!state_.camera && isAsked) state_.begin(picture->scene);
-  upload(picture->diagnosis ? *picture->diagnosis : picture->image, texture_);
+  makeTexture(texture_, picture->shown->size());
   if (picture->compared)
-    upload(*picture->compared, comparedTexture_);
+    makeTexture(comparedTexture_, picture->compared->size());
   else
     comparedTexture_ = nullptr;
 }
 
-void Viewer::upload(const Image& image, std::unique_ptr<Texture>& texture) const {
-  if (!texture || texture->size() != image.size)
-    texture = std::make_unique<Texture>(device_, image.size, "picture");
-  texture->upload(device_, srgbTexels(image, state_.scene.output.look()));
+void Viewer::makeTexture(std::unique_ptr<Texture>& texture, glm::ivec2 size) const {
+  if (!texture || texture->size() != size) texture = std::make_unique<Texture>(*device_, size, "picture");
+}
+
+/// Before the panels, which show the textures.
+void Viewer::recordPicture(Commands& commands) const {
+  if (!newPicture_) return;
+  const PngLook look = state_.scene.output.look();
+  display_.record(commands, *state_.latest->shown, look, *texture_);
+  if (comparedTexture_) display_.record(commands, *state_.latest->compared, look, *comparedTexture_);
 }
 
 PictureRequest Viewer::request() const {
@@ -115,7 +122,8 @@ void Viewer::takeResults() {
   if (take(whole_)) wholeIsQuick_ = state_.latest->milliseconds < kQuickMilliseconds;
 }
 
-/// While things change, pictures are made quickly; of what stays, one is made of everything.
+/// While things change, pictures are made quickly; of what stays, one is made of everything, and abandoned when something
+/// changes again.
 void Viewer::ask() {
   if (area_.pixels().x > 0 && area_.pixels().y > 0 && state_.scene.camera.size != area_.pixels()) {
     state_.scene.camera.size = area_.pixels();
@@ -128,11 +136,13 @@ void Viewer::ask() {
     lastChange_ = now;
     ++lastRequest_;
     PictureRequest quick = request();
+    if (whole_.busyFor() > kNotQuick) wholeIsQuick_ = false;
     if (wholeIsQuick_ || options_.screenshot) {
       askedOfWhole_ = lastRequest_;
       whole_.ask(std::move(quick));
       return;
     }
+    whole_.abandon();
     quick.voxelsAlongEdge = pace_.voxelsAlongEdge();
     quick.scene.camera.size =
         glm::max(glm::ivec2(glm::round(pace_.scale() * glm::dvec2(quick.scene.camera.size))), glm::ivec2(1));
@@ -198,8 +208,8 @@ void Viewer::drawFrame() {
   ImGui::Render();
   if (!paint) return;
   painted_ = Clock::now();
+  painter_->draw(*ImGui::GetDrawData(), swapchain_, [this](Commands& commands) { recordPicture(commands); });
   newPicture_ = false;
-  painter_->draw(*ImGui::GetDrawData(), swapchain_);
   if (isComplete() && !looks_.waits()) ++completeFrames_;
   if (options_.screenshot && completeFrames_ == options_.after.value_or(1)) writeScreenshot();
   swapchain_.present();

@@ -18,6 +18,7 @@
 #include "apps/view/view_state.h"
 #include "apps/view/volume_cache.h"
 #include "apps/view/window.h"
+#include "engine/image/display_pass.h"
 
 namespace freevoxels {
 
@@ -34,7 +35,8 @@ class Viewer {
 
   void takeResults();
   void show(const std::shared_ptr<const Picture>& picture);
-  void upload(const Image& image, std::unique_ptr<Texture>& texture) const;
+  void makeTexture(std::unique_ptr<Texture>& texture, glm::ivec2 size) const;
+  void recordPicture(Commands& commands) const;
   PictureRequest request() const;
   void ask();
   bool paints() const;
@@ -46,9 +48,10 @@ class Viewer {
 
   const ViewOptions options_;
   Window window_;
-  Device device_;  ///< that draws the window; pictures are made on others
+  const std::unique_ptr<Device> device_;  ///< that makes the pictures and draws the window
   Swapchain swapchain_;
   std::unique_ptr<UiPainter> painter_;
+  DisplayPass display_;
 
   ViewState state_;
   LookPanels looks_;
@@ -62,7 +65,7 @@ class Viewer {
   RenderThread quick_, whole_;  ///< of few voxels, and of all
   std::uint64_t lastRequest_ = 0, askedOfWhole_ = 0, answered_ = 0, failed_ = 0;
   Clock::time_point lastChange_, painted_;
-  bool newPicture_ = false;  ///< that has not been painted
+  bool newPicture_ = false;  ///< in state_.latest, and not in the textures yet
   PictureRate rate_;         ///< of all that are shown
   AdaptiveResolution pace_;
   bool wholeIsQuick_ = false;

@@ -169,7 +169,8 @@ void AttenuationSweep::recordRows(SlabSweep& sweep) const {
   for (int x : {-1, 1}) {
     shader::SweepPush push = sweepPush(sweep, {x, 0, 0});
     push.slab = sweep.marchWithinPlanes(0);
-    sweep.commands.dispatchLinear(rows_[x > 0 ? 0 : 1], sweep.bindings(planeOf(sweep.table, {x, 0, 0})), push,
+    const std::array<Binding, 4> bindings = sweep.bindings(planeOf(sweep.table, {x, 0, 0}));
+    sweep.commands.dispatchLinear(rows_[x > 0 ? 0 : 1], std::span(bindings).first(3), push,  // no depths are carried over
                                   std::uint64_t(push.lineCount));
   }
 }

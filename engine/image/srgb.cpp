@@ -20,24 +20,22 @@ class SrgbByteTable {
     }
   }
 
+  std::span<const shader::SrgbBucket> buckets() const { return buckets_; }
+
   std::uint8_t at(float linear) const {
     const auto bits = std::bit_cast<std::uint32_t>(linear);
     if (bits < kFirst) return 0;
     if (bits >= kEnd) return 255;
-    const Bucket& bucket = buckets_[(bits - kFirst) >> kDropped];
-    return std::uint8_t(bucket.byte + int(linear >= bucket.next));
+    const shader::SrgbBucket& bucket = buckets_[(bits - kFirst) >> kDropped];
+    return std::uint8_t(bucket.byte + std::uint32_t(linear >= bucket.next));
   }
 
  private:
-  struct Bucket {
-    float next;  ///< the first value that maps to the next byte, or the bucket's end
-    std::uint8_t byte;
-  };
-  static constexpr std::uint32_t kDropped = 16;  ///< low bits of the mantissa that do not select a bucket
-  /// Values up to half a byte on the linear part of the curve, 0.5 / 255 / 12.92 = 1.24 / 2^13, map to byte
-  /// 0.
+  static constexpr std::uint32_t kDropped = shader::kSrgbDroppedBits;  ///< bits of the mantissa
+  /// Byte 0 is all up to half a byte on the straight part of the curve, 0.5 / 255 / 12.92 = 1.24 / 2^13.
   static constexpr std::uint32_t kFirst = std::bit_cast<std::uint32_t>(0x1p-13f);
   static constexpr std::uint32_t kEnd = std::bit_cast<std::uint32_t>(1.0f);
+  static_assert(kFirst == shader::kSrgbFirstBits && kEnd == shader::kSrgbEndBits);
   static constexpr std::uint32_t kBuckets = (kEnd - kFirst) >> kDropped;
 
   static std::uint8_t exactByte(std::uint32_t bits) {
@@ -56,14 +54,22 @@ class SrgbByteTable {
     return low;
   }
 
-  std::array<Bucket, kBuckets> buckets_;
+  std::array<shader::SrgbBucket, kBuckets> buckets_;
 };
+
+const SrgbByteTable& srgbByteTable() {
+  static const SrgbByteTable table;
+  return table;
+}
 
 }  // namespace
 
 std::uint8_t srgbByteFromLinear(float linear) {
-  static const SrgbByteTable table;
-  return table.at(linear);
+  return srgbByteTable().at(linear);
+}
+
+std::span<const shader::SrgbBucket> srgbBuckets() {
+  return srgbByteTable().buckets();
 }
 
 }  // namespace freevoxels

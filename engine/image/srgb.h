@@ -3,6 +3,9 @@
 
 #include <cmath>
 #include <cstdint>
+#include <span>
+
+#include "shaders/display_interface.h"
 
 namespace freevoxels {
 
@@ -25,5 +28,7 @@ inline std::uint8_t byteFromUnit(float unit) {
 
 /// Equals byteFromUnit(srgbFromLinear(linear)) for 0..1, but uses a table.
 std::uint8_t srgbByteFromLinear(float linear);
+/// Its table, for shaders; constants and meaning as in display_interface.h.
+std::span<const shader::SrgbBucket> srgbBuckets();
 
 }  // namespace freevoxels

@@ -120,7 +120,8 @@ LightAttenuation LightPass::resolve(const DeviceVolume& volume, const FrameSetti
 }
 
 shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const TableSettings& table,
-                                         const FrameSettings& settings, bool scalars, std::vector<StageTime>& times) {
+                                         const FrameSettings& settings, bool scalars, std::vector<StageTime>& times,
+                                         const Progress& progress) {
   const Lighting& lighting = *settings.lighting;
   const DirectionSet set = table.directions;
   if (!placed_ || placed_->ambient != lighting.ambient || placed_->environment != lighting.environment)
@@ -131,7 +132,7 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
     placed_.reset();  // invalid until the new lights are complete
     Commands commands(device_);
     const std::vector<shader::Light> lights = place(commands, volume, set, lighting, scalars);
-    commands.submitAndWait();
+    commands.submitAndWait(progress);
     addTimes(times, commands.times());
     const auto bytes = std::as_bytes(std::span(lights));
     lights_ = Buffer(device_, std::max<VkDeviceSize>(bytes.size(), 4), MemoryUse::Device, "lights");

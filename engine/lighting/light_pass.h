@@ -31,8 +31,9 @@ class LightPass {
   /// volume's scalars, otherwise through its classified voxels. Blocks until the device is done and adds the
   /// times to `times`; no frame may be in progress.
   shader::FrameLighting prepare(const DeviceVolume& volume, const TableSettings& table,
-                                const FrameSettings& settings, bool scalars, std::vector<StageTime>& times);
-  /// shader::Light of each light of the last frame.
+                                const FrameSettings& settings, bool scalars, std::vector<StageTime>& times,
+                                const Progress& progress);
+  /// shader::Light, of the last frame.
   const Buffer& lights() const { return lights_; }
 
  private:

@@ -158,7 +158,7 @@ void buildBlocks(const Device& device, const Volume& volume, const Classificatio
                  std::vector<StageTime>& times, const Progress& progress) {
   try {
     BlockBuilder(device, volume, classification, built, times, progress).run();
-  } catch (const Error&) {
+  } catch (...) {
     built.volume.stored.clear();
     built.lists.coarse.clear();
     throw;

@@ -52,7 +52,7 @@ void RadixSort::record(Commands& commands, const SortPairs& pairs, int bits) con
                                          &pairs.offsets, sortedKeys, sortedValues};
     commands.dispatch(count_, count, push, {kThreads, 1, 1});
     commands.barrier(kCompute, kCompute);
-    commands.dispatch(scan_, scan, push, {shader::kSortThreads, 1, 1});
+    commands.dispatch(scan_, scan, {shader::kSortThreads, 1, 1});
     commands.barrier(kCompute, kCompute);
     commands.dispatch(scatter_, scatter, push, {kThreads, 1, 1});
     commands.barrier(kCompute, kCompute);

@@ -15,8 +15,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr VkFormat kColorFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
-constexpr VkFormat kScalarFormat = VK_FORMAT_R32_SFLOAT;
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr VkPipelineStageFlags2 kDraw = VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
 constexpr VkPipelineStageFlags2 kOutput = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
@@ -34,7 +32,7 @@ Pipeline makeSetupPipeline(const Device& device, const DeviceVolume& volume, boo
 }
 
 Pipeline makeSplatPipeline(const Device& device, bool quads, bool withDistance, bool sorted) {
-  const std::array formats{kColorFormat, kScalarFormat, kScalarFormat};
+  const std::array formats{kTargetColorFormat, kTargetScalarFormat, kTargetScalarFormat};
   return makeGraphicsPipeline(
       device, shaders::splat_vertex, fragmentShader(withDistance, sorted),
       quads ? VK_PRIMITIVE_TOPOLOGY_TRIANGLE_STRIP : VK_PRIMITIVE_TOPOLOGY_POINT_LIST,
@@ -43,45 +41,6 @@ Pipeline makeSplatPipeline(const Device& device, bool quads, bool withDistance, 
 }
 
 }  // namespace
-
-std::vector<const RenderTarget*> SplatTargets::all() const {
-  std::vector targets{&colorEnergy};
-  if (opticalDepth.exists()) targets.push_back(&opticalDepth);
-  if (distance.exists()) targets.push_back(&distance);
-  return targets;
-}
-
-std::uint64_t targetBytes(const FrameSettings& settings) {
-  const std::uint64_t perPixel =
-      bytesPerPixel(kColorFormat) + bytesPerPixel(kScalarFormat) * (settings.depth ? 2 : 1);
-  return std::uint64_t(settings.size.x) * std::uint64_t(settings.size.y) * perPixel;
-}
-
-void checkFrameFits(const Device& device, const FrameSettings& settings) {
-  checkTargetFits(device, settings.size, kColorFormat);
-  const std::uint64_t bytes = targetBytes(settings);
-  if (bytes > device.memoryBytes())
-    fail(ExitCode::OutOfMemory,
-         "an image of {}x{} pixels needs {} MiB of device memory and {} may use {} MiB of it: use a smaller "
-         "--size",
-         settings.size.x, settings.size.y, bytes >> 20, device.description().name,
-         device.memoryBytes() >> 20);
-}
-
-SplatTargets makeImageTargets(const Device& device, const FrameSettings& settings) {
-  SplatTargets targets{.colorEnergy = RenderTarget(device, settings.size, kColorFormat, "C and E"),
-                       .opticalDepth = {},
-                       .distance = {}};
-  if (settings.depth) targets.distance = RenderTarget(device, settings.size, kScalarFormat, "distance");
-  return targets;
-}
-
-SplatTargets makeTargets(const Device& device, const FrameSettings& settings) {
-  SplatTargets targets = makeImageTargets(device, settings);
-  if (settings.composite != Composite::Sorted)
-    targets.opticalDepth = RenderTarget(device, settings.size, kScalarFormat, "T");
-  return targets;
-}
 
 SplatPass::SplatPass(const Device& device, bool withDistance, bool sorted)
     : device_(device),

@@ -13,25 +13,12 @@
 #include "engine/octree/device_volume.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/render_settings.h"
+#include "engine/splatting/frame_targets.h"
 #include "engine/visibility/cull_rule.h"
 #include "engine/visibility/detail_rule.h"
 #include "shaders/frame_interface.h"
 
 namespace freevoxels {
-
-/// The sums of a frame: C and E, T, and where depth is asked for, the sum of e times distance. Sorted:
-/// premultiplied colour and alpha, and the distance blended like the colour.
-struct SplatTargets {
-  RenderTarget colorEnergy;   ///< RGBA32F
-  RenderTarget opticalDepth;  ///< R32F, or does not exist (sorted)
-  RenderTarget distance;      ///< R32F, or does not exist
-  std::vector<const RenderTarget*> all() const;
-};
-
-SplatTargets makeTargets(const Device& device, const FrameSettings& settings);
-/// Of a frame that needs no sums at the pixels: without the optical depth.
-SplatTargets makeImageTargets(const Device& device, const FrameSettings& settings);
-std::uint64_t targetBytes(const FrameSettings& settings);
 
 /// The frame's constants, computed in double precision on the host.
 struct FrameConstants {

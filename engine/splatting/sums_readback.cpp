@@ -16,10 +16,10 @@ double worldPerIndex(const shader::ResolvePush& rays, glm::dvec2 pixel) {
 
 }  // namespace
 
-SumsReadback::SumsReadback(const Device& device, Commands& commands, const SplatTargets& targets)
-    : colorEnergy_(device, commands, targets.colorEnergy),
-      opticalDepth_(device, commands, targets.opticalDepth) {
-  if (targets.distance.exists()) distance_.emplace(device, commands, targets.distance);
+SumsReadback::SumsReadback(const Device& device, Commands& commands, const SplatTargets& targets) {
+  colorEnergy_.record(device, commands, targets.colorEnergy);
+  opticalDepth_.record(device, commands, targets.opticalDepth);
+  if (targets.distance.exists()) distance_.emplace().record(device, commands, targets.distance);
 }
 
 std::vector<SplatSums> SumsReadback::read(const FrameConstants& frame) const {

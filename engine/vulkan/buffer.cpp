@@ -52,7 +52,7 @@ DeviceMemory::DeviceMemory(const Device& device, const VkMemoryRequirements& nee
   VkDeviceMemory memory = VK_NULL_HANDLE;
   VK_CHECK(vkAllocateMemory(device.handle(), &info, nullptr, &memory));
   memory_ = OwnedMemory(device.handle(), memory);
-  hostCoherent_ = (device.memory().memoryTypes[type].propertyFlags & kVisible) == kVisible;
+  properties_ = device.memory().memoryTypes[type].propertyFlags;
 }
 
 Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const char* name,
@@ -113,8 +113,8 @@ void upload(const Device& device, const Buffer& buffer, std::span<const std::byt
 void download(const Device& device, const Buffer& buffer, std::span<std::byte> data, VkDeviceSize first) {
   FV_CHECK_LE(first + data.size(), buffer.bytes());
   if (data.empty()) return;
-  if (buffer.mapped() != nullptr) {
-    std::memcpy(data.data(), buffer.mapped() + first, data.size());
+  if (buffer.readable() != nullptr) {
+    std::memcpy(data.data(), buffer.readable() + first, data.size());
     return;
   }
   const Buffer staging(device, std::min<VkDeviceSize>(kStagingBytes, data.size()), MemoryUse::Readback,

@@ -49,12 +49,16 @@ class DeviceMemory {
   /// device addresses.
   DeviceMemory(const Device& device, const VkMemoryRequirements& needs, MemoryUse use, bool deviceAddress);
   VkDeviceMemory get() const { return memory_.get(); }
-  /// Whether the memory can be mapped and needs no flushing.
-  bool hostCoherent() const { return hostCoherent_; }
+  /// Can be mapped, and needs no flushing.
+  bool hostCoherent() const { return (properties_ & kHostCoherent) == kHostCoherent; }
+  /// And the host reads it at the speed of its own memory, not past its caches (write-combined).
+  bool hostCached() const { return hostCoherent() && (properties_ & VK_MEMORY_PROPERTY_HOST_CACHED_BIT) != 0; }
 
  private:
   MemoryClaim claim_;  // until the memory is freed, or could not be allocated
-  bool hostCoherent_ = false;
+  static constexpr VkMemoryPropertyFlags kHostCoherent =
+      VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+  VkMemoryPropertyFlags properties_ = 0;
   OwnedMemory memory_;
 };
 
@@ -71,6 +75,8 @@ class Buffer {
   VkDeviceAddress address() const { return address_; }
   /// The host address of the buffer's memory, or null if it is not mapped. Valid as long as the buffer.
   std::byte* mapped() const { return mapped_; }
+  /// The same for reading: null as well where that would be slow, so that a copy into MemoryUse::Readback is better.
+  const std::byte* readable() const { return memory_.hostCached() ? mapped_ : nullptr; }
 
  private:
   DeviceMemory memory_;

@@ -1,6 +1,8 @@
 #include "engine/vulkan/commands.h"
 
 #include <algorithm>
+#include <cmath>
+#include <map>
 
 #include "engine/core/error.h"
 
@@ -8,10 +10,41 @@ namespace freevoxels {
 
 namespace {
 
-constexpr std::uint32_t kMaximumTimestamps = 4096;
-constexpr std::uint64_t kProgressInterval = 50'000'000;  // nanoseconds between two queries of the progress
+constexpr std::uint64_t kProgressInterval = 50'000'000;  // nanoseconds between two looks at what is complete
 
-constexpr VkAccessFlags2 kAnyAccess = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+/// Milliseconds of a workgroup in a pass that was not measured yet.
+constexpr double kUnknownCpuCost = 0.05, kUnknownGpuCost = 0.001;
+
+constexpr VkPipelineStageFlags2 kAnyStage =
+    VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
+
+VkAccessFlags2 writesOf(VkPipelineStageFlags2 stages) {
+  VkAccessFlags2 access = 0;
+  if (stages & kAnyStage) access |= VK_ACCESS_2_MEMORY_WRITE_BIT;
+  if (stages & VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT) access |= VK_ACCESS_2_SHADER_WRITE_BIT;
+  if (stages & VK_PIPELINE_STAGE_2_TRANSFER_BIT) access |= VK_ACCESS_2_TRANSFER_WRITE_BIT;
+  if (stages & VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT) access |= VK_ACCESS_2_COLOR_ATTACHMENT_WRITE_BIT;
+  return access;
+}
+
+VkAccessFlags2 readsOf(VkPipelineStageFlags2 stages) {
+  constexpr VkPipelineStageFlags2 kShaders = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT |
+                                             VK_PIPELINE_STAGE_2_VERTEX_SHADER_BIT |
+                                             VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+  VkAccessFlags2 access = 0;
+  if (stages & kAnyStage) access |= VK_ACCESS_2_MEMORY_READ_BIT;
+  if (stages & kShaders) access |= VK_ACCESS_2_SHADER_READ_BIT | VK_ACCESS_2_UNIFORM_READ_BIT;
+  if (stages & VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT) access |= VK_ACCESS_2_INDIRECT_COMMAND_READ_BIT;
+  if (stages & VK_PIPELINE_STAGE_2_TRANSFER_BIT) access |= VK_ACCESS_2_TRANSFER_READ_BIT;
+  if (stages & VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT) access |= VK_ACCESS_2_COLOR_ATTACHMENT_READ_BIT;
+  if (stages & VK_PIPELINE_STAGE_2_HOST_BIT) access |= VK_ACCESS_2_HOST_READ_BIT;
+  return access;
+}
+
+VkBufferImageCopy wholeImage(const RenderTarget& target) {
+  return {.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+          .imageExtent = {std::uint32_t(target.size().x), std::uint32_t(target.size().y), 1}};
+}
 
 }  // namespace
 
@@ -19,52 +52,72 @@ std::uint64_t ticksBetween(std::uint64_t first, std::uint64_t second, std::uint3
   return (second - first) & (~std::uint64_t(0) >> (64 - bits));
 }
 
-Commands::Commands(const Device& device) : device_(device) {
-  const VkCommandPoolCreateInfo poolInfo{.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                         .flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT,
-                                         .queueFamilyIndex = device.queueFamily()};
-  VkCommandPool pool = VK_NULL_HANDLE;
-  VK_CHECK(vkCreateCommandPool(device.handle(), &poolInfo, nullptr, &pool));
-  pool_ = OwnedCommandPool(device.handle(), pool);
+Commands::Commands(const Device& device) : device_(device), slot_(device.queue().borrowSlot()) {
+  beginSlice();
+}
 
-  const VkQueryPoolCreateInfo queryInfo{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-                                        .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                        .queryCount = kMaximumTimestamps};
-  VkQueryPool queries = VK_NULL_HANDLE;
-  VK_CHECK(vkCreateQueryPool(device.handle(), &queryInfo, nullptr, &queries));
-  queries_ = OwnedQueryPool(device.handle(), queries);
-  vkResetQueryPool(device.handle(), queries, 0, kMaximumTimestamps);
+Commands::~Commands() {
+  device_.queue().returnSlot(std::move(slot_));
+}
 
-  const VkSemaphoreTypeCreateInfo typeInfo{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
-                                           .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
-  const VkSemaphoreCreateInfo semaphoreInfo{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO,
-                                            .pNext = &typeInfo};
-  VkSemaphore semaphore = VK_NULL_HANDLE;
-  VK_CHECK(vkCreateSemaphore(device.handle(), &semaphoreInfo, nullptr, &semaphore));
-  timeline_ = OwnedSemaphore(device.handle(), semaphore);
-
-  const VkCommandBufferAllocateInfo bufferInfo{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                               .commandPool = pool,
-                                               .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                               .commandBufferCount = 1};
-  VK_CHECK(vkAllocateCommandBuffers(device.handle(), &bufferInfo, &buffer_));
+void Commands::beginSlice() {
+  if (slices_ == slot_->buffers.size()) {
+    const VkCommandBufferAllocateInfo info{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
+                                           .commandPool = slot_->pool.get(),
+                                           .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
+                                           .commandBufferCount = 1};
+    VkCommandBuffer buffer = VK_NULL_HANDLE;
+    VK_CHECK(vkAllocateCommandBuffers(device_.handle(), &info, &buffer));
+    slot_->buffers.push_back(buffer);
+  }
+  buffer_ = slot_->buffers[slices_++];
+  sliceMilliseconds_ = 0.0;
   const VkCommandBufferBeginInfo begin{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
                                        .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
   VK_CHECK(vkBeginCommandBuffer(buffer_, &begin));
 }
 
+void Commands::endSlice() {
+  if (!passes_.empty()) writeTimestamp();
+  // What the device has written is visible to the host, which may have it mapped, and to whatever is submitted next, by
+  // any thread.
+  barrier(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT);
+  VK_CHECK(vkEndCommandBuffer(buffer_));
+}
+
+void Commands::nextSlice() {
+  endSlice();
+  passes_.push_back({});  // what the device does between two slices is not ours
+  beginSlice();
+}
+
+/// Not before the first pass, as only passes are measured; and timestamps are left for the passes to come.
+bool Commands::mayDivide() const {
+  return !passes_.empty() && passes_.size() < CommandSlot::kMaximumTimestamps / 2;
+}
+
 void Commands::writeTimestamp() {
-  vkCmdWriteTimestamp2(buffer_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_.get(),
-                       std::uint32_t(passes_.size()));
+  vkCmdWriteTimestamp2(buffer_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot_->timestamps.get(), slot_->usedTimestamps++);
+  // Guards nothing. Lavapipe writes a timestamp when it comes to a barrier, which may be behind work that was recorded
+  // later.
+  const VkDependencyInfo nothing{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  if (device_.isCpu()) vkCmdPipelineBarrier2(buffer_, &nothing);
+}
+
+void Commands::beginSpan(const std::string& pass) {
+  FV_CHECK_LT(slot_->usedTimestamps + 1, CommandSlot::kMaximumTimestamps);
+  writeTimestamp();
+  passes_.push_back({pass, 0.0});
 }
 
 void Commands::beginPass(const std::string& name) {
-  FV_CHECK_LT(passes_.size() + 1, std::size_t(kMaximumTimestamps));
-  writeTimestamp();
-  // Lavapipe writes the timestamp when it reaches a barrier, which without this one may be after work that
-  // was recorded later.
-  barrier(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
-  passes_.push_back(name);
+  const double cost = device_.queue().costOf(name, kSliceMilliseconds);
+  if (sliceMilliseconds_ > 0.0 && sliceMilliseconds_ + cost > kSliceMilliseconds && mayDivide()) nextSlice();
+  pass_ = name;
+  beginSpan(name);
+  passes_.back().units = 1.0;
+  sliceMilliseconds_ += cost;
 }
 
 void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings, const void* push,
@@ -87,9 +140,11 @@ void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings,
       views[i] = (*view)->handle();
       write.pTexelBufferView = &views[i];
     } else if (const auto* texture = std::get_if<const Texture*>(&bindings[i])) {
-      images[i] = {.sampler = (*texture)->sampler(),
-                   .imageView = (*texture)->view(),
-                   .imageLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
+      const bool isWritten = write.descriptorType == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE;
+      images[i] = {
+          .sampler = (*texture)->sampler(),
+          .imageView = (*texture)->view(),
+          .imageLayout = isWritten ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
       write.pImageInfo = &images[i];
     } else {
       images[i] = {.imageView = std::get<const RenderTarget*>(bindings[i])->view(),
@@ -105,20 +160,45 @@ void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings,
     vkCmdPushConstants(buffer_, pipeline.layout(), pipeline.stages(), 0, std::uint32_t(pushBytes), push);
 }
 
-void Commands::dispatchThreads(const Pipeline& pipeline, glm::ivec3 threads) {
+void Commands::dispatchThreads(const Pipeline& pipeline, const std::function<void()>& bindAll, glm::ivec3 threads) {
   const glm::ivec3 groups = (threads + pipeline.workgroup() - 1) / pipeline.workgroup();
   for (int axis = 0; axis < 3; ++axis)
     FV_CHECK_LE(std::uint32_t(groups[axis]), device_.limits().maxComputeWorkGroupCount[axis]);
-  vkCmdDispatch(buffer_, std::uint32_t(groups.x), std::uint32_t(groups.y), std::uint32_t(groups.z));
+  dispatchGroups(bindAll, glm::uvec3(groups), groups.z > 1 ? 2 : groups.y > 1 ? 1 : 0);
 }
 
-void Commands::dispatchInvocations(const Pipeline& pipeline, std::uint64_t count, std::uint32_t layers) {
-  constexpr std::uint64_t kRow = 65535;  // workgroups that every device supports in one dimension
+void Commands::dispatchInvocations(const Pipeline& pipeline, const std::function<void()>& bindAll, std::uint64_t count,
+                                   std::uint32_t layers) {
+  constexpr std::uint64_t kRow = 65535;  // workgroups that every device takes in one dimension
   const auto threads = std::uint64_t(pipeline.workgroup().x);
   const std::uint64_t groups = (count + threads - 1) / threads;
   const std::uint64_t rows = (groups + kRow - 1) / kRow;
   FV_CHECK_LE(rows, kRow);
-  vkCmdDispatch(buffer_, std::uint32_t(std::min(groups, kRow)), std::uint32_t(rows), layers);
+  // Several rows are divided into rows, as the shader reads how long one is.
+  dispatchGroups(bindAll, {std::uint32_t(std::min(groups, kRow)), std::uint32_t(rows), layers}, rows > 1 ? 1 : 0);
+}
+
+/// In several slices, along the axis, where it takes longer than one.
+void Commands::dispatchGroups(const std::function<void()>& bindAll, glm::uvec3 groups, int axis) {
+  const std::uint64_t count = std::uint64_t(groups.x) * groups.y * groups.z;
+  const double cost = double(count) * device_.queue().costOf(pass_, device_.isCpu() ? kUnknownCpuCost : kUnknownGpuCost);
+  std::uint32_t parts = 1;
+  if (sliceMilliseconds_ + cost > kSliceMilliseconds && mayDivide())
+    parts = std::uint32_t(std::min(std::ceil(cost / kSliceMilliseconds), double(groups[axis])));
+  for (std::uint32_t part = 0; part < parts; ++part) {
+    const auto boundary = [&](std::uint32_t i) { return std::uint32_t(std::uint64_t(groups[axis]) * i / parts); };
+    glm::uvec3 base(0), size = groups;
+    base[axis] = boundary(part);
+    size[axis] = boundary(part + 1) - base[axis];
+    if (sliceMilliseconds_ > 0.0 && sliceMilliseconds_ + cost / parts > kSliceMilliseconds && mayDivide()) {
+      nextSlice();
+      beginSpan(pass_);
+    }
+    bindAll();
+    vkCmdDispatchBase(buffer_, base.x, base.y, base.z, size.x, size.y, size.z);
+    sliceMilliseconds_ += cost / parts;
+  }
+  if (!passes_.empty()) passes_.back().units += double(count);
 }
 
 void Commands::copy(const Buffer& from, const Buffer& to, VkBufferCopy region) {
@@ -127,21 +207,30 @@ void Commands::copy(const Buffer& from, const Buffer& to, VkBufferCopy region) {
 }
 
 void Commands::copy(const RenderTarget& from, const Buffer& to) {
-  const VkBufferImageCopy region{
-      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-      .imageExtent = {std::uint32_t(from.size().x), std::uint32_t(from.size().y), 1}};
+  const VkBufferImageCopy region = wholeImage(from);
   transition(from, VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-             VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+             VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
   vkCmdCopyImageToBuffer(buffer_, from.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, to.handle(), 1,
                          &region);
+  transition(from, VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL,
+             VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
+}
+
+void Commands::copy(const Buffer& from, const RenderTarget& to) {
+  const VkBufferImageCopy region = wholeImage(to);
+  transition(to, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+             VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+  vkCmdCopyBufferToImage(buffer_, from.handle(), to.handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+  transition(to, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_TRANSFER_BIT,
+             VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
 void Commands::barrier(VkPipelineStageFlags2 from, VkPipelineStageFlags2 to) {
   const VkMemoryBarrier2 memory{.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER_2,
                                 .srcStageMask = from,
-                                .srcAccessMask = kAnyAccess,
+                                .srcAccessMask = writesOf(from),
                                 .dstStageMask = to,
-                                .dstAccessMask = kAnyAccess};
+                                .dstAccessMask = readsOf(to) | writesOf(to)};
   const VkDependencyInfo dependency{
       .sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO, .memoryBarrierCount = 1, .pMemoryBarriers = &memory};
   vkCmdPipelineBarrier2(buffer_, &dependency);
@@ -151,9 +240,9 @@ void Commands::transition(VkImage image, VkImageLayout from, VkImageLayout to,
                           VkPipelineStageFlags2 fromStage, VkPipelineStageFlags2 toStage) {
   const VkImageMemoryBarrier2 barrier{.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2,
                                       .srcStageMask = fromStage,
-                                      .srcAccessMask = kAnyAccess,
+                                      .srcAccessMask = writesOf(fromStage),
                                       .dstStageMask = toStage,
-                                      .dstAccessMask = kAnyAccess,
+                                      .dstAccessMask = readsOf(toStage) | writesOf(toStage),
                                       .oldLayout = from,
                                       .newLayout = to,
                                       .image = image,
@@ -165,40 +254,26 @@ void Commands::transition(VkImage image, VkImageLayout from, VkImageLayout to,
 }
 
 void Commands::submitAndWait(const Progress& progress) {
-  writeTimestamp();
-  // Makes the device's writes visible to the host, which may have the memory mapped, and to later
-  // submissions.
-  barrier(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-          VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT);
-  VK_CHECK(vkEndCommandBuffer(buffer_));
-  const VkCommandBufferSubmitInfo command{.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO,
-                                          .commandBuffer = buffer_};
-  const VkSemaphoreSubmitInfo signal{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO,
-                                     .semaphore = timeline_.get(),
-                                     .value = 1,
-                                     .stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT};
-  const VkSubmitInfo2 submit{.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO_2,
-                             .commandBufferInfoCount = 1,
-                             .pCommandBufferInfos = &command,
-                             .signalSemaphoreInfoCount = 1,
-                             .pSignalSemaphoreInfos = &signal};
-  VK_CHECK(vkQueueSubmit2(device_.queue(), 1, &submit, VK_NULL_HANDLE));
+  endSlice();
+  Queue& queue = device_.queue();
+  for (std::size_t slice = 0; slice < slices_; ++slice) {
+    if (progress && slices_ > 1) reportProgress(progress);
+    waitFor(queue.submit(slot_->buffers[slice]), progress);
+  }
+  learnCosts();
+}
 
-  const VkSemaphore semaphore = timeline_.get();
-  const std::uint64_t done = 1;
-  const VkSemaphoreWaitInfo wait{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO,
-                                 .semaphoreCount = 1,
-                                 .pSemaphores = &semaphore,
-                                 .pValues = &done};
-  for (;;) {
-    const VkResult result =
-        vkWaitSemaphores(device_.handle(), &wait, progress ? kProgressInterval : UINT64_MAX);
-    if (result == VK_SUCCESS) return;
-    if (result != VK_TIMEOUT) VK_CHECK_RESULT(result, "vkWaitSemaphores");
+void Commands::waitFor(std::uint64_t submission, const Progress& progress) const {
+  const Queue& queue = device_.queue();
+  if (!progress) {
+    queue.wait(submission);
+    return;
+  }
+  while (!queue.wait(submission, kProgressInterval)) {
     try {
       reportProgress(progress);
-    } catch (...) {  // wait before unwinding, so that no resource is freed while in use
-      VK_CHECK(vkWaitSemaphores(device_.handle(), &wait, UINT64_MAX));
+    } catch (...) {  // the slice may still be in use
+      queue.wait(submission);
       throw;
     }
   }
@@ -211,32 +286,48 @@ void Commands::reportProgress(const Progress& progress) const {
   };
   std::vector<Timestamp> stamps(passes_.size() + 1);
   const VkResult result = vkGetQueryPoolResults(
-      device_.handle(), queries_.get(), 0, std::uint32_t(stamps.size()), stamps.size() * sizeof(Timestamp),
+      device_.handle(), slot_->timestamps.get(), 0, std::uint32_t(stamps.size()), stamps.size() * sizeof(Timestamp),
       stamps.data(), sizeof(Timestamp), VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WITH_AVAILABILITY_BIT);
   if (result != VK_NOT_READY) VK_CHECK_RESULT(result, "vkGetQueryPoolResults");
   const auto started =
-      std::ranges::count_if(stamps, [](const Timestamp& stamp) { return stamp.available != 0; });
-  if (started == 0) return;
-  const std::size_t current = std::min(std::size_t(started) - 1, passes_.size() - 1);
-  progress(passes_[current], double(current) / double(passes_.size()));
+      std::size_t(std::ranges::count_if(stamps, [](const Timestamp& stamp) { return stamp.available != 0; }));
+  std::size_t current = std::min(std::max(started, std::size_t(1)) - 1, passes_.size() - 1);
+  if (passes_[current].pass.empty()) ++current;  // a slice is complete and the next has not begun
+  progress(passes_[current].pass, double(current) / double(passes_.size()));
+}
+
+/// Of each span.
+std::vector<double> Commands::milliseconds() const {
+  std::vector<std::uint64_t> stamps(passes_.empty() ? 0 : passes_.size() + 1);
+  if (stamps.empty()) return {};
+  VK_CHECK(vkGetQueryPoolResults(device_.handle(), slot_->timestamps.get(), 0, std::uint32_t(stamps.size()),
+                                 stamps.size() * sizeof(std::uint64_t), stamps.data(), sizeof(std::uint64_t),
+                                 VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
+  std::vector<double> result;
+  for (std::size_t i = 0; i < passes_.size(); ++i)
+    result.push_back(double(ticksBetween(stamps[i], stamps[i + 1], device_.timestampBits())) *
+                     double(device_.limits().timestampPeriod) * 1e-6);
+  return result;
 }
 
 std::vector<StageTime> Commands::times() const {
-  std::vector<std::uint64_t> stamps(passes_.size() + 1);
-  VK_CHECK(vkGetQueryPoolResults(device_.handle(), queries_.get(), 0, std::uint32_t(stamps.size()),
-                                 stamps.size() * sizeof(std::uint64_t), stamps.data(), sizeof(std::uint64_t),
-                                 VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT));
+  const std::vector<double> spans = milliseconds();
   std::vector<StageTime> times;
-  for (std::size_t i = 0; i < passes_.size(); ++i) {
-    const std::uint64_t ticks = ticksBetween(stamps[i], stamps[i + 1], device_.timestampBits());
-    const double milliseconds = double(ticks) * double(device_.limits().timestampPeriod) * 1e-6;
-    const auto same = std::ranges::find(times, passes_[i], &StageTime::name);
-    if (same != times.end())
-      same->milliseconds += milliseconds;
-    else
-      times.push_back({passes_[i], milliseconds, true});
-  }
+  for (std::size_t i = 0; i < passes_.size(); ++i)
+    if (!passes_[i].pass.empty()) addTime(times, {passes_[i].pass, spans[i], true});
   return times;
+}
+
+void Commands::learnCosts() const {
+  const std::vector<double> spans = milliseconds();
+  std::map<std::string, Span> passes;
+  std::map<std::string, double> sums;
+  for (std::size_t i = 0; i < passes_.size(); ++i) {
+    if (passes_[i].pass.empty()) continue;
+    passes[passes_[i].pass].units += passes_[i].units;
+    sums[passes_[i].pass] += spans[i];
+  }
+  for (const auto& [name, pass] : passes) device_.queue().setCost(name, sums[name] / std::max(pass.units, 1.0));
 }
 
 }  // namespace freevoxels

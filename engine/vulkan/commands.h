@@ -1,7 +1,14 @@
 #pragma once
-// Records, submits and times GPU work: one command buffer that is submitted once.
+// Recording, submitting and timing work for the device. A recording is executed once, in slices.
+//
+// A slice is a command buffer of about kSliceMilliseconds of work, as far as that is known from the last time that passes
+// of the same names ran: passes go to slices whole, and a dispatch that is longer than a slice is divided into ranges of
+// workgroups. submitAndWait() submits a slice when the one before is complete, so that other threads (a window) get the
+// device in between, and so that work can be abandoned soon.
 
+#include <functional>
 #include <glm/glm.hpp>
+#include <memory>
 #include <span>
 #include <string>
 #include <variant>
@@ -11,41 +18,51 @@
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/image.h"
 #include "engine/vulkan/pipeline.h"
+#include "engine/vulkan/queue.h"
 #include "engine/vulkan/texture.h"
 
 namespace freevoxels {
 
-/// The resource of a binding of set 0: a whole buffer, its texels, a storage image in layout GENERAL, or a
-/// texture with its sampler.
+/// What a binding of set 0 points to: a whole buffer, its texels, a storage image in layout GENERAL, or a texture: with its
+/// sampler, or as a storage image in layout GENERAL.
 using Binding = std::variant<const Buffer*, const TexelView*, const RenderTarget*, const Texture*>;
 
 /// Ticks from `first` to `second`, two timestamps of `bits` valid bits that may have wrapped around once in
 /// between.
 std::uint64_t ticksBetween(std::uint64_t first, std::uint64_t second, std::uint32_t bits);
 
+/// Device time that a slice is meant to take.
+constexpr double kSliceMilliseconds = 40.0;
+
+/// For one thread. Passes guard what they write themselves: each ends with a barrier that makes its writes visible to the
+/// stages that read them, and beginPass() is no barrier.
 class Commands {
  public:
   explicit Commands(const Device& device);
+  ~Commands();
   Commands(const Commands&) = delete;
   Commands& operator=(const Commands&) = delete;
 
+  /// The command buffer that is being recorded: until the next call of a member function.
   VkCommandBuffer handle() const { return buffer_; }
+  /// Command buffers that were begun.
+  std::size_t slices() const { return slices_; }
+  /// Whether no pass was begun.
+  bool empty() const { return passes_.empty(); }
 
-  /// Starts a timer under this name, which runs until the next beginPass. The times of passes with the same
-  /// name are added.
+  /// Everything recorded until the next beginPass is timed under this name. Passes of one name are added up. Not within
+  /// rendering.
   void beginPass(const std::string& name);
 
   /// Dispatches `threads` invocations in each dimension, rounded up to whole workgroups.
   template <typename Push>
   void dispatch(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
                 glm::ivec3 threads) {
-    bind(pipeline, bindings, &push, sizeof(Push));
-    dispatchThreads(pipeline, threads);
+    dispatchThreads(pipeline, [&] { bind(pipeline, bindings, &push, sizeof(Push)); }, threads);
   }
   /// Dispatches a pipeline that has no push constants.
   void dispatch(const Pipeline& pipeline, std::span<const Binding> bindings, glm::ivec3 threads) {
-    bind(pipeline, bindings, nullptr, 0);
-    dispatchThreads(pipeline, threads);
+    dispatchThreads(pipeline, [&] { bind(pipeline, bindings, nullptr, 0); }, threads);
   }
   /// Dispatches `count` invocations in one dimension, for each of `layers` layers (gl_WorkGroupID.z). A
   /// shader computes its workgroup's index as gl_WorkGroupID.x + y * gl_NumWorkGroups.x, since one dimension
@@ -53,8 +70,7 @@ class Commands {
   template <typename Push>
   void dispatchLinear(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
                       std::uint64_t count, std::uint32_t layers = 1) {
-    bind(pipeline, bindings, &push, sizeof(Push));
-    dispatchInvocations(pipeline, count, layers);
+    dispatchInvocations(pipeline, [&] { bind(pipeline, bindings, &push, sizeof(Push)); }, count, layers);
   }
   template <typename Push>
   void dispatchIndirect(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
@@ -78,11 +94,15 @@ class Commands {
     barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   }
   void copy(const Buffer& from, const Buffer& to, VkBufferCopy region);
-  /// Copies a target, which must be in layout GENERAL and is left in TRANSFER_SRC_OPTIMAL.
+  /// From layout GENERAL, and back to it; visible to the transfer stage before.
   void copy(const RenderTarget& from, const Buffer& to);
+  /// Into a target in any layout, which becomes GENERAL for compute shaders.
+  void copy(const Buffer& from, const RenderTarget& to);
 
-  /// Makes all writes of the `from` stages visible to the `to` stages.
+  /// What the `from` stages have written is visible to the `to` stages, and `to` does not begin to write before `from` has
+  /// read.
   void barrier(VkPipelineStageFlags2 from, VkPipelineStageFlags2 to);
+  /// The same of one image, whose layout changes.
   void transition(VkImage image, VkImageLayout from, VkImageLayout to, VkPipelineStageFlags2 fromStage,
                   VkPipelineStageFlags2 toStage);
   void transition(const RenderTarget& target, VkImageLayout from, VkImageLayout to,
@@ -90,25 +110,42 @@ class Commands {
     transition(target.handle(), from, to, fromStage, toStage);
   }
 
-  /// Ends the recording, submits it and blocks until it is complete, while reporting the passes as the device
-  /// finishes them. Throws if the device fails. An exception of `progress` is rethrown after the device has
-  /// finished, so that no resource is freed while in use.
+  /// Ends the recording, executes it and waits. `progress` is called before each slice, and again and again while a slice
+  /// takes long. If it throws, the slice that is being executed is completed, the others are abandoned, and the exception
+  /// is passed on: whatever the recording was to write is then undefined. Throws as well where the device does.
   void submitAndWait(const Progress& progress = {});
   /// Device time of each pass in the order of recording. Only valid after submitAndWait.
   std::vector<StageTime> times() const;
 
  private:
-  void dispatchThreads(const Pipeline& pipeline, glm::ivec3 threads);
-  void dispatchInvocations(const Pipeline& pipeline, std::uint64_t count, std::uint32_t layers);
+  /// The time between two neighbouring timestamps, and the workgroups that were dispatched in it.
+  struct Span {
+    std::string pass;  ///< empty between slices
+    double units = 0.0;
+  };
+
+  void dispatchThreads(const Pipeline& pipeline, const std::function<void()>& bindAll, glm::ivec3 threads);
+  void dispatchInvocations(const Pipeline& pipeline, const std::function<void()>& bindAll, std::uint64_t count,
+                           std::uint32_t layers);
+  void dispatchGroups(const std::function<void()>& bindAll, glm::uvec3 groups, int axis);
+  void beginSlice();
+  void endSlice();
+  void nextSlice();
+  bool mayDivide() const;
+  void beginSpan(const std::string& pass);
   void writeTimestamp();
+  void waitFor(std::uint64_t submission, const Progress& progress) const;
   void reportProgress(const Progress& progress) const;
+  std::vector<double> milliseconds() const;
+  void learnCosts() const;
 
   const Device& device_;
-  OwnedCommandPool pool_;
-  OwnedQueryPool queries_;
-  OwnedSemaphore timeline_;
+  std::unique_ptr<CommandSlot> slot_;
   VkCommandBuffer buffer_ = VK_NULL_HANDLE;
-  std::vector<std::string> passes_;  ///< pass i runs from timestamp i to timestamp i + 1
+  std::size_t slices_ = 0;        ///< begun
+  double sliceMilliseconds_ = 0;  ///< expected of the current slice
+  std::string pass_;              ///< the current one
+  std::vector<Span> passes_;      ///< span i is from timestamp i to timestamp i + 1
 };
 
 }  // namespace freevoxels

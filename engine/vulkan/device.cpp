@@ -13,6 +13,7 @@
 #include "engine/core/error.h"
 #include "engine/vulkan/owned.h"
 #include "engine/vulkan/pipeline.h"
+#include "engine/vulkan/queue.h"
 
 namespace freevoxels {
 
@@ -44,11 +45,11 @@ struct RequiredFeature {
 #name, [](Features & f) -> VkBool32& { return f.part.name; } \
   }
 const std::array kRequiredFeatures{
-    FV_FEATURE(base.features, largePoints),        FV_FEATURE(base.features, independentBlend),
-    FV_FEATURE(vulkan12, scalarBlockLayout),       FV_FEATURE(vulkan12, bufferDeviceAddress),
-    FV_FEATURE(vulkan12, timelineSemaphore),       FV_FEATURE(vulkan12, hostQueryReset),
-    FV_FEATURE(vulkan12, storageBuffer8BitAccess), FV_FEATURE(vulkan13, synchronization2),
-    FV_FEATURE(vulkan13, dynamicRendering),        FV_FEATURE(vulkan13, maintenance4),
+    FV_FEATURE(base.features, largePoints),    FV_FEATURE(vulkan12, scalarBlockLayout),
+    FV_FEATURE(vulkan12, bufferDeviceAddress), FV_FEATURE(vulkan12, timelineSemaphore),
+    FV_FEATURE(vulkan12, hostQueryReset),      FV_FEATURE(vulkan12, storageBuffer8BitAccess),
+    FV_FEATURE(vulkan13, synchronization2),    FV_FEATURE(vulkan13, dynamicRendering),
+    FV_FEATURE(vulkan13, maintenance4),
 };
 #undef FV_FEATURE
 
@@ -106,6 +107,18 @@ std::optional<QueueFamily> findQueueFamily(VkPhysicalDevice physical) {
   return std::nullopt;
 }
 
+std::vector<VkExtensionProperties> extensionsOf(VkPhysicalDevice physical) {
+  std::uint32_t count = 0;
+  VK_CHECK(vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr));
+  std::vector<VkExtensionProperties> extensions(count);
+  VK_CHECK(vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, extensions.data()));
+  return extensions;
+}
+
+bool hasExtension(const std::vector<VkExtensionProperties>& extensions, const char* name) {
+  return std::ranges::any_of(extensions, [&](auto& e) { return std::strcmp(e.extensionName, name) == 0; });
+}
+
 bool canBlend(VkPhysicalDevice physical, VkFormat format) {
   VkFormatProperties properties;
   vkGetPhysicalDeviceFormatProperties(physical, format, &properties);
@@ -124,12 +137,9 @@ std::vector<std::string> findRejections(VkPhysicalDevice physical,
                                   VK_API_VERSION_MINOR(properties.apiVersion)));
     return reasons;
   }
-  std::uint32_t count = 0;
-  VK_CHECK(vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr));
-  std::vector<VkExtensionProperties> extensions(count);
-  VK_CHECK(vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, extensions.data()));
+  const std::vector<VkExtensionProperties> extensions = extensionsOf(physical);
   for (const char* needed : kExtensions)
-    if (std::ranges::none_of(extensions, [&](auto& e) { return std::strcmp(e.extensionName, needed) == 0; }))
+    if (!hasExtension(extensions, needed))
       reasons.push_back(fmt::format("it lacks the extension {}", needed));
 
   Features features;
@@ -152,6 +162,23 @@ std::uint64_t hostMemoryBytes() {
   return std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE));
 }
 
+/// What this process may allocate of the largest device-local heap.
+std::uint64_t heapBytes(VkPhysicalDevice physical) {
+  const bool knowsBudget = hasExtension(extensionsOf(physical), VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+  VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{
+      .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT};
+  VkPhysicalDeviceMemoryProperties2 memory{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2,
+                                           .pNext = knowsBudget ? &budget : nullptr};
+  vkGetPhysicalDeviceMemoryProperties2(physical, &memory);
+  std::uint64_t most = 0;
+  for (std::uint32_t i = 0; i < memory.memoryProperties.memoryHeapCount; ++i) {
+    const VkMemoryHeap& heap = memory.memoryProperties.memoryHeaps[i];
+    if ((heap.flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) == 0) continue;
+    most = std::max<std::uint64_t>(most, knowsBudget ? std::min(heap.size, budget.heapBudget[i]) : heap.size);
+  }
+  return most;
+}
+
 DeviceDescription describe(int index, VkPhysicalDevice physical) {
   VkPhysicalDeviceVulkan12Properties vulkan12{.sType =
                                                   VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_PROPERTIES};
@@ -160,18 +187,14 @@ DeviceDescription describe(int index, VkPhysicalDevice physical) {
   VkPhysicalDeviceProperties2 base{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
                                    .pNext = &vulkan11};
   vkGetPhysicalDeviceProperties2(physical, &base);
-  VkPhysicalDeviceMemoryProperties memory;
-  vkGetPhysicalDeviceMemoryProperties(physical, &memory);
 
   DeviceDescription description{.index = index,
                                 .name = base.properties.deviceName,
                                 .type = typeName(base.properties.deviceType),
                                 .uuid = uuidText(vulkan11.deviceUUID),
                                 .driver = fmt::format("{} {}", vulkan12.driverName, vulkan12.driverInfo),
+                                .memoryBytes = heapBytes(physical),
                                 .rejections = findRejections(physical, base.properties)};
-  for (std::uint32_t i = 0; i < memory.memoryHeapCount; ++i)
-    if (memory.memoryHeaps[i].flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT)
-      description.memoryBytes = std::max<std::uint64_t>(description.memoryBytes, memory.memoryHeaps[i].size);
   if (base.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU)
     description.memoryBytes = std::max(description.memoryBytes, hostMemoryBytes() / 4 * 3);
   return description;
@@ -221,10 +244,8 @@ std::vector<DeviceDescription> listDevices(const Instance& instance) {
 }
 
 Device::Device(const Instance& instance, std::string_view selector, std::uint64_t memoryLimit,
-               std::span<const char* const> moreExtensions)
-    : memoryLimit_(memoryLimit),
-      mapsOwnMemory_(!instance.validates()),
-      pipelines_(std::make_unique<PipelineStore>()) {
+               std::span<const char* const> moreExtensions, const std::filesystem::path& cacheFolder)
+    : memoryLimit_(memoryLimit), mapsOwnMemory_(!instance.validates()) {
   description_ = choose(listDevices(instance), selector);
   physical_ = physicalDevices(instance)[std::size_t(description_.index)];
 
@@ -260,12 +281,20 @@ Device::Device(const Instance& instance, std::string_view selector, std::uint64_
     fail(ExitCode::Device, "{} lacks one of the extensions {}: choose another with --device",
          description_.name, fmt::join(extensions, ", "));
   VK_CHECK_RESULT(result, "vkCreateDevice");
-  vkGetDeviceQueue(device_, queueFamily_, 0, &queue_);
+  VkQueue handle = VK_NULL_HANDLE;
+  vkGetDeviceQueue(device_, queueFamily_, 0, &handle);
+  queue_ = std::make_unique<Queue>(*this, handle);
+  // A software driver's pipelines are compiled when they are used first, and it keeps what it has compiled itself.
+  const bool keepsPipelines = !cacheFolder.empty() && !isCpu();
+  pipelines_ = std::make_unique<PipelineStore>(
+      device_, keepsPipelines ? cacheFolder / pipelineCacheName(description_.uuid, properties_.driverVersion)
+                              : std::filesystem::path());
 }
 
 Device::~Device() {
   vkDeviceWaitIdle(device_);
   pipelines_ = nullptr;
+  queue_ = nullptr;
   vkDestroyDevice(device_, nullptr);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <span>
@@ -17,6 +18,7 @@
 
 namespace freevoxels {
 
+class Queue;
 struct PipelineStore;
 
 struct DeviceDescription {
@@ -25,7 +27,8 @@ struct DeviceDescription {
   std::string type;  ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
   std::string uuid;  ///< 8-4-4-4-12 hexadecimal digits
   std::string driver;
-  /// Size of the largest device-local heap; for a CPU device three quarters of the machine's memory.
+  /// That this process may use of the largest device-local heap: all of it, or where the driver knows how much other
+  /// processes use (VK_EXT_memory_budget) what these leave. Of a CPU three quarters of its memory.
   std::uint64_t memoryBytes = 0;
   std::vector<std::string> rejections;  ///< why it cannot be used; empty if it can
 };
@@ -35,20 +38,21 @@ std::vector<DeviceDescription> listDevices(const Instance& instance);
 
 class Device {
  public:
-  /// Opens the device that `selector` names by index, UUID or part of its name; if it is empty, a discrete
-  /// GPU, else any GPU, else a CPU device. Fails with ExitCode::Device and the reason why each device was
-  /// rejected. At most `memoryLimit` bytes are allocated. `extensions` are enabled in addition to the
-  /// engine's own.
+  /// `selector`: an index, UUID or (part of a) name; empty prefers a discrete GPU, then any GPU, then a CPU
+  /// device. Fails with ExitCode::Device and the reason why each device was rejected. Of more than
+  /// `memoryLimit` bytes nothing is allocated. `extensions` are enabled beside the engine's own. Compiled pipelines of a
+  /// GPU are kept in a file in `cacheFolder` (PipelineCache), unless that is empty.
   Device(const Instance& instance, std::string_view selector,
          std::uint64_t memoryLimit = std::numeric_limits<std::uint64_t>::max(),
-         std::span<const char* const> extensions = {});
+         std::span<const char* const> extensions = {}, const std::filesystem::path& cacheFolder = {});
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
 
   VkDevice handle() const { return device_; }
   VkPhysicalDevice physical() const { return physical_; }
-  VkQueue queue() const { return queue_; }
+  /// Which all threads that use the device share.
+  Queue& queue() const { return *queue_; }
   std::uint32_t queueFamily() const { return queueFamily_; }
   /// Valid bits of the queue's timestamps.
   std::uint32_t timestampBits() const { return timestampBits_; }
@@ -61,7 +65,8 @@ class Device {
     return std::min({std::uint64_t(limits().maxStorageBufferRange), std::uint64_t(limits().maxTexelBufferElements) * texelBytes,
                      std::uint64_t(maximumAllocation_)});
   }
-  /// Bytes that may be allocated in total: the device's memory, or the limit if that is less.
+  /// Bytes that may be allocated in all: what the device had for this process when it was opened, or fewer where a limit
+  /// is set.
   std::uint64_t memoryBytes() const { return std::min(description_.memoryBytes, memoryLimit_); }
   /// Bytes of memoryBytes() that are not allocated at present, and the largest number of bytes that has been
   /// allocated at any time.
@@ -94,7 +99,7 @@ class Device {
   mutable std::atomic<std::uint64_t> allocated_ = 0, peak_ = 0;
   std::uint32_t queueFamily_ = 0, timestampBits_ = 0;
   VkDevice device_ = VK_NULL_HANDLE;
-  VkQueue queue_ = VK_NULL_HANDLE;
+  std::unique_ptr<Queue> queue_;
   std::unique_ptr<PipelineStore> pipelines_;
 };
 

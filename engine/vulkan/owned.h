@@ -44,6 +44,7 @@ using OwnedSampler = Owned<VkSampler, &vkDestroySampler>;
 using OwnedShaderModule = Owned<VkShaderModule, &vkDestroyShaderModule>;
 using OwnedSetLayout = Owned<VkDescriptorSetLayout, &vkDestroyDescriptorSetLayout>;
 using OwnedPipelineLayout = Owned<VkPipelineLayout, &vkDestroyPipelineLayout>;
+using OwnedPipelineCache = Owned<VkPipelineCache, &vkDestroyPipelineCache>;
 using OwnedPipeline = Owned<VkPipeline, &vkDestroyPipeline>;
 using OwnedCommandPool = Owned<VkCommandPool, &vkDestroyCommandPool>;
 using OwnedQueryPool = Owned<VkQueryPool, &vkDestroyQueryPool>;

@@ -137,16 +137,6 @@ PipelineParts makeLayout(const Device& device, std::initializer_list<const Shade
   return parts;
 }
 
-/// Returns the stored pipeline for `key`, making it first if there is none.
-template <typename Make>
-Pipeline stored(const Device& device, const PipelineKey& key, const Make& make) {
-  PipelineStore& store = device.pipelines();
-  const std::lock_guard lock(store.mutex);
-  if (const auto found = store.made.find(key); found != store.made.end()) return Pipeline(found->second);
-  const StageTimer timer(store.times, "make pipelines");
-  return Pipeline(store.made.emplace(key, make()).first->second);
-}
-
 PipelineParts makeCompute(const Device& device, const Shader& code, const Specialisation& constants) {
   PipelineParts result = makeLayout(device, {&code}, VK_PIPELINE_BIND_POINT_COMPUTE);
   result.workgroup = code.workgroup;
@@ -154,6 +144,7 @@ PipelineParts makeCompute(const Device& device, const Shader& code, const Specia
   const SpecialisationInfo specialisation(constants);
   const VkComputePipelineCreateInfo info{
       .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+      .flags = VK_PIPELINE_CREATE_DISPATCH_BASE,
       .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
                 .stage = VK_SHADER_STAGE_COMPUTE_BIT,
                 .module = module.get(),
@@ -161,7 +152,7 @@ PipelineParts makeCompute(const Device& device, const Shader& code, const Specia
                 .pSpecializationInfo = specialisation.get()},
       .layout = result.layout.get()};
   VkPipeline pipeline = VK_NULL_HANDLE;
-  VK_CHECK(vkCreateComputePipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
+  VK_CHECK(vkCreateComputePipelines(device.handle(), device.pipelines().cache().handle(), 1, &info, nullptr, &pipeline));
   result.pipeline = OwnedPipeline(device.handle(), pipeline);
   device.setName(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline), code.name);
   return result;
@@ -200,7 +191,7 @@ PipelineParts makeGraphics(const Device& device, const Shader& vertex, const Sha
                                           .pDynamicState = &state.dynamic,
                                           .layout = result.layout.get()};
   VkPipeline pipeline = VK_NULL_HANDLE;
-  VK_CHECK(vkCreateGraphicsPipelines(device.handle(), VK_NULL_HANDLE, 1, &info, nullptr, &pipeline));
+  VK_CHECK(vkCreateGraphicsPipelines(device.handle(), device.pipelines().cache().handle(), 1, &info, nullptr, &pipeline));
   result.pipeline = OwnedPipeline(device.handle(), pipeline);
   device.setName(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline), vertex.name);
   return result;
@@ -208,13 +199,36 @@ PipelineParts makeGraphics(const Device& device, const Shader& vertex, const Sha
 
 }  // namespace
 
+Pipeline PipelineStore::get(const PipelineKey& key, const std::function<PipelineParts()>& make) {
+  Entry* entry = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    entry = &entries_[key];  // whose address does not change
+  }
+  std::call_once(entry->made, [&] {
+    std::vector<StageTime> times;
+    {
+      const StageTimer timer(times, "make pipelines");
+      entry->parts = make();
+    }
+    const std::lock_guard lock(mutex_);
+    addTimes(times_, times);
+  });
+  return Pipeline(entry->parts);
+}
+
+std::vector<StageTime> PipelineStore::times() const {
+  const std::lock_guard lock(mutex_);
+  return times_;
+}
+
 VkShaderStageFlags Pipeline::stages() const {
   return stagesOf(parts_->bindPoint);
 }
 
 Pipeline makeComputePipeline(const Device& device, const Shader& shader, const Specialisation& constants) {
   const PipelineKey key{.code = {shader.words.data(), nullptr}, .constants = constants};
-  return stored(device, key, [&] { return makeCompute(device, shader, constants); });
+  return device.pipelines().get(key, [&] { return makeCompute(device, shader, constants); });
 }
 
 Pipeline makeGraphicsPipeline(const Device& device, const Shader& vertex, const Shader& fragment, VkPrimitiveTopology topology,
@@ -224,7 +238,7 @@ Pipeline makeGraphicsPipeline(const Device& device, const Shader& vertex, const 
                         .topology = topology,
                         .attachments = {attachments.begin(), attachments.end()},
                         .blend = blend};
-  return stored(device, key, [&] { return makeGraphics(device, vertex, fragment, key); });
+  return device.pipelines().get(key, [&] { return makeGraphics(device, vertex, fragment, key); });
 }
 
 }  // namespace freevoxels

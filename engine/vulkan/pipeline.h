@@ -4,6 +4,8 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <filesystem>
+#include <functional>
 #include <glm/glm.hpp>
 #include <map>
 #include <mutex>
@@ -13,6 +15,7 @@
 #include "engine/core/stages.h"
 #include "engine/vulkan/device.h"
 #include "engine/vulkan/owned.h"
+#include "engine/vulkan/pipeline_cache.h"
 #include "engine/vulkan/shader.h"
 
 namespace freevoxels {
@@ -72,11 +75,28 @@ struct PipelineKey {
   auto operator<=>(const PipelineKey&) const = default;
 };
 
-/// The pipelines of a device, kept for reuse: lavapipe takes up to a tenth of a second to compile one.
-struct PipelineStore {
-  std::mutex mutex;
-  std::map<PipelineKey, PipelineParts> made;
-  std::vector<StageTime> times;  ///< time to create the pipelines
+/// The pipelines of a device, each made once and kept for whoever wants the same again. Any thread may call its functions;
+/// different pipelines are made at the same time.
+class PipelineStore {
+ public:
+  /// `cacheFile` as of PipelineCache.
+  PipelineStore(VkDevice device, const std::filesystem::path& cacheFile) : cache_(device, cacheFile) {}
+
+  /// The pipeline of this key, which `make` returns where there is none yet.
+  Pipeline get(const PipelineKey& key, const std::function<PipelineParts()>& make);
+  PipelineCache& cache() { return cache_; }
+  /// To make them, added up over all threads.
+  std::vector<StageTime> times() const;
+
+ private:
+  struct Entry {
+    std::once_flag made;
+    PipelineParts parts;
+  };
+  PipelineCache cache_;
+  mutable std::mutex mutex_;  ///< of what follows
+  std::map<PipelineKey, Entry> entries_;
+  std::vector<StageTime> times_;
 };
 
 Pipeline makeComputePipeline(const Device& device, const Shader& shader, const Specialisation& constants = {});

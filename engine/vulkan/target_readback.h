@@ -2,7 +2,6 @@
 // Reads a render target back to the host.
 
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "engine/vulkan/buffer.h"
@@ -11,22 +10,24 @@
 
 namespace freevoxels {
 
-/// Records the copy of a target into a read-back buffer with the frame; `read` returns the pixels after the
-/// frame is complete.
+/// Copies a target to the host through a buffer that is kept for the next copy of so many bytes.
 class TargetReadback {
  public:
-  TargetReadback(const Device& device, Commands& commands, const RenderTarget& target)
-      : buffer_(
-            device,
-            std::uint64_t(target.size().x) * std::uint64_t(target.size().y) * bytesPerPixel(target.format()),
-            MemoryUse::Readback, "picture") {
+  /// Recorded behind what writes the target, which is in layout GENERAL and visible to transfers, and stays so.
+  void record(const Device& device, Commands& commands, const RenderTarget& target) {
+    const std::uint64_t bytes =
+        std::uint64_t(target.size().x) * std::uint64_t(target.size().y) * bytesPerPixel(target.format());
+    if (buffer_.bytes() != bytes) {
+      buffer_ = {};  // not both at once
+      buffer_ = Buffer(device, bytes, MemoryUse::Readback, "image on the host");
+    }
     commands.copy(target, buffer_);
   }
+  /// The pixels, row by row from the top, when the commands are complete.
   template <typename Pixel>
   std::vector<Pixel> read() const {
-    std::vector<Pixel> pixels(buffer_.bytes() / sizeof(Pixel));
-    std::memcpy(pixels.data(), buffer_.mapped(), buffer_.bytes());
-    return pixels;
+    const auto* const pixels = reinterpret_cast<const Pixel*>(buffer_.mapped());
+    return {pixels, pixels + buffer_.bytes() / sizeof(Pixel)};
   }
 
  private:

@@ -20,7 +20,9 @@ Texture::Texture(const Device& device, glm::ivec2 size, const char* name) : size
     fail(ExitCode::OutOfMemory, "{} takes no picture of {}x{} pixels, only up to {} along an edge",
          device.description().name, size.x, size.y, most);
   ImageParts parts = makeImageParts(device, size, VK_FORMAT_R8G8B8A8_UNORM,
-                                    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT, name);
+                                    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                                        VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+                                    name);
   memory_ = std::move(parts.memory);
   image_ = std::move(parts.image);
   view_ = std::move(parts.view);

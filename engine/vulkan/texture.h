@@ -11,7 +11,8 @@
 
 namespace freevoxels {
 
-/// An 8-bit RGBA image without colour conversion, with linear filtering and clamping to the edge.
+/// 8-bit RGBA, sampled as the bytes are: linear between texels, constant beyond the edge. Sampled in layout
+/// SHADER_READ_ONLY_OPTIMAL, written by compute shaders in GENERAL.
 class Texture {
  public:
   Texture() = default;
@@ -21,6 +22,7 @@ class Texture {
   /// copy is complete.
   void upload(const Device& device, std::span<const std::uint8_t> texels);
 
+  VkImage handle() const { return image_.get(); }
   VkImageView view() const { return view_.get(); }
   VkSampler sampler() const { return sampler_.get(); }
   glm::ivec2 size() const { return size_; }

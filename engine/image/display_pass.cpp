@@ -1,0 +1,54 @@
+#include "engine/image/display_pass.h"
+
+#include <array>
+#include <cmath>
+
+#include "embedded/display.h"
+#include "engine/core/error.h"
+#include "engine/image/srgb.h"
+
+namespace freevoxels {
+
+static_assert(int(ToneMap::None) == shader::kToneMapNone);
+static_assert(int(ToneMap::Filmic) == shader::kToneMapFilmic);
+static_assert(int(ToneMap::Aces) == shader::kToneMapAces);
+
+DisplayPass::DisplayPass(const Device& device)
+    : pipeline_(makeComputePipeline(device, shaders::display)),
+      srgb_(device, srgbBuckets().size_bytes(), MemoryUse::Device, "sRGB table") {
+  upload(device, srgb_, std::as_bytes(srgbBuckets()));
+}
+
+void DisplayPass::record(Commands& commands, const RenderTarget& image, const PngLook& look,
+                         const Texture& shown) const {
+  FV_CHECK_EQ(image.size().x, shown.size().x);
+  FV_CHECK_EQ(image.size().y, shown.size().y);
+  constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+  constexpr VkPipelineStageFlags2 kFragment = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+  const Background background = look.background.value_or(Background());
+  const shader::DisplayPush push{.size = image.size(),
+                                 .gain = float(std::exp2(look.exposure)),
+                                 .toneMap = int(look.toneMap),
+                                 .hasBackground = look.background ? 1 : 0,
+                                 .top = background.top,
+                                 .bottom = background.bottom};
+  const std::array<Binding, 3> bindings{&image, &shown, &srgb_};
+  commands.beginPass("display");
+  commands.transition(shown.handle(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kFragment, kCompute);
+  commands.dispatch(pipeline_, bindings, push, {image.size(), 1});
+  commands.transition(shown.handle(), VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kCompute,
+                      kFragment);
+}
+
+RenderTarget uploadImage(const Device& device, const Image& image) {
+  RenderTarget target(device, image.size, VK_FORMAT_R32G32B32A32_SFLOAT, "image of the host");
+  const auto bytes = std::as_bytes(std::span(image.pixels));
+  const Buffer staging(device, bytes.size(), MemoryUse::Upload, "image upload");
+  upload(device, staging, bytes);
+  Commands commands(device);
+  commands.copy(staging, target);
+  commands.submitAndWait();
+  return target;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,56 @@
+#include "engine/splatting/frame_targets.h"
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+std::vector<const RenderTarget*> SplatTargets::all() const {
+  std::vector targets{&colorEnergy};
+  if (opticalDepth.exists()) targets.push_back(&opticalDepth);
+  if (distance.exists()) targets.push_back(&distance);
+  return targets;
+}
+
+SplatTargets makeTargets(const Device& device, const FrameSettings& settings, TargetKind kind) {
+  SplatTargets targets{.colorEnergy = RenderTarget(device, settings.size, kTargetColorFormat, "C and E"),
+                       .opticalDepth = {},
+                       .distance = {}};
+  if (settings.depth) targets.distance = RenderTarget(device, settings.size, kTargetScalarFormat, "distance");
+  if (kind == TargetKind::Sums)
+    targets.opticalDepth = RenderTarget(device, settings.size, kTargetScalarFormat, "T");
+  return targets;
+}
+
+std::shared_ptr<const SplatTargets> TargetPool::take(const Device& device, const FrameSettings& settings,
+                                                     TargetKind kind) {
+  const auto isIdle = [](const std::shared_ptr<const SplatTargets>& targets) { return targets.use_count() == 1; };
+  const auto suits = [&](const std::shared_ptr<const SplatTargets>& targets) {
+    return targets->colorEnergy.size() == settings.size && targets->distance.exists() == settings.depth &&
+           targets->opticalDepth.exists() == (kind == TargetKind::Sums);
+  };
+  std::erase_if(kept_, [&](const auto& targets) { return !suits(targets); });  // before others are allocated
+  const auto idle = std::ranges::find_if(kept_, isIdle);
+  if (idle != kept_.end()) return *idle;
+  return kept_.emplace_back(std::make_shared<const SplatTargets>(makeTargets(device, settings, kind)));
+}
+
+std::uint64_t targetBytes(const FrameSettings& settings) {
+  const std::uint64_t perPixel =
+      bytesPerPixel(kTargetColorFormat) + bytesPerPixel(kTargetScalarFormat) * (settings.depth ? 2 : 1);
+  return std::uint64_t(settings.size.x) * std::uint64_t(settings.size.y) * perPixel;
+}
+
+void checkFrameFits(const Device& device, const FrameSettings& settings) {
+  checkTargetFits(device, settings.size, kTargetColorFormat);
+  const std::uint64_t bytes = targetBytes(settings);
+  if (bytes > device.memoryBytes())
+    fail(ExitCode::OutOfMemory,
+         "an image of {}x{} pixels needs {} MiB of device memory and {} may use {} MiB of it: use a smaller "
+         "--size",
+         settings.size.x, settings.size.y, bytes >> 20, device.description().name,
+         device.memoryBytes() >> 20);
+}
+
+}  // namespace freevoxels

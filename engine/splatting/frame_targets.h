@@ -1,0 +1,48 @@
+#pragma once
+// The images that a frame is drawn into.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "engine/scene/render_settings.h"
+#include "engine/vulkan/image.h"
+
+namespace freevoxels {
+
+constexpr VkFormat kTargetColorFormat = VK_FORMAT_R32G32B32A32_SFLOAT;
+constexpr VkFormat kTargetScalarFormat = VK_FORMAT_R32_SFLOAT;
+
+/// The sums of a frame: C and E, T, and where depth is asked for, the sum of e times distance. Sorted:
+/// premultiplied colour and alpha, and the distance blended like the colour. A frame that is complete has its image in
+/// `colorEnergy`, linear premultiplied RGBA, and the mean distance in `distance`.
+struct SplatTargets {
+  RenderTarget colorEnergy;   ///< RGBA32F
+  RenderTarget opticalDepth;  ///< R32F, or does not exist
+  RenderTarget distance;      ///< R32F, or does not exist
+  std::vector<const RenderTarget*> all() const;
+};
+
+enum class TargetKind {
+  Sums,   ///< with T
+  Image,  ///< of a frame that needs no sums at the pixels: without T
+};
+
+SplatTargets makeTargets(const Device& device, const FrameSettings& settings, TargetKind kind);
+std::uint64_t targetBytes(const FrameSettings& settings);
+/// Fails with ExitCode::OutOfMemory where this device cannot hold such a frame: to be called before any other work.
+void checkFrameFits(const Device& device, const FrameSettings& settings);
+
+/// Keeps the targets of a renderer's frames, so that a frame allocates none while size and kind stay the same. For one
+/// thread; what it has handed out may be released by another one, after the device has read it.
+class TargetPool {
+ public:
+  /// Targets that nobody else holds, with undefined contents: kept ones, or new ones. They are the caller's as long as the
+  /// pointer is kept. Frees kept ones of another size or kind.
+  std::shared_ptr<const SplatTargets> take(const Device& device, const FrameSettings& settings, TargetKind kind);
+
+ private:
+  std::vector<std::shared_ptr<const SplatTargets>> kept_;
+};
+
+}  // namespace freevoxels
