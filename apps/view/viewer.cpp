@@ -83,7 +83,7 @@ void Viewer::makeTexture(std::unique_ptr<Texture>& texture, glm::ivec2 size) con
 /// Before the panels, which show the textures.
 void Viewer::recordPicture(Commands& commands) const {
   if (!newPicture_) return;
-  const PngLook look = state_.scene.output.look();
+  const DisplayLook look = state_.scene.output.look();
   display_.record(commands, *state_.latest->shown, look, *texture_);
   if (comparedTexture_) display_.record(commands, *state_.latest->compared, look, *comparedTexture_);
 }

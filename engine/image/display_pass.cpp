@@ -19,7 +19,7 @@ DisplayPass::DisplayPass(const Device& device)
   upload(device, srgb_, std::as_bytes(srgbBuckets()));
 }
 
-void DisplayPass::record(Commands& commands, const RenderTarget& image, const PngLook& look,
+void DisplayPass::record(Commands& commands, const RenderTarget& image, const DisplayLook& look,
                          const Texture& shown) const {
   FV_CHECK_EQ(image.size().x, shown.size().x);
   FV_CHECK_EQ(image.size().y, shown.size().y);

@@ -15,7 +15,7 @@ class DisplayPass {
 
   /// `image` is RGBA32F, linear and premultiplied, in layout GENERAL and complete. `shown` has its size, and is ready to be
   /// sampled by fragment shaders behind this.
-  void record(Commands& commands, const RenderTarget& image, const PngLook& look, const Texture& shown) const;
+  void record(Commands& commands, const RenderTarget& image, const DisplayLook& look, const Texture& shown) const;
 
  private:
   Pipeline pipeline_;

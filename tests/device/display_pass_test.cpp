@@ -31,7 +31,7 @@ class DisplayPassTest : public DeviceTest {
     image.pixels[4] = glm::vec4(infinity, 0.2f, 0.3f, 0.5f);
     return image;
   }
-  static std::vector<std::uint8_t> shown(const Image& image, const PngLook& look) {
+  static std::vector<std::uint8_t> shown(const Image& image, const DisplayLook& look) {
     const DisplayPass pass(device());
     const RenderTarget target = uploadImage(device(), image);
     const Texture texture(device(), image.size, "shown");
@@ -58,7 +58,7 @@ TEST_F(DisplayPassTest, ShowsTheBytesOfThePngWriter) {
   for (const auto& background : {std::optional<Background>(), std::optional(gradient)})
     for (const ToneMap map : {ToneMap::None, ToneMap::Filmic, ToneMap::Aces})
       for (const double exposure : {0.0, -1.5, 2.0}) {
-        const PngLook look{.background = background, .exposure = exposure, .toneMap = map};
+        const DisplayLook look{.background = background, .exposure = exposure, .toneMap = map};
         const std::vector<std::uint8_t> expected = srgbTexels(image, look), found = shown(image, look);
         ASSERT_EQ(found.size(), expected.size());
         int largest = 0, different = 0;
