@@ -20,6 +20,22 @@ constexpr std::uint64_t kMostVoxelsInMemory = std::uint64_t(1) << 27;
 /// Voxels along the longest edge of the same volume from which the classification is then found.
 constexpr int kSampleEdge = 256;
 
+/// Shows progress, and defers interrupts from when the file exists under a temporary name.
+class BakeProgress {
+ public:
+  explicit BakeProgress(ProgressLine& line) : shown_(line.progress()) {}
+  Progress progress() {
+    return [this](std::string_view stage, double fraction) {
+      if (stage == kWritingStage) wholeFile_.emplace();
+      if (shown_) shown_(stage, fraction);
+    };
+  }
+
+ private:
+  Progress shown_;
+  std::optional<DeferredInterrupts> wholeFile_;
+};
+
 }  // namespace
 
 void BakeCommand::add(CLI::App& app) {
@@ -76,25 +92,26 @@ void BakeCommand::run() {
   const std::optional<std::string> name = proceduralName(scene_.input.input);
   const glm::u64vec3 size(scene_.input.resolution.value_or(glm::ivec3(kDefaultResolution)));
   if (name && size.x * size.y * size.z > kMostVoxelsInMemory)
-    bakeProcedural(*name, line.progress());
+    bakeProcedural(*name, line);
   else
-    bake(line.progress());
+    bake(line);
   line.erase();
   if (!messages_.quiet) fmt::print("{}\n", file_);
 }
 
-void BakeCommand::bake(const Progress& progress) const {
+void BakeCommand::bake(ProgressLine& line) const {
   const auto volume = std::make_shared<const Volume>(scene_.readVolume(machineMemoryBytes() / sizeof(float)));
   if (volume->classificationIsFixed)
     fail(ExitCode::Usage, "'{}' was baked for one classification: bake the volume that it was made of, or bake it with --keep-scalars",
          scene_.input.input);
   const Classification classification = scene_.resolveClassification(*volume);
+  line.erase();
   scene_.warn({.volume = volume, .classification = classification});
-  const DeferredInterrupts wholeFile;
-  bakeVolume(file_, *volume, classification, settings(*volume, classification), progress);
+  BakeProgress progress(line);
+  bakeVolume(file_, *volume, classification, settings(*volume, classification), progress.progress());
 }
 
-void BakeCommand::bakeProcedural(const std::string& name, const Progress& progress) const {
+void BakeCommand::bakeProcedural(const std::string& name, ProgressLine& line) const {
   const ProceduralField field(name, *scene_.input.resolution);
   const glm::ivec3 size = field.dimensions();
   const int factor = (std::max({size.x, size.y, size.z}) + kSampleEdge - 1) / kSampleEdge;
@@ -102,8 +119,8 @@ void BakeCommand::bakeProcedural(const std::string& name, const Progress& progre
   if (!scene_.emission.grid()) sample.temperature.reset();
   const Classification classification = scene_.resolveClassification(sample);
   const StreamedVolume stream = proceduralStream(field, sample, classification);
-  const DeferredInterrupts wholeFile;
-  bakeStreamed(file_, stream, classification, settings(sample, classification), progress);
+  BakeProgress progress(line);
+  bakeStreamed(file_, stream, classification, settings(sample, classification), progress.progress());
 }
 
 }  // namespace freevoxels

@@ -7,6 +7,8 @@
 
 namespace freevoxels {
 
+class ProgressLine;
+
 class BakeCommand {
  public:
   void add(CLI::App& app);
@@ -14,8 +16,8 @@ class BakeCommand {
  private:
   void run();
   /// Of a volume that is held in memory, or of a procedural one that is too large for that, chunk by chunk.
-  void bake(const Progress& progress) const;
-  void bakeProcedural(const std::string& name, const Progress& progress) const;
+  void bake(ProgressLine& line) const;
+  void bakeProcedural(const std::string& name, ProgressLine& line) const;
   /// Options of the file, for a volume with this classification.
   BakeSettings settings(const Volume& volume, const Classification& classification) const;
 

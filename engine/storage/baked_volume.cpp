@@ -249,6 +249,7 @@ void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volum
     }
     const fvx::Description description{.volume = summarised(volume.outline, classification, !settings.keepScalars, writer),
                                        .encodings = write.encodings};
+    if (progress) progress(kWritingStage, 0.0);
     writer.finish(temporary, description, volume.content, settings.provenance);
   });
 }

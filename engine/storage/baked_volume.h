@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "engine/core/stages.h"
 #include "engine/storage/chunk_pyramid.h"
@@ -39,6 +40,9 @@ struct StreamedVolume {
 };
 void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volume, const Classification& classification,
                   const BakeSettings& settings, const Progress& progress = {});
+
+/// Stage of Progress from which on the file exists under a temporary name: whoever ends the program before leaves nothing behind.
+inline constexpr std::string_view kWritingStage = "writing the file";
 
 /// Writes the volume, its coarser levels and its classification. Atomic (core/atomic_file.h).
 void bakeVolume(const std::filesystem::path& file, const Volume& volume, const Classification& classification,
