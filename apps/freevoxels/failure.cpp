@@ -18,7 +18,7 @@ Failure currentFailure() {
   } catch (const std::exception& error) {
     // std::thread and oneTBB have different exceptions for it.
     if (std::string_view(error.what()).find(std::generic_category().message(EAGAIN)) != std::string_view::npos)
-      return {ExitCode::OutOfMemory, "no more threads can be started: end other programs, or raise the limit (ulimit -u)"};
+      return {ExitCode::OutOfMemory, "no more threads can be started: raise the limits on threads and memory (ulimit -u, ulimit -v), or end other programs"};
     return {ExitCode::Internal, fmt::format("internal error, please report it: {}", error.what())};
   } catch (...) {
     return {ExitCode::Internal, "internal error, please report it: an exception of unknown type"};

@@ -51,9 +51,9 @@ void RenderOptions::check(std::span<const Frame> frames) const {
   checkShares(frames);
   if (!leads()) return scene.checkLook();  // other processes may run where the outputs' folders are not
   std::vector<std::string> images, volumes;
-  for (const Frame& frame : frames) {
-    images.insert(images.end(), frame.files.begin(), frame.files.end());
-    if (frame.input != frames.front().input) volumes.push_back(frame.input);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    images.insert(images.end(), frames[i].files.begin(), frames[i].files.end());
+    if (i > 0 && frames[i].input != frames[i - 1].input) volumes.push_back(frames[i].input);
   }
   SceneOptions all = scene.withOutputs(std::move(images));
   all.input.input = frames.front().input;

@@ -38,13 +38,15 @@ struct LevelSetToDensity {
 /// Calls `visit(box, density)` for the tiles of a node, each of `edge` voxels along an edge, that `toDensity` keeps.
 template <typename Node, typename ToDensity, typename Visit>
 void visitTilesOf(const Node& node, int edge, const ToDensity& toDensity, const Visit& visit) {
-  const auto visitIfKept = [&](const auto& tile, bool active) {
-    const float density = toDensity(*tile, active);
+  const auto visitIfKept = [&](const auto& tile) {
+    const float density = toDensity(*tile, tile.isValueOn());
     if (density != kInactiveVoxel) visit(openvdb::CoordBBox::createCube(tile.getCoord(), edge), density);
   };
-  for (auto tile = node.cbeginValueOn(); tile; ++tile) visitIfKept(tile, true);
-  if constexpr (ToDensity::kKeepsInactive)  // they are tens of thousands of nothing in most nodes
-    for (auto tile = node.cbeginValueOff(); tile; ++tile) visitIfKept(tile, false);
+  if constexpr (ToDensity::kKeepsInactive) {
+    for (auto tile = node.cbeginValueAll(); tile; ++tile) visitIfKept(tile);
+  } else {  // most nodes have tens of thousands of inactive ones
+    for (auto tile = node.cbeginValueOn(); tile; ++tile) visitIfKept(tile);
+  }
 }
 
 /// Calls `visit(box, density)` for each tile of the tree, at any level above the leaves, that `toDensity` keeps. The background
