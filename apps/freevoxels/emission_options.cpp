@@ -75,7 +75,7 @@ void EmissionOptions::take(const Emission& resolved) {
 void EmissionOptions::describe(OptionList& options, const Volume& volume,
                                const std::optional<Emission>& resolved) const {
   if (!resolved) return;
-  // A procedural volume's has no name, and of a baked volume there is one grid.
+  // A procedural volume's temperatures have no name.
   if (!volume.temperature->name.empty() && !volume.classification) options.emplace_back("--temperature-grid", volume.temperature->name);
   options.emplace_back("--emission", numberText(resolved->strength));
   options.emplace_back("--temperature-scale", numberText(resolved->temperatureScale));
