@@ -209,8 +209,8 @@ int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>
 }
 
 void MessageOptions::add(CLI::App& app) {
-  CLI::Option* less = app.add_flag("--quiet,-q", quiet, "Print nothing but errors")->group("Messages");
-  app.add_flag("--verbose,-v", verbose, "Print the resolved options and how long each stage took")
+  CLI::Option* less = app.add_flag("--quiet,-q", quiet, "Print errors only")->group("Messages");
+  app.add_flag("--verbose,-v", verbose, "Print the resolved options, stage times, memory and block counts")
       ->excludes(less)
       ->group("Messages");
 }
