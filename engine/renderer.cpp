@@ -29,11 +29,11 @@ struct Renderer::State {
   TableSettings tableSettings;
   BuiltVolume built;
   std::optional<AttenuationTable> table;
-  std::vector<double> largestDepths;  ///< of the table, by direction; empty: it has no levels yet
+  std::vector<double> largestDepths;  ///< of the table, by direction; empty if it has no levels yet
   std::optional<CutPass> cutter;
   const BlockList* lastDrawn = nullptr;
-  bool lastWasCut = false;  ///< lastDrawn is `cutter`'s
-  int lastLevel = 0;        ///< otherwise: of all that was drawn
+  bool lastWasCut = false;  ///< whether lastDrawn is the list of `cutter`
+  int lastLevel = 0;        ///< otherwise the level of all drawn blocks
   bool lastLackedRays = false, lastLackedGather = false;
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
@@ -80,13 +80,13 @@ VolumeMemory Renderer::State::memoryOfVolume() const {
   return memory;
 }
 
-/// Made, if they are not there, when a frame needs them first; their time is that frame's.
+/// Makes the blocks when a frame first needs them; their time is part of that frame's.
 const BuiltVolume& Renderer::State::builtWithBlocks(const Progress& progress) {
   if (!built.hasBlocks()) buildBlocks(device, hostVolume, classification, built, frameTimes, progress);
   return built;
 }
 
-/// Made when a frame reads it first; its time is that frame's.
+/// Makes the table when a frame first reads it; its time is part of that frame's.
 const AttenuationTable& Renderer::State::sweptTable(const Progress& progress) {
   if (table) return *table;
   builtWithBlocks(progress);
@@ -100,7 +100,7 @@ const AttenuationTable& Renderer::State::sweptTable(const Progress& progress) {
   return table.emplace(std::move(made));
 }
 
-/// Its levels are made when a frame first may draw a block.
+/// Makes the table's levels when a frame may first draw a block.
 const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progress) {
   sweptTable(progress);
   if (!largestDepths.empty()) return *table;
@@ -149,7 +149,8 @@ SplatPass::Inputs Renderer::State::recordList(Commands& commands, const Frame& f
   return drawing;
 }
 
-/// The splats of a frame. What the table calls hidden comes after the rest, where it is not covered.
+/// Records the splats of a frame. Blocks that the table calls hidden follow after the others, where pixels
+/// are not covered.
 void Renderer::State::recordDrawing(Commands& commands, const Frame& frame) {
   SplatPass::Inputs drawing = recordList(commands, frame);
   splats->record(commands, drawing, frame.constants, *frame.targets);
@@ -160,7 +161,7 @@ void Renderer::State::recordDrawing(Commands& commands, const Frame& frame) {
   splats->record(commands, drawing, frame.constants, *frame.targets);
 }
 
-/// How lights are shadowed, if that is left to the volume and the device.
+/// Resolves LightAttenuation::Auto.
 FrameSettings Renderer::State::resolved(const FrameSettings& settings) {
   FrameSettings result = settings;
   if (!settings.lighting) return result;
@@ -170,17 +171,17 @@ FrameSettings Renderer::State::resolved(const FrameSettings& settings) {
   return result;
 }
 
-/// Auto takes the table alone where rays from the eye find no room.
+/// Auto uses the table alone if there is not enough memory for rays from the eye.
 FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSettings& settings,
                                             const Progress& progress) {
   lastLackedRays = false;
   const FrameConstants constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
   if (!constants.readsRays()) return constants;
-  if (constants.readsTable()) sweptTable(progress);  // of the two it needs room first
+  if (constants.readsTable()) sweptTable(progress);  // allocated first, as it is indispensable
   std::uint64_t mostRayBytes = settings.mostRayBytes;
   if (settings.attenuation == AttenuationLookup::Auto) {
-    // Without rays there is a picture, and without the rest of the frame there is none. Whatever is allocated
-    // now, so that it is the same for every frame.
+    // A frame can be drawn without rays, but not without its other buffers, so rays get what those leave.
+    // This does not depend on what is allocated at present, so that it is the same for every frame.
     VolumeMemory memory = memoryOfVolume();
     if (!constants.readsTable()) memory.table = memory.sweep = 0;
     std::uint64_t others = memory.peak() + 2 * targetBytes(settings);
@@ -229,7 +230,7 @@ Renderer::State::Frame Renderer::State::prepareSplats(Commands& commands, const 
   return frame;
 }
 
-/// Up to the sums in the targets; the sorted picture is made there, and has none.
+/// Records a frame up to the sums in the targets; for Sorted these are the image.
 Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
                                                      const Progress& progress) {
   Frame frame = prepareSplats(commands, camera, settings, progress);
@@ -254,7 +255,7 @@ void Renderer::State::prepareGather(const GatherVolume::Shading& shading, const 
   }
 }
 
-/// The image in the targets, without their optical depth.
+/// Reads the image in the targets, without their optical depth.
 std::shared_ptr<const SplatTargets> Renderer::State::recordGather(Commands& commands, const Camera& camera,
                                                                   const FrameSettings& wanted,
                                                                   const Progress& progress) {

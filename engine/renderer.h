@@ -31,11 +31,11 @@ Image downloadImage(const Device& device, const SplatTargets& targets);
 
 class Renderer {
  public:
-  /// Uploads the volume, which must outlive the renderer, and makes what every frame needs: classified blocks and their
-  /// lists, or of a volume that is classified after interpolation its scalars; the blocks then are made for the first frame
-  /// with lights, levels of detail or splats. The attenuation table is made for the first frame that reads it, its levels
-  /// for the first that may draw blocks or leave some out. Fails with ExitCode::OutOfMemory, before allocating, where the device's limits
-  /// are too small.
+  /// Uploads the volume, which must outlive the renderer, and makes what every frame needs: classified blocks
+  /// and their lists, or for a volume that is classified after interpolation its scalars; the blocks are then
+  /// made for the first frame that needs them for lights, levels of detail or splats. The attenuation table
+  /// is made for the first frame that reads it, its levels for the first that may draw or leave out blocks.
+  /// Fails with ExitCode::OutOfMemory, before allocating, if the device's limits are too small.
   Renderer(const Device& device, const Volume& volume, const Classification& classification,
            const TableSettings& table, const Progress& progress = {});
   Renderer(const Device&, Volume&&, const Classification&, const TableSettings&, const Progress& = {}) = delete;
@@ -49,8 +49,9 @@ class Renderer {
   std::shared_ptr<const SplatTargets> renderOnDevice(const Camera& camera, const FrameSettings& settings,
                                                      const Progress& progress = {});
 
-  /// One a pixel, row 0 is the top: what render() resolves. `settings.composite` must not be Sorted. Sums of
-  /// the parts of a volume add up to those of the whole; so nothing is left out as hidden.
+  /// The sums of every pixel, top row first, which render() resolves. `settings.composite` must not be
+  /// Sorted. Sums of the parts of a volume add up to those of the whole; therefore no hidden blocks are left
+  /// out.
   std::vector<SplatSums> renderSums(const Camera& camera, const FrameSettings& settings);
 
   /// What render() makes by gathering, with the stages before the image: for tests and validation. `settings` must be drawn by
@@ -62,32 +63,33 @@ class Renderer {
   /// not be Sorted. Fails with ExitCode::OutOfMemory.
   FixedSums renderShares(const Camera& camera, const FrameSettings& settings, const SharePart& part, const Progress& progress = {});
 
-  /// With the table, whether or not a frame has read it.
+  /// Memory of the volume, including the table even if no frame has read it.
   VolumeMemory memory() const;
-  /// Of the constructor and of the last frame, in order.
+  /// Stage times of the constructor and of the last frame, in order.
   std::vector<StageTime> timings() const;
-  /// How many voxels have extinction or emission; unknown while no frame needed their blocks.
+  /// The number of occupied voxels; unknown until a frame needs their blocks.
   std::optional<std::uint64_t> occupiedVoxelCount() const;
-  /// Of the last frame.
+  /// The counts of the last frame's cut.
   CutCounts cutCounts() const;
-  /// Whether the last frame would have had rays from the eye, but for the device's memory: Auto is Bilinear
-  /// then.
+  /// Whether the last frame used Bilinear for Auto only because the device lacks memory for rays from the
+  /// eye.
   bool lackedRoomForRays() const;
-  /// Whether the last frame would have been gathered, but for the device's memory: Draw::Auto is Splats then.
+  /// Whether the last frame used Splats for Draw::Auto only because the device lacks memory for the gather.
   bool lackedRoomForGather() const;
-  /// Per world unit, voxels x fastest without padding: for tests and validation, as all that follow.
+  /// Extinction per world unit, voxels x fastest without padding. For tests and validation, like all
+  /// functions below.
   std::vector<float> downloadExtinction() const;
-  /// The same of the light that voxels send out; empty where none does.
+  /// Emission of the voxels, in the same order; empty if there is none.
   std::vector<glm::dvec3> downloadEmission() const;
-  /// Bytes [direction][voxel], voxels x fastest without padding.
+  /// The attenuation table: bytes [direction][voxel], voxels x fastest without padding.
   std::vector<std::vector<std::uint8_t>> downloadTable() const;
-  /// From the camera's eye. Fails with ExitCode::OutOfMemory.
+  /// Depths along rays from the camera's eye. Fails with ExitCode::OutOfMemory.
   RayCodes downloadRays(const Camera& camera) const;
-  /// Indices of the visible voxels, among all of the volume (Volume::at), in the order they are drawn.
+  /// Indices (Volume::at) of the occupied voxels, in the order in which they are drawn.
   std::vector<std::uint32_t> downloadBlockList() const;
-  /// What the last frame drew, in that order, if it was not sorted.
+  /// The blocks that the last frame drew, in that order, if it was not sorted.
   std::vector<Block> downloadDrawnBlocks() const;
-  /// Of the levels above the voxels, the first has blocks of 2³ voxels.
+  /// The levels above the voxels; the first has blocks of 2³ voxels.
   std::vector<LevelData> downloadLevels() const;
 
  private:

@@ -313,7 +313,7 @@ struct RadixPush {
 };
 
 #ifdef __cplusplus
-static_assert(sizeof(CutFrame) <= 16384);  // a uniform buffer, which every device takes up to here
+static_assert(sizeof(CutFrame) <= 16384);  // the largest uniform buffer that every device supports
 }  // namespace freevoxels::shader
 #endif
 #endif

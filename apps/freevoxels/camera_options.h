@@ -11,7 +11,7 @@
 
 namespace freevoxels {
 
-/// Pixels along an edge of an image.
+/// Largest number of pixels along an edge of an image.
 inline constexpr int kMaximumImageEdge = 16384;
 
 struct CameraOptions {
@@ -21,18 +21,19 @@ struct CameraOptions {
   glm::ivec2 size{1024, 1024};
 
   void add(CLI::App& app);
-  /// Looks from exactly there, with a picture of the same size.
+  /// Sets the options to this camera, with the same image size.
   void look(const Camera& from);
-  /// Refuses what is wrong with any volume, before one is read: ExitCode::Usage.
+  /// Fails with ExitCode::Usage for options that are wrong for every volume, before one is read.
   void check() const;
-  /// The cameras of a full turn, of equal steps about the axis through the look-at point along `up`. What is not given frames
-  /// what is seen of the volume, from one distance for all frames, upright as the volume says.
+  /// The cameras of a full turn in equal steps about the axis through the look-at point along `up`. Options
+  /// that are not given are chosen so that the visible part of the volume fills the image, from one distance
+  /// for all frames, upright as the volume says.
   std::vector<Camera> resolve(const Volume& volume, const Classification& classification, int frames = 1) const;
   /// The same of what is known of a volume without its values: its up direction and its content, which is asked for if it is needed.
   std::vector<Camera> resolve(glm::dvec3 upOfVolume, const std::function<Subject()>& content, int frames) const;
   void describe(OptionList& options, const Camera& resolved) const;
-  /// Of what `describe` said, makes of the eye's place the orbit that it turns in, unless it was given: a turn has another
-  /// distance than its first frame.
+  /// Changes the output of `describe` for a turntable: replaces the eye's position by the orbit, unless the
+  /// position was given, since a turntable has another distance than its first frame alone.
   void describeTurn(OptionList& options) const;
 
  private:

@@ -34,26 +34,26 @@ void ClassificationOptions::add(CLI::App& app) {
   CLI::Option* scale =
       addNumber(
           app, "--density-scale", "S", densityScale,
-          "Extinction per world unit at density 1 [so that the volume's mean optical depth suits a picture; level sets are opaque]",
+          "Extinction per world unit at density 1 [chosen so that the volume's mean optical depth suits an image; level sets are opaque]",
           {.minimum = 0.0})
           ->group("Classification");
   CLI::Option* color =
       addTriple(app, "--albedo", "R,G,B", albedo,
-                "Colour, linear [0.9,0.9,0.9; with --emission 0.5,0.5,0.5]", {0.0, 1.0})
+                "Colour of the volume, linear [0.9,0.9,0.9; with --emission 0.5,0.5,0.5]", {0.0, 1.0})
           ->group("Classification");
   CLI::Option* grid =
-      addText(app, "--albedo-grid", "NAME", albedoGrid, "Grid of vectors of the file: colours, linear, 0..1")
+      addText(app, "--albedo-grid", "NAME", albedoGrid, "Grid of vectors of the file with the colours, linear, 0..1")
           ->group("Classification");
   addText(app, "--transfer-function", "FILE.json", transferFunction,
-          "Colour and opacity over the scalar instead [of scans: one from the histogram]; the JSON itself will do, where it "
-          "begins with {")
+          "Colour and opacity by scalar, instead of the above: a file, or JSON that begins with { [for scans one made from the "
+          "histogram]")
       ->excludes(scale)
       ->excludes(color)
       ->excludes(grid)
       ->group("Classification");
   addWord(app, "--classification", kOrderWords, order,
-          "Whether a transfer function is applied to interpolated scalars, or to voxels; splats and volumes that shine are "
-          "pre whatever this is [post]")
+          "What a transfer function is applied to: interpolated scalars (post), or voxels (pre), as always for splats and volumes "
+          "with emission [post]")
       ->group("Classification");
 }
 

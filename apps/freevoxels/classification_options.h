@@ -1,5 +1,5 @@
 #pragma once
-// Scalar -> colour and extinction: physical, or a transfer function.
+// The options of classification: physical, or a transfer function.
 
 #include <optional>
 #include <string>

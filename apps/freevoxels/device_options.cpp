@@ -13,11 +13,11 @@ namespace freevoxels {
 
 void DeviceOptions::add(CLI::App& app) {
   addText(app, "--device", "INDEX|NAME|UUID", selector,
-          "Of 'freevoxels devices', or part of a name [a discrete GPU, then any GPU, then a CPU]")
+          "Device of 'freevoxels devices', or part of a name [a discrete GPU, then any GPU, then a CPU]")
       ->group("Device");
   addWholeNumber(
       app, "--memory-limit", "MIB", memoryLimit,
-      "Device memory to use at most; a volume is then swept in thinner slabs [what the device has]",
+      "Largest amount of device memory to use; volumes are swept in thinner slabs where necessary [all of the device's memory]",
       {1.0, double(std::numeric_limits<int>::max())})
       ->group("Device");
 }

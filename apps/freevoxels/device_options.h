@@ -1,5 +1,5 @@
 #pragma once
-// Which Vulkan device, and opening it.
+// The choice of the Vulkan device, and opening it.
 
 #include <functional>
 #include <memory>
@@ -18,7 +18,7 @@ struct DeviceOptions {
   /// `extensions` are enabled beside the engine's own.
   std::unique_ptr<Device> open(const Instance& instance, std::span<const char* const> extensions = {}) const;
   /// Opens the device and calls `work` with it. With FREEVOXELS_VALIDATION=1 any message of the validation
-  /// layer is an internal error in the end.
+  /// layers is an internal error at the end.
   void withDevice(const std::function<void(const Device&)>& work) const;
 };
 
@@ -26,7 +26,7 @@ struct DeviceOptions {
 void withInstance(const std::function<void(const Instance&)>& work,
                   std::span<const char* const> extensions = {});
 
-/// Says where the work is done if it is no GPU that does it.
+/// Reports that the CPU does the work, if the device is not a GPU.
 void mentionCpu(const Device& device);
 
 }  // namespace freevoxels

@@ -13,21 +13,21 @@ void EmissionOptions::add(CLI::App& app) {
   constexpr const char* kGroup = "Emission";
   addOptionalNumber(
       app, "--emission", "STRENGTH", emission, strength,
-      fmt::format("Light by temperature: luminance per world unit at {:g} K; without a number it cannot be "
-                  "followed by a file [so that it suits a picture]",
+      fmt::format("Emission by temperature: luminance per world unit at {:g} K; without a number it must not be followed by a file "
+                  "name [chosen to suit an image]",
                   kReferenceTemperature),
       {.minimum = 0.0})
       ->group(kGroup);
   addText(app, "--temperature-grid", "NAME", temperatureGrid,
-          "Grid of the temperatures, with --emission or alone [temperature, heat or flame]")
+          "Grid of the temperatures; turns emission on by itself [temperature, heat or flame]")
       ->group(kGroup);
   addNumber(app, "--temperature-scale", "K", temperatureScale,
-            fmt::format("Kelvin per unit of the grid [1; of values up to {:g} what makes the largest {:g} K]",
+            fmt::format("Kelvin per unit of the grid [1; if no value is above {:g}, the scale that makes the largest {:g} K]",
                         kLeastKelvinMaximum, kReferenceTemperature),
             {.minimum = 0.0})
       ->group(kGroup);
   addNumber(app, "--temperature-offset", "K", temperatureOffset,
-            fmt::format("Kelvin at 0 of the grid [0; {:g} with such a scale]", kEmberTemperature))
+            fmt::format("Kelvin at value 0 of the grid [0; with such an automatic scale {:g}]", kEmberTemperature))
       ->group(kGroup);
 }
 
@@ -75,7 +75,7 @@ void EmissionOptions::take(const Emission& resolved) {
 void EmissionOptions::describe(OptionList& options, const Volume& volume,
                                const std::optional<Emission>& resolved) const {
   if (!resolved) return;
-  // A procedural volume's has no name, and of a baked volume there is one grid.
+  // A procedural volume's temperatures have no name.
   if (!volume.temperature->name.empty() && !volume.classification) options.emplace_back("--temperature-grid", volume.temperature->name);
   options.emplace_back("--emission", numberText(resolved->strength));
   options.emplace_back("--temperature-scale", numberText(resolved->temperatureScale));

@@ -1,5 +1,5 @@
 #pragma once
-// Light that voxels send out by their temperature.
+// The options of emission by temperature.
 
 #include <optional>
 #include <string>
@@ -15,16 +15,16 @@ struct EmissionOptions {
   std::optional<double> strength, temperatureScale, temperatureOffset;
 
   void add(CLI::App& app);
-  /// Refuses options that do not apply: ExitCode::Usage.
+  /// Fails with ExitCode::Usage for options that do not apply.
   void check(const InputOptions& input) const;
-  /// Of the grid to read; nothing where no emission is asked for.
+  /// The name of the grid to read; nothing without emission.
   std::optional<std::string> grid() const;
-  /// What is not given defaults to the automatic values. `classification` is of what does not shine.
+  /// Options that are not given have automatic values. `classification` is that without emission.
   std::optional<Emission> resolve(const Volume& volume, const Classification& classification) const;
   /// Takes the place of what is not given: what was resolved for another volume.
   void take(const Emission& resolved);
   void describe(OptionList& options, const Volume& volume, const std::optional<Emission>& resolved) const;
-  /// One warning each for temperatures that are not drawn as they are, and where nothing sends out light.
+  /// Warns of temperatures that are not drawn as they are, and if nothing emits light.
   static void warn(const Volume& volume, const Classification& classification);
 };
 

@@ -12,8 +12,9 @@ inline constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
 /// The pattern with a run of # in place of %d or %0Nd in its file name; any other text as it is.
 std::string withHashes(const std::string& pattern);
 
-/// The pattern with the frame's number, padded with zeros, in place of the run of # (or %0Nd) in its file name; a
-/// number that needs more digits has them. ExitCode::Usage where the file name has no such place or several.
+/// The pattern with the frame's number, padded with zeros, in place of the run of # (or %0Nd) in its file
+/// name; numbers with more digits are not cut. Fails with ExitCode::Usage if the file name has no such place,
+/// or several.
 std::string frameName(const std::string& pattern, int frame);
 
 }  // namespace freevoxels

@@ -19,7 +19,7 @@ namespace freevoxels {
 
 namespace {
 
-/// What describeVdb would say of the volume.
+/// Describes a volume as describeVdb does.
 GridInfo describeVolume(const Volume& volume) {
   GridInfo grid;
   grid.name = "density";
@@ -42,7 +42,7 @@ GridInfo describeVolume(const Volume& volume) {
   return grid;
 }
 
-/// With one colour; of the whole box where nobody counted.
+/// Memory without voxel colours; of the whole box if the occupied blocks were not counted.
 VolumeMemory memoryOf(const GridInfo& grid, DirectionSet directions) {
   const HierarchyLayout hierarchy(grid.renderDimensions);
   std::vector<std::uint64_t> stored = grid.storedBlocks;
@@ -51,14 +51,14 @@ VolumeMemory memoryOf(const GridInfo& grid, DirectionSet directions) {
   return volumeMemory(hierarchy, stored, directions, {}, sweepStyleOf(true));
 }
 
-/// Stored with 26 directions, of a voxel that holds anything.
+/// Bytes stored for each occupied voxel with 26 directions.
 double bytesPerVoxel(const GridInfo& grid) {
   const std::uint64_t voxels = grid.storedBlocks.front();
   return double(memoryOf(grid, DirectionSet::Directions26).stored()) /
          double(std::max<std::uint64_t>(voxels, 1));
 }
 
-/// What a grid can be taken for.
+/// The possible uses of a grid.
 std::vector<std::string> usesOf(const GridInfo& grid) {
   std::vector<std::string> uses;
   if (grid.unusable.empty()) uses.emplace_back("density");

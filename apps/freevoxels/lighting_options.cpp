@@ -59,7 +59,7 @@ double defaultIntensity(const Light& light, const Volume& volume) {
   return kDefaultIrradiance * std::max(glm::dot(toLight, toLight), glm::dot(diagonal, diagonal));
 }
 
-/// Of volumes that shine: for their own light to show.
+/// Factor of the default lights beside emission, so that the emission shows.
 constexpr double kBesideFlames = 0.4;
 
 Lighting defaultLights(const Camera& camera, double part) {

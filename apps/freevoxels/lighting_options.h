@@ -1,6 +1,6 @@
 #pragma once
-// The lights of a picture. Without any of them a key light and ambient light are chosen for the first view, unless the
-// volume shines itself.
+// The options of light. Without any, a key light and ambient light are chosen for the first view, dimmer for
+// a volume with emission.
 
 #include <optional>
 #include <string>
@@ -14,12 +14,12 @@
 
 namespace freevoxels {
 
-/// What --shading and --light-attenuation take, in the order of the enumerators.
+/// The words of --shading and --light-attenuation, in the order of the enumerators.
 enum class Shading : int { Auto = 0, Scatter = 1, Gradient = 2 };
 inline const std::vector<std::string> kShadingWords{"auto", "scatter", "gradient"};
 inline const std::vector<std::string> kLightAttenuationWords{"table", "exact", "auto"};
 
-/// Octaves of scattering where that is not given.
+/// Default number of orders of scattering.
 inline constexpr int kDefaultScattering = 3;
 
 struct LightingOptions {
@@ -36,18 +36,18 @@ struct LightingOptions {
   std::optional<glm::dvec3> tint;
   std::optional<int> attenuation, shading;
   std::optional<double> surface;
-  bool unlit = false;  ///< whatever lights there are
-  bool knowsMethod = false;  ///< addMethod() was called: else there are no surfaces
+  bool unlit = false;  ///< overrides all lights
+  bool knowsMethod = false;  ///< whether addMethod() was called; otherwise there are no surfaces
 
   void add(CLI::App& app);
-  /// What the oracle does not know: how a table is used, and surfaces.
+  /// Adds the options that the oracle does not have: use of the table, and surfaces.
   void addMethod(CLI::App& app);
-  /// Before any work: options that say nothing without others (ExitCode::Usage).
+  /// Fails with ExitCode::Usage for options that have no effect without others. To be called before any work.
   void check() const;
   bool hasLight() const { return !lights.empty() || ambient || environment; }
-  /// None where nothing is lit. Without lights they are defaultLights() of `camera`. The intensity of a position defaults to
-  /// what is kDefaultIrradiance in the middle of the volume's box, or half its diagonal away from the light, whichever is
-  /// farther. Reads the environment.
+  /// The lighting, or nothing without lighting. Without lights it is defaultLights() of `camera`. The default
+  /// intensity of a position gives kDefaultIrradiance in the middle of the volume's box, or at half its
+  /// diagonal from the light, whichever is farther. Reads the environment.
   std::optional<Lighting> resolve(const Volume& volume, const Classification& classification, const Camera& camera) const;
   void describe(OptionList& options, const std::optional<Lighting>& resolved) const;
 };
@@ -55,7 +55,7 @@ struct LightingOptions {
 /// A key light from the upper left of the camera and ambient light, so that white fog is about 0.8 at its brightest.
 Lighting defaultLights(const Camera& camera);
 
-/// Of a light whose intensity is not given.
+/// The intensity of a light that gives none.
 double defaultIntensity(const Light& light, const Volume& volume);
 
 }  // namespace freevoxels

@@ -14,7 +14,7 @@
 #include "apps/freevoxels/turntable_command.h"
 
 int main(int argc, char** argv) {
-  CLI::App app("Draws volumes by order-independent FreeVoxel splatting.", "freevoxels");
+  CLI::App app("Draws volumes: clouds, smoke, fire and scans, with shadows.", "freevoxels");
   freevoxels::RenderCommand render;
   freevoxels::TurntableCommand turntable;
   freevoxels::MergeCommand merge;
@@ -41,6 +41,6 @@ int main(int argc, char** argv) {
       "  freevoxels render cloud.vdb cloud.png\n"
       "'freevoxels COMMAND --help' has the options of a command.\n"
       "Exit codes: 0 done, 1 internal error, 2 usage, 3 input, 4 output, 5 device, 6 out of memory, "
-      "7 pictures differ.");
+      "7 images differ.");
   return freevoxels::runProgram(app, argc, argv);
 }

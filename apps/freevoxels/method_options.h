@@ -1,6 +1,6 @@
 #pragma once
-// How the picture is computed, where the paper and FreeVoxels differ. `--paper` takes the paper's side in all
-// eight, but an option that is given explicitly wins over it.
+// The options of the drawing method, in which the paper and FreeVoxels differ. `--paper` selects the paper's
+// side of eight options; those that are given win.
 
 #include <optional>
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace freevoxels {
 
-/// What the options take, in the order of the enumerators; of the directions in that of DirectionSet's
-/// values, from 1.
+/// The words of the options, in the order of the enumerators; those of --directions in the order of
+/// DirectionSet's values, from 1.
 inline const std::vector<std::string> kDrawWords{"auto", "gather", "splats"};
 inline const std::vector<std::string> kCompositeWords{"normalised", "additive", "sorted"};
 inline const std::vector<std::string> kAttenuationWords{"bilinear", "nearest", "exact", "auto"};
@@ -20,7 +20,7 @@ inline const std::vector<std::string> kDirectionWords{"26", "98"};
 inline const std::vector<std::string> kCodeWords{"depth8", "linear8"};
 inline const std::vector<std::string> kHierarchyFilterWords{"geometric", "arithmetic"};
 
-/// Different for tables that are made differently.
+/// A text that differs between tables that are made differently.
 std::string tableText(const TableSettings& table);
 
 struct MethodOptions {

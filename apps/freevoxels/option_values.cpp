@@ -16,13 +16,13 @@ namespace freevoxels {
 
 namespace {
 
-/// What is read: shown in the sentence that refuses a value.
+/// The expected form, for messages.
 struct Expectation {
   std::string option, form;
-  std::size_t count = 1;  ///< 0: one, which may be left out
+  std::size_t count = 1;  ///< 0 for one number that may be left out
   NumberRange range;
   bool whole = false;
-  bool mayBeOne = false;  ///< one number stands for `count` equal ones
+  bool mayBeOne = false;  ///< whether one number stands for `count` equal ones
   char separator = ',';
 };
 

@@ -1,7 +1,7 @@
 #pragma once
-// Option values that are checked where they are read: a bad one is refused (ExitCode::Usage) in one sentence
-// that names the option. NaN and infinities are bad everywhere. Lists are one word: "1,2,3". Of an option
-// that is given twice the last counts.
+// Option values that are checked when they are parsed: a bad one fails with ExitCode::Usage and one sentence
+// that names the option. NaN and infinities are always bad. Lists are one word: "1,2,3". If an option is
+// given twice, the last one counts.
 
 #include <fmt/format.h>
 
@@ -20,7 +20,7 @@ class Option;
 
 namespace freevoxels {
 
-/// Both ends are allowed.
+/// A range that includes both ends.
 struct NumberRange {
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
@@ -29,7 +29,7 @@ struct NumberRange {
 /// `form` is how the help shows the value: "DEG", "X,Y,Z".
 CLI::Option* addNumber(CLI::App& app, const std::string& name, const std::string& form,
                        std::optional<double>& target, const std::string& description, NumberRange range = {});
-/// The number may be left out; `given` says that the option is there.
+/// Adds an option whose number may be left out; `given` says that the option is present.
 CLI::Option* addOptionalNumber(CLI::App& app, const std::string& name, const std::string& form, bool& given,
                                std::optional<double>& target, const std::string& description,
                                NumberRange range = {});
@@ -41,7 +41,8 @@ CLI::Option* addTriple(CLI::App& app, const std::string& name, const std::string
                        NumberRange range = {});
 CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, const std::string& form,
                             std::optional<int>& target, const std::string& description, NumberRange range);
-/// Linear Rec.709 of "#rrggbb" in sRGB or of one of CSS's basic names, "white"; every option of the form R,G,B takes them.
+/// The linear Rec.709 colour of "#rrggbb" in sRGB or of a basic CSS name such as "white"; all options of the
+/// form R,G,B accept these.
 std::optional<glm::dvec3> namedColor(const std::string& text);
 
 /// "WxH" in pixels, or one number for a square.
@@ -53,7 +54,7 @@ CLI::Option* addDimensions(CLI::App& app, const std::string& name, std::optional
 CLI::Option* addText(CLI::App& app, const std::string& name, const std::string& form,
                      std::optional<std::string>& target, const std::string& description);
 
-/// As many numbers as `count`; `name` is what the sentence calls that refuses the text.
+/// Reads `count` numbers. Messages call the text `name`.
 std::vector<double> readNumbers(const std::string& name, const std::string& form, std::size_t count,
                                 const std::string& text, NumberRange range = {});
 
@@ -61,26 +62,26 @@ std::vector<double> readNumbers(const std::string& name, const std::string& form
 std::map<std::string, std::string> readKeys(const std::string& name, const std::string& form,
                                             const std::string& text);
 
-/// Whether the text of an option that names a JSON file is the JSON itself.
+/// Whether the text of an option that names a JSON file is JSON itself.
 bool isInlineJson(const std::string& text);
 
-/// One of a few words; `target` becomes the position of the one that was given.
+/// Adds an option with one of several words; `target` becomes the index of the word.
 CLI::Option* addWord(CLI::App& app, const std::string& name, const std::vector<std::string>& words,
                      std::optional<int>& target, const std::string& description);
 
-/// Resolved options as "--name" and value, for people, metadata and timings; an empty name is a positional,
+/// Resolved options as "--name" and value, for messages, metadata and timings. An empty name is a positional,
 /// an empty value a flag.
 using OptionList = std::vector<std::pair<std::string, std::string>>;
 
-/// Shortest text that reads back as the same number.
+/// The shortest text that parses as the same number.
 std::string numberText(double value);
 std::string numberText(glm::dvec3 value);
 
-/// The options by name without its dashes, the positional as "input", a flag as "yes"; values of an option
-/// that is there several times joined by spaces.
+/// The options by name without dashes; the positional is "input", a flag is "yes"; values of a repeated
+/// option are joined by spaces.
 std::map<std::string, std::string> optionMap(const OptionList& options);
 
-/// The options as words for a shell, quoted where that is needed.
+/// The options as shell words, quoted where necessary.
 std::string commandText(const OptionList& options);
 
 }  // namespace freevoxels

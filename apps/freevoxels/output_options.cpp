@@ -60,7 +60,7 @@ void OutputOptions::addForm(CLI::App& app) {
   addNumber(app, "--exposure", "EV", exposure, "Stops that a .png or .jpg is brightened by [0]", {-20.0, 20.0})->group(kGroup);
   addWord(app, "--tone-map", kToneMapWords, toneMap, "How bright light is brought into the range of a .png or .jpg [none: it is clipped]")
       ->group(kGroup);
-  app.add_flag("--float", fullFloat, "32 bits a channel in an .exr [16]")->group(kGroup);
+  app.add_flag("--float", fullFloat, "Write 32-bit floats to an .exr [16-bit]")->group(kGroup);
   addWord(app, "--png-bits", kPngBitsWords, pngBits, "Bits a channel in a .png [8]")->group(kGroup);
   app.add_option_function<std::string>(
          "--aov", [this](const std::string& text) { aovs = readAovs("--aov", text); },

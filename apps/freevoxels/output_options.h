@@ -28,7 +28,7 @@ inline const std::vector<std::string> kToneMapWords{"none", "filmic", "aces"};
 
 struct OutputOptions {
   std::vector<std::string> files;
-  std::optional<glm::dvec3> background;  ///< none: a dark gradient, unless `transparent`
+  std::optional<glm::dvec3> background;  ///< if there is none, a dark gradient, unless `transparent`
   bool transparent = false;
   std::optional<double> exposure;
   std::optional<int> toneMap;  ///< ToneMap
@@ -38,14 +38,14 @@ struct OutputOptions {
   std::optional<PixelRectangle> crop;
 
   void add(CLI::App& app);
-  /// How they are written, without OUT.
+  /// Adds the options without OUT.
   void addForm(CLI::App& app);
-  /// Whether the option, "--float", changes any of the files.
+  /// Whether an option such as "--float" affects any of the files.
   bool honours(const std::string& option) const;
-  /// Leaves out what changes none of the files.
+  /// Drops the options that affect none of the files.
   void leaveOutUnhonoured();
-  /// Before any work: extensions, options that no output can honour (ExitCode::Usage), folders
-  /// (ExitCode::Output).
+  /// Checks extensions and options that no output can honour (ExitCode::Usage), and folders
+  /// (ExitCode::Output). To be called before any work.
   void check() const;
   /// ExitCode::Usage where --crop is not inside an image of this size.
   void checkCrop(glm::ivec2 imageSize) const;
@@ -58,9 +58,9 @@ struct OutputOptions {
   void write(const Image& image, const ExrOptions& exr) const;
 };
 
-/// What an EXR says of its making: "freevoxels:NAME" for every option, the command that makes it again as image.exr,
-/// versions, the device; and its camera's matrices. Holds nothing that differs between two runs of a command,
-/// nor the file's name. `command` is its name, "render".
+/// The metadata of an EXR: "freevoxels:NAME" for every option, the command that makes it again as image.exr,
+/// versions, the device, and the camera's matrices. Contains nothing that differs between two runs of a
+/// command, nor the file's name. `command` is its name, such as "render".
 ExrOptions exrMetadata(const std::string& command, const OptionList& options,
                        const std::map<std::string, std::string>& facts, const Camera& camera, double aspect);
 

@@ -55,14 +55,14 @@ struct Outcome {
   std::string sentence;
 };
 
-/// Success, unless what was printed did not all arrive.
+/// Returns success if everything that was printed was written.
 Outcome finish() {
   std::cout.flush();
   if (std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return {};
   return {ExitCode::Output, "cannot write to standard output: is the disk full?"};
 }
 
-/// The command as far as it was understood: "freevoxels render".
+/// The command as far as it was parsed: "freevoxels render".
 std::string commandName(const CLI::App& app) {
   const auto subcommands = app.get_subcommands();
   return subcommands.empty() ? app.get_name() : app.get_name() + " " + subcommands.front()->get_name();
@@ -132,7 +132,7 @@ std::string unknownOption(const CLI::App& command, const Words& words) {
   return "";
 }
 
-/// What is said about a first word that is no command.
+/// The message for a first word that is not a command.
 std::string unknownCommand(const CLI::App& app, const std::string& word) {
   if (word.ends_with(".vdb") || word.ends_with(".fvx") || std::filesystem::is_regular_file(word))
     return fmt::format("'{}' is a file, not a command; to draw it: {} render {} image.png", word, app.get_name(), word);
@@ -179,7 +179,7 @@ extern "C" void deferSignal(int signal) {
 
 constexpr std::array kDeferred{SIGINT, SIGTERM, SIGHUP};
 
-/// The first who defers changes what signals do, the last one restores it.
+/// The first instance installs the handlers, the last one restores the previous ones.
 struct Deferring {
   std::mutex mutex;
   int count = 0;
@@ -209,8 +209,8 @@ int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>
 }
 
 void MessageOptions::add(CLI::App& app) {
-  CLI::Option* less = app.add_flag("--quiet,-q", quiet, "Print nothing but errors")->group("Messages");
-  app.add_flag("--verbose,-v", verbose, "Print the resolved options and how long each stage took")
+  CLI::Option* less = app.add_flag("--quiet,-q", quiet, "Print errors only")->group("Messages");
+  app.add_flag("--verbose,-v", verbose, "Print the resolved options, stage times, memory and block counts")
       ->excludes(less)
       ->group("Messages");
 }
@@ -252,7 +252,7 @@ void checkDistinct(const std::vector<std::string>& files) {
     const std::filesystem::path path = std::filesystem::weakly_canonical(file, error);
     if (!error) note(path.string(), file);
     struct stat status {};
-    if (stat(file.c_str(), &status) == 0)  // two names of one file on the disk
+    if (stat(file.c_str(), &status) == 0)  // detects two names of one file
       note(fmt::format("{}:{}", status.st_dev, status.st_ino), file);
   }
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What every program does the same way: messages, exit codes, interrupts.
+// Common behaviour of all programs: messages, exit codes, interrupts.
 
 #include <filesystem>
 #include <functional>
@@ -15,9 +15,9 @@ namespace freevoxels {
 /// "0.1.0"
 std::string programVersion();
 
-/// Parses the arguments and runs the command they name; its callbacks throw. Options may be given by their beginning where no
-/// other one begins so. Every error, crashes included, becomes one line on stderr and its ExitCode; `onFailure` is called before
-/// it is printed. Adds --version to `app`.
+/// Parses the arguments and runs the command that they name. Options may be shortened to a unique beginning.
+/// Every exception and crash becomes one line on stderr and its ExitCode; `onFailure` is called before it is
+/// printed. Adds --version to `app`.
 int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>& onFailure = {});
 
 /// --quiet and --verbose.
@@ -28,8 +28,9 @@ struct MessageOptions {
   void apply() const;
 };
 
-/// While one lives, SIGINT, SIGTERM and SIGHUP wait: an output that is being written is finished, not left as
-/// a temporary file. A signal that came meanwhile ends the program afterwards. Any thread may have one.
+/// As long as one exists, SIGINT, SIGTERM and SIGHUP are deferred, so that an output that is being written is
+/// completed instead of left as a temporary file. The deferred signal then ends the program. Any thread may
+/// have one.
 class DeferredInterrupts {
  public:
   DeferredInterrupts();
@@ -38,11 +39,11 @@ class DeferredInterrupts {
   DeferredInterrupts& operator=(const DeferredInterrupts&) = delete;
 };
 
-/// checkWritable, which tries with a temporary file, safe from interrupts.
+/// Calls checkWritable, which creates a temporary file, safe from interrupts.
 void checkOutput(const std::filesystem::path& file);
 
-/// ExitCode::Usage where two of the names mean the same file, so that no output replaces an input or another
-/// output.
+/// Fails with ExitCode::Usage if two of the names refer to the same file, so that no output replaces an input
+/// or another output.
 void checkDistinct(const std::vector<std::string>& files);
 
 }  // namespace freevoxels

@@ -1,6 +1,5 @@
 #pragma once
-// One line on a terminal that says how far the work is, erased at the end. Nothing where stderr is not a
-// terminal.
+// A progress line on a terminal, erased at the end. Does nothing if stderr is not a terminal.
 
 #include <chrono>
 
@@ -15,11 +14,11 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// A stage whose length is not known.
+  /// Shows a stage of unknown length.
   void begin(std::string_view stage);
-  /// Before a message is printed.
+  /// Erases the line; to be called before printing a message.
   void erase();
-  /// Refers to this object; empty where nothing is shown.
+  /// Returns a progress function that refers to this object, or an empty one if nothing is shown.
   Progress progress();
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
-// What `render` and `turntable` are told alike, and do alike: images of one volume, whose table is made once, or of several.
+// Options and work that `render` and `turntable` share: images of one volume, whose table is made once, or of
+// several volumes.
 
 #include <span>
 #include <string>

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 using OrderedJson = nlohmann::ordered_json;
 
-/// What an option of the command line takes the place of beside what it excludes.
+/// Options that an option of the command line replaces in addition to those that it excludes.
 struct Replaced {
   const char* option;
   std::vector<const char*> others;
@@ -38,7 +38,7 @@ std::string quoted(const std::string& section, const std::string& key) {
   return inQuotes(section.empty() ? key : section + "." + key);
 }
 
-/// Of the command and all others of the program that take scenes.
+/// The options of the command and of all other commands that accept scenes.
 std::vector<const CLI::Option*> sceneOptions(const CLI::App& command) {
   std::vector<const CLI::Option*> options;
   std::vector<const CLI::App*> commands{&command};
@@ -52,7 +52,7 @@ std::vector<const CLI::Option*> sceneOptions(const CLI::App& command) {
   return options;
 }
 
-/// A scene that is given to a command.
+/// A scene that is applied to a command.
 class SceneReader {
  public:
   SceneReader(CLI::App& command, const std::string& file)
@@ -106,7 +106,7 @@ void SceneReader::failUnknown(const std::string& section, const std::string& key
            nearest.empty() ? "; apps/scenes/README.md has them all" : "; did you mean " + nearest + "?");
 }
 
-/// Null for the key of another command; refuses what is none.
+/// The option of a key; null if it is that of another command; fails for unknown keys.
 CLI::Option* SceneReader::find(const std::string& section, const std::string& key) const {
   const auto is = [&](const CLI::Option* option) {
     return sceneSection(*option) == section && sceneKey(*option) == key;
@@ -157,7 +157,7 @@ void SceneReader::apply(const std::function<bool(const std::string&)>& wanted) {
     }
 }
 
-/// Objects of two depths and lists of objects over several lines, the rest on one.
+/// Formats objects of two levels and lists of objects over several lines, other values on one line.
 std::string layOut(const OrderedJson& value, int depth = 0) {
   const bool list = value.is_array() && !value.empty() && value.front().is_object();
   if (!list && (!value.is_object() || depth > 1))

@@ -1,6 +1,6 @@
 #pragma once
 // Scene files: options of the command line as JSON, by group and name (apps/scenes/README.md). Every option
-// of a group that shapes the picture is a key, without being named here.
+// of a group that affects images is a key, without being listed here.
 
 #include <functional>
 #include <optional>
@@ -13,19 +13,19 @@ namespace freevoxels {
 struct SceneFileOptions {
   std::optional<std::string> file, saved;
 
-  /// --scene.
+  /// Adds --scene.
   void add(CLI::App& app);
-  /// --save-scene, of commands that draw.
+  /// Adds --save-scene, for commands that draw.
   void addSave(CLI::App& app);
   /// Whether the scene names a volume.
   bool hasVolume() const;
-  /// As if the command line had not given the option.
+  /// Treats an option as not given on the command line.
   void leaveOut(const std::string& option) const;
-  /// Gives every option of the command that the command line leaves out, and that `wanted` says yes to, its
-  /// value in the scene. What the command line gives takes the place of what it excludes, too. Keys of other
-  /// commands alone are passed over. Whatever is wrong with the file: ExitCode::Input.
+  /// Sets every option that the command line leaves out, and for which `wanted` is true, to its value in the
+  /// scene. Options of the command line also override what they exclude. Keys that only other commands have
+  /// are ignored. Fails with ExitCode::Input for errors in the file.
   void apply(const std::function<bool(const std::string& option)>& wanted) const;
-  /// Writes the options that belong into a scene, file names relative to the folder of it.
+  /// Writes the options that belong into a scene, with file names relative to its folder.
   void save(const OptionList& options) const;
 
  private:

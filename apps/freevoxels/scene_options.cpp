@@ -159,7 +159,7 @@ std::string SceneOptions::rendererText(const Scene& scene, const TableSettings& 
   classification.describe(options, *scene.volume, scene.classification);
   emission.describe(options, *scene.volume, scene.classification.emission);
   options.emplace_back("table", tableText(table));
-  // Blocks store what they scatter of the volume's own light with what they send out.
+  // Blocks store the scattered light of the emission together with the emission.
   options.emplace_back("emission light", scene.classification.emissionLight ? "yes" : "no");
   return commandText(options);
 }

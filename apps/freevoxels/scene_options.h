@@ -1,6 +1,6 @@
 #pragma once
-// What every command that makes pictures of a volume is told: the volume, what it is made of, from where it
-// is seen, and where the pictures go.
+// The options of all commands that draw a volume: the volume, its classification, camera and light, and the
+// outputs.
 
 #include <memory>
 
@@ -32,18 +32,18 @@ struct SceneOptions {
   SceneFileOptions file;
 
   void add(CLI::App& app);
-  /// Those of them that say how a volume looks.
+  /// Adds the options that determine how a volume looks.
   void addLook(CLI::App& app);
-  /// What --scene has and the command line has not. A single picture is then OUT, where the scene has the
-  /// volume. Without OUT it is the volume's name, else the scene's, with `defaultEnding` in place of its extension, in the
-  /// current folder; where that is empty OUT is required. To be called before all below.
+  /// Applies --scene. A single image argument is then OUT, if the scene has the volume. Without OUT it is the
+  /// name of the volume, or else of the scene, with `defaultEnding` instead of the extension, in the current
+  /// folder; if `defaultEnding` is empty, OUT is required. Must be called before all functions below.
   void takeScene(const std::string& defaultEnding = ".png");
-  /// Options that are wrong with any volume and any file: ExitCode::Usage.
+  /// Fails with ExitCode::Usage for options that are wrong for every volume and file.
   void checkLook() const;
-  /// Before any work; `moreOutputs` are the files that the command writes besides images, `moreInputs` the volumes that it reads
-  /// besides IN.
+  /// Checks all options before any work. `moreOutputs` are files that the command writes in addition to
+  /// images, `moreInputs` the volumes that it reads in addition to IN.
   void check(const std::vector<std::string>& moreOutputs = {}, const std::vector<std::string>& moreInputs = {}) const;
-  /// The same scene with other files to write.
+  /// A copy with other files to write.
   SceneOptions withOutputs(std::vector<std::string> files) const;
   /// Reads the volume, with the grids that the options need; of a baked one an octree level, which other volumes do not have.
   Volume readVolume(std::uint64_t maximumVoxels, int level = 0) const;
@@ -52,23 +52,24 @@ struct SceneOptions {
   int finestLevelNeeded(double lod, int frames) const;
   /// As CameraOptions::resolve; a baked volume's content is read from its file, so that it does not depend on the level.
   std::vector<Camera> cameras(const Volume& volume, const Classification& classification, int frames = 1) const;
-  /// Reads what else there is to read.
+  /// Reads the other files and resolves the scene.
   Scene resolve(std::shared_ptr<const Volume> volume) const;
-  /// The two halves of it: how a volume is classified, and how it is seen and lit, `scene` having the other half.
+  /// The two parts of resolve(): classification, and camera and light. `scene` must have the other part.
   Classification resolveClassification(const Volume& volume) const;
   void resolveView(Scene& scene) const;
-  /// Both.
+  /// Reads the volume and resolves the scene.
   Scene open(std::uint64_t maximumVoxels, int level = 0) const;
   /// As `resolve`, but with the camera, the lights and the scales of densities and temperatures or the transfer function of
   /// another volume's scene, so that frames of one film fit together.
   Scene resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const;
-  /// Everything that a Renderer of the scene depends on, beside its volume: scenes of equal text share one.
+  /// A text of everything that a Renderer of the scene depends on, except for its volume: scenes with equal
+  /// text can share one.
   std::string rendererText(const Scene& scene, const TableSettings& table) const;
-  /// One warning each for values of the scene's volume that are not drawn as they are.
+  /// Warns of values of the volume that are not drawn as they are.
   void warn(const Scene& scene) const;
-  /// Writes --save-scene, where it is wanted.
+  /// Writes the file of --save-scene, if it is given.
   void save(const OptionList& options) const;
-  /// Everything resolved, with the options of the command's own between those of the camera and the outputs.
+  /// All resolved options, with the command's own options between those of the camera and the outputs.
   OptionList describe(const Scene& scene, const OptionList& method = {}) const;
   /// The header of an .exr. `command` and `facts` as for exrMetadata, which the volume's source joins.
   ExrOptions header(const Scene& scene, const std::string& command, const OptionList& options,

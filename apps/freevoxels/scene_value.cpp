@@ -20,14 +20,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// Groups of the help that say how a command is run, not what its pictures show.
+/// Groups of --help that say how a command runs, not what its images show.
 constexpr std::array<std::string_view, 6> kOfTheRun{"Options", "Scene", "Device", "Messages", "Window", "Sequence"};
 
 bool isFlag(const CLI::Option& option) {
   return option.get_items_expected_max() == 0;
 }
 
-/// Whether the option may stand without a value.
+/// Whether the option may be given without a value.
 bool standsAlone(const CLI::Option& option) {
   return !isFlag(option) && option.get_items_expected_min() == 0;
 }
@@ -49,7 +49,7 @@ char separatorOf(const CLI::Option& option) {
   return option.get_type_name().starts_with("WxH") ? 'x' : ',';
 }
 
-/// What is not a file's name: a volume that is made, and JSON.
+/// Whether the text is not a file name: a procedural volume, or JSON.
 bool isNoPath(const std::string& text) {
   return proceduralName(text) || isInlineJson(text);
 }
@@ -65,7 +65,7 @@ bool isNumbers(const Json& list) {
          std::ranges::all_of(list, [](const Json& v) { return v.is_number(); });
 }
 
-/// "direction=1,0,0,intensity=3" of an object; empty where one of its values is neither number nor list.
+/// The text "direction=1,0,0,intensity=3" for an object; empty if a value is neither a number nor a list.
 std::string keysText(const CLI::Option& option, const Json& object) {
   std::vector<std::string> words;
   for (const auto& [key, value] : object.items()) {
@@ -94,7 +94,7 @@ std::string optionText(const CLI::Option& option, const Json& value, const fs::p
        option.get_positional() ? "the name of a volume" : option.get_type_name(), inQuotes(value));
 }
 
-/// A number, a list of numbers or, where the text is neither, the text.
+/// A number, a list of numbers, or the text if it is neither.
 Json numbersOrText(const std::string& text, char separator) {
   Json list = Json::array();
   for (std::size_t begin = 0; begin <= text.size();) {

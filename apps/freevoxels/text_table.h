@@ -1,5 +1,5 @@
 #pragma once
-// Columns of text for people.
+// Text tables for terminals.
 
 #include <cstdint>
 #include <string>
@@ -11,9 +11,9 @@ struct TextTable {
   enum class Align { Left, Right };
 
   std::vector<Align> columns;
-  std::vector<std::vector<std::string>> rows;  ///< the first is the heading
+  std::vector<std::vector<std::string>> rows;  ///< the first row is the heading
 
-  /// One string a row, columns two spaces apart.
+  /// One string for each row, with two spaces between columns.
   std::vector<std::string> lines() const;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What a run was and how long it took, for people (--verbose) and for programs (--timings FILE.json).
+// The report of a run, for --verbose and for --timings FILE.json.
 
 #include <cstdint>
 #include <filesystem>
@@ -21,15 +21,15 @@ struct RunReport {
   std::vector<StageTime> stages;
   double totalMilliseconds = 0.0;
   std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::occupiedVoxelCount
-  std::uint64_t voxels = 0;  ///< of the volume's box
+  std::uint64_t voxels = 0;  ///< number of voxels of the volume's box
   VolumeMemory memory;
-  std::uint64_t devicePeak = 0;    ///< bytes: the most that was ever allocated there
-  CutCounts cut;                   ///< of the last frame
-  bool lackedRoomForRays = false;  ///< some frame
+  std::uint64_t devicePeak = 0;    ///< largest number of bytes allocated on the device at any time
+  CutCounts cut;                   ///< cut of the last frame
+  bool lackedRoomForRays = false;  ///< for any frame
   bool lackedRoomForGather = false;
 };
 
-/// As messages of --verbose.
+/// Prints the messages of --verbose.
 void logOptions(const OptionList& options);
 void logStages(const RunReport& report);
 

@@ -21,7 +21,7 @@ constexpr const char* kExamples =
 }  // namespace
 
 void TurntableCommand::add(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("turntable", "Draw a full turn around a volume, a picture a frame");
+  CLI::App* command = app.add_subcommand("turntable", "Draw a full turn around a volume, an image for each frame");
   options_.add(*command);
   addWholeNumber(*command, "--frames", "N", frames_, fmt::format("Frames of the turn [{}]", kDefaultFrames),
                  {1.0, double(kMaximumFrames)})

@@ -1,5 +1,5 @@
 #pragma once
-// How coarse pictures are while something moves, so that enough of them are seen a second.
+// Chooses the resolution of images while something moves, so that enough of them are shown a second.
 
 #include <cstddef>
 
@@ -7,18 +7,18 @@ namespace freevoxels {
 
 class AdaptiveResolution {
  public:
-  /// Along the longest edge of the volume, at most.
+  /// Largest number of voxels along the longest edge of the volume.
   int voxelsAlongEdge() const;
-  /// Of the picture's edges, in 0.2..1.
+  /// Scale of the image's edges, in 0.2..1.
   double scale() const { return scale_; }
-  /// How long the last picture took.
+  /// Reports the time of the last image.
   void took(double milliseconds);
 
  private:
-  std::size_t step_ = 1;  ///< of the numbers of voxels
+  std::size_t step_ = 1;  ///< index into the numbers of voxels
   double scale_ = 0.5;
-  int pictures_ = 0;  ///< in a row, that want other voxels
-  int rest_ = 0;      ///< pictures before more voxels are tried
+  int pictures_ = 0;  ///< consecutive images that call for another number of voxels
+  int rest_ = 0;      ///< images before more voxels are tried
 };
 
 }  // namespace freevoxels

@@ -1,5 +1,5 @@
 #pragma once
-// What takes too long for a frame of the window, made by a thread beside it.
+// A value that is computed by another thread, because it takes too long for a frame of the window.
 
 #include <chrono>
 #include <functional>
@@ -11,14 +11,15 @@
 
 namespace freevoxels {
 
-/// The value of the key that was asked for last.
+/// Computes the value of the key that was requested last.
 template <typename Key, typename Value>
 class AsyncValue {
  public:
-  /// `make` is called by another thread and throws nothing.
+  /// `make` is called by another thread and must not throw.
   explicit AsyncValue(std::function<Value(const Key&)> make) : make_(std::move(make)) {}
 
-  /// Null while it is made, one after the other; the window is woken when it is there.
+  /// The value of `key`, or null while it is computed. One value is computed at a time; the window is woken
+  /// when it is ready.
   const Value* of(const Key& key) {
     if (!made_.valid() && key_ != key) {
       key_ = key;
@@ -36,7 +37,7 @@ class AsyncValue {
 
   bool isMaking() const { return made_.valid(); }
 
-  /// Neither key nor value is kept any longer.
+  /// Forgets key and value.
   void forget() {
     key_.reset();
     value_.reset();

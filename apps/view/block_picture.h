@@ -11,7 +11,7 @@
 
 namespace freevoxels {
 
-/// Of a level, linear; they repeat after six.
+/// The linear colour of a level; colours repeat after six levels.
 glm::vec3 levelColor(int level);
 
 struct PaintedBlock {
@@ -19,11 +19,11 @@ struct PaintedBlock {
   glm::vec3 color{0.0f};  ///< linear
 };
 
-/// Over black, opaque. The blocks are of a volume of these dimensions.
+/// An opaque image over black. The blocks belong to a volume of these dimensions.
 Image paintBlocks(std::span<const PaintedBlock> blocks, glm::ivec3 dimensions, const glm::dmat4& indexToWorld,
                   const Camera& camera, glm::ivec2 size);
 
-/// Those of `voxels` that are in none of `drawn`: what was left out.
+/// The voxels that are in none of the blocks `drawn`: those that were left out.
 std::vector<Block> leftOut(std::span<const Block> drawn, std::span<const Block> voxels);
 
 }  // namespace freevoxels

@@ -1,5 +1,5 @@
 #pragma once
-// What a value of the volume looks like: its density, or a transfer function.
+// The panel of the classification: density, or a transfer function.
 
 #include <string>
 
@@ -12,7 +12,7 @@
 
 namespace freevoxels {
 
-/// So many that a narrow window of values still has some.
+/// Number of bins, so that a narrow window of values still has some.
 inline constexpr int kHistogramBins = 2048;
 
 class ClassificationPanel {
@@ -23,7 +23,7 @@ class ClassificationPanel {
 
  private:
   void follow(ViewState& state);
-  /// The points, and the preset, of curves that are no more.
+  /// Forgets the selected points and the preset of curves that no longer exist.
   void deselect();
   void drawKind(ViewState& state);
   void drawDensity(ViewState& state);
@@ -38,10 +38,10 @@ class ClassificationPanel {
   OpacityCurve curve_;
   ColorStrip strip_;
 
-  std::string volume_;             ///< the source of the one that the rest is of
-  ClassificationOptions density_;  ///< as they were before there was a transfer function
+  std::string volume_;             ///< source of the volume that the other members belong to
+  ClassificationOptions density_;  ///< options before there was a transfer function
   TransferModel model_;
-  std::string modelText_;  ///< of the option that model_ was read from, or written to
+  std::string modelText_;  ///< text of the option that model_ was read from, or written to
   std::string file_, preset_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// One piece of work beside the window, which can be given up.
+// Work in another thread, which can be cancelled.
 
 #include <atomic>
 #include <functional>
@@ -17,25 +17,25 @@ class ExportJob {
  public:
   using Work = std::function<void(const Progress&)>;
   struct Outcome {
-    bool done = false;     ///< all of it
-    std::string sentence;  ///< what was done, or why it was not
+    bool done = false;     ///< whether all of it was done
+    std::string sentence;  ///< what was done, or why it failed
   };
 
-  /// `finished` is called by the thread at the end of every piece of work.
+  /// `finished` is called by the thread at the end of every job.
   explicit ExportJob(std::function<void()> finished);
-  /// Cancels, and waits for what cannot be given up.
+  /// Cancels, and waits for what cannot be cancelled.
   ~ExportJob();
   ExportJob(const ExportJob&) = delete;
   ExportJob& operator=(const ExportJob&) = delete;
 
-  /// `done` is the sentence to say then. Not while there is another: busy().
+  /// Starts a job; `done` is the sentence to show at its end. Not while busy().
   void start(Work work, std::string done);
-  /// Where the work next says how far it is.
+  /// Cancels the job when it next reports progress.
   void cancel() { cancelled_ = true; }
   bool busy() const;
-  /// Once, after the end of the work.
+  /// The outcome, once after the end of a job.
   std::optional<Outcome> take();
-  /// What it is doing, and how much of all is done.
+  /// The current stage, and the fraction of the whole job that is done.
   std::pair<std::string, double> activity() const;
 
  private:
@@ -43,7 +43,7 @@ class ExportJob {
 
   const std::function<void()> finished_;
   std::atomic<bool> cancelled_ = false;
-  mutable std::mutex mutex_;  ///< of all below
+  mutable std::mutex mutex_;  ///< guards all members below
   bool busy_ = false;
   std::optional<Outcome> outcome_;
   std::pair<std::string, double> activity_;

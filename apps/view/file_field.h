@@ -1,18 +1,18 @@
 #pragma once
-// Names of files, as a person types them.
+// Input fields for file names.
 
 #include <string>
 
 namespace freevoxels {
 
-/// A field for a name with a button beside it. True when it is wanted: by the button, or by Enter in the
-/// field. `focus` puts the cursor there.
+/// A field for a name with a button beside it. Returns true if it is confirmed, by the button or by Enter.
+/// `focus` puts the cursor into the field.
 bool fileField(const char* button, std::string& text, bool focus);
 
-/// The file that is meant: "~/" is the home folder, blanks around are no part of it.
+/// The file of a typed name: "~/" is the home folder, surrounding blanks are removed.
 std::string meantFile(const std::string& text);
 
-/// A sentence that went wrong, or right.
+/// Shows a sentence about an error or a success.
 void drawSentence(const std::string& sentence, bool good);
 
 }  // namespace freevoxels

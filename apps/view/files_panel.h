@@ -1,5 +1,5 @@
 #pragma once
-// "Open": a field for a file's name, and what was opened last.
+// The panel "Open": a field for a file name, and recent files.
 
 #include <string>
 
@@ -10,14 +10,14 @@ namespace freevoxels {
 
 class FilesPanel {
  public:
-  /// Without `remembers` nothing is kept of what is opened.
+  /// Without `remembers`, opened files are not stored.
   explicit FilesPanel(bool remembers);
 
   /// Into the current Dear ImGui window. Ctrl+O asks for a name.
   void draw(ViewState& state);
   /// openFile; what goes wrong is said in the panel.
   void open(ViewState& state, const std::string& file);
-  /// Is on the list then.
+  /// Adds a file to the list.
   void remember(const std::string& file);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The grids of the file that is looked at, for the panels that choose among them.
+// The grids of the current file, for the panels that choose among them.
 
 #include <string>
 #include <vector>
@@ -11,8 +11,8 @@ namespace freevoxels {
 
 class GridList {
  public:
-  /// Of a volume's name; null while they are read. None of a procedural volume, and of a file that cannot be
-  /// read, of which its picture says why.
+  /// The grids of a volume by its name, or null while they are read. None for a procedural volume, and for a
+  /// file that cannot be read, for which the image reports the reason.
   const std::vector<GridChoice>* of(const std::string& input) { return grids_.of(input); }
 
   bool isMaking() const { return grids_.isMaking(); }

@@ -1,15 +1,15 @@
 #pragma once
-// Which grids of a file are the volume.
+// The choice of the file's grids.
 
 #include "apps/view/grid_list.h"
 #include "apps/view/view_state.h"
 
 namespace freevoxels {
 
-/// Nothing where there is no choice.
+/// Draws nothing if there is no choice.
 void drawGridPanel(ViewState& state, GridList& grids);
 
-/// Of those grids for which `suits` is true; the first word is for what is chosen where none is given.
+/// A choice among the grids for which `suits` is true. The first word stands for the default.
 bool chooseGrid(const char* label, const std::vector<GridChoice>& grids, bool GridChoice::*suits,
                 const char* none, std::optional<std::string>& name);
 

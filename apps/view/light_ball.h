@@ -1,12 +1,12 @@
 #pragma once
-// A ball in the light of one direction, to be dragged.
+// A ball that shows the direction of a light, and can be dragged.
 
 #include <glm/glm.hpp>
 
 namespace freevoxels {
 
-/// `direction` leads towards the light, in the camera's space: right, up, towards the eye; of length 1. As
-/// wide as `size` on the screen. True where a hand changed it.
+/// `direction` is the unit vector towards the light in camera space: right, up, towards the eye. `size` is
+/// the width on the screen. Returns true if the user changed it.
 bool drawLightBall(const char* name, float size, glm::dvec3& direction, glm::dvec3 color);
 
 }  // namespace freevoxels

@@ -1,12 +1,12 @@
 #pragma once
-// The lights of a scene, each with what can be changed of it.
+// The lights of a scene with their settings.
 
 #include "apps/freevoxels/lighting_options.h"
 #include "engine/scene/camera.h"
 
 namespace freevoxels {
 
-/// `camera` is where the picture is seen from. True where a light was changed.
+/// `camera` is that of the image. Returns true if a light was changed.
 bool drawLights(LightingOptions& options, const Camera& camera, const Volume& volume);
 
 }  // namespace freevoxels

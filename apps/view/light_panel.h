@@ -1,5 +1,5 @@
 #pragma once
-// What light falls on the volume, and how it is scattered.
+// The panel of lights and scattering.
 
 #include <string>
 
@@ -15,7 +15,7 @@ class LightPanel {
   bool drawAround(LightingOptions& options);
   bool drawEnvironment(LightingOptions& options);
 
-  std::string environment_, environmentText_;  ///< of the option, and as it is typed
+  std::string environment_, environmentText_;  ///< of the option, and as typed
 };
 
 }  // namespace freevoxels

@@ -1,5 +1,5 @@
 #pragma once
-// How the picture is computed, and what is behind it.
+// The panels of the drawing method and of the background.
 
 #include "apps/view/view_state.h"
 

@@ -13,7 +13,7 @@ namespace freevoxels {
 
 class OpacityCurve {
  public:
-  /// `range` is what x = 0 and 1 stand for; `histogram` may be null. True where the model was changed.
+  /// `range` are the scalars at x = 0 and 1; `histogram` may be null. Returns true if the model was changed.
   bool draw(TransferModel& model, glm::dvec2 range, const Histogram* histogram);
 
  private:
@@ -21,7 +21,7 @@ class OpacityCurve {
     PlotSpan span;
     float top, bottom;
 
-    /// Small opacities matter: the axis is one of cube roots.
+    /// The axis is one of cube roots, because small opacities matter.
     float y(double alpha) const { return bottom + float(std::cbrt(alpha)) * (top - bottom); }
     double alpha(float pixel) const {
       return std::pow(std::clamp(double((pixel - bottom) / (top - bottom)), 0.0, 1.0), 3.0);

@@ -1,5 +1,5 @@
 #pragma once
-// Opening whatever a person drops onto the window or names in it.
+// Opens files that are dropped onto the window or named in it.
 
 #include <string>
 
@@ -12,7 +12,7 @@ namespace freevoxels {
 /// scene. Fails with `state` as it was.
 void openFile(ViewState& state, const std::string& file);
 
-/// Whether it is remembered: what makes a picture by itself.
+/// Whether it is added to recent files: files that make an image on their own.
 bool isWorthRemembering(const std::string& file);
 
 }  // namespace freevoxels

@@ -13,12 +13,12 @@ namespace freevoxels {
 
 using Activity = std::optional<std::pair<std::string, double>>;
 
-/// What is being done, and what went wrong.
+/// The current work, and errors.
 void drawStatus(const ViewState& state, const Activity& activity);
 void drawVolumePanel(ViewState& state);
 void drawCameraPanel(ViewState& state);
 
-/// All of them, in their order.
+/// All panels, in their order.
 void drawPanelsOf(ViewState& state, const Activity& activity, LookPanels& looks);
 
 }  // namespace freevoxels

@@ -1,5 +1,5 @@
 #pragma once
-// The part of the window that shows the picture, and takes the hands that move the camera.
+// The area of the window that shows the image and moves the camera.
 
 #include <glm/glm.hpp>
 
@@ -10,13 +10,13 @@ namespace freevoxels {
 
 class PictureArea {
  public:
-  /// Fills what is left of the current Dear ImGui window; right of ViewState::split with `compared`. Both may
-  /// be null.
+  /// Fills the rest of the current Dear ImGui window; right of ViewState::split with `compared`. Both may be
+  /// null.
   void draw(ViewState& state, const Texture* texture, const Texture* compared);
 
-  /// Of the area in the last frame, in pixels; 0 before.
+  /// Size of the area in the last frame, in pixels; 0 before the first.
   glm::ivec2 pixels() const { return pixels_; }
-  /// Whether a hand is on the camera.
+  /// Whether the user is moving the camera.
   bool moves() const { return moves_; }
 
  private:
@@ -25,7 +25,7 @@ class PictureArea {
   void keys(ViewState& state) const;
 
   glm::ivec2 pixels_{0};
-  bool moves_ = false, splits_ = false;  ///< a hand is on the camera, or on the split
+  bool moves_ = false, splits_ = false;  ///< whether the user is moving the camera, or the split
 };
 
 }  // namespace freevoxels

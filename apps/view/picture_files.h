@@ -1,5 +1,5 @@
 #pragma once
-// What is taken away of a picture: the files and command lines of `freevoxels render` and `turntable`.
+// Exports of an image: the files and command lines of `freevoxels render` and `turntable`.
 
 #include <string>
 
@@ -7,17 +7,17 @@
 
 namespace freevoxels {
 
-/// The command line that makes the picture again, into `file`.
+/// The command line that makes the image again, into `file`.
 std::string commandOf(const Picture& picture, const std::string& file);
-/// The one of a full turn that starts with it, or, where the camera is left to the volume, frames the volume
-/// in all of its frames.
+/// The command line of a full turn that starts with the image, or, if the camera is automatic, fills all
+/// frames with the volume.
 std::string turnCommandOf(const Picture& picture, const std::string& pattern, int frames);
 
 /// Of a picture on this device into an .exr or a .png, with all that `freevoxels render` would write. Fails as that does.
 void savePicture(const Device& device, const Picture& picture, const std::string& file);
-/// What `freevoxels render --save-scene` writes.
+/// Writes the scene as `freevoxels render --save-scene` does.
 void saveScene(const Picture& picture, const std::string& file);
-/// The frames that turnCommandOf's command makes.
+/// Writes the frames of turnCommandOf's command.
 void saveTurn(const Device& device, const Picture& picture, const std::string& pattern, int frames,
               const Progress& progress);
 

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures of what the viewer's options say, as `freevoxels render` makes them.
+// Makes the images of the viewer's options, as `freevoxels render` does.
 
 #include <limits>
 #include <memory>
@@ -14,33 +14,33 @@
 
 namespace freevoxels {
 
-/// What a picture is made from, to be copied to another thread.
+/// The input of an image, to be copied to another thread.
 struct PictureRequest {
   SceneOptions scene;
   MethodOptions method;
   Diagnosis diagnosis;
-  std::optional<MethodOptions> compared;  ///< another method, to look at beside it
-  std::uint64_t number = 0;               ///< larger than that of any before
-  /// Of more voxels along the volume's longest edge, means of blocks of them are drawn.
+  std::optional<MethodOptions> compared;  ///< another method for comparison
+  std::uint64_t number = 0;               ///< larger than that of all earlier requests
+  /// Largest number of voxels along the volume's longest edge. Of larger volumes, means of blocks are drawn.
   int voxelsAlongEdge = std::numeric_limits<int>::max();
 };
 
 struct Picture {
-  PictureRequest request;    ///< that it answers
-  Scene scene;               ///< as resolved; its volume is the whole one
-  OptionList options;        ///< that make the same pixels
-  DeviceDescription device;  ///< that made it
+  PictureRequest request;    ///< the request that it answers
+  Scene scene;               ///< the resolved scene, with the whole volume
+  OptionList options;        ///< options that make the same pixels
+  DeviceDescription device;  ///< device that made it
   std::shared_ptr<const SplatTargets> image;     ///< on the device, which must outlive the picture
   std::shared_ptr<const RenderTarget> shown;     ///< the same image, or the diagnosis in its place
   std::shared_ptr<const RenderTarget> compared;  ///< of the other method, or null
   std::vector<StageTime> times;
-  double milliseconds = 0.0;  ///< in all, but for reading files
+  double milliseconds = 0.0;  ///< in total, without reading files
   VolumeMemory memory;
   CutCounts cut;
   std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::occupiedVoxelCount
 };
 
-/// Keeps a volume on a device, and makes again only what a request changes.
+/// Keeps a volume on a device, and updates only what a request changes.
 class PictureMaker {
  public:
   PictureMaker(const Device& device, VolumeCache& volumes);
@@ -54,8 +54,8 @@ class PictureMaker {
 
   const Device& device_;
   VolumeCache& volumes_;
-  std::shared_ptr<const Volume> whole_, coarse_;  ///< coarse_ is of whole_, or the same
-  int blockEdge_ = 0;                             ///< that it is of
+  std::shared_ptr<const Volume> whole_, coarse_;  ///< coarse_ is made from whole_, or equal to it
+  int blockEdge_ = 0;                             ///< block edge of coarse_
   bool coarseIsOfDensities_ = false;
   std::string rendererOptions_;
   std::unique_ptr<Renderer> renderer_;

@@ -1,5 +1,5 @@
 #pragma once
-// How many pictures a second are seen while something moves.
+// The number of images a second while something moves.
 
 #include <chrono>
 #include <deque>
@@ -10,9 +10,9 @@ class PictureRate {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// A picture is shown. After a pause of half a second the count begins anew.
+  /// Counts an image. After a pause of half a second the count starts again.
   void add(Clock::time_point now);
-  /// Over the last two seconds of pictures; 0 of fewer than three.
+  /// The rate over the last two seconds; 0 with fewer than three images.
   double perSecond() const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What the plots of a transfer function share: how x lies on the screen, and their points under the mouse.
+// Shared by the plots of a transfer function: the mapping of x to the screen, and the point under the mouse.
 
 #include <imgui.h>
 
@@ -9,7 +9,7 @@
 
 namespace freevoxels {
 
-/// Of points, in units of text's size; the plots leave as much room at their ends.
+/// Radius of points in units of the font size; the plots leave as much space at their ends.
 inline constexpr float kPointRadius = 0.38f;
 
 /// x in 0..1 from `low` to `high`, on the screen.
@@ -20,7 +20,7 @@ struct PlotSpan {
   double x(float pixel) const { return std::clamp(double((pixel - low) / (high - low)), 0.0, 1.0); }
 };
 
-/// The point that the mouse is on: the nearest of those that are near. `placeOf(point)` is on the screen.
+/// The nearest point under the mouse. `placeOf(point)` is its position on the screen.
 template <typename Points, typename PlaceOf>
 std::optional<std::size_t> pointUnderMouse(const Points& points, const PlaceOf& placeOf) {
   const ImVec2 mouse = ImGui::GetIO().MousePos;

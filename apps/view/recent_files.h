@@ -1,5 +1,5 @@
 #pragma once
-// What was opened last, in this and earlier windows.
+// Recently opened files, of this and earlier sessions.
 
 #include <filesystem>
 #include <string>
@@ -14,13 +14,13 @@ class RecentFiles {
  public:
   static constexpr std::size_t kMost = 10;
 
-  /// Reads the list; one that cannot be read is empty. Nothing is remembered where `file` is empty.
+  /// Reads the list; an unreadable list counts as empty. Nothing is stored if `file` is empty.
   explicit RecentFiles(std::filesystem::path file);
 
-  /// The last one first.
+  /// The files, the last one first.
   const std::vector<std::string>& list() const { return list_; }
-  /// Puts it on top, by its full path, and keeps the list. A disk that does not take it is no reason to
-  /// bother anyone: the list is then of this window alone.
+  /// Moves a file to the top, by its full path, and stores the list. If it cannot be written, the list is
+  /// kept for this session only.
   void add(const std::string& opened);
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// Pictures made beside the window, so that it never waits for them.
+// Makes images in another thread, so that the window never waits for them.
 
 #include <chrono>
 #include <condition_variable>
@@ -18,10 +18,10 @@ namespace freevoxels {
 class RenderThread {
  public:
   struct Result {
-    std::uint64_t number = 0;                ///< of the request
-    std::shared_ptr<const Picture> picture;  ///< null where it failed
-    std::string problem;                     ///< then the sentence that says why
-    ExitCode code = ExitCode::Success;       ///< and what `freevoxels render` would end with
+    std::uint64_t number = 0;                ///< number of the request
+    std::shared_ptr<const Picture> picture;  ///< null if it failed
+    std::string problem;                     ///< the reason for a failure
+    ExitCode code = ExitCode::Success;       ///< the exit code of `freevoxels render` in this case
   };
 
   /// On a device that other threads use as well. `finished` is called by the thread whenever there is a result.
@@ -31,15 +31,15 @@ class RenderThread {
   RenderThread(const RenderThread&) = delete;
   RenderThread& operator=(const RenderThread&) = delete;
 
-  /// Takes the place of a request that has not been begun.
+  /// Replaces a request that has not been started.
   void ask(PictureRequest request);
   /// Abandons the picture that is being made and the request that waits, if any: no result comes of them.
   void abandon();
   /// How long the picture that is being made has taken by now; 0 while none is.
   std::chrono::milliseconds busyFor() const;
-  /// The last one since the last call.
+  /// The last result since the last call.
   std::optional<Result> take();
-  /// What it is doing, and how much of that is done; nothing while it waits, or has just begun.
+  /// The current stage and the fraction of it that is done; nothing while it waits or has just started.
   std::optional<std::pair<std::string, double>> activity() const;
 
  private:
@@ -51,9 +51,9 @@ class RenderThread {
   VolumeCache& volumes_;
   const std::function<void()> finished_;
   std::unique_ptr<PictureMaker> maker_;
-  std::unique_ptr<PictureMaker> comparing_;  ///< with another table
+  std::unique_ptr<PictureMaker> comparing_;  ///< for methods with another table
 
-  mutable std::mutex mutex_;  ///< of all below
+  mutable std::mutex mutex_;  ///< guards all members below
   std::condition_variable asked_;
   bool ends_ = false, busy_ = false, abandons_ = false;
   std::optional<PictureRequest> waiting_;

@@ -1,5 +1,5 @@
 #pragma once
-// "Frames": goes through a sequence.
+// The panel "Frames": plays a sequence.
 
 #include <chrono>
 #include <string>
@@ -10,9 +10,9 @@ namespace freevoxels {
 
 class SequencePanel {
  public:
-  /// Into the current Dear ImGui window; nothing where the volume is no frame of others. While it plays, the
-  /// next frame waits for its time and for the picture of the one before. Space plays and pauses,
-  /// comma and full stop go back and on.
+  /// Draws into the current Dear ImGui window, unless the volume is not part of a sequence. While playing,
+  /// the next frame waits for its time and for the image of the previous one. Space plays and pauses, comma
+  /// and full stop step back and on.
   void draw(ViewState& state);
   bool plays() const { return plays_; }
   void pause() { plays_ = false; }
@@ -29,9 +29,9 @@ class SequencePanel {
   bool plays_ = false;
   float framesPerSecond_ = 24.0f;
   Clock::time_point shown_;
-  std::string offeredFor_;  ///< the file that was looked for frames around
+  std::string offeredFor_;  ///< the file for which a sequence was searched
   std::optional<Sequence> offered_;
-  std::string problem_;  ///< of a frame that was passed over
+  std::string problem_;  ///< of a frame that was skipped
 };
 
 }  // namespace freevoxels

@@ -1,5 +1,5 @@
 #pragma once
-// The images of a window, one after the other.
+// The images of a window.
 
 #include <glm/glm.hpp>
 #include <vector>
@@ -12,10 +12,10 @@
 
 namespace freevoxels {
 
-/// Made again by itself when the window changes its size, or its surface is lost.
+/// Recreated when the window changes its size, or when its surface is lost.
 class Swapchain {
  public:
-  /// All must live as long. Fails with ExitCode::Device where the device cannot show anything in the window.
+  /// The arguments must outlive it. Fails with ExitCode::Device if the device cannot draw into the window.
   Swapchain(const Instance& instance, const Device& device, const Window& window);
   ~Swapchain();
   Swapchain(const Swapchain&) = delete;
@@ -23,17 +23,17 @@ class Swapchain {
 
   VkFormat format() const { return format_.format; }
 
-  /// Waits for an image to draw into, in layout UNDEFINED. False where there is none: the window has no area,
-  /// is changing or is out of sight.
+  /// Waits for an image to draw into, in layout UNDEFINED. Returns false if there is none: the window has no
+  /// area, is changing or is hidden.
   bool acquire();
   glm::ivec2 size() const { return size_; }
   VkImage image() const { return images_[current_]; }
   VkImageView view() const { return views_[current_].get(); }
-  /// Shows the acquired image, in layout PRESENT_SRC_KHR, when all work on it is done.
+  /// Presents the acquired image, which must be in layout PRESENT_SRC_KHR, after all work on it is done.
   void present();
 
-  /// Of the acquired image, in layout PRESENT_SRC_KHR and done: 8-bit RGBA, row 0 is the top. Fails with
-  /// ExitCode::Device where the window's images cannot be read.
+  /// Reads the acquired image, in layout PRESENT_SRC_KHR and complete: 8-bit RGBA, top row first. Fails with
+  /// ExitCode::Device if the window's images cannot be read.
   std::vector<std::uint8_t> read() const;
 
  private:

@@ -1,5 +1,6 @@
 #pragma once
-// A transfer function as a hand edits it: points over x in 0..1, as its JSON has them (apps/manual/classification.md).
+// A transfer function that the user edits: points over x in 0..1, as in its JSON
+// (apps/manual/classification.md).
 
 #include <glm/glm.hpp>
 #include <optional>
@@ -10,7 +11,7 @@
 
 namespace freevoxels {
 
-/// Points of one list are at least so far apart, wherever they are moved.
+/// Least distance between the points of a list.
 inline constexpr double kLeastPointGap = 1e-3;
 
 struct TransferModel {
@@ -26,29 +27,29 @@ struct TransferModel {
   std::optional<glm::dvec2> range;  ///< scalars at x = 0 and 1; default: the volume's
   std::optional<double> unitDistance;
 
-  /// Of an option's text: the name of a file, or the JSON itself. Fails as `freevoxels render` does.
+  /// Reads an option's text: a file name, or JSON. Fails as `freevoxels render` does.
   static TransferModel read(const std::string& text, const Volume& volume);
-  /// On one line; numbers that were edited have few digits.
+  /// One line of JSON; edited numbers have few digits.
   std::string json() const;
 
   double alphaAt(double x) const;
   glm::dvec3 colorAt(double x) const;
 
-  /// All return the index of the point that is meant: a new one, or the one that was there already.
+  /// All return the index of the point: a new one, or one that exists already.
   std::size_t addOpacity(double x, double alpha);
-  /// With the colour that is there.
+  /// Adds a point with the colour at its position.
   std::size_t addColor(double x);
 
-  /// Between its neighbours; the first and the last point of the opacity keep their x.
+  /// Moves a point between its neighbours; the first and the last point of the opacity keep their x.
   void moveOpacity(std::size_t point, double x, double alpha);
   void moveColor(std::size_t point, double x);
 
-  /// False, and nothing, of the first and the last.
+  /// Does nothing and returns false for the first and the last point.
   bool removeOpacity(std::size_t point);
-  /// False, and nothing, of the only one.
+  /// Does nothing and returns false for the only point.
   bool removeColor(std::size_t point);
 
-  /// Other curves over the same range and unit distance.
+  /// Replaces the curves; range and unit distance stay.
   void takeCurves(const TransferModel& other);
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Dear ImGui's triangles, drawn into a window.
+// Draws Dear ImGui's triangles into a window.
 
 #include <imgui.h>
 
@@ -12,17 +12,18 @@
 
 namespace freevoxels {
 
-/// What Dear ImGui calls a texture; it must live until the frame that shows it is drawn.
+/// Dear ImGui's handle of a texture, which must live until the frame that shows it is drawn.
 inline ImTextureID textureId(const Texture& texture) {
   return const_cast<Texture*>(&texture);
 }
 
 class UiPainter {
  public:
-  /// After Dear ImGui has its fonts.
+  /// To be called after Dear ImGui has its fonts.
   UiPainter(const Device& device, VkFormat format);
 
-  /// Clears the acquired image and draws into it, up to layout PRESENT_SRC_KHR, behind what `recordTextures` records. Waits.
+  /// Clears the acquired image and draws into it, up to layout PRESENT_SRC_KHR, after the commands that
+  /// `recordTextures` records. Blocks until it is complete.
   void draw(const ImDrawData& triangles, const Swapchain& target,
             const std::function<void(Commands&)>& recordTextures);
 
@@ -33,7 +34,7 @@ class UiPainter {
   const Device& device_;
   Pipeline pipeline_;
   Texture fonts_;
-  Buffer vertices_, indices_;  ///< at least as large as the last frame needed
+  Buffer vertices_, indices_;  ///< at least as large as for the last frame
 };
 
 }  // namespace freevoxels

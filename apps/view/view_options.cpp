@@ -25,14 +25,14 @@ void ViewOptions::add(CLI::App& app) {
   device.add(app);
   messages.add(app);
   addWholeNumber(app, "--frames", "N", frames,
-                 fmt::format("Frames of a turn that is saved [{}]", kDefaultFrames),
+                 fmt::format("Frames of a turntable that is saved [{}]", kDefaultFrames),
                  {1.0, double(kMaximumFrames)})
       ->group("Camera");
   CLI::Option* const file =
-      addText(app, "--screenshot", "FILE.png", screenshot, "Writes what the window shows, and ends");
+      addText(app, "--screenshot", "FILE.png", screenshot, "Write what the window shows when the image is complete, and quit");
   file->group("Window");
   addWholeNumber(app, "--after", "N", after,
-                 "Frames of the window to wait before the screenshot when the picture is complete [1]",
+                 "Frames of the window to wait before the screenshot after the image is complete [1]",
                  {1.0, double(kMostFrames)})
       ->needs(file)
       ->group("Window");

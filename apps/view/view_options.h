@@ -1,5 +1,5 @@
 #pragma once
-// What `freevoxels-view` is told: what `freevoxels render` is, but for its outputs.
+// The options of `freevoxels-view`: those of `freevoxels render` without its outputs.
 
 #include <optional>
 #include <string>
@@ -17,16 +17,16 @@ struct ViewOptions {
   MethodOptions method;
   DeviceOptions device;
   MessageOptions messages;
-  std::optional<Sequence> sequence;  ///< that IN is a frame of
+  std::optional<Sequence> sequence;  ///< the sequence of which IN is a frame
   std::optional<std::string> screenshot;
   std::optional<int> after;
-  std::optional<int> frames;  ///< of a turn that is saved
+  std::optional<int> frames;  ///< of a turntable that is saved
 
   void add(CLI::App& app);
-  /// Refuses what is wrong before a window is opened.
+  /// Checks the options before a window is opened.
   void prepare();
-  /// Takes a scene, where one is named, and the first frame of a sequence. Without a volume there is one that
-  /// is made here. Refuses what is wrong with any volume.
+  /// Applies a scene, if there is one, and the first frame of a sequence. Without a volume a procedural one
+  /// is used. Fails for options that are wrong for every volume.
   void takeScene();
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// What is looked at, as the panels change it.
+// The state of the viewer, which the panels change.
 
 #include <memory>
 #include <optional>
@@ -16,35 +16,36 @@ struct ViewState {
   SceneOptions scene;
   MethodOptions method;
   Diagnosis diagnosis;
-  int comparison = 0;  ///< 0: nothing, or what comparedMethod makes of it
-  float split = 0.5f;  ///< part of the picture's width that is not the other method's
-  /// That the volume is a frame of.
+  int comparison = 0;  ///< 0 for none, or the argument of comparedMethod
+  float split = 0.5f;  ///< fraction of the image's width left of the split
+  /// The sequence of which the volume is a frame.
   std::optional<Sequence> sequence;
-  /// Set by whoever changes one of those; a picture is asked for and it is cleared.
+  /// Set by the code that changes one of the above; an image is then requested and it is cleared.
   bool changed = true;
 
-  /// As the scene's options say. None before the first picture, which says what is not given.
+  /// The camera of the scene's options. Unknown before the first image, which resolves what is not given.
   std::optional<Camera> camera;
-  /// The last picture of all voxels and in full size, and the last of all.
+  /// The last image of all voxels in full size, and the last image.
   std::shared_ptr<const Picture> whole, latest;
-  /// How many are shown while they follow each other; 0 of a single one.
+  /// Images a second while they follow each other; 0 for a single one.
   double picturesPerSecond = 0.0;
-  /// Why there is no newer one.
+  /// The reason why there is no newer image.
   std::string problem;
-  /// Whether `latest`, or a problem, answers what the options say; whether `whole` does; whether a whole
-  /// picture of it cannot be drawn.
+  /// Whether `latest`, or a problem, belongs to the current options; whether `whole` does; whether a whole
+  /// image of them cannot be drawn.
   bool answered = false, complete = false, failed = false;
 
-  /// The method that is shown beside this one.
+  /// The method that is shown for comparison.
   std::optional<MethodOptions> comparedMethod() const;
-  /// Takes from the first picture the camera, the transfer function and the lights that its options do not say, so that they stay where they are.
+  /// Takes camera, transfer function and lights that the options do not give from the first image, so that
+  /// they stay as they are.
   void begin(const Scene& first);
-  /// Looks from there, unless nothing is seen from there: `problem` says why.
+  /// Uses this camera, unless it shows nothing: `problem` then gives the reason.
   void look(const Camera& from);
-  /// Another volume, as the scene has it; of a sequence where it is one of its frames.
+  /// Opens another volume, as in the scene; in a sequence if it is one of its frames.
   void show(const SceneOptions& other, const std::optional<Sequence>& frames);
-  /// Another frame of the sequence, from the same place. What would be chosen for its picture stays as it was
-  /// chosen for the one before, so that a film does not flicker.
+  /// Opens another frame of the sequence with the same camera. Automatic settings stay those of the frame
+  /// before, so that an animation does not flicker.
   void showFrame(const std::string& file);
 };
 

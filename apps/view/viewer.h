@@ -1,5 +1,5 @@
 #pragma once
-// The window with its panels, and who makes the pictures in it.
+// The window with its panels, and the threads that make the images in it.
 
 #include <chrono>
 #include <memory>
@@ -24,10 +24,10 @@ namespace freevoxels {
 
 class Viewer {
  public:
-  /// Fails with ExitCode::Device where there is no display, or no device that draws into one.
+  /// Fails with ExitCode::Device if there is no display, or no device that can draw into one.
   Viewer(const WindowSystem& windows, const Instance& instance, const ViewOptions& options);
 
-  /// Until the window is closed, or its screenshot taken. Fails as the picture of a screenshot does.
+  /// Runs until the window is closed, or its screenshot is written. Fails as the image of a screenshot does.
   void run();
 
  private:
@@ -62,11 +62,11 @@ class Viewer {
   std::unique_ptr<Texture> texture_, comparedTexture_;
 
   VolumeCache volumes_;
-  RenderThread quick_, whole_;  ///< of few voxels, and of all
+  RenderThread quick_, whole_;  ///< for images of few voxels, and of all voxels
   std::uint64_t lastRequest_ = 0, askedOfWhole_ = 0, answered_ = 0, failed_ = 0;
   Clock::time_point lastChange_, painted_;
   bool newPicture_ = false;  ///< in state_.latest, and not in the textures yet
-  PictureRate rate_;         ///< of all that are shown
+  PictureRate rate_;         ///< rate of all images that are shown
   AdaptiveResolution pace_;
   bool wholeIsQuick_ = false;
   int completeFrames_ = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// The volume that is looked at, read once for whoever draws it.
+// The current volume, read once for all threads that draw it.
 
 #include <memory>
 #include <mutex>
@@ -13,7 +13,7 @@ class VolumeCache {
  public:
   explicit VolumeCache(std::uint64_t maximumVoxels) : maximumVoxels_(maximumVoxels) {}
 
-  /// Has read the volume that the options name.
+  /// The volume that the options name was read already.
   VolumeCache(const SceneOptions& scene, std::shared_ptr<const Volume> volume);
 
   /// The volume that the options name, read unless it is the last one; whoever comes meanwhile waits for it.

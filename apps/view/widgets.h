@@ -1,5 +1,5 @@
 #pragma once
-// Widgets of the options' own types. All return whether the value was changed in this frame; all have a
+// Widgets for the types of the options. All return whether the value was changed in this frame; all have a
 // label at the right.
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace freevoxels {
 
-/// Leaves room for the labels of a panel, as long as it lives.
+/// Reserves space for the labels of a panel as long as it exists.
 class LabelRoom {
  public:
   LabelRoom();
@@ -25,36 +25,36 @@ class LabelRoom {
 /// To the next multiple of a power of ten, without the rest that a product would have.
 double roundedTo(double value, double step);
 
-/// What the last widget is for, while the mouse is on it. One short line.
+/// A tooltip of one short line for the last widget.
 void hint(const char* text);
 
 /// As Dear ImGui draws it. Of a linear colour, cut to 0..1.
 std::uint32_t shownColor(glm::dvec3 linear, float alpha);
 
-/// Shown as sRGB, kept linear. Of colours brighter than 1 the brightness stays.
+/// A colour that is shown as sRGB and stored as linear. Colours brighter than 1 keep their brightness.
 bool editColor(const char* label, glm::dvec3& linear);
 bool slide(const char* label, double& value, double low, double high, const char* format = "%.3g");
-/// `low` is above 0.
+/// `low` must be above 0.
 bool slideLogarithmic(const char* label, double& value, double low, double high, const char* format = "%.4g");
-/// The value is `usual` where it is not given, and can be given back.
+/// An optional value, which is `usual` if it is not given; it can be reset.
 bool slideOptional(const char* label, std::optional<double>& value, double usual, double low, double high,
                    const char* format = "%.3g");
-/// `step` is what a pixel of a drag adds.
+/// `step` is the change for each pixel of a drag.
 bool dragVector(const char* label, glm::dvec3& value, double step);
 bool choose(const char* label, const std::vector<std::string>& words, int& value);
-/// Not given where it is the usual one.
+/// The value is not given if it is the usual one.
 bool choose(const char* label, const std::vector<std::string>& words, std::optional<int>& value, int usual);
 bool tick(const char* label, std::optional<bool>& value, bool usual);
-/// When the text is complete: at Enter, or where the cursor leaves it.
+/// Returns true when the text is complete: at Enter, or when the cursor leaves it.
 bool editText(const char* label, std::string& text, const char* whenEmpty);
-/// A button at the right end of the line, of which the widget before has to leave room.
+/// A button at the right end of the line, for which the previous widget must leave space.
 bool smallButtonAtRight(const char* label);
 
-/// A slider whose middle is what the value is where it is not given: the last automatic value that was known,
+/// A slider whose middle is the value that is used if none is given: the last automatic value that is known,
 /// or else the first that was seen.
 class AutomaticSlider {
  public:
-  /// How far it goes either way.
+  /// The range in both directions.
   explicit AutomaticSlider(double factor = 100.0) : factor_(factor) {}
 
   bool draw(const char* label, const char* meaning, std::optional<double>& value,
@@ -65,7 +65,7 @@ class AutomaticSlider {
   std::optional<double> middle_;
 };
 
-/// What the user has to read of `action`, in the window.
+/// Shows the error of `action`, if it fails, in the window.
 template <typename Action>
 void attempt(ViewState& state, const Action& action) {
   try {

@@ -13,8 +13,8 @@ struct GLFWwindow;
 
 namespace freevoxels {
 
-/// GLFW as long as it lives. Fails with ExitCode::Device, and names the batch program, where there is no
-/// display.
+/// Initialises GLFW as long as it exists. Fails with ExitCode::Device, and names the batch program, if there
+/// is no display.
 class WindowSystem {
  public:
   WindowSystem();
@@ -22,13 +22,13 @@ class WindowSystem {
   WindowSystem(const WindowSystem&) = delete;
   WindowSystem& operator=(const WindowSystem&) = delete;
 
-  /// Of the Vulkan instance that draws into windows.
+  /// Extensions of a Vulkan instance that draws into windows.
   std::span<const char* const> instanceExtensions() const;
 };
 
 class Window {
  public:
-  /// `size` in the screen's own units. Makes Dear ImGui's context, which reads this window's input.
+  /// `size` is in screen units. Creates Dear ImGui's context, which reads this window's input.
   Window(const WindowSystem&, const std::string& title, glm::ivec2 size);
   ~Window();
   Window(const Window&) = delete;
@@ -36,25 +36,25 @@ class Window {
 
   GLFWwindow* handle() const { return window_; }
   bool wantsToClose() const;
-  /// As its own button does.
+  /// Closes the window, as its button does.
   void close() const;
   void setTitle(const std::string& title) const;
-  /// It is gone for those who look, before what is behind it ends.
+  /// Hides the window before its GPU resources are destroyed.
   void hide() const;
-  /// Of the framebuffer, in pixels; 0 while it is minimised.
+  /// Size of the framebuffer in pixels; 0 while minimised.
   glm::ivec2 pixels() const;
-  /// Pixels to a unit of text: 2 on a screen of twice the usual density.
+  /// Pixels per unit of text: 2 on a screen with twice the usual density.
   float contentScale() const;
-  /// Begins a frame of Dear ImGui, with what hands did since the last.
+  /// Begins a frame of Dear ImGui with the input since the last one.
   void beginFrame();
-  /// Whether the next frame has to show more of that, soon.
+  /// Whether another frame is needed soon to show the results of input.
   bool inputWaits() const { return !input_.settled(); }
   /// Files dropped onto the window since the last call.
   std::vector<std::string> takeDropped();
 
-  /// Handles what has happened; waits for that at most so long.
+  /// Processes events; waits for them at most this long.
   static void waitForEvents(double seconds);
-  /// Ends such a wait; from any thread.
+  /// Ends such a wait; may be called by any thread.
   static void wake();
 
  private:

@@ -10,12 +10,12 @@ namespace freevoxels {
 
 namespace {
 
-/// Lattice samples per voxel at the reference distance, at least.
+/// Least number of lattice samples per voxel at the reference distance.
 constexpr double kSamplesPerVoxel = 2.0;
-/// Lattices that would be hardly coarser than the pixels are those of the pixels, which need no upsampling.
+/// A lattice that would hardly be coarser than the pixels is that of the pixels, which needs no upsampling.
 constexpr double kLeastPitch = 1.15;
 
-/// The pixels' rays with positions relative to the image's middle.
+/// The pixels' rays, with pixel positions relative to the image's middle.
 struct CentredRays {
   CentredRays(const PixelRays& rays, glm::ivec2 size)
       : originX(rays.originX), originY(rays.originY), directionX(rays.directionX), directionY(rays.directionY) {
@@ -30,15 +30,16 @@ std::array<int, 2> sidesOf(int axis) {
   return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
 }
 
-/// Pixels between neighbouring voxels of a slice at the middle of the image, the least of the slice's two axes;
-/// perspective: times distance from the eye plane.
+/// Distance in pixels between neighbouring voxels of a slice at the middle of the image, the smaller one of
+/// the slice's two axes; for a perspective camera times the distance from the eye plane.
 double pixelsPerVoxel(const CentredRays& rays, const glm::dmat3& toPixel) {
   const std::array<int, 2> sides = sidesOf(majorAxis(rays.direction));
   return std::min(glm::length(glm::dvec2(toPixel[sides[0]])), glm::length(glm::dvec2(toPixel[sides[1]])));
 }
 
-/// Distance from the eye plane that the lattice is made for: the middle of the volume, or where the camera is near to
-/// it or inside, most of the way to its farthest corner, as what is nearer is sampled the more finely.
+/// The distance from the eye plane for which the lattice is made: the middle of the volume; or, if the camera
+/// is near to it or inside, most of the distance to its farthest corner, since nearer voxels are sampled more
+/// finely anyway.
 double referenceDistance(const CentredRays& rays, glm::dvec3 viewAxis, glm::ivec3 dimensions) {
   double middle = 0.0, farthest = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -99,13 +100,13 @@ bool readsLevel(const shader::GatherFrame& frame, const SeenRectangle& seen, int
   return false;
 }
 
-/// Which slices of which level the rays read whose component along the axis has this sign. A level begins where its
-/// blocks are small on the image for all rays between the positions `seen`, at a multiple of its blocks' edge, so that no voxel
-/// counts twice.
+/// The slices of each level that are read by rays whose component along the axis has this sign. A level
+/// begins where its blocks are small on the image for all rays between the positions `seen`, at a multiple of
+/// its blocks' edge, so that every voxel counts once.
 void setSlices(shader::GatherAxis& axis, int number, int sign, const HierarchyLayout& hierarchy,
                const DetailRule& detail, const SeenRectangle& seen) {
   const int voxels = hierarchy.levels.front().dimensions[number];
-  std::vector<int> begins(std::size_t(detail.coarsest) + 2);  // voxels, from where on in the ray's direction
+  std::vector<int> begins(std::size_t(detail.coarsest) + 2);  // in voxels along the ray's direction
   double steepest = 0.0;
   for (const glm::dvec3& corner : cornersOf(seen))
     steepest = std::max(steepest, std::abs(glm::dot(glm::dvec3(axis.along), corner)));
@@ -131,15 +132,15 @@ void setSlices(shader::GatherAxis& axis, int number, int sign, const HierarchyLa
   }
 }
 
-/// Pixel positions, relative to the image's middle, between which the volume is seen; with an eye in or near its planes
-/// the whole plane.
+/// The range of pixel positions, relative to the image's middle, in which the volume is visible; the whole
+/// image plane if the eye is in or near the volume's planes.
 SeenRectangle seenRectangle(const CentredRays& rays, const glm::dmat3& toPixel, glm::ivec3 dimensions,
                                         bool orthographic) {
   constexpr double kAll = 1e9;
   SeenRectangle seen{glm::dvec2(kAll), glm::dvec2(-kAll)};
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
-    // Interpolated slices reach a voxel beyond the outermost centres.
+    // Interpolated slices reach one voxel beyond the outermost centres.
     const glm::dvec3 pixel = toPixel * (side * glm::dvec3(dimensions + 1) - 1.0 - rays.origin);
     if (!orthographic && !(pixel.z > 1e-6)) return {glm::dvec2(-kAll), glm::dvec2(kAll)};
     const glm::dvec2 position = orthographic ? glm::dvec2(pixel) : glm::dvec2(pixel) / pixel.z;
@@ -184,7 +185,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   frame.seenLow = seen[0];
   frame.seenHigh = seen[1];
   const bool coarse = pitch > kLeastPitch;
-  // A lattice of at least a few samples, whatever is near.
+  // At least a few samples, however near the volume is.
   frame.pitch = coarse ? float(std::min(pitch, double(std::max(settings.size.x, settings.size.y)))) : 1.0f;
   frame.samples = coarse ? sampleCount(settings.size, double(frame.pitch)) : settings.size;
   frame.firstSample = -0.5f * glm::vec2(settings.size) + 0.5f - (coarse ? frame.pitch : 0.0f);

@@ -19,14 +19,14 @@ Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume) 
                               std::uint32_t(volume.ambientChannels()), std::uint32_t(volume.octaves())});
 }
 
-/// Of the stencil and the upsampling, which have the same bindings.
+/// Bindings of the stencil and of the upsampling.
 Pipeline makeImagePass(const Device& device, const Shader& code, bool withDistance, bool second, bool third = false) {
   return makeComputePipeline(device, code, {withDistance, second, third});
 }
 
 }  // namespace
 
-/// A grid of rays is looked at, with a margin for what lies between them.
+/// Tests a grid of rays, with a margin for the rays in between.
 bool someRayHasAxis(const shader::GatherFrame& frame, int axis) {
   if (axis == frame.mainAxis) return true;
   constexpr int kGrid = 64;
@@ -54,7 +54,7 @@ void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
   if (sums.colorEnergy.bytes() >= samples * sizeof(glm::vec4)) return;
   constexpr VkBufferUsageFlags kUsage =
       VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
-  sums = {};  // not both at once
+  sums = {};  // free the old buffers before allocating the new ones
   sums.colorEnergy =
       Buffer(device_, samples * sizeof(glm::vec4), MemoryUse::Device, "lattice C and E", kUsage);
   sums.distances = Buffer(device_, samples * sizeof(float), MemoryUse::Device, "lattice distance", kUsage);

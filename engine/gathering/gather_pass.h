@@ -1,7 +1,8 @@
 #pragma once
-// A frame by gathering: samples of a lattice on the image march the slices of blocks across their major axis, a
-// stencil restores the round footprint of splats, and the sums are upsampled to the pixels. The transmittance to the
-// eye is that of each sample's own ray: Subr et al. 2007, Section 2.1, Eq. 4, without an attenuation table.
+// Draws a frame by gathering: samples of a lattice on the image march through the slices of blocks across
+// their major axis, a stencil restores the round footprint of splats, and the sums are interpolated at the
+// pixels. The transmittance to the eye is computed along each sample's ray: Subr et al. 2007, Section 2.1,
+// Eq. 4, without an attenuation table.
 
 #include "engine/gathering/gather_stages.h"
 #include "engine/gathering/gather_volume.h"
@@ -9,9 +10,9 @@
 
 namespace freevoxels {
 
-/// The lattice and the rays of a frame, computed in double precision on the host. The levels are the caller's to fill: from
-/// `finest`, which may be one below the rule's, to `coarsest`.
-/// Rays end at the transmittance `end`.
+/// The lattice and the rays of a frame, computed in double precision on the host. The caller fills in the
+/// levels: from `finest`, which may be one below the rule's, to `coarsest`. Rays end at the transmittance
+/// `end`.
 shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& camera, const FrameSettings& settings,
                                     const DetailRule& detail, double end);
 
@@ -41,7 +42,7 @@ class GatherPass {
 
  private:
 
-  /// C and E (four floats), and the sum of e times distance, of samples.
+  /// C and E (four floats), and the sum of e times distance, of every sample.
   struct Sums {
     Buffer colorEnergy, distances;
     TexelView colorEnergyTexels, distanceTexels;

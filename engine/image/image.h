@@ -44,8 +44,9 @@ struct ExrOptions {
 /// whole. Atomic. Fails with ExitCode::Output.
 void writeExr(const std::filesystem::path& file, const Image& image, const ExrOptions& options);
 
-/// RGBA and, where present, Z of the data window of a scanline EXR of at most so many pixels. Takes the memory of the part that
-/// is there: a short file cannot make it allocate what its header claims. Fails with ExitCode::Input.
+/// Reads RGBA and, if present, Z of the data window of a scanline EXR of at most `maximumPixels` pixels.
+/// Memory is allocated for the data that is there, so that a short file cannot cause the allocation that its
+/// header claims. Fails with ExitCode::Input.
 Image readExr(const std::filesystem::path& file, std::int64_t maximumPixels = std::int64_t(1) << 30);
 
 /// Reads any PNG (grey, palette, 8 or 16 bits, interlaced) as sRGB with straight alpha, whatever its chunks
@@ -66,9 +67,9 @@ enum class ToneMap : int { None = 0, Filmic = 1, Aces = 2 };
 
 /// How an image is shown.
 struct DisplayLook {
-  std::optional<Background> background;  ///< none: straight alpha
-  double exposure = 0.0;                 ///< stops that the picture, not the background, is brightened by
-  ToneMap toneMap = ToneMap::None;       ///< after that, of each channel
+  std::optional<Background> background;  ///< if there is none, the file has straight alpha
+  double exposure = 0.0;                 ///< in stops, applied to the image but not to the background
+  ToneMap toneMap = ToneMap::None;       ///< applied to each channel after the exposure
 };
 
 /// sRGB of 8 or 16 bits a sample. Straight alpha without a background; composited over it and opaque with one. Atomic. Fails
@@ -78,13 +79,13 @@ void writePng(const std::filesystem::path& file, const Image& image, const Displ
 /// 8-bit sRGB over the background, or over black. Atomic. Fails with ExitCode::Output.
 void writeJpeg(const std::filesystem::path& file, const Image& image, const DisplayLook& look = {});
 
-/// What writePng's file shows, 4 bytes a pixel.
+/// The pixels that writePng writes, 4 bytes each.
 std::vector<std::uint8_t> srgbTexels(const Image& image, const DisplayLook& look = {});
 
 /// Writes such texels as an opaque image, ignoring their alpha. Atomic. Fails with ExitCode::Output.
 void writePngTexels(const std::filesystem::path& file, glm::ivec2 size, std::span<const std::uint8_t> texels);
 
-/// The bytes of writePng's file.
+/// The bytes of the file that writePng writes.
 std::vector<std::uint8_t> encodePng(const Image& image, const DisplayLook& look = {});
 
 }  // namespace freevoxels

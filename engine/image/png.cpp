@@ -34,7 +34,7 @@ constexpr std::int64_t kMaximumPixels = std::int64_t(1) << 30;
 /// half the time.
 constexpr int kCompressionLevel = 4;
 
-/// Takes the file's next bytes; may throw.
+/// Receives the next bytes of the file; may throw.
 using Sink = std::function<void(const std::uint8_t* bytes, std::size_t count)>;
 
 /// The state of libpng's C callbacks. No exception may pass through libpng: it is stored here and rethrown by
@@ -182,7 +182,7 @@ class PngEncoder {
   PngEncoder(const PngEncoder&) = delete;
   PngEncoder& operator=(const PngEncoder&) = delete;
 
-  /// False after an error. Holds nothing that a long jump would fail to destroy.
+  /// Returns false after an error. Has no local objects that a long jump would fail to destroy.
   bool write(const Samples& samples) {
     if (setjmp(png_jmpbuf(png_))) return false;
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);

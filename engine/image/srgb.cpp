@@ -31,8 +31,9 @@ class SrgbByteTable {
   }
 
  private:
-  static constexpr std::uint32_t kDropped = shader::kSrgbDroppedBits;  ///< bits of the mantissa
-  /// Byte 0 is all up to half a byte on the straight part of the curve, 0.5 / 255 / 12.92 = 1.24 / 2^13.
+  static constexpr std::uint32_t kDropped = shader::kSrgbDroppedBits;  ///< low bits of the mantissa that do not select a bucket
+  /// Values up to half a byte on the linear part of the curve, 0.5 / 255 / 12.92 = 1.24 / 2^13, map to byte
+  /// 0.
   static constexpr std::uint32_t kFirst = std::bit_cast<std::uint32_t>(0x1p-13f);
   static constexpr std::uint32_t kEnd = std::bit_cast<std::uint32_t>(1.0f);
   static_assert(kFirst == shader::kSrgbFirstBits && kEnd == shader::kSrgbEndBits);

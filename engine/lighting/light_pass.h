@@ -33,7 +33,7 @@ class LightPass {
   shader::FrameLighting prepare(const DeviceVolume& volume, const TableSettings& table,
                                 const FrameSettings& settings, bool scalars, std::vector<StageTime>& times,
                                 const Progress& progress);
-  /// shader::Light, of the last frame.
+  /// shader::Light of each light of the last frame.
   const Buffer& lights() const { return lights_; }
 
  private:

@@ -12,12 +12,13 @@ namespace freevoxels {
 struct BlockList {
   Buffer groupOffsets;  ///< uint: for each workgroup's stretch of blocks how many occupied ones come before it, then the total
   Buffer indices;       ///< uint: of blocks as HierarchyLayout::indexOf counts them, ascending
-  Buffer chunks;        ///< shader::ChunkArguments of each draw chunk
+  Buffer chunks;        ///< shader::ChunkArguments of each chunk that is drawn at once
   std::uint32_t chunkCount = 0;
 };
 
-/// COMPUTE compact_count.comp, compact_scan.comp, compact_write.comp: counts what OccupancyPass found, lists it and ranks it. The
-/// count is read back in between, so that a list takes memory for the blocks that are occupied and not for all that could be.
+/// COMPUTE compact_count.comp, compact_scan.comp, compact_write.comp: counts, lists and ranks the blocks that
+/// OccupancyPass marked as occupied. The count is read back in between, so that a list takes memory for the
+/// occupied blocks only.
 class CompactionPass {
  public:
   explicit CompactionPass(const Device& device);
@@ -37,7 +38,7 @@ class CompactionPass {
 /// Sum of the chunks' block counts. Reads back.
 std::uint64_t downloadBlockCount(const Device& device, const BlockList& list);
 
-/// The list: padded indices. Reads back.
+/// The padded indices of the blocks in a list. Reads back.
 std::vector<std::uint32_t> downloadBlockList(const Device& device, const BlockList& list);
 
 }  // namespace freevoxels

@@ -13,7 +13,7 @@ namespace freevoxels {
 namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-constexpr int kQuad = 4;  // voxels of a row that expand_voxels.comp takes together
+constexpr int kQuad = 4;  // number of voxels of a row that an invocation of expand_voxels.comp writes
 
 }  // namespace
 

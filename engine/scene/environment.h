@@ -15,14 +15,14 @@ namespace freevoxels {
 /// (1/2 - u) about +y from +z, counted like a camera's orbit.
 struct Environment {
   glm::ivec2 size{0};               ///< twice as wide as high
-  std::vector<glm::vec3> radiance;  ///< linear Rec.709; row 0 is the one around +y
-  double rotation = 0.0;            ///< about +y, in degrees: is added to the azimuths
-  double intensity = 1.0;           ///< by which the radiance is multiplied
+  std::vector<glm::vec3> radiance;  ///< linear Rec.709; row 0 is nearest to +y
+  double rotation = 0.0;            ///< about +y, in degrees, added to the azimuths
+  double intensity = 1.0;           ///< factor of the radiance
   std::uint64_t negativeValues = 0;  ///< of the file, that count as 0: lossy compression makes values such as -6e-8
 };
 
-/// Fails with ExitCode::Input where the file is no OpenEXR picture with R, G and B, twice as wide as high, or
-/// has pixels that are not finite.
+/// Reads an environment. Fails with ExitCode::Input if the file is not an OpenEXR image with R, G and B that
+/// is twice as wide as high, or if it has non-finite pixels.
 Environment readEnvironment(const std::filesystem::path& file);
 
 /// A pixel of an environment, or a part of one.

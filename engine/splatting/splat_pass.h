@@ -1,5 +1,6 @@
 #pragma once
-// Visible voxels to the sums of a frame: set-up and blended draw. Subr et al. 2007, Section 3.3 and 4.1.
+// From voxels and blocks to the sums of a frame: set-up and blended drawing of splats. Subr et al. 2007,
+// Section 3.3 and 4.1.
 
 #include <array>
 #include <functional>
@@ -26,25 +27,26 @@ struct FrameConstants {
   shader::SplatPush splat;
   shader::ResolvePush resolve;
   RaySource eye;
-  bool eyeInside = false;  ///< the volume's box
-  bool lit = false;        ///< by setup.lighting, which is the caller's to fill
-  bool tinted = false;     ///< only what is lit
+  bool eyeInside = false;  ///< whether the eye is inside the volume's box
+  bool lit = false;        ///< whether there is lighting; the caller fills in setup.lighting
+  bool tinted = false;     ///< only with lighting
   bool lightsReadTable = false;
-  /// Transmittance to the eye below which nothing shows, however bright the volume; 0 where nothing is left out.
+  /// Transmittance to the eye below which nothing is visible, however bright the volume; 0 if nothing is left
+  /// out.
   double hiddenTransmittance = 0.0;
   DetailRule detail;
   CullRule cull;
-  /// Whether the levels of the table above the voxels are looked up.
+  /// Whether the table's levels above the voxels are looked up.
   bool readsLevels() const { return detail.coarsest > 0 || cull.hiddenDepth > 0.0; }
   /// The part of the image that splats can reach, at least one pixel.
   glm::ivec2 coveredFirst{0}, coveredExtent{1};
   double farthest = 0.0;     ///< distance of the volume's farthest corner from the eye plane, world units
   double brightestRay = 0.0; ///< no pixel has more light that the volume sends out itself
-  bool quads = false;  ///< some splat may be larger than the device's largest point
+  bool quads = false;  ///< whether a splat may be larger than the device's largest point
   float viewportMargin =
-      0.0f;  ///< pixels around the image, so that points centred outside it are not clipped
+      0.0f;  ///< margin of the viewport in pixels, so that points whose centres are outside of the image are not clipped
 
-  /// From the eye.
+  /// The rays from the eye.
   bool eyeReadsTable() const {
     return setup.lookup == shader::kLookupBilinear || setup.lookup == shader::kLookupNearest;
   }
@@ -56,30 +58,30 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                                   const TableSettings& table, const Camera& camera,
                                   const FrameSettings& settings);
 
-/// COMPUTE ray_sweep.comp where rays have a share in the depths to the eye, or eye_depths.comp where the
-/// table is looked up from inside, then COMPUTE splat_setup.comp and GRAPHICS splat.vert + splat.frag, chunk
-/// by chunk. Leaves the targets in layout GENERAL, visible to compute.
+/// COMPUTE ray_sweep.comp if exact depths have a weight, or eye_depths.comp if the table is looked up from
+/// inside; then COMPUTE splat_setup.comp and GRAPHICS splat.vert + splat.frag, chunk by chunk. Leaves the
+/// targets in layout GENERAL, visible to compute.
 class SplatPass {
  public:
-  /// All frames have to be of one volume.
+  /// All frames must be of the same volume.
   SplatPass(const Device& device, bool withDistance, bool sorted = false);
 
   struct Inputs {
     const DeviceVolume& volume;
-    const AttenuationTable* table;                 ///< null where FrameConstants::readsTable says no
+    const AttenuationTable* table;                 ///< null if FrameConstants::readsTable is false
     const BlockList* visible;                  ///< the blocks to draw, by FrameConstants::detail
-    std::uint32_t firstChunk = 0, chunkCount = 0;  ///< of their chunks, these
-    bool continued = false;  ///< the targets, in layout GENERAL, have the sums of what was drawn before
-    const Buffer* lights = nullptr;  ///< shader::Light, of a frame that is lit
-    const Buffer* order = nullptr;   ///< the visible voxels as they are to be drawn; null: as they are listed
+    std::uint32_t firstChunk = 0, chunkCount = 0;  ///< the chunks of `visible` to draw
+    bool continued = false;  ///< whether the targets, in layout GENERAL, hold the sums of earlier splats
+    const Buffer* lights = nullptr;  ///< shader::Light of each light; only with lighting
+    const Buffer* order = nullptr;   ///< the occupied voxels in the order to draw them; null for the order of the list
     /// Called where a chunk's splats are set up, with their buffer of shader::Splat and the chunk; may be empty.
     std::function<void(const Buffer& splats, std::uint32_t chunk)> onSplats;
   };
   void record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,
               const SplatTargets& targets);
-  /// Before anything is recorded, for frames that read rays: as RaySweep::makeRoom.
+  /// Allocates memory for frames with exact depths, as RaySweep::makeRoom; must be called before recording.
   void makeRoomForRays(const DeviceVolume& volume, const RaySource& eye, std::uint64_t mostBytes);
-  /// Whether it was made for such frames.
+  /// Whether such memory is allocated.
   bool draws(const FrameSettings& settings) const {
     return withDistance_ == settings.depth && sorted_ == (settings.composite == Composite::Sorted);
   }
@@ -91,14 +93,15 @@ class SplatPass {
 
   const Device& device_;
   bool withDistance_, sorted_;
-  /// Of its volume, each made for the first frame that is: not lit, lit, lit and tinted.
+  /// Pipelines for frames without lighting, with lighting, and with tinted lighting, each made when it is
+  /// first needed.
   std::array<Pipeline, 3> setups_;
   Pipeline points_, quads_;
   EyeDepthsPass eyeDepthsPass_;
   std::optional<RaySweep> rays_;
   Buffer frame_;      ///< shader::SetupFrame
-  Buffer eyeDepths_;  ///< of EyeDepthsPass
-  Buffer splats_;     ///< shader::Splat of one chunk
+  Buffer eyeDepths_;  ///< output of EyeDepthsPass
+  Buffer splats_;     ///< shader::Splat for each splat of a chunk
 };
 
 }  // namespace freevoxels

@@ -4,8 +4,8 @@ namespace freevoxels {
 
 namespace {
 
-/// World length of a step of index length 1 along the pixel's ray: the factor that the footprints on the
-/// device leave to whoever reads the sums (splat.frag).
+/// World length per index length along the pixel's ray: the factor of the footprints that the shaders leave
+/// out (splat.frag).
 double worldPerIndex(const shader::ResolvePush& rays, glm::dvec2 pixel) {
   const glm::dvec3 index =
       glm::dvec3(rays.ray) + pixel.x * glm::dvec3(rays.rayX) + pixel.y * glm::dvec3(rays.rayY);

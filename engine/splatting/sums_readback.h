@@ -1,5 +1,5 @@
 #pragma once
-// The sums of a frame on the host.
+// Reads the sums of a frame back to the host.
 
 #include <optional>
 #include <vector>
@@ -10,12 +10,12 @@
 
 namespace freevoxels {
 
-/// Copies a frame's sums to the host: recorded after SplatPass in place of the resolve, read when the
-/// commands are done.
+/// Copies a frame's sums to the host: recorded after SplatPass instead of the resolve, read after the
+/// commands are complete.
 class SumsReadback {
  public:
   SumsReadback(const Device& device, Commands& commands, const SplatTargets& targets);
-  /// One a pixel, row 0 is the top. `distance` stays 0 where the targets have none.
+  /// The sums of every pixel, top row first. `distance` is 0 if the targets have none.
   std::vector<SplatSums> read(const FrameConstants& frame) const;
 
  private:

@@ -11,7 +11,8 @@ namespace freevoxels {
 
 namespace {
 
-/// The index with its bits dealt to three numbers: bit 3 b + 2 - i of the index is bit b of number i. Skilling's "transposed" form.
+/// Distributes the bits of the index to three numbers: bit 3 b + 2 - i of the index is bit b of number i
+/// (Skilling's "transposed" form).
 using Transposed = std::array<std::uint32_t, 3>;
 
 Transposed transposed(std::uint64_t index, int bits) {

@@ -9,12 +9,12 @@
 
 namespace freevoxels {
 
-/// Most bits of a coordinate: an index has three times as many.
+/// Largest number of bits of a coordinate: an index has three times as many.
 inline constexpr int kMostHilbertBits = 21;
 
-/// Position along the curve through the cube of 2^bits cells a side, 0 to 8^bits - 1. Each coordinate is below 2^bits. Cells at
-/// consecutive positions share a face; the first 8^k positions fill a cube of 2^k cells a side. After Skilling, "Programming the
-/// Hilbert curve", AIP Conference Proceedings 707, 2004.
+/// Position along the curve through the cube of 2^bits cells a side, 0 to 8^bits - 1. Each coordinate is
+/// below 2^bits. Cells at consecutive positions share a face; the first 8^k positions fill a cube of 2^k
+/// cells a side. After Skilling, "Programming the Hilbert curve", AIP Conference Proceedings 707, 2004.
 std::uint64_t hilbertIndex(glm::uvec3 cell, int bits);
 /// The cell at a position: the inverse of hilbertIndex.
 glm::uvec3 hilbertCell(std::uint64_t index, int bits);

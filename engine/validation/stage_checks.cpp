@@ -21,8 +21,8 @@ namespace freevoxels {
 
 namespace {
 
-/// A transfer function's -log(1 - alpha) in 32-bit floats loses up to 1 / (1 - kMaximumOpacity) = 4096 units
-/// in the last place of alpha, of 8.3 that are left.
+/// Tolerance for a transfer function's -log(1 - alpha) in 32-bit floats, which loses up to 1 / (1 -
+/// kMaximumOpacity) = 4096 units in the last place of alpha, of 8.3 that remain.
 constexpr double kExtinctionTolerance = 1e-4;
 /// Half a step of 9 bits.
 constexpr double kEmissionTolerance = 2e-3;
@@ -208,7 +208,7 @@ Check checkDistance(const Image& picture, const Image& reference, const char* me
   return worst.atMost(kDistanceTolerance, fmt::format("resolve: distance, {}", method), "relative");
 }
 
-/// The codes' difference; where they are shallower than kShallowDepth, in codes of that.
+/// The difference of the codes; for depths below kShallowDepth, in codes of that.
 double rayDifference(std::uint16_t a, std::uint16_t b) {
   const std::uint16_t deeper = std::max(a, b);
   double code = decodeRayDepth(deeper) - decodeRayDepth(std::uint16_t(deeper - 1));

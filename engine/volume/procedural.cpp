@@ -15,9 +15,10 @@ namespace freevoxels {
 struct ProceduralFunctions {
   ProceduralKind kind;
   float (*density)(glm::vec3 position, float voxelSize);
-  /// A distance within which it is 0, or null: boxes that are nearly empty are filled faster.
+  /// A distance within which the density is 0, or null. Boxes that are nearly empty are filled faster with
+  /// it.
   float (*clearance)(glm::vec3 position) = nullptr;
-  float (*temperature)(glm::vec3 position) = nullptr;  ///< kelvin, or null where there is none
+  float (*temperature)(glm::vec3 position) = nullptr;  ///< in kelvin; null if the field has no temperatures
 };
 
 namespace {

@@ -65,13 +65,13 @@ class ScalarBricks {
   Brick& makeBrick(glm::ivec3 cell);
   void reserve(std::size_t bricks);
 
-  /// Those that are there, in the order in which they were made.
+  /// The existing bricks, in the order in which they were made.
   std::span<Brick> bricks() {
     copyToOwn();
     return bricks_;
   }
   std::span<const Brick> bricks() const { return owner_ ? foreign_ : bricks_; }
-  /// The place in the box of a brick's first voxel; less than 0 where the brick begins before the box.
+  /// Position in the box of a brick's first voxel; negative if the brick begins before the box.
   glm::ivec3 firstVoxel(std::size_t brick) const { return cells_[brick] * kEdge - corner_; }
   /// Position of a brick among the bricks of the box. Boxes of equal `corner` have the same voxels in the
   /// same bricks.
@@ -107,8 +107,8 @@ class ScalarBricks {
   void copyToOwn();
 
   glm::ivec3 dimensions_{0}, corner_{0}, cellCount_{0};
-  std::vector<std::int32_t> numbers_;  ///< of the bricks by cell, -1 where there is none
-  std::vector<glm::ivec3> cells_;      ///< of the bricks
+  std::vector<std::int32_t> numbers_;  ///< index of each cell's brick, -1 if it does not exist
+  std::vector<glm::ivec3> cells_;      ///< cell of each brick
   std::vector<Brick> bricks_;          ///< empty where `owner_` has them
   std::shared_ptr<const void> owner_;  ///< keeps `foreign_` alive; null where the bricks are this object's
   std::span<const Brick> foreign_;

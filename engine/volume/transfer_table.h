@@ -23,7 +23,8 @@ class TransferTable {
   /// The scalars of the least and the greatest code.
   double low() const { return low_; }
   double high() const { return high_; }
-  /// 1 to 65535; 0 is kInactiveVoxel's. Scalars beyond the range have the code of its end.
+  /// The code of a scalar, 1 to 65535, or 0 for kInactiveVoxel. Scalars beyond the range have the code of its
+  /// end.
   std::uint16_t code(float scalar) const;
   /// Two texels for each of the shader::kTransferIntervals intervals: the integral up to its beginning, of
   /// extinction times colour (rgb) and of extinction (a), in units of intervals; and their means over the

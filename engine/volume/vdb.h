@@ -1,5 +1,5 @@
 #pragma once
-// OpenVDB files in and out (OpenVDB 10 of Debian 12 and newer).
+// Reading and writing OpenVDB files (OpenVDB 10 of Debian 12 and newer).
 
 #include <cstdint>
 #include <filesystem>
@@ -14,44 +14,45 @@
 namespace freevoxels {
 
 struct GridInfo {
-  std::string name;       ///< unique within the file: "density", or "density[1]" where the name is shared
+  std::string name;       ///< unique within the file: "density", or "density[1]" if several grids have the name
   std::string valueType;  ///< "float", "half", "vec3s", "point data", ...
   std::string gridClass;  ///< "fog volume", "level set", "staggered", "unknown"
   std::uint64_t activeVoxels = 0;                 ///< active tiles counted as voxels
-  glm::i64vec3 dimensions{0};                     ///< of the active bounding box; 0 where the grid is empty
+  glm::i64vec3 dimensions{0};                     ///< of the active bounding box; 0 if the grid is empty
   glm::ivec3 boundsMinimum{0}, boundsMaximum{0};  ///< inclusive, index space
   glm::dvec3 voxelSize{0.0};                      ///< world units along the three index axes
-  bool hasRange = false;                          ///< the grid holds one real number a voxel
+  bool hasRange = false;                          ///< whether the grid has one real number a voxel
   double minimum = 0.0, maximum = 0.0;            ///< of the finite active values
   std::uint64_t memoryBytes = 0;
-  glm::ivec3 renderDimensions{0};  ///< of the box that readVdb makes of it; 0 where it cannot be rendered
-  /// Blocks of each level of that box's octree in which a voxel's density is above 0; empty where it cannot
-  /// be rendered, or is too large to count.
+  glm::ivec3 renderDimensions{0};  ///< of the box that readVdb would return; 0 if the grid cannot be drawn
+  /// Number of blocks of each level of that box's octree that contain a density above 0. Empty if the grid
+  /// cannot be drawn or is too large to count.
   std::vector<std::uint64_t> storedBlocks;
-  std::uint64_t hostBytes = 0;  ///< of the volume that readVdb makes of it; 0 where it cannot be rendered
-  std::string unusable;         ///< empty, or why it cannot be rendered, in one clause
-  bool isTemperature = false;   ///< --emission takes it where no other is named
-  bool isAlbedo = false;        ///< --albedo-grid takes it
+  std::uint64_t hostBytes = 0;  ///< host memory of the volume that readVdb would return; 0 if the grid cannot be drawn
+  std::string unusable;         ///< why the grid cannot be drawn, in one clause; empty if it can
+  bool isTemperature = false;   ///< whether --emission uses it if no grid is named
+  bool isAlbedo = false;        ///< whether --albedo-grid accepts it
 };
 
-/// Every grid of the file in file order. Fails with ExitCode::Input on a missing, truncated or foreign file.
+/// Describes every grid of the file, in file order. Fails with ExitCode::Input if the file is missing,
+/// truncated or not an OpenVDB file.
 std::vector<GridInfo> describeVdb(const std::filesystem::path& file);
 
-/// What of a grid is known without its voxels.
+/// What is known of a grid without reading its voxels.
 struct GridChoice {
   std::string name;                                              ///< as GridInfo::name
-  bool isDensity = false;                                        ///< readVdb may take it
-  bool isReal = false, isTemperature = false, isAlbedo = false;  ///< the latter as in GridInfo
+  bool isDensity = false;                                        ///< whether readVdb accepts it
+  bool isReal = false, isTemperature = false, isAlbedo = false;  ///< the latter two as in GridInfo
 };
 
-/// In file order. Reads the file's table of contents and each grid's metadata; a file that was streamed out
-/// as a whole. Fails as describeVdb does.
+/// Lists the grids in file order. Reads only the file's table of contents and each grid's metadata, or the
+/// whole file if it was streamed out. Fails as describeVdb does.
 std::vector<GridChoice> listVdb(const std::filesystem::path& file);
 
-/// Grids of the same file and on the same lattice of voxels to read as well.
+/// More grids to read, which must be in the same file and on the same lattice of voxels.
 struct MoreGrids {
-  std::optional<std::string> temperature;  ///< a float grid; empty: `temperature`, `heat` or `flame`
-  std::optional<std::string> albedo;       ///< a vec3s, vec3h or vec3d grid
+  std::optional<std::string> temperature;  ///< name of a float grid; an empty name means `temperature`, `heat` or `flame`
+  std::optional<std::string> albedo;       ///< name of a vec3s, vec3h or vec3d grid
 };
 
 /// A volume that can be read, but in which nothing is to be drawn, as in frames of a simulation before its source begins.
@@ -60,17 +61,17 @@ class EmptyVolumeError : public Error {
   using Error::Error;
 };
 
-/// Reads one float or half grid as a dense box around its active voxels (active tiles counted as voxels).
-/// `gridName`: "NAME" or "NAME[k]"; empty means `density`, else the only float grid, else an error that lists
-/// the choice. A level set becomes fog: density 1 inside, 0 outside, linear over the one voxel at the
-/// surface. With temperatures the box is around their active voxels too. Fails with ExitCode::Input:
-/// `more` that is not there or has another transform, frustum transforms, other grid types, empty grids (EmptyVolumeError),
-/// unreadable files; and with ExitCode::OutOfMemory where the box exceeds `maximumVoxels`, before anything of
-/// that size is allocated.
+/// Reads one float or half grid as a box around its active voxels (active tiles count as voxels); with
+/// temperatures, around their active voxels too. `gridName` is "NAME" or "NAME[k]"; if it is empty, `density`
+/// is read, else the only float grid; otherwise it is an error that lists the choice. A level set becomes a
+/// density of 1 inside and 0 outside, linear over three voxels across the surface. Fails with ExitCode::Input
+/// if a grid of `more` does not exist or has another transform, and for frustum transforms, other grid types,
+/// empty grids (EmptyVolumeError) and unreadable files; with ExitCode::OutOfMemory if the box exceeds
+/// `maximumVoxels`, before allocating it.
 Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels,
                const MoreGrids& more = {});
 
-/// Writes the active voxels as one float fog-volume grid, and temperatures as another. Atomic
+/// Writes the active voxels as a float fog volume, and temperatures as a second grid. Atomic
 /// (core/atomic_file.h).
 void writeVdb(const std::filesystem::path& file, const Volume& volume, const std::string& gridName);
 

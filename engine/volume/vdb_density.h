@@ -1,6 +1,6 @@
 #pragma once
-// Internal to the vdb_*.cpp files, as it includes OpenVDB: what the voxels of a grid become, and the box of
-// those that are kept.
+// Internal to the vdb_*.cpp files, since it includes OpenVDB: the conversion of a grid's values to densities,
+// and the box of the voxels that are kept.
 
 #include <openvdb/openvdb.h>
 #include <tbb/blocked_range.h>
@@ -14,21 +14,21 @@
 
 namespace freevoxels {
 
-/// What a voxel of a fog volume becomes in the box.
+/// The density of a fog volume's voxel.
 struct FogToDensity {
   static constexpr int kMargin = 0;
   static constexpr bool kKeepsInactive = false;  // whether it keeps any inactive voxel
   float operator()(float value, bool active) const { return active ? value : kInactiveVoxel; }
 };
 
-/// What a voxel of a level set becomes: 1 inside, 0 outside, linear over three voxels at the surface, so that gradients have
-/// its direction. Deep inside is inactive in OpenVDB.
+/// The density of a level set's voxel: 1 inside, 0 outside, linear over three voxels across the surface, so
+/// that gradients have its direction. OpenVDB stores voxels deep inside as inactive.
 struct LevelSetToDensity {
   static constexpr bool kKeepsInactive = true;
-  static constexpr int kMargin = 2;  // voxels around it: light comes to its surface from outside
+  static constexpr int kMargin = 2;  // voxels around it, from which light reaches its surface
   float voxelSize;
   float operator()(float distance, bool active) const {
-    if (active && std::isnan(distance)) return distance;  // counted, and then 0, like every NaN
+    if (active && std::isnan(distance)) return distance;  // counted later and then set to 0, like every NaN
     constexpr float kRamp = 3.0f;  // voxels
     const float density = active ? std::clamp(0.5f - distance / (kRamp * voxelSize), 0.0f, 1.0f) : distance < 0.0f ? 1.0f : 0.0f;
     return density > 0.0f ? density : kInactiveVoxel;
@@ -64,7 +64,7 @@ void visitTiles(const openvdb::FloatTree& tree, const ToDensity& toDensity, cons
   for (const Lower* node : lower) visitTilesOf(*node, int(Lower::ChildNodeType::DIM), toDensity, visit);
 }
 
-/// Whether `toDensity` keeps a voxel of the leaf.
+/// Whether `toDensity` keeps any voxel of the leaf.
 template <typename ToDensity>
 bool holdsData(const openvdb::FloatTree::LeafNodeType& leaf, const ToDensity& toDensity) {
   for (auto voxel = leaf.cbeginValueAll(); voxel; ++voxel)
@@ -72,7 +72,7 @@ bool holdsData(const openvdb::FloatTree::LeafNodeType& leaf, const ToDensity& to
   return false;
 }
 
-/// The smallest box around the voxels that `toDensity` keeps, and its margin; empty where it keeps none.
+/// The smallest box around the voxels that `toDensity` keeps, extended by its margin; empty if it keeps none.
 template <typename ToDensity>
 openvdb::CoordBBox boundsOf(const openvdb::FloatTree& tree,
                             const std::vector<const openvdb::FloatTree::LeafNodeType*>& leaves,
@@ -97,7 +97,7 @@ openvdb::CoordBBox boundsOf(const openvdb::FloatTree& tree,
   return bounds;
 }
 
-/// Calls `action(toDensity)` with what the grid's class asks for.
+/// Calls `action(toDensity)` with the conversion for the grid's class.
 template <typename Action>
 auto withDensity(const openvdb::GridBase& grid, const Action& action) {
   if (grid.getGridClass() != openvdb::GRID_LEVEL_SET) return action(FogToDensity{});

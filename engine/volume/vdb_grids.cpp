@@ -27,8 +27,8 @@ namespace fs = std::filesystem;
 using openvdb::GridBase;
 using openvdb::io::GridDescriptor;
 
-/// Delayed loading only adds work where every value is needed, and newer versions of OpenVDB have no such
-/// thing.
+/// Opens without delayed loading, which only costs time if every value is needed, and which newer versions of
+/// OpenVDB do not have.
 template <typename File>
 void openWithoutDelay(File& file) {
   if constexpr (requires { file.open(false); })
@@ -45,7 +45,7 @@ std::vector<GridBase::Ptr> readWholeStream(std::istream& input) {
     return *Stream(input).getGrids();
 }
 
-/// Text from a file as part of a sentence.
+/// Text from a file in a form that fits into a sentence: one printable line of limited length.
 std::string oneLine(const std::string& text) {
   constexpr std::size_t kLongest = 200;
   return printablePart(text, kLongest);
@@ -76,7 +76,7 @@ std::string lowerCase(std::string text) {
   return text;
 }
 
-/// Where a name is shared, OpenVDB's numbers tell the grids apart, or else their order in the file does.
+/// Distinguishes grids of equal name by OpenVDB's numbers if there are any, else by their order in the file.
 void nameEntries(std::vector<VdbFile::Entry>& entries) {
   std::map<std::string, int> uses, shown;
   for (VdbFile::Entry& entry : entries) {

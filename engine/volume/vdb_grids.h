@@ -1,6 +1,6 @@
 #pragma once
-// Internal to the vdb_*.cpp files, as it includes OpenVDB: an open file, its grids by name, and which are
-// usable.
+// Internal to the vdb_*.cpp files, since it includes OpenVDB: an open file, its grids by name, and which of
+// them can be drawn.
 
 #include <openvdb/io/File.h>
 #include <openvdb/openvdb.h>
@@ -23,25 +23,25 @@ void initialiseOpenVdb();
 class VdbFile {
  public:
   struct Entry {
-    std::string name;       ///< for people, unique, one printable line: "density", "density[1]"
+    std::string name;       ///< for messages: unique, one printable line, such as "density" or "density[1]"
     std::string baseName;   ///< without the [k]
     std::string valueType;  ///< GridInfo::valueType
     std::string treeType;   ///< OpenVDB's name of the type
     std::string key;        ///< OpenVDB's name of the grid
   };
 
-  /// Errors: readVdbHeader, and ExitCode::Input for whatever OpenVDB does not accept.
+  /// Fails as readVdbHeader does, and with ExitCode::Input if OpenVDB rejects the file.
   explicit VdbFile(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return path_; }
   const std::vector<Entry>& entries() const { return entries_; }
 
-  /// `name` as in readVdb.
+  /// Chooses a grid by a name as in readVdb.
   const Entry& choose(const std::string& name) const;
-  /// Everything of the grid but its tree.
+  /// Reads the grid without its tree.
   openvdb::GridBase::Ptr readMetadata(const Entry& entry);
   openvdb::GridBase::Ptr read(const Entry& entry);
-  /// Whether the metadata of the file or of the grid say so: Blender's world has +z up.
+  /// Whether the metadata of the file or of the grid say that Blender wrote it: its world has +z up.
   bool isOfBlender(const Entry& entry);
 
  private:
@@ -59,23 +59,23 @@ class VdbFile {
   VdbHeader header_;
   std::vector<Entry> entries_;
   std::vector<openvdb::GridBase::Ptr>
-      streamed_;  ///< parallel to entries_, for a file that has to be read as a whole
+      streamed_;  ///< grids in the order of entries_, for a file that can only be read as a whole
 };
 
-/// What grids of temperatures are called, in the order in which they are looked for.
+/// Names of temperature grids, in the order of preference.
 inline constexpr std::array<const char*, 3> kTemperatureNames{"temperature", "heat", "flame"};
-/// By OpenVDB's names of values.
+/// Whether the grid has scalars, or colours, by OpenVDB's names of value types.
 bool isReal(const VdbFile::Entry& entry);
 bool isColor(const VdbFile::Entry& entry);
 
-/// Empty, or why a grid of this type cannot be rendered, in one clause.
+/// Why a grid of this type cannot be drawn, in one clause; empty if it can.
 std::string whyTypeUnusable(const std::string& treeType, const std::string& valueType);
-/// Empty, or why a grid with this transform cannot be rendered, in one clause.
+/// Why a grid with this transform cannot be drawn, in one clause; empty if it can.
 std::string whyTransformUnusable(const openvdb::math::Transform& transform);
 inline constexpr const char* kEmptyGridClause = "it is empty: no voxel is active";
 inline constexpr const char* kNothingInsideClause = "no voxel is inside the level set";
 
-/// The grid itself, or a copy in float of a half or double grid; null for any other type.
+/// The grid itself if it is a float grid, a float copy of a half or double grid, or null for any other type.
 openvdb::FloatGrid::ConstPtr asFloatGrid(const openvdb::GridBase::ConstPtr& grid);
 
 }  // namespace freevoxels

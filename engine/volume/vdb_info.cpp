@@ -121,7 +121,7 @@ std::uint64_t hostBytes(const FloatTree& tree, const std::vector<const FloatTree
 /// Voxels along an edge of a box whose number of voxels 64 bits hold.
 constexpr double kLongestEdge = 1 << 20;
 
-/// The box that readVdb would make of the grid, and what of it holds anything.
+/// Describes the box that readVdb would return, and its occupied blocks.
 void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   const openvdb::FloatGrid::ConstPtr floats = asFloatGrid(grid);
   std::vector<const FloatTree::LeafNodeType*> leaves;

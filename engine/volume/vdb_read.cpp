@@ -63,7 +63,7 @@ void normaliseWorld(Volume& volume) {
   }
 }
 
-/// Of the box around what `toDensity` keeps and around `more`.
+/// Makes the volume of the box around the voxels that `toDensity` keeps and around `more`.
 template <typename ToDensity>
 Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::string& source,
                 const CoordBBox& more, std::uint64_t maximumVoxels) {

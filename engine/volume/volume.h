@@ -15,7 +15,7 @@ namespace freevoxels {
 
 struct Classification;
 
-/// Temperatures beside a volume's scalars.
+/// Temperatures in addition to a volume's scalars.
 struct TemperatureGrid {
   std::string name;
   ScalarBricks values;  ///< like Volume::scalars, for the same box, in any unit

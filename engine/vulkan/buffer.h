@@ -49,7 +49,7 @@ class DeviceMemory {
   /// device addresses.
   DeviceMemory(const Device& device, const VkMemoryRequirements& needs, MemoryUse use, bool deviceAddress);
   VkDeviceMemory get() const { return memory_.get(); }
-  /// Can be mapped, and needs no flushing.
+  /// Whether the memory can be mapped and needs no flushing.
   bool hostCoherent() const { return (properties_ & kHostCoherent) == kHostCoherent; }
   /// And the host reads it at the speed of its own memory, not past its caches (write-combined).
   bool hostCached() const { return hostCoherent() && (properties_ & VK_MEMORY_PROPERTY_HOST_CACHED_BIT) != 0; }

@@ -169,7 +169,7 @@ void Commands::dispatchThreads(const Pipeline& pipeline, const std::function<voi
 
 void Commands::dispatchInvocations(const Pipeline& pipeline, const std::function<void()>& bindAll, std::uint64_t count,
                                    std::uint32_t layers) {
-  constexpr std::uint64_t kRow = 65535;  // workgroups that every device takes in one dimension
+  constexpr std::uint64_t kRow = 65535;  // workgroups that every device supports in one dimension
   const auto threads = std::uint64_t(pipeline.workgroup().x);
   const std::uint64_t groups = (count + threads - 1) / threads;
   const std::uint64_t rows = (groups + kRow - 1) / kRow;

@@ -1,5 +1,5 @@
 #pragma once
-// Recording, submitting and timing work for the device. A recording is executed once, in slices.
+// Records, submits and times GPU work. A recording is executed once, in slices.
 //
 // A slice is a command buffer of about kSliceMilliseconds of work, as far as that is known from the last time that passes
 // of the same names ran: passes go to slices whole, and a dispatch that is longer than a slice is divided into ranges of
@@ -23,8 +23,8 @@
 
 namespace freevoxels {
 
-/// What a binding of set 0 points to: a whole buffer, its texels, a storage image in layout GENERAL, or a texture: with its
-/// sampler, or as a storage image in layout GENERAL.
+/// The resource of a binding of set 0: a whole buffer, its texels, a storage image in layout GENERAL, or a
+/// texture, with its sampler or as a storage image in layout GENERAL.
 using Binding = std::variant<const Buffer*, const TexelView*, const RenderTarget*, const Texture*>;
 
 /// Ticks from `first` to `second`, two timestamps of `bits` valid bits that may have wrapped around once in
@@ -50,8 +50,8 @@ class Commands {
   /// Whether no pass was begun.
   bool empty() const { return passes_.empty(); }
 
-  /// Everything recorded until the next beginPass is timed under this name. Passes of one name are added up. Not within
-  /// rendering.
+  /// Starts a timer under this name, which runs until the next beginPass. The times of passes with the same
+  /// name are added. Not to be called within rendering.
   void beginPass(const std::string& name);
 
   /// Dispatches `threads` invocations in each dimension, rounded up to whole workgroups.
@@ -94,7 +94,8 @@ class Commands {
     barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   }
   void copy(const Buffer& from, const Buffer& to, VkBufferCopy region);
-  /// From layout GENERAL, and back to it; visible to the transfer stage before.
+  /// Copies a target, which must be in layout GENERAL and visible to the transfer stage, and stays in that
+  /// layout.
   void copy(const RenderTarget& from, const Buffer& to);
   /// Into a target in any layout, which becomes GENERAL for compute shaders.
   void copy(const Buffer& from, const RenderTarget& to);

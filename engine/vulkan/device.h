@@ -38,10 +38,11 @@ std::vector<DeviceDescription> listDevices(const Instance& instance);
 
 class Device {
  public:
-  /// `selector`: an index, UUID or (part of a) name; empty prefers a discrete GPU, then any GPU, then a CPU
-  /// device. Fails with ExitCode::Device and the reason why each device was rejected. Of more than
-  /// `memoryLimit` bytes nothing is allocated. `extensions` are enabled beside the engine's own. Compiled pipelines of a
-  /// GPU are kept in a file in `cacheFolder` (PipelineCache), unless that is empty.
+  /// Opens the device that `selector` names by index, UUID or part of its name; if it is empty, a discrete
+  /// GPU, else any GPU, else a CPU device. Fails with ExitCode::Device and the reason why each device was
+  /// rejected. At most `memoryLimit` bytes are allocated. `extensions` are enabled in addition to the
+  /// engine's own. Compiled pipelines of a GPU are stored in a file in `cacheFolder` (PipelineCache), unless
+  /// that is empty.
   Device(const Instance& instance, std::string_view selector,
          std::uint64_t memoryLimit = std::numeric_limits<std::uint64_t>::max(),
          std::span<const char* const> extensions = {}, const std::filesystem::path& cacheFolder = {});
@@ -65,8 +66,8 @@ class Device {
     return std::min({std::uint64_t(limits().maxStorageBufferRange), std::uint64_t(limits().maxTexelBufferElements) * texelBytes,
                      std::uint64_t(maximumAllocation_)});
   }
-  /// Bytes that may be allocated in all: what the device had for this process when it was opened, or fewer where a limit
-  /// is set.
+  /// Bytes that may be allocated in total: what the device had for this process when it was opened, or the
+  /// limit if that is less.
   std::uint64_t memoryBytes() const { return std::min(description_.memoryBytes, memoryLimit_); }
   /// Bytes of memoryBytes() that are not allocated at present, and the largest number of bytes that has been
   /// allocated at any time.

@@ -101,8 +101,8 @@ class PipelineStore {
 
 Pipeline makeComputePipeline(const Device& device, const Shader& shader, const Specialisation& constants = {});
 
-/// No vertex input (vertices are pulled), no depth, no culling; all attachments are blended alike. Viewport
-/// and scissor are dynamic.
+/// Returns a graphics pipeline without vertex input (shaders fetch vertices from buffers), depth test or face
+/// culling. All attachments use the same blending. Viewport and scissor are dynamic.
 Pipeline makeGraphicsPipeline(const Device& device, const Shader& vertex, const Shader& fragment, VkPrimitiveTopology topology,
                               std::span<const VkFormat> attachments, Blend blend, const Specialisation& constants = {});
 

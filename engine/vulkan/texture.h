@@ -11,8 +11,8 @@
 
 namespace freevoxels {
 
-/// 8-bit RGBA, sampled as the bytes are: linear between texels, constant beyond the edge. Sampled in layout
-/// SHADER_READ_ONLY_OPTIMAL, written by compute shaders in GENERAL.
+/// An 8-bit RGBA image without colour conversion, with linear filtering and clamping to the edge. Sampled in
+/// layout SHADER_READ_ONLY_OPTIMAL, written by compute shaders in GENERAL.
 class Texture {
  public:
   Texture() = default;
