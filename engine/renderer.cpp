@@ -251,6 +251,7 @@ SplatTargets Renderer::State::recordGather(Commands& commands, const Camera& cam
   SplatTargets targets = makeImageTargets(device, settings);
   shader::GatherFrame lattice =
       makeGatherFrame(built.volume, camera, settings, constants.detail, constants.hiddenTransmittance);
+  constants.detail.finest = lattice.finest;
   const bool ofScalars = built.volume.scalarBricks.has_value() && lightsSamples;
   const AttenuationTable* read = nullptr;
   if (constants.lightsReadTable && !lightsSamples)

@@ -79,17 +79,36 @@ shader::GatherAxis gatherAxis(const CentredRays& rays, const glm::dmat3& toPixel
   return result;
 }
 
+using SeenRectangle = std::array<glm::dvec2, 2>;
+
+/// The corners of a rectangle on the image, as (1, x, y).
+std::array<glm::dvec3, 4> cornersOf(const SeenRectangle& seen) {
+  return {glm::dvec3(1.0, seen[0]), {1.0, seen[1].x, seen[0].y}, {1.0, seen[0].x, seen[1].y}, glm::dvec3(1.0, seen[1])};
+}
+
+/// Whether some ray between the positions `seen` reads slices of the level.
+bool readsLevel(const shader::GatherFrame& frame, const SeenRectangle& seen, int level) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!someRayHasAxis(frame, axis)) continue;
+    for (const glm::dvec3& corner : cornersOf(seen)) {
+      const bool ascends = glm::dot(glm::dvec3(frame.axes[axis].along), corner) > 0.0;
+      const glm::ivec2 slices = frame.axes[axis].slices[ascends ? 1 : 0][level];
+      if (slices.x < slices.y) return true;
+    }
+  }
+  return false;
+}
+
 /// Which slices of which level the rays read whose component along the axis has this sign. A level begins where its
-/// blocks are small on the image for all rays, at a multiple of its blocks' edge, so that no voxel counts twice.
+/// blocks are small on the image for all rays between the positions `seen`, at a multiple of its blocks' edge, so that no voxel
+/// counts twice.
 void setSlices(shader::GatherAxis& axis, int number, int sign, const HierarchyLayout& hierarchy,
-               const DetailRule& detail, glm::dvec2 halfImage) {
+               const DetailRule& detail, const SeenRectangle& seen) {
   const int voxels = hierarchy.levels.front().dimensions[number];
   std::vector<int> begins(std::size_t(detail.coarsest) + 2);  // voxels, from where on in the ray's direction
   double steepest = 0.0;
-  for (int corner = 0; corner < 4; ++corner) {
-    const glm::dvec2 position = halfImage * (2.0 * glm::dvec2(corner & 1, corner >> 1) - 1.0);
-    steepest = std::max(steepest, std::abs(glm::dot(glm::dvec3(axis.along), glm::dvec3(1.0, position))));
-  }
+  for (const glm::dvec3& corner : cornersOf(seen))
+    steepest = std::max(steepest, std::abs(glm::dot(glm::dvec3(axis.along), corner)));
   const int first = sign > 0 ? 0 : voxels, end = sign > 0 ? voxels : 0;
   for (int level = 0; level <= detail.coarsest; ++level) {
     const double edge = double(1 << level);
@@ -114,10 +133,10 @@ void setSlices(shader::GatherAxis& axis, int number, int sign, const HierarchyLa
 
 /// Pixel positions, relative to the image's middle, between which the volume is seen; with an eye in or near its planes
 /// the whole plane.
-std::array<glm::dvec2, 2> seenRectangle(const CentredRays& rays, const glm::dmat3& toPixel, glm::ivec3 dimensions,
+SeenRectangle seenRectangle(const CentredRays& rays, const glm::dmat3& toPixel, glm::ivec3 dimensions,
                                         bool orthographic) {
   constexpr double kAll = 1e9;
-  std::array<glm::dvec2, 2> seen{glm::dvec2(kAll), glm::dvec2(-kAll)};
+  SeenRectangle seen{glm::dvec2(kAll), glm::dvec2(-kAll)};
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
     // Interpolated slices reach a voxel beyond the outermost centres.
@@ -149,14 +168,19 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   const double distance = orthographic ? 1.0 : referenceDistance(rays, viewAxis, dimensions);
   const double pitch = voxel / (kSamplesPerVoxel * std::max(distance, 1e-300));
 
-  shader::GatherFrame frame{.finest = detail.finest,
+  // Seen obliquely, the blocks at a slice's near end become small long after those of its far end: a level may come in slice by
+  // slice only after the rule calls all of its blocks small.
+  DetailRule slabs = detail;
+  if (!orthographic) slabs.finest = std::max(detail.finest - 1, 0);
+
+  shader::GatherFrame frame{.finest = slabs.finest,
                             .coarsest = detail.coarsest,
                             .size = settings.size,
                             .pixelsPerVoxel = float(voxel),
                             .end = float(end),
                             .orthographic = orthographic ? 1 : 0,
                             .mainAxis = majorAxis(rays.direction)};
-  const std::array<glm::dvec2, 2> seen = seenRectangle(rays, toPixel, dimensions, orthographic);
+  const SeenRectangle seen = seenRectangle(rays, toPixel, dimensions, orthographic);
   frame.seenLow = seen[0];
   frame.seenHigh = seen[1];
   const bool coarse = pitch > kLeastPitch;
@@ -167,12 +191,14 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   frame.worldRay[0] = linear * rays.direction;
   frame.worldRay[1] = linear * rays.directionX;
   frame.worldRay[2] = linear * rays.directionY;
+  const glm::dvec2 half = 0.5 * glm::dvec2(settings.size) + 2.0 * double(frame.pitch);
+  const SeenRectangle seenInImage{glm::clamp(seen[0], -half, half), glm::clamp(seen[1], -half, half)};
   for (int axis = 0; axis < 3; ++axis) {
     frame.axes[axis] = gatherAxis(rays, toPixel, axis, 0.5 * (dimensions[axis] - 1), orthographic);
     for (const int sign : {-1, 1})
-      setSlices(frame.axes[axis], axis, sign, volume.hierarchy, detail,
-                0.5 * glm::dvec2(settings.size) + 2.0 * double(frame.pitch));
+      setSlices(frame.axes[axis], axis, sign, volume.hierarchy, slabs, seenInImage);
   }
+  while (frame.finest < frame.coarsest && !readsLevel(frame, seenInImage, frame.finest)) ++frame.finest;
   return frame;
 }
 

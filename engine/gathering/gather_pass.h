@@ -9,7 +9,8 @@
 
 namespace freevoxels {
 
-/// The lattice and the rays of a frame, computed in double precision on the host. The levels are the caller's to fill.
+/// The lattice and the rays of a frame, computed in double precision on the host. The levels are the caller's to fill: from
+/// `finest`, which may be one below the rule's, to `coarsest`.
 /// Rays end at the transmittance `end`.
 shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& camera, const FrameSettings& settings,
                                     const DetailRule& detail, double end);

@@ -115,6 +115,8 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
       linear_(volume.indexToWorld),
       detail_(detailRule(HierarchyLayout(volume.dimensions), rays_, settings.size, double(settings.lod))) {
   FV_CHECK_EQ(settings.lighting.has_value(), false);
+  // Levels come in slice by slice, which may be complete only after all blocks are small.
+  if (!rays_.orthographic) detail_.finest = std::max(detail_.finest - 1, 0);
   const Ray middle = rayThrough(glm::dvec2(0.0));
   toPixel_ = glm::inverse(rays_.orthographic ? glm::dmat3(rays_.originX, rays_.originY, middle.direction)
                                              : glm::dmat3(rays_.directionX, rays_.directionY, middle.direction));
@@ -169,15 +171,17 @@ int ReferenceGather::axisOf(glm::dvec2 position, const Ray& ray) const {
   return !seen || isMain ? mainAxis_ : majorAxis(ray.direction);
 }
 
-/// The slice at which the march enters a level: the first multiple of its blocks' edge from which on such
-/// blocks are small on the image for every ray of the lattice.
+/// The border between voxels at which the march enters a level: the first multiple of its blocks' edge from which on such
+/// blocks are small on the image for every ray of the lattice that may meet the volume.
 int ReferenceGather::firstVoxel(const Ray& ray, int axis, int level) const {
   const int voxels = volume_.dimensions[axis], sign = ray.direction[axis] > 0.0 ? 1 : -1, edge = 1 << level;
   if (level <= detail_.finest) return sign > 0 ? 0 : voxels;
   if (level > detail_.coarsest) return sign > 0 ? voxels : 0;
   double steepest = 0.0;
-  for (const glm::dvec2 corner : {glm::dvec2(-1, -1), glm::dvec2(1, -1), glm::dvec2(-1, 1), glm::dvec2(1, 1)})
-    steepest = std::max(steepest, std::abs(rayThrough(corner * (middle_ + 2.0 * lattice_.pitch)).direction[axis]));
+  const glm::dvec2 edgeOfImage = middle_ + 2.0 * lattice_.pitch;
+  const glm::dvec2 seenFrom = glm::clamp(seenLow_, -edgeOfImage, edgeOfImage), seenTo = glm::clamp(seenHigh_, -edgeOfImage, edgeOfImage);
+  for (const double x : {seenFrom.x, seenTo.x})
+    for (const double y : {seenFrom.y, seenTo.y}) steepest = std::max(steepest, std::abs(rayThrough({x, y}).direction[axis]));
   const double border = ray.origin[axis] + 0.5 + sign * edge * steepest / detail_.edgePerDistance;
   const double number = sign > 0 ? std::ceil(border / edge) : std::floor(border / edge);
   return int(std::clamp(number, 0.0, double((voxels + edge - 1) / edge))) * edge;

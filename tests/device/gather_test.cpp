@@ -41,6 +41,7 @@ class GatherTest : public SplatTest {
                                        {.size = settings.size, .tolerance = 4e-3, .lighting = settings.lighting});
     return psnr(renderer.render(camera, settings), oracle.image);
   }
+  static std::vector<double> qualities(const Scene& scene, const std::vector<Camera>& cameras, int pixels);
 };
 
 TEST_F(GatherTest, HomogeneousBoxIsTheLawOfBeerAndLambert) {
@@ -372,6 +373,44 @@ TEST_F(GatherTest, CoarseLevelsLookLikeVoxels) {
   const Image voxels = renderer.render(camera, settings);
   settings.lod = 1.0f;
   EXPECT_GE(psnr(renderer.render(camera, settings), voxels), 45.0);
+}
+
+/// PSNR to the oracle, of level of detail 1.
+std::vector<double> GatherTest::qualities(const Scene& scene, const std::vector<Camera>& cameras, int pixels) {
+  Renderer renderer(device(), scene.volume, scene.classification, {});
+  FrameSettings settings = gathering(glm::ivec2(pixels));
+  settings.lod = 1.0f;
+  std::vector<double> result;
+  for (const Camera& camera : cameras) {
+    const Oracle oracle = renderOracle(scene.volume, scene.classification, camera, {.size = settings.size, .tolerance = 4e-3});
+    result.push_back(psnr(renderer.render(camera, settings), oracle.image));
+  }
+  return result;
+}
+
+/// Past 45 degrees rays march along another axis.
+TEST_F(GatherTest, ATurntableShowsNoStepWhereTheAxisChanges) {
+  const Scene scene = cloud(32);
+  std::vector<Camera> cameras;
+  for (const double azimuth : {43.0, 44.0, 44.9, 45.1, 46.0, 47.0}) cameras.push_back(framingCamera(scene.volume, azimuth, 10.0, 1.0, {}));
+  const std::vector<double> found = qualities(scene, cameras, 64);
+  for (std::size_t i = 1; i < found.size(); ++i) EXPECT_NEAR(found[i], found[i - 1], 0.5) << "frame " << i;
+}
+
+/// The octree's next level comes in slice by slice, over several per cent of the distance, and not at once.
+TEST_F(GatherTest, ASlowZoomShowsNoStepWhereTheLevelChanges) {
+  constexpr double kMostChange = 1.0 / 8.0 / 255.0;  // of the error, RMSE: an eighth of a code of an 8-bit image
+  const Scene scene = cloud(64);
+  const Camera framed = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
+  std::vector<Camera> cameras;
+  for (int i = 0; i < 10; ++i) {
+    cameras.push_back(framed);
+    cameras.back().position = framed.lookAt + 1.98 * std::pow(1.007, i) * (framed.position - framed.lookAt);
+  }
+  const std::vector<double> found = qualities(scene, cameras, 96);
+  const auto error = [&](std::size_t i) { return std::pow(10.0, -0.05 * found[i]); };
+  for (std::size_t i = 1; i < found.size(); ++i) EXPECT_NEAR(error(i), error(i - 1), kMostChange) << "frame " << i;
+  EXPECT_LT(found.back(), found.front() - 1.0);  // the level did change
 }
 
 TEST_F(GatherTest, DistanceIsTheMeanOfWhatIsSeen) {

@@ -36,8 +36,9 @@ struct SteppedGather : GatherOutputs {
     FrameSettings settings = wanted;
     settings.attenuation = AttenuationLookup::Exact;
     if (settings.lod > 0.0f && !built.hasBlocks()) buildBlocks(device, source, classification, built, times);
-    const FrameConstants constants = makeFrameConstants(device, built.volume, {}, camera, settings);
+    FrameConstants constants = makeFrameConstants(device, built.volume, {}, camera, settings);
     shader::GatherFrame rays = makeGatherFrame(built.volume, camera, settings, constants.detail, constants.hiddenTransmittance);
+    constants.detail.finest = rays.finest;
     const GatherVolume::Shading shading{.frame = constants,
                                         .table = nullptr,
                                         .lighting = nullptr,
