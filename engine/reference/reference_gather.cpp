@@ -171,7 +171,7 @@ int ReferenceGather::axisOf(glm::dvec2 position, const Ray& ray) const {
   return !seen || isMain ? mainAxis_ : majorAxis(ray.direction);
 }
 
-/// The slice at which the march enters a level: the first multiple of its blocks' edge from which on such
+/// The border between voxels at which the march enters a level: the first multiple of its blocks' edge from which on such
 /// blocks are small on the image for every ray of the lattice that may meet the volume.
 int ReferenceGather::firstVoxel(const Ray& ray, int axis, int level) const {
   const int voxels = volume_.dimensions[axis], sign = ray.direction[axis] > 0.0 ? 1 : -1, edge = 1 << level;
