@@ -100,7 +100,6 @@ bool readsLevel(const shader::GatherFrame& frame, const SeenRectangle& seen, int
   return false;
 }
 
-<<<<<<< HEAD
 /// The slices of each level that are read by rays whose component along the axis has this sign. A level
 /// begins where its blocks are small on the image for all rays between the positions `seen`, at a multiple of
 /// its blocks' edge, so that every voxel counts once.
@@ -108,15 +107,6 @@ void setSlices(shader::GatherAxis& axis, int number, int sign, const HierarchyLa
                const DetailRule& detail, const SeenRectangle& seen) {
   const int voxels = hierarchy.levels.front().dimensions[number];
   std::vector<int> begins(std::size_t(detail.coarsest) + 2);  // in voxels along the ray's direction
-=======
-/// Which slices of which level the rays read whose component along the axis has this sign. A level begins where its
-/// blocks are small on the image for all rays between the positions `seen`, at a multiple of its blocks' edge, so that no voxel
-/// counts twice.
-void setSlices(shader::GatherAxis& axis, int number, int sign, const HierarchyLayout& hierarchy,
-               const DetailRule& detail, const SeenRectangle& seen) {
-  const int voxels = hierarchy.levels.front().dimensions[number];
-  std::vector<int> begins(std::size_t(detail.coarsest) + 2);  // voxels, from where on in the ray's direction
->>>>>>> 7731b9f8c8af2e666c0b514c5d5a654bf07e4293
   double steepest = 0.0;
   for (const glm::dvec3& corner : cornersOf(seen))
     steepest = std::max(steepest, std::abs(glm::dot(glm::dvec3(axis.along), corner)));
@@ -142,13 +132,8 @@ void setSlices(shader::GatherAxis& axis, int number, int sign, const HierarchyLa
   }
 }
 
-<<<<<<< HEAD
 /// The range of pixel positions, relative to the image's middle, in which the volume is visible; the whole
 /// image plane if the eye is in or near the volume's planes.
-=======
-/// Pixel positions, relative to the image's middle, between which the volume is seen; with an eye in or near its planes
-/// the whole plane.
->>>>>>> 7731b9f8c8af2e666c0b514c5d5a654bf07e4293
 SeenRectangle seenRectangle(const CentredRays& rays, const glm::dmat3& toPixel, glm::ivec3 dimensions,
                                         bool orthographic) {
   constexpr double kAll = 1e9;

@@ -10,15 +10,9 @@
 
 namespace freevoxels {
 
-<<<<<<< HEAD
 /// The lattice and the rays of a frame, computed in double precision on the host. The caller fills in the
 /// levels: from `finest`, which may be one below the rule's, to `coarsest`. Rays end at the transmittance
 /// `end`.
-=======
-/// The lattice and the rays of a frame, computed in double precision on the host. The levels are the caller's to fill: from
-/// `finest`, which may be one below the rule's, to `coarsest`.
-/// Rays end at the transmittance `end`.
->>>>>>> 7731b9f8c8af2e666c0b514c5d5a654bf07e4293
 shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& camera, const FrameSettings& settings,
                                     const DetailRule& detail, double end);
 
