@@ -240,7 +240,7 @@ void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volum
       .compress = settings.compress};
   const std::vector<glm::ivec3> cells = hilbertOrder((dimensions + fvx::kChunkEdge - 1) / fvx::kChunkEdge);
   writeAtomically(file, [&](const std::filesystem::path& temporary) {
-    fvx::FvxWriter writer(temporary.parent_path(), write);
+    fvx::FvxWriter writer(file.has_parent_path() ? file.parent_path() : ".", write);
     for (std::size_t first = 0; first < cells.size(); first += kBatchChunks) {
       if (progress) progress("baking", double(first) / double(cells.size()));
       std::vector<ChunkValues> batch(std::min(kBatchChunks, cells.size() - first));
