@@ -146,6 +146,7 @@ void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<co
   const int levels = file ? file->levels() : 1;
   const RunReport before = report_;
   const std::size_t drawn = drawn_;
+  const std::optional<Scene> reference = reference_;
   for (int level = scene.finestLevelNeeded(double(options_.frameSettings().lod), int(frames.size()));; ++level) {
     try {
       return drawVolume(std::move(volume), frames);
@@ -156,6 +157,7 @@ void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<co
     }
     report_ = before;
     drawn_ = drawn;
+    reference_ = reference;
     volume = std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level + 1));
   }
 }

@@ -142,7 +142,7 @@ void SceneOptions::resolveView(Scene& scene) const {
 
 Scene SceneOptions::resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const {
   SceneOptions fixed = *this;
-  fixed.classification.take(other.classification);
+  if (!volume->classificationIsFixed) fixed.classification.take(other.classification);
   if (other.classification.emission) fixed.emission.take(*other.classification.emission);
   Scene scene{.volume = std::move(volume), .camera = other.camera, .lighting = other.lighting};
   scene.classification = fixed.resolveClassification(*scene.volume);
