@@ -44,7 +44,9 @@ void main() {
   vec3 mapped;
   for (int c = 0; c < 3; ++c) mapped[c] = toneMapped(push.gain * light[c]);
   const bool over = push.hasBackground != 0;
-  const float needed = over ? light.a : max(max(light.a, mapped.r), max(mapped.g, mapped.b));
+  float needed = light.a;
+  for (int c = 0; c < 3; ++c)
+    if (!over && mapped[c] > needed) needed = mapped[c];  // not by max(), which may return NaN
   const float alpha = clampUnit(needed);
   vec4 result = vec4(0.0, 0.0, 0.0, over ? 1.0 : alpha);
   for (int c = 0; c < 3; ++c) {

@@ -106,7 +106,7 @@ bool isWanted(uint direction) {
   return direction / kPerThread == gl_WorkGroupID.z && direction < push.directionCount;
 }
 
-// Few are darker than all before them. The load is atomic, as other invocations write meanwhile.
+// A read first avoids most atomic maxima: few codes exceed all before them. It is atomic, as other invocations write.
 void takeDarkest(uint direction, uint code) {
   const uint known =
       atomicLoad(maxCodePerDirection[direction], gl_ScopeDevice, gl_StorageSemanticsBuffer, gl_SemanticsRelaxed);

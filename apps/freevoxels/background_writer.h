@@ -9,15 +9,15 @@
 
 namespace freevoxels {
 
-/// Runs one piece of work at a time beside the caller's thread. The destructor waits for it.
+/// Runs one task at a time on a thread of its own. The destructor waits for it.
 class BackgroundWriter {
  public:
-  /// Waits until the work before is done; then starts `write`. Throws what the work before has thrown, and starts nothing
-  /// then. Where the system has no more threads, `write` runs in the next call instead.
+  /// Waits for the task before, then starts `write`. If the task before threw an exception, rethrows it and starts nothing.
+  /// If the system has no more threads, `write` runs in the next call instead.
   void start(std::function<void()> write);
-  /// Waits until all work is done. Throws what it has thrown.
+  /// Waits for the last task. Rethrows its exception.
   void finish();
-  /// How long the work took that is done.
+  /// The total time of the complete tasks, as the stage "write pictures".
   const std::vector<StageTime>& times() const { return times_; }
 
  private:

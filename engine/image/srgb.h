@@ -28,7 +28,7 @@ inline std::uint8_t byteFromUnit(float unit) {
 
 /// Equals byteFromUnit(srgbFromLinear(linear)) for 0..1, but uses a table.
 std::uint8_t srgbByteFromLinear(float linear);
-/// Its table, for shaders; constants and meaning as in display_interface.h.
+/// The table that srgbByteFromLinear looks up, for shaders; display_interface.h describes its layout.
 std::span<const shader::SrgbBucket> srgbBuckets();
 
 }  // namespace freevoxels

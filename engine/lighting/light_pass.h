@@ -29,7 +29,7 @@ class LightPass {
   static std::uint64_t rayBytes(const DeviceVolume& volume, const Lighting& lighting);
   /// Prepares the lights of a frame whose attenuation is not Auto. With `scalars`, rays are swept through the
   /// volume's scalars, otherwise through its classified voxels. Blocks until the device is done and adds the
-  /// times to `times`; no frame may be in progress.
+  /// times to `times`; no frame may be in progress. An exception of `progress` abandons the work.
   shader::FrameLighting prepare(const DeviceVolume& volume, const TableSettings& table,
                                 const FrameSettings& settings, bool scalars, std::vector<StageTime>& times,
                                 const Progress& progress);

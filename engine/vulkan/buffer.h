@@ -51,7 +51,7 @@ class DeviceMemory {
   VkDeviceMemory get() const { return memory_.get(); }
   /// Whether the memory can be mapped and needs no flushing.
   bool hostCoherent() const { return (properties_ & kHostCoherent) == kHostCoherent; }
-  /// And the host reads it at the speed of its own memory, not past its caches (write-combined).
+  /// Whether, in addition, the host's reads are cached. Reads of other (write-combined) memory are slow.
   bool hostCached() const { return hostCoherent() && (properties_ & VK_MEMORY_PROPERTY_HOST_CACHED_BIT) != 0; }
 
  private:
@@ -75,7 +75,7 @@ class Buffer {
   VkDeviceAddress address() const { return address_; }
   /// The host address of the buffer's memory, or null if it is not mapped. Valid as long as the buffer.
   std::byte* mapped() const { return mapped_; }
-  /// The same for reading: null as well where that would be slow, so that a copy into MemoryUse::Readback is better.
+  /// As mapped(), for reading: null as well if host reads are not cached, as a copy into MemoryUse::Readback is faster then.
   const std::byte* readable() const { return memory_.hostCached() ? mapped_ : nullptr; }
 
  private:

@@ -10,9 +10,9 @@ namespace freevoxels {
 
 namespace {
 
-constexpr std::uint64_t kProgressInterval = 50'000'000;  // nanoseconds between two looks at what is complete
+constexpr std::uint64_t kProgressInterval = 50'000'000;  // nanoseconds between two queries of the progress
 
-/// Milliseconds of a workgroup in a pass that was not measured yet.
+/// Milliseconds per workgroup that are assumed for a pass that has not been measured.
 constexpr double kUnknownCpuCost = 0.05, kUnknownGpuCost = 0.001;
 
 constexpr VkPipelineStageFlags2 kAnyStage =
@@ -79,8 +79,8 @@ void Commands::beginSlice() {
 
 void Commands::endSlice() {
   if (!passes_.empty()) writeTimestamp();
-  // What the device has written is visible to the host, which may have it mapped, and to whatever is submitted next, by
-  // any thread.
+  // Makes the device's writes visible to the host, which may have the memory mapped, and to later submissions of any
+  // thread.
   barrier(VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
           VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT | VK_PIPELINE_STAGE_2_HOST_BIT);
   VK_CHECK(vkEndCommandBuffer(buffer_));
@@ -88,19 +88,19 @@ void Commands::endSlice() {
 
 void Commands::nextSlice() {
   endSlice();
-  passes_.push_back({});  // what the device does between two slices is not ours
+  passes_.push_back({});  // the time between two slices belongs to no pass
   beginSlice();
 }
 
-/// Not before the first pass, as only passes are measured; and timestamps are left for the passes to come.
+/// Whether another slice may begin: not before the first pass, as only passes are measured, and not if timestamps run short.
 bool Commands::mayDivide() const {
   return !passes_.empty() && passes_.size() < CommandSlot::kMaximumTimestamps / 2;
 }
 
 void Commands::writeTimestamp() {
   vkCmdWriteTimestamp2(buffer_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, slot_->timestamps.get(), slot_->usedTimestamps++);
-  // Guards nothing. Lavapipe writes a timestamp when it comes to a barrier, which may be behind work that was recorded
-  // later.
+  // A barrier that orders nothing. Lavapipe writes a timestamp when it reaches the next barrier, which without this one
+  // may be after work that was recorded later.
   const VkDependencyInfo nothing{.sType = VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
   if (device_.isCpu()) vkCmdPipelineBarrier2(buffer_, &nothing);
 }
@@ -174,11 +174,11 @@ void Commands::dispatchInvocations(const Pipeline& pipeline, const std::function
   const std::uint64_t groups = (count + threads - 1) / threads;
   const std::uint64_t rows = (groups + kRow - 1) / kRow;
   FV_CHECK_LE(rows, kRow);
-  // Several rows are divided into rows, as the shader reads how long one is.
+  // Several rows are divided between rows only, as the shader reads the length of a row.
   dispatchGroups(bindAll, {std::uint32_t(std::min(groups, kRow)), std::uint32_t(rows), layers}, rows > 1 ? 1 : 0);
 }
 
-/// In several slices, along the axis, where it takes longer than one.
+/// Divides the dispatch along `axis` into slices if it is expected to take longer than one.
 void Commands::dispatchGroups(const std::function<void()>& bindAll, glm::uvec3 groups, int axis) {
   const std::uint64_t count = std::uint64_t(groups.x) * groups.y * groups.z;
   const double cost = double(count) * device_.queue().costOf(pass_, device_.isCpu() ? kUnknownCpuCost : kUnknownGpuCost);
@@ -272,7 +272,7 @@ void Commands::waitFor(std::uint64_t submission, const Progress& progress) const
   while (!queue.wait(submission, kProgressInterval)) {
     try {
       reportProgress(progress);
-    } catch (...) {  // the slice may still be in use
+    } catch (...) {  // wait before unwinding, so that no resource is freed while in use
       queue.wait(submission);
       throw;
     }
@@ -292,11 +292,11 @@ void Commands::reportProgress(const Progress& progress) const {
   const auto started =
       std::size_t(std::ranges::count_if(stamps, [](const Timestamp& stamp) { return stamp.available != 0; }));
   std::size_t current = std::min(std::max(started, std::size_t(1)) - 1, passes_.size() - 1);
-  if (passes_[current].pass.empty()) ++current;  // a slice is complete and the next has not begun
+  if (passes_[current].pass.empty()) ++current;  // a slice is complete and the next one has not begun
   progress(passes_[current].pass, double(current) / double(passes_.size()));
 }
 
-/// Of each span.
+/// Device time of each span.
 std::vector<double> Commands::milliseconds() const {
   std::vector<std::uint64_t> stamps(passes_.empty() ? 0 : passes_.size() + 1);
   if (stamps.empty()) return {};

@@ -1,10 +1,10 @@
 #pragma once
-// Records, submits and times GPU work. A recording is executed once, in slices.
+// Records, submits and times GPU work. A recording is submitted once, in slices.
 //
-// A slice is a command buffer of about kSliceMilliseconds of work, as far as that is known from the last time that passes
-// of the same names ran: passes go to slices whole, and a dispatch that is longer than a slice is divided into ranges of
-// workgroups. submitAndWait() submits a slice when the one before is complete, so that other threads (a window) get the
-// device in between, and so that work can be abandoned soon.
+// A slice is a command buffer with about kSliceMilliseconds of work, estimated from the last time that passes of the same
+// names ran. A dispatch that takes longer than a slice is divided into ranges of workgroups. submitAndWait() submits a slice
+// when the one before it is complete, so that other threads (a window) can use the device in between, and so that work can
+// be abandoned soon.
 
 #include <functional>
 #include <glm/glm.hpp>
@@ -31,11 +31,11 @@ using Binding = std::variant<const Buffer*, const TexelView*, const RenderTarget
 /// between.
 std::uint64_t ticksBetween(std::uint64_t first, std::uint64_t second, std::uint32_t bits);
 
-/// Device time that a slice is meant to take.
+/// The device time that a slice is meant to take.
 constexpr double kSliceMilliseconds = 40.0;
 
-/// For one thread. Passes guard what they write themselves: each ends with a barrier that makes its writes visible to the
-/// stages that read them, and beginPass() is no barrier.
+/// A recording belongs to one thread. beginPass() is no barrier: a pass ends with a barrier that makes its writes visible to
+/// the stages that read them.
 class Commands {
  public:
   explicit Commands(const Device& device);
@@ -43,11 +43,11 @@ class Commands {
   Commands(const Commands&) = delete;
   Commands& operator=(const Commands&) = delete;
 
-  /// The command buffer that is being recorded: until the next call of a member function.
+  /// The command buffer that is being recorded. Valid until the next call of a member function.
   VkCommandBuffer handle() const { return buffer_; }
-  /// Command buffers that were begun.
+  /// The number of slices so far.
   std::size_t slices() const { return slices_; }
-  /// Whether no pass was begun.
+  /// Whether no pass has begun.
   bool empty() const { return passes_.empty(); }
 
   /// Starts a timer under this name, which runs until the next beginPass. The times of passes with the same
@@ -97,13 +97,12 @@ class Commands {
   /// Copies a target, which must be in layout GENERAL and visible to the transfer stage, and stays in that
   /// layout.
   void copy(const RenderTarget& from, const Buffer& to);
-  /// Into a target in any layout, which becomes GENERAL for compute shaders.
+  /// Copies into a target in any layout, and leaves it in GENERAL, visible to compute shaders.
   void copy(const Buffer& from, const RenderTarget& to);
 
-  /// What the `from` stages have written is visible to the `to` stages, and `to` does not begin to write before `from` has
-  /// read.
+  /// Makes all writes of the `from` stages visible to the `to` stages. Later writes of `to` wait for reads of `from`.
   void barrier(VkPipelineStageFlags2 from, VkPipelineStageFlags2 to);
-  /// The same of one image, whose layout changes.
+  /// As barrier(), for one image, whose layout changes.
   void transition(VkImage image, VkImageLayout from, VkImageLayout to, VkPipelineStageFlags2 fromStage,
                   VkPipelineStageFlags2 toStage);
   void transition(const RenderTarget& target, VkImageLayout from, VkImageLayout to,
@@ -111,15 +110,16 @@ class Commands {
     transition(target.handle(), from, to, fromStage, toStage);
   }
 
-  /// Ends the recording, executes it and waits. `progress` is called before each slice, and again and again while a slice
-  /// takes long. If it throws, the slice that is being executed is completed, the others are abandoned, and the exception
-  /// is passed on: whatever the recording was to write is then undefined. Throws as well where the device does.
+  /// Ends the recording, submits it and blocks until it is complete. `progress` is called before each slice if there are
+  /// several, and every 50 ms while a slice runs. If it throws, the current slice is completed, the others are abandoned
+  /// and the exception is rethrown; the contents of what the recording writes are undefined then. Throws if the device
+  /// fails.
   void submitAndWait(const Progress& progress = {});
   /// Device time of each pass in the order of recording. Only valid after submitAndWait.
   std::vector<StageTime> times() const;
 
  private:
-  /// The time between two neighbouring timestamps, and the workgroups that were dispatched in it.
+  /// The time between two neighbouring timestamps, and the units of work in it: workgroups, and 1 for each pass.
   struct Span {
     std::string pass;  ///< empty between slices
     double units = 0.0;

@@ -27,8 +27,8 @@ struct DeviceDescription {
   std::string type;  ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
   std::string uuid;  ///< 8-4-4-4-12 hexadecimal digits
   std::string driver;
-  /// That this process may use of the largest device-local heap: all of it, or where the driver knows how much other
-  /// processes use (VK_EXT_memory_budget) what these leave. Of a CPU three quarters of its memory.
+  /// Bytes of the largest device-local heap that this process may use: all of them, or what other processes leave free if
+  /// the driver knows that (VK_EXT_memory_budget). For a CPU device three quarters of the machine's memory.
   std::uint64_t memoryBytes = 0;
   std::vector<std::string> rejections;  ///< why it cannot be used; empty if it can
 };
@@ -52,7 +52,7 @@ class Device {
 
   VkDevice handle() const { return device_; }
   VkPhysicalDevice physical() const { return physical_; }
-  /// Which all threads that use the device share.
+  /// The device's only queue, which all threads share.
   Queue& queue() const { return *queue_; }
   std::uint32_t queueFamily() const { return queueFamily_; }
   /// Valid bits of the queue's timestamps.

@@ -75,17 +75,17 @@ struct PipelineKey {
   auto operator<=>(const PipelineKey&) const = default;
 };
 
-/// The pipelines of a device, each made once and kept for whoever wants the same again. Any thread may call its functions;
-/// different pipelines are made at the same time.
+/// The pipelines of a device, kept for reuse: lavapipe takes up to a tenth of a second to compile one. Any thread may call
+/// the member functions; different pipelines can be made at the same time.
 class PipelineStore {
  public:
-  /// `cacheFile` as of PipelineCache.
+  /// `cacheFile` is the file of PipelineCache.
   PipelineStore(VkDevice device, const std::filesystem::path& cacheFile) : cache_(device, cacheFile) {}
 
-  /// The pipeline of this key, which `make` returns where there is none yet.
+  /// Returns the pipeline for `key`, calling `make` first if there is none.
   Pipeline get(const PipelineKey& key, const std::function<PipelineParts()>& make);
   PipelineCache& cache() { return cache_; }
-  /// To make them, added up over all threads.
+  /// Time to create the pipelines, summed over all threads.
   std::vector<StageTime> times() const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// The device's one queue, shared by all threads that record work, and what their recordings are made of.
+// The device's only queue, which all threads share, and the Vulkan objects that their recordings use.
 
 #include <volk.h>
 
@@ -16,15 +16,15 @@ namespace freevoxels {
 
 class Device;
 
-/// The Vulkan objects of one recording. The queue keeps them when the recording has been executed and lends them to the
-/// next one, so that a frame creates no command pool and no query pool.
+/// The Vulkan objects of one recording. The queue keeps them after the recording is complete and lends them to a later one,
+/// so that a frame creates no command pool and no query pool.
 struct CommandSlot {
   static constexpr std::uint32_t kMaximumTimestamps = 4096;
 
   OwnedCommandPool pool;
-  std::vector<VkCommandBuffer> buffers;  ///< allocated from the pool, of which the recording uses the first few
+  std::vector<VkCommandBuffer> buffers;  ///< allocated from the pool; a recording uses the first ones
   OwnedQueryPool timestamps;             ///< kMaximumTimestamps queries
-  std::uint32_t usedTimestamps = 0;      ///< that the next recording has to reset
+  std::uint32_t usedTimestamps = 0;      ///< the queries that have to be reset before the next use
 };
 
 /// All member functions may be called from any thread.
@@ -34,32 +34,32 @@ class Queue {
   Queue(const Queue&) = delete;
   Queue& operator=(const Queue&) = delete;
 
-  /// A slot that no recording uses: reset, without buffers in use.
+  /// Lends a slot that no other recording uses, with all its objects reset.
   std::unique_ptr<CommandSlot> borrowSlot();
-  /// Takes a slot whose buffers are not (or no longer) executed.
+  /// Takes a slot back. The device must not be executing its buffers.
   void returnSlot(std::unique_ptr<CommandSlot> slot);
 
-  /// Starts the execution of a recorded buffer after everything that was submitted before. Returns the number to wait for.
+  /// Submits a recorded buffer. Returns the number of the submission, to wait for.
   std::uint64_t submit(VkCommandBuffer buffer);
-  /// Waits until the submission with this number is complete; false if it is not after `nanoseconds`.
+  /// Waits until the submission with this number is complete. Returns false if that takes longer than `nanoseconds`.
   bool wait(std::uint64_t submission, std::uint64_t nanoseconds = UINT64_MAX) const;
-  /// vkQueuePresentKHR.
+  /// Calls vkQueuePresentKHR and returns its result.
   VkResult present(const VkPresentInfoKHR& info);
   /// Waits for all submissions of all threads.
   void waitIdle();
 
-  /// Milliseconds per unit of work (see Commands) that passes of this name took when they were last measured, or
-  /// `otherwise`.
+  /// The cost of passes of this name in milliseconds per unit of work (Commands::Span), as last measured, or `otherwise` if
+  /// it is unknown.
   double costOf(const std::string& pass, double otherwise) const;
   void setCost(const std::string& pass, double millisecondsPerUnit);
 
  private:
   const Device& device_;
-  std::mutex queueMutex_;  ///< of queue_ and submitted_
+  std::mutex queueMutex_;  ///< guards queue_ and submitted_
   VkQueue queue_;
   std::uint64_t submitted_ = 0;
-  OwnedSemaphore timeline_;  ///< has the number of the last submission that is complete
-  mutable std::mutex mutex_;  ///< of what follows
+  OwnedSemaphore timeline_;  ///< its value is the number of the last complete submission
+  mutable std::mutex mutex_;  ///< guards the members below
   std::vector<std::unique_ptr<CommandSlot>> idleSlots_;
   std::map<std::string, double> costs_;
 };

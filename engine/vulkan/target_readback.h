@@ -10,10 +10,10 @@
 
 namespace freevoxels {
 
-/// Copies a target to the host through a buffer that is kept for the next copy of so many bytes.
+/// Copies a target to the host through a buffer, which it keeps for the next copy of the same size.
 class TargetReadback {
  public:
-  /// Recorded behind what writes the target, which is in layout GENERAL and visible to transfers, and stays so.
+  /// Records the copy of a target that is in layout GENERAL and visible to transfers; the layout stays.
   void record(const Device& device, Commands& commands, const RenderTarget& target) {
     const std::uint64_t bytes =
         std::uint64_t(target.size().x) * std::uint64_t(target.size().y) * bytesPerPixel(target.format());
@@ -23,7 +23,7 @@ class TargetReadback {
     }
     commands.copy(target, buffer_);
   }
-  /// The pixels, row by row from the top, when the commands are complete.
+  /// Returns the pixels row by row from the top. Only valid after the commands are complete.
   template <typename Pixel>
   std::vector<Pixel> read() const {
     const auto* const pixels = reinterpret_cast<const Pixel*>(buffer_.mapped());

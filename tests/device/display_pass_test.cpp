@@ -63,10 +63,12 @@ TEST_F(DisplayPassTest, ShowsTheBytesOfThePngWriter) {
         ASSERT_EQ(found.size(), expected.size());
         int largest = 0, different = 0;
         for (std::size_t i = 0; i < found.size(); ++i) {
+          if (found[i | 3] == 0 && expected[i | 3] == 0) continue;  // invisible, of any colour
           largest = std::max(largest, std::abs(int(found[i]) - int(expected[i])));
           different += found[i] != expected[i] ? 1 : 0;
         }
-        EXPECT_LE(largest, map == ToneMap::None ? 0 : 1);
+        EXPECT_LE(largest, map == ToneMap::None ? 0 : 1)
+            << "tone map " << int(map) << ", exposure " << exposure << (background ? ", background" : "");
         EXPECT_LE(different, int(found.size() / 1000));
       }
 }
