@@ -9,7 +9,6 @@
 #include "engine/gathering/gather_stages.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/validation/gather_checks.h"
-#include "engine/vulkan/target_readback.h"
 
 namespace freevoxels::test {
 
@@ -54,7 +53,7 @@ struct SteppedGather : GatherOutputs {
     volume->describe(rays);
     if (alterQuads) alterQuads(device, volume->quads(rays.mainAxis));
 
-    const SplatTargets targets = makeImageTargets(device, settings);
+    const SplatTargets targets = makeTargets(device, settings, TargetKind::Image);
     run([&](Commands& commands) {
       for (const RenderTarget* target : targets.all())
         commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kStage, kStage);
@@ -76,7 +75,7 @@ struct SteppedGather : GatherOutputs {
     stages.lattice = {.samples = rays.samples, .pitch = double(rays.pitch), .first = rays.firstSample};
     for (std::size_t level = 0; level < stages.medium.size() && level < medium.size(); ++level)
       if (stages.blocks[level].exists()) stages.medium[level] = medium[level];
-    stages.image = readImage(targets, settings);
+    stages.image = downloadImage(device, targets);
     return stages;
   }
 
@@ -86,16 +85,6 @@ struct SteppedGather : GatherOutputs {
     Commands commands(device);
     record(commands);
     commands.submitAndWait();
-  }
-  Image readImage(const SplatTargets& targets, const FrameSettings& settings) const {
-    Commands commands(device);
-    const TargetReadback color(device, commands, targets.colorEnergy);
-    std::optional<TargetReadback> depth;
-    if (settings.depth) depth.emplace(device, commands, targets.distance);
-    commands.submitAndWait();
-    return {.size = settings.size,
-            .pixels = color.read<glm::vec4>(),
-            .depth = depth ? depth->read<float>() : std::vector<float>()};
   }
 };
 

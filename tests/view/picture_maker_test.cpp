@@ -11,7 +11,7 @@ class PictureMakerTest : public DeviceTest {
  protected:
   static PictureRequest litCloud() {
     PictureRequest request;
-    request.scene.input = {.input = "procedural:cloud", .grid = std::nullopt, .resolution = 24};
+    request.scene.input = {.input = "procedural:cloud", .grid = std::nullopt, .resolution = glm::ivec3(24)};
     request.scene.camera.size = {48, 48};
     request.scene.lighting.lights.push_back({.light = {.place = {0.0, 1.0, 0.0}}});
     return request;
