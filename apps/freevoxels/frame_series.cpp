@@ -152,7 +152,8 @@ void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<co
       return drawVolume(std::move(volume), frames);
     } catch (const Error& error) {
       if (file) level = std::max(level, finestLevel(*file, maximumVoxels(device_)));  // which is the one that was opened
-      if (error.code() != ExitCode::OutOfMemory || level + 1 >= levels) throw;
+      // The processes of a group cannot change the level each by itself.
+      if (error.code() != ExitCode::OutOfMemory || level + 1 >= levels || options_.group != nullptr) throw;
       spdlog::warn("{}; drawing it at 1/{} of its resolution", error.what(), 1 << (level + 1));
     }
     report_ = before;
@@ -240,6 +241,7 @@ void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, std::span<con
   addTimes(report_.stages, built);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (options_.group != nullptr && !options_.group->draws(drawn_)) {
+      drawnElsewhere_.push_back(&frames[i]);
       ++drawn_;
       continue;
     }
@@ -314,9 +316,17 @@ void FrameSeries::printNames(const Frame& frame) {
   std::fflush(stdout);
 }
 
+void FrameSeries::printDrawnElsewhere() {
+  for (const Frame* frame : drawnElsewhere_) printNames(*frame);
+}
+
 void FrameSeries::writeEmpty(const Frame& frame) {
   if (!reference_) {
     waiting_.push_back(&frame);
+    return;
+  }
+  if (!options_.leads()) {
+    ++drawn_;
     return;
   }
   const FrameSettings settings = options_.frameSettings();

@@ -46,6 +46,8 @@ class FrameSeries {
   /// are the steps of a full turn. Of several volumes, one that holds nothing becomes an image of the background, and one that
   /// cannot be read is left out: its error is printed, and at the end ExitCode::Input is thrown.
   void draw(std::span<const Frame> frames);
+  /// Prints the names of frames that other processes of the group drew, when these are done.
+  void printDrawnElsewhere();
 
  private:
   void drawFilm(std::span<const Frame> frames);
@@ -75,6 +77,7 @@ class FrameSeries {
   std::optional<Scene> reference_;    ///< the first frame's with a fixed view, else the last one's
   BackgroundWriter writer_;
   const Frame* written_ = nullptr;  ///< that `writer_` is writing
+  std::vector<const Frame*> drawnElsewhere_;  ///< frames of other processes of the group
   std::vector<const Frame*> waiting_;  ///< empty frames before any frame that says how they are seen
 };
 

@@ -73,10 +73,12 @@ void RenderOptions::run(std::span<const Frame> frames) const {
     RunReport report;
     report.stages.push_back({"open device", millisecondsSince(start), false});
     checkFrameFits(opened, frameSettings());
-    FrameSeries(*this, opened, report).draw(frames);
+    FrameSeries series(*this, opened, report);
+    series.draw(frames);
     report.totalMilliseconds = millisecondsSince(start);
     logStages(report);
-    if (group != nullptr) group->logStages(report);
+    if (group != nullptr) group->logStages(report);  // when all processes have written their frames
+    series.printDrawnElsewhere();
     if (!leads()) return;
     scene.save(report.options);
     if (timings) writeTimings(*timings, report);
