@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <openvdb/openvdb.h>
+#include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <unistd.h>
 
@@ -350,6 +351,16 @@ TEST_F(Vdb, AFullDiskIsReportedAndLeavesNothing) {
   };
   EXPECT_EXIT(test::exitWithErrorOnLimitedDisk(folder.path(), 65536, writeLarge),
               testing::ExitedWithCode(int(ExitCode::Output)), "cloud.vdb");
+}
+
+TEST_F(Vdb, ALevelSetIsTheSameWithABackgroundOf0) {
+  const FloatGrid::Ptr sphere = openvdb::tools::createLevelSetSphere<FloatGrid>(20.0f, openvdb::Vec3f(0.0f), 1.0f);
+  write({sphere});
+  const Volume before = read();
+  openvdb::tools::changeBackground(sphere->tree(), 0.0f);
+  write({sphere});
+  EXPECT_EQ(read().dimensions, before.dimensions);
+  EXPECT_EQ(describeVdb(file).at(0).renderDimensions, before.dimensions);
 }
 
 /// As files of instances have them: the second grid has the first one's tree and a transform of its own.
