@@ -8,6 +8,7 @@
 #include "engine/gathering/gather_pass.h"
 #include "engine/gathering/gather_stages.h"
 #include "engine/octree/volume_builder.h"
+#include "engine/renderer.h"
 #include "engine/validation/gather_checks.h"
 
 namespace freevoxels::test {
