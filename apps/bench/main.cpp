@@ -172,7 +172,10 @@ nlohmann::ordered_json toJson(const Device& device, const Results& results) {
 void measureCluster(const Device& device, bool quick, const std::string& svg) {
   const std::vector<bench::Scaling> scalings = bench::cluster(device, quick ? 128 : 512);
   for (const std::string& line : bench::tableLines(scalings)) fmt::print("{}\n", line);
-  if (!svg.empty()) writeTextAtomically(svg, svgPlot(bench::speedUpPlot(scalings)));
+  if (svg.empty()) return;
+  std::string plot = svgPlot(bench::speedUpPlot(scalings));
+  plot.insert(std::string_view("<svg").size(), R"( xmlns="http://www.w3.org/2000/svg")");  // a file of its own needs its namespace
+  writeTextAtomically(svg, plot);
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ class PlotWriter {
 
   std::string write() {
     layLegend();
-    add(R"(<svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox="0 0 {} {:.0f}" role="img" aria-label="{}">)", kWidth, height_,
+    add(R"(<svg class="plot" viewBox="0 0 {} {:.0f}" role="img" aria-label="{}">)", kWidth, height_,
         escapeHtml(plot_.caption));
     axes();
     for (std::size_t i = 0; i < plot_.series.size(); ++i) line(i);
