@@ -1,4 +1,5 @@
 # The longest tests begin first, so that none of them is left for one processor in the end.
-set_tests_properties(ValidateCommand.PassesOnSmallVolumesAndSaysSoLineByLine
+set_tests_properties(RealVolumes.FiresShine
+                     ValidateCommand.PassesOnSmallVolumesAndSaysSoLineByLine
                      MemoryLimit.SparseSmokeIn512CubedTakesLessThanAGibibyteOfHostAndDevice
                      PROPERTIES COST 1000)

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 /// Groups of --help that say how a command runs, not what its images show.
-constexpr std::array<std::string_view, 6> kOfTheRun{"Options", "Scene", "Device", "Messages", "Window", "Sequence"};
+constexpr std::array<std::string_view, 7> kOfTheRun{"Options", "Scene", "Device", "Messages", "Window", "Sequence", "Cluster"};
 
 bool isFlag(const CLI::Option& option) {
   return option.get_items_expected_max() == 0;

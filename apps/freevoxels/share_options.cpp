@@ -9,7 +9,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr const char* kGroup = "Shares";
+constexpr const char* kGroup = "Cluster";
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void ShareOptions::add(CLI::App& app) {
       ->take_last()
       ->type_name("I/N")
       ->group(kGroup);
-  app.add_flag("--sums", sums, "Write the sums of the part, an .exr that 'freevoxels merge' adds up with the others, instead of a picture")
+  app.add_flag("--sums", sums, "Write the sums of the part, an .exr that 'freevoxels merge' adds up with the others, instead of an image")
       ->group(kGroup);
 }
 

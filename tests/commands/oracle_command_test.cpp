@@ -91,7 +91,7 @@ TEST_F(OracleCommand, BadInputsAndOptionsAreRefused) {
   expectCleanRefusal("oracle procedural:cloud @none/a.exr", ExitCode::Output, "a.exr");
   expectCleanRefusal("oracle procedural:cloud", ExitCode::Usage, "OUT");
   expectCleanRefusal("oracle procedural:cloud @a.exr @a.exr", ExitCode::Usage, "same file");
-  expectCleanRefusal("oracle procedural:cloud @a.jpg", ExitCode::Usage, "a.jpg");
+  expectCleanRefusal("oracle procedural:cloud @a.tif", ExitCode::Usage, "a.tif");
   expectCleanRefusal("oracle procedural:cloud @a.png --code linear8", ExitCode::Usage, "--code");
   expectCleanRefusal("oracle procedural:cloud @a.png --up 0,0,0", ExitCode::Usage, "--up");
   expectCleanRefusal("oracle procedural:cloud @a.png --transfer-function @none.json", ExitCode::Input,
