@@ -30,8 +30,9 @@ std::uint64_t threadsOf(const shader::CompactPush& push) {
   return std::uint64_t(push.groupCount) * shader::kOccupancyThreads;
 }
 
-/// The arguments that compact_scan.comp writes.
-shader::ChunkArguments chunkArguments(std::uint32_t first, std::uint32_t count) {
+}  // namespace
+
+shader::ChunkArguments drawArguments(std::uint32_t first, std::uint32_t count) {
   return {.groupsX = (count + shader::kSplatThreads - 1) / shader::kSplatThreads,
           .groupsY = 1,
           .groupsZ = 1,
@@ -42,8 +43,6 @@ shader::ChunkArguments chunkArguments(std::uint32_t first, std::uint32_t count) 
           .quadVertexCount = 4,
           .quadInstanceCount = count};
 }
-
-}  // namespace
 
 CompactionPass::CompactionPass(const Device& device)
     : device_(device),
@@ -72,7 +71,7 @@ void CompactionPass::allocate(BlockList& list, std::uint64_t count) const {
   std::vector<shader::ChunkArguments> chunks;
   for (std::uint64_t first = 0; first == 0 || first < count; first += shader::kSplatsPerChunk)
     chunks.push_back(
-        chunkArguments(std::uint32_t(first), std::uint32_t(std::min<std::uint64_t>(count - first, shader::kSplatsPerChunk))));
+        drawArguments(std::uint32_t(first), std::uint32_t(std::min<std::uint64_t>(count - first, shader::kSplatsPerChunk))));
   list.chunkCount = std::uint32_t(chunks.size());
   list.indices =
       Buffer(device_, std::max<std::uint64_t>(count, 1) * sizeof(std::uint32_t), MemoryUse::Device, "occupied blocks");

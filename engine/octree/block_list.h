@@ -16,6 +16,9 @@ struct BlockList {
   std::uint32_t chunkCount = 0;
 };
 
+/// Arguments of the dispatch and the draws of `count` blocks of a list from `first` on, as compact_scan.comp writes them.
+shader::ChunkArguments drawArguments(std::uint32_t first, std::uint32_t count);
+
 /// COMPUTE compact_count.comp, compact_scan.comp, compact_write.comp: counts, lists and ranks the blocks that
 /// OccupancyPass marked as occupied. The count is read back in between, so that a list takes memory for the
 /// occupied blocks only.

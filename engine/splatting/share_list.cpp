@@ -36,18 +36,6 @@ shader::ShareFrame shareFrame(const DeviceVolume& volume, const ChunkShares& dea
   return frame;
 }
 
-shader::ChunkArguments drawArguments(std::uint32_t first, std::uint32_t count) {
-  return {.groupsX = (count + shader::kSplatThreads - 1) / shader::kSplatThreads,
-          .groupsY = 1,
-          .groupsZ = 1,
-          .splatCount = count,
-          .firstSplat = first,
-          .vertexCount = count,
-          .instanceCount = 1,
-          .quadVertexCount = 4,
-          .quadInstanceCount = count};
-}
-
 }  // namespace
 
 ShareList::ShareList(const Device& device, const BuiltVolume& built)
