@@ -8,7 +8,7 @@
 #include "engine/attenuation/table_levels.h"
 #include "engine/attenuation/table_pruning.h"
 #include "engine/core/error.h"
-#include "engine/gathering/gather_pass.h"
+#include "engine/gathering/gather_part.h"
 #include "engine/lighting/light_pass.h"
 #include "engine/octree/block_list.h"
 #include "engine/octree/device_volume.h"
@@ -41,6 +41,7 @@ struct Renderer::State {
   std::unique_ptr<ShareDrawing> shares;
   std::optional<GatherVolume> gatherVolume;
   std::optional<GatherPass> gather;
+  std::optional<GatherPartPass> gatherPart;
   std::optional<LightPass> lights;
   TargetPool targetPool;
   TargetReadback colorReadback, distanceReadback;
@@ -64,11 +65,19 @@ struct Renderer::State {
   Frame prepareSplats(Commands& commands, const Camera& camera, const FrameSettings& settings, const Progress& progress);
   Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
                      const Progress& progress = {});
-  void prepareGather(const GatherVolume::Shading& shading, const Progress& progress);
+  struct Gathering {
+    FrameSettings settings;
+    FrameConstants constants;
+    shader::GatherFrame lattice;
+  };
+  Gathering prepareGather(const Camera& camera, const FrameSettings& wanted, const Progress& progress);
+  void prepareVolume(const GatherVolume::Shading& shading, const Progress& progress);
   std::shared_ptr<const SplatTargets> recordGather(Commands& commands, const Camera& camera,
                                                    const FrameSettings& settings, const Progress& progress);
   std::shared_ptr<const SplatTargets> recordImage(Commands& commands, const Camera& camera,
                                                   const FrameSettings& settings, const Progress& progress);
+  FixedSums gatherShares(const Camera& camera, const FrameSettings& settings, const SharePart& part, const Progress& progress);
+  FixedSums splatShares(const Camera& camera, const FrameSettings& settings, const SharePart& part, const Progress& progress);
 };
 
 VolumeMemory Renderer::State::memoryOfVolume() const {
@@ -240,7 +249,7 @@ Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const C
 
 /// What the gather keeps of the volume for further frames is made by a submission of its own, so that a frame that is
 /// abandoned while its image is drawn leaves it complete.
-void Renderer::State::prepareGather(const GatherVolume::Shading& shading, const Progress& progress) {
+void Renderer::State::prepareVolume(const GatherVolume::Shading& shading, const Progress& progress) {
   try {
     if (!gatherVolume) gatherVolume.emplace(device, hostVolume, classification, built, frameTimes);
     gatherVolume->prepare(shading, frameTimes);
@@ -255,43 +264,74 @@ void Renderer::State::prepareGather(const GatherVolume::Shading& shading, const 
   }
 }
 
-/// Reads the image in the targets, without their optical depth.
-std::shared_ptr<const SplatTargets> Renderer::State::recordGather(Commands& commands, const Camera& camera,
-                                                                  const FrameSettings& wanted,
-                                                                  const Progress& progress) {
+/// All that a gathered frame needs before its samples are marched.
+Renderer::State::Gathering Renderer::State::prepareGather(const Camera& camera, const FrameSettings& wanted, const Progress& progress) {
   frameTimes.clear();
   lastDrawn = nullptr;
   lastLackedRays = false;
-  FrameSettings settings = resolved(wanted);
+  Gathering frame{.settings = resolved(wanted), .constants = {}, .lattice = {}};
+  FrameSettings& settings = frame.settings;
+  FrameConstants& constants = frame.constants;
   settings.attenuation = AttenuationLookup::Exact;
-  FrameConstants constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
+  constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
   const bool lightsSamples = GatherVolume::lightsSamples(built.volume, settings.lighting ? &*settings.lighting : nullptr);
   const bool shadesVoxels = settings.lighting && !lightsSamples;
   if ((shadesVoxels || constants.detail.coarsest > 0) && !built.hasBlocks()) {
     builtWithBlocks(progress);
     constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
   }
-  const std::shared_ptr<const SplatTargets> targets = targetPool.take(device, settings, TargetKind::Image);
-  shader::GatherFrame lattice =
-      makeGatherFrame(built.volume, camera, settings, constants.detail, constants.hiddenTransmittance);
-  constants.detail.finest = lattice.finest;
+  frame.lattice = makeGatherFrame(built.volume, camera, settings, constants.detail, constants.hiddenTransmittance);
+  constants.detail.finest = frame.lattice.finest;
   const bool ofScalars = built.volume.scalarBricks.has_value() && lightsSamples;
   const AttenuationTable* read = nullptr;
   if (constants.lightsReadTable && !lightsSamples)
     read = constants.detail.coarsest > 0 ? &tableWithLevels(progress) : &sweptTable(progress);
   if (settings.lighting)
     constants.setup.lighting = lights->prepare(built.volume, tableSettings, settings, ofScalars, frameTimes, progress);
-  const GatherVolume::Shading shading{
-      .frame = constants,
-      .table = read,
-      .lighting = settings.lighting ? &*settings.lighting : nullptr,
-      .lights = settings.lighting ? &lights->lights() : nullptr,
-      .axes = {someRayHasAxis(lattice, 0), someRayHasAxis(lattice, 1), someRayHasAxis(lattice, 2)}};
-  prepareGather(shading, progress);
+  prepareVolume({.frame = constants,
+                 .table = read,
+                 .lighting = settings.lighting ? &*settings.lighting : nullptr,
+                 .lights = settings.lighting ? &lights->lights() : nullptr,
+                 .axes = {someRayHasAxis(frame.lattice, 0), someRayHasAxis(frame.lattice, 1), someRayHasAxis(frame.lattice, 2)}},
+                progress);
   if (!gather) gather.emplace(device);
-  gatherVolume->describe(lattice);
-  gather->record(commands, *gatherVolume, lattice, *targets);
+  gatherVolume->describe(frame.lattice);
+  return frame;
+}
+
+/// Reads the image in the targets, without their optical depth.
+std::shared_ptr<const SplatTargets> Renderer::State::recordGather(Commands& commands, const Camera& camera,
+                                                                  const FrameSettings& wanted,
+                                                                  const Progress& progress) {
+  const Gathering frame = prepareGather(camera, wanted, progress);
+  const std::shared_ptr<const SplatTargets> targets = targetPool.take(device, frame.settings, TargetKind::Image);
+  gather->record(commands, *gatherVolume, frame.lattice, *targets);
   return targets;
+}
+
+FixedSums Renderer::State::gatherShares(const Camera& camera, const FrameSettings& settings, const SharePart& part,
+                                        const Progress& progress) {
+  const Gathering frame = prepareGather(camera, settings, progress);
+  if (!gatherPart) gatherPart.emplace(device);
+  Commands commands(device);
+  gatherPart->record(commands, *gather, *gatherVolume, built.volume, frame.lattice, frame.constants.eye, part,
+                     sumsLayout(built.volume, frame.constants, frame.settings));
+  commands.submitAndWait(progress);
+  addTimes(frameTimes, commands.times());
+  const StageTimer timer(frameTimes, "copy to host");
+  return gatherPart->read();
+}
+
+FixedSums Renderer::State::splatShares(const Camera& camera, const FrameSettings& settings, const SharePart& part,
+                                       const Progress& progress) {
+  Commands commands(device);
+  const Frame frame = prepareSplats(commands, camera, settings, progress);
+  if (!shares || shares->hasDistance() != settings.depth) shares = std::make_unique<ShareDrawing>(device, built, settings.depth);
+  const SplatPass::Inputs drawing = recordList(commands, frame);
+  FixedSums layout = sumsLayout(built.volume, frame.constants, settings);
+  const std::optional<int> wholeLevel = lastWasCut ? std::nullopt : std::optional(lastLevel);
+  return shares->draw(commands, {*splats, drawing, wholeLevel, frame.constants, *frame.targets, std::move(layout)}, part, frameTimes,
+                      progress);
 }
 
 std::shared_ptr<const SplatTargets> Renderer::State::recordImage(Commands& commands, const Camera& camera,
@@ -394,15 +434,16 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
   State& state = *state_;
   FrameSettings settings = wanted;
   settings.cullThreshold = 0.0f;
-  Commands commands(state.device);
-  const State::Frame frame = state.prepareSplats(commands, camera, settings, progress);
-  if (!state.shares || state.shares->hasDistance() != settings.depth)
-    state.shares = std::make_unique<ShareDrawing>(state.device, state.built, settings.depth);
-  const SplatPass::Inputs drawing = state.recordList(commands, frame);
-  FixedSums layout = sumsLayout(state.built.volume, frame.constants, settings);
-  const std::optional<int> wholeLevel = state.lastWasCut ? std::nullopt : std::optional(state.lastLevel);
-  return state.shares->draw(commands, {*state.splats, drawing, wholeLevel, frame.constants, *frame.targets, std::move(layout)}, part,
-                            state.frameTimes, progress);
+  state.lastLackedGather = false;
+  if (drawsByGathering(settings)) {
+    try {
+      return state.gatherShares(camera, settings, part, progress);
+    } catch (const Error& error) {
+      if (settings.draw != Draw::Auto || error.code() != ExitCode::OutOfMemory) throw;
+    }
+    state.lastLackedGather = true;
+  }
+  return state.splatShares(camera, settings, part, progress);
 }
 
 VolumeMemory Renderer::memory() const {

@@ -59,8 +59,8 @@ class Renderer {
   GatherStages renderGatherStages(const Camera& camera, const FrameSettings& settings);
 
   /// The sums of the shares of a part in fixed point: those of all parts add up to the same bits, however many parts there are, on
-  /// devices of one kind. resolveSums makes the image. Drawn by splats, with nothing left out as hidden. `settings.composite` must
-  /// not be Sorted. Fails with ExitCode::OutOfMemory.
+  /// devices of one kind. resolveSums makes the image. Drawn as render() would, by gathering or by splats, with nothing left out as
+  /// hidden. `settings.composite` must not be Sorted. Fails with ExitCode::OutOfMemory.
   FixedSums renderShares(const Camera& camera, const FrameSettings& settings, const SharePart& part, const Progress& progress = {});
 
   /// Memory of the volume, including the table even if no frame has read it.

@@ -5,7 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
-#include "share_interface.h"
+#include "fixed_point.glsl"
 
 layout(constant_id = 0) const bool kWithDistance = false;
 
@@ -38,35 +38,11 @@ float reduction(vec4 sums) {
   return most > kMostOfRange ? kMostOfRange / most : 1.0;
 }
 
-// |x| 2^digits, rounded to the nearest integer, low and high word: the float's 24 bits of mantissa are shifted, so that nothing is
-// rounded that is at least 2^(23 - digits). At most 2^kSumBits - 1; `fits` becomes false beyond.
-uvec2 fixedPoint(float x, int digits, inout bool fits) {
-  const uint bits = floatBitsToUint(abs(x));
-  if (bits < 0x00800000u) return uvec2(0);  // 0, and what has less than 24 bits
-  const uint mantissa = (bits & 0x007fffffu) | 0x00800000u;
-  const int shift = int(bits >> 23) - 150 + digits;
-  if (shift < -24) return uvec2(0);
-  if (shift < 0) return uvec2((mantissa + (1u << (-shift - 1))) >> -shift, 0);
-  if (shift == 0) return uvec2(mantissa, 0);
-  if (shift <= kSumBits - 24) return uvec2(mantissa << shift, mantissa >> (32 - shift));
-  fits = false;
-  return uvec2(0xffffffffu, (1u << (kSumBits - 32)) - 1);
-}
-
 void add(uint channel, uint pixel, float x, int digits, inout bool fits) {
   if (x == 0.0) return;
   const uint place = channel * uint(push.extent.x * push.extent.y) + pixel;
-  uvec2 value = fixedPoint(x, digits, fits);
-  uint carry;
-  if (x < 0.0) {  // two's complement
-    value.x = uaddCarry(~value.x, 1u, carry);
-    value.y = ~value.y + carry;
-  }
   Sums sums = Sums(push.sums);
-  uvec2 sum = sums.values[place];
-  sum.x = uaddCarry(sum.x, value.x, carry);
-  sum.y += value.y + carry;
-  sums.values[place] = sum;
+  sums.values[place] = addFixed(sums.values[place], x, digits, fits);
 }
 
 void accumulate(ivec2 pixel) {

@@ -9,8 +9,10 @@
 #include "gather_ray.glsl"
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
+#include "fixed_point.glsl"
 #include "packed_light.glsl"
 #include "packed_gradient.glsl"
+#include "ray_lookup.glsl"
 #include "transfer_table.glsl"
 
 layout(constant_id = 0) const int kAxis = 2;        // rays with another axis are marched by other dispatches
@@ -24,9 +26,10 @@ layout(constant_id = 9) const int kAmbient = 0;       // channels of ambient lig
 layout(constant_id = 7) const bool kTinted = false;   // whether the extinction differs between the colours of light
 layout(constant_id = 8) const bool kSurfaces = false;
 layout(constant_id = 5) const bool kPieces = false;   // whether quads are in more than one piece
+layout(constant_id = 11) const bool kParts = false;   // whether only the bricks of a part are marched (GatherPart)
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
-layout(binding = 1) uniform utextureBuffer brickNumbers;
+layout(binding = 1) uniform utextureBuffer brickNumbers;     // with kParts, bricks of the part have kOwnBrick
 // Each quad has two neighbours along the first side, at this position and at the next one along the second
 // side.
 layout(binding = 2) uniform utextureBuffer mediumQuads;      // extinctions, four halves; or four codes of scalars
@@ -44,6 +47,8 @@ layout(binding = 12) uniform utextureBuffer lightQuads3;
 layout(binding = 13) uniform utextureBuffer lightQuads4;
 layout(binding = 14) uniform utextureBuffer lightQuads5;
 layout(binding = 15) uniform utextureBuffer lightQuads6;
+layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer PartSums { uvec2 values[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Overflow { uint overflow; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MediumPiece { uvec2 values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Gradients { uint values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SourcePiece { uvec4 values[]; };
@@ -70,6 +75,7 @@ struct Ray {
   float layer;          // world length of the ray in a slice of the level, times the unit of extinction
   vec3 toEye;           // unit vector in world space
   float edge;           // edge of a block in voxels
+  float perSlice;       // distance from the eye plane that the ray moves in a slice of the level, world units
 };
 
 // The geometry of a level, read once for each level.
@@ -87,7 +93,17 @@ struct Sums {
   vec3 color;
   float distance;       // sum of e times slices from the eye
   float transmittance;
+  // With kParts, the sums are those of one brick, and the optical depth is summed up too:
+  float depth;
+  float begin;          // transmittance in front of the brick
+  int brick;            // 0 if none was entered
 };
+
+// With kParts: sums of the bricks so far, in fixed point (SumChannel), whether they were in range, and the brick of the last quad if it
+// belongs to the part, otherwise 0.
+uvec2 partSums[6];
+bool partFits = true;
+int ownBrick = 0;
 
 // The weights of a quad's two neighbours along a side; sets `low` to the quad that has them.
 vec2 sideWeights(float position, int count, out int low) {
@@ -99,11 +115,15 @@ vec2 sideWeights(float position, int count, out int low) {
   return weights;
 }
 
-// The position of a block on the sides and the axis.
+// The brick at a position on the sides and the axis.
 int brickAt(Slices level, ivec3 place) {
   const ivec3 cell = place >> kBrickLevels;
-  return int(texelFetch(brickNumbers, level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
-                                          cell.z * level.cellStrides.z).x);
+  const uint brick = texelFetch(brickNumbers, level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
+                                                  cell.z * level.cellStrides.z).x;
+  if (!kParts) return int(brick);
+  const int number = int(brick & ~kOwnBrick);
+  ownBrick = (brick & kOwnBrick) != 0 ? number : 0;
+  return number;
 }
 
 // The quad of four blocks around a position on a slice, and their weights.
@@ -155,6 +175,7 @@ void addPart(inout Sums sums, vec4 medium, float length, float ahead, Lit lit, v
   sums.color += sums.transmittance * length * leaving * medium.rgb;
   sums.distance += (sums.transmittance - rest) * max(ahead, 0.0);
   sums.transmittance = rest;
+  if (kParts) sums.depth += depth;
 }
 
 float lightDepth(int slot, int quad, vec4 weights) {
@@ -201,6 +222,47 @@ vec3 voxelPosition(Ray ray, float slice) {
   position[kSideA] = sides.x;
   position[kSideB] = sides.y;
   return (position + 0.5) * ray.edge - 0.5;
+}
+
+// The transmittance between the eye and a position on a ray, in slices of the level, from the eye's rays. The planes of their face may lie
+// across another axis than the ray's slices: the depth is then interpolated between the ray's positions on the planes around.
+float transmittanceBefore(Ray ray, float slice) {
+  if ((slice - ray.eye) * ray.direction <= 0.0) return 1.0;
+  vec3 along;
+  along[kAxis] = ray.direction;
+  along[kSideA] = ray.slope.x * ray.direction;
+  along[kSideB] = ray.slope.y * ray.direction;
+  const FaceRays fan = frame.part.fans[fanIndex(along)];
+  const vec3 layer = along / abs(along[fan.axis]);
+  // Depths in front of a layer are those half a layer before its plane.
+  const vec3 position = voxelPosition(ray, slice) + (kScalars ? 0.0 : 0.5) * layer;
+  const float plane = (position[fan.axis] - float(fan.firstPlane)) * float(fan.direction);
+  const float part = max(plane - floor(plane + 1e-3), 0.0);
+  const float before = rayTransmittance(fan, position - part * layer);
+  if (part < 1e-3) return before;
+  return pow(max(before, 1e-30), 1.0 - part) * pow(max(rayTransmittance(fan, position + (1.0 - part) * layer), 1e-30), part);
+}
+
+// Adds the sums of the last brick to those of the part.
+void endBrick(inout Sums sums, Ray ray) {
+  if (sums.brick == 0) return;
+  const GatherPart part = frame.part;
+  [[unroll]] for (int c = 0; c < 3; ++c)
+    partSums[c] = addFixed(partSums[c], frame.sourceUnit * sums.color[c], part.colorDigits, partFits);
+  partSums[3] = addFixed(partSums[3], sums.begin - sums.transmittance, part.energyDigits, partFits);
+  partSums[4] = addFixed(partSums[4], min(sums.depth, kMostBrickDepth), part.depthDigits, partFits);
+  partSums[5] = addFixed(partSums[5], ray.perSlice * sums.distance, part.distanceDigits, partFits);
+  sums.brick = 0;
+}
+
+// Begins the sums of a brick where the ray first meets its medium, from the position `slice` on.
+void enterBrick(inout Sums sums, Ray ray, int brick, float slice) {
+  if (sums.brick == brick) return;
+  endBrick(sums, ray);
+  sums.brick = brick;
+  sums.color = vec3(0.0);
+  sums.distance = sums.depth = 0.0;
+  sums.begin = sums.transmittance = transmittanceBefore(ray, slice);
 }
 
 vec4 extinctionsOf(int quad) {
@@ -284,23 +346,42 @@ void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
   vec4 weights;
   const int quad = quadAt(level, ray.origin + ray.slope * float(slice), slice, weights);
   const float ahead = (float(slice) - ray.eye) * ray.direction;
+  const vec4 medium = mediumAt(quad, weights, extinctionsOf(quad), ray.toEye);
+  if (kParts) {
+    if (ownBrick == 0 || medium == vec4(0.0)) return;
+    enterBrick(sums, ray, ownBrick, float(slice) - 0.5 * ray.direction);
+  }
   Lit lit;
-  addPart(sums, mediumAt(quad, weights, extinctionsOf(quad), ray.toEye), ray.layer * partInFront(ahead), ahead, lit, ray.toEye);
+  addPart(sums, medium, ray.layer * partInFront(ahead), ahead, lit, ray.toEye);
+}
+
+// For classified blocks that are lit at samples: the values on a slice.
+Found litAt(Slices level, Ray ray, int slice, bool within) {
+  vec4 weights;
+  const int quad = quadAt(level, ray.origin + ray.slope * float(slice), slice, weights);
+  Found found;
+  found.medium = within ? mediumAt(quad, weights, extinctionsOf(quad), ray.toEye) : vec4(0.0);
+  found.depths = depthsTowardsLights(quad, weights);
+  found.ambient = ambientAt(quad, weights);
+  found.coverage = found.medium.a > 0.0 ? 1.0 : 0.0;
+  found.gradient = vec3(0.0);
+  found.hasGradient = false;
+  return found;
 }
 
 // For classified blocks that are lit at samples: the stretch from the previous slice. The depth towards a
 // light changes along it as the depth towards the eye does, since both are integrals of the same extinction.
 void addLitStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within) {
-  const int there = within ? slice : slice - int(ray.direction);
-  vec4 weights;
-  const int quad = quadAt(level, ray.origin + ray.slope * float(there), there, weights);
-  const vec4 extinctions = extinctionsOf(quad);
-  Found found = last;
-  found.medium = within ? mediumAt(quad, weights, extinctions, ray.toEye) : vec4(0.0);
-  found.depths = depthsTowardsLights(quad, weights);
-  found.ambient = ambientAt(quad, weights);
-  found.coverage = found.medium.a > 0.0 ? 1.0 : 0.0;
+  Found found = litAt(level, ray, within ? slice : slice - int(ray.direction), within);
+  const int brick = ownBrick;
   const vec4 medium = 0.5 * (last.medium + found.medium);
+  if (kParts) {
+    if (brick == 0 || medium == vec4(0.0)) {
+      last = found;
+      return;
+    }
+    enterBrick(sums, ray, brick, float(slice) - ray.direction);
+  }
   const float ahead = (float(slice) - ray.eye) * ray.direction;
   Lit lit;
   lit.begin = last.depths.x < 0.0 ? max(found.depths - ray.layer * medium.a, vec4(0.0)) : last.depths;
@@ -309,8 +390,6 @@ void addLitStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int
   lit.ambientChange = found.ambient - lit.ambientBegin;
   lit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
   if (kSurfaces) {
-    found.hasGradient = false;
-    found.gradient = vec3(0.0);
     lit.surface = 0.0;
     if (sums.transmittance * ray.layer * medium.a > kLeastShaded) {
       findGradients(last, found, level, ray, slice);
@@ -350,6 +429,9 @@ Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye
   found.behind = found.scalar + even - odd;
   found.change = whole ? change : vec2(0.0);
   tableAt(found.scalar, found.integral, found.medium);
+  found.arriving = vec4(-1.0);
+  found.gradient = vec3(0.0);
+  found.hasGradient = false;
   found.light = vec3(1.0);
   if (kLit) {
     // Voxels that are not occupied have no light; that of the others counts.
@@ -419,7 +501,7 @@ float changeAcross(float scalar, float reach) {
 void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within) {
   const int there = within ? slice : slice - int(ray.direction);
   Found found = scalarAt(level, ray.origin + ray.slope * float(there), there, 0.5 * ray.direction * ray.slope, ray.toEye);
-  found.arriving = vec4(-1.0);
+  const int brick = ownBrick;
   if (!within) found.coverage = 0.0;
   const float coverage = 0.5 * (last.coverage + found.coverage);
   Found first = last, second = found;
@@ -431,6 +513,14 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
   tableAt(middle, integral, medium);
   vec4 near = meanBetween(first.scalar, first.integral, first.medium, middle, integral, medium);
   vec4 far = meanBetween(middle, integral, medium, second.scalar, second.integral, second.medium);
+  if (kParts) {
+    if (brick == 0 || coverage == 0.0 || near.a + far.a == 0.0) {
+      last = found;
+      return;
+    }
+    enterBrick(sums, ray, brick, float(slice) - ray.direction);
+    last.arriving = vec4(-1.0);  // as it may have been computed for another brick, less exactly
+  }
   if (kLit) {
     near.rgb *= mix(first.light, second.light, 0.25);
     far.rgb *= mix(first.light, second.light, 0.75);
@@ -447,8 +537,6 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
     farLit.ambientBegin = first.ambient + nearLit.ambientChange;
     nearLit.position = farLit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
     if (kSurfaces) {
-      found.hasGradient = false;
-      found.gradient = vec3(0.0);
       nearLit.surface = farLit.surface = 0.0;
       if (sums.transmittance * (nearLayer * near.a + farLayer * far.a) > 2.0 * kLeastShaded) {
         findGradients(last, found, level, ray, slice);
@@ -513,6 +601,17 @@ ivec2 slicesOnRay(Slices level, Ray ray, ivec2 slices) {
   return ivec2(max(int(floor(range.x)), slices.x), min(int(ceil(range.y)), slices.y - 1));
 }
 
+Found nothingFound() {
+  Found nothing;
+  nothing.coverage = nothing.scalar = nothing.ahead = nothing.behind = 0.0;
+  nothing.integral = nothing.medium = vec4(0.0);
+  nothing.light = nothing.gradient = nothing.ambient = vec3(0.0);
+  nothing.change = vec2(0.0);
+  nothing.hasGradient = false;
+  nothing.depths = nothing.arriving = vec4(-1.0);
+  return nothing;
+}
+
 // For scalars one more slice is marched, which ends the last stretch.
 void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool scalars) {
   const int direction = int(ray.direction);
@@ -520,22 +619,14 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
   int slice = direction > 0 ? slices.x : slices.y;
   int left = slices.y - slices.x + 1;
   if (left <= 0) return;
+  const int begin = slice;
   if (scalars || kSampled) ++left;
-  Found last;
-  last.coverage = 0.0;
-  last.scalar = 0.0;
-  last.integral = last.medium = vec4(0.0);
-  last.light = vec3(0.0);
-  last.change = vec2(0.0);
-  last.gradient = vec3(0.0);
-  last.hasGradient = false;
-  last.depths = last.arriving = vec4(-1.0);
-  last.ambient = vec3(0.0);
+  Found last = nothingFound();
   // The loops test their conditions at the end: lavapipe executes the body of other loops once more, masked.
   do {
     int empty;
     do {
-      empty = emptyGroups(level, ray, slice, last.coverage > 0.0 ? 1 : 0) * ray.group;
+      empty = emptyGroups(level, ray, slice, kParts || last.coverage > 0.0 ? 1 : 0) * ray.group;
       if (empty > 0) {
         last.coverage = 0.0;
         last.hasGradient = false;
@@ -546,6 +637,12 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
       left -= empty;
     } while (empty > 0 && left > 0);
     if (left > 0) {
+      // What other bricks have in front of this one may have been skipped.
+      if (kParts && (scalars || kSampled) && slice != begin) {
+        const int before = slice - direction;
+        last = scalars ? scalarAt(level, ray.origin + ray.slope * float(before), before, 0.5 * ray.direction * ray.slope, ray.toEye)
+                       : litAt(level, ray, before, true);
+      }
       const int rest = left - min(left, ray.group);
       do {
         if (!scalars && kSampled)
@@ -558,7 +655,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
         --left;
       } while (left > rest);
     }
-  } while (left > 0 && sums.transmittance > end);
+  } while (left > 0 && (kParts || sums.transmittance > end));
 }
 
 Slices slicesOf(int number) {
@@ -575,9 +672,18 @@ Slices slicesOf(int number) {
   return slices;
 }
 
+void storePart(ivec2 place) {
+  const int number = place.x + frame.part.extent.x * place.y, samples = frame.part.extent.x * frame.part.extent.y;
+  PartSums sums = PartSums(frame.part.sums);
+  [[unroll]] for (int c = 0; c < 6; ++c)
+    sums.values[c * samples + number] = partSums[c];
+  if (!partFits) atomicOr(Overflow(frame.part.overflow).overflow, 1u);
+}
+
 void main() {
-  const ivec2 index = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(index, frame.samples))) return;
+  ivec2 index = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(index, kParts ? frame.part.extent : frame.samples))) return;
+  if (kParts) index += frame.part.first;
   const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);
   const vec3 components = alongAxes(position);
   if (marchAxis(position, components) != kAxis) return;
@@ -588,7 +694,9 @@ void main() {
   const vec2 middle = vec2(dot(frame.axes[kAxis].middle[0], position), dot(frame.axes[kAxis].middle[1], position)) / along;
   const float middlePlane = frame.axes[kAxis].middlePlane;
   const float eye = dot(frame.axes[kAxis].eye, position);
-  Sums sums = Sums(vec3(0.0), 0.0, 1.0);
+  Sums sums = Sums(vec3(0.0), 0.0, 1.0, 0.0, 1.0, 0);
+  if (kParts)
+    [[unroll]] for (int c = 0; c < 6; ++c) partSums[c] = uvec2(0);
   float distance = 0.0;  // sum of e times world distance from the eye plane
   for (int number = frame.finest; number <= frame.coarsest; ++number) {
     // In blocks of the level, the centre of whose first is at half an edge minus half a voxel.
@@ -603,10 +711,16 @@ void main() {
     ray.layer = length(world) / abs(along) * edge * frame.extinctionUnit;
     ray.toEye = -normalize(world);
     ray.edge = edge;
+    ray.perSlice = edge / abs(along);
     const ivec2 slices = slicesOnRay(level, ray, frame.axes[kAxis].slices[along > 0.0 ? 1 : 0][number]);
     sums.distance = 0.0;
-    if (sums.transmittance > frame.end) march(sums, level, ray, slices, frame.end, kScalars && number == 0);
-    distance += sums.distance * edge / abs(along);
+    if (kParts || sums.transmittance > frame.end) march(sums, level, ray, slices, frame.end, kScalars && number == 0);
+    distance += ray.perSlice * sums.distance;
+    if (kParts) endBrick(sums, ray);
+  }
+  if (kParts) {
+    storePart(index - frame.part.first);
+    return;
   }
   // For a ray that ended before the volume, what lies behind counts like what is in front.
   const float energy = 1.0 - sums.transmittance;

@@ -44,6 +44,11 @@ FV_CONSTANT float kFootprintVariance = 0.1624f;
 FV_CONSTANT float kLeastAlong = 0.5f;
 FV_CONSTANT int kObliqueGroup = kSkipGroup / 2;
 
+// The bit of a brick's number that says that the brick belongs to the part that is drawn, and the largest optical depth that a brick adds to
+// its sample: what is behind that is invisible.
+FV_CONSTANT uint kOwnBrick = 0x80000000u;
+FV_CONSTANT float kMostBrickDepth = 16.0f;
+
 // How rays meet the slices of blocks across one index axis. Pixel positions (x, y) are relative to the
 // image's middle. The sides are the other two axes in ascending order. Values are affine in the position:
 // value . (1, x, y).
@@ -78,7 +83,18 @@ struct SampleLight {
   vec3 across;         // at infinity the direction towards it in index space, of the length of a layer
 };
 
+// A frame of which only some bricks are marched (engine/gathering/gather_part.h). Each of their sums is computed with the
+// transmittance of the eye's rays (ray_sweep.comp) in front of it, and added in fixed point.
+struct GatherPart {
+  FaceRays fans[6];      // the eye's rays; depths up to the planes for voxels that are classified after interpolation, otherwise in front of layers
+  ivec2 first, extent;   // the rectangle of the lattice that has sums
+  uvec2 sums;            // device address of the sums: [channel][sample of the rectangle], low word and high word
+  uvec2 overflow;        // device address of a word that becomes 1 if a sum is beyond its range
+  int colorDigits, energyDigits, depthDigits, distanceDigits;  // behind the binary point
+};
+
 struct GatherFrame {
+  GatherPart part;        // only where the dispatch is specialised for parts
   SampleLight lights[kMostSampleLights];
   vec3 tint;              // factor of the extinction between light and voxel
   float phaseG;

@@ -109,7 +109,7 @@ void Merge::checkComplete() const {
 ExrOptions pictureHeader(const Merge& merge, const OutputOptions& output) {
   ExrOptions header = merge.header();
   header.metadata["freevoxels:share"] = sharePartText({});
-  header.metadata.erase("freevoxels:method");
+  for (const char* ofSums : {"freevoxels:method", "freevoxels:lattice"}) header.metadata.erase(ofSums);
   header.fullFloat = output.fullFloat;
   return header;
 }

@@ -43,9 +43,6 @@ void ShareOptions::add(CLI::App& app) {
 FrameSettings sharedSettings(FrameSettings settings) {
   if (settings.composite == Composite::Sorted)
     fail(ExitCode::Usage, "a sorted image cannot be divided into shares: leave --composite sorted out");
-  if (settings.draw == Draw::Gather)
-    fail(ExitCode::Usage, "--draw gather cannot be divided into shares: leave it out, or use --draw splats");
-  settings.draw = Draw::Splats;
   settings.cullThreshold = 0.0f;
   return settings;
 }

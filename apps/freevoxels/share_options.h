@@ -25,8 +25,7 @@ struct ShareOptions {
 SharePart readSharePart(const std::string& name, const std::string& text);
 std::string sharePartText(const SharePart& part);
 
-/// Settings of a frame that is drawn share by share: by splats, and none left out as hidden, which other shares' sums would have to
-/// tell. Fails with ExitCode::Usage where a method was asked for that cannot be divided.
+/// Settings of a frame that is drawn share by share: nothing is left out as hidden, which other shares' sums would have to tell. Fails with ExitCode::Usage where a method was asked for that cannot be divided.
 FrameSettings sharedSettings(FrameSettings settings);
 
 }  // namespace freevoxels

@@ -56,7 +56,7 @@ std::vector<std::string> gather(const std::string& text, int rank, int size) {
 }
 
 std::string layoutText(const FixedSums& sums) {
-  return fmt::format("{}x{} {}x{}+{}+{} {}", sums.size.x, sums.size.y, sums.extent.x, sums.extent.y, sums.first.x, sums.first.y,
+  return fmt::format("{} {}x{} {}x{}+{}+{} {}", sums.lattice ? latticeText(*sums.lattice) : "pixels", sums.size.x, sums.size.y, sums.extent.x, sums.extent.y, sums.first.x, sums.first.y,
                      fmt::join(sums.digits, " "));
 }
 

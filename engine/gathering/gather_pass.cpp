@@ -13,10 +13,10 @@ namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 
-Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume) {
+Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, bool parts) {
   return makeComputePipeline(device, shaders::gather, {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.hasScalars(), volume.isLit(),
                               volume.inPieces(), std::uint32_t(volume.sampleLights()), volume.isTinted(), volume.hasSurfaces(),
-                              std::uint32_t(volume.ambientChannels()), std::uint32_t(volume.octaves())});
+                              std::uint32_t(volume.ambientChannels()), std::uint32_t(volume.octaves()), parts});
 }
 
 /// Bindings of the stencil and of the upsampling.
@@ -68,24 +68,37 @@ void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
   commands.update(frame_, frame);
 }
 
-void GatherPass::recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
-  makeRoom(gathered_, std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y));
+void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
+                                 const TexelView& numbers, const TexelView& skips, glm::ivec2 extent, bool parts) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
     const GatherVolume::Quads& quads = volume.quads(axis);
     std::vector<Binding> bindings{&frame_,
-                                  &volume.brickNumbers(),
+                                  &numbers,
                                   &quads.medium.texels,
                                   &quads.source.texels,
                                   &quads.towards.texels,
                                   &gathered_.colorEnergyTexels,
                                   &gathered_.distanceTexels,
                                   &volume.transferTable(),
-                                  &volume.skips()};
+                                  &skips};
     for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
-    commands.dispatch(makeGather(device_, axis, volume), bindings, glm::ivec3(frame.samples, 1));
+    commands.dispatch(makeGather(device_, axis, volume, parts), bindings, glm::ivec3(extent, 1));
   }
+}
+
+void GatherPass::recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
+  makeRoom(gathered_, std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y));
+  dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), frame.samples, false);
   commands.barrier(kCompute, kCompute);
+}
+
+void GatherPass::recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
+                            const TexelView& skips) {
+  commands.beginPass("gather");
+  begin(commands, frame);
+  makeRoom(gathered_, 1);  // a binding needs a buffer
+  dispatchSamples(commands, volume, frame, numbers, skips, frame.part.extent, true);
 }
 
 std::vector<Binding> GatherPass::imageBindings(const Sums& from, const Sums& to, const SplatTargets& targets) const {

@@ -32,6 +32,9 @@ class GatherPass {
   void begin(Commands& commands, const shader::GatherFrame& frame);
   void recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
   void recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets);
+  /// The sums of the bricks of a part, in fixed point, instead of those of all samples. `frame.part` is filled in.
+  void recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
+                  const TexelView& skips);
   /// Nothing where the lattice is that of the pixels.
   void recordUpsampling(Commands& commands, const shader::GatherFrame& frame, const SplatTargets& targets);
 
@@ -48,6 +51,8 @@ class GatherPass {
     TexelView colorEnergyTexels, distanceTexels;
   };
   void makeRoom(Sums& sums, std::uint64_t samples);
+  void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
+                       const TexelView& skips, glm::ivec2 extent, bool parts);
   std::vector<GatherSums> download(const Sums& sums) const;
   std::vector<Binding> imageBindings(const Sums& from, const Sums& to, const SplatTargets& targets) const;
 

@@ -9,7 +9,6 @@
 #include "embedded/brick_quads.h"
 #include "embedded/shade_blocks.h"
 #include "engine/core/error.h"
-#include "engine/volume/coarse_cells.h"
 #include "engine/volume/packed_light.h"
 
 namespace freevoxels {
@@ -79,13 +78,17 @@ void GatherVolume::makeBricks(std::vector<StageTime>& times) {
     cells = coarserCells(cells);
   }
 
-  std::vector<std::uint32_t> numbers;
+  std::vector<std::uint32_t>& numbers = cells_.numbers;
   std::vector<std::uint8_t> skips;
   constexpr int kOutside = 1 << 29;
   std::vector<glm::ivec4> bricks{glm::ivec4(kOutside)};  // the empty one
   for (int number = 0; number <= top; ++number) {
-    const Cells& brickCells = around[std::size_t(std::min(number + shader::kBrickLevels, top) - finest)];
-    const Cells skipCells = groupsToSkip(met[std::size_t(std::min(number + shader::kSkipLevels, top) - finest)]);
+    const int brickLevel = std::min(number + shader::kBrickLevels, top), skipLevel = std::min(number + shader::kSkipLevels, top);
+    const Cells& brickCells = around[std::size_t(brickLevel - finest)];
+    cells_.met.push_back(met[std::size_t(skipLevel - finest)]);
+    cells_.bricks.push_back(brickCells.dimensions);
+    cells_.cellsPerBrick.push_back(1 << (brickLevel - skipLevel));
+    const Cells skipCells = groupsToSkip(cells_.met.back());
     levels_.push_back({.dimensions = hierarchy.levels[std::size_t(number)].dimensions,
                        .firstCell = int(numbers.size()),
                        .cellStrides = brickCells.strides(),

@@ -13,6 +13,7 @@
 #include "engine/lighting/ambient_pass.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/splatting/splat_pass.h"
+#include "engine/volume/coarse_cells.h"
 #include "shaders/gather_interface.h"
 
 namespace freevoxels {
@@ -61,6 +62,17 @@ class GatherVolume {
   };
   /// By level, of the levels that the last frame read as blocks; others are empty. For validation and tests. Waits.
   std::vector<GatherBlocks> downloadBlocks() const;
+
+  /// The bricks and the cells that rays skip, on the host, where parts of the volume are chosen.
+  struct BrickCells {
+    std::vector<std::uint32_t> numbers;  ///< of the bricks, by level and cell (GatherLevel); 0 is the empty brick
+    std::vector<Cells> met;              ///< by level: cells in which, or in whose next neighbours, there is something
+    std::vector<glm::ivec3> bricks;      ///< by level: number of cells that may be bricks along the axes
+    std::vector<int> cellsPerBrick;      ///< by level: cells of `met` along the edge of a brick, 1 or 2
+  };
+  const BrickCells& cells() const { return cells_; }
+  const std::vector<shader::GatherLevel>& levels() const { return levels_; }
+  std::uint32_t brickCount() const { return firstBricks_.back(); }
 
   const TexelView& skips() const { return skipTexels_; }
   const TexelView& brickNumbers() const { return brickNumberTexels_; }
@@ -122,6 +134,7 @@ class GatherVolume {
   Buffer sources_;       ///< by rank: packed source term, extinction as a half
   Buffer towards_;       ///< by rank: three signed normalised bytes
   TexelView brickNumberTexels_, skipTexels_, brickCellTexels_;
+  BrickCells cells_;
   std::vector<shader::GatherLevel> levels_;
   std::vector<std::uint32_t> firstBricks_;  ///< first brick of each level, and the total number
   std::uint32_t bricksPerPiece_ = 0;

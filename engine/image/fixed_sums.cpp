@@ -14,7 +14,7 @@ double FixedSums::value(SumChannel channel, std::size_t i) const {
 }
 
 bool FixedSums::isLike(const FixedSums& other) const {
-  return size == other.size && first == other.first && extent == other.extent && channels == other.channels &&
+  return size == other.size && lattice == other.lattice && first == other.first && extent == other.extent && channels == other.channels &&
          std::equal(digits.begin(), digits.begin() + channels, other.digits.begin()) && method == other.method;
 }
 
@@ -25,7 +25,53 @@ FixedSums& FixedSums::operator+=(const FixedSums& other) {
   return *this;
 }
 
+namespace {
+
+glm::dvec3 colorOf(const FixedSums& sums, std::size_t i) {
+  return {sums.value(SumChannel::Red, i), sums.value(SumChannel::Green, i), sums.value(SumChannel::Blue, i)};
+}
+
+/// Light (rgb) and alpha of a pixel.
+glm::dvec4 resolved(const FixedSums& sums, std::size_t i, bool normalised) {
+  const double energy = sums.value(SumChannel::Energy, i);
+  const glm::dvec3 color = colorOf(sums, i);
+  if (!normalised) return {color, energy};
+  const double alpha = -std::expm1(-sums.value(SumChannel::OpticalDepth, i));
+  return {color * (energy > 0.0 ? alpha / energy : 1.0), alpha};
+}
+
+/// Where the interpolated depth in front of an opaque edge hides what a sample shows, its sums are nearly 0: below this part of alpha its
+/// colour is that of the samples around it.
+constexpr double kLeastEnergy = 0.01;
+
+Image resolveSamples(const FixedSums& sums) {
+  const SampleLattice& lattice = *sums.lattice;
+  FV_CHECK_EQ(sums.channels, kSumChannels);  // the interpolation needs distances
+  std::vector<LatticeSample> samples(std::size_t(lattice.samples.x) * std::size_t(lattice.samples.y));
+  for (std::size_t i = 0; i < sums.pixelCount(); ++i) {
+    const glm::ivec2 own = {int(i) % sums.extent.x, int(i) / sums.extent.x};
+    const double alpha = -std::expm1(-sums.value(SumChannel::OpticalDepth, i));
+    const bool isHidden = sums.value(SumChannel::Energy, i) < kLeastEnergy * alpha;
+    const glm::ivec2 low = isHidden ? glm::max(own - 1, glm::ivec2(0)) : own, high = isHidden ? glm::min(own + 1, sums.extent - 1) : own;
+    LatticeSample sum;
+    for (int y = low.y; y <= high.y; ++y)
+      for (int x = low.x; x <= high.x; ++x) {
+        const std::size_t at = std::size_t(x) + std::size_t(sums.extent.x) * std::size_t(y);
+        sum.color += glm::dvec4(colorOf(sums, at), sums.value(SumChannel::Energy, at));
+        sum.distance += sums.value(SumChannel::Distance, at);
+      }
+    const double scale = sum.color.a > 0.0 ? alpha / sum.color.a : 1.0;
+    const glm::ivec2 place = sums.first + own;
+    samples[std::size_t(place.x) + std::size_t(lattice.samples.x) * std::size_t(place.y)] = {
+        {scale * glm::dvec3(sum.color), alpha}, scale * sum.distance};
+  }
+  return resolveLattice(lattice, sums.size, samples);
+}
+
+}  // namespace
+
 Image resolveSums(const FixedSums& sums, bool normalised) {
+  if (sums.lattice) return resolveSamples(sums);
   Image image{.size = sums.size};
   const auto pixels = std::size_t(sums.size.x) * std::size_t(sums.size.y);
   const bool hasDistance = sums.channels == kSumChannels;
@@ -36,12 +82,7 @@ Image resolveSums(const FixedSums& sums, bool normalised) {
     const auto y = std::size_t(sums.first.y) + i / std::size_t(sums.extent.x);
     const std::size_t pixel = x + std::size_t(sums.size.x) * y;
     const double energy = sums.value(SumChannel::Energy, i);
-    glm::dvec4 result(sums.value(SumChannel::Red, i), sums.value(SumChannel::Green, i), sums.value(SumChannel::Blue, i), energy);
-    if (normalised) {
-      const double alpha = -std::expm1(-sums.value(SumChannel::OpticalDepth, i));
-      result = glm::dvec4(glm::dvec3(result) * (energy > 0.0 ? alpha / energy : 1.0), alpha);
-    }
-    image.pixels[pixel] = glm::vec4(result);
+    image.pixels[pixel] = glm::vec4(resolved(sums, i, normalised));
     if (hasDistance && energy > 0.0) image.depth[pixel] = float(sums.value(SumChannel::Distance, i) / energy);
   }
   return image;

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/image/image.h"
+#include "engine/image/sample_lattice.h"
 
 namespace freevoxels {
 
@@ -26,14 +28,18 @@ inline constexpr int kValueBits = 55;
 
 struct FixedSums {
   glm::ivec2 size{0};                ///< of the image, pixels
-  glm::ivec2 first{0}, extent{0};    ///< the rectangle of the image outside of which all sums are 0
-  int channels = kSumChannels;       ///< kSumChannels, or one less without Distance
+  /// Where the frame is gathered: the sums are those of samples of the image instead of pixels.
+  std::optional<SampleLattice> lattice = std::nullopt;
+  glm::ivec2 first{0}, extent{0};    ///< the rectangle of pixels or samples outside of which all sums are 0
+  int channels = kSumChannels;       ///< kSumChannels, or one less without Distance, which a lattice always has
   SumDigits digits{};
   /// How the transmittances were computed, if that depends on a device's memory: sums of different methods
   /// must not be added.
   std::string method;
   std::vector<std::int64_t> values;  ///< [channel][row of the rectangle, from the top][column]
 
+  /// Of what the rectangle is a part: pixels or samples.
+  glm::ivec2 fullSize() const { return lattice ? lattice->samples : size; }
   std::size_t pixelCount() const { return std::size_t(extent.x) * std::size_t(extent.y); }
   /// The value of pixel `i` of the rectangle.
   double value(SumChannel channel, std::size_t i) const;
@@ -44,8 +50,8 @@ struct FixedSums {
 };
 
 /// Resolves the sums to an image, as resolve.comp does, in double precision on the host. Normalised: alpha is
-/// 1 - exp(-optical depth) and the colour is C alpha / E; otherwise alpha is E and the colour is C. The image
-/// has depth if there are distances.
+/// 1 - exp(-optical depth) and the colour is C alpha / E; otherwise alpha is E and the colour is C. Samples of a lattice are always
+/// normalised, and then interpolated at the pixels. The image has depth if there are distances.
 Image resolveSums(const FixedSums& sums, bool normalised);
 
 /// A file of sums: the sums and the header.

@@ -25,6 +25,7 @@ namespace {
 constexpr std::array<const char*, kSumChannels> kNames{"red", "green", "blue", "energy", "depth", "distance"};
 constexpr std::int64_t kMostPixels = std::int64_t(1) << 30;
 constexpr const char* kMethod = "freevoxels:method";
+constexpr const char* kLattice = "freevoxels:lattice";  ///< only where the sums are those of samples
 
 std::string digitsName(int channel) {
   return fmt::format("freevoxels:digits.{}", kNames[std::size_t(channel)]);
@@ -63,6 +64,7 @@ Imf::Header makeHeader(const FixedSums& sums, const ExrOptions& options) {
     header.insert(digitsName(c), Imf::IntAttribute(sums.digits[std::size_t(c)]));
   }
   header.insert(kMethod, Imf::StringAttribute(sums.method));
+  if (sums.lattice) header.insert(kLattice, Imf::StringAttribute(latticeText(*sums.lattice)));
   insertOptions(header, options);
   return header;
 }
@@ -84,11 +86,15 @@ FixedSums readLayout(const std::filesystem::path& file, const Imf::Header& heade
   const Imath::Box2i window = header.dataWindow(), display = header.displayWindow();
   FixedSums sums{.size = {display.max.x + 1, display.max.y + 1}, .first = {window.min.x, window.min.y}};
   sums.extent = glm::ivec2(window.max.x, window.max.y) - sums.first + 1;
+  if (const auto* lattice = header.findTypedAttribute<Imf::StringAttribute>(kLattice)) sums.lattice = latticeOf(lattice->value());
+  const glm::ivec2 full = sums.fullSize();
+  const bool hasDistance = header.channels().findChannel("distance.high") != nullptr;
   if (display.min.x != 0 || display.min.y != 0 || std::int64_t(sums.size.x) * sums.size.y > kMostPixels ||
-      glm::any(glm::lessThan(sums.first, glm::ivec2(0))) || glm::any(glm::greaterThan(sums.first + sums.extent, sums.size)))
+      std::int64_t(full.x) * full.y > kMostPixels || glm::any(glm::lessThan(sums.first, glm::ivec2(0))) ||
+      glm::any(glm::greaterThan(sums.first + sums.extent, full)) || (sums.lattice && !hasDistance))
     fail(ExitCode::Input, "cannot read '{}': its rectangle of sums is not inside of its image; render this share again",
          file.string());
-  sums.channels = header.channels().findChannel("distance.high") != nullptr ? kSumChannels : kSumChannels - 1;
+  sums.channels = hasDistance ? kSumChannels : kSumChannels - 1;
   for (int c = 0; c < sums.channels; ++c)
     sums.digits[std::size_t(c)] = header.typedAttribute<Imf::IntAttribute>(digitsName(c)).value();
   sums.method = header.typedAttribute<Imf::StringAttribute>(kMethod).value();

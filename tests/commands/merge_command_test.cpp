@@ -90,7 +90,6 @@ TEST_F(MergeCommandTest, WhatCannotBeSharedIsRefused) {
   expectCleanRefusal(render + "@a.png --share 0/2 --sums", ExitCode::Usage, "--sums");
   expectCleanRefusal(render + "@a.exr @b.exr --share 0/2 --sums", ExitCode::Usage, "--sums");
   expectCleanRefusal(render + "@a.exr --share 0/2 --sums --composite sorted", ExitCode::Usage, "sorted");
-  expectCleanRefusal(render + "@a.exr --share 0/2 --sums --draw gather", ExitCode::Usage, "gather");
   expectCleanRefusal(render + "@a.exr --share 0/2 --sums --float", ExitCode::Usage, "--float");
 }
 

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/image/metrics.h"
 #include "engine/renderer.h"
+#include "engine/volume/scan.h"
 #include "engine/volume/subject.h"
 #include "tests/device/device_fixture.h"
 #include "tests/device/test_volumes.h"
@@ -47,6 +49,30 @@ class SharesTest : public DeviceTest {
     scene.settings = {.size = {48, 48}};
     return scene;
   }
+  /// A scan that is classified after interpolation, lit at samples, with surfaces.
+  static Scene scan() {
+    Scene scene{.name = "scan", .volume = makeProcedural("head", 40)};
+    scene.classification.transferFunction = scanTransferFunction(scene.volume);
+    scene.classification.order = ClassificationOrder::Post;
+    scene.camera = framingCamera(scene.volume, 35.0, 20.0, 1.0, {});
+    scene.settings = {.size = {72, 64}, .depth = true, .lighting = Lighting{.ambient = glm::dvec3(0.2)}};
+    scene.settings.lighting->lights = {{.place = {1.0, 0.7, 0.2}}};
+    scene.settings.lighting->surface = 0.5;
+    return scene;
+  }
+  static std::vector<Scene> gathered() {
+    std::vector<Scene> scenes{litFog(), fireFromInside(), levels(), scan()};
+    for (Scene& scene : scenes) {
+      scene.settings.draw = Draw::Gather;
+      scene.name += ", gathered";
+    }
+    return scenes;
+  }
+  static std::vector<Scene> all() {
+    std::vector<Scene> scenes = gathered();
+    for (Scene& scene : std::vector<Scene>{litFog(), fireFromInside(), levels()}) scenes.push_back(std::move(scene));
+    return scenes;
+  }
   /// Blocks of several levels in one frame, part of them outside of the image.
   static Scene levels() {
     Scene scene{.name = "levels", .volume = randomVolume({64, 64, 64}, cubeTransform({64, 64, 64}), 0.4, 8.0)};
@@ -59,7 +85,7 @@ class SharesTest : public DeviceTest {
 };
 
 TEST_F(SharesTest, SumsHaveTheSameBitsForAnyNumberOfProcesses) {
-  for (const Scene& scene : {litFog(), fireFromInside(), levels()}) {
+  for (const Scene& scene : all()) {
     SCOPED_TRACE(scene.name);
     Renderer renderer(device(), scene.volume, scene.classification, {});
     const FixedSums whole = renderer.renderShares(scene.camera, scene.settings, {});
@@ -76,7 +102,10 @@ TEST_F(SharesTest, EachOfAllSharesAloneAddsUpToTheWhole) {
   scene.settings.lighting.reset();
   scene.settings.size = {24, 24};
   Renderer renderer(device(), scene.volume, scene.classification, {});
-  EXPECT_EQ(total(renderer, scene, kShares).values, renderer.renderShares(scene.camera, scene.settings, {}).values);
+  for (const Draw draw : {Draw::Splats, Draw::Gather}) {
+    scene.settings.draw = draw;
+    EXPECT_EQ(total(renderer, scene, kShares).values, renderer.renderShares(scene.camera, scene.settings, {}).values);
+  }
 }
 
 TEST_F(SharesTest, TheImageIsThatOfAFrameThatIsDrawnAtOnce) {
@@ -93,6 +122,58 @@ TEST_F(SharesTest, TheImageIsThatOfAFrameThatIsDrawnAtOnce) {
     ASSERT_EQ(shared.depth.size(), expected.depth.size());
     for (std::size_t i = 0; i < shared.depth.size(); ++i)
       if (expected.pixels[i].a > 1e-4f) EXPECT_NEAR(shared.depth[i], expected.depth[i], 1e-5 * expected.depth[i]);
+  }
+}
+
+/// In front of its bricks a gathered part has the depths of the eye's rays, which are interpolated, in place of those that its own rays sum up.
+TEST_F(SharesTest, GatheredSharesAddUpToTheGatheredImage) {
+  for (const Scene& scene : gathered()) {
+    SCOPED_TRACE(scene.name);
+    Renderer renderer(device(), scene.volume, scene.classification, {});
+    const FixedSums sums = renderer.renderShares(scene.camera, scene.settings, {});
+    ASSERT_TRUE(sums.lattice);
+    const Image shared = resolveSums(sums, true), expected = renderer.render(scene.camera, scene.settings);
+    float brightest = 0.0f;
+    for (const glm::vec4& pixel : expected.pixels) brightest = std::max({brightest, pixel.r, pixel.g, pixel.b, pixel.a});
+    EXPECT_GT(psnr(shared, expected) + 20.0 * std::log10(brightest), 42.0);
+    ASSERT_EQ(shared.depth.size(), expected.depth.size());
+    for (std::size_t i = 0; i < shared.depth.size(); ++i)
+      if (expected.pixels[i].a > 0.5f) EXPECT_NEAR(shared.depth[i], expected.depth[i], 0.02 * expected.depth[i]);
+  }
+}
+
+/// Seen from the outside and from the inside, along all axes.
+TEST_F(SharesTest, GatheredSharesOfAHomogeneousBoxHaveItsTransmittance) {
+  const double sigma = 2.0;
+  const Volume box = makeVolume({32, 32, 32}, cubeTransform({32, 32, 32}), [&](int, int, int) { return 1.0; });
+  Renderer renderer(device(), box, {.densityScale = sigma}, {});
+  for (const glm::dvec3 way : {glm::dvec3(0, 0, 1), glm::dvec3(0, 1, 0), glm::dvec3(-1, 0, 0)})
+    for (const double distance : {0.2, 3.0}) {
+      Camera camera{.position = distance * way, .lookAt = glm::dvec3(0.0), .up = {way.y, way.z, way.x}};
+      camera.verticalFov = 5.0;
+      FixedSums sums = renderer.renderShares(camera, {.size = {8, 8}, .draw = Draw::Gather}, {0, 2});
+      sums += renderer.renderShares(camera, {.size = {8, 8}, .draw = Draw::Gather}, {1, 2});
+      const double length = std::min(distance, 0.5) + 0.5;
+      EXPECT_NEAR(resolveSums(sums, true).pixels[4 * 8 + 4].a, 1.0 - std::exp(-sigma * length), 0.01) << distance;
+    }
+}
+
+/// The device's stencil and interpolation against those of the host, which parts are resolved with.
+TEST_F(SharesTest, HostResolvesALatticeAsTheDeviceDoes) {
+  for (const Scene& scene : {gathered()[0], gathered()[3]}) {
+    SCOPED_TRACE(scene.name);
+    Renderer renderer(device(), scene.volume, scene.classification, {});
+    FrameSettings settings = scene.settings;
+    settings.size *= 4;
+    const GatherStages stages = renderer.renderGatherStages(scene.camera, settings);
+    const SampleLattice lattice = *renderer.renderShares(scene.camera, settings, {0, kShares}).lattice;
+    EXPECT_FALSE(lattice.isPixels(settings.size));
+    std::vector<LatticeSample> samples;
+    for (const GatherSums& sum : stages.gathered) samples.push_back({{sum.color, sum.energy}, sum.distance});
+    const Image image = resolveLattice(lattice, settings.size, samples);
+    EXPECT_LE(largestDifference(image, stages.image), 2e-5);
+    for (std::size_t i = 0; i < image.depth.size(); ++i)
+      if (image.pixels[i].a > 0.01f) EXPECT_NEAR(image.depth[i], stages.image.depth[i], 1e-3 * image.depth[i]);
   }
 }
 
@@ -119,7 +200,7 @@ TEST_F(SharesTest, RectangleHoldsAllThatIsDrawn) {
 
 /// Half a unit of each of 256 shares, against the frame's largest sums.
 TEST_F(SharesTest, RoundingIsBelowATenMillionthOfTheBrightest) {
-  for (const Scene& scene : {litFog(), fireFromInside(), levels()}) {
+  for (const Scene& scene : all()) {
     SCOPED_TRACE(scene.name);
     Renderer renderer(device(), scene.volume, scene.classification, {});
     const FixedSums sums = renderer.renderShares(scene.camera, scene.settings, {});
@@ -136,13 +217,14 @@ TEST_F(SharesTest, OpaqueAndEmptyVolumesResolveAsTheyAre) {
   const auto cube = [](double density) { return makeVolume({20, 20, 20}, cubeTransform({20, 20, 20}), [&](int, int, int) { return density; }); };
   const Volume opaque = cube(1e6), empty = cube(0.0);
   const Camera camera = framingCamera(opaque, 35.0, 25.0, 1.0, {});
-  const FrameSettings settings{.size = {32, 32}};
-  Renderer ofOpaque(device(), opaque, {}, {});
-  const Image image = resolveSums(ofOpaque.renderShares(camera, settings, {}), true);
-  EXPECT_EQ(image.pixels[32 * 16 + 16].a, 1.0f);
-  EXPECT_LE(largestDifference(image, ofOpaque.render(camera, settings)), 1e-4);
-  Renderer ofEmpty(device(), empty, {}, {});
-  for (const glm::vec4& pixel : resolveSums(ofEmpty.renderShares(camera, settings, {1, 2}), true).pixels) EXPECT_EQ(pixel, glm::vec4(0.0f));
+  Renderer ofOpaque(device(), opaque, {}, {}), ofEmpty(device(), empty, {}, {});
+  for (const Draw draw : {Draw::Splats, Draw::Gather}) {
+    const FrameSettings settings{.size = {32, 32}, .draw = draw};
+    const Image image = resolveSums(ofOpaque.renderShares(camera, settings, {}), true);
+    EXPECT_NEAR(image.pixels[32 * 16 + 16].a, 1.0f, 2e-6f);  // the stencil knows no less transmittance than 1e-6
+    EXPECT_LE(largestDifference(image, ofOpaque.render(camera, settings)), draw == Draw::Splats ? 1e-4 : 0.02);
+    for (const glm::vec4& pixel : resolveSums(ofEmpty.renderShares(camera, settings, {1, 2}), true).pixels) EXPECT_EQ(pixel, glm::vec4(0.0f));
+  }
 }
 
 }  // namespace

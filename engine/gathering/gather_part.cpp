@@ -1,0 +1,161 @@
+#include "engine/gathering/gather_part.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include "engine/core/error.h"
+#include "engine/storage/hilbert.h"
+#include "engine/volume/coarse_cells.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
+/// A ray adds at most 2^kMostBricksLog2 bricks' optical depths, of at most kMostBrickDepth = 2^4 each, within 63 bits.
+constexpr int kMostBricksLog2 = 12, kDepthDigits = 62 - 4 - kMostBricksLog2;
+constexpr int kMostChunkLevels = 2;  ///< a chunk has at most 2^this bricks along an edge
+constexpr std::uint64_t kChunksPerShare = 4;
+/// Samples around the image of the volume that its interpolation reaches.
+constexpr float kMargin = 2.0f;
+
+template <typename Visit>
+void forEachCell(glm::ivec3 size, const Visit& visit) {
+  glm::ivec3 cell;
+  for (cell.z = 0; cell.z < size.z; ++cell.z)
+    for (cell.y = 0; cell.y < size.y; ++cell.y)
+      for (cell.x = 0; cell.x < size.x; ++cell.x) visit(cell);
+}
+
+/// Of each brick, the position of its chunk among the chunks along the Hilbert curve. A chunk has 4^3 bricks, or fewer where there would be
+/// less than kChunksPerShare for each share: rays through a part pass slices of its neighbours too, so that large chunks cost less.
+std::vector<std::pair<std::uint64_t, glm::ivec3>> chunkPositions(const std::vector<glm::ivec3>& bricks, glm::ivec3 size) {
+  std::vector<std::pair<std::uint64_t, glm::ivec3>> positions;
+  for (int levels = kMostChunkLevels; levels >= 0; --levels) {
+    positions.clear();
+    for (const glm::ivec3 brick : bricks) positions.emplace_back(hilbertIndex(glm::uvec3(brick >> levels), hilbertBits(size)), brick);
+    std::ranges::stable_sort(positions, {}, &std::pair<std::uint64_t, glm::ivec3>::first);
+    std::uint64_t chunks = 0, last = ~std::uint64_t(0);
+    for (auto& [index, brick] : positions) {
+      if (index != last) ++chunks;
+      last = std::exchange(index, chunks - 1);
+    }
+    if (chunks >= kChunksPerShare * kShares) break;
+  }
+  return positions;
+}
+
+SampleLattice latticeOf(const shader::GatherFrame& frame, bool scalars, bool depth) {
+  SampleLattice lattice{.samples = frame.samples,
+                        .pitch = double(frame.pitch),
+                        .first = frame.firstSample,
+                        .mainAxis = frame.mainAxis,
+                        .pixelsPerVoxel = double(frame.pixelsPerVoxel),
+                        .orthographic = frame.orthographic != 0,
+                        .scalars = scalars,
+                        .depth = depth,
+                        .seenLow = frame.seenLow,
+                        .seenHigh = frame.seenHigh};
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    lattice.axes[axis] = {frame.axes[axis].along, frame.axes[axis].tilt, double(frame.axes[axis].tiltDepth)};
+  return lattice;
+}
+
+}  // namespace
+
+PartCells partCells(const GatherVolume::BrickCells& cells, const std::vector<shader::GatherLevel>& levels, const SharePart& part) {
+  PartCells result{.numbers = cells.numbers, .skips = {}};
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    const glm::ivec3 size = cells.bricks[level];
+    const auto numberAt = [&](glm::ivec3 cell) -> std::uint32_t& {
+      return result.numbers[std::size_t(levels[level].firstCell) + std::size_t(cell.x) +
+                            std::size_t(size.x) * (std::size_t(cell.y) + std::size_t(size.y) * std::size_t(cell.z))];
+    };
+    std::vector<glm::ivec3> bricks;
+    forEachCell(size, [&](glm::ivec3 cell) {
+      if (numberAt(cell) != 0) bricks.push_back(cell);
+    });
+    for (const auto& [position, cell] : chunkPositions(bricks, size))
+      if (part.holds(shareOf(position))) numberAt(cell) |= shader::kOwnBrick;
+
+    Cells met = cells.met[level], own(met.dimensions);
+    const int edge = cells.cellsPerBrick[level];
+    forEachCell(met.dimensions, [&](glm::ivec3 cell) { own.values[own.index(cell)] = (numberAt(cell / edge) & shader::kOwnBrick) != 0; });
+    own = spread(own, 0, 1);
+    for (std::size_t i = 0; i < met.values.size(); ++i) met.values[i] = met.values[i] != 0 && own.values[i] != 0;
+    const Cells skips = groupsToSkip(met);
+    result.skips.insert(result.skips.end(), skips.values.begin(), skips.values.end());
+  }
+  return result;
+}
+
+GatherPartPass::GatherPartPass(const Device& device)
+    : device_(device), rays_(device, "eye rays"), overflow_(device, sizeof(std::uint32_t), MemoryUse::Device, "overflow of sums") {}
+
+void GatherPartPass::choose(const GatherVolume& volume, const SharePart& part) {
+  if (part_ == part) return;
+  part_.reset();
+  const PartCells cells = partCells(volume.cells(), volume.levels(), part);
+  const auto make = [&](Buffer& buffer, TexelView& view, std::span<const std::byte> bytes, VkFormat format, const char* name) {
+    buffer = Buffer(device_, bytes.size(), MemoryUse::Device, name, kTexels);
+    upload(device_, buffer, bytes);
+    view = TexelView(device_, buffer, format);
+  };
+  make(numbers_, numberTexels_, std::as_bytes(std::span(cells.numbers)), VK_FORMAT_R32_UINT, "brick numbers of a part");
+  make(skips_, skipTexels_, std::as_bytes(std::span(cells.skips)), VK_FORMAT_R8_UINT, "cells that a part skips");
+  part_ = part;
+}
+
+void GatherPartPass::makeRoom() {
+  const std::uint64_t bytes = layout_.pixelCount() * kSumChannels * sizeof(std::int64_t);
+  if (sums_.bytes() >= bytes) return;
+  sums_ = {};  // not both at once
+  sums_ = Buffer(device_, bytes, MemoryUse::Device, "fixed-point sums");
+}
+
+void GatherPartPass::record(Commands& commands, GatherPass& gather, const GatherVolume& volume, const DeviceVolume& onDevice,
+                            const shader::GatherFrame& frame, const RaySource& eye, const SharePart& part, FixedSums layout) {
+  choose(volume, part);
+  layout_ = std::move(layout);
+  layout_.lattice = latticeOf(frame, volume.hasScalars(), layout_.channels == kSumChannels);
+  layout_.channels = kSumChannels;
+  layout_.method = "gather, " + layout_.method;
+  layout_.digits[std::size_t(SumChannel::OpticalDepth)] = kDepthDigits;
+  // Beyond the seen positions all sums are 0.
+  const glm::vec2 last = glm::vec2(frame.samples - 1);
+  const auto sampleAt = [&](glm::vec2 position) { return (position - frame.firstSample) / frame.pitch; };
+  layout_.first = glm::ivec2(glm::clamp(glm::floor(sampleAt(frame.seenLow)) - kMargin, glm::vec2(0.0f), last));
+  layout_.extent = glm::ivec2(glm::clamp(glm::ceil(sampleAt(frame.seenHigh)) + kMargin, glm::vec2(layout_.first), last)) - layout_.first + 1;
+  makeRoom();
+
+  rays_.record(commands, onDevice, eye, volume.hasScalars());
+  shader::GatherFrame whole = frame;
+  const auto digits = [&](SumChannel channel) { return layout_.digits[std::size_t(channel)]; };
+  whole.part = {.first = layout_.first,
+                .extent = layout_.extent,
+                .sums = addressWords(sums_.address()),
+                .overflow = addressWords(overflow_.address()),
+                .colorDigits = digits(SumChannel::Red),
+                .energyDigits = digits(SumChannel::Energy),
+                .depthDigits = digits(SumChannel::OpticalDepth),
+                .distanceDigits = digits(SumChannel::Distance)};
+  std::ranges::copy(rays_.fans(), whole.part.fans);
+  commands.clear(overflow_);
+  commands.barrier(kCompute | VK_PIPELINE_STAGE_2_TRANSFER_BIT, kCompute);
+  gather.recordPart(commands, volume, whole, numberTexels_, skipTexels_);
+  commands.barrier(kCompute, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+}
+
+FixedSums GatherPartPass::read() const {
+  std::uint32_t overflow = 0;
+  download(device_, overflow_, std::as_writable_bytes(std::span(&overflow, 1)));
+  FV_CHECK_EQ(overflow, 0u);
+  FixedSums sums = layout_;
+  sums.values.resize(sums.pixelCount() * kSumChannels);
+  download(device_, sums_, std::as_writable_bytes(std::span(sums.values)));
+  return sums;
+}
+
+}  // namespace freevoxels

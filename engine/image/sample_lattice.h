@@ -1,0 +1,53 @@
+#pragma once
+// The lattice of image samples of which the sums of a gathered frame are made, and the way from these sums to the pixels.
+
+#include <array>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/image/image.h"
+
+namespace freevoxels {
+
+/// All positions on the image are relative to its middle, in pixels. A value that is affine in the position is (1, x, y) . value.
+struct SampleLattice {
+  glm::ivec2 samples{0};
+  double pitch = 1.0;      ///< pixels between neighbouring samples
+  glm::dvec2 first{0.0};   ///< position of sample (0, 0)
+  /// Of each index axis of the volume: how a ray moves along it, and how a step along it looks on the image.
+  struct Axis {
+    glm::dvec3 along{0.0};   ///< affine: component of the ray's direction, per world unit of distance from the eye plane
+    glm::dvec2 tilt{0.0};    ///< pixels of a step at distance 1 in the image's middle; orthographic: anywhere
+    double tiltDepth = 0.0;  ///< change of the distance by a step
+    bool operator==(const Axis&) const = default;
+  };
+  std::array<Axis, 3> axes{};
+  int mainAxis = 2;                ///< along which rays march, except for those with less than kLeastAlong of their direction along it
+  double pixelsPerVoxel = 1.0;     ///< at distance 1; orthographic: anywhere
+  bool orthographic = false;
+  bool scalars = false;            ///< whether voxels are classified after interpolation
+  bool depth = false;              ///< whether the image has depth
+  glm::dvec2 seenLow{0.0}, seenHigh{0.0};  ///< range of positions in which the volume is visible
+
+  bool operator==(const SampleLattice&) const = default;
+  /// Whether every pixel is a sample of its own, so that nothing is interpolated.
+  bool isPixels(glm::ivec2 size) const { return pitch == 1.0 && samples == size; }
+};
+
+/// The lattice as one line of text, from which latticeOf makes an equal one.
+std::string latticeText(const SampleLattice& lattice);
+/// Throws std::invalid_argument if `text` is no lattice.
+SampleLattice latticeOf(const std::string& text);
+
+/// The premultiplied light (rgb), alpha (a) and mean distance times alpha of a sample.
+struct LatticeSample {
+  glm::dvec4 color{0.0};
+  double distance = 0.0;
+};
+
+/// What gather_stencil.comp and gather_upsample.comp compute, in double precision on the host: restores the round footprint of voxels
+/// and interpolates the samples at the pixels. `samples` are those of the whole lattice, x fastest.
+Image resolveLattice(const SampleLattice& lattice, glm::ivec2 size, const std::vector<LatticeSample>& samples);
+
+}  // namespace freevoxels
