@@ -15,18 +15,21 @@
 #include "ray_lookup.glsl"
 #include "transfer_table.glsl"
 
-layout(constant_id = 0) const int kAxis = 2;        // rays with another axis are marched by other dispatches
+// Compiled for each combination of these, because drivers take long to specialise code of this size:
+const bool kScalars = SCALARS;    // whether voxels are classified after interpolation
+const bool kSampled = SAMPLED;    // whether light is evaluated at samples
+const bool kSurfaces = SURFACES;  // whether they then may be surfaces
+const bool kParts = PARTS;        // whether only the bricks of a part are marched (GatherPart)
+
+layout(constant_id = 0) const int kAxis = 2;          // rays with another axis are marched by other dispatches
 layout(constant_id = 1) const bool kTowards = false;  // whether the light of blocks depends on the direction to the eye
 layout(constant_id = 2) const bool kColored = true;   // whether blocks have their own source terms
-layout(constant_id = 3) const bool kScalars = false;  // whether voxels are classified after interpolation
-layout(constant_id = 4) const bool kLit = false;      // whether voxels then have light instead of source terms
-layout(constant_id = 6) const int kLights = 0;        // number of lights evaluated at samples
-layout(constant_id = 10) const int kOctaves = 1;      // orders of scattering
-layout(constant_id = 9) const int kAmbient = 0;       // channels of ambient light evaluated at samples
-layout(constant_id = 7) const bool kTinted = false;   // whether the extinction differs between the colours of light
-layout(constant_id = 8) const bool kSurfaces = false;
-layout(constant_id = 5) const bool kPieces = false;   // whether quads are in more than one piece
-layout(constant_id = 11) const bool kParts = false;   // whether only the bricks of a part are marched (GatherPart)
+layout(constant_id = 3) const bool kLit = false;      // whether scalars have light of voxels
+layout(constant_id = 4) const bool kPieces = false;   // whether quads are in more than one piece
+layout(constant_id = 5) const int kLights = 0;        // number of lights evaluated at samples
+layout(constant_id = 6) const int kAmbient = 0;       // channels of ambient light evaluated at samples
+layout(constant_id = 7) const int kOctaves = 1;       // orders of scattering
+layout(constant_id = 8) const bool kTinted = false;   // whether the extinction differs between the colours of light
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 layout(binding = 1) uniform utextureBuffer brickNumbers;     // with kParts, bricks of the part have kOwnBrick
@@ -56,7 +59,6 @@ layout(binding = 8) uniform utextureBuffer skipCells;
 
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
-const bool kSampled = kLights > 0 || kAmbient > 0;
 const float kLeastShaded = 1.0 / 512.0;  // least part of a pixel for which the normal of a surface is computed
 const float kMostlySurface = 0.95;        // surface share from which on other scattering is neglected
 const float kOutside = 2.5;               // blocks
@@ -612,6 +614,32 @@ Found nothingFound() {
   return nothing;
 }
 
+// Branches on constants are nested, so that the compiler removes them.
+void addBlocks(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within) {
+  if (kSampled)
+    addLitStretch(sums, last, level, ray, slice, within);
+  else
+    addSlice(sums, level, ray, slice);
+}
+
+void addAt(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within, bool scalars) {
+  if (kScalars) {
+    if (scalars)
+      addStretch(sums, last, level, ray, slice, within);
+    else
+      addBlocks(sums, last, level, ray, slice, within);
+  } else {
+    addBlocks(sums, last, level, ray, slice, within);
+  }
+}
+
+Found foundAt(Slices level, Ray ray, int slice, bool scalars) {
+  if (kScalars) {
+    if (scalars) return scalarAt(level, ray.origin + ray.slope * float(slice), slice, 0.5 * ray.direction * ray.slope, ray.toEye);
+  }
+  return litAt(level, ray, slice, true);
+}
+
 // For scalars one more slice is marched, which ends the last stretch.
 void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool scalars) {
   const int direction = int(ray.direction);
@@ -640,17 +668,11 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
       // What other bricks have in front of this one may have been skipped.
       if (kParts && (scalars || kSampled) && slice != begin) {
         const int before = slice - direction;
-        last = scalars ? scalarAt(level, ray.origin + ray.slope * float(before), before, 0.5 * ray.direction * ray.slope, ray.toEye)
-                       : litAt(level, ray, before, true);
+        last = foundAt(level, ray, before, scalars);
       }
       const int rest = left - min(left, ray.group);
       do {
-        if (!scalars && kSampled)
-          addLitStretch(sums, last, level, ray, slice, slice != final + direction);
-        else if (scalars)
-          addStretch(sums, last, level, ray, slice, slice != final + direction);
-        else
-          addSlice(sums, level, ray, slice);
+        addAt(sums, last, level, ray, slice, slice != final + direction, scalars);
         slice += direction;
         --left;
       } while (left > rest);

@@ -3,7 +3,18 @@
 #include <algorithm>
 #include <span>
 
-#include "embedded/gather.h"
+#include "embedded/gather_post_lit.h"
+#include "embedded/gather_post_lit_parts.h"
+#include "embedded/gather_post_surfaces.h"
+#include "embedded/gather_post_surfaces_parts.h"
+#include "embedded/gather_post_unlit.h"
+#include "embedded/gather_post_unlit_parts.h"
+#include "embedded/gather_pre_lit.h"
+#include "embedded/gather_pre_lit_parts.h"
+#include "embedded/gather_pre_surfaces.h"
+#include "embedded/gather_pre_surfaces_parts.h"
+#include "embedded/gather_pre_unlit.h"
+#include "embedded/gather_pre_unlit_parts.h"
 #include "embedded/gather_stencil.h"
 #include "embedded/gather_upsample.h"
 
@@ -13,10 +24,25 @@ namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 
+const Shader& gatherShader(const GatherVolume& volume, bool parts) {
+  using namespace shaders;
+  constexpr std::array<std::array<std::array<const Shader*, 2>, 3>, 2> kShaders{{
+      {{{&gather_pre_unlit, &gather_pre_unlit_parts},
+        {&gather_pre_lit, &gather_pre_lit_parts},
+        {&gather_pre_surfaces, &gather_pre_surfaces_parts}}},
+      {{{&gather_post_unlit, &gather_post_unlit_parts},
+        {&gather_post_lit, &gather_post_lit_parts},
+        {&gather_post_surfaces, &gather_post_surfaces_parts}}},
+  }};
+  const bool sampled = volume.sampleLights() > 0 || volume.ambientChannels() > 0;
+  return *kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : sampled ? 1 : 0][parts];
+}
+
 Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, bool parts) {
-  return makeComputePipeline(device, shaders::gather, {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.hasScalars(), volume.isLit(),
-                              volume.inPieces(), std::uint32_t(volume.sampleLights()), volume.isTinted(), volume.hasSurfaces(),
-                              std::uint32_t(volume.ambientChannels()), std::uint32_t(volume.octaves()), parts});
+  return makeComputePipeline(device, gatherShader(volume, parts),
+                             {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.isLit(), volume.inPieces(),
+                              std::uint32_t(volume.sampleLights()), std::uint32_t(volume.ambientChannels()),
+                              std::uint32_t(volume.octaves()), volume.isTinted()});
 }
 
 /// Bindings of the stencil and of the upsampling.
