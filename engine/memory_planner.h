@@ -42,7 +42,7 @@ struct VolumeMemory {
 VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std::uint64_t> stored, DirectionSet directions,
                           StoredKinds kinds, const SweepStyle& style);
 
-/// Fails with ExitCode::OutOfMemory if the device cannot hold or bind the lists of splats, or the attenuation table and a sweep.
+/// Fails with ErrorKind::OutOfMemory if the device cannot hold or bind the lists of splats, or the attenuation table and a sweep.
 void checkSplatsFit(const Device& device, const DeviceVolume& volume);
 void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions);
 

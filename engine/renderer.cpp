@@ -201,7 +201,7 @@ FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSet
     splats->makeRoomForRays(built.volume, constants.eye, mostRayBytes);
     return constants;
   } catch (const Error& error) {
-    if (settings.attenuation != AttenuationLookup::Auto || error.code() != ExitCode::OutOfMemory) throw;
+    if (settings.attenuation != AttenuationLookup::Auto || error.kind() != ErrorKind::OutOfMemory) throw;
   }
   lastLackedRays = true;
   FrameSettings tableAlone = settings;
@@ -342,7 +342,7 @@ std::shared_ptr<const SplatTargets> Renderer::State::recordImage(Commands& comma
     try {
       return recordGather(commands, camera, settings, progress);
     } catch (const Error& error) {
-      if (settings.draw != Draw::Auto || error.code() != ExitCode::OutOfMemory) throw;
+      if (settings.draw != Draw::Auto || error.kind() != ErrorKind::OutOfMemory) throw;
     }
     lastLackedGather = true;
   }
@@ -439,7 +439,7 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
     try {
       return state.gatherShares(camera, settings, part, progress);
     } catch (const Error& error) {
-      if (settings.draw != Draw::Auto || error.code() != ExitCode::OutOfMemory) throw;
+      if (settings.draw != Draw::Auto || error.kind() != ErrorKind::OutOfMemory) throw;
     }
     state.lastLackedGather = true;
   }

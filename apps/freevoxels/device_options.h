@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "apps/freevoxels/option_values.h"
 #include "engine/vulkan/device.h"
@@ -21,6 +22,12 @@ struct DeviceOptions {
   /// layers is an internal error at the end.
   void withDevice(const std::function<void(const Device&)>& work) const;
 };
+
+/// Whether the environment variable FREEVOXELS_VALIDATION is 1, as in the tests.
+bool validationRequested();
+
+/// Logs a message of the validation layers as an error (ValidationLog).
+void logValidation(std::string_view message);
 
 /// Calls `work` with a Vulkan instance; validation as in withDevice.
 void withInstance(const std::function<void(const Instance&)>& work,

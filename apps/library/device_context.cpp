@@ -5,7 +5,7 @@
 
 namespace freevoxels {
 
-DeviceContext::DeviceContext(const DeviceOptions& options) : instance(validationRequested()), device(options.open(instance)) {}
+DeviceContext::DeviceContext(const DeviceOptions& options) : instance(validationRequested(), logValidation), device(options.open(instance)) {}
 
 DeviceContext& deviceContext(const DeviceOptions& options) {
   static std::mutex opening;

@@ -18,7 +18,7 @@ struct DeviceContext {
 };
 
 /// The context for these options. It is opened by the first call and kept until the process ends. Any thread
-/// may call this. Fails with ExitCode::Device.
+/// may call this. Fails with ErrorKind::Device.
 DeviceContext& deviceContext(const DeviceOptions& options);
 
 }  // namespace freevoxels

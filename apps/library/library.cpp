@@ -14,13 +14,32 @@ namespace {
 
 using Json = nlohmann::json;
 
+ErrorKind kindOf(freevoxels::ErrorKind kind) {
+  switch (kind) {
+    case freevoxels::ErrorKind::Usage: return ErrorKind::Usage;
+    case freevoxels::ErrorKind::Input: return ErrorKind::Input;
+    case freevoxels::ErrorKind::Output: return ErrorKind::Output;
+    case freevoxels::ErrorKind::Device: return ErrorKind::Device;
+    case freevoxels::ErrorKind::OutOfMemory: return ErrorKind::OutOfMemory;
+    default: return ErrorKind::Internal;
+  }
+}
+
+/// The text with its parameters as keys of a scene: "memory-limit", "draw": "splats".
+std::string withSceneKeys(std::string_view text) {
+  return spelled(text, [](std::string_view name, std::string_view value) {
+    return value.empty() ? fmt::format("\"{}\"", name) : fmt::format("\"{}\": \"{}\"", name, value);
+  });
+}
+
 /// Calls `work` and converts the engine's errors to those of this interface.
 template <typename Work>
 auto translated(const Work& work) {
   try {
     return work();
   } catch (const freevoxels::Error& error) {
-    throw Error(ErrorKind(int(error.code())), error.what());
+    const std::string text = KeywordOptions::all().marked(error.text());
+    throw Error(kindOf(error.kind()), withSceneKeys(text), parametersIn(text));
   } catch (const InternalError& error) {
     throw Error(ErrorKind::Internal, fmt::format("internal error, please report it: {}", error.what()));
   }
@@ -28,14 +47,14 @@ auto translated(const Work& work) {
 
 Json parseScene(std::string_view text) {
   Json scene = Json::parse(text, nullptr, false);
-  if (!scene.is_object()) fail(ExitCode::Usage, "a scene is a JSON object, as '{{\"size\": [800, 600]}}', not '{}'", text);
+  if (!scene.is_object()) fail(freevoxels::ErrorKind::Usage, "a scene is a JSON object, as '{{\"size\": [800, 600]}}', not '{}'", text);
   return scene;
 }
 
 freevoxels::Volume volumeOf(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement) {
   const auto& [x, y, z] = dimensions;
   if (std::min({x, y, z}) < 1 || std::size_t(x) * std::size_t(y) * std::size_t(z) != values.size())
-    fail(ExitCode::Input, "{} values are not a box of {} x {} x {} voxels", values.size(), x, y, z);
+    fail(freevoxels::ErrorKind::Input, "{} values are not a box of {} x {} x {} voxels", values.size(), x, y, z);
   const auto vector = [](const std::array<double, 3>& v) { return glm::dvec3(v[0], v[1], v[2]); };
   const glm::ivec3 size(x, y, z);
   return volumeOfScalars(ScalarBricks::make(size,
@@ -116,7 +135,7 @@ void save(const std::filesystem::path& file, const Image& image, std::string_vie
   translated([&] {
     const std::size_t pixels = std::size_t(std::max(image.width, 0)) * std::size_t(std::max(image.height, 0));
     if (pixels == 0 || image.pixels.size() != 4 * pixels || (!image.depth.empty() && image.depth.size() != pixels))
-      fail(ExitCode::Input, "an image of {} x {} pixels has {} values and {} depths: it needs 4 values, and 1 depth or none, a pixel",
+      fail(freevoxels::ErrorKind::Input, "an image of {} x {} pixels has {} values and {} depths: it needs 4 values, and 1 depth or none, a pixel",
            image.width, image.height, image.pixels.size(), image.depth.size());
     freevoxels::Image copy{.size = {image.width, image.height}, .pixels = std::vector<glm::vec4>(pixels), .depth = image.depth};
     for (std::size_t i = 0; i < pixels; ++i)

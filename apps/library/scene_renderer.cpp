@@ -28,7 +28,7 @@ void saveImage(const std::string& file, const Image& image, const Json& keywords
   output.files = {file};
   output.aovs.depth = !image.depth.empty() && isExr(file);
   if (output.aovs.position || output.aovs.normal)
-    fail(ExitCode::Usage, "an image does not know its camera, of which positions and normals are made: leave them out of 'aov'");
+    fail(ErrorKind::Usage, "an image does not know its camera, of which positions and normals are made: leave them out of 'aov'");
   output.check();
   Image withChannels = image;
   addChannels(withChannels, output.aovs, Camera{});

@@ -41,11 +41,12 @@ void checkRaysFit(const Device& device, const RayMemory& rays) {
   const std::uint64_t memory = device.availableBytes();
   const std::uint64_t piece = std::min(std::uint64_t(device.maximumAllocation()), memory);
   if (rays.bytes > memory || rays.largest > piece)
-    fail(ExitCode::OutOfMemory,
+    fail(ErrorKind::OutOfMemory,
          "exact shadows of these lights need {} MiB for their rays, {} MiB in one piece, and {} has {} and "
          "{} MiB: "
-         "use --light-attenuation table, fewer lights or a smaller volume",
-         rays.bytes >> 20, rays.largest >> 20, device.description().name, memory >> 20, piece >> 20);
+         "use {}, fewer lights or a smaller volume",
+         rays.bytes >> 20, rays.largest >> 20, device.description().name, memory >> 20, piece >> 20,
+         Parameter("light-attenuation", "table"));
 }
 
 std::vector<RaySource> sourcesOf(const Lighting& lighting, const DeviceVolume& volume) {

@@ -216,7 +216,7 @@ bool matches(const DeviceDescription& device, std::string_view selector) {
 
 const DeviceDescription& choose(const std::vector<DeviceDescription>& devices, std::string_view selector) {
   if (devices.empty())
-    fail(ExitCode::Device, "no Vulkan device was found: install mesa-vulkan-drivers to render without a GPU");
+    fail(ErrorKind::Device, "no Vulkan device was found: install mesa-vulkan-drivers to render without a GPU");
   const DeviceDescription* best = nullptr;
   std::vector<std::string> rejected;
   for (const DeviceDescription& device : devices) {
@@ -229,8 +229,8 @@ const DeviceDescription& choose(const std::vector<DeviceDescription>& devices, s
   }
   if (best != nullptr) return *best;
   if (rejected.empty())
-    fail(ExitCode::Device, "no device matches --device {}: 'freevoxels devices' lists them", selector);
-  fail(ExitCode::Device, "no usable Vulkan device; {}; install mesa-vulkan-drivers to render without a GPU",
+    fail(ErrorKind::Device, "no device matches {}: 'freevoxels devices' lists them", Parameter("device", selector));
+  fail(ErrorKind::Device, "no usable Vulkan device; {}; install mesa-vulkan-drivers to render without a GPU",
        fmt::join(rejected, "; "));
 }
 
@@ -278,8 +278,8 @@ Device::Device(const Instance& instance, std::string_view selector, std::uint64_
                                 .ppEnabledExtensionNames = extensions.data()};
   const VkResult result = vkCreateDevice(physical_, &info, nullptr, &device_);
   if (result == VK_ERROR_EXTENSION_NOT_PRESENT)
-    fail(ExitCode::Device, "{} lacks one of the extensions {}: choose another with --device",
-         description_.name, fmt::join(extensions, ", "));
+    fail(ErrorKind::Device, "{} lacks one of the extensions {}: choose another with {}",
+         description_.name, fmt::join(extensions, ", "), Parameter("device"));
   VK_CHECK_RESULT(result, "vkCreateDevice");
   VkQueue handle = VK_NULL_HANDLE;
   vkGetDeviceQueue(device_, queueFamily_, 0, &handle);
@@ -302,10 +302,10 @@ void Device::claim(std::uint64_t bytes) const {
   const std::uint64_t allocated = allocated_ += bytes;
   if (allocated > memoryLimit_) {
     release(bytes);
-    fail(ExitCode::OutOfMemory,
-         "at least {} MiB of device memory are needed and the limit is {} MiB: raise --memory-limit, or use a smaller "
-         "volume or --size",
-         (allocated + 0xfffff) >> 20, memoryLimit_ >> 20);
+    fail(ErrorKind::OutOfMemory,
+         "at least {} MiB of device memory are needed and the limit is {} MiB: raise {}, or use a smaller "
+         "volume or {}",
+         (allocated + 0xfffff) >> 20, memoryLimit_ >> 20, Parameter("memory-limit"), Parameter("size"));
   }
   std::uint64_t peak = peak_;
   while (peak < allocated && !peak_.compare_exchange_weak(peak, allocated)) {

@@ -33,13 +33,13 @@ struct DeviceDescription {
   std::vector<std::string> rejections;  ///< why it cannot be used; empty if it can
 };
 
-/// All Vulkan devices, in the order of `--device INDEX`.
+/// All Vulkan devices, in the order of their indices.
 std::vector<DeviceDescription> listDevices(const Instance& instance);
 
 class Device {
  public:
   /// Opens the device that `selector` names by index, UUID or part of its name; if it is empty, a discrete
-  /// GPU, else any GPU, else a CPU device. Fails with ExitCode::Device and the reason why each device was
+  /// GPU, else any GPU, else a CPU device. Fails with ErrorKind::Device and the reason why each device was
   /// rejected. At most `memoryLimit` bytes are allocated. `extensions` are enabled in addition to the
   /// engine's own. Compiled pipelines of a GPU are stored in a file in `cacheFolder` (PipelineCache), unless
   /// that is empty.
@@ -79,7 +79,7 @@ class Device {
   /// buffers. Off under validation, so that tests use staging buffers as discrete GPUs do.
   bool mapsOwnMemory() const { return mapsOwnMemory_; }
 
-  /// Adds an allocation to the budget. Fails with ExitCode::OutOfMemory if the limit would be exceeded.
+  /// Adds an allocation to the budget. Fails with ErrorKind::OutOfMemory if the limit would be exceeded.
   void claim(std::uint64_t bytes) const;
   void release(std::uint64_t bytes) const { allocated_ -= bytes; }
 

@@ -30,7 +30,7 @@ TEST_F(VulkanTest, UnknownDeviceIsADeviceError) {
     const Device none(instance(), "no such device");
     FAIL() << "accepted";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::Device);
+    EXPECT_EQ(error.kind(), ErrorKind::Device);
   }
 }
 
@@ -87,7 +87,7 @@ TEST(Memory, WhatCouldNotBeAllocatedIsNotCounted) {
   const std::uint64_t available = device.availableBytes();
   const VkMemoryRequirements tooMuch{.size = VkDeviceSize(1) << 60, .alignment = 256, .memoryTypeBits = ~0u};
   const auto allocate = [&] { DeviceMemory(device, tooMuch, MemoryUse::Device, false); };
-  test::expectRefusal(allocate, ExitCode::OutOfMemory, {"the device is out of memory"});
+  test::expectRefusal(allocate, ErrorKind::OutOfMemory, {"the device is out of memory"});
   EXPECT_EQ(device.availableBytes(), available);
 }
 

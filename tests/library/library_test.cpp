@@ -1,4 +1,4 @@
-// The installed interface, by its one header: closed forms, what frames share, errors.
+// The installed interface: closed forms, what frames share, submitted frames, errors.
 
 #include <freevoxels/freevoxels.h>
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <thread>
 
 #include "tests/temporary_folder.h"
@@ -16,15 +17,16 @@ namespace {
 constexpr const char* kAlongZ =
     R"({"camera-position": [9.5, 9.5, 100], "look-at": [9.5, 9.5, 0], "up": [0, 1, 0], "orthographic": 20, "size": [40, 40]})";
 
-/// An error's kind; its sentence is to contain `part`.
+/// An error's kind, a part of its sentence, and the keys that it names.
 template <typename Work>
-void expectError(v1::ErrorKind kind, const std::string& part, const Work& work) {
+void expectError(v1::ErrorKind kind, const std::string& part, const Work& work, const std::vector<std::string>& parameters = {}) {
   try {
     work();
     ADD_FAILURE() << "no error, but expected: " << part;
   } catch (const v1::Error& error) {
     EXPECT_EQ(error.kind(), kind) << error.what();
     EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    EXPECT_EQ(error.parameters(), parameters) << error.what();
   }
 }
 
@@ -89,12 +91,22 @@ TEST(Library, SavesWhatItDrew) {
 TEST(Library, ErrorsNameWhatIsWrong) {
   using enum v1::ErrorKind;
   const auto render = [](const char* scene) { return [scene] { v1::Renderer(cloud(), scene).render(); }; };
-  expectError(Usage, "did you mean 'density_scale'", render(R"({"densty-scale": 1})"));
+  expectError(Usage, R"("densty-scale"; did you mean "density-scale")", render(R"({"densty-scale": 1})"), {"densty-scale", "density-scale"});
   expectError(Usage, "a scene is a JSON object", render("[1, 2]"));
-  expectError(Usage, "exclude each other", render(R"({"orbit": [1, 2], "camera-position": [1, 2, 3]})"));
-  expectError(Input, "up takes X,Y,Z", render(R"({"up": true})"));
-  expectError(Device, "no device matches", render(R"({"device": "none such"})"));
-  expectError(OutOfMemory, "MiB", render(R"({"memory-limit": 1})"));
+  expectError(Usage, R"("orbit" and "camera-position" exclude each other)", render(R"({"orbit": [1, 2], "camera-position": [1, 2, 3]})"),
+              {"orbit", "camera-position"});
+  expectError(Usage, R"("exposure" has no effect here)", render(R"({"exposure": 1})"), {"exposure"});
+  expectError(Usage, R"(the camera stands at its look-at point; change "camera-position" or "look-at")",
+              render(R"({"camera-position": [1, 2, 3], "look-at": [1, 2, 3]})"), {"camera-position", "look-at"});
+  expectError(Usage, R"(or use "draw": "splats")", render(R"({"draw": "gather", "attenuation": "bilinear"})"),
+              {"draw", "attenuation", "composite"});
+  expectError(Input, R"("up" takes X,Y,Z)", render(R"({"up": true})"), {"up"});
+  expectError(Usage, R"("fov" takes)", render(R"({"fov": "wide"})"), {"fov"});
+  expectError(Device, R"(no device matches "device": "none such")", render(R"({"device": "none such"})"), {"device"});
+  expectError(OutOfMemory, R"(use a smaller "size")", render(R"({"memory-limit": 1})"), {"size"});
+  const v1::Volume large = v1::Volume::copy(std::vector<float>(80 * 80 * 80, 1.0f), {80, 80, 80});
+  expectError(OutOfMemory, R"("memory-limit" is 1 MiB)", [&] { v1::Renderer(large, R"({"memory-limit": 1, "size": 16})").render(); },
+              {"memory-limit"});
   expectError(Input, "there is no file '/none.vdb'", [] { v1::Volume::open("/none.vdb"); });
   const std::vector<float> values(8, 1.0f);
   expectError(Input, "8 values are not a box of 2 x 2 x 3 voxels", [&] { v1::Volume::copy(values, {2, 2, 3}); });

@@ -40,14 +40,18 @@ enum class ErrorKind : int {
   OutOfMemory = 6
 };
 
-/// what() is one sentence that names the file or option and the remedy.
+/// what() is one sentence that names the file or key of the scene and the remedy.
 class FREEVOXELS_API Error : public std::runtime_error {
  public:
-  Error(ErrorKind kind, const std::string& sentence) : std::runtime_error(sentence), kind_(kind) {}
+  Error(ErrorKind kind, const std::string& sentence, std::vector<std::string> parameters = {})
+      : std::runtime_error(sentence), kind_(kind), parameters_(std::move(parameters)) {}
   ErrorKind kind() const { return kind_; }
+  /// The keys of scenes that the sentence names, such as "memory-limit": which to change, or which were given wrongly.
+  const std::vector<std::string>& parameters() const { return parameters_; }
 
  private:
   ErrorKind kind_;
+  std::vector<std::string> parameters_;
 };
 
 /// Called about every 50 ms with the name of a stage and the fraction of the work that is done, 0..1. An
