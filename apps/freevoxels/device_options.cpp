@@ -43,6 +43,10 @@ std::unique_ptr<Device> DeviceOptions::open(const Instance& instance, std::span<
   return std::make_unique<Device>(instance, selector.value_or(""), limitBytes(memoryLimit), extensions, cacheFolder());
 }
 
+std::unique_ptr<Device> DeviceOptions::adopt(const Instance& instance, const AdoptedDevice& adopted) const {
+  return std::make_unique<Device>(instance, adopted, limitBytes(memoryLimit), cacheFolder());
+}
+
 bool validationRequested() {
   const char* const value = std::getenv("FREEVOXELS_VALIDATION");
   return value != nullptr && std::string_view(value) == "1";

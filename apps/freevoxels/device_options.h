@@ -18,6 +18,8 @@ struct DeviceOptions {
   void add(CLI::App& app);
   /// `extensions` are enabled beside the engine's own.
   std::unique_ptr<Device> open(const Instance& instance, std::span<const char* const> extensions = {}) const;
+  /// Uses a device of the caller's, with these options' limit on its memory.
+  std::unique_ptr<Device> adopt(const Instance& instance, const AdoptedDevice& adopted) const;
   /// Opens the device and calls `work` with it. With FREEVOXELS_VALIDATION=1 any message of the validation
   /// layers is an internal error at the end.
   void withDevice(const std::function<void(const Device&)>& work) const;

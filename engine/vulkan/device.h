@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -36,6 +37,17 @@ struct DeviceDescription {
 /// All Vulkan devices, in the order of their indices.
 std::vector<DeviceDescription> listDevices(const Instance& instance);
 
+/// A device and a queue of the caller's, which must outlive the Device that uses them. They must meet device_requirements.h.
+struct AdoptedDevice {
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;  ///< for graphics and compute, with timestamps
+  std::uint32_t queueFamily = 0;
+  /// The features that `device` was created with, as for missingFeatures. Is read by the constructor of Device only.
+  const VkPhysicalDeviceFeatures2* features = nullptr;
+  std::mutex* queueMutex = nullptr;  ///< as for the constructor of Queue
+};
+
 class Device {
  public:
   /// Opens the device that `selector` names by index, UUID or part of its name; if it is empty, a discrete
@@ -46,6 +58,9 @@ class Device {
   Device(const Instance& instance, std::string_view selector,
          std::uint64_t memoryLimit = std::numeric_limits<std::uint64_t>::max(),
          std::span<const char* const> extensions = {}, const std::filesystem::path& cacheFolder = {});
+  /// Uses a device of the caller's. Fails with ErrorKind::Device and what it lacks.
+  Device(const Instance& instance, const AdoptedDevice& adopted,
+         std::uint64_t memoryLimit = std::numeric_limits<std::uint64_t>::max(), const std::filesystem::path& cacheFolder = {});
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -90,6 +105,9 @@ class Device {
   void setName(VkObjectType type, std::uint64_t handle, const char* name) const;
 
  private:
+  void describePhysical();
+  void makeStores(VkQueue queue, std::mutex* queueMutex, const std::filesystem::path& cacheFolder);
+
   DeviceDescription description_;
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;
   VkPhysicalDeviceProperties properties_{};
@@ -97,6 +115,8 @@ class Device {
   VkDeviceSize maximumAllocation_ = 0;
   std::uint64_t memoryLimit_;
   bool mapsOwnMemory_;
+  bool isOwn_;  ///< whether device_ is destroyed with this object
+  PFN_vkSetDebugUtilsObjectNameEXT setObjectName_ = nullptr;  ///< null unless the instance validates
   mutable std::atomic<std::uint64_t> allocated_ = 0, peak_ = 0;
   std::uint32_t queueFamily_ = 0, timestampBits_ = 0;
   VkDevice device_ = VK_NULL_HANDLE;
