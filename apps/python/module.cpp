@@ -73,7 +73,7 @@ py::object render(SceneRenderer& renderer, const py::object& progress, bool dept
   Image image;
   {
     const py::gil_scoped_release withoutGil;
-    image = renderer.render(options, depth, report);
+    image = renderer.render(*renderer.read(options), depth, report);
   }
   if (!depth) return pixelsOf(image);
   return py::make_tuple(pixelsOf(image), depthOf(image));
@@ -145,7 +145,7 @@ void addRenderer(py::module_& module) {
            "of what is seen, infinite where there is nothing. progress(stage, fraction) is called about every 50 ms of work;\n"
            "an exception that it raises abandons the frame. Options given here hold for this frame.")
       .def_property_readonly("timings", &timingsOf, "(stage, milliseconds) of what was made and of the last frame.")
-      .def_property_readonly("device", &SceneRenderer::device, "Name of the Vulkan device.");
+      .def_property_readonly("device", [](const SceneRenderer& r) { return r.context()->device->description().name; }, "Name of the Vulkan device.");
 }
 
 /// render(): takes the keywords of the volume out of those of the frame. A file is read with all keywords,

@@ -115,6 +115,69 @@ TEST(Library, ErrorsNameWhatIsWrong) {
   expectError(Input, "needs 4 values", [] { v1::save("a.png", {.width = 2, .height = 1, .pixels = {0, 0, 0, 0}}); });
 }
 
+TEST(Library, SubmittedFramesAreTheRenderedOnes) {
+  const v1::Context context;
+  v1::Renderer renderer(context, v1::Volume::open(context, "procedural:cloud", R"({"resolution": 32})"), R"({"size": [48, 40]})");
+  const v1::Frame first = renderer.submit(R"({"orbit": [90, 10]})"), second = renderer.submit("{}", true);
+  second.wait();
+  EXPECT_TRUE(second.ready());
+  EXPECT_TRUE(first.ready()) << "frames are drawn in the order of their submission";
+  EXPECT_EQ(first.image().pixels, renderer.render(R"({"orbit": [90, 10]})").pixels);
+  const v1::Image image = second.image(), expected = renderer.render("{}", true);
+  EXPECT_EQ(image.pixels, expected.pixels);
+  EXPECT_EQ(image.depth, expected.depth);
+}
+
+TEST(Library, SubmittedFramesThrowWhenTheyAreWaitedFor) {
+  v1::Renderer renderer(cloud(), R"({"memory-limit": 1, "size": [48, 40]})");
+  expectError(v1::ErrorKind::Usage, "did you mean", [&] { renderer.submit(R"({"fob": 3})"); }, {"fob", "fov"});
+  const v1::Frame frame = renderer.submit(R"({"size": [400, 400]})");
+  for (int again = 0; again < 2; ++again)
+    expectError(v1::ErrorKind::OutOfMemory, R"(use a smaller "size")", [&] { frame.wait(); }, {"size"});
+}
+
+/// A frame that takes some seconds unless it is cancelled.
+constexpr const char* kLong = R"({"draw": "splats", "size": [2000, 2000]})";
+
+TEST(Library, CancelledFramesEndSoonAndLeaveTheRendererUsable) {
+  v1::Renderer renderer(v1::Volume::open("procedural:cloud", R"({"resolution": 64})"));
+  v1::Frame current = renderer.submit(kLong), queued = renderer.submit(kLong);
+  const v1::Frame last = renderer.submit(R"({"size": [40, 40]})");
+  queued.cancel();
+  current.cancel();
+  expectError(v1::ErrorKind::Cancelled, "was cancelled", [&] { current.wait(); });
+  expectError(v1::ErrorKind::Cancelled, "was cancelled", [&] { queued.image(); });
+  EXPECT_EQ(last.image().pixels, renderer.render(R"({"size": [40, 40]})").pixels);
+}
+
+TEST(Library, ObjectsMayBeDestroyedInAnyOrder) {
+  std::optional<v1::Context> context(std::in_place);
+  std::optional<v1::Renderer> renderer(std::in_place, *context, cloud(), R"({"size": [48, 40]})");
+  context.reset();
+  const v1::Frame complete = renderer->submit();
+  complete.wait();
+  const v1::Frame abandoned = renderer->submit(kLong);
+  renderer.reset();
+  expectError(v1::ErrorKind::Cancelled, "was cancelled", [&] { abandoned.wait(); });
+  EXPECT_EQ(complete.image().width, 48);
+}
+
+TEST(Library, AContextTakesTheChoiceOfTheDeviceFromScenes) {
+  const v1::Context context;
+  expectError(v1::ErrorKind::Usage, R"("device" has no effect here)", [&] { v1::Renderer(context, cloud(), R"({"device": "llvmpipe"})"); },
+              {"device"});
+  expectError(v1::ErrorKind::Device, R"("device": "none such")", [] { v1::Context(v1::ContextOptions{.device = "none such"}); }, {"device"});
+}
+
+TEST(Library, VolumesSayWhatIsRemarkableAboutThem) {
+  std::vector<float> values(8, 1.0f);
+  values[3] = std::numeric_limits<float>::infinity();
+  EXPECT_TRUE(cloud().warnings().empty());
+  const std::vector<std::string> warnings = v1::Volume::copy(values, {2, 2, 2}).warnings();
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("1 voxel"), std::string::npos) << warnings[0];
+}
+
 TEST(Library, AnExceptionOfProgressReachesTheCaller) {
   struct Stopped {};
   v1::Renderer renderer(v1::Volume::open("procedural:cloud", R"({"resolution": 64})"), R"({"draw": "splats", "size": [900, 900]})");
