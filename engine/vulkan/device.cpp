@@ -7,6 +7,7 @@
 #include <array>
 #include <cctype>
 #include <charconv>
+#include <map>
 
 #include "engine/core/error.h"
 #include "engine/vulkan/device_requirements.h"
@@ -75,6 +76,16 @@ std::uint64_t heapBytes(VkPhysicalDevice physical) {
     most = std::max<std::uint64_t>(most, knowsBudget ? std::min(heap.size, budget.heapBudget[i]) : heap.size);
   }
   return most;
+}
+
+/// The counter of all bytes that this process has allocated of the physical device.
+std::shared_ptr<std::atomic<std::uint64_t>> bytesOfProcess(const std::string& uuid) {
+  static std::mutex mutex;
+  static std::map<std::string, std::shared_ptr<std::atomic<std::uint64_t>>> counters;
+  const std::lock_guard lock(mutex);
+  std::shared_ptr<std::atomic<std::uint64_t>>& counter = counters[uuid];
+  if (!counter) counter = std::make_shared<std::atomic<std::uint64_t>>(0);
+  return counter;
 }
 
 DeviceDescription describe(int index, VkPhysicalDevice physical) {
@@ -211,6 +222,7 @@ Device::Device(const Instance& instance, const AdoptedDevice& adopted, std::uint
 }
 
 void Device::describePhysical() {
+  processBytes_ = bytesOfProcess(description_.uuid);
   VkPhysicalDeviceVulkan11Properties vulkan11{.sType =
                                                   VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
   VkPhysicalDeviceProperties2 base{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
@@ -238,8 +250,19 @@ Device::~Device() {
   if (isOwn_) vkDestroyDevice(device_, nullptr);
 }
 
+std::uint64_t Device::availableBytes() const {
+  const auto left = [](std::uint64_t bytes, std::uint64_t used) { return bytes - std::min(bytes, used); };
+  return std::min(left(memoryLimit_, allocated_), left(description_.memoryBytes, *processBytes_));
+}
+
+void Device::release(std::uint64_t bytes) const {
+  allocated_ -= bytes;
+  *processBytes_ -= bytes;
+}
+
 void Device::claim(std::uint64_t bytes) const {
   const std::uint64_t allocated = allocated_ += bytes;
+  *processBytes_ += bytes;
   if (allocated > memoryLimit_) {
     release(bytes);
     fail(ErrorKind::OutOfMemory,

@@ -84,9 +84,10 @@ class Device {
   /// Bytes that may be allocated in total: what the device had for this process when it was opened, or the
   /// limit if that is less.
   std::uint64_t memoryBytes() const { return std::min(description_.memoryBytes, memoryLimit_); }
-  /// Bytes of memoryBytes() that are not allocated at present, and the largest number of bytes that has been
-  /// allocated at any time.
-  std::uint64_t availableBytes() const { return memoryBytes() - std::min(memoryBytes(), allocated_.load()); }
+  /// Bytes that can be allocated at present: what other objects of this class have allocated of the same physical device is not
+  /// available either.
+  std::uint64_t availableBytes() const;
+  /// The largest number of bytes that this object had allocated at any time.
   std::uint64_t peakBytes() const { return peak_; }
   const DeviceDescription& description() const { return description_; }
   bool isCpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
@@ -96,7 +97,7 @@ class Device {
 
   /// Adds an allocation to the budget. Fails with ErrorKind::OutOfMemory if the limit would be exceeded.
   void claim(std::uint64_t bytes) const;
-  void release(std::uint64_t bytes) const { allocated_ -= bytes; }
+  void release(std::uint64_t bytes) const;
 
   /// All pipelines made so far (pipeline.h).
   PipelineStore& pipelines() const { return *pipelines_; }
@@ -118,6 +119,7 @@ class Device {
   bool isOwn_;  ///< whether device_ is destroyed with this object
   PFN_vkSetDebugUtilsObjectNameEXT setObjectName_ = nullptr;  ///< null unless the instance validates
   mutable std::atomic<std::uint64_t> allocated_ = 0, peak_ = 0;
+  std::shared_ptr<std::atomic<std::uint64_t>> processBytes_;  ///< allocated by all objects of the same physical device
   std::uint32_t queueFamily_ = 0, timestampBits_ = 0;
   VkDevice device_ = VK_NULL_HANDLE;
   std::unique_ptr<Queue> queue_;

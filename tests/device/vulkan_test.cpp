@@ -102,6 +102,15 @@ TEST(Validation, NoticesAMistake) {
   EXPECT_GT(instance.validationMessageCount(), 0u);
 }
 
+TEST_F(VulkanTest, DevicesOfAProcessShareTheMemoryOfThePhysicalDevice) {
+  const Device other(instance(), std::to_string(device().description().index));
+  const std::uint64_t before = other.availableBytes(), limited = 1 << 20;
+  const Device small(instance(), std::to_string(device().description().index), limited);
+  const Buffer buffer(device(), 3 << 20, MemoryUse::Device, "taken");
+  EXPECT_LE(other.availableBytes(), before - (3 << 20));
+  EXPECT_EQ(small.availableBytes(), limited) << "its limit counts its own allocations";
+}
+
 TEST(Validation, NoticesAMissingBarrier) {
   Instance instance(true);
   const Device device(instance, "");
