@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing and builds. Does nothing twice.
 #   bash apps/setup.sh [CMAKE TARGET...]     default target: freevoxels
+# FREEVOXELS_PRESET names another preset that builds in build/.
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 
@@ -62,7 +63,7 @@ install_packages() {
 build() {
   cd "$root"
   # Again where packages are new: without Open MPI there is no target freevoxels-mpi.
-  [ -f build/build.ninja ] && [ -z "${installed_packages:-}" ] || cmake --preset release
+  [ -f build/build.ninja ] && [ -z "${installed_packages:-}" ] || cmake --preset "${FREEVOXELS_PRESET:-release}"
   cmake --build --preset release --target "$@"
 }
 

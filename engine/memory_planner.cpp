@@ -4,7 +4,9 @@
 #include <numeric>
 
 #include "engine/attenuation/attenuation_table.h"
+#include "engine/lighting/light_pass.h"
 #include "engine/octree/volume_limits.h"
+#include "engine/splatting/frame_targets.h"
 #include "shaders/frame_interface.h"
 
 namespace freevoxels {
@@ -32,6 +34,28 @@ VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std:
           .bricks = brickBytes(box.dimensions) * channels,
           .sweep = planSweep(box, directions, style, std::numeric_limits<std::uint64_t>::max()).bytes(),
           .splats = std::min<std::uint64_t>(voxels, shader::kSplatsPerChunk) * sizeof(shader::Splat)};
+}
+
+LightAttenuation planLightAttenuation(const Device& device, const DeviceVolume& volume, const VolumeMemory& memory,
+                                      const FrameSettings& settings) {
+  constexpr std::uint64_t kMostShare = 4;  // rays may take one part in this many of the memory
+  const LightAttenuation wanted = lightAttenuationFor(settings);
+  if (settings.lighting->attenuation != LightAttenuation::Auto || wanted == LightAttenuation::Table) return wanted;
+  const RayMemory rays = lightRayMemory(volume, *settings.lighting);
+  const std::uint64_t others = memory.peak() + 2 * targetBytes(settings);
+  const bool fits = rays.bytes <= device.memoryBytes() / kMostShare && rays.bytes + others <= device.memoryBytes() &&
+                    rays.largest <= device.maximumAllocation();
+  return fits ? LightAttenuation::Exact : LightAttenuation::Table;
+}
+
+std::uint64_t planEyeRayBytes(const Device& device, const DeviceVolume& volume, VolumeMemory memory, const FrameSettings& settings,
+                              bool readsTable) {
+  if (settings.attenuation != AttenuationLookup::Auto) return settings.mostRayBytes;
+  if (!readsTable) memory.table = memory.sweep = 0;
+  std::uint64_t others = memory.peak() + 2 * targetBytes(settings);
+  if (settings.lighting && settings.lighting->attenuation == LightAttenuation::Exact)
+    others += lightRayMemory(volume, *settings.lighting).bytes;
+  return std::min(settings.mostRayBytes, device.memoryBytes() - std::min(device.memoryBytes(), others));
 }
 
 void checkSplatsFit(const Device& device, const DeviceVolume& volume) {

@@ -1,5 +1,6 @@
 #pragma once
-// Predicts the device memory that a volume needs at each stage of a frame, and checks it before the stage allocates.
+// Predicts the device memory that a volume needs at each stage of a frame, checks it before the stage allocates, and decides the
+// settings that depend on it.
 
 #include <algorithm>
 #include <cstdint>
@@ -8,6 +9,7 @@
 #include "engine/attenuation/slabs.h"
 #include "engine/octree/device_volume.h"
 #include "engine/scene/directions.h"
+#include "engine/scene/render_settings.h"
 
 namespace freevoxels {
 
@@ -42,8 +44,22 @@ struct VolumeMemory {
 VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std::uint64_t> stored, DirectionSet directions,
                           StoredKinds kinds, const SweepStyle& style);
 
-/// Fails with ExitCode::OutOfMemory if the device cannot hold or bind the lists of splats, or the attenuation table and a sweep.
+/// Fails with ErrorKind::OutOfMemory if the device cannot hold or bind the lists of splats, or the attenuation table and a sweep.
 void checkSplatsFit(const Device& device, const DeviceVolume& volume);
 void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions);
+
+// What the following functions decide depends on all of the device's memory, and not on what is allocated at present, so that it
+// is the same for every frame.
+
+/// Resolves LightAttenuation::Auto, for settings with lighting, to lightAttenuationFor, but to Table if exact rays would take more
+/// than a quarter of the device's memory or more than `memory` and the images of the frame leave.
+LightAttenuation planLightAttenuation(const Device& device, const DeviceVolume& volume, const VolumeMemory& memory,
+                                      const FrameSettings& settings);
+
+/// The largest number of bytes that rays from the eye may take. With AttenuationLookup::Auto a frame can be drawn without rays, but
+/// not without its other buffers, so rays get what those leave. `readsTable` says whether the frame reads the table; the
+/// attenuation of its lights must be resolved.
+std::uint64_t planEyeRayBytes(const Device& device, const DeviceVolume& volume, VolumeMemory memory, const FrameSettings& settings,
+                              bool readsTable);
 
 }  // namespace freevoxels

@@ -175,8 +175,7 @@ FrameSettings Renderer::State::resolved(const FrameSettings& settings) {
   FrameSettings result = settings;
   if (!settings.lighting) return result;
   if (!lights) lights.emplace(device);
-  const std::uint64_t others = memoryOfVolume().peak() + 2 * targetBytes(settings);
-  result.lighting->attenuation = lights->resolve(built.volume, settings, others);
+  result.lighting->attenuation = planLightAttenuation(device, built.volume, memoryOfVolume(), settings);
   return result;
 }
 
@@ -187,21 +186,12 @@ FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSet
   const FrameConstants constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
   if (!constants.readsRays()) return constants;
   if (constants.readsTable()) sweptTable(progress);  // allocated first, as it is indispensable
-  std::uint64_t mostRayBytes = settings.mostRayBytes;
-  if (settings.attenuation == AttenuationLookup::Auto) {
-    // A frame can be drawn without rays, but not without its other buffers, so rays get what those leave.
-    // This does not depend on what is allocated at present, so that it is the same for every frame.
-    VolumeMemory memory = memoryOfVolume();
-    if (!constants.readsTable()) memory.table = memory.sweep = 0;
-    std::uint64_t others = memory.peak() + 2 * targetBytes(settings);
-    if (settings.lighting) others += LightPass::rayBytes(built.volume, *settings.lighting);
-    mostRayBytes = std::min(mostRayBytes, device.memoryBytes() - std::min(device.memoryBytes(), others));
-  }
   try {
-    splats->makeRoomForRays(built.volume, constants.eye, mostRayBytes);
+    splats->makeRoomForRays(built.volume, constants.eye,
+                            planEyeRayBytes(device, built.volume, memoryOfVolume(), settings, constants.readsTable()));
     return constants;
   } catch (const Error& error) {
-    if (settings.attenuation != AttenuationLookup::Auto || error.code() != ExitCode::OutOfMemory) throw;
+    if (settings.attenuation != AttenuationLookup::Auto || error.kind() != ErrorKind::OutOfMemory) throw;
   }
   lastLackedRays = true;
   FrameSettings tableAlone = settings;
@@ -342,7 +332,7 @@ std::shared_ptr<const SplatTargets> Renderer::State::recordImage(Commands& comma
     try {
       return recordGather(commands, camera, settings, progress);
     } catch (const Error& error) {
-      if (settings.draw != Draw::Auto || error.code() != ExitCode::OutOfMemory) throw;
+      if (settings.draw != Draw::Auto || error.kind() != ErrorKind::OutOfMemory) throw;
     }
     lastLackedGather = true;
   }
@@ -439,7 +429,7 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
     try {
       return state.gatherShares(camera, settings, part, progress);
     } catch (const Error& error) {
-      if (settings.draw != Draw::Auto || error.code() != ExitCode::OutOfMemory) throw;
+      if (settings.draw != Draw::Auto || error.kind() != ErrorKind::OutOfMemory) throw;
     }
     state.lastLackedGather = true;
   }

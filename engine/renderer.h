@@ -35,7 +35,7 @@ class Renderer {
   /// and their lists, or for a volume that is classified after interpolation its scalars; the blocks are then
   /// made for the first frame that needs them for lights, levels of detail or splats. The attenuation table
   /// is made for the first frame that reads it, its levels for the first that may draw or leave out blocks.
-  /// Fails with ExitCode::OutOfMemory, before allocating, if the device's limits are too small.
+  /// Fails with ErrorKind::OutOfMemory, before allocating, if the device's limits are too small.
   Renderer(const Device& device, const Volume& volume, const Classification& classification,
            const TableSettings& table, const Progress& progress = {});
   Renderer(const Device&, Volume&&, const Classification&, const TableSettings&, const Progress& = {}) = delete;
@@ -60,7 +60,7 @@ class Renderer {
 
   /// The sums of the shares of a part in fixed point: those of all parts add up to the same bits, however many parts there are, on
   /// devices of one kind. resolveSums makes the image. Drawn as render() would, by gathering or by splats, with nothing left out as
-  /// hidden. `settings.composite` must not be Sorted. Fails with ExitCode::OutOfMemory.
+  /// hidden. `settings.composite` must not be Sorted. Fails with ErrorKind::OutOfMemory.
   FixedSums renderShares(const Camera& camera, const FrameSettings& settings, const SharePart& part, const Progress& progress = {});
 
   /// Memory of the volume, including the table even if no frame has read it.
@@ -83,7 +83,7 @@ class Renderer {
   std::vector<glm::dvec3> downloadEmission() const;
   /// The attenuation table: bytes [direction][voxel], voxels x fastest without padding.
   std::vector<std::vector<std::uint8_t>> downloadTable() const;
-  /// Depths along rays from the camera's eye. Fails with ExitCode::OutOfMemory.
+  /// Depths along rays from the camera's eye. Fails with ErrorKind::OutOfMemory.
   RayCodes downloadRays(const Camera& camera) const;
   /// Indices (Volume::at) of the occupied voxels, in the order in which they are drawn.
   std::vector<std::uint32_t> downloadBlockList() const;

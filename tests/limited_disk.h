@@ -43,7 +43,7 @@ inline bool canLimitDisks(const std::filesystem::path& folder) {
 }
 
 /// For EXPECT_EXIT: calls `action(folder)` with a limited disk mounted on the folder, prints the error's
-/// sentence and exits with its code. Exits with 99 if anything is left on the disk, with 98 if there is no
+/// sentence and exits with the number of its kind. Exits with 99 if anything is left on the disk, with 98 if there is no
 /// such disk.
 template <typename Action>
 [[noreturn]] void exitWithErrorOnLimitedDisk(const std::filesystem::path& folder, std::size_t bytes,
@@ -54,7 +54,7 @@ template <typename Action>
     action(folder);
   } catch (const Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
-    code = int(error.code());
+    code = int(error.kind());
   }
   for (const auto& left : std::filesystem::directory_iterator(folder)) {
     std::fprintf(stderr, "left behind: %s\n", left.path().c_str());

@@ -19,15 +19,15 @@ Error errorOf(Action&& action) {
     return error;
   }
   ADD_FAILURE() << "no error";
-  return {ExitCode::Success, ""};
+  return {ErrorKind::Internal, ""};
 }
 
 /// One sentence on one line that contains all of `parts`.
 template <typename Action>
-void expectRefusal(Action&& action, ExitCode code, std::initializer_list<std::string> parts) {
+void expectRefusal(Action&& action, ErrorKind kind, std::initializer_list<std::string> parts) {
   const Error error = errorOf(action);
   const std::string sentence = error.what();
-  EXPECT_EQ(error.code(), code) << sentence;
+  EXPECT_EQ(error.kind(), kind) << sentence;
   EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
   for (const std::string& part : parts)
     EXPECT_NE(sentence.find(part), std::string::npos) << part << " in: " << sentence;

@@ -216,7 +216,7 @@ int main(int argc, char** argv) {
         std::ofstream stream(file);
         stream << toJson(opened, results).dump(2) << '\n';
         stream.flush();
-        if (!stream) fail(ExitCode::Output, "cannot write '{}': is the disk full?", json);
+        if (!stream) fail(ErrorKind::Output, "cannot write '{}': is the disk full?", json);
       });
     });
   });

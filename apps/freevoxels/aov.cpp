@@ -88,7 +88,7 @@ Aovs readAovs(const std::string& option, const std::string& text) {
     const std::string word = text.substr(begin, end - begin);
     const auto named = std::ranges::find_if(kAovs, [&](const AovName& name) { return name.word == word; });
     if (named == kAovs.end())
-      fail(ExitCode::Usage, "{} takes depth, position, normal and transmittance, with commas between them, not '{}'", option, word);
+      fail(ErrorKind::Usage, "{} takes depth, position, normal and transmittance, with commas between them, not '{}'", option, word);
     aovs.*named->member = true;
     begin = end + 1;
   }

@@ -18,7 +18,7 @@ struct Aovs {
   bool needDepth() const { return depth || position || normal; }
 };
 
-/// Reads "depth,normal". ExitCode::Usage where a word is none of the members; `option` is what the sentence calls it.
+/// Reads "depth,normal". ErrorKind::Usage where a word is none of the members; `option` is what the sentence calls it.
 Aovs readAovs(const std::string& option, const std::string& text);
 /// What readAovs reads.
 std::string aovText(const Aovs& aovs);

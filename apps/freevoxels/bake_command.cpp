@@ -80,9 +80,9 @@ BakeSettings BakeCommand::settings(const Volume& volume, const Classification& c
 void BakeCommand::run() {
   messages_.apply();
   scene_.input.checkGiven();
-  if (file_.empty()) fail(ExitCode::Usage, "OUT.fvx is required: name a file to write");
+  if (file_.empty()) fail(ErrorKind::Usage, "OUT.fvx is required: name a file to write");
   if (std::filesystem::path(file_).extension() != ".fvx")
-    fail(ExitCode::Usage, "'{}' is not named .fvx, and bake writes baked volumes; name it so", file_);
+    fail(ErrorKind::Usage, "'{}' is not named .fvx, and bake writes baked volumes; name it so", file_);
   scene_.checkLook();
   checkOutput(file_);
   if (!proceduralName(scene_.input.input)) checkDistinct({scene_.input.input, file_});
@@ -102,7 +102,7 @@ void BakeCommand::run() {
 void BakeCommand::bake(ProgressLine& line) const {
   const auto volume = std::make_shared<const Volume>(scene_.readVolume(machineMemoryBytes() / sizeof(float)));
   if (volume->classificationIsFixed)
-    fail(ExitCode::Usage, "'{}' was baked for one classification: bake the volume that it was made of, or bake it with --keep-scalars",
+    fail(ErrorKind::Usage, "'{}' was baked for one classification: bake the volume that it was made of, or bake it with --keep-scalars",
          scene_.input.input);
   const Classification classification = scene_.resolveClassification(*volume);
   line.erase();

@@ -11,7 +11,7 @@ namespace {
 [[noreturn]] void endBeforeMain() {
   constexpr std::string_view kSentence =
       "freevoxels: the program could not start: raise the limits on threads and memory (ulimit -u, ulimit -v)\n";
-  constexpr int kOutOfMemory = 6;  // ExitCode::OutOfMemory
+  constexpr int kOutOfMemory = 6;  // ErrorKind::OutOfMemory
   if (write(STDERR_FILENO, kSentence.data(), kSentence.size()) < 0) _exit(kOutOfMemory);
   _exit(kOutOfMemory);
 }

@@ -23,7 +23,7 @@ struct CameraOptions {
   void add(CLI::App& app);
   /// Sets the options to this camera, with the same image size.
   void look(const Camera& from);
-  /// Fails with ExitCode::Usage for options that are wrong for every volume, before one is read.
+  /// Fails with ErrorKind::Usage for options that are wrong for every volume, before one is read.
   void check() const;
   /// The cameras of a full turn in equal steps about the axis through the look-at point along `up`. Options
   /// that are not given are chosen so that the visible part of the volume fills the image, from one distance

@@ -12,12 +12,12 @@ namespace {
 /// What a baked volume was baked with, changed by the options.
 Classification bakedClassification(const ClassificationOptions& options, const Volume& volume) {
   if (options.albedoGrid)
-    fail(ExitCode::Usage, "--albedo-grid chooses among the grids of an OpenVDB file, and {} is a baked volume: give it to 'freevoxels bake'",
+    fail(ErrorKind::Usage, "--albedo-grid chooses among the grids of an OpenVDB file, and {} is a baked volume: give it to 'freevoxels bake'",
          volume.source);
   Classification classification = *volume.classification;
   const bool given = options.densityScale || options.albedo || options.transferFunction || options.order;
   if (given && volume.classificationIsFixed)
-    fail(ExitCode::Usage,
+    fail(ErrorKind::Usage,
          "{} was baked for one classification, which --density-scale, --albedo, --transfer-function and --classification cannot "
          "change: leave them out, or bake it with --keep-scalars",
          volume.source);

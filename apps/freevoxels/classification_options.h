@@ -22,7 +22,7 @@ struct ClassificationOptions {
 
   void add(CLI::App& app);
   /// Reads the transfer function. What is not given is as the volume's file says, if it does (Volume::classification); options are
-  /// refused with ExitCode::Usage where that is fixed. Otherwise, without options scans have scanTransferFunction, level sets are opaque, and others have the
+  /// refused with ErrorKind::Usage where that is fixed. Otherwise, without options scans have scanTransferFunction, level sets are opaque, and others have the
   /// automatic density scale of volumes that shine, or do not.
   Classification resolve(const Volume& volume, bool shines) const;
   /// Takes the place of what is not given: what was resolved for another volume.

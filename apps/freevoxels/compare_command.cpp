@@ -61,20 +61,20 @@ Limit parseLimit(const std::string& text) {
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   const auto metric = std::ranges::find_if(kMetrics, [&](const MetricName& m) { return m.name == name; });
   if (metric == kMetrics.end())
-    fail(ExitCode::Usage, "--fail-above knows rmse, psnr, maximum, ldr-flip and hdr-flip, not '{}'", text);
+    fail(ErrorKind::Usage, "--fail-above knows rmse, psnr, maximum, ldr-flip and hdr-flip, not '{}'", text);
   double value = 0.0;
   const char* const end = text.data() + text.size();
   const char* const begin = std::min(text.data() + equals + 1, end);
   const auto parsed = std::from_chars(begin, end, value);
   if (begin == end || parsed.ptr != end || parsed.ec != std::errc() || !std::isfinite(value))
-    fail(ExitCode::Usage, "--fail-above takes METRIC=VALUE with a finite number, not '{}'", text);
+    fail(ErrorKind::Usage, "--fail-above takes METRIC=VALUE with a finite number, not '{}'", text);
   return {&*metric, value};
 }
 
 Image readFinite(const std::string& file) {
   Image image = readPicture(file);
   if (const auto bad = findNonFinite(image))
-    fail(ExitCode::Input,
+    fail(ErrorKind::Input,
          "cannot compare '{}': channel {} of pixel ({}, {}) is NaN or infinite; render it again", file,
          kChannels[std::size_t(bad->channel)], bad->pixel.x, bad->pixel.y);
   return image;
@@ -147,7 +147,7 @@ void checkLimits(const Comparison& comparison, const std::vector<Limit>& limits,
       broken.push_back(fmt::format("{} {:.6g} is {} {}", limit.metric->name, limit.metric->value(comparison),
                                    limit.metric->moreIsBetter ? "below" : "above", limit.value));
   if (!broken.empty())
-    fail(ExitCode::Comparison, "'{}' is too far from '{}': {}", test, reference, fmt::join(broken, ", "));
+    fail(ErrorKind::Comparison, "'{}' is too far from '{}': {}", test, reference, fmt::join(broken, ", "));
 }
 
 void writeDifference(const std::string& file, const Image& test, const Image& reference, const FlipMap& map) {
@@ -192,17 +192,17 @@ void CompareCommand::run() const {
   std::vector<Limit> limits;
   for (const std::string& text : limits_) limits.push_back(parseLimit(text));
   if (exposures_ && exposures_->x > exposures_->y)
-    fail(ExitCode::Usage, "--exposures START,STOP must not end before it starts");
+    fail(ErrorKind::Usage, "--exposures START,STOP must not end before it starts");
   if (difference_) {
     if (!isExr(*difference_) && !isPng(*difference_))
-      fail(ExitCode::Usage, "'{}' has no known picture extension; name it .exr or .png", *difference_);
+      fail(ErrorKind::Usage, "'{}' has no known picture extension; name it .exr or .png", *difference_);
     checkDistinct({test_, *difference_});
     checkDistinct({reference_, *difference_});
     checkOutput(*difference_);
   }
   const Image test = readFinite(test_), reference = readFinite(reference_);
   if (test.size != reference.size)
-    fail(ExitCode::Input, "'{}' has {}x{} pixels, '{}' {}x{}: only pictures of the same size compare", test_,
+    fail(ErrorKind::Input, "'{}' has {}x{} pixels, '{}' {}x{}: only pictures of the same size compare", test_,
          test.size.x, test.size.y, reference_, reference.size.x, reference.size.y);
   const Comparison comparison = compare(test, reference, background_.value_or(glm::dvec3(0.0)),
                                         pixelsPerDegree_.value_or(kDefaultPixelsPerDegree), exposures_);

@@ -33,16 +33,31 @@ std::filesystem::path cacheFolder() {
   return {};
 }
 
+std::uint64_t limitBytes(std::optional<int> mebibytes) {
+  return mebibytes ? std::uint64_t(*mebibytes) << 20 : std::numeric_limits<std::uint64_t>::max();
+}
+
 }  // namespace
 
 std::unique_ptr<Device> DeviceOptions::open(const Instance& instance, std::span<const char* const> extensions) const {
-  const std::uint64_t limit =
-      memoryLimit ? std::uint64_t(*memoryLimit) << 20 : std::numeric_limits<std::uint64_t>::max();
-  return std::make_unique<Device>(instance, selector.value_or(""), limit, extensions, cacheFolder());
+  return std::make_unique<Device>(instance, selector.value_or(""), limitBytes(memoryLimit), extensions, cacheFolder());
+}
+
+std::unique_ptr<Device> DeviceOptions::adopt(const Instance& instance, const AdoptedDevice& adopted) const {
+  return std::make_unique<Device>(instance, adopted, limitBytes(memoryLimit), cacheFolder());
+}
+
+bool validationRequested() {
+  const char* const value = std::getenv("FREEVOXELS_VALIDATION");
+  return value != nullptr && std::string_view(value) == "1";
+}
+
+void logValidation(std::string_view message) {
+  spdlog::error("Vulkan validation: {}", message);
 }
 
 void withInstance(const std::function<void(const Instance&)>& work, std::span<const char* const> extensions) {
-  const Instance instance(validationRequested(), extensions);
+  const Instance instance(validationRequested(), logValidation, extensions);
   work(instance);
   if (const std::uint64_t count = instance.validationMessageCount(); count > 0)
     throw InternalError(fmt::format("{} Vulkan validation messages, printed above", count));

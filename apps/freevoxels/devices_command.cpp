@@ -51,7 +51,7 @@ void DevicesCommand::run() const {
   withInstance([this](const Instance& instance) {
     const std::vector<DeviceDescription> devices = listDevices(instance);
     if (devices.empty())
-      fail(ExitCode::Device,
+      fail(ErrorKind::Device,
            "no Vulkan device was found: install mesa-vulkan-drivers to render without a GPU");
     json_ ? printJson(devices) : printTable(devices);
   });

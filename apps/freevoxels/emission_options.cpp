@@ -33,12 +33,12 @@ void EmissionOptions::add(CLI::App& app) {
 
 void EmissionOptions::check(const InputOptions& input) const {
   if (temperatureGrid && proceduralName(input.input))
-    fail(ExitCode::Usage, "--temperature-grid chooses among the grids of a file: {} takes --emission alone",
+    fail(ErrorKind::Usage, "--temperature-grid chooses among the grids of a file: {} takes --emission alone",
          input.input);
   if (grid()) return;
   for (const auto& [name, given] :
        {std::pair("--temperature-scale", temperatureScale), {"--temperature-offset", temperatureOffset}})
-    if (given) fail(ExitCode::Usage, "{} is of emission: add --emission or --temperature-grid NAME", name);
+    if (given) fail(ErrorKind::Usage, "{} is of emission: add --emission or --temperature-grid NAME", name);
 }
 
 std::optional<std::string> EmissionOptions::grid() const {
@@ -49,12 +49,12 @@ std::optional<std::string> EmissionOptions::grid() const {
 std::optional<Emission> EmissionOptions::resolve(const Volume& volume,
                                                  const Classification& classification) const {
   if (temperatureGrid && volume.classification)
-    fail(ExitCode::Usage,
+    fail(ErrorKind::Usage,
          "--temperature-grid chooses among the grids of an OpenVDB file, and {} is a baked volume: give it to 'freevoxels bake'",
          volume.source);
   if (!grid()) return classification.emission;  // a baked volume's
   if (!volume.temperature)
-    fail(ExitCode::Usage, "{} has no temperatures: leave --emission out, {}", volume.source,
+    fail(ErrorKind::Usage, "{} has no temperatures: leave --emission out, {}", volume.source,
          volume.classification ? "or give it to 'freevoxels bake'" : "or take procedural:fire");
   const TemperatureGrid& grid = *volume.temperature;
   Emission result;

@@ -15,7 +15,7 @@ struct EmissionOptions {
   std::optional<double> strength, temperatureScale, temperatureOffset;
 
   void add(CLI::App& app);
-  /// Fails with ExitCode::Usage for options that do not apply.
+  /// Fails with ErrorKind::Usage for options that do not apply.
   void check(const InputOptions& input) const;
   /// The name of the grid to read; nothing without emission.
   std::optional<std::string> grid() const;

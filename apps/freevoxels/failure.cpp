@@ -7,11 +7,30 @@
 
 namespace freevoxels {
 
+ExitCode exitCodeOf(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::Usage: return ExitCode::Usage;
+    case ErrorKind::Input: return ExitCode::Input;
+    case ErrorKind::Output: return ExitCode::Output;
+    case ErrorKind::Device: return ExitCode::Device;
+    case ErrorKind::OutOfMemory: return ExitCode::OutOfMemory;
+    case ErrorKind::Comparison: return ExitCode::Comparison;
+    case ErrorKind::Internal: break;
+  }
+  return ExitCode::Internal;
+}
+
+std::string withOptions(std::string_view text) {
+  return spelled(text, [](std::string_view name, std::string_view value) {
+    return value.empty() ? fmt::format("--{}", name) : fmt::format("--{} {}", name, value);
+  });
+}
+
 Failure currentFailure() {
   try {
     throw;
   } catch (const Error& error) {
-    return {error.code(), error.what()};
+    return {exitCodeOf(error.kind()), withOptions(error)};
   } catch (const std::bad_alloc&) {
     return {ExitCode::OutOfMemory,
             "this machine's memory, or the share that this process may use (ulimit -v), is full: use a smaller volume or image"};

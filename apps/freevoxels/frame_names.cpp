@@ -40,13 +40,13 @@ std::string frameName(const std::string& pattern, int frame) {
   const std::string hashes = withHashes(pattern);
   const std::size_t first = hashes.find('#', hashes.rfind('/') + 1);
   if (first == std::string::npos)
-    fail(ExitCode::Usage,
+    fail(ErrorKind::Usage,
          "'{}' has no place for the number of the frame: put a run of # into the file name, as in "
          "orbit_####.png",
          pattern);
   const std::size_t end = std::min(hashes.find_first_not_of('#', first), hashes.size());
   if (hashes.find('#', end) != std::string::npos)
-    fail(ExitCode::Usage, "'{}' has several runs of #: leave one, for the number of the frame", pattern);
+    fail(ErrorKind::Usage, "'{}' has several runs of #: leave one, for the number of the frame", pattern);
   return fmt::format("{}{:0{}}{}", hashes.substr(0, first), frame, end - first, hashes.substr(end));
 }
 

@@ -13,7 +13,7 @@ inline constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
 std::string withHashes(const std::string& pattern);
 
 /// The pattern with the frame's number, padded with zeros, in place of the run of # (or %0Nd) in its file
-/// name; numbers with more digits are not cut. Fails with ExitCode::Usage if the file name has no such place,
+/// name; numbers with more digits are not cut. Fails with ErrorKind::Usage if the file name has no such place,
 /// or several.
 std::string frameName(const std::string& pattern, int frame);
 

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <limits>
 
+#include "apps/freevoxels/failure.h"
 #include "apps/freevoxels/share_group.h"
-#include "engine/core/error.h"
 #include "engine/octree/volume_limits.h"
 #include "engine/storage/baked_volume.h"
 #include "engine/volume/content_hash.h"
@@ -124,19 +124,19 @@ void FrameSeries::drawFilm(std::span<const Frame> frames) {
     } catch (const EmptyVolumeError& error) {
       if (inputs.size() == 1) throw;
       line_.erase();
-      spdlog::warn("{}; it becomes an image of the background", error.what());
+      spdlog::warn("{}; it becomes an image of the background", withOptions(error));
       for (const Frame& frame : own) writeEmpty(frame);
     } catch (const Error& error) {
-      if (inputs.size() == 1 || error.code() != ExitCode::Input) throw;
+      if (inputs.size() == 1 || error.kind() != ErrorKind::Input) throw;
       line_.erase();
-      spdlog::error("{}", error.what());
+      spdlog::error("{}", withOptions(error));
       ++failed;
     }
   }
   finishWriting();
   if (failed == 0 && waiting_.empty()) return;
-  if (failed == 0) fail(ExitCode::Input, "no frame of {} holds anything to draw", frames_);
-  fail(ExitCode::Input, "{} of {} volumes could not be drawn, for the reasons above", failed, inputs.size());
+  if (failed == 0) fail(ErrorKind::Input, "no frame of {} holds anything to draw", frames_);
+  fail(ErrorKind::Input, "{} of {} volumes could not be drawn, for the reasons above", failed, inputs.size());
 }
 
 /// A baked volume that the device cannot hold is drawn from a coarser level.
@@ -153,8 +153,8 @@ void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<co
     } catch (const Error& error) {
       if (file) level = std::max(level, finestLevel(*file, maximumVoxels(device_)));  // which is the one that was opened
       // The processes of a group cannot change the level each by itself.
-      if (error.code() != ExitCode::OutOfMemory || level + 1 >= levels || options_.group != nullptr) throw;
-      spdlog::warn("{}; drawing it at 1/{} of its resolution", error.what(), 1 << (level + 1));
+      if (error.kind() != ErrorKind::OutOfMemory || level + 1 >= levels || options_.group != nullptr) throw;
+      spdlog::warn("{}; drawing it at 1/{} of its resolution", withOptions(error), 1 << (level + 1));
     }
     report_ = before;
     drawn_ = drawn;
@@ -230,7 +230,7 @@ void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, std::span<con
   if (isFirst)
     begin(view, frames.size());
   else
-    warnAboutValues(*view.volume, !view.classification.transferFunction);
+    logWarnings(*view.volume, !view.classification.transferFunction);
   agree(view);
   if (isFirst || !options_.fixedView) reference_ = view;
 

@@ -44,7 +44,7 @@ class FrameSeries {
 
   /// Draws and writes every frame and prints the names of its files. Neighbouring frames of one volume share its table, and
   /// are the steps of a full turn. Of several volumes, one that holds nothing becomes an image of the background, and one that
-  /// cannot be read is left out: its error is printed, and at the end ExitCode::Input is thrown.
+  /// cannot be read is left out: its error is printed, and at the end ErrorKind::Input is thrown.
   void draw(std::span<const Frame> frames);
   /// Prints the names of frames that other processes of the group drew, when these are done.
   void printDrawnElsewhere();

@@ -45,9 +45,9 @@ void GenerateCommand::run() const {
     return;
   }
   if (name_.empty() || file_.empty())
-    fail(ExitCode::Usage, "generate takes NAME and OUT.vdb: 'freevoxels generate --list' has the names");
+    fail(ErrorKind::Usage, "generate takes NAME and OUT.vdb: 'freevoxels generate --list' has the names");
   if (std::filesystem::path(file_).extension() != ".vdb")
-    fail(ExitCode::Usage, "'{}' is not named .vdb, and generate writes OpenVDB files; name it so", file_);
+    fail(ErrorKind::Usage, "'{}' is not named .vdb, and generate writes OpenVDB files; name it so", file_);
   checkOutput(file_);
   const Volume volume = openProcedural(name_, resolution_, std::numeric_limits<std::uint64_t>::max());
   {

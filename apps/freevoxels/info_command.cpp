@@ -173,7 +173,7 @@ void InfoCommand::run() const {
   input_.checkGiven();
   const bool isBaked = !proceduralName(input_.input) && fvx::isFvx(input_.input);
   if (isBaked) return describeBaked();
-  if (check_) fail(ExitCode::Usage, "--check is for baked volumes (.fvx), and '{}' is none", input_.input);
+  if (check_) fail(ErrorKind::Usage, "--check is for baked volumes (.fvx), and '{}' is none", input_.input);
   const std::vector<GridInfo> grids = describeInput(input_);
   if (!json_) {
     printTable(grids);

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "engine/core/error.h"
+#include "apps/freevoxels/failure.h"
 #include "engine/storage/baked_volume.h"
 #include "engine/volume/procedural.h"
 
@@ -19,10 +19,11 @@ constexpr std::string_view kProceduralPrefix = "procedural:";
 
 Volume openBaked(const std::shared_ptr<const fvx::FvxFile>& file, std::uint64_t maximumVoxels, int level) {
   const int fitting = finestLevel(*file, maximumVoxels);
+  Volume volume = readBaked(file, std::max(fitting, level));
   if (fitting > level)
-    spdlog::warn("{} is opened at 1/{} of its resolution: the {} voxels of its box are more than the {} that fit",
-                 file->path().string(), 1 << fitting, resolutionText(file->dimensions(0)), maximumVoxels);
-  return readBaked(file, std::max(fitting, level));
+    volume.warnings.push_back(fmt::format("{} is opened at 1/{} of its resolution: the {} voxels of its box are more than the {} that fit",
+                                          file->path().string(), 1 << fitting, resolutionText(file->dimensions(0)), maximumVoxels));
+  return volume;
 }
 
 }  // namespace
@@ -52,7 +53,7 @@ Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolut
   const std::uint64_t available =
       std::min<std::uint64_t>(maximumVoxels, machineMemoryBytes() / sizeof(float));
   if (needed > available)
-    fail(ExitCode::OutOfMemory,
+    fail(ErrorKind::OutOfMemory,
          "procedural:{} has {} voxels at --resolution {}, and {} fit: lower --resolution", name, needed,
          resolutionText(dimensions), available);
   Volume volume = makeProcedural(name, dimensions);
@@ -76,16 +77,16 @@ void InputOptions::addGrid(CLI::App& app) {
 }
 
 void InputOptions::checkGiven() const {
-  if (input.empty()) fail(ExitCode::Usage, "IN is required: name an OpenVDB file, or procedural:NAME");
+  if (input.empty()) fail(ErrorKind::Usage, "IN is required: name an OpenVDB file, or procedural:NAME");
 }
 
 void InputOptions::check() const {
   if (grid && !proceduralName(input) && fvx::isFvx(input))
-    fail(ExitCode::Usage, "--grid chooses among the grids of an OpenVDB file, and '{}' is a baked volume", input);
+    fail(ErrorKind::Usage, "--grid chooses among the grids of an OpenVDB file, and '{}' is a baked volume", input);
   if (proceduralName(input)) {
-    if (grid) fail(ExitCode::Usage, "--grid chooses among the grids of a file, and {} has one", input);
+    if (grid) fail(ErrorKind::Usage, "--grid chooses among the grids of a file, and {} has one", input);
   } else if (resolution) {
-    fail(ExitCode::Usage, "--resolution is for procedural:NAME, and '{}' has the resolution of its grid",
+    fail(ErrorKind::Usage, "--resolution is for procedural:NAME, and '{}' has the resolution of its grid",
          input);
   }
 }
@@ -111,18 +112,23 @@ void InputOptions::describe(OptionList& options) const {
     options.emplace_back("--resolution", resolutionText(resolution.value_or(glm::ivec3(kDefaultResolution))));
 }
 
-void warnAboutValues(const Volume& volume, bool scalarsAreDensities) {
+std::vector<std::string> warningsOf(const Volume& volume, bool scalarsAreDensities) {
+  std::vector<std::string> warnings = volume.warnings;
   const auto warn = [&](std::uint64_t voxels, const char* what) {
     if (voxels == 0) return;
     const bool one = voxels == 1;
-    spdlog::warn("{} voxel{} of {} with {} count{} as 0", voxels, one ? "" : "s", volume.source, what,
-                 one ? "s" : "");
+    warnings.push_back(fmt::format("{} voxel{} of {} with {} count{} as 0", voxels, one ? "" : "s", volume.source, what, one ? "s" : ""));
   };
   warn(volume.nanVoxels, "a value that is NaN or infinite");
   if (volume.albedo && volume.albedo->clippedVoxels > 0)
-    spdlog::warn("{} voxels of grid '{}' have components outside of 0..1, which are clipped to it",
-                 volume.albedo->clippedVoxels, volume.albedo->name);
+    warnings.push_back(fmt::format("{} voxels of grid '{}' have components outside of 0..1, which are clipped to it",
+                                   volume.albedo->clippedVoxels, volume.albedo->name));
   if (scalarsAreDensities) warn(volume.negativeVoxels, "negative density");
+  return warnings;
+}
+
+void logWarnings(const Volume& volume, bool scalarsAreDensities) {
+  for (const std::string& warning : warningsOf(volume, scalarsAreDensities)) spdlog::warn("{}", withOptions(warning));
 }
 
 }  // namespace freevoxels

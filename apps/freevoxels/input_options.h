@@ -25,7 +25,7 @@ std::string resolutionText(glm::ivec3 dimensions);
 /// NAME of "procedural:NAME"; nothing for a file.
 std::optional<std::string> proceduralName(const std::string& input);
 
-/// Calls makeProcedural, but fails with ExitCode::OutOfMemory before allocating if the volume exceeds
+/// Calls makeProcedural, but fails with ErrorKind::OutOfMemory before allocating if the volume exceeds
 /// `maximumVoxels` or this machine's memory.
 Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolution, std::uint64_t maximumVoxels);
 
@@ -38,9 +38,9 @@ struct InputOptions {
   void add(CLI::App& app);
   /// Adds --grid.
   void addGrid(CLI::App& app);
-  /// Fails with ExitCode::Usage without IN.
+  /// Fails with ErrorKind::Usage without IN.
   void checkGiven() const;
-  /// Fails with ExitCode::Usage for options that do not apply to this input.
+  /// Fails with ErrorKind::Usage for options that do not apply to this input.
   void check() const;
   /// A procedural volume has its temperatures if any are requested; a baked one always has its temperatures
   /// and albedos. If the box of a baked volume is too large at `level`, the finest level that fits is opened,
@@ -51,7 +51,10 @@ struct InputOptions {
   void describe(OptionList& options) const;
 };
 
-/// Warns of NaN values, and of negative values if the scalars are densities.
-void warnAboutValues(const Volume& volume, bool scalarsAreDensities);
+/// What the user should know of a volume: its own warnings, NaN values, and negative values if the scalars are densities.
+/// Parameters are marked (engine/core/parameter.h).
+std::vector<std::string> warningsOf(const Volume& volume, bool scalarsAreDensities);
+/// Logs them.
+void logWarnings(const Volume& volume, bool scalarsAreDensities);
 
 }  // namespace freevoxels

@@ -23,13 +23,13 @@ LightingOptions::GivenLight readLight(const std::string& text) {
   for (const auto& [key, value] : readKeys("--light", kForm, text)) {
     if (key == "direction" || key == "position") {
       if (placed)
-        fail(ExitCode::Usage, "--light '{}' has a direction and a position: give one of them", text);
+        fail(ErrorKind::Usage, "--light '{}' has a direction and a position: give one of them", text);
       placed = true;
       given.light.atInfinity = key == "direction";
       given.light.place =
           triple(given.light.atInfinity ? "--light direction" : "--light position", "X,Y,Z", value);
       if (given.light.atInfinity && given.light.place == glm::dvec3(0.0))
-        fail(ExitCode::Usage, "--light '{}' has the direction 0,0,0, which points nowhere: give another",
+        fail(ErrorKind::Usage, "--light '{}' has the direction 0,0,0, which points nowhere: give another",
              text);
     } else if (key == "color") {
       given.light.color = triple("--light color", "R,G,B", value, {.minimum = 0.0});
@@ -37,10 +37,10 @@ LightingOptions::GivenLight readLight(const std::string& text) {
       given.light.intensity = readNumbers("--light intensity", "I", 1, value, {.minimum = 0.0})[0];
       given.hasIntensity = true;
     } else {
-      fail(ExitCode::Usage, "--light knows no '{}': it takes {}", key, kForm);
+      fail(ErrorKind::Usage, "--light knows no '{}': it takes {}", key, kForm);
     }
   }
-  if (!placed) fail(ExitCode::Usage, "--light '{}' has neither a direction nor a position: give one", text);
+  if (!placed) fail(ErrorKind::Usage, "--light '{}' has neither a direction nor a position: give one", text);
   return given;
 }
 
@@ -152,15 +152,15 @@ void LightingOptions::addMethod(CLI::App& app) {
 void LightingOptions::check() const {
   const bool withoutLights = lights.empty() && hasLight();
   if (attenuation && withoutLights)
-    fail(ExitCode::Usage,
+    fail(ErrorKind::Usage,
          "--light-attenuation is how lights are shadowed, and there is none: give a --light");
   if (shading == int(Shading::Gradient) && withoutLights)
-    fail(ExitCode::Usage,
+    fail(ErrorKind::Usage,
          "--shading gradient is how lights are scattered, and there is none: give a --light");
   if (surface && shading == int(Shading::Scatter))
-    fail(ExitCode::Usage, "--surface-share is of surfaces: give --shading gradient as well");
+    fail(ErrorKind::Usage, "--surface-share is of surfaces: give --shading gradient as well");
   if ((environmentRotation || environmentIntensity) && !environment)
-    fail(ExitCode::Usage, "{} is of an environment, and there is none: give an --environment",
+    fail(ErrorKind::Usage, "{} is of an environment, and there is none: give an --environment",
          environmentRotation ? "--environment-rotation" : "--environment-intensity");
 }
 

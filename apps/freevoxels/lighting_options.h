@@ -42,7 +42,7 @@ struct LightingOptions {
   void add(CLI::App& app);
   /// Adds the options that the oracle does not have: use of the table, and surfaces.
   void addMethod(CLI::App& app);
-  /// Fails with ExitCode::Usage for options that have no effect without others. To be called before any work.
+  /// Fails with ErrorKind::Usage for options that have no effect without others. To be called before any work.
   void check() const;
   bool hasLight() const { return !lights.empty() || ambient || environment; }
   /// The lighting, or nothing without lighting. Without lights it is defaultLights() of `camera`. The default

@@ -52,7 +52,7 @@ class Merge {
 
 void Merge::checkSamePicture(const std::string& file, const SumsFile& part) const {
   const auto refuse = [&](const std::string& what) {
-    fail(ExitCode::Input, "'{}' and '{}' are parts of different pictures: {}; render one of them again", firstFile_, file, what);
+    fail(ErrorKind::Input, "'{}' and '{}' are parts of different pictures: {}; render one of them again", firstFile_, file, what);
   };
   const auto compare = [&](const std::string& name, const std::string& what) {
     const std::string mine = valueOf(total_.header, name), other = valueOf(part.header, name);
@@ -83,7 +83,7 @@ void Merge::add(const std::string& file) {
     if (!shares.holds(share)) continue;
     std::string& other = fileOfShare_[std::size_t(share)];
     if (!other.empty())
-      fail(ExitCode::Input, "'{}' and '{}' have the same shares, {}: leave one of them out", other, file, sharePartText(shares));
+      fail(ErrorKind::Input, "'{}' and '{}' have the same shares, {}: leave one of them out", other, file, sharePartText(shares));
     other = file;
   }
   if (firstFile_ == file)
@@ -103,7 +103,7 @@ void Merge::checkComplete() const {
   for (SharePart part{.count = leastCount_}; part.count <= kShares; ++part.count)
     for (part.index = 0; part.index < part.count; ++part.index)
       if (isMissing(part))
-        fail(ExitCode::Input, "share {} is missing: render it with --share {} --sums", sharePartText(part), sharePartText(part));
+        fail(ErrorKind::Input, "share {} is missing: render it with --share {} --sums", sharePartText(part), sharePartText(part));
 }
 
 ExrOptions pictureHeader(const Merge& merge, const OutputOptions& output) {
@@ -135,20 +135,20 @@ void MergeCommand::run() const {
   };
   const auto firstOutput = std::ranges::find_if_not(files_, isPart);
   if (firstOutput == files_.begin())
-    fail(ExitCode::Usage, "'{}' is no file of sums: name the files that 'freevoxels render --share I/N --sums' wrote, then pictures",
+    fail(ErrorKind::Usage, "'{}' is no file of sums: name the files that 'freevoxels render --share I/N --sums' wrote, then pictures",
          files_.front());
-  if (firstOutput == files_.end()) fail(ExitCode::Usage, "OUT is required: name a picture to write behind the parts, .exr or .png");
+  if (firstOutput == files_.end()) fail(ErrorKind::Usage, "OUT is required: name a picture to write behind the parts, .exr or .png");
   OutputOptions output = output_;
   output.files.assign(firstOutput, files_.end());
   for (const std::string& file : output.files)
-    if (isPart(file)) fail(ExitCode::Usage, "'{}' holds sums and would be replaced: name all parts before the pictures", file);
+    if (isPart(file)) fail(ErrorKind::Usage, "'{}' holds sums and would be replaced: name all parts before the pictures", file);
   output.check();
 
   Merge merge;
   for (const std::string& file : std::span(files_).first(std::size_t(firstOutput - files_.begin()))) merge.add(file);
   merge.checkComplete();
   if (output.wantsDepth() && merge.sums().channels < kSumChannels)
-    fail(ExitCode::Input, "the parts have no distances, which --aov depth needs: render them with --aov depth too");
+    fail(ErrorKind::Input, "the parts have no distances, which --aov depth needs: render them with --aov depth too");
   output.write(resolveSums(merge.sums(), valueOf(merge.header(), "freevoxels:composite") != "additive"), pictureHeader(merge, output));
   if (messages_.quiet) return;
   for (const std::string& file : output.files) fmt::print("{}\n", file);

@@ -77,7 +77,7 @@ void MethodOptions::apply(FrameSettings& frame) const {
   frame.attenuation = AttenuationLookup(
       attenuation.value_or(int(paper ? AttenuationLookup::Nearest : AttenuationLookup::Auto)));
   if (frame.draw == Draw::Gather && !canGather(frame))
-    fail(ExitCode::Usage,
+    fail(ErrorKind::Usage,
          "--draw gather computes exact transmittance and no sorted image: leave --attenuation and --composite out, or "
          "use --draw splats");
   frame.gradient = gradient.value_or(!paper);

@@ -54,7 +54,7 @@ std::string rangeText(const Expectation& expected) {
 
 [[noreturn]] void refuse(const Expectation& expected, const std::string& text) {
   const bool one = expected.count <= 1;
-  fail(ExitCode::Usage, "{} takes {}, {}{} number{}{}, not '{}'", expected.option, expected.form,
+  fail(ErrorKind::Usage, "{} takes {}, {}{} number{}{}, not '{}'", expected.option, expected.form,
        one ? "a " : "", expected.whole ? "whole" : "finite", one ? "" : "s", rangeText(expected), text);
 }
 
@@ -206,13 +206,13 @@ std::map<std::string, std::string> readKeys(const std::string& name, const std::
     begin = end + 1;
     const std::size_t equals = word.find('=');
     if (equals == std::string::npos) {
-      if (key.empty()) fail(ExitCode::Usage, "{} takes {}, not '{}'", name, form, text);
+      if (key.empty()) fail(ErrorKind::Usage, "{} takes {}, not '{}'", name, form, text);
       keys[key] += "," + word;
       continue;
     }
     key = word.substr(0, equals);
     if (!keys.emplace(key, word.substr(equals + 1)).second)
-      fail(ExitCode::Usage, "{} '{}' gives '{}' twice: give it once", name, text, key);
+      fail(ErrorKind::Usage, "{} '{}' gives '{}' twice: give it once", name, text, key);
   }
   return keys;
 }
@@ -226,7 +226,7 @@ CLI::Option* addWord(CLI::App& app, const std::string& name, const std::vector<s
   const auto read = [name, words, &target](const std::string& text) {
     const auto found = std::ranges::find(words, text);
     if (found == words.end())
-      fail(ExitCode::Usage, "{} takes '{}', not '{}'", name, fmt::join(words, "' or '"), text);
+      fail(ErrorKind::Usage, "{} takes '{}', not '{}'", name, fmt::join(words, "' or '"), text);
     target = int(found - words.begin());
   };
   return app.add_option_function<std::string>(name, read, description)

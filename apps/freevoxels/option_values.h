@@ -1,5 +1,5 @@
 #pragma once
-// Option values that are checked when they are parsed: a bad one fails with ExitCode::Usage and one sentence
+// Option values that are checked when they are parsed: a bad one fails with ErrorKind::Usage and one sentence
 // that names the option. NaN and infinities are always bad. Lists are one word: "1,2,3". If an option is
 // given twice, the last one counts.
 

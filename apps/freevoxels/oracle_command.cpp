@@ -53,7 +53,7 @@ std::uint64_t OracleCommand::voxelsThatFit() const {
   const std::uint64_t machine = machineMemoryBytes();
   const std::uint64_t picture = std::uint64_t(size.x) * std::uint64_t(size.y) * kOracleBytesPerPixel;
   if (picture >= machine)
-    fail(ExitCode::OutOfMemory,
+    fail(ErrorKind::OutOfMemory,
          "a picture of {}x{} pixels needs {} bytes, and this machine has {}: lower --size", size.x, size.y,
          picture, machine);
   const LightingOptions& lighting = scene_.lighting;

@@ -13,7 +13,7 @@ class OracleCommand {
  private:
   void run();
   void draw() const;
-  /// The number of voxels that fit into memory beside the image; fails with ExitCode::OutOfMemory if none do.
+  /// The number of voxels that fit into memory beside the image; fails with ErrorKind::OutOfMemory if none do.
   std::uint64_t voxelsThatFit() const;
 
   SceneOptions scene_;

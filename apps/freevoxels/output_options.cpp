@@ -105,16 +105,16 @@ void OutputOptions::leaveOutUnhonoured() {
 void OutputOptions::check() const {
   for (const std::string& file : files)
     if (!isImage(file))
-      fail(ExitCode::Usage, "'{}' has no known image extension; name it .exr, .png or .jpg", file);
-  if (aovs.any() && !honours("--aov")) fail(ExitCode::Usage, "--aov {} needs an .exr output", aovText(aovs));
-  if (fullFloat && !honours("--float")) fail(ExitCode::Usage, "--float needs an .exr output");
-  if (pngBits && !honours("--png-bits")) fail(ExitCode::Usage, "--png-bits needs a .png output");
+      fail(ErrorKind::Usage, "'{}' has no known image extension; name it .exr, .png or .jpg", file);
+  if (aovs.any() && !honours("--aov")) fail(ErrorKind::Usage, "--aov {} needs an .exr output", aovText(aovs));
+  if (fullFloat && !honours("--float")) fail(ErrorKind::Usage, "--float needs an .exr output");
+  if (pngBits && !honours("--png-bits")) fail(ErrorKind::Usage, "--png-bits needs a .png output");
   if ((background || transparent) && !honours("--background"))
-    fail(ExitCode::Usage, "--background needs a .png or .jpg output: an .exr keeps its alpha");
+    fail(ErrorKind::Usage, "--background needs a .png or .jpg output: an .exr keeps its alpha");
   if (transparent && std::ranges::any_of(files, isJpeg))
-    fail(ExitCode::Usage, "--background transparent needs .png outputs: a .jpg has no alpha");
+    fail(ErrorKind::Usage, "--background transparent needs .png outputs: a .jpg has no alpha");
   if ((exposure || toneMap) && !honours("--exposure"))
-    fail(ExitCode::Usage, "{} needs a .png or .jpg output: an .exr keeps linear light", exposure ? "--exposure" : "--tone-map");
+    fail(ErrorKind::Usage, "{} needs a .png or .jpg output: an .exr keeps linear light", exposure ? "--exposure" : "--tone-map");
   for (const std::string& file : files) checkOutput(file);
 }
 
@@ -122,7 +122,7 @@ void OutputOptions::checkCrop(glm::ivec2 imageSize) const {
   if (!crop) return;
   const glm::ivec2 end = crop->corner + crop->size;
   if (crop->size.x < 1 || crop->size.y < 1 || end.x > imageSize.x || end.y > imageSize.y)
-    fail(ExitCode::Usage, "--crop {},{},{},{} is no part of an image of {}x{} pixels", crop->corner.x, crop->corner.y, crop->size.x,
+    fail(ErrorKind::Usage, "--crop {},{},{},{} is no part of an image of {}x{} pixels", crop->corner.x, crop->corner.y, crop->size.x,
          crop->size.y, imageSize.x, imageSize.y);
 }
 

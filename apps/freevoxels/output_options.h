@@ -44,10 +44,10 @@ struct OutputOptions {
   bool honours(const std::string& option) const;
   /// Drops the options that affect none of the files.
   void leaveOutUnhonoured();
-  /// Checks extensions and options that no output can honour (ExitCode::Usage), and folders
-  /// (ExitCode::Output). To be called before any work.
+  /// Checks extensions and options that no output can honour (ErrorKind::Usage), and folders
+  /// (ErrorKind::Output). To be called before any work.
   void check() const;
-  /// ExitCode::Usage where --crop is not inside an image of this size.
+  /// ErrorKind::Usage where --crop is not inside an image of this size.
   void checkCrop(glm::ivec2 imageSize) const;
   /// How a .png or a .jpg is made of an image.
   DisplayLook look() const;

@@ -244,7 +244,7 @@ void checkDistinct(const std::vector<std::string>& files) {
   const auto note = [&](const std::string& identity, const std::string& file) {
     const auto [first, isNew] = known.emplace(identity, file);
     if (!isNew)
-      fail(ExitCode::Usage, "'{}' and '{}' are the same file: give every input and output its own",
+      fail(ErrorKind::Usage, "'{}' and '{}' are the same file: give every input and output its own",
            first->second, file);
   };
   for (const std::string& file : files) {

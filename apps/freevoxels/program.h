@@ -42,7 +42,7 @@ class DeferredInterrupts {
 /// Calls checkWritable, which creates a temporary file, safe from interrupts.
 void checkOutput(const std::filesystem::path& file);
 
-/// Fails with ExitCode::Usage if two of the names refer to the same file, so that no output replaces an input
+/// Fails with ErrorKind::Usage if two of the names refer to the same file, so that no output replaces an input
 /// or another output.
 void checkDistinct(const std::vector<std::string>& files);
 

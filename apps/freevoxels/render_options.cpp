@@ -43,8 +43,8 @@ void RenderOptions::checkShares(std::span<const Frame> frames) const {
   if (!shares.sums) return;
   for (const Frame& frame : frames)
     if (frame.files.size() != 1 || !isExr(frame.files.front()))
-      fail(ExitCode::Usage, "--sums writes a single file: name one .exr as OUT");
-  if (scene.output.fullFloat) fail(ExitCode::Usage, "--float has no effect on --sums, which lose no bit: leave it out");
+      fail(ErrorKind::Usage, "--sums writes a single file: name one .exr as OUT");
+  if (scene.output.fullFloat) fail(ErrorKind::Usage, "--float has no effect on --sums, which lose no bit: leave it out");
 }
 
 void RenderOptions::check(std::span<const Frame> frames) const {

@@ -74,7 +74,7 @@ class SceneReader {
  private:
   template <typename... Args>
   [[noreturn]] void failHere(fmt::format_string<Args...> format, Args&&... args) const {
-    fail(ExitCode::Input, "scene '{}': {}", file_, fmt::format(format, std::forward<Args>(args)...));
+    fail(ErrorKind::Input, "scene '{}': {}", file_, fmt::format(format, std::forward<Args>(args)...));
   }
   [[noreturn]] void failUnknown(const std::string& section, const std::string& key) const;
   bool isSection(const std::string& name) const {
@@ -137,7 +137,7 @@ void SceneReader::give(CLI::Option& option, const Json& value, const std::string
   try {
     option.run_callback();
   } catch (const Error& error) {
-    failHere("{}", error.what());
+    failHere("{}", error.text());
   }
 }
 

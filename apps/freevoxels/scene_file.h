@@ -23,7 +23,7 @@ struct SceneFileOptions {
   void leaveOut(const std::string& option) const;
   /// Sets every option that the command line leaves out, and for which `wanted` is true, to its value in the
   /// scene. Options of the command line also override what they exclude. Keys that only other commands have
-  /// are ignored. Fails with ExitCode::Input for errors in the file.
+  /// are ignored. Fails with ErrorKind::Input for errors in the file.
   void apply(const std::function<bool(const std::string& option)>& wanted) const;
   /// Writes the options that belong into a scene, with file names relative to its folder.
   void save(const OptionList& options) const;

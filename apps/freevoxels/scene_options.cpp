@@ -46,7 +46,7 @@ void SceneOptions::takeScene(const std::string& defaultEnding) {
     input.input.clear();
     file.leaveOut("IN");
   } else if (isImage(input.input)) {
-    fail(ExitCode::Usage, "IN is required: '{}' is an image, which OUT is; name an OpenVDB file before it, or procedural:NAME",
+    fail(ErrorKind::Usage, "IN is required: '{}' is an image, which OUT is; name an OpenVDB file before it, or procedural:NAME",
          input.input);
   }
   if (output.files.empty() && !defaultEnding.empty()) {
@@ -55,13 +55,13 @@ void SceneOptions::takeScene(const std::string& defaultEnding) {
   }
   file.apply([this](const std::string& option) { return output.honours(option); });
   input.checkGiven();
-  if (output.files.empty()) fail(ExitCode::Usage, "OUT is required: name an image to write, .exr, .png or .jpg");
+  if (output.files.empty()) fail(ErrorKind::Usage, "OUT is required: name an image to write, .exr, .png or .jpg");
 }
 
 void SceneOptions::checkLook() const {
   input.check();
   if (classification.albedoGrid && proceduralName(input.input))
-    fail(ExitCode::Usage, "--albedo-grid chooses among the grids of a file, and {} has one", input.input);
+    fail(ErrorKind::Usage, "--albedo-grid chooses among the grids of a file, and {} has one", input.input);
   emission.check(input);
   camera.check();
   lighting.check();
@@ -165,7 +165,7 @@ std::string SceneOptions::rendererText(const Scene& scene, const TableSettings& 
 }
 
 void SceneOptions::warn(const Scene& scene) const {
-  warnAboutValues(*scene.volume, !scene.classification.transferFunction);
+  logWarnings(*scene.volume, !scene.classification.transferFunction);
   if (scene.classification.transferFunction && !classification.transferFunction && !scene.volume->classification)
     spdlog::info("{} looks like a scan: the transfer function is made from its histogram; change it with --transfer-function, or "
                  "show densities with --density-scale",

@@ -38,7 +38,7 @@ struct SceneOptions {
   /// name of the volume, or else of the scene, with `defaultEnding` instead of the extension, in the current
   /// folder; if `defaultEnding` is empty, OUT is required. Must be called before all functions below.
   void takeScene(const std::string& defaultEnding = ".png");
-  /// Fails with ExitCode::Usage for options that are wrong for every volume and file.
+  /// Fails with ErrorKind::Usage for options that are wrong for every volume and file.
   void checkLook() const;
   /// Checks all options before any work. `moreOutputs` are files that the command writes in addition to
   /// images, `moreInputs` the volumes that it reads in addition to IN.

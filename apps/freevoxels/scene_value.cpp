@@ -79,7 +79,7 @@ std::string optionText(const CLI::Option& option, const Json& value, const fs::p
                        const std::string& name) {
   if (isFlag(option)) {
     if (value.is_boolean()) return value.dump();
-    fail(ExitCode::Input, "{} takes true or false, not {}", name, inQuotes(value));
+    fail(ErrorKind::Input, "{} takes true or false, not {}", name, inQuotes(value));
   }
   if (value.is_string()) {
     const auto text = value.get<std::string>();
@@ -90,7 +90,7 @@ std::string optionText(const CLI::Option& option, const Json& value, const fs::p
   if (value.is_object() && hasKeys(option))
     if (const std::string text = keysText(option, value); !text.empty()) return text;
   if (value.is_object() && isFile(option) && !option.get_positional()) return value.dump();
-  fail(ExitCode::Input, "{} takes {}, not {}", name,
+  fail(ErrorKind::Input, "{} takes {}, not {}", name,
        option.get_positional() ? "the name of a volume" : option.get_type_name(), inQuotes(value));
 }
 
@@ -132,7 +132,7 @@ std::vector<std::string> optionTexts(const CLI::Option& option, const nlohmann::
   if (standsAlone(option) && value.is_boolean())
     return value.get<bool>() ? std::vector<std::string>{""} : std::vector<std::string>{};
   if (!isRepeated(option)) return {optionText(option, value, folder, name)};
-  if (!value.is_array()) fail(ExitCode::Input, "{} takes a list, not {}", name, inQuotes(value));
+  if (!value.is_array()) fail(ErrorKind::Input, "{} takes a list, not {}", name, inQuotes(value));
   std::vector<std::string> texts;
   for (const Json& one : value) texts.push_back(optionText(option, one, folder, name));
   return texts;

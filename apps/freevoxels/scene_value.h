@@ -27,7 +27,7 @@ std::string sceneKey(const CLI::Option& option);
 std::string sceneSection(const CLI::Option& option);
 
 /// The words of the command line for a value; several for an option that may be repeated. File names are
-/// relative to `folder`. Fails with ExitCode::Input and a sentence that calls the value `name`.
+/// relative to `folder`. Fails with ErrorKind::Input and a sentence that calls the value `name`.
 std::vector<std::string> optionTexts(const CLI::Option& option, const nlohmann::json& value,
                                      const std::filesystem::path& folder, const std::string& name);
 

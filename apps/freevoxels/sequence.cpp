@@ -77,7 +77,7 @@ FrameRange readFrameRange(const std::string& option, const std::string& text) {
     last = dash + 1 == range.size() ? std::numeric_limits<int>::max() : wholeNumber(range.substr(dash + 1));
   if (colon < text.size()) step = wholeNumber(std::string_view(text).substr(colon + 1));
   if (!first || !last || !step || *step < 1 || *last < *first)
-    fail(ExitCode::Usage, "{} takes A-B, A-B:STEP, A- or A, whole numbers with A up to B and STEP of at least 1, not '{}'", option,
+    fail(ErrorKind::Usage, "{} takes A-B, A-B:STEP, A- or A, whole numbers with A up to B and STEP of at least 1, not '{}'", option,
          text);
   return {*first, *last, *step};
 }
@@ -85,7 +85,7 @@ FrameRange readFrameRange(const std::string& option, const std::string& text) {
 Sequence findSequence(const std::string& pattern) {
   Sequence sequence = filesOf(withHashes(pattern));
   if (sequence.files.empty())
-    fail(ExitCode::Input, "there is no frame of '{}': its # stand for the digits of a file's number",
+    fail(ErrorKind::Input, "there is no frame of '{}': its # stand for the digits of a file's number",
          pattern);
   return sequence;
 }
@@ -98,7 +98,7 @@ Sequence selectFrames(const Sequence& sequence, const FrameRange& range) {
     selected.numbers.push_back(sequence.numbers[i]);
   }
   if (selected.files.empty())
-    fail(ExitCode::Input, "'{}' has no frame among those chosen: its numbers are from {} to {}", sequence.pattern,
+    fail(ErrorKind::Input, "'{}' has no frame among those chosen: its numbers are from {} to {}", sequence.pattern,
          sequence.numbers.front(), sequence.numbers.back());
   return selected;
 }

@@ -20,13 +20,13 @@ struct FrameRange {
   bool contains(int number) const { return number >= first && number <= last && (number - first) % step == 0; }
 };
 
-/// "A-B:STEP", "A-B", "A-" or "A". ExitCode::Usage for anything else; `option` is what the sentence calls it.
+/// "A-B:STEP", "A-B", "A-" or "A". ErrorKind::Usage for anything else; `option` is what the sentence calls it.
 FrameRange readFrameRange(const std::string& option, const std::string& text);
 
-/// The frames of a pattern. ExitCode::Input where there is none, ExitCode::Usage as for frameName.
+/// The frames of a pattern. ErrorKind::Input where there is none, ErrorKind::Usage as for frameName.
 Sequence findSequence(const std::string& pattern);
 
-/// The frames of a sequence that are in the range. ExitCode::Input where there is none.
+/// The frames of a sequence that are in the range. ErrorKind::Input where there is none.
 Sequence selectFrames(const Sequence& sequence, const FrameRange& range);
 
 /// "13, 17-19": the numbers of the range at which no file exists. Without a range those between the first and the last frame, in

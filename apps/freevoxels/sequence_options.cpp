@@ -56,7 +56,7 @@ std::vector<std::string> extensionsOf(const std::string& formats) {
     const std::size_t end = std::min(formats.find(',', begin), formats.size());
     extensions.push_back("." + formats.substr(begin, end - begin));
     if (!isImage("image" + extensions.back()))
-      fail(ExitCode::Usage, "--format takes exr, png and jpg, with commas between them, not '{}'", formats);
+      fail(ErrorKind::Usage, "--format takes exr, png and jpg, with commas between them, not '{}'", formats);
     begin = end + 1;
   }
   return extensions;
@@ -84,7 +84,7 @@ void SequenceOptions::add(CLI::App& app, bool& fixedView) {
 std::vector<Frame> SequenceOptions::plan(SceneOptions& scene) const {
   std::vector<std::string> inputs = takeVolumes(scene.output.files);
   const bool namesAreOfVolumes = scene.output.files.empty() && !(isImage(scene.input.input) && scene.file.hasVolume());
-  if (formats && !namesAreOfVolumes) fail(ExitCode::Usage, "--format is for images without a name: leave it or OUT out");
+  if (formats && !namesAreOfVolumes) fail(ErrorKind::Usage, "--format is for images without a name: leave it or OUT out");
   const std::vector<std::string> extensions = extensionsOf(formats.value_or("png"));
   scene.takeScene(extensions.front());
   inputs.insert(inputs.begin(), scene.input.input);
@@ -100,8 +100,8 @@ std::vector<Frame> SequenceOptions::plan(SceneOptions& scene) const {
     for (NumberedVolume& volume : framesOf(input, frames)) volumes.push_back(std::move(volume));
   }
   for (std::size_t i = 1; i < volumes.size(); ++i)
-    if (volumes[i].file == volumes[i - 1].file) fail(ExitCode::Usage, "'{}' is named twice: name it once", volumes[i].file);
-  if (frames && !hasPattern) fail(ExitCode::Usage, "--frames chooses among the files of a pattern: name one, as in smoke_####.vdb");
+    if (volumes[i].file == volumes[i - 1].file) fail(ErrorKind::Usage, "'{}' is named twice: name it once", volumes[i].file);
+  if (frames && !hasPattern) fail(ErrorKind::Usage, "--frames chooses among the files of a pattern: name one, as in smoke_####.vdb");
 
   const auto placed = [&](const std::string& file) {
     return folder && !fs::path(file).has_parent_path() ? (fs::path(*folder) / file).string() : file;

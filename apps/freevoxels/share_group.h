@@ -15,15 +15,15 @@ class ShareGroup {
  public:
   virtual ~ShareGroup() = default;
 
-  /// Before any work: fails (ExitCode::Usage) where the processes cannot work together.
+  /// Before any work: fails (ErrorKind::Usage) where the processes cannot work together.
   virtual void begin() = 0;
-  /// Divides the processes into groups of so many, which draw frames side by side. Fails (ExitCode::Usage) where there are fewer.
+  /// Divides the processes into groups of so many, which draw frames side by side. Fails (ErrorKind::Usage) where there are fewer.
   virtual void splitFrames(int processesPerFrame) = 0;
   /// Whether this process is the one that prints, shows progress and writes what belongs to the run as a whole.
   virtual bool leads() const = 0;
   /// A device for this process, as for --device; empty: the one that every process would choose.
   virtual std::string deviceSelector() const = 0;
-  /// Fails (ExitCode::Input) on a process whose `text` differs from that of the leading process; `what` completes "rank 2 has ...".
+  /// Fails (ErrorKind::Input) on a process whose `text` differs from that of the leading process; `what` completes "rank 2 has ...".
   virtual void agree(const std::string& what, const std::string& text) = 0;
   /// Whether this process draws a part of the frame.
   virtual bool draws(std::size_t frame) const = 0;

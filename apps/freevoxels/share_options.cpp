@@ -21,7 +21,7 @@ SharePart readSharePart(const std::string& name, const std::string& text) {
     const auto [last, countError] = std::from_chars(slash + 1, end, part.count);
     if (countError == std::errc() && last == end && 0 <= part.index && part.index < part.count && part.count <= kShares) return part;
   }
-  fail(ExitCode::Usage, "{} takes I/N with 0 <= I < N <= {}, as 0/4, not '{}'", name, kShares, text);
+  fail(ErrorKind::Usage, "{} takes I/N with 0 <= I < N <= {}, as 0/4, not '{}'", name, kShares, text);
 }
 
 std::string sharePartText(const SharePart& part) {
@@ -42,7 +42,7 @@ void ShareOptions::add(CLI::App& app) {
 
 FrameSettings sharedSettings(FrameSettings settings) {
   if (settings.composite == Composite::Sorted)
-    fail(ExitCode::Usage, "a sorted image cannot be divided into shares: leave --composite sorted out");
+    fail(ErrorKind::Usage, "a sorted image cannot be divided into shares: leave --composite sorted out");
   settings.cullThreshold = 0.0f;
   return settings;
 }

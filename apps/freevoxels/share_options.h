@@ -21,11 +21,11 @@ struct ShareOptions {
   SharePart whole() const { return part.value_or(SharePart{}); }
 };
 
-/// "2/7" as the third of seven parts. Fails with ExitCode::Usage; `name` is what the sentence calls the text.
+/// "2/7" as the third of seven parts. Fails with ErrorKind::Usage; `name` is what the sentence calls the text.
 SharePart readSharePart(const std::string& name, const std::string& text);
 std::string sharePartText(const SharePart& part);
 
-/// Settings of a frame that is drawn share by share: nothing is left out as hidden, which other shares' sums would have to tell. Fails with ExitCode::Usage where a method was asked for that cannot be divided.
+/// Settings of a frame that is drawn share by share: nothing is left out as hidden, which other shares' sums would have to tell. Fails with ErrorKind::Usage where a method was asked for that cannot be divided.
 FrameSettings sharedSettings(FrameSettings settings);
 
 }  // namespace freevoxels

@@ -3,19 +3,30 @@
 #include <map>
 #include <utility>
 
+#include "engine/core/error.h"
+
 namespace freevoxels {
 
-DeviceContext::DeviceContext(const DeviceOptions& options) : instance(validationRequested()), device(options.open(instance)) {}
+DeviceContext::DeviceContext(const DeviceOptions& options, const ValidationLog& log)
+    : isAdopted(false), instance(log != nullptr, log), device(options.open(instance)) {}
 
-DeviceContext& deviceContext(const DeviceOptions& options) {
+DeviceContext::DeviceContext(VkInstance adoptedInstance, const AdoptedDevice& adopted, const DeviceOptions& options)
+    : isAdopted(true), instance(adoptedInstance), device(options.adopt(instance, adopted)) {}
+
+void DeviceContext::checkValidation() const {
+  if (const std::uint64_t count = instance.validationMessageCount(); count > 0)
+    throw InternalError(fmt::format("{} Vulkan validation messages", count));
+}
+
+std::shared_ptr<DeviceContext> sharedContext(const DeviceOptions& options) {
   static std::mutex opening;
   const std::lock_guard lock(opening);
   // Never destroyed, because Python or static objects may release the last renderer after Vulkan's own static
   // objects are gone.
-  static auto& contexts = *new std::map<std::pair<std::string, int>, std::unique_ptr<DeviceContext>>;
-  std::unique_ptr<DeviceContext>& context = contexts[{options.selector.value_or(""), options.memoryLimit.value_or(0)}];
-  if (!context) context = std::make_unique<DeviceContext>(options);
-  return *context;
+  static auto& contexts = *new std::map<std::pair<std::string, int>, std::shared_ptr<DeviceContext>>;
+  std::shared_ptr<DeviceContext>& context = contexts[{options.selector.value_or(""), options.memoryLimit.value_or(0)}];
+  if (!context) context = std::make_shared<DeviceContext>(options, validationRequested() ? logValidation : ValidationLog());
+  return context;
 }
 
 }  // namespace freevoxels

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "apps/freevoxels/device_options.h"
@@ -20,11 +21,17 @@ class KeywordOptions {
   /// ("density_scale"), or a section of a scene file (apps/scenes/README.md) whose value is an object of such
   /// keys: {"camera": {"orbit": [35, 25]}}. Only options of `sections` are accepted. The key "scene" names a
   /// scene file that supplies what the other keys leave out. `volume`, a file or "procedural:NAME", replaces
-  /// that of the scene file. Fails with ExitCode::Usage for unknown keys and options that exclude each other,
-  /// with ExitCode::Input for values of a wrong type.
+  /// that of the scene file. Fails with ErrorKind::Usage for unknown keys and options that exclude each other,
+  /// with ErrorKind::Input for values of a wrong type.
   KeywordOptions(const nlohmann::json& keywords, std::vector<std::string> sections, const std::string& volume = "");
   KeywordOptions(const KeywordOptions&) = delete;
   KeywordOptions& operator=(const KeywordOptions&) = delete;
+
+  /// Without values, for marked().
+  static const KeywordOptions& all();
+  /// The text of an error with the options of the command line that it names ("--draw splats") marked as parameters
+  /// (engine/core/parameter.h).
+  std::string marked(std::string_view text) const;
 
   /// The options that scene.resolveClassification reads, as text: frames of equal text share its result.
   const std::string& classificationText() const { return classificationText_; }
@@ -34,8 +41,8 @@ class KeywordOptions {
   DeviceOptions device;
 
  private:
-  void give(const std::string& section, const std::string& keyword, const nlohmann::json& value);
-  CLI::Option* find(const std::string& section, const std::string& keyword);
+  void give(const std::string& section, const std::string& name, const nlohmann::json& value);
+  CLI::Option* find(const std::string& section, const std::string& name);
   bool isSection(const std::string& name) const;
 
   const std::vector<std::string> sections_;

@@ -1,12 +1,18 @@
 // The public interface. No exception type of the engine leaves it.
 
+#include <fmt/ranges.h>
+#include <volk.h>
+
 #include <cmath>
 
 #include "apps/freevoxels/program.h"
+#include "apps/library/frame_queue.h"
 #include "apps/library/include/freevoxels/freevoxels.h"
+#include "apps/library/include/freevoxels/vulkan.h"
 #include "apps/library/scene_renderer.h"
 #include "engine/core/error.h"
 #include "engine/volume/volume_of_scalars.h"
+#include "engine/vulkan/device_requirements.h"
 
 namespace freevoxels::v1 {
 
@@ -14,28 +20,49 @@ namespace {
 
 using Json = nlohmann::json;
 
+ErrorKind kindOf(freevoxels::ErrorKind kind) {
+  switch (kind) {
+    case freevoxels::ErrorKind::Usage: return ErrorKind::Usage;
+    case freevoxels::ErrorKind::Input: return ErrorKind::Input;
+    case freevoxels::ErrorKind::Output: return ErrorKind::Output;
+    case freevoxels::ErrorKind::Device: return ErrorKind::Device;
+    case freevoxels::ErrorKind::OutOfMemory: return ErrorKind::OutOfMemory;
+    default: return ErrorKind::Internal;
+  }
+}
+
+/// The text with its parameters as keys of a scene: "memory-limit", "draw": "splats".
+std::string withSceneKeys(std::string_view text) {
+  return spelled(text, [](std::string_view name, std::string_view value) {
+    return value.empty() ? fmt::format("\"{}\"", name) : fmt::format("\"{}\": \"{}\"", name, value);
+  });
+}
+
 /// Calls `work` and converts the engine's errors to those of this interface.
 template <typename Work>
 auto translated(const Work& work) {
   try {
     return work();
   } catch (const freevoxels::Error& error) {
-    throw Error(ErrorKind(int(error.code())), error.what());
+    const std::string text = KeywordOptions::all().marked(error.text());
+    throw Error(kindOf(error.kind()), withSceneKeys(text), parametersIn(text));
   } catch (const InternalError& error) {
     throw Error(ErrorKind::Internal, fmt::format("internal error, please report it: {}", error.what()));
+  } catch (const FrameCancelled&) {
+    throw Error(ErrorKind::Cancelled, "the frame was cancelled before it was complete");
   }
 }
 
 Json parseScene(std::string_view text) {
   Json scene = Json::parse(text, nullptr, false);
-  if (!scene.is_object()) fail(ExitCode::Usage, "a scene is a JSON object, as '{{\"size\": [800, 600]}}', not '{}'", text);
+  if (!scene.is_object()) fail(freevoxels::ErrorKind::Usage, "a scene is a JSON object, as '{{\"size\": [800, 600]}}', not '{}'", text);
   return scene;
 }
 
 freevoxels::Volume volumeOf(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement) {
   const auto& [x, y, z] = dimensions;
   if (std::min({x, y, z}) < 1 || std::size_t(x) * std::size_t(y) * std::size_t(z) != values.size())
-    fail(ExitCode::Input, "{} values are not a box of {} x {} x {} voxels", values.size(), x, y, z);
+    fail(freevoxels::ErrorKind::Input, "{} values are not a box of {} x {} x {} voxels", values.size(), x, y, z);
   const auto vector = [](const std::array<double, 3>& v) { return glm::dvec3(v[0], v[1], v[2]); };
   const glm::ivec3 size(x, y, z);
   return volumeOfScalars(ScalarBricks::make(size,
@@ -47,15 +74,84 @@ freevoxels::Volume volumeOf(std::span<const float> values, std::array<int, 3> di
                          latticeTransform(vector(placement.spacing), vector(placement.origin)));
 }
 
+Image imageOf(freevoxels::Image image) {
+  const float* const first = reinterpret_cast<const float*>(image.pixels.data());
+  return {image.size.x, image.size.y, {first, first + 4 * image.pixels.size()}, std::move(image.depth)};
+}
+
+DeviceOptions limited(int mebibytes) {
+  DeviceOptions options;
+  if (mebibytes < 0) fail(freevoxels::ErrorKind::Usage, "a limit of {} MiB on device memory is below 0: 0 is no limit", mebibytes);
+  if (mebibytes > 0) options.memoryLimit = mebibytes;
+  return options;
+}
+
 }  // namespace
+
+struct Context::State {
+  std::shared_ptr<DeviceContext> context;
+};
 
 struct Volume::State {
   std::shared_ptr<const freevoxels::Volume> volume;
 };
 
+struct Frame::State {
+  std::shared_ptr<SubmittedFrame> frame;
+};
+
 struct Renderer::State {
   SceneRenderer renderer;
+  FrameQueue queue;  // last, as it draws with `renderer`
 };
+
+Context::Context(const ContextOptions& options)
+    : state_(translated([&] {
+        DeviceOptions device = limited(options.memoryLimit);
+        if (!options.device.empty()) device.selector = options.device;
+        return std::make_shared<State>(State{std::make_shared<DeviceContext>(device, options.validationLog)});
+      })) {}
+
+std::string Context::device() const {
+  return state_->context->device->description().name;
+}
+
+Context adopt(const AdoptedDevice& adopted, int memoryLimit) {
+  return translated([&] {
+    if (adopted.instance == VK_NULL_HANDLE || adopted.physicalDevice == VK_NULL_HANDLE || adopted.device == VK_NULL_HANDLE ||
+        adopted.queue == VK_NULL_HANDLE || adopted.features == nullptr)
+      fail(freevoxels::ErrorKind::Usage, "an adopted device needs its instance, physical device, device, queue and features: one is null");
+    const freevoxels::AdoptedDevice device{.physical = adopted.physicalDevice,
+                                           .device = adopted.device,
+                                           .queue = adopted.queue,
+                                           .queueFamily = adopted.queueFamily,
+                                           .features = adopted.features,
+                                           .queueMutex = adopted.queueMutex};
+    return Context(std::make_shared<Context::State>(
+        Context::State{std::make_shared<DeviceContext>(adopted.instance, device, limited(memoryLimit))}));
+  });
+}
+
+std::string whyUnusable(VkInstance instance, VkPhysicalDevice device) {
+  return translated([&] {
+    const Instance adopted(instance);
+    return fmt::format("{}", fmt::join(findRejections(device), ", "));
+  });
+}
+
+std::span<const char* const> requiredExtensions() {
+  return freevoxels::requiredExtensions();
+}
+
+void enableRequiredFeatures(VkPhysicalDeviceFeatures2& chain) {
+  translated([&] { freevoxels::enableRequiredFeatures(chain); });
+}
+
+Volume Volume::open(const Context& context, const std::filesystem::path& file, std::string_view scene) {
+  return translated([&] {
+    return Volume(std::make_shared<const State>(openVolume(file.string(), parseScene(scene), context.state_->context)));
+  });
+}
 
 Volume Volume::open(const std::filesystem::path& file, std::string_view scene) {
   return translated([&] { return Volume(std::make_shared<const State>(openVolume(file.string(), parseScene(scene)))); });
@@ -85,9 +181,65 @@ std::string Volume::source() const {
   return state_->volume->source;
 }
 
+std::vector<std::string> Volume::warnings() const {
+  std::vector<std::string> warnings = warningsOf(*state_->volume, false);
+  for (std::string& warning : warnings) warning = withSceneKeys(warning);
+  return warnings;
+}
+
+Frame::Frame(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Frame::Frame(Frame&&) noexcept = default;
+
+Frame& Frame::operator=(Frame&& other) noexcept {
+  const Frame replaced(std::move(*this));
+  state_ = std::move(other.state_);
+  return *this;
+}
+
+Frame::~Frame() {
+  if (state_) state_->frame->cancel();
+}
+
+bool Frame::ready() const {
+  return state_->frame->ready();
+}
+
+void Frame::wait() const {
+  translated([&] { state_->frame->wait(); });
+}
+
+void Frame::cancel() {
+  state_->frame->cancel();
+}
+
+Image Frame::image() const {
+  return translated([&] { return imageOf(downloadImage(*state_->frame->context().device, state_->frame->targets())); });
+}
+
+DeviceFrame deviceFrame(const Frame& frame) {
+  return translated([&] {
+    if (!frame.state_->frame->context().isAdopted)
+      fail(freevoxels::ErrorKind::Usage, "the frame is on a device of the library's own: create its renderer with a context from adopt()");
+    const SubmittedFrame& drawn = *frame.state_->frame;
+    const auto handles = [](const RenderTarget& target) { return DeviceFrame::Image{target.handle(), target.view(), target.format()}; };
+    const SplatTargets& targets = drawn.targets();
+    const glm::uvec2 size(targets.colorEnergy.size());
+    return DeviceFrame{.color = handles(targets.colorEnergy),
+                       .depth = handles(targets.distance),
+                       .extent = {size.x, size.y},
+                       .semaphore = drawn.context().device->queue().timeline(),
+                       .value = drawn.completion()};
+  });
+}
+
+Renderer::Renderer(const Context& context, Volume volume, std::string_view scene)
+    : state_(translated([&] {
+        return std::unique_ptr<State>(new State{SceneRenderer(volume.state_->volume, parseScene(scene), context.state_->context), {}});
+      })) {}
+
 Renderer::Renderer(Volume volume, std::string_view scene)
     : state_(translated([&] {
-        return std::unique_ptr<State>(new State{SceneRenderer(volume.state_->volume, parseScene(scene))});
+        return std::unique_ptr<State>(new State{SceneRenderer(volume.state_->volume, parseScene(scene)), {}});
       })) {}
 
 Renderer::~Renderer() = default;
@@ -96,9 +248,23 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
 Image Renderer::render(std::string_view scene, bool withDepth, const Progress& progress) {
   return translated([&] {
-    freevoxels::Image image = state_->renderer.render(parseScene(scene), withDepth, progress);
-    const float* const first = reinterpret_cast<const float*>(image.pixels.data());
-    return Image{image.size.x, image.size.y, {first, first + 4 * image.pixels.size()}, std::move(image.depth)};
+    SceneRenderer& renderer = state_->renderer;
+    return imageOf(renderer.render(*renderer.read(parseScene(scene)), withDepth, progress));
+  });
+}
+
+Frame Renderer::submit(std::string_view scene, bool withDepth, Progress progress) {
+  return translated([&] {
+    SceneRenderer& renderer = state_->renderer;
+    std::shared_ptr<const KeywordOptions> options = renderer.read(parseScene(scene));
+    auto frame = std::make_shared<SubmittedFrame>(
+        renderer.context(),
+        [&renderer, options = std::move(options), withDepth](const freevoxels::Progress& report) {
+          return renderer.renderOnDevice(*options, withDepth, report);
+        },
+        std::move(progress));
+    state_->queue.submit(frame);
+    return Frame(std::unique_ptr<Frame::State>(new Frame::State{std::move(frame)}));
   });
 }
 
@@ -109,14 +275,14 @@ std::vector<std::pair<std::string, double>> Renderer::timings() const {
 }
 
 std::string Renderer::device() const {
-  return state_->renderer.device();
+  return state_->renderer.context()->device->description().name;
 }
 
 void save(const std::filesystem::path& file, const Image& image, std::string_view scene) {
   translated([&] {
     const std::size_t pixels = std::size_t(std::max(image.width, 0)) * std::size_t(std::max(image.height, 0));
     if (pixels == 0 || image.pixels.size() != 4 * pixels || (!image.depth.empty() && image.depth.size() != pixels))
-      fail(ExitCode::Input, "an image of {} x {} pixels has {} values and {} depths: it needs 4 values, and 1 depth or none, a pixel",
+      fail(freevoxels::ErrorKind::Input, "an image of {} x {} pixels has {} values and {} depths: it needs 4 values, and 1 depth or none, a pixel",
            image.width, image.height, image.pixels.size(), image.depth.size());
     freevoxels::Image copy{.size = {image.width, image.height}, .pixels = std::vector<glm::vec4>(pixels), .depth = image.depth};
     for (std::size_t i = 0; i < pixels; ++i)

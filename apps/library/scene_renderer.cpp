@@ -9,17 +9,23 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::vector<std::string> kViewSections{"classification", "emission", "camera", "light", "method", "scene", "device"};
-const std::vector<std::string> kFileSections{"input", "classification", "emission", "camera", "light", "method", "scene", "device"};
 const std::vector<std::string> kOutputSections{"output"};
+
+/// The sections of the options of a frame, or of a file as well; of the device only where they choose it.
+std::vector<std::string> sections(bool ofFile, bool choosesDevice) {
+  std::vector<std::string> names{"classification", "emission", "camera", "light", "method", "scene"};
+  if (ofFile) names.emplace_back("input");
+  if (choosesDevice) names.emplace_back("device");
+  return names;
+}
 
 }  // namespace
 
-std::shared_ptr<const Volume> openVolume(const std::string& file, const Json& keywords) {
-  KeywordOptions options(keywords, kFileSections, file);
+std::shared_ptr<const Volume> openVolume(const std::string& file, const Json& keywords, const std::shared_ptr<DeviceContext>& context) {
+  KeywordOptions options(keywords, sections(true, !context), file);
   options.scene.checkLook();
-  const DeviceContext& context = deviceContext(options.device);
-  return std::make_shared<const Volume>(options.scene.readVolume(maximumVoxels(*context.device)));
+  const std::shared_ptr<DeviceContext> used = context ? context : sharedContext(options.device);
+  return std::make_shared<const Volume>(options.scene.readVolume(maximumVoxels(*used->device)));
 }
 
 void saveImage(const std::string& file, const Image& image, const Json& keywords) {
@@ -28,26 +34,35 @@ void saveImage(const std::string& file, const Image& image, const Json& keywords
   output.files = {file};
   output.aovs.depth = !image.depth.empty() && isExr(file);
   if (output.aovs.position || output.aovs.normal)
-    fail(ExitCode::Usage, "an image does not know its camera, of which positions and normals are made: leave them out of 'aov'");
+    fail(ErrorKind::Usage, "an image does not know its camera, of which positions and normals are made: leave them out of {}", Parameter("aov"));
   output.check();
   Image withChannels = image;
   addChannels(withChannels, output.aovs, Camera{});
   output.write(withChannels, {.fullFloat = output.fullFloat});
 }
 
-SceneRenderer::SceneRenderer(std::shared_ptr<const Volume> volume, Json keywords)
-    : volume_(std::move(volume)), keywords_(std::move(keywords)), context_(deviceContext(read(Json::object())->device)) {}
+SceneRenderer::SceneRenderer(std::shared_ptr<const Volume> volume, Json keywords, std::shared_ptr<DeviceContext> context)
+    : volume_(std::move(volume)),
+      keywords_(std::move(keywords)),
+      choosesDevice_(!context),
+      context_(context ? std::move(context) : sharedContext(read(Json::object())->device)) {
+  if (!choosesDevice_) read(Json::object());
+}
 
-std::unique_ptr<KeywordOptions> SceneRenderer::read(const Json& more) const {
+std::unique_ptr<const KeywordOptions> SceneRenderer::read(const Json& more) const {
   Json merged = keywords_;
   merged.update(more);
-  auto options = std::make_unique<KeywordOptions>(merged, kViewSections);
+  auto options = std::make_unique<KeywordOptions>(merged, sections(false, choosesDevice_));
   options->scene.input = {};  // the volume of a scene file is ignored
   options->scene.checkLook();
   return options;
 }
 
-void SceneRenderer::makeRenderer(const KeywordOptions& options, const Progress& progress) {
+/// Makes renderer_ anew if the options need another one. The context's mutex is held.
+FrameSettings SceneRenderer::prepare(const KeywordOptions& options, bool depth, const Progress& progress) {
+  FrameSettings settings{.size = options.scene.camera.size, .depth = depth};
+  options.method.apply(settings);
+  checkFrameFits(*context_->device, settings);
   scene_.volume = volume_;
   const std::string& classification = options.classificationText();
   if (!renderer_ || classification != classification_) {
@@ -55,29 +70,34 @@ void SceneRenderer::makeRenderer(const KeywordOptions& options, const Progress& 
     classification_ = classification;
   }
   options.scene.resolveView(scene_);
+  settings.lighting = scene_.lighting;
   const std::string text = options.scene.rendererText(scene_, options.method.table());
-  if (renderer_ && text == rendererText_) return;
+  if (renderer_ && text == rendererText_) return settings;
   renderer_ = nullptr;  // so that the device never holds two
-  renderer_ = std::make_unique<Renderer>(*context_.device, *volume_, scene_.classification, options.method.table(), progress);
+  renderer_ = std::make_unique<Renderer>(*context_->device, *volume_, scene_.classification, options.method.table(), progress);
   rendererText_ = text;
+  return settings;
 }
 
-Image SceneRenderer::render(const Json& more, bool depth, const Progress& progress) {
-  const std::unique_ptr<const KeywordOptions> options = read(more);
-  FrameSettings settings{.size = options->scene.camera.size, .depth = depth};
-  options->method.apply(settings);
-  const std::lock_guard lock(context_.mutex);
-  checkFrameFits(*context_.device, settings);
-  makeRenderer(*options, progress);
-  settings.lighting = scene_.lighting;
+Image SceneRenderer::render(const KeywordOptions& options, bool depth, const Progress& progress) {
+  const std::lock_guard lock(context_->mutex);
+  const FrameSettings settings = prepare(options, depth, progress);
   Image image = renderer_->render(scene_.camera, settings, progress);
-  if (const std::uint64_t count = context_.instance.validationMessageCount(); count > 0)
-    throw InternalError(fmt::format("{} Vulkan validation messages, printed above", count));
+  context_->checkValidation();
   return image;
 }
 
+std::shared_ptr<const SplatTargets> SceneRenderer::renderOnDevice(const KeywordOptions& options, bool depth,
+                                                                  const Progress& progress) {
+  const std::lock_guard lock(context_->mutex);
+  const FrameSettings settings = prepare(options, depth, progress);
+  std::shared_ptr<const SplatTargets> targets = renderer_->renderOnDevice(scene_.camera, settings, progress);
+  context_->checkValidation();
+  return targets;
+}
+
 std::vector<StageTime> SceneRenderer::timings() const {
-  const std::lock_guard lock(context_.mutex);
+  const std::lock_guard lock(context_->mutex);
   return renderer_ ? renderer_->timings() : std::vector<StageTime>{};
 }
 

@@ -11,34 +11,41 @@
 
 namespace freevoxels {
 
-/// Reads a file or makes "procedural:NAME". `keywords` are the grid, the resolution and the scene of later
-/// frames, which decides what other grids are needed. Fails as readVdb does.
-std::shared_ptr<const Volume> openVolume(const std::string& file, const nlohmann::json& keywords);
+/// Reads a file or makes "procedural:NAME", at most as large as the device of `context` can hold; if it is null, that of the
+/// keywords. `keywords` are the grid, the resolution and the scene of later frames, which decides what other grids are needed.
+/// Fails as readVdb does.
+std::shared_ptr<const Volume> openVolume(const std::string& file, const nlohmann::json& keywords,
+                                         const std::shared_ptr<DeviceContext>& context = nullptr);
 
 /// Writes an image as `freevoxels render` does. `keywords` are options of the section "output".
 void saveImage(const std::string& file, const Image& image, const nlohmann::json& keywords);
 
+/// Any thread may call the member functions; the frames of one device are drawn one after another.
 class SceneRenderer {
  public:
-  /// Opens the device. `keywords` (KeywordOptions) hold for every frame. The table is made for the first
-  /// frame that needs it.
-  SceneRenderer(std::shared_ptr<const Volume> volume, nlohmann::json keywords);
+  /// `keywords` (KeywordOptions) hold for every frame. The table is made for the first frame that needs it. If `context` is
+  /// null, the keywords choose the device, which is opened here.
+  SceneRenderer(std::shared_ptr<const Volume> volume, nlohmann::json keywords, std::shared_ptr<DeviceContext> context = nullptr);
 
-  /// Draws a frame of the renderer's keywords, overridden by `more`. What frames share is made again only if
-  /// the keywords change it. Any thread may call this; frames are drawn one after another.
-  Image render(const nlohmann::json& more, bool depth, const Progress& progress);
+  /// Reads the options of a frame: the renderer's keywords, overridden by `more`.
+  std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more) const;
+
+  /// Draws a frame. What frames share is made again only if the options change it.
+  Image render(const KeywordOptions& options, bool depth, const Progress& progress);
+  /// The same frame, which stays on the device, complete.
+  std::shared_ptr<const SplatTargets> renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress);
 
   /// Stage times of the last frame and of the data from which it was drawn.
   std::vector<StageTime> timings() const;
-  std::string device() const { return context_.device->description().name; }
+  const std::shared_ptr<DeviceContext>& context() const { return context_; }
 
  private:
-  std::unique_ptr<KeywordOptions> read(const nlohmann::json& more) const;
-  void makeRenderer(const KeywordOptions& options, const Progress& progress);
+  FrameSettings prepare(const KeywordOptions& options, bool depth, const Progress& progress);
 
   const std::shared_ptr<const Volume> volume_;
   const nlohmann::json keywords_;
-  DeviceContext& context_;
+  const bool choosesDevice_;  ///< whether the keywords choose the device
+  const std::shared_ptr<DeviceContext> context_;
   Scene scene_;                 ///< scene of the last frame
   std::string classification_;  ///< KeywordOptions::classificationText of scene_.classification
   std::string rendererText_;    ///< SceneOptions::rendererText for which renderer_ was made

@@ -92,17 +92,17 @@ void MpiJob::shareProcessors() const {
 void MpiJob::begin() {
   const int launched = launchedProcesses();
   if (size_ == 1 && launched > 1)
-    fail(ExitCode::Usage,
+    fail(ErrorKind::Usage,
          "{} processes were started, but each is alone: this program is built with Open MPI; start it with Open MPI's mpirun, or with "
          "srun --mpi=pmix",
          launched);
   if (size_ > kShares)
-    fail(ExitCode::Usage, "{} ranks are more than the {} shares that a frame is divided into: start {} or fewer", size_, kShares, kShares);
+    fail(ErrorKind::Usage, "{} ranks are more than the {} shares that a frame is divided into: start {} or fewer", size_, kShares, kShares);
 }
 
 void MpiJob::splitFrames(int ranksPerFrame) {
   if (ranksPerFrame > size_)
-    fail(ExitCode::Usage, "--ranks-per-frame {} is more than the job's {} ranks: choose a smaller number", ranksPerFrame, size_);
+    fail(ErrorKind::Usage, "--ranks-per-frame {} is more than the job's {} ranks: choose a smaller number", ranksPerFrame, size_);
   groupCount_ = size_ / ranksPerFrame;
   // What is left over joins the last group.
   group_ = std::min(rank_ / ranksPerFrame, groupCount_ - 1);
@@ -138,7 +138,7 @@ void MpiJob::agreeWithin(MPI_Comm processes, const std::string& what, const std:
   if (firstOther == size_) return;
   // That rank reports it; the others wait until it has ended the job.
   if (firstOther != rank_) MPI_Barrier(processes);
-  fail(ExitCode::Input, "{} has {} than rank 0: give all ranks the same", name(), what);
+  fail(ErrorKind::Input, "{} has {} than rank 0: give all ranks the same", name(), what);
 }
 
 bool MpiJob::addUp(FixedSums& sums) {

@@ -35,12 +35,12 @@ std::string shapeText(const py::array& array) {
 
 Source sourceOf(const py::array& array) {
   if (array.ndim() != 3)
-    fail(ExitCode::Input, "the array has {} dimension{}: a volume needs three, ordered z, y, x", array.ndim(),
+    fail(ErrorKind::Input, "the array has {} dimension{}: a volume needs three, ordered z, y, x", array.ndim(),
          array.ndim() == 1 ? "" : "s");
   constexpr py::ssize_t kMost = std::numeric_limits<std::int32_t>::max();
   for (py::ssize_t axis = 0; axis < 3; ++axis)
     if (array.shape(axis) < 1 || array.shape(axis) > kMost)
-      fail(ExitCode::Input, "the array has the shape {}: every dimension of a volume is at least 1", shapeText(array));
+      fail(ErrorKind::Input, "the array has the shape {}: every dimension of a volume is at least 1", shapeText(array));
   return {static_cast<const char*>(array.data()),
           {array.strides(2), array.strides(1), array.strides(0)},
           {array.shape(2), array.shape(1), array.shape(0)}};
@@ -82,7 +82,7 @@ ScalarBricks readArray(const py::array& array, std::optional<double> noData) {
         break;
       default: break;
     }
-  fail(ExitCode::Input, "arrays of {} cannot be rendered: convert it with array.astype('float32')",
+  fail(ErrorKind::Input, "arrays of {} cannot be rendered: convert it with array.astype('float32')",
        py::str(type.attr("name")).cast<std::string>());
 }
 
@@ -94,7 +94,7 @@ Volume volumeOfArray(const py::array& scalars, const std::optional<py::array>& t
   if (!temperature) return volume;
   volume.temperature = TemperatureGrid{.name = "temperature", .values = readArray(*temperature, placement.noData)};
   if (volume.temperature->values.dimensions() != volume.dimensions)
-    fail(ExitCode::Input, "the temperatures have the shape {}, and the array has {}: they must be the same",
+    fail(ErrorKind::Input, "the temperatures have the shape {}, and the array has {}: they must be the same",
          shapeText(*temperature), shapeText(scalars));
   summariseValues(*volume.temperature);
   coverBricks(volume, volume.temperature->values);

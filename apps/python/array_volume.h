@@ -20,7 +20,7 @@ struct ArrayPlacement {
 
 /// Reads an array with axes (z, y, x), of real numbers or bool in the machine's byte order and with any
 /// strides, without copying it first. Releases the GIL meanwhile. `temperature` must have the same shape.
-/// Fails with ExitCode::Input for other arrays.
+/// Fails with ErrorKind::Input for other arrays.
 Volume volumeOfArray(const pybind11::array& scalars, const std::optional<pybind11::array>& temperature,
                      const ArrayPlacement& placement);
 

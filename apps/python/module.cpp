@@ -39,7 +39,7 @@ glm::dmat4 placementOf(const std::variant<double, Triple>& spacing, const Triple
   for (int row = 0; row < 4; ++row)
     for (int column = 0; column < 4; ++column) matrix[column][row] = (*transform)[std::size_t(row)][std::size_t(column)];
   if (glm::row(matrix, 3) != glm::dvec4(0.0, 0.0, 0.0, 1.0))
-    fail(ExitCode::Input, "a transform is affine: its last row is 0, 0, 0, 1");
+    fail(ErrorKind::Input, "a transform is affine: its last row is 0, 0, 0, 1");
   return matrix;
 }
 
@@ -48,14 +48,19 @@ PythonVolume volumeFromArray(const py::array& array, const std::variant<double, 
                              const std::optional<py::array>& temperature) {
   const ArrayPlacement place{placementOf(spacing, origin, transform), noData};
   Volume volume = volumeOfArray(array, temperature, place);
-  warnAboutValues(volume, false);
+  warnInPython(volume);
   return {std::make_shared<const Volume>(std::move(volume))};
 }
 
 PythonVolume volumeFromFile(const std::filesystem::path& file, const py::kwargs& keywords) {
   const Json options = jsonOf(keywords);
-  const py::gil_scoped_release withoutGil;
-  return {openVolume(file.string(), options)};
+  PythonVolume opened;
+  {
+    const py::gil_scoped_release withoutGil;
+    opened.volume = openVolume(file.string(), options);
+  }
+  warnInPython(*opened.volume);
+  return opened;
 }
 
 std::unique_ptr<SceneRenderer> makeRenderer(const PythonVolume& volume, const py::kwargs& keywords) {
@@ -68,7 +73,7 @@ py::object render(SceneRenderer& renderer, const py::object& progress, bool dept
   Image image;
   {
     const py::gil_scoped_release withoutGil;
-    image = renderer.render(options, depth, report);
+    image = renderer.render(*renderer.read(options), depth, report);
   }
   if (!depth) return pixelsOf(image);
   return py::make_tuple(pixelsOf(image), depthOf(image));
@@ -96,7 +101,8 @@ constexpr const char* kModuleText =
     "    freevoxels.save('image.png', image)\n\n"
     "An array has axes (z, y, x); spacing, origin and every other position are (x, y, z). Options are those of\n"
     "'freevoxels render --help', with _ in place of -: density_scale=40, orbit=(35, 25), light='direction=1,1,1',\n"
-    "transfer_function={...} or 'file.json', camera={'orbit': (35, 25), 'fov': 30}. Errors are freevoxels.Error.\n"
+    "transfer_function={...} or 'file.json', camera={'orbit': (35, 25), 'fov': 30}. Errors are freevoxels.Error, whose\n"
+    "parameters are the keywords that the sentence names.\n"
     "Remarks and warnings go to the logger 'freevoxels' of the module logging.";
 
 void addVolume(py::module_& module) {
@@ -139,7 +145,7 @@ void addRenderer(py::module_& module) {
            "of what is seen, infinite where there is nothing. progress(stage, fraction) is called about every 50 ms of work;\n"
            "an exception that it raises abandons the frame. Options given here hold for this frame.")
       .def_property_readonly("timings", &timingsOf, "(stage, milliseconds) of what was made and of the last frame.")
-      .def_property_readonly("device", &SceneRenderer::device, "Name of the Vulkan device.");
+      .def_property_readonly("device", [](const SceneRenderer& r) { return r.context()->device->description().name; }, "Name of the Vulkan device.");
 }
 
 /// render(): takes the keywords of the volume out of those of the frame. A file is read with all keywords,

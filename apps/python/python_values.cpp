@@ -3,9 +3,11 @@
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 
+#include "apps/library/keyword_options.h"
 #include "engine/core/error.h"
 
 namespace freevoxels {
@@ -39,14 +41,38 @@ class PythonLog : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
 };
 
 struct ExceptionClass {
-  ExitCode code;
+  ErrorKind kind;
   const char* name;
   PyObject* alsoBase;  ///< a standard class of Python that callers may expect
   const char* meaning;
 };
 
-/// The exception classes by ExitCode, owned by the module. Other codes are freevoxels.Error itself.
+/// The exception classes by ErrorKind, owned by the module. Other kinds are freevoxels.Error itself.
 std::array<PyObject*, 8> exceptionClasses{};
+
+std::string keyword(std::string_view parameter) {
+  std::string name(parameter);
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+/// The text with its parameters as keyword arguments: 'memory_limit', draw='splats'.
+std::string withKeywords(std::string_view text) {
+  return spelled(text, [](std::string_view name, std::string_view value) {
+    return value.empty() ? fmt::format("'{}'", keyword(name)) : fmt::format("{}='{}'", keyword(name), value);
+  });
+}
+
+/// Sets Python's current exception.
+void raise(const Error& error) {
+  const std::string text = KeywordOptions::all().marked(error.text());
+  py::list parameters;
+  for (const std::string& parameter : parametersIn(text)) parameters.append(keyword(parameter));
+  const py::handle type = exceptionClasses[std::size_t(error.kind())];
+  const py::object exception = type(withKeywords(text));
+  exception.attr("parameters") = py::tuple(parameters);
+  PyErr_SetObject(type.ptr(), exception.ptr());
+}
 
 }  // namespace
 
@@ -68,7 +94,7 @@ Json jsonOf(py::handle value, const std::string& name) {
     for (const py::handle one : value) list.push_back(jsonOf(one, name));
     return list;
   }
-  fail(ExitCode::Input, "'{}' takes numbers, text, lists and dictionaries, not {}", name,
+  fail(ErrorKind::Input, "'{}' takes numbers, text, lists and dictionaries, not {}", name,
        py::str(py::type::of(value).attr("__name__")).cast<std::string>());
 }
 
@@ -100,7 +126,7 @@ py::array depthOf(Image& image) {
 Image imageOf(const py::array& pixels, const std::optional<py::array>& depth) {
   using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
   if (pixels.ndim() != 3 || pixels.shape(2) != 4 || pixels.size() == 0)
-    fail(ExitCode::Input, "an image to save has the shape (height, width, 4): linear red, green, blue and alpha");
+    fail(ErrorKind::Input, "an image to save has the shape (height, width, 4): linear red, green, blue and alpha");
   const Floats colors(pixels);
   Image image{.size = {colors.shape(1), colors.shape(0)}};
   image.pixels.resize(std::size_t(colors.size()) / 4);
@@ -108,7 +134,7 @@ Image imageOf(const py::array& pixels, const std::optional<py::array>& depth) {
   if (!depth) return image;
   const Floats distances(*depth);
   if (distances.ndim() != 2 || distances.shape(0) != image.size.y || distances.shape(1) != image.size.x)
-    fail(ExitCode::Input, "the depth to save has the shape (height, width) of its image");
+    fail(ErrorKind::Input, "the depth to save has the shape (height, width) of its image");
   image.depth.assign(distances.data(), distances.data() + distances.size());
   return image;
 }
@@ -124,21 +150,25 @@ void addExceptions(py::module_& module) {
                              py::make_tuple(py::handle(PyExc_Exception)));
   exceptionClasses.fill(base);
   const std::array classes{
-      ExceptionClass{ExitCode::Usage, "UsageError", PyExc_ValueError, "An option does not exist or contradicts others."},
-      ExceptionClass{ExitCode::Input, "InputError", PyExc_ValueError, "An array, file or value cannot be used."},
-      ExceptionClass{ExitCode::Output, "OutputError", PyExc_OSError, "A file cannot be written."},
-      ExceptionClass{ExitCode::Device, "DeviceError", PyExc_RuntimeError, "There is no such Vulkan device, or it failed."},
-      ExceptionClass{ExitCode::OutOfMemory, "OutOfMemoryError", PyExc_MemoryError, "The memory of device or machine is full."}};
+      ExceptionClass{ErrorKind::Usage, "UsageError", PyExc_ValueError, "An option does not exist or contradicts others."},
+      ExceptionClass{ErrorKind::Input, "InputError", PyExc_ValueError, "An array, file or value cannot be used."},
+      ExceptionClass{ErrorKind::Output, "OutputError", PyExc_OSError, "A file cannot be written."},
+      ExceptionClass{ErrorKind::Device, "DeviceError", PyExc_RuntimeError, "There is no such Vulkan device, or it failed."},
+      ExceptionClass{ErrorKind::OutOfMemory, "OutOfMemoryError", PyExc_MemoryError, "The memory of device or machine is full."}};
   for (const ExceptionClass& one : classes)
-    exceptionClasses[std::size_t(one.code)] =
+    exceptionClasses[std::size_t(one.kind)] =
         add(one.name, one.meaning, py::make_tuple(py::handle(base), py::handle(one.alsoBase)));
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       if (thrown) std::rethrow_exception(thrown);
     } catch (const Error& error) {
-      PyErr_SetString(exceptionClasses[std::size_t(error.code())], error.what());
+      raise(error);
     }
   });
+}
+
+void warnInPython(const Volume& volume) {
+  for (const std::string& warning : warningsOf(volume, false)) spdlog::warn("{}", withKeywords(warning));
 }
 
 void logToPython() {

@@ -7,11 +7,12 @@
 
 #include "engine/core/stages.h"
 #include "engine/image/image.h"
+#include "engine/volume/volume.h"
 
 namespace freevoxels {
 
 /// Converts bool, int, float, str, path, dict, list, tuple, and objects with tolist() such as NumPy's arrays
-/// and numbers. Fails with ExitCode::Input for others; the sentence calls the value `name`.
+/// and numbers. Fails with ErrorKind::Input for others; the sentence calls the value `name`.
 nlohmann::json jsonOf(pybind11::handle value, const std::string& name);
 /// Converts keyword arguments; None is left out.
 nlohmann::json jsonOf(const pybind11::kwargs& keywords);
@@ -25,11 +26,14 @@ Progress progressOf(const pybind11::object& callback);
 pybind11::array pixelsOf(Image& image);
 pybind11::array depthOf(Image& image);
 
-/// The image of two such arrays. Fails with ExitCode::Input for other shapes.
+/// The image of two such arrays. Fails with ErrorKind::Input for other shapes.
 Image imageOf(const pybind11::array& pixels, const std::optional<pybind11::array>& depth);
 
-/// Adds freevoxels.Error and its subclasses, one for each ExitCode of an error, and translates Error to them.
+/// Adds freevoxels.Error and its subclasses, one for each ErrorKind, and translates Error to them, with its parameters.
 void addExceptions(pybind11::module_& module);
+
+/// Sends the warnings of a volume to Python's logger "freevoxels".
+void warnInPython(const Volume& volume);
 
 /// Sends messages to Python's logger "freevoxels".
 void logToPython();

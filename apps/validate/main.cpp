@@ -48,7 +48,7 @@ void conclude(const Report& report, double seconds) {
   fmt::print("{}: {} checks, {} failed, {:.0f} s on {}\n", failed == 0 ? "PASSED" : "FAILED", checks, failed,
              seconds, report.facts.at("device"));
   if (first != nullptr)
-    fail(ExitCode::Comparison, "{} of {} checks failed, the first: {}: {}", failed, checks, first->name,
+    fail(ErrorKind::Comparison, "{} of {} checks failed, the first: {}: {}", failed, checks, first->name,
          validate::figureAgainstBound(*first));
 }
 

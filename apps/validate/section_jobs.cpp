@@ -240,7 +240,7 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
   }
   if (extent.only) std::erase_if(jobs, [&](const SectionJob& job) { return job.name.find(*extent.only) == std::string::npos; });
   if (jobs.empty())
-    fail(ExitCode::Usage, "--only '{}' leaves no section: give a part of a name, such as light, quality or stages", *extent.only);
+    fail(ErrorKind::Usage, "--only '{}' leaves no section: give a part of a name, such as light, quality or stages", *extent.only);
   return jobs;
 }
 

@@ -26,7 +26,7 @@ struct Extent {
 /// Plans the jobs: closed forms; stages, invariances and levels of every procedural volume; the paper's
 /// figures, level of detail, image quality; and stages, invariances, levels and image quality of every file.
 /// All files are read at once, so that one that cannot be read fails before any work. Fails with
-/// ExitCode::Usage if `only` leaves no section. `device` must outlive the jobs.
+/// ErrorKind::Usage if `only` leaves no section. `device` must outlive the jobs.
 std::vector<SectionJob> planSections(const Device& device, const Extent& extent);
 
 }  // namespace freevoxels::validate

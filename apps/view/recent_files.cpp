@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "apps/freevoxels/failure.h"
 #include "engine/core/atomic_file.h"
-#include "engine/core/error.h"
 #include "engine/core/json_file.h"
 
 namespace freevoxels {
@@ -32,7 +32,7 @@ RecentFiles::RecentFiles(fs::path file) : file_(std::move(file)) {
     for (const auto& name : readJson("list of recent files", file_))
       if (name.is_string() && list_.size() < kMost) list_.push_back(name);
   } catch (const Error& error) {
-    spdlog::debug("{}", error.what());
+    spdlog::debug("{}", withOptions(error));
   }
 }
 
@@ -48,7 +48,7 @@ void RecentFiles::add(const std::string& opened) {
     using Json = nlohmann::json;
     writeTextAtomically(file_, Json(list_).dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
   } catch (const Error& error) {
-    spdlog::debug("{}", error.what());
+    spdlog::debug("{}", withOptions(error));
   }
 }
 

@@ -91,9 +91,8 @@ std::optional<RenderThread::Result> RenderThread::answer(const PictureRequest& r
   } catch (const Abandoned&) {
     return std::nullopt;
   } catch (...) {
-    const Failure failure = currentFailure();
-    result.problem = failure.sentence;
-    result.code = failure.code;
+    result.problem = currentFailure().sentence;
+    result.failure = std::current_exception();
   }
   return result;
 }

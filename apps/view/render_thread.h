@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <exception>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -11,7 +12,6 @@
 #include <thread>
 
 #include "apps/view/picture_maker.h"
-#include "engine/core/error.h"
 
 namespace freevoxels {
 
@@ -21,7 +21,7 @@ class RenderThread {
     std::uint64_t number = 0;                ///< number of the request
     std::shared_ptr<const Picture> picture;  ///< null if it failed
     std::string problem;                     ///< the reason for a failure
-    ExitCode code = ExitCode::Success;       ///< the exit code of `freevoxels render` in this case
+    std::exception_ptr failure;              ///< what was thrown in this case
   };
 
   /// On a device that other threads use as well. `finished` is called by the thread whenever there is a result.

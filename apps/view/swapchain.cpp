@@ -59,7 +59,7 @@ void Swapchain::makeSurface() {
   VK_CHECK(
       vkGetPhysicalDeviceSurfaceSupportKHR(device_.physical(), device_.queueFamily(), surface_, &supported));
   if (supported == VK_FALSE)
-    fail(ExitCode::Device, "{} cannot draw into a window here: choose another with --device",
+    fail(ErrorKind::Device, "{} cannot draw into a window here: choose another with --device",
          device_.description().name);
   chooseFormat();
 }
@@ -71,7 +71,7 @@ void Swapchain::chooseFormat() {
   VK_CHECK(vkGetPhysicalDeviceSurfaceFormatsKHR(device_.physical(), surface_, &count, formats.data()));
   const auto plain = std::ranges::find_if(formats, isPlain);
   if (plain == formats.end())
-    fail(ExitCode::Device, "{} has no window images of 8-bit sRGB bytes: choose another with --device",
+    fail(ErrorKind::Device, "{} has no window images of 8-bit sRGB bytes: choose another with --device",
          device_.description().name);
   format_ = *plain;
 }
@@ -175,7 +175,7 @@ void Swapchain::present() {
 
 std::vector<std::uint8_t> Swapchain::read() const {
   if (!readable_)
-    fail(ExitCode::Device, "{} does not let the images of windows be read: take the picture's own file",
+    fail(ErrorKind::Device, "{} does not let the images of windows be read: take the picture's own file",
          device_.description().name);
   const std::size_t texels = std::size_t(size_.x) * std::size_t(size_.y);
   const Buffer buffer(device_, 4 * texels, MemoryUse::Readback, "screenshot");

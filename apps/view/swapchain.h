@@ -15,7 +15,7 @@ namespace freevoxels {
 /// Recreated when the window changes its size, or when its surface is lost.
 class Swapchain {
  public:
-  /// The arguments must outlive it. Fails with ExitCode::Device if the device cannot draw into the window.
+  /// The arguments must outlive it. Fails with ErrorKind::Device if the device cannot draw into the window.
   Swapchain(const Instance& instance, const Device& device, const Window& window);
   ~Swapchain();
   Swapchain(const Swapchain&) = delete;
@@ -33,7 +33,7 @@ class Swapchain {
   void present();
 
   /// Reads the acquired image, in layout PRESENT_SRC_KHR and complete: 8-bit RGBA, top row first. Fails with
-  /// ExitCode::Device if the window's images cannot be read.
+  /// ErrorKind::Device if the window's images cannot be read.
   std::vector<std::uint8_t> read() const;
 
  private:

@@ -48,7 +48,7 @@ void ViewOptions::takeScene() {
     volume = sequence->files.front();
   }
   if (!proceduralName(volume) && !std::filesystem::exists(volume))
-    fail(ExitCode::Input, "cannot read '{}': there is no such file; check its name", volume);
+    fail(ErrorKind::Input, "cannot read '{}': there is no such file; check its name", volume);
 }
 
 void ViewOptions::prepare() {
@@ -56,7 +56,7 @@ void ViewOptions::prepare() {
   takeScene();
   if (!screenshot) return;
   if (!isPng(*screenshot))
-    fail(ExitCode::Usage, "'{}' is not a picture of a window; name it .png", *screenshot);
+    fail(ErrorKind::Usage, "'{}' is not a picture of a window; name it .png", *screenshot);
   checkOutput(*screenshot);
 }
 

@@ -1,6 +1,6 @@
 #include "apps/view/view_state.h"
 
-#include "engine/core/error.h"
+#include "apps/freevoxels/failure.h"
 
 namespace freevoxels {
 
@@ -29,7 +29,7 @@ void ViewState::look(const Camera& from) {
   try {
     checkCamera(from);
   } catch (const Error& error) {
-    problem = error.what();
+    problem = withOptions(error);
     return;
   }
   camera = from;

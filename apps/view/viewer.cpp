@@ -104,7 +104,7 @@ void Viewer::takeResults() {
     if (!result->picture) {
       state_.problem = result->problem;
       if (&thread == &whole_) failed_ = result->number;
-      if (options_.screenshot) fail(result->code, "{}", result->problem);
+      if (options_.screenshot) std::rethrow_exception(result->failure);
       return false;
     }
     state_.problem.clear();

@@ -24,7 +24,7 @@ namespace freevoxels {
 
 class Viewer {
  public:
-  /// Fails with ExitCode::Device if there is no display, or no device that can draw into one.
+  /// Fails with ErrorKind::Device if there is no display, or no device that can draw into one.
   Viewer(const WindowSystem& windows, const Instance& instance, const ViewOptions& options);
 
   /// Runs until the window is closed, or its screenshot is written. Fails as the image of a screenshot does.

@@ -24,6 +24,7 @@ std::shared_ptr<const Volume> VolumeCache::read(const SceneOptions& scene) {
   if (!volume_ || name != name_) {
     volume_ = nullptr;  // not both at once
     volume_ = std::make_shared<const Volume>(scene.readVolume(maximumVoxels_));
+    logWarnings(*volume_, false);
     name_ = std::move(name);
   }
   return volume_;

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/freevoxels/failure.h"
 #include "apps/view/view_state.h"
-#include "engine/core/error.h"
 
 namespace freevoxels {
 
@@ -71,7 +71,7 @@ void attempt(ViewState& state, const Action& action) {
   try {
     action();
   } catch (const Error& error) {
-    state.problem = error.what();
+    state.problem = withOptions(error);
   }
 }
 

@@ -33,11 +33,11 @@ std::string lastProblem() {
 
 WindowSystem::WindowSystem() {
   if (glfwInit() == GLFW_FALSE)
-    fail(ExitCode::Device, "no window can be opened ({}): 'freevoxels render' draws without a display",
+    fail(ErrorKind::Device, "no window can be opened ({}): 'freevoxels render' draws without a display",
          lastProblem());
   if (glfwVulkanSupported() == GLFW_FALSE) {
     glfwTerminate();
-    fail(ExitCode::Device,
+    fail(ErrorKind::Device,
          "no Vulkan driver was found that draws into windows: install mesa-vulkan-drivers, or draw with "
          "'freevoxels render'");
   }
@@ -51,7 +51,7 @@ std::span<const char* const> WindowSystem::instanceExtensions() const {
   std::uint32_t count = 0;
   const char** names = glfwGetRequiredInstanceExtensions(&count);
   if (names == nullptr)
-    fail(ExitCode::Device,
+    fail(ErrorKind::Device,
          "the Vulkan driver cannot draw into windows ({}): 'freevoxels render' draws without a display",
          lastProblem());
   return {names, count};
@@ -62,7 +62,7 @@ Window::Window(const WindowSystem&, const std::string& title, glm::ivec2 size) {
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   window_ = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
   if (window_ == nullptr)
-    fail(ExitCode::Device, "no window can be opened ({}): 'freevoxels render' draws without a display",
+    fail(ErrorKind::Device, "no window can be opened ({}): 'freevoxels render' draws without a display",
          lastProblem());
   ImGui::CreateContext();
   ImGui_ImplGlfw_InitForVulkan(window_, false);

@@ -13,7 +13,7 @@ struct GLFWwindow;
 
 namespace freevoxels {
 
-/// Initialises GLFW as long as it exists. Fails with ExitCode::Device, and names the batch program, if there
+/// Initialises GLFW as long as it exists. Fails with ErrorKind::Device, and names the batch program, if there
 /// is no display.
 class WindowSystem {
  public:

@@ -104,10 +104,10 @@ void checkFits(const Device& device, const RayRoom& room, std::uint64_t mostByte
   const std::uint64_t most = std::uint64_t(std::numeric_limits<std::int32_t>::max()) * sizeof(std::uint32_t);
   const std::uint64_t fits = std::min(std::uint64_t(device.maximumAllocation()), mostBytes);
   if (room.bytes() > mostBytes || room.depths > fits || room.largest > most)
-    fail(ExitCode::OutOfMemory,
+    fail(ErrorKind::OutOfMemory,
          "exact transmittance needs {} MiB for its rays from here and {} has {} MiB in one piece: use "
-         "--attenuation bilinear, or a smaller volume",
-         room.bytes() >> 20, device.description().name, std::min(fits, most) >> 20);
+         "{}, or a smaller volume",
+         room.bytes() >> 20, device.description().name, std::min(fits, most) >> 20, Parameter("attenuation", "bilinear"));
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ class RaySweep {
   /// `name` is the pass that its time is reported as.
   explicit RaySweep(const Device& device, const char* name = "ray sweep");
 
-  /// Allocates memory for the depths of a source, at most `mostBytes`; fails with ExitCode::OutOfMemory if it
+  /// Allocates memory for the depths of a source, at most `mostBytes`; fails with ErrorKind::OutOfMemory if it
   /// is not enough. No work on the depths of the last source may be in progress.
   void makeRoom(glm::ivec3 dimensions, const RaySource& source,
                 std::uint64_t mostBytes = std::numeric_limits<std::uint64_t>::max());

@@ -72,7 +72,7 @@ const char* remedyFor(int error) {
 }
 
 [[noreturn]] void failBecause(const fs::path& destination, int error) {
-  fail(ExitCode::Output, "cannot write '{}': {}; {}", destination.string(),
+  fail(ErrorKind::Output, "cannot write '{}': {}; {}", destination.string(),
        asClause(std::generic_category().message(error)), remedyFor(error));
 }
 
@@ -81,7 +81,7 @@ const char* remedyFor(int error) {
   std::error_code error;
   const fs::space_info space = fs::space(folderOf(destination), error);
   if (!error && space.available < kNoSpaceLeft) failBecause(destination, ENOSPC);
-  fail(ExitCode::Output, "cannot write '{}': {}; {}", destination.string(), asClause(message), remedyFor(0));
+  fail(ErrorKind::Output, "cannot write '{}': {}; {}", destination.string(), asClause(message), remedyFor(0));
 }
 
 [[noreturn]] void throwErrno() {
@@ -212,20 +212,20 @@ void writeTextAtomically(const std::filesystem::path& destination, std::string_v
 
 void checkWritable(const std::filesystem::path& destination) {
   if (!destination.has_filename())
-    fail(ExitCode::Output, "cannot write '{}': it names no file; add a file name", destination.string());
+    fail(ErrorKind::Output, "cannot write '{}': it names no file; add a file name", destination.string());
   const fs::path target = followLinks(destination);
   const fs::path folder = folderOf(target);
   std::error_code error;
   const fs::file_status folderStatus = fs::status(folder, error);
   if (folderStatus.type() == fs::file_type::none) failBecause(destination, error.value());
   if (!fs::is_directory(folderStatus))
-    fail(ExitCode::Output, "cannot write '{}': there is no folder '{}'; create it or choose another folder",
+    fail(ErrorKind::Output, "cannot write '{}': there is no folder '{}'; create it or choose another folder",
          destination.string(), folder.string());
   const fs::file_status status = fs::status(target, error);
   if (fs::is_directory(status))
-    fail(ExitCode::Output, "cannot write '{}': it is a folder; add a file name", destination.string());
+    fail(ErrorKind::Output, "cannot write '{}': it is a folder; add a file name", destination.string());
   if (fs::exists(status) && !fs::is_regular_file(status))
-    fail(ExitCode::Output, "cannot write '{}': it is not a regular file; choose another name",
+    fail(ErrorKind::Output, "cannot write '{}': it is not a regular file; choose another name",
          destination.string());
   if (fs::exists(status) && access(target.c_str(), W_OK) != 0) failBecause(destination, errno);
   if (status.type() == fs::file_type::none) failBecause(destination, error.value());

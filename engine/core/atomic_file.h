@@ -13,7 +13,7 @@ namespace freevoxels {
 /// one in /proc, and nothing is left of a process that is killed. A file that is replaced keeps its mode and, where possible,
 /// its owner; a symbolic link is kept and the file that it names is written, whether or not that exists. Whatever `write`
 /// throws, `destination` is as before; an exception that is not an `Error` (a library's "disk full") becomes one with
-/// ExitCode::Output that names `destination` and the reason. InternalError and std::bad_alloc pass as they are. `write` must
+/// ErrorKind::Output that names `destination` and the reason. InternalError and std::bad_alloc pass as they are. `write` must
 /// throw when it could not write everything (core/checked_file.h helps); writing nothing is an error too.
 void writeAtomically(const std::filesystem::path& destination,
                      const std::function<void(const std::filesystem::path&)>& write);

@@ -1,40 +1,46 @@
 #pragma once
-// There are two kinds of error. `Error` is the user's: it carries an exit code and one sentence that names
-// the file or option and the remedy. A failed FV_CHECK is a bug of ours: it prints both operands and ends the
-// program with ExitCode::Internal.
+// There are two kinds of error. `Error` is the user's: it carries a category and one sentence that names the
+// file or parameter and the remedy. A failed FV_CHECK is a bug of ours: an InternalError that prints both operands.
 
 #include <fmt/format.h>
 
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
+
+#include "engine/core/parameter.h"
 
 namespace freevoxels {
 
-/// Exit codes of all programs, documented in apps/manual/exit_codes.md.
-enum class ExitCode : int {
-  Success = 0,
-  Internal = 1,
-  Usage = 2,
-  Input = 3,
-  Output = 4,
-  Device = 5,
-  OutOfMemory = 6,
-  Comparison = 7  ///< `compare --fail-above` or a check of freevoxels-validate failed
+enum class ErrorKind {
+  Internal,     ///< a bug
+  Usage,        ///< a parameter does not exist, contradicts others, or has an impossible value
+  Input,        ///< a file or value that was read cannot be used
+  Output,       ///< a file cannot be written
+  Device,       ///< there is no such Vulkan device, or it failed
+  OutOfMemory,  ///< of the device or the host
+  Comparison    ///< a comparison or check found a larger difference than allowed
 };
 
 class Error : public std::runtime_error {
  public:
-  Error(ExitCode code, const std::string& sentence) : std::runtime_error(sentence), code_(code) {}
-  ExitCode code() const { return code_; }
+  /// `text` is the sentence, in which parameters may be marked (parameter.h). what() has their bare names.
+  Error(ErrorKind kind, const std::string& text) : std::runtime_error(plainlySpelled(text)), kind_(kind), text_(text) {}
+  ErrorKind kind() const { return kind_; }
+  /// The names of the parameters in the sentence: the user may change them, or gave them wrongly.
+  std::vector<std::string> parameters() const { return parametersIn(text_); }
+  /// The sentence with its parameters marked, for spelled().
+  const std::string& text() const { return text_; }
 
  private:
-  ExitCode code_;
+  ErrorKind kind_;
+  std::string text_;
 };
 
 template <typename... Args>
-[[noreturn]] void fail(ExitCode code, fmt::format_string<Args...> format, Args&&... args) {
-  throw Error(code, fmt::format(format, std::forward<Args>(args)...));
+[[noreturn]] void fail(ErrorKind kind, fmt::format_string<Args...> format, Args&&... args) {
+  throw Error(kind, fmt::format(format, std::forward<Args>(args)...));
 }
 
 class InternalError : public std::logic_error {

@@ -5,7 +5,7 @@
 
 namespace freevoxels {
 
-/// Fails with ExitCode::Input, before a library opens `file` and tells less, where it does not exist, is no regular file, or is in
+/// Fails with ErrorKind::Input, before a library opens `file` and tells less, where it does not exist, is no regular file, or is in
 /// a folder that may not be searched. `kind` is what the sentence calls it: "image".
 void checkInputFile(std::string_view kind, const std::filesystem::path& file);
 

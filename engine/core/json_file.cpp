@@ -33,7 +33,7 @@ Json::parser_callback_t refuseRepeatedKeys(std::string_view kind, std::string_vi
     seen.resize(std::max(seen.size(), inside + 1));
     if (event == Json::parse_event_t::object_start) seen[inside].clear();
     if (event == Json::parse_event_t::key && !seen[inside].insert(parsed).second)
-      fail(ExitCode::Input, "{} '{}' has the key {} more than once; keep one of them", kind, name,
+      fail(ErrorKind::Input, "{} '{}' has the key {} more than once; keep one of them", kind, name,
            inQuotes(parsed));
     return true;
   };
@@ -45,16 +45,16 @@ nlohmann::json parseJson(std::string_view kind, std::string_view name, std::stri
   try {
     return Json::parse(text, refuseRepeatedKeys(kind, name));
   } catch (const Json::parse_error& e) {
-    fail(ExitCode::Input, "{} '{}' is not valid JSON: {}", kind, name, parseReason(e));
+    fail(ErrorKind::Input, "{} '{}' is not valid JSON: {}", kind, name, parseReason(e));
   } catch (const Json::exception&) {
-    fail(ExitCode::Input, "{} '{}' holds a number that is too large", kind, name);
+    fail(ErrorKind::Input, "{} '{}' holds a number that is too large", kind, name);
   }
 }
 
 nlohmann::json readJson(std::string_view kind, const fs::path& file) {
   checkInputFile(kind, file);
   std::ifstream stream(file);
-  if (!stream) fail(ExitCode::Input, "cannot open {} '{}'; check its permissions", kind, file.string());
+  if (!stream) fail(ErrorKind::Input, "cannot open {} '{}'; check its permissions", kind, file.string());
   const std::string text(std::istreambuf_iterator<char>(stream), {});
   return parseJson(kind, file.string(), text);
 }

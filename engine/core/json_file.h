@@ -1,5 +1,5 @@
 #pragma once
-// Reads JSON written by a person. Errors are one sentence with ExitCode::Input that says what is wrong and
+// Reads JSON written by a person. Errors are one sentence with ErrorKind::Input that says what is wrong and
 // where.
 
 #include <filesystem>

@@ -23,12 +23,17 @@ std::size_t editDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-std::string suggestion(const std::string& name, std::span<const std::string> known) {
+std::string nearestName(const std::string& name, std::span<const std::string> known) {
   std::size_t least = std::min(kFarName, name.size());
   const std::string* nearest = nullptr;
   for (const std::string& other : known)
     if (const std::size_t distance = editDistance(name, other); distance < least) least = distance, nearest = &other;
-  return nearest == nullptr ? "" : fmt::format("; did you mean '{}'?", *nearest);
+  return nearest == nullptr ? "" : *nearest;
+}
+
+std::string suggestion(const std::string& name, std::span<const std::string> known) {
+  const std::string nearest = nearestName(name, known);
+  return nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest);
 }
 
 }  // namespace freevoxels

@@ -12,8 +12,10 @@ std::size_t editDistance(const std::string& a, const std::string& b);
 /// The edit distance from which on a name is no longer suggested.
 inline constexpr std::size_t kFarName = 4;
 
-/// "; did you mean 'NAME'?" with the known name nearest to `name`. Empty if none is nearer than kFarName and
-/// nearer than the length of `name`.
+/// The known name nearest to `name`. Empty if none is nearer than kFarName and nearer than the length of `name`.
+std::string nearestName(const std::string& name, std::span<const std::string> known);
+
+/// "; did you mean 'NAME'?" with the nearest name. Empty if there is none.
 std::string suggestion(const std::string& name, std::span<const std::string> known);
 
 }  // namespace freevoxels

@@ -28,7 +28,7 @@ class GatherPartPass {
   explicit GatherPartPass(const Device& device);
 
   /// Records the sums of a part of a frame whose volume is prepared. `frame` is that of the whole image; `layout` describes the sums of
-  /// pixels of such a frame, of which those of samples take the digits. Fails with ExitCode::OutOfMemory.
+  /// pixels of such a frame, of which those of samples take the digits. Fails with ErrorKind::OutOfMemory.
   void record(Commands& commands, GatherPass& gather, const GatherVolume& volume, const DeviceVolume& onDevice,
               const shader::GatherFrame& frame, const RaySource& eye, const SharePart& part, FixedSums layout);
   /// After the recorded commands are complete. Blocks until the copy is complete.

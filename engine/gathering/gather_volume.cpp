@@ -59,8 +59,8 @@ GatherVolume::GatherVolume(const Device& device, const Volume& volume, const Cla
   const bool inOne = quads <= device.limits().maxTexelBufferElements && quads * sizeof(glm::uvec4) <= device.maximumAllocation();
   bricksPerPiece_ = inOne ? bricks : 1u << shader::kPieceBricksLog2;
   if (bricks > std::uint64_t(bricksPerPiece_) * shader::kMostPieces)
-    fail(ExitCode::OutOfMemory, "the gather needs {} quads of voxels, more than the {} that it can number: use --draw splats", quads,
-         std::uint64_t(bricksPerPiece_) * shader::kMostPieces * shader::kGatherBrickBlocks);
+    fail(ErrorKind::OutOfMemory, "the gather needs {} quads of voxels, more than the {} that it can number: use {}", quads,
+         std::uint64_t(bricksPerPiece_) * shader::kMostPieces * shader::kGatherBrickBlocks, Parameter("draw", "splats"));
 }
 
 /// Finds the cells of the octree that are bricks, and those that rays skip. A position in a cell stays for
@@ -169,9 +169,10 @@ const TexelView& GatherVolume::transferTable() const {
 
 void GatherVolume::prepare(const Shading& shading, std::vector<StageTime>& times) {
   if (built_.volume.lacksScalarBricks)
-    fail(ExitCode::OutOfMemory,
+    fail(ErrorKind::OutOfMemory,
          "the volume's scalars take more memory than there is, which classification after interpolation needs: "
-         "--classification pre does without");
+         "{} does without",
+         Parameter("classification", "pre"));
   const bool samples = lightsSamples(built_.volume, shading.lighting);
   const bool lit = shading.lighting != nullptr && !samples;
   const bool viewDependent = lit && dependsOnView(*shading.lighting);
@@ -199,7 +200,7 @@ void GatherVolume::prepare(const Shading& shading, std::vector<StageTime>& times
   try {
     makeRoomForAll();
   } catch (const Error& error) {
-    if (error.code() != ExitCode::OutOfMemory) throw;
+    if (error.kind() != ErrorKind::OutOfMemory) throw;
     dropOtherAxes(shading.axes, 0);
     makeRoomForAll();
   }

@@ -23,7 +23,7 @@ namespace freevoxels {
 class GatherVolume {
  public:
   /// Finds the bricks and adds the time of that to `times`. The other arguments must outlive this object.
-  /// Fails with ExitCode::OutOfMemory.
+  /// Fails with ErrorKind::OutOfMemory.
   GatherVolume(const Device& device, const Volume& volume, const Classification& classification, const BuiltVolume& built,
                std::vector<StageTime>& times);
 
@@ -39,7 +39,7 @@ class GatherVolume {
   /// for ambient light. With more lights, and for lit volumes with emission, shading is per voxel.
   static bool lightsSamples(const DeviceVolume& volume, const Lighting* lighting);
   /// Allocates what the frame needs and adds the time of work on the host to `times`. Fails with
-  /// ExitCode::OutOfMemory.
+  /// ErrorKind::OutOfMemory.
   void prepare(const Shading& shading, std::vector<StageTime>& times);
   /// Records the shading of the blocks that the frame reads, except for those that are still valid. Must be
   /// called after prepare() with the same arguments.

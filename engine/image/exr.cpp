@@ -87,16 +87,16 @@ void encode(const std::filesystem::path& file, const Image& image, const ExrOpti
 /// Fails where the header is of no image that `decode` reads.
 void checkHeader(const std::filesystem::path& file, const Imf::Header& header, std::int64_t maximumPixels) {
   if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE)
-    fail(ExitCode::Input, "cannot read '{}': it holds deep samples; flatten it first", file.string());
+    fail(ErrorKind::Input, "cannot read '{}': it holds deep samples; flatten it first", file.string());
   const Imf::ChannelList& channels = header.channels();
   if (!channels.findChannel("R") || !channels.findChannel("G") || !channels.findChannel("B"))
-    fail(ExitCode::Input, "cannot read '{}': it has no channels R, G and B; choose a colour image",
+    fail(ErrorKind::Input, "cannot read '{}': it has no channels R, G and B; choose a colour image",
          file.string());
   const Imath::Box2i window = header.dataWindow();
   const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
   const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;
   if (width * height > maximumPixels)
-    fail(ExitCode::Input, "cannot read '{}': {}x{} pixels are too many; choose a smaller image",
+    fail(ErrorKind::Input, "cannot read '{}': {}x{} pixels are too many; choose a smaller image",
          file.string(), width, height);
 }
 
@@ -151,7 +151,7 @@ Image readExr(const std::filesystem::path& file, std::int64_t maximumPixels) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& e) {
-    fail(ExitCode::Input, "cannot read '{}': it is not a complete OpenEXR image ({}); write it again",
+    fail(ErrorKind::Input, "cannot read '{}': it is not a complete OpenEXR image ({}); write it again",
          file.string(), e.what());
   }
 }

@@ -61,13 +61,13 @@ struct SumsFile {
 };
 
 /// Writes an OpenEXR file whose data window is the rectangle, with two channels of unsigned 32-bit integers
-/// for every 64-bit sum ("red.high", "red.low"), without loss. Atomic. Fails with ExitCode::Output.
+/// for every 64-bit sum ("red.high", "red.low"), without loss. Atomic. Fails with ErrorKind::Output.
 void writeSums(const std::filesystem::path& file, const FixedSums& sums, const ExrOptions& header);
 
-/// Reads such a file. Fails with ExitCode::Input if it is not one or not complete.
+/// Reads such a file. Fails with ErrorKind::Input if it is not one or not complete.
 SumsFile readSums(const std::filesystem::path& file);
 
-/// Whether an existing file is an OpenEXR file with channels of sums. Fails with ExitCode::Input if it cannot
+/// Whether an existing file is an OpenEXR file with channels of sums. Fails with ErrorKind::Input if it cannot
 /// be read.
 bool holdsSums(const std::filesystem::path& file);
 

@@ -92,7 +92,7 @@ FixedSums readLayout(const std::filesystem::path& file, const Imf::Header& heade
   if (display.min.x != 0 || display.min.y != 0 || std::int64_t(sums.size.x) * sums.size.y > kMostPixels ||
       std::int64_t(full.x) * full.y > kMostPixels || glm::any(glm::lessThan(sums.first, glm::ivec2(0))) ||
       glm::any(glm::greaterThan(sums.first + sums.extent, full)) || (sums.lattice && !hasDistance))
-    fail(ExitCode::Input, "cannot read '{}': its rectangle of sums is not inside of its image; render this share again",
+    fail(ErrorKind::Input, "cannot read '{}': its rectangle of sums is not inside of its image; render this share again",
          file.string());
   sums.channels = hasDistance ? kSumChannels : kSumChannels - 1;
   for (int c = 0; c < sums.channels; ++c)
@@ -105,8 +105,8 @@ SumsFile decode(const std::filesystem::path& file) {
   Imf::InputFile exr(file.c_str());
   const Imf::Header& header = exr.header();
   if (!hasChannels(header))
-    fail(ExitCode::Input, "cannot read '{}' as sums: it is an image; write sums with 'freevoxels render --share I/N --sums'",
-         file.string());
+    fail(ErrorKind::Input, "cannot read '{}' as sums: it is an image; write sums with 'freevoxels render {} {}'",
+         file.string(), Parameter("share", "I/N"), Parameter("sums"));
   SumsFile result{.sums = readLayout(file, header), .header = readOptions(header)};
   FixedSums& sums = result.sums;
   const std::size_t count = sums.pixelCount() * std::size_t(sums.channels);
@@ -128,7 +128,7 @@ auto guarded(const std::filesystem::path& file, const Read& read) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
-    fail(ExitCode::Input, "cannot read '{}': it is not a complete OpenEXR file of sums ({}); render this share again", file.string(),
+    fail(ErrorKind::Input, "cannot read '{}': it is not a complete OpenEXR file of sums ({}); render this share again", file.string(),
          error.what());
   }
 }
@@ -143,7 +143,7 @@ void writeSums(const std::filesystem::path& file, const FixedSums& sums, const E
 SumsFile readSums(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error))
-    fail(ExitCode::Input, "cannot read '{}': there is no such file; check its name", file.string());
+    fail(ErrorKind::Input, "cannot read '{}': there is no such file; check its name", file.string());
   return guarded(file, [&] { return decode(file); });
 }
 

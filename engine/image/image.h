@@ -41,19 +41,19 @@ struct ExrOptions {
 };
 
 /// RGBA, Z where there is depth, and the more channels, of 32 bits. A part of an image is the data window in the display window of the
-/// whole. Atomic. Fails with ExitCode::Output.
+/// whole. Atomic. Fails with ErrorKind::Output.
 void writeExr(const std::filesystem::path& file, const Image& image, const ExrOptions& options);
 
 /// Reads RGBA and, if present, Z of the data window of a scanline EXR of at most `maximumPixels` pixels.
 /// Memory is allocated for the data that is there, so that a short file cannot cause the allocation that its
-/// header claims. Fails with ExitCode::Input.
+/// header claims. Fails with ErrorKind::Input.
 Image readExr(const std::filesystem::path& file, std::int64_t maximumPixels = std::int64_t(1) << 30);
 
 /// Reads any PNG (grey, palette, 8 or 16 bits, interlaced) as sRGB with straight alpha, whatever its chunks
-/// say. Fails with ExitCode::Input.
+/// say. Fails with ErrorKind::Input.
 Image readPng(const std::filesystem::path& file);
 
-/// Calls readExr or readPng, by the first bytes of the file, not by its name. Fails with ExitCode::Input.
+/// Calls readExr or readPng, by the first bytes of the file, not by its name. Fails with ErrorKind::Input.
 Image readPicture(const std::filesystem::path& file);
 
 /// The background of an image, linear Rec.709, interpolated linearly from the top edge to the bottom edge.
@@ -73,16 +73,16 @@ struct DisplayLook {
 };
 
 /// sRGB of 8 or 16 bits a sample. Straight alpha without a background; composited over it and opaque with one. Atomic. Fails
-/// with ExitCode::Output.
+/// with ErrorKind::Output.
 void writePng(const std::filesystem::path& file, const Image& image, const DisplayLook& look = {}, int bits = 8);
 
-/// 8-bit sRGB over the background, or over black. Atomic. Fails with ExitCode::Output.
+/// 8-bit sRGB over the background, or over black. Atomic. Fails with ErrorKind::Output.
 void writeJpeg(const std::filesystem::path& file, const Image& image, const DisplayLook& look = {});
 
 /// The pixels that writePng writes, 4 bytes each.
 std::vector<std::uint8_t> srgbTexels(const Image& image, const DisplayLook& look = {});
 
-/// Writes such texels as an opaque image, ignoring their alpha. Atomic. Fails with ExitCode::Output.
+/// Writes such texels as an opaque image, ignoring their alpha. Atomic. Fails with ErrorKind::Output.
 void writePngTexels(const std::filesystem::path& file, glm::ivec2 size, std::span<const std::uint8_t> texels);
 
 /// The bytes of the file that writePng writes.

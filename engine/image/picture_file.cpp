@@ -37,11 +37,11 @@ Image readPicture(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   stream.read(start.data(), start.size());
   if (!stream.is_open() || stream.bad())
-    fail(ExitCode::Input, "cannot read '{}': it cannot be opened; check its permissions", file.string());
+    fail(ErrorKind::Input, "cannot read '{}': it cannot be opened; check its permissions", file.string());
   const std::string_view signature(start.data(), start.size());
   if (signature == kExr) return readExr(file);
   if (signature == kPng) return readPng(file);
-  fail(ExitCode::Input, "cannot read '{}': it is neither an OpenEXR nor a PNG image; choose one that is",
+  fail(ErrorKind::Input, "cannot read '{}': it is neither an OpenEXR nor a PNG image; choose one that is",
        file.string());
 }
 

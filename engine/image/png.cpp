@@ -134,13 +134,13 @@ void toLinear(const std::vector<std::uint8_t>& bytes, std::vector<glm::vec4>& pi
 Image decode(const std::filesystem::path& file, std::FILE* stream) {
   std::string problem;
   const auto refuse = [&]() {
-    fail(ExitCode::Input, "cannot read '{}': it is not a complete PNG image ({}); write it again",
+    fail(ErrorKind::Input, "cannot read '{}': it is not a complete PNG image ({}); write it again",
          file.string(), problem);
   };
   PngDecoder decoder(stream, problem);
   if (!decoder.readHeader()) refuse();
   if (decoder.width() * decoder.height() > kMaximumPixels)
-    fail(ExitCode::Input, "cannot read '{}': {}x{} pixels are too many; choose a smaller image",
+    fail(ErrorKind::Input, "cannot read '{}': {}x{} pixels are too many; choose a smaller image",
          file.string(), decoder.width(), decoder.height());
 
   Image image;
@@ -240,7 +240,7 @@ Image readPng(const std::filesystem::path& file) {
   checkInputFile("image", file);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
   if (!stream)
-    fail(ExitCode::Input, "cannot read '{}': {}; check its permissions", file.string(), std::strerror(errno));
+    fail(ErrorKind::Input, "cannot read '{}': {}; check its permissions", file.string(), std::strerror(errno));
   return decode(file, stream.get());
 }
 

@@ -29,7 +29,7 @@ std::vector<float> cellExtinctions(const Volume& volume, const Classification& c
 class AmbientPass {
  public:
   /// Reads all voxels on the host. `edge` is the number of voxels along a cell's edge. Fails with
-  /// ExitCode::OutOfMemory.
+  /// ErrorKind::OutOfMemory.
   AmbientPass(const Device& device, const Volume& volume, const Classification& classification, int edge);
 
   /// One channel for uniform light without a tint, otherwise one for each colour.

@@ -21,13 +21,6 @@ shader::Light deviceLight(const Light& light, const RaySource& source, glm::dvec
       .beyond = {0, 0}};
 }
 
-/// With Auto, rays may take one part in this many of the device's memory.
-constexpr std::uint64_t kMostRayShare = 4;
-
-struct RayMemory {
-  std::uint64_t bytes = 0, largest = 0;  ///< of all lights together; the largest of one light
-};
-
 RayMemory rayMemory(glm::ivec3 dimensions, std::span<const RaySource> sources) {
   RayMemory memory;
   for (const RaySource& source : sources) {
@@ -41,11 +34,12 @@ void checkRaysFit(const Device& device, const RayMemory& rays) {
   const std::uint64_t memory = device.availableBytes();
   const std::uint64_t piece = std::min(std::uint64_t(device.maximumAllocation()), memory);
   if (rays.bytes > memory || rays.largest > piece)
-    fail(ExitCode::OutOfMemory,
+    fail(ErrorKind::OutOfMemory,
          "exact shadows of these lights need {} MiB for their rays, {} MiB in one piece, and {} has {} and "
          "{} MiB: "
-         "use --light-attenuation table, fewer lights or a smaller volume",
-         rays.bytes >> 20, rays.largest >> 20, device.description().name, memory >> 20, piece >> 20);
+         "use {}, fewer lights or a smaller volume",
+         rays.bytes >> 20, rays.largest >> 20, device.description().name, memory >> 20, piece >> 20,
+         Parameter("light-attenuation", "table"));
 }
 
 std::vector<RaySource> sourcesOf(const Lighting& lighting, const DeviceVolume& volume) {
@@ -63,6 +57,10 @@ std::vector<glm::dvec4> lightAndShares(const Lighting& lighting, DirectionSet se
 }
 
 }  // namespace
+
+RayMemory lightRayMemory(const DeviceVolume& volume, const Lighting& lighting) {
+  return rayMemory(volume.layout.dimensions, sourcesOf(lighting, volume));
+}
 
 void LightPass::setBeyond(Commands& commands, const DeviceVolume& volume, DirectionSet set,
                           const Lighting& lighting, std::vector<shader::Light>& lights) {
@@ -100,23 +98,6 @@ std::vector<shader::Light> LightPass::place(Commands& commands, const DeviceVolu
   else
     setBeyond(commands, volume, set, lighting, lights);
   return lights;
-}
-
-std::uint64_t LightPass::rayBytes(const DeviceVolume& volume, const Lighting& lighting) {
-  if (lighting.attenuation != LightAttenuation::Exact) return 0;
-  return rayMemory(volume.layout.dimensions, sourcesOf(lighting, volume)).bytes;
-}
-
-LightAttenuation LightPass::resolve(const DeviceVolume& volume, const FrameSettings& settings,
-                                    std::uint64_t others) const {
-  const LightAttenuation wanted = lightAttenuationFor(settings);
-  if (settings.lighting->attenuation != LightAttenuation::Auto || wanted == LightAttenuation::Table)
-    return wanted;
-  const RayMemory rays = rayMemory(volume.layout.dimensions, sourcesOf(*settings.lighting, volume));
-  const std::uint64_t memory = device_.memoryBytes();
-  const bool fits = rays.bytes <= memory / kMostRayShare && rays.bytes + others <= memory &&
-                    rays.largest <= device_.maximumAllocation();
-  return fits ? LightAttenuation::Exact : LightAttenuation::Table;
 }
 
 shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const TableSettings& table,

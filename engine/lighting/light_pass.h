@@ -15,18 +15,18 @@
 
 namespace freevoxels {
 
+/// Bytes of device memory for the rays of lights.
+struct RayMemory {
+  std::uint64_t bytes = 0, largest = 0;  ///< of all lights together, and of the light that needs most
+};
+/// What the lights take if their attenuation is Exact.
+RayMemory lightRayMemory(const DeviceVolume& volume, const Lighting& lighting);
+
 /// The lights of one volume. Everything that is computed for a light is kept until the light changes.
 class LightPass {
  public:
   explicit LightPass(const Device& device) : device_(device), beyond_(device) {}
 
-  /// Resolves Auto to Table or Exact, for settings with lighting. Auto is lightAttenuationFor, but Table if
-  /// rays would take more than a quarter of the device's memory, or more than `others` bytes leave free. This
-  /// does not depend on what is allocated at present, so that it is the same for every frame.
-  LightAttenuation resolve(const DeviceVolume& volume, const FrameSettings& settings,
-                           std::uint64_t others) const;
-  /// Bytes of device memory for the rays of lights whose attenuation is not Auto.
-  static std::uint64_t rayBytes(const DeviceVolume& volume, const Lighting& lighting);
   /// Prepares the lights of a frame whose attenuation is not Auto. With `scalars`, rays are swept through the
   /// volume's scalars, otherwise through its classified voxels. Blocks until the device is done and adds the
   /// times to `times`; no frame may be in progress. An exception of `progress` abandons the work.

@@ -28,7 +28,7 @@ class CompactionPass {
 
   /// Records counting a level's occupied blocks. `list` gets groupOffsets, and `totals` the count at index `level`.
   void recordCount(Commands& commands, const DeviceVolume& volume, int level, BlockList& list, const Buffer& totals) const;
-  /// Allocates a list of `count` blocks, with the arguments of its draw chunks. Fails with ExitCode::OutOfMemory.
+  /// Allocates a list of `count` blocks, with the arguments of its draw chunks. Fails with ErrorKind::OutOfMemory.
   void allocate(BlockList& list, std::uint64_t count) const;
   /// Records listing and ranking the blocks that recordCount counted, after allocate().
   void recordList(Commands& commands, const DeviceVolume& volume, int level, const BlockList& list) const;

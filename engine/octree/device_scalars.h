@@ -20,7 +20,7 @@ struct DeviceScalars {
 };
 
 /// Uploads the scalars and the table. Extinctions in the table are per world unit, times `extinctionScale`.
-/// Fails with ExitCode::OutOfMemory.
+/// Fails with ErrorKind::OutOfMemory.
 DeviceScalars uploadScalars(const Device& device, const Volume& volume, const TransferFunction& function,
                             double extinctionScale);
 

@@ -145,7 +145,7 @@ BuiltVolume buildVolume(const Device& device, const Volume& volume, const Classi
       built.volume.scalarBricks =
           uploadScalars(device, volume, *classification.transferFunction, kStoredDepth * built.volume.voxelSize);
     } catch (const Error& error) {  // only the gather needs the scalars, and it reports that they are missing
-      if (error.code() != ExitCode::OutOfMemory) throw;
+      if (error.kind() != ErrorKind::OutOfMemory) throw;
       built.volume.lacksScalarBricks = true;
     }
   } else {

@@ -35,17 +35,17 @@ std::uint64_t maximumVoxels(const Device& device) {
 void checkBinds(const Device& device, glm::ivec3 box, std::uint64_t bytes, std::uint64_t texelBytes) {
   const std::uint64_t most = device.largestBinding(texelBytes);
   if (bytes > most)
-    fail(ExitCode::OutOfMemory,
+    fail(ErrorKind::OutOfMemory,
          "a volume of {}x{}x{} voxels needs a buffer of {} MiB and {} binds at most {} MiB: crop or resample "
-         "it, or draw it without the attenuation table (--draw gather, no ambient light)",
-         box.x, box.y, box.z, bytes >> 20, device.description().name, most >> 20);
+         "it, or draw it without the attenuation table ({}, no ambient light)",
+         box.x, box.y, box.z, bytes >> 20, device.description().name, most >> 20, Parameter("draw", "gather"));
 }
 
 void checkHolds(const Device& device, glm::ivec3 box, std::uint64_t bytes, std::string_view remedy) {
   if (bytes <= device.memoryBytes()) return;
   const bool limited = device.memoryBytes() < device.description().memoryBytes;
-  fail(ExitCode::OutOfMemory, "a volume of {}x{}x{} voxels needs {} MiB of device memory and {} {} MiB: {}crop or resample it{}",
-       box.x, box.y, box.z, (bytes + 0xfffff) >> 20, limited ? "--memory-limit is" : device.description().name + " has",
+  fail(ErrorKind::OutOfMemory, "a volume of {}x{}x{} voxels needs {} MiB of device memory and {} {} MiB: {}crop or resample it{}",
+       box.x, box.y, box.z, (bytes + 0xfffff) >> 20, limited ? fmt::format("{} is", Parameter("memory-limit")) : device.description().name + " has",
        device.memoryBytes() >> 20, limited ? "raise that, or " : "", remedy);
 }
 
@@ -53,7 +53,7 @@ void checkBoxFits(const Device& device, const HierarchyLayout& hierarchy) {
   const glm::ivec3 box = hierarchy.levels.front().dimensions;
   checkBinds(device, box, occupancyBytes(hierarchy), sizeof(shader::OccupancyWord));
   if (hierarchy.levels.front().paddedVoxels() > kMostNumbered)
-    fail(ExitCode::OutOfMemory, "a volume of {}x{}x{} voxels has more than the {} that can be numbered: crop or resample it", box.x,
+    fail(ErrorKind::OutOfMemory, "a volume of {}x{}x{} voxels has more than the {} that can be numbered: crop or resample it", box.x,
          box.y, box.z, kMostNumbered);
   checkHolds(device, box, occupancyBytes(hierarchy) + brickBytes(box));
 }
@@ -64,7 +64,7 @@ void checkStoresFit(const Device& device, const DeviceVolume& volume) {
       std::min<std::uint64_t>(device.limits().maxTexelBufferElements * sizeof(glm::vec4), device.maximumAllocation());
   const glm::ivec3 box = volume.layout.dimensions;
   if (bytes > most)
-    fail(ExitCode::OutOfMemory,
+    fail(ErrorKind::OutOfMemory,
          "a volume of {}x{}x{} voxels needs {} MiB in one piece for its extinction and {} has at most {} MiB: crop or resample it",
          box.x, box.y, box.z, bytes >> 20, device.description().name, most >> 20);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// Whether a device can hold and bind the octree of a volume. All checks fail with ExitCode::OutOfMemory and a sentence that gives
+// Whether a device can hold and bind the octree of a volume. All checks fail with ErrorKind::OutOfMemory and a sentence that gives
 // the volume's size, what it needs and what the device has.
 
 #include <cstdint>

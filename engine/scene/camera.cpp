@@ -58,30 +58,30 @@ glm::dmat3 fromYUp(glm::dvec3 up) {
 
 void checkCamera(const Camera& camera) {
   if (!isFinite(camera.position))
-    fail(ExitCode::Usage, "the camera position is not a finite number; change --camera-position");
+    fail(ErrorKind::Usage, "the camera position is not a finite number; change {}", Parameter("camera-position"));
   if (!isFinite(camera.lookAt))
-    fail(ExitCode::Usage, "the look-at point is not a finite number; change --look-at");
-  if (!isFinite(camera.up)) fail(ExitCode::Usage, "the up vector is not a finite number; change --up");
+    fail(ErrorKind::Usage, "the look-at point is not a finite number; change {}", Parameter("look-at"));
+  if (!isFinite(camera.up)) fail(ErrorKind::Usage, "the up vector is not a finite number; change {}", Parameter("up"));
   const glm::dvec3 view = camera.lookAt - camera.position;
   const double distance = glm::length(view);
   const double scale = std::max(glm::length(camera.position), glm::length(camera.lookAt));
   if (!std::isfinite(distance))
-    fail(ExitCode::Usage,
-         "the camera is too far away to compute with; change --camera-position or --look-at");
+    fail(ErrorKind::Usage,
+         "the camera is too far away to compute with; change {} or {}", Parameter("camera-position"), Parameter("look-at"));
   if (!(distance > 1e-12 * scale))
-    fail(ExitCode::Usage, "the camera stands at its look-at point; change --camera-position or --look-at");
+    fail(ErrorKind::Usage, "the camera stands at its look-at point; change {} or {}", Parameter("camera-position"), Parameter("look-at"));
   const double upLength = glm::length(camera.up);
   if (!(upLength > 0.0) || !std::isfinite(upLength))
-    fail(ExitCode::Usage, "the up vector has no usable length; change --up");
+    fail(ErrorKind::Usage, "the up vector has no usable length; change {}", Parameter("up"));
   if (glm::length(glm::cross(view / distance, camera.up / upLength)) < kSmallestUpAngle)
-    fail(ExitCode::Usage, "the up vector points along the view; change --up");
+    fail(ErrorKind::Usage, "the up vector points along the view; change {}", Parameter("up"));
   if (camera.orthographic) {
     if (!(camera.orthographicHeight > 0.0) || !std::isfinite(camera.orthographicHeight))
-      fail(ExitCode::Usage, "the height {} of the orthographic image is not above 0; change --orthographic",
-           camera.orthographicHeight);
+      fail(ErrorKind::Usage, "the height {} of the orthographic image is not above 0; change {}",
+           camera.orthographicHeight, Parameter("orthographic"));
   } else if (!(camera.verticalFov > 0.0 && camera.verticalFov < 180.0)) {
-    fail(ExitCode::Usage, "the field of view {} is not between 0 and 180 degrees; change --fov",
-         camera.verticalFov);
+    fail(ErrorKind::Usage, "the field of view {} is not between 0 and 180 degrees; change {}",
+         camera.verticalFov, Parameter("fov"));
   }
 }
 

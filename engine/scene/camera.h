@@ -18,7 +18,7 @@ struct Camera {
   double orthographicHeight = 1.0;  ///< world units the image is high, orthographic
 };
 
-/// Fails with ExitCode::Usage for a camera that cannot produce an image: NaN, a position at the look-at
+/// Fails with ErrorKind::Usage for a camera that cannot produce an image: NaN, a position at the look-at
 /// point, an up direction along the view, a field of view outside of (0, 180), or a height that is not
 /// positive. The sentence names the option to change.
 void checkCamera(const Camera& camera);

@@ -46,7 +46,7 @@ RowSums sumRow(const Environment& environment, int row, DirectionSet set, const 
 Environment readEnvironment(const std::filesystem::path& file) {
   const Image image = readExr(file, kMaximumPixels);
   if (image.size.x != 2 * image.size.y)
-    fail(ExitCode::Input,
+    fail(ErrorKind::Input,
          "environment '{}' has {}x{} pixels, and a lat-long picture is twice as wide as high: choose one",
          file.string(), image.size.x, image.size.y);
   Environment environment{.size = image.size, .radiance = {}};
@@ -55,7 +55,7 @@ Environment readEnvironment(const std::filesystem::path& file) {
     const glm::vec3 pixel(image.pixels[i]);
     for (int c = 0; c < 3; ++c) {
       if (!std::isfinite(pixel[c]))
-        fail(ExitCode::Input, "environment '{}' holds {} in column {} of row {}, and radiance is finite: repair the image",
+        fail(ErrorKind::Input, "environment '{}' holds {} in column {} of row {}, and radiance is finite: repair the image",
              file.string(), pixel[c], i % std::size_t(image.size.x), i / std::size_t(image.size.x));
       if (pixel[c] < 0.0f) ++environment.negativeValues;
     }

@@ -21,7 +21,7 @@ struct Environment {
   std::uint64_t negativeValues = 0;  ///< of the file, that count as 0: lossy compression makes values such as -6e-8
 };
 
-/// Reads an environment. Fails with ExitCode::Input if the file is not an OpenEXR image with R, G and B that
+/// Reads an environment. Fails with ErrorKind::Input if the file is not an OpenEXR image with R, G and B that
 /// is twice as wide as high, or if it has non-finite pixels.
 Environment readEnvironment(const std::filesystem::path& file);
 

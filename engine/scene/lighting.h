@@ -49,7 +49,7 @@ struct Light {
 enum class LightAttenuation : int {
   Table = 0,  ///< looked up in the attenuation table: nothing is computed for a light
   Exact = 1,  ///< along rays from the light (source_rays.h), swept once and kept until the lights change
-  Auto = 2,   ///< Exact if there is enough memory: lightAttenuationFor, LightPass::resolve
+  Auto = 2,   ///< Exact if there is enough memory: lightAttenuationFor, planLightAttenuation
 };
 
 struct Lighting {

@@ -46,11 +46,10 @@ void checkFrameFits(const Device& device, const FrameSettings& settings) {
   checkTargetFits(device, settings.size, kTargetColorFormat);
   const std::uint64_t bytes = targetBytes(settings);
   if (bytes > device.memoryBytes())
-    fail(ExitCode::OutOfMemory,
-         "an image of {}x{} pixels needs {} MiB of device memory and {} may use {} MiB of it: use a smaller "
-         "--size",
+    fail(ErrorKind::OutOfMemory,
+         "an image of {}x{} pixels needs {} MiB of device memory and {} may use {} MiB of it: use a smaller {}",
          settings.size.x, settings.size.y, bytes >> 20, device.description().name,
-         device.memoryBytes() >> 20);
+         device.memoryBytes() >> 20, Parameter("size"));
 }
 
 }  // namespace freevoxels

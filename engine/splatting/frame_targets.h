@@ -30,7 +30,7 @@ enum class TargetKind {
 
 SplatTargets makeTargets(const Device& device, const FrameSettings& settings, TargetKind kind);
 std::uint64_t targetBytes(const FrameSettings& settings);
-/// Fails with ExitCode::OutOfMemory where this device cannot hold such a frame: to be called before any other work.
+/// Fails with ErrorKind::OutOfMemory where this device cannot hold such a frame: to be called before any other work.
 void checkFrameFits(const Device& device, const FrameSettings& settings);
 
 /// Keeps the targets of a renderer's frames, so that a frame allocates none while size and kind stay the same. For one

@@ -229,7 +229,7 @@ void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volum
   const glm::ivec3 dimensions = volume.outline.dimensions;
   const int longest = std::max({dimensions.x, dimensions.y, dimensions.z});
   if (longest > fvx::kLongestEdge)
-    fail(ExitCode::Input, "{} is too long for a baked volume: {} voxels, and at most {} are possible; crop or resample it",
+    fail(ErrorKind::Input, "{} is too long for a baked volume: {} voxels, and at most {} are possible; crop or resample it",
          volume.outline.source, longest, fvx::kLongestEdge);
   const bool densities = !classification.transferFunction;
   const fvx::WriteSettings write{
@@ -276,7 +276,7 @@ Volume readBaked(const std::shared_ptr<const FvxFile>& file, int level) {
   try {
     return readLevel(file, level);
   } catch (const std::bad_alloc&) {
-    fail(ExitCode::OutOfMemory, "not enough memory for level {} of '{}'; free some", level, file->path().string());
+    fail(ErrorKind::OutOfMemory, "not enough memory for level {} of '{}'; free some", level, file->path().string());
   }
 }
 
@@ -285,8 +285,8 @@ int finestLevel(const fvx::FvxFile& file, std::uint64_t maximumVoxels) {
     const glm::u64vec3 n(file.dimensions(level));
     if (n.x * n.y * n.z <= maximumVoxels) return level;
   }
-  fail(ExitCode::OutOfMemory, "'{}' is too large: not even its coarsest level fits into {} voxels; raise --memory-limit",
-       file.path().string(), maximumVoxels);
+  fail(ErrorKind::OutOfMemory, "'{}' is too large: not even its coarsest level fits into {} voxels; raise {}",
+       file.path().string(), maximumVoxels, Parameter("memory-limit"));
 }
 
 }  // namespace freevoxels

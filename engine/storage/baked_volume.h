@@ -51,13 +51,13 @@ void bakeVolume(const std::filesystem::path& file, const Volume& volume, const C
 /// Reads a level of a baked file: the voxels, or for a level above 0 blocks of 2^level voxels along each
 /// axis, each their mean, at the same place in the world. Every chunk that is read is verified first. Values
 /// that are stored as floats without compression are used in place and keep the file mapped. Fails with
-/// ExitCode::Input if a chunk is damaged.
+/// ErrorKind::Input if a chunk is damaged.
 Volume readBaked(const std::shared_ptr<const fvx::FvxFile>& file, int level = 0);
 
 /// Returns what readBaked does without the values, before any chunk is read.
 Volume bakedOutline(const fvx::FvxFile& file, int level = 0);
 
-/// The finest level whose box has at most `maximumVoxels` voxels. Fails with ExitCode::OutOfMemory if there
+/// The finest level whose box has at most `maximumVoxels` voxels. Fails with ErrorKind::OutOfMemory if there
 /// is none.
 int finestLevel(const fvx::FvxFile& file, std::uint64_t maximumVoxels);
 

@@ -186,7 +186,7 @@ Description parseDescription(std::string_view json, const std::filesystem::path&
       throw std::runtime_error("its channels do not match its grids");
     return description;
   } catch (const std::exception& error) {
-    fail(ExitCode::Input, "'{}' cannot be read: its description does not say what it should ({}); bake it again", file.string(),
+    fail(ErrorKind::Input, "'{}' cannot be read: its description does not say what it should ({}); bake it again", file.string(),
          error.what());
   }
 }

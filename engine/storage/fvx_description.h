@@ -33,7 +33,7 @@ struct Description {
 };
 
 std::string toJson(const Description& description);
-/// Parses a description. Fails with ExitCode::Input, naming `file`, if something is missing or impossible.
+/// Parses a description. Fails with ErrorKind::Input, naming `file`, if something is missing or impossible.
 Description parseDescription(std::string_view json, const std::filesystem::path& file);
 
 }  // namespace freevoxels::fvx

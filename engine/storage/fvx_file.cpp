@@ -44,19 +44,19 @@ std::uint64_t hashOfFile(const fs::path& file) {
     stream.read(piece.data(), std::streamsize(piece.size()));
     XXH3_64bits_update(hash.get(), piece.data(), std::size_t(stream.gcount()));
   } while (stream);
-  if (!stream.eof()) fail(ExitCode::Input, "cannot read '{}'; check its name and its permissions", file.string());
+  if (!stream.eof()) fail(ErrorKind::Input, "cannot read '{}'; check its name and its permissions", file.string());
   return XXH3_64bits_digest(hash.get());
 }
 
 FvxFile::FvxFile(const fs::path& file) : path_(file) {
   std::error_code error;
   const std::uint64_t size = fs::file_size(file, error);
-  if (error) fail(ExitCode::Input, "cannot read '{}': {}; check its name", file.string(), error.message());
-  if (size == 0) fail(ExitCode::Input, "'{}' is empty; copy it again, or bake it again", file.string());
+  if (error) fail(ErrorKind::Input, "cannot read '{}': {}; check its name", file.string(), error.message());
+  if (size == 0) fail(ErrorKind::Input, "'{}' is empty; copy it again, or bake it again", file.string());
   try {
     map_.open(file.string());
   } catch (const std::exception&) {
-    fail(ExitCode::Input, "cannot read '{}': it cannot be mapped into memory; check its permissions", file.string());
+    fail(ErrorKind::Input, "cannot read '{}': it cannot be mapped into memory; check its permissions", file.string());
   }
   checkHeader();
   const std::span<const std::byte> description = required(SectionKind::Description, "description");
@@ -72,26 +72,26 @@ FvxFile::FvxFile(const fs::path& file) : path_(file) {
 }
 
 void FvxFile::failDamaged(const std::string& what) const {
-  fail(ExitCode::Input, "'{}' is damaged: {}; copy it again, or bake it again", path_.string(), what);
+  fail(ErrorKind::Input, "'{}' is damaged: {}; copy it again, or bake it again", path_.string(), what);
 }
 
 void FvxFile::checkHeader() const {
   const std::uint64_t size = map_.size();
   const std::string name = path_.string();
   if (size < kIdentifier.size() || !hasIdentifier(map_.data()))
-    fail(ExitCode::Input, "'{}' is no baked volume: it does not begin as one; 'freevoxels bake' makes them", name);
+    fail(ErrorKind::Input, "'{}' is no baked volume: it does not begin as one; 'freevoxels bake' makes them", name);
   if (size < sizeof(Header))
-    fail(ExitCode::Input, "'{}' is incomplete: it has {} bytes, and its header alone {}; copy it again", name, size, sizeof(Header));
+    fail(ErrorKind::Input, "'{}' is incomplete: it has {} bytes, and its header alone {}; copy it again", name, size, sizeof(Header));
   if (header().byteOrderMark == kOtherByteOrderMark)
-    fail(ExitCode::Input, "'{}' cannot be read: it was written on a machine with the other byte order", name);
+    fail(ErrorKind::Input, "'{}' cannot be read: it was written on a machine with the other byte order", name);
   if (header().majorVersion != kMajorVersion)
-    fail(ExitCode::Input, "'{}' cannot be read: it has format {}.{}, and this program reads format {}; bake it again", name,
+    fail(ErrorKind::Input, "'{}' cannot be read: it has format {}.{}, and this program reads format {}; bake it again", name,
          header().majorVersion, header().minorVersion, kMajorVersion);
   Header unhashed = header();
   unhashed.hash = 0;
   if (XXH3_64bits(&unhashed, sizeof(unhashed)) != header().hash) failDamaged("the checksum of its header is wrong");
   if (size < header().fileBytes)
-    fail(ExitCode::Input, "'{}' is incomplete: it has {} of {} bytes; copy it again", name, size, header().fileBytes);
+    fail(ErrorKind::Input, "'{}' is incomplete: it has {} of {} bytes; copy it again", name, size, header().fileBytes);
   if (size > header().fileBytes) failDamaged(fmt::format("it has {} bytes instead of {}", size, header().fileBytes));
   if (header().byteOrderMark != kByteOrderMark || header().sectionCount > kMostSections) failDamaged("its header is impossible");
   for (const Section& section : sections())

@@ -17,12 +17,12 @@ namespace freevoxels::fvx {
 /// Whether a file is a baked volume, by its name or by its first bytes.
 bool isFvx(const std::filesystem::path& file);
 
-/// XXH3-64 of all bytes of a file. Fails with ExitCode::Input if it cannot be read.
+/// XXH3-64 of all bytes of a file. Fails with ErrorKind::Input if it cannot be read.
 std::uint64_t hashOfFile(const std::filesystem::path& file);
 
 class FvxFile {
  public:
-  /// Opens a file and checks header, description and the index of the chunks. Fails with ExitCode::Input and
+  /// Opens a file and checks header, description and the index of the chunks. Fails with ErrorKind::Input and
   /// one sentence if the file is not a baked volume, of a later major version, incomplete or damaged.
   explicit FvxFile(const std::filesystem::path& file);
   FvxFile(const FvxFile&) = delete;
@@ -45,9 +45,9 @@ class FvxFile {
   }
   /// The stored bricks of a chunk, in the order of the bits of its mask. Compressed ones are written to
   /// `unpacked`; others lie in the mapped file, which exists as long as this object. Fails with
-  /// ExitCode::Input if the chunk is damaged.
+  /// ErrorKind::Input if the chunk is damaged.
   std::span<const std::byte> read(Channel channel, const ChunkEntry& chunk, std::vector<std::byte>& unpacked) const;
-  /// Reads the whole file and fails with ExitCode::Input if any part is damaged.
+  /// Reads the whole file and fails with ErrorKind::Input if any part is damaged.
   void checkAll() const;
 
  private:

@@ -73,11 +73,11 @@ struct Report {
 };
 
 /// Writes a single HTML file that contains its style, plots (SVG) and images (PNG). Atomic. Fails with
-/// ExitCode::Output.
+/// ErrorKind::Output.
 void writeHtml(const std::filesystem::path& file, const Report& report);
 
 /// Writes everything but the images. Numbers are read back as the same doubles; those without a JSON form are
-/// the strings "NaN", "Infinity" and "-Infinity". Atomic. Fails with ExitCode::Output.
+/// the strings "NaN", "Infinity" and "-Infinity". Atomic. Fails with ErrorKind::Output.
 void writeJson(const std::filesystem::path& file, const Report& report);
 
 }  // namespace freevoxels

@@ -82,7 +82,7 @@ glm::vec3 albedoOf(const Classification& classification, const AlbedoGrid& grid,
 
 /// Reads a transfer function from JSON (apps/manual/classification.md). `range` defaults to the volume's
 /// minimum and maximum, `unit_distance` to its voxel size. Unknown keys, wrong types and points that do not
-/// ascend fail with ExitCode::Input and the name of the key.
+/// ascend fail with ErrorKind::Input and the name of the key.
 TransferFunction readTransferFunction(const std::filesystem::path& file, const Volume& volume);
 /// Parses the text of such JSON.
 TransferFunction parseTransferFunction(const std::string& json, const Volume& volume);

@@ -82,7 +82,7 @@ constexpr std::array<ProceduralFunctions, 8> kFields{{
     {{"plume", "a spiral of smoke in a box that is nearly empty"},
      [](vec3 position, float) { return plumeDensity(position); },
      plumeClearance},
-    {{"fire", "flames and smoke, with temperatures for --emission"},
+    {{"fire", "flames and smoke, with temperatures, which can emit light"},
      [](vec3 position, float) { return fireDensity(position); },
      nullptr,
      fireTemperature},
@@ -102,7 +102,7 @@ const ProceduralFunctions& fieldNamed(std::string_view name) {
     if (field.kind.name == name) return field;
     names += fmt::format("{}{}", names.empty() ? "" : ", ", field.kind.name);
   }
-  fail(ExitCode::Usage, "there is no procedural volume '{}'; choose one of: {}", name, names);
+  fail(ErrorKind::Usage, "there is no procedural volume '{}'; choose one of: {}", name, names);
 }
 
 }  // namespace
@@ -121,7 +121,7 @@ ProceduralField::ProceduralField(std::string_view name, glm::ivec3 dimensions)
   const int longest = std::max({dimensions.x, dimensions.y, dimensions.z});
   const int shortest = std::min({dimensions.x, dimensions.y, dimensions.z});
   if (shortest < 1 || longest > kLargestResolution)
-    fail(ExitCode::Usage, "the resolution of '{}' is {}; choose one from 1 to {}", name, shortest < 1 ? shortest : longest,
+    fail(ErrorKind::Usage, "the resolution of '{}' is {}; choose one from 1 to {}", name, shortest < 1 ? shortest : longest,
          kLargestResolution);
   voxelSize_ = 1.0 / longest;
   firstCentre_ = 0.5 * voxelSize_ - 0.5 * glm::dvec3(dimensions) / double(longest);

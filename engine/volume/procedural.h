@@ -20,7 +20,7 @@ const std::vector<ProceduralKind>& proceduralKinds();
 /// voxel by voxel, for those who cannot hold all of them. May be called by several threads.
 class ProceduralField {
  public:
-  /// Unknown name or a dimension outside 1..2048: ExitCode::Usage.
+  /// Unknown name or a dimension outside 1..2048: ErrorKind::Usage.
   ProceduralField(std::string_view name, glm::ivec3 dimensions);
 
   glm::ivec3 dimensions() const { return dimensions_; }

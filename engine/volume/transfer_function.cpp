@@ -28,7 +28,7 @@ class Field {
 
   template <typename... Args>
   [[noreturn]] void failHere(fmt::format_string<Args...> format, Args&&... args) const {
-    fail(ExitCode::Input, "transfer function '{}': \"{}\" {}", file_.string(), key_,
+    fail(ErrorKind::Input, "transfer function '{}': \"{}\" {}", file_.string(), key_,
          fmt::format(format, std::forward<Args>(args)...));
   }
 
@@ -75,14 +75,14 @@ class Field {
 
 void checkKeys(const fs::path& file, const Json& root) {
   if (!root.is_object())
-    fail(ExitCode::Input, "transfer function '{}' is a JSON {}; it must be an object {{\"opacity\": ...}}",
+    fail(ErrorKind::Input, "transfer function '{}' is a JSON {}; it must be an object {{\"opacity\": ...}}",
          file.string(), root.type_name());
   for (const auto& [key, value] : root.items())
     if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
-      fail(ExitCode::Input, "transfer function '{}' has an unknown key {}; the known ones are: {}",
+      fail(ErrorKind::Input, "transfer function '{}' has an unknown key {}; the known ones are: {}",
            file.string(), inQuotes(key), fmt::join(kKeys, ", "));
   if (!root.contains("opacity"))
-    fail(ExitCode::Input, "transfer function '{}' has no \"opacity\"; add a list of [x, alpha] points",
+    fail(ErrorKind::Input, "transfer function '{}' has no \"opacity\"; add a list of [x, alpha] points",
          file.string());
 }
 

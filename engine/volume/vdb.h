@@ -30,11 +30,11 @@ struct GridInfo {
   std::vector<std::uint64_t> storedBlocks;
   std::uint64_t hostBytes = 0;  ///< host memory of the volume that readVdb would return; 0 if the grid cannot be drawn
   std::string unusable;         ///< why the grid cannot be drawn, in one clause; empty if it can
-  bool isTemperature = false;   ///< whether --emission uses it if no grid is named
-  bool isAlbedo = false;        ///< whether --albedo-grid accepts it
+  bool isTemperature = false;   ///< whether emission uses it if no grid of temperatures is named
+  bool isAlbedo = false;        ///< whether it can be the grid of albedos
 };
 
-/// Describes every grid of the file, in file order. Fails with ExitCode::Input if the file is missing,
+/// Describes every grid of the file, in file order. Fails with ErrorKind::Input if the file is missing,
 /// truncated or not an OpenVDB file.
 std::vector<GridInfo> describeVdb(const std::filesystem::path& file);
 
@@ -64,9 +64,9 @@ class EmptyVolumeError : public Error {
 /// Reads one float or half grid as a box around its active voxels (active tiles count as voxels); with
 /// temperatures, around their active voxels too. `gridName` is "NAME" or "NAME[k]"; if it is empty, `density`
 /// is read, else the only float grid; otherwise it is an error that lists the choice. A level set becomes a
-/// density of 1 inside and 0 outside, linear over three voxels across the surface. Fails with ExitCode::Input
+/// density of 1 inside and 0 outside, linear over three voxels across the surface. Fails with ErrorKind::Input
 /// if a grid of `more` does not exist or has another transform, and for frustum transforms, other grid types,
-/// empty grids (EmptyVolumeError) and unreadable files; with ExitCode::OutOfMemory if the box exceeds
+/// empty grids (EmptyVolumeError) and unreadable files; with ErrorKind::OutOfMemory if the box exceeds
 /// `maximumVoxels`, before allocating it.
 Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels,
                const MoreGrids& more = {});

@@ -12,7 +12,7 @@ namespace freevoxels {
 
 namespace {
 
-const VdbFile::Entry& chooseTemperature(const VdbFile& file, const std::string& name) {
+const VdbFile::Entry& chooseTemperature(VdbFile& file, const std::string& name) {
   if (!name.empty()) return file.choose(name);
   for (const char* usual : kTemperatureNames)
     if (std::ranges::find(file.entries(), usual, &VdbFile::Entry::baseName) != file.entries().end())
@@ -20,9 +20,9 @@ const VdbFile::Entry& chooseTemperature(const VdbFile& file, const std::string& 
   std::string names;
   for (const VdbFile::Entry& entry : file.entries())
     names += fmt::format("{}{}", names.empty() ? "" : ", ", entry.name);
-  fail(ExitCode::Input,
-       "'{}' has no grid named 'temperature', 'heat' or 'flame'; choose one with --temperature-grid: {}",
-       file.path().string(), names);
+  fail(ErrorKind::Input,
+       "'{}' has no grid named 'temperature', 'heat' or 'flame'; choose one with {}: {}",
+       file.path().string(), Parameter("temperature-grid"), names);
 }
 
 /// A colour clamped to 0..1, and whether it was outside of that range.
@@ -100,26 +100,26 @@ VdbChannels::VdbChannels(VdbFile& file, const VdbFile::Entry& density, const Mor
   if (more.temperature) {
     temperature_ = &chooseTemperature(file, *more.temperature);
     if (!isReal(*temperature_))
-      fail(ExitCode::Input,
+      fail(ErrorKind::Input,
            "grid '{}' of '{}' holds no temperatures: its values are of type {}; choose a float grid with "
-           "--temperature-grid",
-           temperature_->name, file.path().string(), temperature_->valueType);
+           "{}",
+           temperature_->name, file.path().string(), temperature_->valueType, Parameter("temperature-grid"));
     checkLattice(*temperature_, density);
   }
   if (more.albedo) {
     albedo_ = &file.choose(*more.albedo);
     if (!isColor(*albedo_))
-      fail(ExitCode::Input,
+      fail(ErrorKind::Input,
            "grid '{}' of '{}' holds no colours: its values are of type {}; choose a vec3s grid with "
-           "--albedo-grid",
-           albedo_->name, file.path().string(), albedo_->valueType);
+           "{}",
+           albedo_->name, file.path().string(), albedo_->valueType, Parameter("albedo-grid"));
     checkLattice(*albedo_, density);
   }
 }
 
 void VdbChannels::checkLattice(const VdbFile::Entry& entry, const VdbFile::Entry& density) const {
   if (file_.readMetadata(entry)->transform() == file_.readMetadata(density)->transform()) return;
-  fail(ExitCode::Input,
+  fail(ErrorKind::Input,
        "grid '{}' of '{}' has another transform than '{}': resample it to that grid's voxels first",
        entry.name, file_.path().string(), density.name);
 }

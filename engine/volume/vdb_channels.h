@@ -12,7 +12,7 @@ namespace freevoxels {
 
 class VdbChannels {
  public:
-  /// Fails with ExitCode::Input if `file` lacks a grid of `more`, or has it on another lattice than
+  /// Fails with ErrorKind::Input if `file` lacks a grid of `more`, or has it on another lattice than
   /// `density`.
   VdbChannels(VdbFile& file, const VdbFile::Entry& density, const MoreGrids& more);
 

@@ -4,7 +4,6 @@
 #include <log4cplus/logger.h>
 #endif
 #include <openvdb/io/Stream.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <cctype>
@@ -124,7 +123,7 @@ void VdbFile::listGrids() {
   std::map<std::string, int> uses;
   for (const Entry& entry : entries_)
     if (++uses[entry.key] > 1)
-      fail(ExitCode::Input, "'{}' has two grids under the one key '{}'; save it again with OpenVDB",
+      fail(ErrorKind::Input, "'{}' has two grids under the one key '{}'; save it again with OpenVDB",
            path_.string(), oneLine(entry.key));
 }
 
@@ -150,20 +149,20 @@ GridBase::Ptr VdbFile::guarded(const std::string& what, const std::function<Grid
                                      printable(path_.string())));
     return read();
   } catch (const std::bad_alloc&) {
-    fail(ExitCode::OutOfMemory,
+    fail(ErrorKind::OutOfMemory,
          "not enough memory to read {} of '{}'; free some, or crop or resample the volume", what,
          path_.string());
   } catch (const std::ios_base::failure&) {
-    fail(ExitCode::Input, "cannot read {} of '{}': the file ends too early; copy or download it again", what,
+    fail(ErrorKind::Input, "cannot read {} of '{}': the file ends too early; copy or download it again", what,
          path_.string());
   } catch (const std::exception& e) {
-    fail(ExitCode::Input, "cannot read {} of '{}': {}; the file may be damaged", what, path_.string(),
+    fail(ErrorKind::Input, "cannot read {} of '{}': {}; the file may be damaged", what, path_.string(),
          oneLine(e.what()));
   }
 }
 
-const VdbFile::Entry& VdbFile::choose(const std::string& name) const {
-  if (entries_.empty()) fail(ExitCode::Input, "'{}' holds no grids; choose another file", path_.string());
+const VdbFile::Entry& VdbFile::choose(const std::string& name) {
+  if (entries_.empty()) fail(ErrorKind::Input, "'{}' holds no grids; choose another file", path_.string());
   if (name.empty()) return chooseByDefault();
   std::vector<const Entry*> sameName;
   for (const Entry& entry : entries_) {
@@ -171,12 +170,12 @@ const VdbFile::Entry& VdbFile::choose(const std::string& name) const {
     if (entry.baseName == name) sameName.push_back(&entry);
   }
   if (sameName.empty())
-    fail(ExitCode::Input, "'{}' has no grid '{}'; choose one of: {}", path_.string(), oneLine(name),
+    fail(ErrorKind::Input, "'{}' has no grid '{}'; choose one of: {}", path_.string(), oneLine(name),
          listOf(entries_));
   return firstOf(sameName);
 }
 
-const VdbFile::Entry& VdbFile::chooseByDefault() const {
+const VdbFile::Entry& VdbFile::chooseByDefault() {
   std::vector<const Entry*> densities, reals;
   for (const Entry& entry : entries_) {
     if (!isReal(entry)) continue;
@@ -189,20 +188,20 @@ const VdbFile::Entry& VdbFile::chooseByDefault() const {
   if (reals.size() == 1) return *reals.front();
   if (reals.empty() && entries_.size() == 1) return entries_.front();  // readVdb will say why it cannot be drawn
   if (reals.empty())
-    fail(ExitCode::Input, "'{}' has no float grid, only: {}; choose another file", path_.string(),
+    fail(ErrorKind::Input, "'{}' has no float grid, only: {}; choose another file", path_.string(),
          listOf(entries_));
-  fail(ExitCode::Input,
-       "'{}' has several float grids and none is named 'density'; choose one with --grid: {}", path_.string(),
-       listOf(entries_));
+  fail(ErrorKind::Input,
+       "'{}' has several float grids and none is named 'density'; choose one with {}: {}", path_.string(),
+       Parameter("grid"), listOf(entries_));
 }
 
-const VdbFile::Entry& VdbFile::firstOf(const std::vector<const Entry*>& sameName) const {
+const VdbFile::Entry& VdbFile::firstOf(const std::vector<const Entry*>& sameName) {
   if (sameName.size() > 1) {
     std::string others;
     for (const Entry* entry : sameName)
       if (entry != sameName.front()) others += fmt::format("{}'{}'", others.empty() ? "" : ", ", entry->name);
-    spdlog::warn("'{}' has {} grids named '{}': using '{}'; --grid chooses {}", path_.string(),
-                 sameName.size(), sameName.front()->baseName, sameName.front()->name, others);
+    warnings_.push_back(fmt::format("'{}' has {} grids named '{}': using '{}'; {} chooses {}", path_.string(), sameName.size(),
+                                    sameName.front()->baseName, sameName.front()->name, Parameter("grid"), others));
   }
   return *sameName.front();
 }

@@ -30,17 +30,19 @@ class VdbFile {
     std::string key;        ///< OpenVDB's name of the grid
   };
 
-  /// Fails as readVdbHeader does, and with ExitCode::Input if OpenVDB rejects the file.
+  /// Fails as readVdbHeader does, and with ErrorKind::Input if OpenVDB rejects the file.
   explicit VdbFile(const std::filesystem::path& path);
 
   const std::filesystem::path& path() const { return path_; }
   const std::vector<Entry>& entries() const { return entries_; }
 
-  /// Chooses a grid by a name as in readVdb.
-  const Entry& choose(const std::string& name) const;
+  /// Chooses a grid by a name as in readVdb. Adds a warning if several grids have the name.
+  const Entry& choose(const std::string& name);
   /// Reads the grid without its tree.
   openvdb::GridBase::Ptr readMetadata(const Entry& entry);
   openvdb::GridBase::Ptr read(const Entry& entry);
+  /// For Volume::warnings.
+  const std::vector<std::string>& warnings() const { return warnings_; }
   /// Whether the metadata of the file or of the grid say that Blender wrote it: its world has +z up.
   bool isOfBlender(const Entry& entry);
 
@@ -51,13 +53,14 @@ class VdbFile {
   /// Runs `read`, with OpenVDB's exceptions turned into one sentence, and a CrashNote in case that it crashes.
   openvdb::GridBase::Ptr guarded(const std::string& what,
                                  const std::function<openvdb::GridBase::Ptr()>& read) const;
-  const Entry& chooseByDefault() const;
-  const Entry& firstOf(const std::vector<const Entry*>& sameName) const;
+  const Entry& chooseByDefault();
+  const Entry& firstOf(const std::vector<const Entry*>& sameName);
 
   std::filesystem::path path_;
   openvdb::io::File file_;
   VdbHeader header_;
   std::vector<Entry> entries_;
+  std::vector<std::string> warnings_;
   std::vector<openvdb::GridBase::Ptr>
       streamed_;  ///< grids in the order of entries_, for a file that can only be read as a whole
 };

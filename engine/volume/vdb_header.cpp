@@ -41,15 +41,15 @@ void checkRegularFile(const fs::path& file) {
   const fs::file_status status = fs::status(file, error);
   if (!fs::exists(status)) {
     if (status.type() == fs::file_type::none)
-      fail(ExitCode::Input, "cannot open '{}': {}; check its path and permissions", file.string(),
+      fail(ErrorKind::Input, "cannot open '{}': {}; check its path and permissions", file.string(),
            error.message());
     const std::string meant = suggestion(file.filename().string(), namesBeside(file));
-    fail(ExitCode::Input, "there is no file '{}'{}", file.string(), meant.empty() ? "; check the name" : meant);
+    fail(ErrorKind::Input, "there is no file '{}'{}", file.string(), meant.empty() ? "; check the name" : meant);
   }
   if (fs::is_directory(status))
-    fail(ExitCode::Input, "'{}' is a folder; name an OpenVDB file in it", file.string());
+    fail(ErrorKind::Input, "'{}' is a folder; name an OpenVDB file in it", file.string());
   if (!fs::is_regular_file(status))
-    fail(ExitCode::Input, "'{}' is not a regular file; copy its contents into a .vdb file first",
+    fail(ErrorKind::Input, "'{}' is not a regular file; copy its contents into a .vdb file first",
          file.string());
 }
 
@@ -76,7 +76,7 @@ void refuseScan(const fs::path& file) {
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   for (const ScanFormat& format : kScanFormats)
     if (name.ends_with(format.ending))
-      fail(ExitCode::Input,
+      fail(ErrorKind::Input,
            "'{}' is {}, not an OpenVDB file: read it in Python, for instance with SimpleITK, and give the array to "
            "freevoxels.render, or convert it to .vdb",
            file.string(), format.name);
@@ -99,7 +99,7 @@ std::string_view guessKind(const fs::path& file) {
 void checkSignature(const fs::path& file, VdbReader& reader) {
   if (reader.size() < sizeof(kMagic) || reader.read<std::int64_t>() != kMagic) {
     refuseScan(file);
-    fail(ExitCode::Input, "'{}' is not an OpenVDB file: {}; give a .vdb file that OpenVDB has written",
+    fail(ErrorKind::Input, "'{}' is not an OpenVDB file: {}; give a .vdb file that OpenVDB has written",
          file.string(), guessKind(file));
   }
 }
@@ -234,7 +234,7 @@ VdbHeader readVdbHeader(const std::filesystem::path& file) {
   VdbHeader header;
   header.formatVersion = reader.read<std::uint32_t>();
   if (header.formatVersion < kOldestFormat)
-    fail(ExitCode::Input,
+    fail(ErrorKind::Input,
          "'{}' has OpenVDB's file format {}, and the oldest supported is {}; save it again with a newer "
          "OpenVDB",
          file.string(), header.formatVersion, kOldestFormat);

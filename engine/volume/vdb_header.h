@@ -25,7 +25,7 @@ struct VdbHeader {
   std::vector<Grid> grids;
 };
 
-/// Fails with ExitCode::Input if `file` is missing, a folder, unreadable, not an OpenVDB file, older than
+/// Fails with ErrorKind::Input if `file` is missing, a folder, unreadable, not an OpenVDB file, older than
 /// OpenVDB supports, shorter than its header says, or damaged in the metadata of the file or of a grid.
 VdbHeader readVdbHeader(const std::filesystem::path& file);
 

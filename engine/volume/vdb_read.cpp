@@ -1,5 +1,3 @@
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,7 +22,7 @@ void checkSize(const CoordBBox& bounds, std::uint64_t maximumVoxels, const std::
   const double voxels = extent(0) * extent(1) * extent(2);
   const double longest = std::max({extent(0), extent(1), extent(2)});
   if (voxels <= double(maximumVoxels) && longest <= double(std::numeric_limits<int>::max())) return;
-  fail(ExitCode::OutOfMemory,
+  fail(ErrorKind::OutOfMemory,
        "{} is too large: its {:.0f} x {:.0f} x {:.0f} box needs {:.0f} voxels and at most {} are possible "
        "here; "
        "resample or crop the volume, for example with vdb_tool or Houdini",
@@ -41,7 +39,7 @@ glm::dmat4 indexToWorldOf(const FloatGrid& grid, glm::ivec3 indexOrigin) {
 }
 
 /// Moves a volume near to the origin, and scales it, where its coordinates would leave double precision too few digits to tell
-/// its voxels apart, or single precision's range when they are squared; says so, as cameras and densities then count in other
+/// its voxels apart, or single precision's range when they are squared; warns of it, as cameras and densities then count in other
 /// units.
 void normaliseWorld(Volume& volume) {
   constexpr double kFarthest = 1e10;  // voxels from the origin
@@ -50,16 +48,18 @@ void normaliseWorld(Volume& volume) {
   const glm::dvec3 centre(volume.indexToWorld * glm::dvec4((glm::dvec3(volume.dimensions) - 1.0) / 2.0, 1.0));
   if (glm::length(centre) > kFarthest * voxel) {
     volume.indexToWorld[3] -= glm::dvec4(centre, 0.0);
-    spdlog::warn("{} is so far from the origin that its voxels can hardly be told apart: its middle, {:g},{:g},{:g}, becomes the "
-                 "origin, from which positions of cameras and lights count",
-                 volume.source, centre.x, centre.y, centre.z);
+    volume.warnings.push_back(
+        fmt::format("{} is so far from the origin that its voxels can hardly be told apart: its middle, {:g},{:g},{:g}, becomes the "
+                    "origin, from which positions of cameras and lights count",
+                    volume.source, centre.x, centre.y, centre.z));
   }
   if (voxel > kLargest || voxel < 1.0 / kLargest) {
     const double scale = std::pow(10.0, -std::floor(std::log10(voxel)));
     for (int column = 0; column < 4; ++column) volume.indexToWorld[column] = glm::dvec4(glm::dvec3(volume.indexToWorld[column]) * scale, column == 3);
-    spdlog::warn("voxels of {} are {:g} world units large: it is scaled by {:g}, so that the camera, the lights and the scale of "
-                 "densities count in units of {:g}",
-                 volume.source, voxel, scale, 1.0 / scale);
+    volume.warnings.push_back(
+        fmt::format("voxels of {} are {:g} world units large: it is scaled by {:g}, so that the camera, the lights and the scale of "
+                    "densities count in units of {:g}",
+                    volume.source, voxel, scale, 1.0 / scale));
   }
 }
 
@@ -71,7 +71,7 @@ Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::st
   grid.tree().getNodes(leaves);
   CoordBBox bounds = boundsOf(grid.tree(), leaves, toDensity);
   if (bounds.empty())
-    throw EmptyVolumeError(ExitCode::Input, fmt::format("{} cannot be rendered: {}", source, kNothingInsideClause));
+    throw EmptyVolumeError(ErrorKind::Input, fmt::format("{} cannot be rendered: {}", source, kNothingInsideClause));
   bounds.expand(more);
   checkSize(bounds, maximumVoxels, source);
 
@@ -91,7 +91,7 @@ std::string whyUnusable(const VdbFile& file, const VdbFile::Entry& entry, const 
 }
 
 [[noreturn]] void failUnusable(const VdbFile& file, const VdbFile::Entry& entry, const std::string& why) {
-  throw Error(ExitCode::Input, whyUnusable(file, entry, why));
+  throw Error(ErrorKind::Input, whyUnusable(file, entry, why));
 }
 
 }  // namespace
@@ -107,7 +107,7 @@ Volume readVdb(const std::filesystem::path& path, const std::string& gridName, s
   VdbChannels channels(file, entry, more);
 
   const openvdb::GridBase::Ptr grid = file.read(entry);
-  if (grid->activeVoxelCount() == 0) throw EmptyVolumeError(ExitCode::Input, whyUnusable(file, entry, kEmptyGridClause));
+  if (grid->activeVoxelCount() == 0) throw EmptyVolumeError(ErrorKind::Input, whyUnusable(file, entry, kEmptyGridClause));
   const FloatGrid::ConstPtr floats = asFloatGrid(grid);
   const std::string source = fmt::format("{} {}", path.filename().string(), entry.name);
   try {
@@ -116,6 +116,7 @@ Volume readVdb(const std::filesystem::path& path, const std::string& gridName, s
       return toVolume(*floats, toDensity, source, channels.bounds(), maximumVoxels);
     });
     channels.addTo(volume);
+    volume.warnings.insert(volume.warnings.begin(), file.warnings().begin(), file.warnings().end());
     volume.isLevelSet = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
     orientScan(volume);
     if (file.isOfBlender(entry)) {
@@ -124,7 +125,7 @@ Volume readVdb(const std::filesystem::path& path, const std::string& gridName, s
     }
     return volume;
   } catch (const std::bad_alloc&) {
-    fail(ExitCode::OutOfMemory, "not enough memory for {}; free some, or resample or crop the volume",
+    fail(ErrorKind::OutOfMemory, "not enough memory for {}; free some, or resample or crop the volume",
          source);
   }
 }

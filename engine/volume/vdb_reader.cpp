@@ -11,7 +11,7 @@ VdbReader::VdbReader(const fs::path& file)
     : file_(file), size_(fs::file_size(file)), stream_(file, std::ios::binary) {
   if (stream_) return;
   const std::string reason = std::generic_category().message(errno);
-  fail(ExitCode::Input, "cannot open '{}': {}; check its permissions", file.string(), reason);
+  fail(ErrorKind::Input, "cannot open '{}': {}; check its permissions", file.string(), reason);
 }
 
 std::string VdbReader::readString() {
@@ -27,7 +27,7 @@ void VdbReader::readBytes(void* bytes, std::size_t count) {
   if (count > size_ - position_) failTruncated(position_ + count);
   stream_.read(static_cast<char*>(bytes), std::streamsize(count));
   position_ += count;
-  if (!stream_) fail(ExitCode::Input, "cannot read '{}': the disk reports an error", file_.string());
+  if (!stream_) fail(ErrorKind::Input, "cannot read '{}': the disk reports an error", file_.string());
 }
 
 void VdbReader::skip(std::uint64_t bytes) {
@@ -45,7 +45,7 @@ void VdbReader::seek(std::uint64_t position) {
 }
 
 void VdbReader::failTruncated(std::uint64_t needed) const {
-  fail(ExitCode::Input,
+  fail(ErrorKind::Input,
        "'{}' is incomplete: it has {} bytes, but at least {} are needed; copy or download it again",
        file_.string(), size_, needed);
 }

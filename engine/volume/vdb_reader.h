@@ -13,7 +13,7 @@ namespace freevoxels {
 /// Reads little-endian values and fails at the end of the file instead of reading past it.
 class VdbReader {
  public:
-  /// Fails with ExitCode::Input if the file cannot be opened.
+  /// Fails with ErrorKind::Input if the file cannot be opened.
   explicit VdbReader(const std::filesystem::path& file);
 
   template <typename Value>
@@ -33,7 +33,7 @@ class VdbReader {
 
   template <typename... Args>
   [[noreturn]] void failDamaged(fmt::format_string<Args...> format, Args&&... args) const {
-    fail(ExitCode::Input, "'{}' is damaged: {}; copy or download it again", file_.string(),
+    fail(ErrorKind::Input, "'{}' is damaged: {}; copy or download it again", file_.string(),
          fmt::format(format, std::forward<Args>(args)...));
   }
 

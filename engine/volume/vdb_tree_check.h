@@ -7,7 +7,7 @@
 
 namespace freevoxels {
 
-/// `reader` must be at the tree, and is behind it afterwards. Fails with ExitCode::Input if the tree is
+/// `reader` must be at the tree, and is behind it afterwards. Fails with ErrorKind::Input if the tree is
 /// damaged. Returns false without checking anything if the layout is unknown: points, and grids with a
 /// frustum transform.
 bool checkVdbTree(VdbReader& reader, const VdbHeader::Grid& grid);

@@ -50,6 +50,9 @@ struct Volume {
   std::optional<TemperatureGrid> temperature;
   std::optional<AlbedoGrid> albedo;
 
+  /// What the user should know of how the file was read: sentences, in which parameters may be marked (core/parameter.h).
+  std::vector<std::string> warnings;
+
   /// How the volume's file says that it is classified; null where the file leaves that to the user, as OpenVDB's do.
   std::shared_ptr<const Classification> classification;
   /// The values are as exact as `classification` needs them, and not exact enough for another one.

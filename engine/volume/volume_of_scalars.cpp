@@ -14,7 +14,7 @@ void checkTransform(const glm::dmat4& indexToWorld) {
   const double determinant = glm::determinant(glm::dmat3(indexToWorld));
   const glm::dvec4 origin = indexToWorld[3];
   if (!std::isfinite(determinant) || !(std::abs(determinant) > 0.0) || !std::isfinite(origin.x + origin.y + origin.z))
-    fail(ExitCode::Input, "voxels of the array have no extent: spacing, origin and transform must be finite, and the spacing "
+    fail(ErrorKind::Input, "voxels of the array have no extent: spacing, origin and transform must be finite, and the spacing "
                           "along each axis not 0");
 }
 
@@ -30,7 +30,7 @@ Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld) {
   summariseValues(volume);
   const glm::ivec3 size = volume.dimensions;
   if (volume.activeVoxels == 0)
-    fail(ExitCode::Input, "the array of {} x {} x {} voxels holds no data: all its values are NaN, or mark that there is none",
+    fail(ErrorKind::Input, "the array of {} x {} x {} voxels holds no data: all its values are NaN, or mark that there is none",
          size.x, size.y, size.z);
   orientScan(volume);
   return volume;

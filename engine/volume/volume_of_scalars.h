@@ -12,7 +12,7 @@ namespace freevoxels {
 glm::dmat4 latticeTransform(const glm::dvec3& spacing, const glm::dvec3& origin);
 
 /// Makes a volume named "the array" from scalars (Volume::scalars) and a transform (Volume::indexToWorld).
-/// Fails with ExitCode::Input if no scalar is active, or if `indexToWorld` is not finite or gives voxels no
+/// Fails with ErrorKind::Input if no scalar is active, or if `indexToWorld` is not finite or gives voxels no
 /// extent.
 Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld);
 

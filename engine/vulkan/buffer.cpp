@@ -34,7 +34,7 @@ std::uint32_t findMemoryType(const Device& device, std::uint32_t allowedTypes, M
   for (VkMemoryPropertyFlags wish : wishes)
     for (std::uint32_t i = 0; i < memory.memoryTypeCount; ++i)
       if ((allowedTypes >> i & 1u) && (memory.memoryTypes[i].propertyFlags & wish) == wish) return i;
-  fail(ExitCode::Device, "the device has no suitable memory type: choose another with --device");
+  fail(ErrorKind::Device, "the device has no suitable memory type: choose another with {}", Parameter("device"));
 }
 
 }  // namespace

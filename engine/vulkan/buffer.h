@@ -19,7 +19,7 @@ enum class MemoryUse {
 };
 
 /// Owns bytes of the device's memory budget until it is destroyed. The constructor fails with
-/// ExitCode::OutOfMemory if the limit would be exceeded.
+/// ErrorKind::OutOfMemory if the limit would be exceeded.
 class MemoryClaim {
  public:
   MemoryClaim() = default;

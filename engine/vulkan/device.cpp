@@ -7,10 +7,10 @@
 #include <array>
 #include <cctype>
 #include <charconv>
-#include <cstring>
-#include <optional>
+#include <map>
 
 #include "engine/core/error.h"
+#include "engine/vulkan/device_requirements.h"
 #include "engine/vulkan/owned.h"
 #include "engine/vulkan/pipeline.h"
 #include "engine/vulkan/queue.h"
@@ -18,40 +18,6 @@
 namespace freevoxels {
 
 namespace {
-
-constexpr std::array kExtensions{VK_KHR_PUSH_DESCRIPTOR_EXTENSION_NAME};
-
-constexpr std::uint32_t kStorageBuffersPerStage = 15;  // table_level.comp
-
-/// The features that the engine uses, linked into one chain: queried to judge a device, enabled to open it.
-struct Features {
-  VkPhysicalDeviceVulkan13Features vulkan13{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES};
-  VkPhysicalDeviceVulkan12Features vulkan12{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
-  VkPhysicalDeviceFeatures2 base{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2};
-  Features() {
-    base.pNext = &vulkan12;
-    vulkan12.pNext = &vulkan13;
-  }
-  Features(const Features&) = delete;
-};
-
-/// Every feature that is required, by its name in the Vulkan specification.
-struct RequiredFeature {
-  const char* name;
-  VkBool32& (*of)(Features&);
-};
-#define FV_FEATURE(part, name)                                   \
-  RequiredFeature {                                              \
-#name, [](Features & f) -> VkBool32& { return f.part.name; } \
-  }
-const std::array kRequiredFeatures{
-    FV_FEATURE(base.features, largePoints),    FV_FEATURE(vulkan12, scalarBlockLayout),
-    FV_FEATURE(vulkan12, bufferDeviceAddress), FV_FEATURE(vulkan12, timelineSemaphore),
-    FV_FEATURE(vulkan12, hostQueryReset),      FV_FEATURE(vulkan12, storageBuffer8BitAccess),
-    FV_FEATURE(vulkan13, synchronization2),    FV_FEATURE(vulkan13, dynamicRendering),
-    FV_FEATURE(vulkan13, maintenance4),
-};
-#undef FV_FEATURE
 
 std::string typeName(VkPhysicalDeviceType type) {
   switch (type) {
@@ -90,73 +56,6 @@ std::vector<VkPhysicalDevice> physicalDevices(const Instance& instance) {
   return devices;
 }
 
-struct QueueFamily {
-  std::uint32_t index, timestampBits;
-};
-
-/// A queue family that supports compute, graphics and timestamps.
-std::optional<QueueFamily> findQueueFamily(VkPhysicalDevice physical) {
-  std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
-  constexpr VkQueueFlags kNeeded = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-  for (std::uint32_t i = 0; i < count; ++i)
-    if ((families[i].queueFlags & kNeeded) == kNeeded && families[i].timestampValidBits > 0)
-      return QueueFamily{i, families[i].timestampValidBits};
-  return std::nullopt;
-}
-
-std::vector<VkExtensionProperties> extensionsOf(VkPhysicalDevice physical) {
-  std::uint32_t count = 0;
-  VK_CHECK(vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, nullptr));
-  std::vector<VkExtensionProperties> extensions(count);
-  VK_CHECK(vkEnumerateDeviceExtensionProperties(physical, nullptr, &count, extensions.data()));
-  return extensions;
-}
-
-bool hasExtension(const std::vector<VkExtensionProperties>& extensions, const char* name) {
-  return std::ranges::any_of(extensions, [&](auto& e) { return std::strcmp(e.extensionName, name) == 0; });
-}
-
-bool canBlend(VkPhysicalDevice physical, VkFormat format) {
-  VkFormatProperties properties;
-  vkGetPhysicalDeviceFormatProperties(physical, format, &properties);
-  constexpr VkFormatFeatureFlags kNeeded =
-      VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT | VK_FORMAT_FEATURE_STORAGE_IMAGE_BIT;
-  return (properties.optimalTilingFeatures & kNeeded) == kNeeded;
-}
-
-/// The requirements that a device does not meet, in the order in which they are reported.
-std::vector<std::string> findRejections(VkPhysicalDevice physical,
-                                        const VkPhysicalDeviceProperties& properties) {
-  std::vector<std::string> reasons;
-  if (properties.apiVersion < VK_API_VERSION_1_3) {
-    reasons.push_back(fmt::format("it has Vulkan {}.{}, and 1.3 is needed",
-                                  VK_API_VERSION_MAJOR(properties.apiVersion),
-                                  VK_API_VERSION_MINOR(properties.apiVersion)));
-    return reasons;
-  }
-  const std::vector<VkExtensionProperties> extensions = extensionsOf(physical);
-  for (const char* needed : kExtensions)
-    if (!hasExtension(extensions, needed))
-      reasons.push_back(fmt::format("it lacks the extension {}", needed));
-
-  Features features;
-  vkGetPhysicalDeviceFeatures2(physical, &features.base);
-  for (const RequiredFeature& feature : kRequiredFeatures)
-    if (!feature.of(features)) reasons.push_back(fmt::format("it lacks the feature {}", feature.name));
-  if (properties.limits.maxPerStageDescriptorStorageBuffers < kStorageBuffersPerStage)
-    reasons.push_back(fmt::format("it binds {} storage buffers in a stage, and {} are needed",
-                                  properties.limits.maxPerStageDescriptorStorageBuffers,
-                                  kStorageBuffersPerStage));
-  if (!findQueueFamily(physical))
-    reasons.emplace_back("it has no queue for both graphics and compute with timestamps");
-  if (!canBlend(physical, VK_FORMAT_R32G32B32A32_SFLOAT) || !canBlend(physical, VK_FORMAT_R32_SFLOAT))
-    reasons.emplace_back("it cannot blend into 32-bit float images");
-  return reasons;
-}
-
 /// The machine's memory. A CPU device allocates from it whatever heap size it reports (lavapipe: 2 GiB).
 std::uint64_t hostMemoryBytes() {
   return std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE));
@@ -164,7 +63,7 @@ std::uint64_t hostMemoryBytes() {
 
 /// What this process may allocate of the largest device-local heap.
 std::uint64_t heapBytes(VkPhysicalDevice physical) {
-  const bool knowsBudget = hasExtension(extensionsOf(physical), VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
+  const bool knowsBudget = hasExtension(physical, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME);
   VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{
       .sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT};
   VkPhysicalDeviceMemoryProperties2 memory{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2,
@@ -177,6 +76,16 @@ std::uint64_t heapBytes(VkPhysicalDevice physical) {
     most = std::max<std::uint64_t>(most, knowsBudget ? std::min(heap.size, budget.heapBudget[i]) : heap.size);
   }
   return most;
+}
+
+/// The counter of all bytes that this process has allocated of the physical device.
+std::shared_ptr<std::atomic<std::uint64_t>> bytesOfProcess(const std::string& uuid) {
+  static std::mutex mutex;
+  static std::map<std::string, std::shared_ptr<std::atomic<std::uint64_t>>> counters;
+  const std::lock_guard lock(mutex);
+  std::shared_ptr<std::atomic<std::uint64_t>>& counter = counters[uuid];
+  if (!counter) counter = std::make_shared<std::atomic<std::uint64_t>>(0);
+  return counter;
 }
 
 DeviceDescription describe(int index, VkPhysicalDevice physical) {
@@ -194,7 +103,7 @@ DeviceDescription describe(int index, VkPhysicalDevice physical) {
                                 .uuid = uuidText(vulkan11.deviceUUID),
                                 .driver = fmt::format("{} {}", vulkan12.driverName, vulkan12.driverInfo),
                                 .memoryBytes = heapBytes(physical),
-                                .rejections = findRejections(physical, base.properties)};
+                                .rejections = findRejections(physical)};
   if (base.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU)
     description.memoryBytes = std::max(description.memoryBytes, hostMemoryBytes() / 4 * 3);
   return description;
@@ -216,7 +125,7 @@ bool matches(const DeviceDescription& device, std::string_view selector) {
 
 const DeviceDescription& choose(const std::vector<DeviceDescription>& devices, std::string_view selector) {
   if (devices.empty())
-    fail(ExitCode::Device, "no Vulkan device was found: install mesa-vulkan-drivers to render without a GPU");
+    fail(ErrorKind::Device, "no Vulkan device was found: install mesa-vulkan-drivers to render without a GPU");
   const DeviceDescription* best = nullptr;
   std::vector<std::string> rejected;
   for (const DeviceDescription& device : devices) {
@@ -229,9 +138,29 @@ const DeviceDescription& choose(const std::vector<DeviceDescription>& devices, s
   }
   if (best != nullptr) return *best;
   if (rejected.empty())
-    fail(ExitCode::Device, "no device matches --device {}: 'freevoxels devices' lists them", selector);
-  fail(ExitCode::Device, "no usable Vulkan device; {}; install mesa-vulkan-drivers to render without a GPU",
+    fail(ErrorKind::Device, "no device matches {}: 'freevoxels devices' lists them", Parameter("device", selector));
+  fail(ErrorKind::Device, "no usable Vulkan device; {}; install mesa-vulkan-drivers to render without a GPU",
        fmt::join(rejected, "; "));
+}
+
+/// Fails with ErrorKind::Device and what the device lacks.
+DeviceDescription describeAdopted(const Instance& instance, const AdoptedDevice& adopted) {
+  const std::vector<VkPhysicalDevice> all = physicalDevices(instance);
+  const DeviceDescription description = describe(int(std::ranges::find(all, adopted.physical) - all.begin()), adopted.physical);
+  std::vector<std::string> reasons = description.rejections;
+  if (reasons.empty()) {
+    for (const std::string& feature : missingFeatures(*adopted.features))
+      reasons.push_back(fmt::format("it was created without the feature {}", feature));
+    // The address of an extension's function is null if the device was created without the extension.
+    if (vkGetDeviceProcAddr(adopted.device, "vkCmdPushDescriptorSetKHR") == nullptr)
+      reasons.push_back(fmt::format("it was created without the extension {}", fmt::join(requiredExtensions(), ", ")));
+    const std::vector<VkQueueFamilyProperties> families = queueFamilies(adopted.physical);
+    if (adopted.queueFamily >= families.size() || !isUsable(families[adopted.queueFamily]))
+      reasons.push_back(fmt::format("its queue family {} is not for graphics and compute with timestamps", adopted.queueFamily));
+  }
+  if (!reasons.empty())
+    fail(ErrorKind::Device, "the device {} cannot be used: {}", description.name, fmt::join(reasons, ", "));
+  return description;
 }
 
 }  // namespace
@@ -245,10 +174,55 @@ std::vector<DeviceDescription> listDevices(const Instance& instance) {
 
 Device::Device(const Instance& instance, std::string_view selector, std::uint64_t memoryLimit,
                std::span<const char* const> moreExtensions, const std::filesystem::path& cacheFolder)
-    : memoryLimit_(memoryLimit), mapsOwnMemory_(!instance.validates()) {
-  description_ = choose(listDevices(instance), selector);
-  physical_ = physicalDevices(instance)[std::size_t(description_.index)];
+    : description_(choose(listDevices(instance), selector)),
+      physical_(physicalDevices(instance)[std::size_t(description_.index)]),
+      memoryLimit_(memoryLimit),
+      mapsOwnMemory_(!instance.validates()),
+      isOwn_(true),
+      queueFamily_(*findQueueFamily(physical_)) {
+  describePhysical();
+  const RequiredFeatures features;
+  const float priority = 1.0f;
+  const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
+                                      .queueFamilyIndex = queueFamily_,
+                                      .queueCount = 1,
+                                      .pQueuePriorities = &priority};
+  std::vector<const char*> extensions(requiredExtensions().begin(), requiredExtensions().end());
+  extensions.insert(extensions.end(), moreExtensions.begin(), moreExtensions.end());
+  const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
+                                .pNext = &features.first,
+                                .queueCreateInfoCount = 1,
+                                .pQueueCreateInfos = &queue,
+                                .enabledExtensionCount = std::uint32_t(extensions.size()),
+                                .ppEnabledExtensionNames = extensions.data()};
+  const VkResult result = vkCreateDevice(physical_, &info, nullptr, &device_);
+  if (result == VK_ERROR_EXTENSION_NOT_PRESENT)
+    fail(ErrorKind::Device, "{} lacks one of the extensions {}: choose another with {}", description_.name,
+         fmt::join(extensions, ", "), Parameter("device"));
+  VK_CHECK_RESULT(result, "vkCreateDevice");
+  if (instance.validates())
+    setObjectName_ = reinterpret_cast<PFN_vkSetDebugUtilsObjectNameEXT>(
+        vkGetInstanceProcAddr(instance.handle(), "vkSetDebugUtilsObjectNameEXT"));
+  VkQueue handle = VK_NULL_HANDLE;
+  vkGetDeviceQueue(device_, queueFamily_, 0, &handle);
+  makeStores(handle, nullptr, cacheFolder);
+}
 
+Device::Device(const Instance& instance, const AdoptedDevice& adopted, std::uint64_t memoryLimit,
+               const std::filesystem::path& cacheFolder)
+    : description_(describeAdopted(instance, adopted)),
+      physical_(adopted.physical),
+      memoryLimit_(memoryLimit),
+      mapsOwnMemory_(true),
+      isOwn_(false),
+      queueFamily_(adopted.queueFamily),
+      device_(adopted.device) {
+  describePhysical();
+  makeStores(adopted.queue, adopted.queueMutex, cacheFolder);
+}
+
+void Device::describePhysical() {
+  processBytes_ = bytesOfProcess(description_.uuid);
   VkPhysicalDeviceVulkan11Properties vulkan11{.sType =
                                                   VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
   VkPhysicalDeviceProperties2 base{.sType = VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
@@ -257,33 +231,11 @@ Device::Device(const Instance& instance, std::string_view selector, std::uint64_
   properties_ = base.properties;
   maximumAllocation_ = vulkan11.maxMemoryAllocationSize;
   vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
-  const QueueFamily family = *findQueueFamily(physical_);
-  queueFamily_ = family.index;
-  timestampBits_ = family.timestampBits;
+  timestampBits_ = queueFamilies(physical_)[queueFamily_].timestampValidBits;
+}
 
-  Features features;
-  for (const RequiredFeature& feature : kRequiredFeatures) feature.of(features) = VK_TRUE;
-  const float priority = 1.0f;
-  const VkDeviceQueueCreateInfo queue{.sType = VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO,
-                                      .queueFamilyIndex = queueFamily_,
-                                      .queueCount = 1,
-                                      .pQueuePriorities = &priority};
-  std::vector<const char*> extensions(kExtensions.begin(), kExtensions.end());
-  extensions.insert(extensions.end(), moreExtensions.begin(), moreExtensions.end());
-  const VkDeviceCreateInfo info{.sType = VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO,
-                                .pNext = &features.base,
-                                .queueCreateInfoCount = 1,
-                                .pQueueCreateInfos = &queue,
-                                .enabledExtensionCount = std::uint32_t(extensions.size()),
-                                .ppEnabledExtensionNames = extensions.data()};
-  const VkResult result = vkCreateDevice(physical_, &info, nullptr, &device_);
-  if (result == VK_ERROR_EXTENSION_NOT_PRESENT)
-    fail(ExitCode::Device, "{} lacks one of the extensions {}: choose another with --device",
-         description_.name, fmt::join(extensions, ", "));
-  VK_CHECK_RESULT(result, "vkCreateDevice");
-  VkQueue handle = VK_NULL_HANDLE;
-  vkGetDeviceQueue(device_, queueFamily_, 0, &handle);
-  queue_ = std::make_unique<Queue>(*this, handle);
+void Device::makeStores(VkQueue queue, std::mutex* queueMutex, const std::filesystem::path& cacheFolder) {
+  queue_ = std::make_unique<Queue>(*this, queue, queueMutex);
   // A software driver's pipelines are compiled when they are used first, and it keeps what it has compiled itself.
   const bool keepsPipelines = !cacheFolder.empty() && !isCpu();
   pipelines_ = std::make_unique<PipelineStore>(
@@ -292,20 +244,31 @@ Device::Device(const Instance& instance, std::string_view selector, std::uint64_
 }
 
 Device::~Device() {
-  vkDeviceWaitIdle(device_);
+  if (isOwn_) vkDeviceWaitIdle(device_);  // not allowed while the owner of an adopted device uses another queue of it
   pipelines_ = nullptr;
   queue_ = nullptr;
-  vkDestroyDevice(device_, nullptr);
+  if (isOwn_) vkDestroyDevice(device_, nullptr);
+}
+
+std::uint64_t Device::availableBytes() const {
+  const auto left = [](std::uint64_t bytes, std::uint64_t used) { return bytes - std::min(bytes, used); };
+  return std::min(left(memoryLimit_, allocated_), left(description_.memoryBytes, *processBytes_));
+}
+
+void Device::release(std::uint64_t bytes) const {
+  allocated_ -= bytes;
+  *processBytes_ -= bytes;
 }
 
 void Device::claim(std::uint64_t bytes) const {
   const std::uint64_t allocated = allocated_ += bytes;
+  *processBytes_ += bytes;
   if (allocated > memoryLimit_) {
     release(bytes);
-    fail(ExitCode::OutOfMemory,
-         "at least {} MiB of device memory are needed and the limit is {} MiB: raise --memory-limit, or use a smaller "
-         "volume or --size",
-         (allocated + 0xfffff) >> 20, memoryLimit_ >> 20);
+    fail(ErrorKind::OutOfMemory,
+         "at least {} MiB of device memory are needed and the limit is {} MiB: raise {}, or use a smaller "
+         "volume or {}",
+         (allocated + 0xfffff) >> 20, memoryLimit_ >> 20, Parameter("memory-limit"), Parameter("size"));
   }
   std::uint64_t peak = peak_;
   while (peak < allocated && !peak_.compare_exchange_weak(peak, allocated)) {
@@ -313,12 +276,12 @@ void Device::claim(std::uint64_t bytes) const {
 }
 
 void Device::setName(VkObjectType type, std::uint64_t handle, const char* name) const {
-  if (vkSetDebugUtilsObjectNameEXT == nullptr) return;
+  if (setObjectName_ == nullptr) return;
   const VkDebugUtilsObjectNameInfoEXT info{.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_OBJECT_NAME_INFO_EXT,
                                            .objectType = type,
                                            .objectHandle = handle,
                                            .pObjectName = name};
-  VK_CHECK(vkSetDebugUtilsObjectNameEXT(device_, &info));
+  VK_CHECK(setObjectName_(device_, &info));
 }
 
 }  // namespace freevoxels

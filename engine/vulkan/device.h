@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,19 +34,33 @@ struct DeviceDescription {
   std::vector<std::string> rejections;  ///< why it cannot be used; empty if it can
 };
 
-/// All Vulkan devices, in the order of `--device INDEX`.
+/// All Vulkan devices, in the order of their indices.
 std::vector<DeviceDescription> listDevices(const Instance& instance);
+
+/// A device and a queue of the caller's, which must outlive the Device that uses them. They must meet device_requirements.h.
+struct AdoptedDevice {
+  VkPhysicalDevice physical = VK_NULL_HANDLE;
+  VkDevice device = VK_NULL_HANDLE;
+  VkQueue queue = VK_NULL_HANDLE;  ///< for graphics and compute, with timestamps
+  std::uint32_t queueFamily = 0;
+  /// The features that `device` was created with, as for missingFeatures. Is read by the constructor of Device only.
+  const VkPhysicalDeviceFeatures2* features = nullptr;
+  std::mutex* queueMutex = nullptr;  ///< as for the constructor of Queue
+};
 
 class Device {
  public:
   /// Opens the device that `selector` names by index, UUID or part of its name; if it is empty, a discrete
-  /// GPU, else any GPU, else a CPU device. Fails with ExitCode::Device and the reason why each device was
+  /// GPU, else any GPU, else a CPU device. Fails with ErrorKind::Device and the reason why each device was
   /// rejected. At most `memoryLimit` bytes are allocated. `extensions` are enabled in addition to the
   /// engine's own. Compiled pipelines of a GPU are stored in a file in `cacheFolder` (PipelineCache), unless
   /// that is empty.
   Device(const Instance& instance, std::string_view selector,
          std::uint64_t memoryLimit = std::numeric_limits<std::uint64_t>::max(),
          std::span<const char* const> extensions = {}, const std::filesystem::path& cacheFolder = {});
+  /// Uses a device of the caller's. Fails with ErrorKind::Device and what it lacks.
+  Device(const Instance& instance, const AdoptedDevice& adopted,
+         std::uint64_t memoryLimit = std::numeric_limits<std::uint64_t>::max(), const std::filesystem::path& cacheFolder = {});
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -69,9 +84,10 @@ class Device {
   /// Bytes that may be allocated in total: what the device had for this process when it was opened, or the
   /// limit if that is less.
   std::uint64_t memoryBytes() const { return std::min(description_.memoryBytes, memoryLimit_); }
-  /// Bytes of memoryBytes() that are not allocated at present, and the largest number of bytes that has been
-  /// allocated at any time.
-  std::uint64_t availableBytes() const { return memoryBytes() - std::min(memoryBytes(), allocated_.load()); }
+  /// Bytes that can be allocated at present: what other objects of this class have allocated of the same physical device is not
+  /// available either.
+  std::uint64_t availableBytes() const;
+  /// The largest number of bytes that this object had allocated at any time.
   std::uint64_t peakBytes() const { return peak_; }
   const DeviceDescription& description() const { return description_; }
   bool isCpu() const { return properties_.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
@@ -79,9 +95,9 @@ class Device {
   /// buffers. Off under validation, so that tests use staging buffers as discrete GPUs do.
   bool mapsOwnMemory() const { return mapsOwnMemory_; }
 
-  /// Adds an allocation to the budget. Fails with ExitCode::OutOfMemory if the limit would be exceeded.
+  /// Adds an allocation to the budget. Fails with ErrorKind::OutOfMemory if the limit would be exceeded.
   void claim(std::uint64_t bytes) const;
-  void release(std::uint64_t bytes) const { allocated_ -= bytes; }
+  void release(std::uint64_t bytes) const;
 
   /// All pipelines made so far (pipeline.h).
   PipelineStore& pipelines() const { return *pipelines_; }
@@ -90,6 +106,9 @@ class Device {
   void setName(VkObjectType type, std::uint64_t handle, const char* name) const;
 
  private:
+  void describePhysical();
+  void makeStores(VkQueue queue, std::mutex* queueMutex, const std::filesystem::path& cacheFolder);
+
   DeviceDescription description_;
   VkPhysicalDevice physical_ = VK_NULL_HANDLE;
   VkPhysicalDeviceProperties properties_{};
@@ -97,7 +116,10 @@ class Device {
   VkDeviceSize maximumAllocation_ = 0;
   std::uint64_t memoryLimit_;
   bool mapsOwnMemory_;
+  bool isOwn_;  ///< whether device_ is destroyed with this object
+  PFN_vkSetDebugUtilsObjectNameEXT setObjectName_ = nullptr;  ///< null unless the instance validates
   mutable std::atomic<std::uint64_t> allocated_ = 0, peak_ = 0;
+  std::shared_ptr<std::atomic<std::uint64_t>> processBytes_;  ///< allocated by all objects of the same physical device
   std::uint32_t queueFamily_ = 0, timestampBits_ = 0;
   VkDevice device_ = VK_NULL_HANDLE;
   std::unique_ptr<Queue> queue_;

@@ -10,8 +10,8 @@ namespace freevoxels {
 namespace {
 
 constexpr VkImageUsageFlags kUsage =
-    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT |
-                                     VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+    VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 
 }  // namespace
 
@@ -21,17 +21,16 @@ void checkTargetFits(const Device& device, glm::ivec2 size, VkFormat format) {
                                                     VK_IMAGE_TILING_OPTIMAL, kUsage, 0, &properties));
   const VkExtent3D most = properties.maxExtent;
   if (std::uint32_t(size.x) > most.width || std::uint32_t(size.y) > most.height)
-    fail(ExitCode::OutOfMemory,
-         "an image of {}x{} pixels is larger than the {}x{} of {}: use a smaller --size", size.x, size.y,
-         most.width, most.height, device.description().name);
+    fail(ErrorKind::OutOfMemory,
+         "an image of {}x{} pixels is larger than the {}x{} of {}: use a smaller {}", size.x, size.y,
+         most.width, most.height, device.description().name, Parameter("size"));
   const std::uint64_t bytes = std::uint64_t(size.x) * std::uint64_t(size.y) * bytesPerPixel(format);
   const std::uint64_t largest =
       std::min<std::uint64_t>(properties.maxResourceSize, device.maximumAllocation());
   if (bytes > largest)
-    fail(ExitCode::OutOfMemory,
-         "an image of {}x{} pixels needs {} MiB in one piece and {} allocates at most {} MiB: use a smaller "
-         "--size",
-         size.x, size.y, bytes >> 20, device.description().name, largest >> 20);
+    fail(ErrorKind::OutOfMemory,
+         "an image of {}x{} pixels needs {} MiB in one piece and {} allocates at most {} MiB: use a smaller {}",
+         size.x, size.y, bytes >> 20, device.description().name, largest >> 20, Parameter("size"));
 }
 
 std::uint64_t bytesPerPixel(VkFormat format) {

@@ -12,7 +12,7 @@ namespace freevoxels {
 /// Bytes per pixel of a render target's format.
 std::uint64_t bytesPerPixel(VkFormat format);
 
-/// Fails with ExitCode::OutOfMemory if the device does not support a target of this size.
+/// Fails with ErrorKind::OutOfMemory if the device does not support a target of this size.
 void checkTargetFits(const Device& device, glm::ivec2 size, VkFormat format);
 
 class RenderTarget {

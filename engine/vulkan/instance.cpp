@@ -1,12 +1,12 @@
 #include "engine/vulkan/instance.h"
 
-#include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
 #include <array>
-#include <cstdlib>
 #include <cstring>
+#include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -17,15 +17,6 @@ namespace freevoxels {
 namespace {
 
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
-
-VKAPI_ATTR VkBool32 VKAPI_CALL onValidationMessage(VkDebugUtilsMessageSeverityFlagBitsEXT,
-                                                   VkDebugUtilsMessageTypeFlagsEXT,
-                                                   const VkDebugUtilsMessengerCallbackDataEXT* data,
-                                                   void* counter) {
-  ++*static_cast<std::atomic<std::uint64_t>*>(counter);
-  spdlog::error("Vulkan validation: {}", data->pMessage);
-  return VK_FALSE;
-}
 
 /// Whether the address space or the number of threads is limited.
 bool processIsLimited() {
@@ -46,40 +37,64 @@ bool layerAvailable(const char* name) {
   return false;
 }
 
+std::mutex loading;  ///< guards volk's function pointers, which all instances share, while they are set
+
+void openLoader() {
+  const std::lock_guard lock(loading);
+  if (vkGetInstanceProcAddr == nullptr && volkInitialize() != VK_SUCCESS)
+    fail(ErrorKind::Device,
+         "no Vulkan loader was found: install libvulkan1, and mesa-vulkan-drivers to render without a GPU");
+  if (vkEnumerateInstanceVersion == nullptr || volkGetInstanceVersion() < VK_API_VERSION_1_3)
+    fail(ErrorKind::Device, "the Vulkan loader is older than Vulkan 1.3: update libvulkan1");
+}
+
+/// The loader's functions dispatch by their first argument, so those of the first instance serve all others, except for
+/// functions of instance extensions that the first one did not enable.
+void loadFunctions(VkInstance instance, bool hasExtensions) {
+  static bool loaded = false;
+  const std::lock_guard lock(loading);
+  if (!loaded || hasExtensions) volkLoadInstance(instance);
+  loaded = true;
+}
+
+template <typename Function>
+Function extensionFunction(VkInstance instance, const char* name) {
+  return reinterpret_cast<Function>(vkGetInstanceProcAddr(instance, name));
+}
+
 }  // namespace
 
 void checkVulkan(VkResult result, const char* call, const char* file, int line) {
   if (result == VK_SUCCESS) return;
   const std::string name = fmt::format("VkResult {}", int(result));
   if (result == VK_ERROR_OUT_OF_DEVICE_MEMORY || result == VK_ERROR_OUT_OF_HOST_MEMORY)
-    fail(ExitCode::OutOfMemory, "the device is out of memory ({} in {}): use a smaller volume or image", name,
+    fail(ErrorKind::OutOfMemory, "the device is out of memory ({} in {}): use a smaller volume or image", name,
          call);
   if (result == VK_ERROR_DEVICE_LOST)
-    fail(ExitCode::Device, "the device was lost ({} in {}): try again, or choose another with --device", name,
-         call);
+    fail(ErrorKind::Device, "the device was lost ({} in {}): try again, or choose another with {}", name,
+         call, Parameter("device"));
   // What drivers answer that find too little of anything when they start; a limit set by the user is the likely reason.
   if (result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_UNKNOWN)
-    fail(processIsLimited() ? ExitCode::OutOfMemory : ExitCode::Device,
+    fail(processIsLimited() ? ErrorKind::OutOfMemory : ErrorKind::Device,
          "the Vulkan driver failed to start ({} in {}): raise the limits of this process on memory and threads (ulimit -v, ulimit "
-         "-u), or choose another device with --device",
-         name, call);
+         "-u), or choose another device with {}",
+         name, call, Parameter("device"));
   throw InternalError(fmt::format("{}:{}: {} returned {}", file, line, call, name));
 }
 
-bool validationRequested() {
-  const char* value = std::getenv("FREEVOXELS_VALIDATION");
-  return value != nullptr && std::strcmp(value, "1") == 0;
+VkBool32 Instance::onValidationMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
+                                       const VkDebugUtilsMessengerCallbackDataEXT* data, void* instance) {
+  Instance& self = *static_cast<Instance*>(instance);
+  ++self.validationMessages_;
+  if (self.log_) self.log_(data->pMessage);
+  return VK_FALSE;
 }
 
-Instance::Instance(bool validation, std::span<const char* const> moreExtensions) {
-  if (volkInitialize() != VK_SUCCESS)
-    fail(ExitCode::Device,
-         "no Vulkan loader was found: install libvulkan1, and mesa-vulkan-drivers to render without a GPU");
-  if (vkEnumerateInstanceVersion == nullptr || volkGetInstanceVersion() < VK_API_VERSION_1_3)
-    fail(ExitCode::Device, "the Vulkan loader is older than Vulkan 1.3: update libvulkan1");
+Instance::Instance(bool validation, ValidationLog log, std::span<const char* const> moreExtensions)
+    : isOwn_(true), log_(std::move(log)) {
+  openLoader();
   if (validation && !layerAvailable(kValidationLayer))
-    fail(ExitCode::Device,
-         "FREEVOXELS_VALIDATION is set but there is no validation layer: install vulkan-validationlayers");
+    fail(ErrorKind::Device, "validation is requested but there is no validation layer: install vulkan-validationlayers");
 
   const VkApplicationInfo application{.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO,
                                       .pApplicationName = "FreeVoxels",
@@ -92,7 +107,7 @@ Instance::Instance(bool validation, std::span<const char* const> moreExtensions)
       .messageType =
           VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT,
       .pfnUserCallback = onValidationMessage,
-      .pUserData = &validationMessages_};
+      .pUserData = this};
   // Synchronisation validation is off by default. It finds missing barriers, which a CPU device forgives.
   const std::array enabled{VK_VALIDATION_FEATURE_ENABLE_SYNCHRONIZATION_VALIDATION_EXT};
   const VkValidationFeaturesEXT features{.sType = VK_STRUCTURE_TYPE_VALIDATION_FEATURES_EXT,
@@ -114,14 +129,23 @@ Instance::Instance(bool validation, std::span<const char* const> moreExtensions)
   };
   const VkResult result = vkCreateInstance(&info, nullptr, &instance_);
   if (result == VK_ERROR_INCOMPATIBLE_DRIVER)
-    fail(ExitCode::Device, "no Vulkan driver was found: install mesa-vulkan-drivers to render without a GPU");
+    fail(ErrorKind::Device, "no Vulkan driver was found: install mesa-vulkan-drivers to render without a GPU");
   VK_CHECK_RESULT(result, "vkCreateInstance");
-  volkLoadInstance(instance_);
-  if (validation) VK_CHECK(vkCreateDebugUtilsMessengerEXT(instance_, &messenger, nullptr, &messenger_));
+  loadFunctions(instance_, !moreExtensions.empty());
+  if (validation)
+    VK_CHECK(extensionFunction<PFN_vkCreateDebugUtilsMessengerEXT>(instance_, "vkCreateDebugUtilsMessengerEXT")(
+        instance_, &messenger, nullptr, &messenger_));
+}
+
+Instance::Instance(VkInstance adopted) : isOwn_(false), instance_(adopted) {
+  openLoader();
+  loadFunctions(instance_, false);
 }
 
 Instance::~Instance() {
-  if (messenger_ != VK_NULL_HANDLE) vkDestroyDebugUtilsMessengerEXT(instance_, messenger_, nullptr);
+  if (!isOwn_) return;
+  if (messenger_ != VK_NULL_HANDLE)
+    extensionFunction<PFN_vkDestroyDebugUtilsMessengerEXT>(instance_, "vkDestroyDebugUtilsMessengerEXT")(instance_, messenger_, nullptr);
   vkDestroyInstance(instance_, nullptr);
 }
 

@@ -27,7 +27,8 @@ std::unique_ptr<CommandSlot> makeSlot(const Device& device) {
 
 }  // namespace
 
-Queue::Queue(const Device& device, VkQueue queue) : device_(device), queue_(queue) {
+Queue::Queue(const Device& device, VkQueue queue, std::mutex* shared)
+    : device_(device), queueMutex_(shared != nullptr ? *shared : ownMutex_), queue_(queue) {
   const VkSemaphoreTypeCreateInfo type{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO,
                                        .semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE};
   const VkSemaphoreCreateInfo info{.sType = VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, .pNext = &type};
@@ -85,6 +86,12 @@ bool Queue::wait(std::uint64_t submission, std::uint64_t nanoseconds) const {
   if (result == VK_TIMEOUT) return false;
   VK_CHECK_RESULT(result, "vkWaitSemaphores");
   return true;
+}
+
+std::uint64_t Queue::completed() const {
+  std::uint64_t value = 0;
+  VK_CHECK(vkGetSemaphoreCounterValue(device_.handle(), timeline_.get(), &value));
+  return value;
 }
 
 VkResult Queue::present(const VkPresentInfoKHR& info) {

@@ -30,7 +30,8 @@ struct CommandSlot {
 /// All member functions may be called from any thread.
 class Queue {
  public:
-  Queue(const Device& device, VkQueue queue);
+  /// `shared`, if given, is locked while `queue` is in use, because the caller uses the queue as well, and must outlive this.
+  Queue(const Device& device, VkQueue queue, std::mutex* shared = nullptr);
   Queue(const Queue&) = delete;
   Queue& operator=(const Queue&) = delete;
 
@@ -47,6 +48,10 @@ class Queue {
   VkResult present(const VkPresentInfoKHR& info);
   /// Waits for all submissions of all threads.
   void waitIdle();
+  /// A timeline semaphore whose value is the number of the last complete submission.
+  VkSemaphore timeline() const { return timeline_.get(); }
+  /// The number of the last complete submission.
+  std::uint64_t completed() const;
 
   /// The cost of passes of this name in milliseconds per unit of work (Commands::Span), as last measured, or `otherwise` if
   /// it is unknown.
@@ -55,10 +60,11 @@ class Queue {
 
  private:
   const Device& device_;
-  std::mutex queueMutex_;  ///< guards queue_ and submitted_
+  std::mutex ownMutex_;
+  std::mutex& queueMutex_;  ///< guards queue_ and submitted_: ownMutex_ or the caller's
   VkQueue queue_;
   std::uint64_t submitted_ = 0;
-  OwnedSemaphore timeline_;  ///< its value is the number of the last complete submission
+  OwnedSemaphore timeline_;
   mutable std::mutex mutex_;  ///< guards the members below
   std::vector<std::unique_ptr<CommandSlot>> idleSlots_;
   std::map<std::string, double> costs_;

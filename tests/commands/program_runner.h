@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/error.h"
+#include "apps/freevoxels/failure.h"
 #include "tests/temporary_folder.h"
 
 namespace freevoxels::test {

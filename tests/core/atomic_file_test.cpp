@@ -111,7 +111,7 @@ TEST(AtomicFile, LeavesNothingBehindAndTheOldFileWholeWhenTheWriterFails) {
       throw std::runtime_error("The encoder gave up.\n");
     });
   });
-  EXPECT_EQ(error.code(), ExitCode::Output);
+  EXPECT_EQ(error.kind(), ErrorKind::Output);
   EXPECT_TRUE(contains(error, "cannot write '" + (folder / "a.exr").string() + "': The encoder gave up; "))
       << error.what();
   EXPECT_EQ(readBytes(folder / "a.exr"), "old");
@@ -123,7 +123,7 @@ TEST(AtomicFile, PassesErrorsOfUsersAndProgrammersAndMemoryAsTheyAre) {
   const auto write = [&](auto exception) {
     writeAtomically(folder / "a", [&](const fs::path&) { throw exception; });
   };
-  EXPECT_EQ(errorOf([&] { write(Error(ExitCode::Input, "no")); }).code(), ExitCode::Input);
+  EXPECT_EQ(errorOf([&] { write(Error(ErrorKind::Input, "no")); }).kind(), ErrorKind::Input);
   EXPECT_THROW(write(InternalError("bug")), InternalError);
   EXPECT_THROW(write(std::bad_alloc()), std::bad_alloc);
   EXPECT_EQ(folder.fileCount(), 0u);
@@ -132,7 +132,7 @@ TEST(AtomicFile, PassesErrorsOfUsersAndProgrammersAndMemoryAsTheyAre) {
 TEST(AtomicFile, SaysSoWhenTheWriterWroteNothing) {
   const TemporaryFolder folder;
   const Error error = errorOf([&] { writeAtomically(folder / "a", [](const fs::path&) {}); });
-  EXPECT_EQ(error.code(), ExitCode::Output);
+  EXPECT_EQ(error.kind(), ErrorKind::Output);
   EXPECT_EQ(folder.fileCount(), 0u);
 }
 
@@ -159,7 +159,7 @@ TEST(AtomicFile, ChecksTheDestinationBeforeAnyWork) {
   writeBytes(folder / "file", "old");
   const auto refusal = [](const fs::path& file) {
     const Error error = errorOf([&] { checkWritable(file); });
-    EXPECT_EQ(error.code(), ExitCode::Output) << file;
+    EXPECT_EQ(error.kind(), ErrorKind::Output) << file;
     EXPECT_TRUE(contains(error, "'" + file.string() + "'")) << error.what();
     return std::string(error.what());
   };
@@ -186,9 +186,9 @@ TEST(AtomicFileDeathTest, AFolderThatMayNotBeSearchedIsNotCalledMissing) {
     if (geteuid() == 0 && setresuid(65534, 65534, 65534) != 0) _exit(98);  // root may search any folder
     const Error error = errorOf([&] { checkWritable(folder / "closed/inner/a.exr"); });
     std::fprintf(stderr, "%s\n", error.what());
-    _exit(int(error.code()));
+    _exit(int(error.kind()));
   };
-  EXPECT_EXIT(check(), testing::ExitedWithCode(int(ExitCode::Output)), "Permission denied; change its permissions");
+  EXPECT_EXIT(check(), testing::ExitedWithCode(int(ErrorKind::Output)), "Permission denied; change its permissions");
   fs::permissions(folder / "closed", fs::perms(0700));
 }
 
@@ -223,7 +223,7 @@ TEST(AtomicFileDeathTest, SaysThatTheDiskIsFull) {
     });
   };
   EXPECT_EXIT(test::exitWithErrorOnLimitedDisk(folder.path(), 65536, write),
-              testing::ExitedWithCode(int(ExitCode::Output)),
+              testing::ExitedWithCode(int(ErrorKind::Output)),
               "cannot write '.*a.exr': No space left on device; free some space");
 }
 
@@ -238,7 +238,7 @@ TEST(AtomicFileDeathTest, FindsOutThatTheDiskIsFullWhereALibraryDoesNotSay) {
     });
   };
   EXPECT_EXIT(test::exitWithErrorOnLimitedDisk(folder.path(), 65536, write),
-              testing::ExitedWithCode(int(ExitCode::Output)),
+              testing::ExitedWithCode(int(ErrorKind::Output)),
               "cannot write '.*a.vdb': No space left on device; free some space");
 }
 

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <string_view>
+
 #include "engine/vulkan/device.h"
 
 namespace freevoxels {
@@ -11,7 +14,7 @@ namespace freevoxels {
 class DeviceTest : public ::testing::Test {
  protected:
   static Instance& instance() {
-    static Instance shared(true);
+    static Instance shared(true, [](std::string_view message) { std::fprintf(stderr, "%.*s\n", int(message.size()), message.data()); });
     return shared;
   }
   static Device& device() {

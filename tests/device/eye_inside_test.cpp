@@ -88,8 +88,8 @@ TEST_F(EyeInsideTest, WithoutRoomForRaysAutoIsTheTable) {
     EXPECT_FALSE(renderer.lackedRoomForRays());
     FrameSettings exact = narrow;
     exact.attenuation = AttenuationLookup::Exact;
-    test::expectRefusal([&] { renderer.render(camera, exact); }, ExitCode::OutOfMemory,
-                        {"--attenuation bilinear"});
+    test::expectRefusal([&] { renderer.render(camera, exact); }, ErrorKind::OutOfMemory,
+                        {"attenuation = bilinear"});
   }
 }
 

@@ -154,7 +154,7 @@ TEST_F(RendererTest, TooLargeAnImageIsRefusedBeforeAllocation) {
     renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {1'000'000, 1'000'000}});
     FAIL() << "accepted";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::OutOfMemory);
+    EXPECT_EQ(error.kind(), ErrorKind::OutOfMemory);
   }
 }
 
@@ -165,7 +165,7 @@ TEST_F(RendererTest, TooLargeAVolumeIsRefusedBeforeAllocation) {
     const Renderer renderer(device(), volume, {}, {});
     FAIL() << "accepted";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::OutOfMemory);
+    EXPECT_EQ(error.kind(), ErrorKind::OutOfMemory);
     EXPECT_NE(std::string(error.what()).find("MiB"), std::string::npos);
   }
 }

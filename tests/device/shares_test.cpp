@@ -121,7 +121,7 @@ TEST_F(SharesTest, TheImageIsThatOfAFrameThatIsDrawnAtOnce) {
     EXPECT_LE(largestDifference(shared, expected), 2e-5 * brightest);
     ASSERT_EQ(shared.depth.size(), expected.depth.size());
     for (std::size_t i = 0; i < shared.depth.size(); ++i)
-      if (expected.pixels[i].a > 1e-4f) EXPECT_NEAR(shared.depth[i], expected.depth[i], 1e-5 * expected.depth[i]);
+      if (expected.pixels[i].a > 1e-4f) { EXPECT_NEAR(shared.depth[i], expected.depth[i], 1e-5 * expected.depth[i]); }
   }
 }
 
@@ -138,7 +138,7 @@ TEST_F(SharesTest, GatheredSharesAddUpToTheGatheredImage) {
     EXPECT_GT(psnr(shared, expected) + 20.0 * std::log10(brightest), 42.0);
     ASSERT_EQ(shared.depth.size(), expected.depth.size());
     for (std::size_t i = 0; i < shared.depth.size(); ++i)
-      if (expected.pixels[i].a > 0.5f) EXPECT_NEAR(shared.depth[i], expected.depth[i], 0.02 * expected.depth[i]);
+      if (expected.pixels[i].a > 0.5f) { EXPECT_NEAR(shared.depth[i], expected.depth[i], 0.02 * expected.depth[i]); }
   }
 }
 
@@ -173,7 +173,7 @@ TEST_F(SharesTest, HostResolvesALatticeAsTheDeviceDoes) {
     const Image image = resolveLattice(lattice, settings.size, samples);
     EXPECT_LE(largestDifference(image, stages.image), 2e-5);
     for (std::size_t i = 0; i < image.depth.size(); ++i)
-      if (image.pixels[i].a > 0.01f) EXPECT_NEAR(image.depth[i], stages.image.depth[i], 1e-3 * image.depth[i]);
+      if (image.pixels[i].a > 0.01f) { EXPECT_NEAR(image.depth[i], stages.image.depth[i], 1e-3 * image.depth[i]); }
   }
 }
 

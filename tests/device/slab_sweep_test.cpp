@@ -80,8 +80,8 @@ TEST_F(SlabSweepTest, NothingIsAllocatedBeyondALimit) {
       const Buffer more(limited, kLimit, MemoryUse::Device, "more");
       FAIL() << "more than the limit";
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::OutOfMemory);
-      EXPECT_NE(std::string(error.what()).find("--memory-limit"), std::string::npos) << error.what();
+      EXPECT_EQ(error.kind(), ErrorKind::OutOfMemory);
+      EXPECT_NE(std::string(error.what()).find("memory-limit"), std::string::npos) << error.what();
     }
   }
   EXPECT_EQ(limited.availableBytes(), kLimit);

@@ -30,7 +30,7 @@ TEST_F(VulkanTest, UnknownDeviceIsADeviceError) {
     const Device none(instance(), "no such device");
     FAIL() << "accepted";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::Device);
+    EXPECT_EQ(error.kind(), ErrorKind::Device);
   }
 }
 
@@ -87,7 +87,7 @@ TEST(Memory, WhatCouldNotBeAllocatedIsNotCounted) {
   const std::uint64_t available = device.availableBytes();
   const VkMemoryRequirements tooMuch{.size = VkDeviceSize(1) << 60, .alignment = 256, .memoryTypeBits = ~0u};
   const auto allocate = [&] { DeviceMemory(device, tooMuch, MemoryUse::Device, false); };
-  test::expectRefusal(allocate, ExitCode::OutOfMemory, {"the device is out of memory"});
+  test::expectRefusal(allocate, ErrorKind::OutOfMemory, {"the device is out of memory"});
   EXPECT_EQ(device.availableBytes(), available);
 }
 
@@ -100,6 +100,15 @@ TEST(Validation, NoticesAMistake) {
   if (vkCreateBuffer(device.handle(), &info, nullptr, &buffer) == VK_SUCCESS)
     vkDestroyBuffer(device.handle(), buffer, nullptr);
   EXPECT_GT(instance.validationMessageCount(), 0u);
+}
+
+TEST_F(VulkanTest, DevicesOfAProcessShareTheMemoryOfThePhysicalDevice) {
+  const Device other(instance(), std::to_string(device().description().index));
+  const std::uint64_t before = other.availableBytes(), limited = 1 << 20;
+  const Device small(instance(), std::to_string(device().description().index), limited);
+  const Buffer buffer(device(), 3 << 20, MemoryUse::Device, "taken");
+  EXPECT_LE(other.availableBytes(), before - (3 << 20));
+  EXPECT_EQ(small.availableBytes(), limited) << "its limit counts its own allocations";
 }
 
 TEST(Validation, NoticesAMissingBarrier) {

@@ -90,11 +90,11 @@ TEST(ExrDeathTest, AShortFileThatClaimsToBeLargeTakesLittleMemory) {
       readExr(folder / "a.exr");
     } catch (const Error& error) {
       std::fprintf(stderr, "%s\n", error.what());
-      _exit(int(error.code()));
+      _exit(int(error.kind()));
     }
     _exit(0);
   };
-  EXPECT_EXIT(read(), testing::ExitedWithCode(int(ExitCode::Input)), "not a complete OpenEXR image");
+  EXPECT_EXIT(read(), testing::ExitedWithCode(int(ErrorKind::Input)), "not a complete OpenEXR image");
 }
 
 }  // namespace

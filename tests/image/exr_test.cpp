@@ -127,7 +127,7 @@ TEST(Exr, RefusesToReadMissingForeignAndTruncatedFiles) {
       readExr(folder / name);
       ADD_FAILURE() << "no error for " << name;
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::Input);
+      EXPECT_EQ(error.kind(), ErrorKind::Input);
       EXPECT_NE(std::string(error.what()).find((folder / name).string()), std::string::npos) << error.what();
     }
   }
@@ -146,7 +146,7 @@ TEST(ExrDeathTest, FullDiskIsOneSentenceAndLeavesNoFile) {
                                                  [s = side](const auto& disk) {
                                                    writeExr(disk / "a.exr", makeNoise({s, s}), {});
                                                  }),
-                testing::ExitedWithCode(int(ExitCode::Output)),
+                testing::ExitedWithCode(int(ErrorKind::Output)),
                 "cannot write '.*a.exr': No space left on device");
 }
 

@@ -56,13 +56,13 @@ TEST(FixedSums, PicturesAndDamagedFilesAreRefused) {
   const test::TemporaryFolder folder;
   writeExr(folder / "picture.exr", {.size = {4, 4}, .pixels = std::vector<glm::vec4>(16)}, {});
   EXPECT_FALSE(holdsSums(folder / "picture.exr"));
-  test::expectRefusal([&] { readSums(folder / "picture.exr"); }, ExitCode::Input, {"picture.exr", "it is an image"});
-  test::expectRefusal([&] { readSums(folder / "none.exr"); }, ExitCode::Input, {"none.exr", "no such file"});
+  test::expectRefusal([&] { readSums(folder / "picture.exr"); }, ErrorKind::Input, {"picture.exr", "it is an image"});
+  test::expectRefusal([&] { readSums(folder / "none.exr"); }, ErrorKind::Input, {"none.exr", "no such file"});
   writeSums(folder / "sums.exr", randomSums(kSumChannels), {});
   const std::string bytes = test::readBytes(folder / "sums.exr");
   for (const double part : {0.1, 0.5, 0.98}) {
     test::writeBytes(folder / "cut.exr", bytes.substr(0, std::size_t(part * double(bytes.size()))));
-    test::expectRefusal([&] { readSums(folder / "cut.exr"); }, ExitCode::Input, {"cut.exr", "render this share again"});
+    test::expectRefusal([&] { readSums(folder / "cut.exr"); }, ErrorKind::Input, {"cut.exr", "render this share again"});
   }
 }
 

@@ -78,7 +78,7 @@ TEST(Jpeg, SameImageGivesTheSameBytesAndAnUnwritableFileOneSentence) {
   writeJpeg(folder / "a.jpg", ramp({33, 20}));
   writeJpeg(folder / "b.jpg", ramp({33, 20}));
   EXPECT_EQ(readBytes(folder / "a.jpg"), readBytes(folder / "b.jpg"));
-  test::expectRefusal([&] { writeJpeg(folder / "none/a.jpg", ramp({4, 4})); }, ExitCode::Output, {"none/a.jpg"});
+  test::expectRefusal([&] { writeJpeg(folder / "none/a.jpg", ramp({4, 4})); }, ErrorKind::Output, {"none/a.jpg"});
 }
 
 }  // namespace

@@ -266,7 +266,7 @@ TEST(PngInput, RefusesMissingForeignAndTruncatedFiles) {
       readPng(folder / name);
       ADD_FAILURE() << "no error for " << name;
     } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::Input);
+      EXPECT_EQ(error.kind(), ErrorKind::Input);
       EXPECT_NE(std::string(error.what()).find((folder / name).string()), std::string::npos) << error.what();
     }
   }
@@ -300,7 +300,7 @@ TEST(PngDeathTest, FullDiskIsOneSentenceAndLeavesNoFile) {
     writePng(disk / "a.png", image);
   };
   EXPECT_EXIT(test::exitWithErrorOnLimitedDisk(folder.path(), 65536, write),
-              testing::ExitedWithCode(int(ExitCode::Output)),
+              testing::ExitedWithCode(int(ErrorKind::Output)),
               "cannot write '.*a.png': No space left on device");
 }
 

@@ -1,4 +1,4 @@
-// The installed interface, by its one header: closed forms, what frames share, errors.
+// The installed interface: closed forms, what frames share, submitted frames, errors.
 
 #include <freevoxels/freevoxels.h>
 #include <gtest/gtest.h>
@@ -6,6 +6,7 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <optional>
 #include <thread>
 
 #include "tests/temporary_folder.h"
@@ -16,15 +17,16 @@ namespace {
 constexpr const char* kAlongZ =
     R"({"camera-position": [9.5, 9.5, 100], "look-at": [9.5, 9.5, 0], "up": [0, 1, 0], "orthographic": 20, "size": [40, 40]})";
 
-/// An error's kind; its sentence is to contain `part`.
+/// An error's kind, a part of its sentence, and the keys that it names.
 template <typename Work>
-void expectError(v1::ErrorKind kind, const std::string& part, const Work& work) {
+void expectError(v1::ErrorKind kind, const std::string& part, const Work& work, const std::vector<std::string>& parameters = {}) {
   try {
     work();
     ADD_FAILURE() << "no error, but expected: " << part;
   } catch (const v1::Error& error) {
     EXPECT_EQ(error.kind(), kind) << error.what();
     EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    EXPECT_EQ(error.parameters(), parameters) << error.what();
   }
 }
 
@@ -89,18 +91,91 @@ TEST(Library, SavesWhatItDrew) {
 TEST(Library, ErrorsNameWhatIsWrong) {
   using enum v1::ErrorKind;
   const auto render = [](const char* scene) { return [scene] { v1::Renderer(cloud(), scene).render(); }; };
-  expectError(Usage, "did you mean 'density_scale'", render(R"({"densty-scale": 1})"));
+  expectError(Usage, R"("densty-scale"; did you mean "density-scale")", render(R"({"densty-scale": 1})"), {"densty-scale", "density-scale"});
   expectError(Usage, "a scene is a JSON object", render("[1, 2]"));
-  expectError(Usage, "exclude each other", render(R"({"orbit": [1, 2], "camera-position": [1, 2, 3]})"));
-  expectError(Input, "up takes X,Y,Z", render(R"({"up": true})"));
-  expectError(Device, "no device matches", render(R"({"device": "none such"})"));
-  expectError(OutOfMemory, "MiB", render(R"({"memory-limit": 1})"));
+  expectError(Usage, R"("orbit" and "camera-position" exclude each other)", render(R"({"orbit": [1, 2], "camera-position": [1, 2, 3]})"),
+              {"orbit", "camera-position"});
+  expectError(Usage, R"("exposure" has no effect here)", render(R"({"exposure": 1})"), {"exposure"});
+  expectError(Usage, R"(the camera stands at its look-at point; change "camera-position" or "look-at")",
+              render(R"({"camera-position": [1, 2, 3], "look-at": [1, 2, 3]})"), {"camera-position", "look-at"});
+  expectError(Usage, R"(or use "draw": "splats")", render(R"({"draw": "gather", "attenuation": "bilinear"})"),
+              {"draw", "attenuation", "composite"});
+  expectError(Input, R"("up" takes X,Y,Z)", render(R"({"up": true})"), {"up"});
+  expectError(Usage, R"("fov" takes)", render(R"({"fov": "wide"})"), {"fov"});
+  expectError(Device, R"(no device matches "device": "none such")", render(R"({"device": "none such"})"), {"device"});
+  expectError(OutOfMemory, R"(use a smaller "size")", render(R"({"memory-limit": 1})"), {"size"});
+  const v1::Volume large = v1::Volume::copy(std::vector<float>(80 * 80 * 80, 1.0f), {80, 80, 80});
+  expectError(OutOfMemory, R"("memory-limit" is 1 MiB)", [&] { v1::Renderer(large, R"({"memory-limit": 1, "size": 16})").render(); },
+              {"memory-limit"});
   expectError(Input, "there is no file '/none.vdb'", [] { v1::Volume::open("/none.vdb"); });
   const std::vector<float> values(8, 1.0f);
   expectError(Input, "8 values are not a box of 2 x 2 x 3 voxels", [&] { v1::Volume::copy(values, {2, 2, 3}); });
   expectError(Input, "spacing along each axis", [&] { v1::Volume::copy(values, {2, 2, 2}, {.spacing = {1.0, 0.0, 1.0}}); });
   expectError(Output, "there is no folder", [] { v1::save("/none/a.png", {.width = 1, .height = 1, .pixels = {0, 0, 0, 0}}); });
   expectError(Input, "needs 4 values", [] { v1::save("a.png", {.width = 2, .height = 1, .pixels = {0, 0, 0, 0}}); });
+}
+
+TEST(Library, SubmittedFramesAreTheRenderedOnes) {
+  const v1::Context context;
+  v1::Renderer renderer(context, v1::Volume::open(context, "procedural:cloud", R"({"resolution": 32})"), R"({"size": [48, 40]})");
+  const v1::Frame first = renderer.submit(R"({"orbit": [90, 10]})"), second = renderer.submit("{}", true);
+  second.wait();
+  EXPECT_TRUE(second.ready());
+  EXPECT_TRUE(first.ready()) << "frames are drawn in the order of their submission";
+  EXPECT_EQ(first.image().pixels, renderer.render(R"({"orbit": [90, 10]})").pixels);
+  const v1::Image image = second.image(), expected = renderer.render("{}", true);
+  EXPECT_EQ(image.pixels, expected.pixels);
+  EXPECT_EQ(image.depth, expected.depth);
+}
+
+TEST(Library, SubmittedFramesThrowWhenTheyAreWaitedFor) {
+  v1::Renderer renderer(cloud(), R"({"memory-limit": 1, "size": [48, 40]})");
+  expectError(v1::ErrorKind::Usage, "did you mean", [&] { renderer.submit(R"({"fob": 3})"); }, {"fob", "fov"});
+  const v1::Frame frame = renderer.submit(R"({"size": [400, 400]})");
+  for (int again = 0; again < 2; ++again)
+    expectError(v1::ErrorKind::OutOfMemory, R"(use a smaller "size")", [&] { frame.wait(); }, {"size"});
+}
+
+/// A frame that takes some seconds unless it is cancelled.
+constexpr const char* kLong = R"({"draw": "splats", "size": [2000, 2000]})";
+
+TEST(Library, CancelledFramesEndSoonAndLeaveTheRendererUsable) {
+  v1::Renderer renderer(v1::Volume::open("procedural:cloud", R"({"resolution": 64})"));
+  v1::Frame current = renderer.submit(kLong), queued = renderer.submit(kLong);
+  const v1::Frame last = renderer.submit(R"({"size": [40, 40]})");
+  queued.cancel();
+  current.cancel();
+  expectError(v1::ErrorKind::Cancelled, "was cancelled", [&] { current.wait(); });
+  expectError(v1::ErrorKind::Cancelled, "was cancelled", [&] { queued.image(); });
+  EXPECT_EQ(last.image().pixels, renderer.render(R"({"size": [40, 40]})").pixels);
+}
+
+TEST(Library, ObjectsMayBeDestroyedInAnyOrder) {
+  std::optional<v1::Context> context(std::in_place);
+  std::optional<v1::Renderer> renderer(std::in_place, *context, cloud(), R"({"size": [48, 40]})");
+  context.reset();
+  const v1::Frame complete = renderer->submit();
+  complete.wait();
+  const v1::Frame abandoned = renderer->submit(kLong);
+  renderer.reset();
+  expectError(v1::ErrorKind::Cancelled, "was cancelled", [&] { abandoned.wait(); });
+  EXPECT_EQ(complete.image().width, 48);
+}
+
+TEST(Library, AContextTakesTheChoiceOfTheDeviceFromScenes) {
+  const v1::Context context;
+  expectError(v1::ErrorKind::Usage, R"("device" has no effect here)", [&] { v1::Renderer(context, cloud(), R"({"device": "llvmpipe"})"); },
+              {"device"});
+  expectError(v1::ErrorKind::Device, R"("device": "none such")", [] { v1::Context(v1::ContextOptions{.device = "none such"}); }, {"device"});
+}
+
+TEST(Library, VolumesSayWhatIsRemarkableAboutThem) {
+  std::vector<float> values(8, 1.0f);
+  values[3] = std::numeric_limits<float>::infinity();
+  EXPECT_TRUE(cloud().warnings().empty());
+  const std::vector<std::string> warnings = v1::Volume::copy(values, {2, 2, 2}).warnings();
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("1 voxel"), std::string::npos) << warnings[0];
 }
 
 TEST(Library, AnExceptionOfProgressReachesTheCaller) {

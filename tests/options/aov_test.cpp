@@ -70,7 +70,7 @@ TEST(Aov, ListsAreReadAndWritten) {
   EXPECT_TRUE(aovs.depth && aovs.normal && !aovs.position && !aovs.transmittance);
   EXPECT_EQ(aovText(aovs), "depth,normal");
   for (const char* bad : {"", "depth,", "depth,albedo", "Depth"})
-    test::expectRefusal([&] { readAovs("--aov", bad); }, ExitCode::Usage, {"--aov", "transmittance"});
+    test::expectRefusal([&] { readAovs("--aov", bad); }, ErrorKind::Usage, {"--aov", "transmittance"});
 }
 
 }  // namespace

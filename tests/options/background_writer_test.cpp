@@ -32,13 +32,13 @@ TEST(BackgroundWriter, RunsBesideItsCallerOneWorkAtATime) {
 
 TEST(BackgroundWriter, TheNextCallThrowsWhatTheWorkHasThrown) {
   BackgroundWriter writer;
-  writer.start([] { fail(ExitCode::Output, "no room for {}", "a.png"); });
+  writer.start([] { fail(ErrorKind::Output, "no room for {}", "a.png"); });
   bool started = false;
   try {
     writer.start([&] { started = true; });
     ADD_FAILURE() << "accepted";
   } catch (const Error& error) {
-    EXPECT_EQ(error.code(), ExitCode::Output);
+    EXPECT_EQ(error.kind(), ErrorKind::Output);
     EXPECT_STREQ(error.what(), "no room for a.png");
   }
   writer.finish();

@@ -10,7 +10,7 @@
 
 #include "engine/core/atomic_file.h"
 #include "engine/core/crash_note.h"
-#include "engine/core/error.h"
+#include "apps/freevoxels/failure.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
@@ -89,7 +89,7 @@ TEST_F(CrashReportDeathTest, AnUncaughtExceptionIsASentence) {
     reportCrashes("program");
     std::thread([exception] { throw exception; }).join();
   };
-  EXPECT_EXIT(end(Error(ExitCode::Output, "cannot write 'a.png'")), exited(ExitCode::Output), "^program: cannot write 'a.png'\n$");
+  EXPECT_EXIT(end(Error(ErrorKind::Output, "cannot write 'a.png'")), exited(ExitCode::Output), "^program: cannot write 'a.png'\n$");
   EXPECT_EXIT(end(std::bad_alloc()), exited(ExitCode::OutOfMemory), "^program: [^\n]*memory[^\n]*\n$");
   EXPECT_EXIT(end(std::system_error(EAGAIN, std::generic_category())), exited(ExitCode::OutOfMemory), "threads.*ulimit -u");
   EXPECT_EXIT(end(7), exited(ExitCode::Internal), "^program: internal error[^\n]*\n$");
@@ -104,7 +104,7 @@ TEST_F(CrashReportDeathTest, AFileBeyondTheSizeLimitIsAnErrorOfTheOutput) {
     const bool leftSomething = folder.fileCount() > 0;
     std::filesystem::remove_all(folder.path());
     std::fprintf(stderr, "%s%s\n", leftSomething ? "left something: " : "", error.what());
-    _exit(int(error.code()));
+    _exit(int(exitCodeOf(error.kind())));
   };
   EXPECT_EXIT(write(), exited(ExitCode::Output), "^cannot write '.*a.json': File too large; raise the limit.*ulimit -f");
 }

@@ -39,9 +39,9 @@ TEST_F(SequenceTest, NumbersWithoutZerosGrow) {
 }
 
 TEST_F(SequenceTest, APatternWithoutFramesIsRefused) {
-  expectRefusal([&] { findSequence(path("smoke_####.vdb")); }, ExitCode::Input, {"smoke_####.vdb"});
-  expectRefusal([&] { findSequence(path("none/a#.vdb")); }, ExitCode::Input, {"none/a#.vdb"});
-  expectRefusal([&] { findSequence(path("a#b#.vdb")); }, ExitCode::Usage, {"a#b#.vdb"});
+  expectRefusal([&] { findSequence(path("smoke_####.vdb")); }, ErrorKind::Input, {"smoke_####.vdb"});
+  expectRefusal([&] { findSequence(path("none/a#.vdb")); }, ErrorKind::Input, {"none/a#.vdb"});
+  expectRefusal([&] { findSequence(path("a#b#.vdb")); }, ErrorKind::Usage, {"a#b#.vdb"});
 }
 
 TEST_F(SequenceTest, AFileIsAFrameAmongOthers) {
@@ -94,9 +94,9 @@ TEST_F(SequenceTest, RangesChooseFrames) {
   EXPECT_EQ(numbers("2-"), (std::vector<int>{2, 4, 9}));
   EXPECT_EQ(numbers("1-9:2"), (std::vector<int>{1, 9}));
   EXPECT_EQ(numbers("4"), (std::vector<int>{4}));
-  expectRefusal([&] { numbers("5-8"); }, ExitCode::Input, {"f#.vdb", "from 1 to 9"});
+  expectRefusal([&] { numbers("5-8"); }, ErrorKind::Input, {"f#.vdb", "from 1 to 9"});
   for (const char* bad : {"", "-", "-3", "4-2", "1-9:0", "1-9:", "a", "1,2", "1-9:2:3", "99999999999"})
-    expectRefusal([&] { readFrameRange("--frames", bad); }, ExitCode::Usage, {"--frames"});
+    expectRefusal([&] { readFrameRange("--frames", bad); }, ErrorKind::Usage, {"--frames"});
 }
 
 TEST_F(SequenceTest, GapsAreNamed) {

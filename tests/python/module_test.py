@@ -188,9 +188,17 @@ class ErrorsTest(unittest.TestCase):
     def test_wrong_options_are_named(self):
         self.refused(freevoxels.UsageError, "'densty_scale'; did you mean 'density_scale'", blob(), densty_scale=1)
         self.refused(ValueError, "'orbit' and 'camera_position' exclude", blob(), camera_position=(1, 2, 3), orbit=(1, 2))
-        self.refused(ValueError, "--size takes WxH", blob(), size="big")
+        self.refused(ValueError, "'size' takes WxH", blob(), size="big")
         self.refused(ValueError, "'up' takes", blob(), up=object())
         self.refused(ValueError, "'exposure'", blob(), exposure=1)
+
+    def test_errors_list_the_keywords_that_they_name(self):
+        with self.assertRaises(freevoxels.UsageError) as caught:
+            freevoxels.render(blob(), camera_position=(1, 2, 3), look_at=(1, 2, 3))
+        self.assertEqual(str(caught.exception), "the camera stands at its look-at point; change 'camera_position' or 'look_at'")
+        self.assertEqual(caught.exception.parameters, ("camera_position", "look_at"))
+        self.refused(freevoxels.UsageError, "use draw='splats'", blob(), draw="gather", attenuation="bilinear")
+        self.refused(freevoxels.OutOfMemoryError, "'memory_limit' is 1 MiB", np.ones((80, 80, 80), np.float32), memory_limit=1, size=(16, 16))
 
     def test_wrong_arrays_are_named(self):
         self.refused(freevoxels.InputError, "2 dimensions", blob()[0])

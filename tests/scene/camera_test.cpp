@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/volume/subject.h"
+#include "tests/refusal.h"
 #include "tests/splatting/framed_box.h"
 
 namespace freevoxels {
@@ -167,44 +168,32 @@ TEST(Camera, KeepsFieldOfViewAndUpOfTheBaseCamera) {
   EXPECT_FALSE(camera.orthographic);
 }
 
-TEST(Camera, RefusesWhatSeesNothingAndNamesTheOption) {
+TEST(Camera, RefusesWhatSeesNothingAndNamesTheParameters) {
+  using Names = std::vector<std::string>;
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
-  const auto option = [](auto change) -> std::string {
+  const auto expectRefused = [](const Names& parameters, auto change) {
     Camera camera;
     change(camera);
-    try {
-      checkCamera(camera);
-    } catch (const Error& error) {
-      EXPECT_EQ(error.code(), ExitCode::Usage);
-      return error.what();
-    }
-    return "no error";
+    const Error error = test::errorOf([&] { checkCamera(camera); });
+    EXPECT_EQ(error.kind(), ErrorKind::Usage);
+    EXPECT_EQ(error.parameters(), parameters) << error.what();
   };
-  const auto expectOption = [](const std::string& sentence, const std::string& name) {
-    EXPECT_NE(sentence.find(name), std::string::npos) << sentence;
-  };
-  expectOption(option([&](Camera& c) { c.position.y = nan; }), "--camera-position");
-  expectOption(option([&](Camera& c) { c.position.y = inf; }), "--camera-position");
-  expectOption(option([&](Camera& c) {
-                 c.position.x = 1e300;
-                 c.position.y = 1e300;
-               }),
-               "--camera-position");
-  expectOption(option([&](Camera& c) { c.lookAt.z = nan; }), "--look-at");
-  expectOption(option([&](Camera& c) { c.lookAt = c.position; }), "--look-at");
-  expectOption(option([&](Camera& c) { c.up.x = nan; }), "--up");
-  expectOption(option([&](Camera& c) { c.up = glm::dvec3(0.0); }), "--up");
-  expectOption(option([&](Camera& c) { c.up = {0, 0, -3}; }), "--up");
-  expectOption(option([&](Camera& c) { c.verticalFov = 0.0; }), "--fov");
-  expectOption(option([&](Camera& c) { c.verticalFov = 180.0; }), "--fov");
-  expectOption(option([&](Camera& c) { c.verticalFov = nan; }), "--fov");
+  const Names place{"camera-position", "look-at"};
+  expectRefused({"camera-position"}, [&](Camera& c) { c.position.y = nan; });
+  expectRefused({"camera-position"}, [&](Camera& c) { c.position.y = inf; });
+  expectRefused(place, [&](Camera& c) { c.position.x = c.position.y = 1e300; });
+  expectRefused({"look-at"}, [&](Camera& c) { c.lookAt.z = nan; });
+  expectRefused(place, [&](Camera& c) { c.lookAt = c.position; });
+  expectRefused({"up"}, [&](Camera& c) { c.up.x = nan; });
+  expectRefused({"up"}, [&](Camera& c) { c.up = glm::dvec3(0.0); });
+  expectRefused({"up"}, [&](Camera& c) { c.up = {0, 0, -3}; });
+  for (const double angle : {0.0, 180.0, nan}) expectRefused({"fov"}, [&](Camera& c) { c.verticalFov = angle; });
   for (const double height : {0.0, -1.0, nan, inf})
-    expectOption(option([&](Camera& c) {
-                   c.orthographic = true;
-                   c.orthographicHeight = height;
-                 }),
-                 "--orthographic");
-  EXPECT_EQ(option([](Camera& c) { c.position = {5, 5, 5}; }), "no error");
+    expectRefused({"orthographic"}, [&](Camera& c) {
+      c.orthographic = true;
+      c.orthographicHeight = height;
+    });
+  checkCamera({.position = {5, 5, 5}});
 }
 
 }  // namespace

@@ -165,10 +165,10 @@ TEST(Environment, FilesComeBackAndBadOnesAreRefused) {
   EXPECT_EQ(environment.radiance[1], glm::vec3(7.0f, 0.0f, 3.0f));
   EXPECT_EQ(environment.radiance[7], glm::vec3(0.5f, 1.0f, 2.0f));
   write({4, 4}, {1.0f, 1.0f, 1.0f, 1.0f});
-  test::expectRefusal(read, ExitCode::Input, {"sky.exr", "4x4", "twice as wide as high"});
+  test::expectRefusal(read, ErrorKind::Input, {"sky.exr", "4x4", "twice as wide as high"});
   for (const float bad : {std::nanf(""), INFINITY, -INFINITY}) {
     write({4, 2}, {1.0f, bad, 1.0f, 1.0f});
-    test::expectRefusal(read, ExitCode::Input, {"sky.exr", "column 1 of row 0"});
+    test::expectRefusal(read, ErrorKind::Input, {"sky.exr", "column 1 of row 0"});
   }
   write({4, 2}, {1.0f, -6e-8f, -1.0f, 1.0f});
   const Environment clamped = readEnvironment(folder / "sky.exr");

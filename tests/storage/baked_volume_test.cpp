@@ -187,7 +187,7 @@ TEST(BakedVolume, FinestLevelIsTheFirstThatFits) {
   EXPECT_EQ(finestLevel(file, 70 * 41 * 37), 0);
   EXPECT_EQ(finestLevel(file, 70 * 41 * 37 - 1), 1);
   EXPECT_EQ(finestLevel(file, 18 * 11 * 10), 2);
-  test::expectRefusal([&] { finestLevel(file, 100); }, ExitCode::OutOfMemory, {"a.fvx", "--memory-limit"});
+  test::expectRefusal([&] { finestLevel(file, 100); }, ErrorKind::OutOfMemory, {"a.fvx", "memory-limit"});
 }
 
 TEST(BakedVolume, AStreamedVolumeIsTheOneThatIsHeldInMemory) {
@@ -216,7 +216,7 @@ TEST(BakedVolume, WhatIsSeenIsInTheFileWhateverTheLevel) {
 TEST(BakedVolume, AVolumeThatIsTooLongIsRefused) {
   const test::TemporaryFolder folder;
   const StreamedVolume volume{.outline = {.source = "long", .dimensions = {8193, 1, 1}}, .content = {.cells = Cells(glm::ivec3(1))}};
-  test::expectRefusal([&] { bakeStreamed(folder / "a.fvx", volume, kDense, {}); }, ExitCode::Input, {"long", "8193", "8192"});
+  test::expectRefusal([&] { bakeStreamed(folder / "a.fvx", volume, kDense, {}); }, ErrorKind::Input, {"long", "8193", "8192"});
   EXPECT_EQ(folder.fileCount(), 0u);
 }
 
@@ -227,7 +227,7 @@ TEST(BakedVolume, AFullDiskIsSaidAndLeavesNothing) {
                                                [](const std::filesystem::path& disk) {
                                                  bakeVolume(disk / "a.fvx", test::smoothVolume(), kDense, {.keepScalars = true});
                                                }),
-              testing::ExitedWithCode(int(ExitCode::Output)), "No space left");
+              testing::ExitedWithCode(int(ErrorKind::Output)), "No space left");
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ class FvxDamage : public testing::Test {
 TEST_F(FvxDamage, EveryFlippedByteOfTheHeaderIsRefused) {
   for (std::size_t offset = 0; offset < sizeof(Header); ++offset) {
     flip(offset);
-    test::expectRefusal([&] { FvxFile file(file_); }, ExitCode::Input, {"a.fvx"});
+    test::expectRefusal([&] { FvxFile file(file_); }, ErrorKind::Input, {"a.fvx"});
     restore(offset);
   }
   read();
@@ -71,7 +71,7 @@ TEST_F(FvxDamage, EveryFlippedByteOfDescriptionProvenanceAndIndicesIsRefused) {
     if (section.kind == fvx::SectionKind::Chunks) continue;
     for (std::uint64_t i = 0; i < section.bytes; i += 7) {
       flip(section.offset + i);
-      test::expectRefusal([&] { FvxFile file(file_); }, ExitCode::Input, {"a.fvx", "damaged"});
+      test::expectRefusal([&] { FvxFile file(file_); }, ErrorKind::Input, {"a.fvx", "damaged"});
       restore(section.offset + i);
     }
   }
@@ -92,8 +92,8 @@ TEST_F(FvxDamage, TheFlippedFirstByteOfEveryChunkIsRefusedWhenItIsRead) {
       for (const auto& [level, offset] : chunks) {
         flip(offset);
         const auto file = std::make_shared<const FvxFile>(file_);
-        test::expectRefusal([&, level = level] { readBaked(file, level); }, ExitCode::Input, {"a.fvx", "damaged"});
-        test::expectRefusal([&] { file->checkAll(); }, ExitCode::Input, {"a.fvx", "damaged"});
+        test::expectRefusal([&, level = level] { readBaked(file, level); }, ErrorKind::Input, {"a.fvx", "damaged"});
+        test::expectRefusal([&] { file->checkAll(); }, ErrorKind::Input, {"a.fvx", "damaged"});
         restore(offset);
       }
     }
@@ -102,15 +102,15 @@ TEST_F(FvxDamage, TheFlippedFirstByteOfEveryChunkIsRefusedWhenItIsRead) {
 TEST_F(FvxDamage, TwoHundredTruncationsAreRefused) {
   for (std::size_t i = 0; i < 200; ++i) {
     std::filesystem::resize_file(file_, bytes_.size() * (199 - i) / 200);
-    test::expectRefusal([&] { FvxFile file(file_); }, ExitCode::Input, {"a.fvx"});
+    test::expectRefusal([&] { FvxFile file(file_); }, ErrorKind::Input, {"a.fvx"});
   }
   test::writeBytes(file_, bytes_ + "x");
-  test::expectRefusal([&] { FvxFile file(file_); }, ExitCode::Input, {"a.fvx", "damaged"});
+  test::expectRefusal([&] { FvxFile file(file_); }, ErrorKind::Input, {"a.fvx", "damaged"});
 }
 
 TEST_F(FvxDamage, AHigherMajorVersionIsRefusedWithBothNumbers) {
   rewriteHeader([](Header& header) { header.majorVersion = 3, header.minorVersion = 4; });
-  test::expectRefusal([&] { FvxFile file(file_); }, ExitCode::Input, {"3.4", "format 1"});
+  test::expectRefusal([&] { FvxFile file(file_); }, ErrorKind::Input, {"3.4", "format 1"});
 }
 
 TEST_F(FvxDamage, AHigherMinorVersionIsRead) {
@@ -128,32 +128,32 @@ TEST_F(FvxDamage, UnknownSectionsAreSkipped) {
 
 TEST_F(FvxDamage, OtherByteOrderIsSaid) {
   rewriteHeader([](Header& header) { header.byteOrderMark = fvx::kOtherByteOrderMark; });
-  test::expectRefusal([&] { FvxFile file(file_); }, ExitCode::Input, {"byte order"});
+  test::expectRefusal([&] { FvxFile file(file_); }, ErrorKind::Input, {"byte order"});
 }
 
 TEST_F(FvxDamage, ForeignMissingAndEmptyFilesAreSaid) {
   test::writeBytes(file_, "This is no volume, although it is long enough to be mistaken for one.");
-  test::expectRefusal([&] { FvxFile file(file_); }, ExitCode::Input, {"is no baked volume"});
+  test::expectRefusal([&] { FvxFile file(file_); }, ErrorKind::Input, {"is no baked volume"});
   test::writeBytes(file_, "");
-  test::expectRefusal([&] { FvxFile file(file_); }, ExitCode::Input, {"is empty"});
+  test::expectRefusal([&] { FvxFile file(file_); }, ErrorKind::Input, {"is empty"});
   std::filesystem::remove(file_);
-  test::expectRefusal([&] { FvxFile file(file_); }, ExitCode::Input, {"No such file"});
+  test::expectRefusal([&] { FvxFile file(file_); }, ErrorKind::Input, {"No such file"});
 }
 
 TEST_F(FvxDamage, ATransferAsTextIsNoticed) {
   std::string text = bytes_;
   for (std::size_t at = 0; (at = text.find("\r\n", at)) != std::string::npos;) text.erase(at, 1);
   test::writeBytes(file_, text);
-  test::expectRefusal([&] { FvxFile file(file_); }, ExitCode::Input, {"is no baked volume"});
+  test::expectRefusal([&] { FvxFile file(file_); }, ErrorKind::Input, {"is no baked volume"});
 }
 
 TEST_F(FvxDamage, SectionsBeyondTheFileAreRefusedWhateverTheChecksumSays) {
   for (const std::uint64_t offset : {std::uint64_t(1) << 40, ~std::uint64_t(4095), std::uint64_t(100)}) {
     rewriteHeader([&](Header& header) { header.sections[0].offset = offset; });
-    test::expectRefusal([&] { FvxFile file(file_); }, ExitCode::Input, {"a.fvx", "damaged"});
+    test::expectRefusal([&] { FvxFile file(file_); }, ErrorKind::Input, {"a.fvx", "damaged"});
   }
   rewriteHeader([](Header& header) { header.sectionCount = 1000; });
-  test::expectRefusal([&] { FvxFile file(file_); }, ExitCode::Input, {"a.fvx", "damaged"});
+  test::expectRefusal([&] { FvxFile file(file_); }, ErrorKind::Input, {"a.fvx", "damaged"});
 }
 
 TEST_F(FvxDamage, FilesAreKnownByTheirFirstBytesOrTheirName) {

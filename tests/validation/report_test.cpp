@@ -310,7 +310,7 @@ TEST(ReportFiles, AFolderThatIsNotThereIsAnErrorOfOutput) {
   const TemporaryFolder folder;
   for (const auto& write : {&writeHtml, &writeJson}) {
     const Error error = test::errorOf([&] { write(folder / "none" / "report", Report{}); });
-    EXPECT_EQ(error.code(), ExitCode::Output);
+    EXPECT_EQ(error.kind(), ErrorKind::Output);
     EXPECT_NE(std::string(error.what()).find("none"), std::string::npos);
   }
 }

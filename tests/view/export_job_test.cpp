@@ -31,7 +31,7 @@ TEST_F(ExportJobTest, SaysWhatWasDone) {
 }
 
 TEST_F(ExportJobTest, SaysWhyNothingWas) {
-  job.start([](const Progress&) { fail(ExitCode::Output, "no room for {}", "it"); }, "saved");
+  job.start([](const Progress&) { fail(ErrorKind::Output, "no room for {}", "it"); }, "saved");
   const ExportJob::Outcome result = outcome();
   EXPECT_FALSE(result.done);
   EXPECT_EQ(result.sentence, "no room for it");

@@ -25,7 +25,7 @@ class OpenedFile : public testing::Test {
   }
   /// Refused, with nothing changed.
   void expectRefused(const std::string& file, std::initializer_list<std::string> parts) {
-    expectRefusal([&] { openFile(state, file); }, ExitCode::Input, parts);
+    expectRefusal([&] { openFile(state, file); }, ErrorKind::Input, parts);
     EXPECT_EQ(state.scene.input.input, "procedural:cloud");
     EXPECT_EQ(state.scene.classification.densityScale, 3.0);
     EXPECT_TRUE(state.camera);

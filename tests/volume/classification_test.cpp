@@ -86,7 +86,7 @@ class TransferFunctionFile : public testing::Test {
       ADD_FAILURE() << "it was accepted";
     } catch (const Error& error) {
       const std::string sentence = error.what();
-      EXPECT_EQ(error.code(), ExitCode::Input);
+      EXPECT_EQ(error.kind(), ErrorKind::Input);
       EXPECT_EQ(sentence.find('\n'), std::string::npos) << sentence;
       EXPECT_NE(sentence.find(file.string()), std::string::npos) << sentence;
       for (const std::string& part : parts)

@@ -39,7 +39,7 @@ TEST_F(Vdb, WhatIsNoVdbFileIsRefused) {
   fs::remove(file);
   fs::create_directory(file);
   expectReadRefused({file.string(), "folder"});
-  expectRefusal([] { readVdb("/dev/null", "", kPlenty); }, ExitCode::Input, {"/dev/null"});
+  expectRefusal([] { readVdb("/dev/null", "", kPlenty); }, ErrorKind::Input, {"/dev/null"});
 }
 
 TEST_F(Vdb, ATruncatedFileIsRefusedWhereverItEnds) {
@@ -54,7 +54,7 @@ TEST_F(Vdb, ATruncatedFileIsRefusedWhereverItEnds) {
   }
   writeBytes(file, bytes.substr(0, bytes.size() - 1));
   expectReadRefused({file.string(), "incomplete"});
-  expectRefusal([&] { describeVdb(file); }, ExitCode::Input, {file.string(), "incomplete"});
+  expectRefusal([&] { describeVdb(file); }, ErrorKind::Input, {file.string(), "incomplete"});
 }
 
 TEST_F(Vdb, AStreamedFileIsReadAndRefusedWhenTruncated) {
@@ -110,7 +110,7 @@ TEST_F(Vdb, SizesInDamagedMetadataAllocateNothing) {
     writeBytes(file, bytes);
     SCOPED_TRACE(size);
     expectReadRefused({file.string(), "damaged"});
-    expectRefusal([&] { describeVdb(file); }, ExitCode::Input, {file.string(), "damaged"});
+    expectRefusal([&] { describeVdb(file); }, ErrorKind::Input, {file.string(), "damaged"});
   }
 }
 

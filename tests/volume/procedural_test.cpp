@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/volume/procedural_fields.h"
+#include "tests/refusal.h"
 
 namespace freevoxels {
 namespace {
@@ -198,18 +199,13 @@ TEST(Procedural, TheCloudIsSoftAndFreeOfTheBoundary) {
 }
 
 TEST(Procedural, UnknownNamesAndSizesAreRefused) {
-  const auto codeOf = [](std::string_view name, int resolution) {
-    try {
-      makeProcedural(name, resolution);
-    } catch (const Error& error) {
-      return error.code();
-    }
-    return ExitCode::Success;
+  const auto expectRefused = [](std::string_view name, int resolution) {
+    test::expectRefusal([&] { makeProcedural(name, resolution); }, ErrorKind::Usage, {});
   };
-  EXPECT_EQ(codeOf("teapot", 8), ExitCode::Usage);
-  EXPECT_EQ(codeOf("cube", 0), ExitCode::Usage);
-  EXPECT_EQ(codeOf("cube", -5), ExitCode::Usage);
-  EXPECT_EQ(codeOf("cube", 2049), ExitCode::Usage);
+  expectRefused("teapot", 8);
+  expectRefused("cube", 0);
+  expectRefused("cube", -5);
+  expectRefused("cube", 2049);
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ TEST(RealVdb, EveryFileIsReadOrRefusedInOneSentence) {
       EXPECT_EQ(entry.path().extension(), ".vdb");
     } catch (const Error& error) {
       const std::string sentence = error.what();
-      EXPECT_EQ(error.code(), ExitCode::Input);
+      EXPECT_EQ(error.kind(), ErrorKind::Input);
       EXPECT_EQ(sentence.find('\n'), std::string::npos);
       EXPECT_NE(sentence.find(entry.path().string()), std::string::npos) << sentence;
     }

@@ -15,7 +15,7 @@ class VdbChannelsTest : public Vdb {
  protected:
   Volume readWith(const MoreGrids& more) const { return readVdb(file, "density", kPlenty, more); }
   void expectRefused(const MoreGrids& more, std::initializer_list<std::string> parts) const {
-    expectRefusal([&] { readWith(more); }, ExitCode::Input, parts);
+    expectRefusal([&] { readWith(more); }, ErrorKind::Input, parts);
   }
   static openvdb::Vec3SGrid::Ptr colours(const CoordBBox& box, const openvdb::Vec3s& value) {
     const auto grid = named<openvdb::Vec3SGrid>(openvdb::Vec3SGrid::create(openvdb::Vec3s(0.0f)), "Cd");
@@ -69,10 +69,10 @@ TEST_F(VdbChannelsTest, WhatCannotBeTemperaturesIsRefused) {
   scaled->setTransform(openvdb::math::Transform::createLinearTransform(0.5));
   write({makeGrid("density"), scaled, colours({Coord(0), Coord(1)}, openvdb::Vec3s(0.5f))});
   expectRefused({.temperature = "heat"}, {"heat", "density", "transform", "resample"});
-  expectRefused({.temperature = "Cd"}, {"Cd", "vec3s", "--temperature-grid"});
+  expectRefused({.temperature = "Cd"}, {"Cd", "vec3s", "with temperature-grid"});
   expectRefused({.temperature = "none"}, {"none", "heat"});
   write({makeGrid("density"), makeGrid("fuel")});
-  expectRefused({.temperature = ""}, {"temperature", "heat", "flame", "--temperature-grid", "fuel"});
+  expectRefused({.temperature = ""}, {"temperature", "heat", "flame", "with temperature-grid", "fuel"});
 }
 
 TEST_F(VdbChannelsTest, ColoursAreCutToWhatAnAlbedoCanBe) {
@@ -88,7 +88,7 @@ TEST_F(VdbChannelsTest, ColoursAreCutToWhatAnAlbedoCanBe) {
   EXPECT_EQ(albedoOf(classification, *volume.albedo, {1, 1, 1}), glm::vec3(0.25f, 0.5f, 0.75f));
   EXPECT_EQ(albedoOf(classification, *volume.albedo, {1, 2, 3}), glm::vec3(0.0f, 0.5f, 1.0f));
   EXPECT_EQ(albedoOf(classification, *volume.albedo, {0, 2, 3}), glm::vec3(0.125f));
-  expectRefused({.albedo = "density"}, {"density", "float", "--albedo-grid"});
+  expectRefused({.albedo = "density"}, {"density", "float", "with albedo-grid"});
   expectRefused({.albedo = "none"}, {"none"});
 }
 

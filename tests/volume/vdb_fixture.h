@@ -22,7 +22,7 @@ class Vdb : public testing::Test {
   void write(const openvdb::GridPtrVec& grids) const { openvdb::io::File(file.string()).write(grids); }
   Volume read(const std::string& name = "") const { return readVdb(file, name, kPlenty); }
   void expectReadRefused(std::initializer_list<std::string> parts, const std::string& name = "") const {
-    expectRefusal([&] { read(name); }, ExitCode::Input, parts);
+    expectRefusal([&] { read(name); }, ErrorKind::Input, parts);
   }
 
   const TemporaryFolder folder;

@@ -178,7 +178,7 @@ TEST_F(Vdb, TheDefaultGridIsDensityOrTheOnlyFloatGrid) {
   write({velocity, makeGrid("a", 0.3f)});
   EXPECT_EQ(read().maximum, 0.3f);
   write({makeGrid("a"), velocity, makeGrid("b")});
-  expectReadRefused({file.string(), "'a' (float)", "'velocity' (vec3s)", "'b' (float)", "--grid"});
+  expectReadRefused({file.string(), "'a' (float)", "'velocity' (vec3s)", "'b' (float)", "choose one with grid: "});
   write({velocity, named<openvdb::BoolGrid>(openvdb::BoolGrid::create(), "mask")});
   expectReadRefused({file.string(), "'velocity' (vec3s)", "'mask' (bool)"});
   expectReadRefused({"no grid 'smoke'", "'velocity' (vec3s)"}, "smoke");
@@ -291,12 +291,12 @@ TEST_F(Vdb, TooLargeABoxIsRefusedBeforeItIsAllocated) {
   const FloatGrid::Ptr grid = makeGrid("density", CoordBBox(Coord(0), Coord(0)), 1.0f);
   grid->tree().setValueOn(Coord(999'999, 1'999'999, 2'999'999), 1.0f);
   write({grid});
-  expectRefusal([&] { read(); }, ExitCode::OutOfMemory,
+  expectRefusal([&] { read(); }, ErrorKind::OutOfMemory,
                 {"test.vdb density", "1000000 x 2000000 x 3000000", "6000000000000000000",
                  std::to_string(kPlenty), "resample or crop"});
   write({makeGrid("density", CoordBBox(Coord(0), Coord(9)), 1.0f)});
   EXPECT_NO_THROW(readVdb(file, "", 1000));
-  expectRefusal([&] { readVdb(file, "", 999); }, ExitCode::OutOfMemory, {"10 x 10 x 10", "1000", "999"});
+  expectRefusal([&] { readVdb(file, "", 999); }, ErrorKind::OutOfMemory, {"10 x 10 x 10", "1000", "999"});
 }
 
 TEST_F(Vdb, InfoGivesTheFigures) {
@@ -350,7 +350,7 @@ TEST_F(Vdb, AFullDiskIsReportedAndLeavesNothing) {
     writeVdb(disk / "cloud.vdb", volume, "density");
   };
   EXPECT_EXIT(test::exitWithErrorOnLimitedDisk(folder.path(), 65536, writeLarge),
-              testing::ExitedWithCode(int(ExitCode::Output)), "cloud.vdb");
+              testing::ExitedWithCode(int(ErrorKind::Output)), "cloud.vdb");
 }
 
 TEST_F(Vdb, ALevelSetIsTheSameWithABackgroundOf0) {
@@ -407,7 +407,7 @@ TEST_F(Vdb, DimensionsBeyond32BitsAreCounted) {
   const GridInfo info = describeVdb(file).at(0);
   EXPECT_EQ(info.dimensions.x, std::int64_t(1) << 32);
   EXPECT_NE(info.unusable.find("too large"), std::string::npos);
-  expectRefusal([&] { read(); }, ExitCode::OutOfMemory, {"too large"});
+  expectRefusal([&] { read(); }, ErrorKind::OutOfMemory, {"too large"});
 }
 
 glm::dvec3 centreOf(const Volume& volume) {
@@ -481,7 +481,7 @@ TEST_F(Vdb, TwoHundredVolumesInOneProcessLeaveMemoryAndDescriptorsFlat) {
   const auto open = [&](int times) {
     for (int i = 0; i < times; ++i) {
       EXPECT_GT(read().activeVoxels, 0u);
-      expectRefusal([&] { readVdb(broken, "", kPlenty); }, ExitCode::Input, {"broken.vdb"});
+      expectRefusal([&] { readVdb(broken, "", kPlenty); }, ErrorKind::Input, {"broken.vdb"});
     }
   };
   open(20);  // what is allocated once

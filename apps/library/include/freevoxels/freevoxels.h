@@ -6,9 +6,13 @@
 //   {"camera": {"orbit": [35, 25], "fov": 30}, "density-scale": 40, "light": {"direction": [1, 1, 1]}, "size": [800, 600]}
 // Keys that are left out have the command line's defaults. The images equal the command line's bit for bit.
 //
-// Any thread may call any function; frames of one device are drawn one after another. Failures are exceptions
-// of type Error, or std::bad_alloc. The device is opened by the first call that needs it, and kept until the
+// Threads: any thread may call any function, with these exceptions. An object must not be assigned to, moved from or destroyed
+// while another thread uses it; frames of one device are drawn one after another.
+// Lifetimes: objects share what they need, so that they may be destroyed in any order. A device that the library opened is
+// released with the last context, renderer and frame that uses it; the devices of renderers without a context stay open until the
 // process ends.
+// Failures are exceptions of type Error, or std::bad_alloc. The library prints nothing, installs no signal handlers, and reads
+// the environment only for the folder of compiled pipelines (XDG_CACHE_HOME, HOME) and FREEVOXELS_VALIDATION.
 
 #include <array>
 #include <cstddef>
@@ -37,22 +41,55 @@ enum class ErrorKind : int {
   Input = 3,     ///< a file, an array or a value cannot be used
   Output = 4,    ///< a file cannot be written
   Device = 5,    ///< there is no such Vulkan device, or it failed
-  OutOfMemory = 6
+  OutOfMemory = 6,
+  Cancelled = 7  ///< the frame was cancelled
 };
 
-/// what() is one sentence that names the file or option and the remedy.
+/// what() is one sentence that names the file or key of the scene and the remedy.
 class FREEVOXELS_API Error : public std::runtime_error {
  public:
-  Error(ErrorKind kind, const std::string& sentence) : std::runtime_error(sentence), kind_(kind) {}
+  Error(ErrorKind kind, const std::string& sentence, std::vector<std::string> parameters = {})
+      : std::runtime_error(sentence), kind_(kind), parameters_(std::move(parameters)) {}
   ErrorKind kind() const { return kind_; }
+  /// The keys of scenes that the sentence names, such as "memory-limit": which to change, or which were given wrongly.
+  const std::vector<std::string>& parameters() const { return parameters_; }
 
  private:
   ErrorKind kind_;
+  std::vector<std::string> parameters_;
 };
 
-/// Called about every 50 ms with the name of a stage and the fraction of the work that is done, 0..1. An
-/// exception that it throws cancels the work and is passed on to the caller.
+/// Called about every 50 ms with the name of a stage and the fraction of the work that is done, 0..1: by the thread that called
+/// render(), or, for a submitted frame, by a thread of the renderer. An exception that it throws cancels the work and is passed on
+/// to the caller.
 using Progress = std::function<void(std::string_view stage, double fraction)>;
+
+struct ContextOptions {
+  /// The device by its index in `freevoxels devices`, its UUID or a part of its name. Empty: a discrete GPU, then any GPU, then a
+  /// CPU device.
+  std::string device;
+  int memoryLimit = 0;  ///< MiB of device memory that may be allocated; 0: all
+  /// If set, the Vulkan validation layers are on and their messages are passed to it, by any thread. For debugging.
+  std::function<void(std::string_view message)> validationLog;
+};
+
+struct AdoptedDevice;
+
+/// A Vulkan device, which renderers share: one that is opened here, or the caller's own (adopt() in freevoxels/vulkan.h). Copies
+/// refer to the same device.
+class FREEVOXELS_API Context {
+ public:
+  explicit Context(const ContextOptions& options = {});
+  std::string device() const;  ///< its name
+
+ private:
+  struct State;
+  friend class Volume;
+  friend class Renderer;
+  friend FREEVOXELS_API Context adopt(const AdoptedDevice& device, int memoryLimit);
+  explicit Context(std::shared_ptr<State> state) : state_(std::move(state)) {}
+  std::shared_ptr<State> state_;
+};
 
 /// The place of a box of values in the world.
 struct Placement {
@@ -65,6 +102,9 @@ class FREEVOXELS_API Volume {
  public:
   /// Reads an OpenVDB file, or makes "procedural:NAME". `scene` has the grid, the resolution, and the scene
   /// of later frames, of which emission, temperature-grid and albedo-grid decide what other grids are read.
+  /// A volume larger than the device can hold is refused; a baked volume is opened at a lower resolution then.
+  static Volume open(const Context& context, const std::filesystem::path& file, std::string_view scene = "{}");
+  /// For the device of the keys "device" and "memory-limit", which is opened.
   static Volume open(const std::filesystem::path& file, std::string_view scene = "{}");
   /// Copies the values of a box of `dimensions` (x, y, z) voxels, x fastest. NaN means no data.
   static Volume copy(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement = {});
@@ -73,6 +113,8 @@ class FREEVOXELS_API Volume {
   std::uint64_t activeVoxels() const;      ///< voxels with data
   std::pair<float, float> range() const;   ///< smallest and largest of their values
   std::string source() const;              ///< file and grid, for messages
+  /// What the user should know of how the file was read, in sentences: NaN values, a grid chosen among several.
+  std::vector<std::string> warnings() const;
 
  private:
   struct State;
@@ -90,18 +132,51 @@ struct Image {
   std::vector<float> depth;
 };
 
+struct DeviceFrame;
+
+/// A frame that was submitted. Its renderer draws it meanwhile.
+class FREEVOXELS_API Frame {
+ public:
+  Frame(Frame&&) noexcept;
+  Frame& operator=(Frame&&) noexcept;
+  /// Cancels the frame if it is not complete, without waiting. Its images on the device may be drawn into again.
+  ~Frame();
+
+  /// Whether wait() returns or throws at once.
+  bool ready() const;
+  /// Waits until the frame is complete. Throws the error for which it cannot be drawn.
+  void wait() const;
+  /// Abandons the frame if it is not complete, within about 50 ms. wait() then throws ErrorKind::Cancelled.
+  void cancel();
+  /// Waits, and copies the image to the host.
+  Image image() const;
+
+ private:
+  struct State;
+  friend class Renderer;
+  friend FREEVOXELS_API DeviceFrame deviceFrame(const Frame& frame);
+  explicit Frame(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
 /// Draws images of one volume. What frames share, such as the attenuation table, stays on the device and is
 /// made again only if a frame's scene changes it.
 class FREEVOXELS_API Renderer {
  public:
   /// `scene` holds for every frame.
+  Renderer(const Context& context, Volume volume, std::string_view scene = "{}");
+  /// On the device of the keys "device" and "memory-limit", which is opened by the first call that needs it.
   explicit Renderer(Volume volume, std::string_view scene = "{}");
+  /// Cancels the submitted frames that are not complete.
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Draws a frame. The keys of `scene` override those of the renderer's scene for this frame.
+  /// Draws a frame and waits for it. The keys of `scene` override those of the renderer's scene for this frame.
   Image render(std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {});
+  /// Begins the same frame and returns at once. Frames of a renderer are drawn in the order in which they were submitted. Throws
+  /// for errors of `scene`; Frame::wait() throws those of drawing.
+  Frame submit(std::string_view scene = "{}", bool withDepth = false, Progress progress = {});
 
   /// Stages and milliseconds of the last frame and of the data from which it was drawn.
   std::vector<std::pair<std::string, double>> timings() const;
