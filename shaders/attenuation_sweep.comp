@@ -5,9 +5,36 @@
 // A thread marches a bundle of lines, plane by plane, from the side at which they enter the volume. It writes
 // each voxel's optical depth to the outside, without the voxel itself, and then adds the voxel's own.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #include "line_bundle.glsl"
 
+layout(constant_id = 3) const bool kOfPart = false;  // whether the box is a part of a volume, with depths where lines enter it
+
 layout(scalar, push_constant) uniform Push { SweepPush push; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer EntryDepths { float values[]; };
+
+// The lines' depths where they enter a part by the row whose first depth is `first`.
+void enterByRow(int first, int window, int phase) {
+  [[unroll]] for (int line = 0; line < kVoxels + kExtraLines; ++line) {
+    const int x = wrapped(4 * window + line - lineOffset(phase), push.rowPitch);
+    depths[line] = x < push.entry.rowLength ? EntryDepths(push.entry.depths).values[first + x] : 0.0;
+  }
+}
+
+// The depth of the line that enters a part by the face across x.
+void enterAcrossX(int plane, int side, int window, int phase) {
+  if (kSize == 0) return;
+  const int x = kStepX > 0 ? 0 : push.entry.rowLength - 1;
+  const int line = movedBy(x, lineOffset(phase) - 4 * window, push.rowPitch);
+  const int place = push.entry.rowFace + plane * push.entry.rowFaceMarch + side * push.entry.rowFaceSide;
+  const float depth = EntryDepths(push.entry.depths).values[place];
+  [[unroll]] for (int i = 0; i < kVoxels + kExtraLines; ++i)
+    if (i == line || i == line + push.rowPitch) depths[i] = depth;
+}
+
+// Planes are counted in the order of the march.
+int planeFromLowest(int plane) { return push.marchStride < 0 ? push.marchCount - 1 - plane : plane; }
 
 void main() {
   const int quads = push.rowPitch / 4;
@@ -19,10 +46,12 @@ void main() {
   int side = movedBy(thread / bundles, slab.firstPlane * push.sideStep, push.lineCount);
   // The first quad of voxels that this thread writes.
   int window = movedBy(thread % bundles * kWindowQuads, slab.firstPlane / kPhases * kWindowStep, quads);
-  if (slab.firstPlane == 0)
-    restartLines();
-  else
+  if (slab.firstPlane > 0)
     resumeLines(slab.firstDepth, thread, threads);
+  else if (kOfPart)
+    enterByRow(push.entry.marchFace + side * push.entry.rowLength, window, 0);
+  else
+    restartLines();
 
   for (int plane = slab.firstPlane; plane < slab.endPlane; plane += kPhases) {
     [[unroll]] for (int phase = 0; phase < kPhases; ++phase) {
@@ -30,11 +59,17 @@ void main() {
       const int row = (push.marchStart + (plane + phase) * push.marchStride + side * push.sideStride) / 4;
       loadRow(row - slab.firstQuad, window, quads);
       restartWrappedLines(window, quads, phase);
+      if (kOfPart) enterAcrossX(planeFromLowest(plane + phase), side, window, phase);
       writeWindow(row, window, quads, phase);
       addRow(phase, push.stepLength);
 
       const int next = wrapped(side + push.sideStep, push.lineCount);
-      if (next != side + push.sideStep) restartLines();
+      if (next != side + push.sideStep) {
+        if (kOfPart && plane + phase + 1 < push.marchCount)
+          enterByRow(push.entry.sideFace + planeFromLowest(plane + phase + 1) * push.entry.rowLength, window, phase + 1);
+        else
+          restartLines();
+      }
       side = next;
     }
     window = wrapped(window + kWindowStep, quads);

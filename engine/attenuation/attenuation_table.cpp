@@ -50,6 +50,32 @@ shader::SweepPush sweepPush(const SlabSweep& sweep, glm::ivec3 direction) {
   return push;
 }
 
+/// Where the lines of a direction find their depths as they enter a part of a volume.
+shader::SweepEntry sweepEntry(const SlabSweep& sweep, glm::ivec3 direction, const DeviceEntryDepths& depths) {
+  const glm::ivec3 extent = sweep.volume.layout.dimensions;
+  const auto faceOf = [&](int axis) {
+    const auto face = std::ranges::find_if(fvx::entryFaces(), [&](const fvx::EntryFace& each) {
+      return each.direction == direction && each.axis == axis;
+    });
+    return face == fvx::entryFaces().end() ? 0 : int(depths.first[std::size_t(face - fvx::entryFaces().begin())]);
+  };
+  shader::SweepEntry entry{.depths = addressWords(depths.values.address()), .rowFace = faceOf(0), .rowLength = extent.x};
+  if (direction.z != 0) {
+    entry.marchFace = faceOf(2);
+    entry.sideFace = faceOf(1);
+    entry.rowFaceMarch = extent.y;
+    entry.rowFaceSide = 1;
+    return entry;
+  }
+  // The sides, or for lines along x the rows, are those of a slab.
+  const int lowest = sweep.slab.lowest(extent.z);
+  entry.marchFace = faceOf(1) + lowest * extent.x;
+  entry.rowFace += lowest * extent.y;
+  entry.rowFaceMarch = 1;
+  entry.rowFaceSide = extent.y;
+  return entry;
+}
+
 /// The plane of a direction of {-1,0,1}³.
 const Buffer& planeOf(const AttenuationTable& table, glm::ivec3 direction) {
   const DirectionSet set = table.settings.directions;
@@ -104,17 +130,21 @@ SweepStyle sweepStyle(const Device& device) {
 AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings)
     : AttenuationSweep(device, settings, sweepStyle(device)) {}
 
-AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings,
-                                   const SweepStyle& style)
-    : device_(device), settings_(settings), style_(style), expand_(device) {
+DeviceEntryDepths::DeviceEntryDepths(const Device& device, const fvx::EntryDepths& depths)
+    : first(depths.first), values(device, depths.values.size() * sizeof(float), MemoryUse::Device, "entry depths") {
+  upload(device, values, std::as_bytes(std::span(depths.values)));
+}
+
+AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings, const SweepStyle& style, bool ofParts)
+    : device_(device), settings_(settings), style_(style), ofParts_(ofParts), expand_(device) {
   const auto code = std::uint32_t(settings.code);
   for (int step = -1; step <= 1; ++step)
     bundles_[std::size_t(step + 1)] =
         makeComputePipeline(device, shaders::attenuation_sweep,
-                          {code, std::uint32_t(style.voxelsPerThread), std::uint32_t(step)});
+                          {code, std::uint32_t(style.voxelsPerThread), std::uint32_t(step), std::uint32_t(ofParts)});
   for (int step : {-1, 1})
     rows_[step > 0 ? 1 : 0] = makeComputePipeline(device, shaders::attenuation_sweep_x,
-                                                {code, std::uint32_t(step)});
+                                                {code, std::uint32_t(step), std::uint32_t(ofParts)});
   if (settings.directions == DirectionSet::Directions98)
     halves_.emplace(device, settings.code, style.voxelsPerThread);
 }
@@ -135,6 +165,21 @@ void AttenuationSweep::makeRoom(const SweepPlan& plan) {
 }
 
 void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) {
+  FV_CHECK_EQ(ofParts_, false);
+  recordSlabs(commands, volume, table);
+}
+
+void AttenuationSweep::record(Commands& commands, const DeviceVolume& part, const AttenuationTable& table,
+                              const DeviceEntryDepths& entry) {
+  FV_CHECK_EQ(ofParts_, true);
+  FV_CHECK_EQ(int(settings_.directions), int(DirectionSet::Directions26));
+  FV_CHECK_EQ(settings_.pathLengthCorrection, true);
+  entry_ = &entry;
+  recordSlabs(commands, part, table);
+  entry_ = nullptr;
+}
+
+void AttenuationSweep::recordSlabs(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) {
   const std::uint64_t own = extinction_.bytes() + keptDepths_.bytes();
   makeRoom(planSweep(volume.layout, settings_.directions, style_, device_.availableBytes() + own));
   constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
@@ -169,6 +214,7 @@ void AttenuationSweep::recordRows(SlabSweep& sweep) const {
   for (int x : {-1, 1}) {
     shader::SweepPush push = sweepPush(sweep, {x, 0, 0});
     push.slab = sweep.marchWithinPlanes(0);
+    if (entry_ != nullptr) push.entry = sweepEntry(sweep, {x, 0, 0}, *entry_);
     const std::array<Binding, 4> bindings = sweep.bindings(planeOf(sweep.table, {x, 0, 0}));
     sweep.commands.dispatchLinear(rows_[x > 0 ? 0 : 1], std::span(bindings).first(3), push,  // no depths are carried over
                                   std::uint64_t(push.lineCount));
@@ -183,6 +229,7 @@ void AttenuationSweep::recordBundles(SlabSweep& sweep, glm::ivec2 yz) const {
     push.slab = yz.y != 0
                     ? sweep.marchAlongZ(threads * std::uint64_t(linesPerThread(style_.voxelsPerThread, x)))
                     : sweep.marchWithinPlanes(push.marchCount);
+    if (entry_ != nullptr) push.entry = sweepEntry(sweep, {x, yz}, *entry_);
     sweep.commands.dispatchLinear(bundles_[std::size_t(1 - x)], sweep.bindings(planeOf(sweep.table, {x, yz})),
                                   push, threads);
   }
