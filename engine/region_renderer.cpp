@@ -172,7 +172,7 @@ std::unique_ptr<DeviceRegion> RegionRenderer::State::load(const RegionEntry& ent
   BuiltVolume built = buildVolume(device, region.volume, classification, times);
   AttenuationTable table = makeTable(device, built.volume, tableSettings);
   {
-    const DeviceEntryDepths depths(device, region.depths);
+    const DeviceEntryDepths depths(device, region.volume.dimensions, region.depths);
     Commands commands(device);
     sweep.record(commands, built.volume, table, depths);
     commands.submitAndWait();

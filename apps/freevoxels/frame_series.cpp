@@ -143,33 +143,33 @@ void FrameSeries::drawFilm(std::span<const Frame> frames) {
   fail(ExitCode::Input, "{} of {} volumes could not be drawn, for the reasons above", failed, inputs.size());
 }
 
-/// A baked volume that the device cannot hold is drawn region by region where that is possible, else from a coarser level.
+/// A baked volume that the device cannot hold is drawn region by region where that is possible, else from a coarser level. `volume` is
+/// null where it is known beforehand that regions are drawn.
 void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<const Frame> frames) {
   const SceneOptions scene = sceneOf(frames.front().input);
-  if (!volume) return drawRegions(scene.input.baked(), frames);
   const std::shared_ptr<const fvx::FvxFile> file = scene.input.baked();
-  const int levels = file ? file->levels() : 1;
   const RunReport before = report_;
   const std::size_t drawn = drawn_;
   const std::optional<Scene> reference = reference_;
-  for (int level = scene.finestLevelNeeded(double(options_.frameSettings().lod), int(frames.size()));; ++level) {
-    std::shared_ptr<const fvx::FvxFile> regions;
+  std::shared_ptr<const fvx::FvxFile> regions = volume ? nullptr : file;
+  bool triedRegions = !volume || frames.size() != frames_;
+  for (int level = scene.finestLevelNeeded(double(options_.frameSettings().lod), int(frames.size()));;) {
     try {
-      return drawVolume(std::move(volume), frames);
+      return regions ? drawRegions(regions, frames) : drawVolume(std::move(volume), frames);
     } catch (const Error& error) {
-      if (file) level = std::max(level, finestLevel(*file, maximumVoxels(device_)));  // which is the one that was opened
-      // The processes of a group cannot change the level each by itself.
-      if (error.code() != ExitCode::OutOfMemory || options_.group != nullptr) throw;
-      if (frames.size() == frames_) regions = drawableByRegions(options_, scene, int(frames.size()));
-      if (!regions && level + 1 >= levels) throw;
-      if (!regions) spdlog::warn("{}; drawing it at 1/{} of its resolution", error.what(), 1 << (level + 1));
+      // Processes that draw shares cannot change the level each by itself.
+      if (error.code() != ExitCode::OutOfMemory || options_.drawsShares()) throw;
+      regions = std::exchange(triedRegions, true) ? nullptr : drawableByRegions(options_, scene, int(frames.size()));
+      if (!regions) {
+        if (file) level = std::max(level, finestLevel(*file, maximumVoxels(device_)));  // which is the one that was opened
+        if (++level >= (file ? file->levels() : 1)) throw;
+        spdlog::warn("{}; drawing it at 1/{} of its resolution", error.what(), 1 << level);
+      }
     }
     report_ = before;
     drawn_ = drawn;
     reference_ = reference;
-    volume.reset();
-    if (regions) return drawRegions(regions, frames);
-    volume = std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level + 1));
+    volume = regions ? nullptr : std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level));
   }
 }
 

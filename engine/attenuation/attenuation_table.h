@@ -47,9 +47,13 @@ SweepStyle sweepStyle(const Device& device);
 
 /// The depths where lines enter a part of a volume (storage/regions.h) on the device. Blocks until the copy is complete.
 struct DeviceEntryDepths {
-  DeviceEntryDepths(const Device& device, const fvx::EntryDepths& depths);
+  /// `extent` is the part's.
+  DeviceEntryDepths(const Device& device, glm::ivec3 extent, const fvx::EntryDepths& depths);
   std::array<std::size_t, fvx::kEntryFaces> first;  ///< of each face in `values`
   Buffer values;                                    ///< float
+  /// float: the faces across y of lines that march along z, one after the other, in rows as a slab has them: each depth where its line
+  /// was, or would have been, a plane before.
+  Buffer sideRows;
 };
 
 /// COMPUTE attenuation_sweep.comp, attenuation_sweep_x.comp and, for 98 directions,
@@ -71,13 +75,13 @@ class AttenuationSweep {
   void recordRows(SlabSweep& sweep) const;
   void recordBundles(SlabSweep& sweep, glm::ivec2 yz) const;
 
-  void makeRoom(const SweepPlan& plan);
+  void makeRoom(const SweepPlan& plan, std::uint64_t sideBytes);
 
   const Device& device_;
   TableSettings settings_;
   SweepStyle style_;
   bool ofParts_;
-  const DeviceEntryDepths* entry_ = nullptr;  ///< of the part that is being recorded
+  const DeviceEntryDepths* entry_ = nullptr;  ///< of the part that is being recorded; its side rows are behind the slab's extinction
   SweepPlan plan_;
   std::array<Pipeline, 3> bundles_;  ///< by the step of the march along x: -1, 0, 1
   std::array<Pipeline, 2> rows_;     ///< directions +x and -x

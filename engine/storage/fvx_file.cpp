@@ -1,5 +1,6 @@
 #include "engine/storage/fvx_file.h"
 
+#include <sys/mman.h>
 #include <tbb/parallel_for.h>
 #include <xxhash.h>
 
@@ -59,6 +60,8 @@ FvxFile::FvxFile(const fs::path& file) : path_(file) {
   } catch (const std::exception&) {
     fail(ExitCode::Input, "cannot read '{}': it cannot be mapped into memory; check its permissions", file.string());
   }
+  // What is read is said exactly: the kernel's own guesses are of megabytes.
+  madvise(const_cast<char*>(map_.data()), size, MADV_RANDOM);
   checkHeader();
   const std::span<const std::byte> description = required(SectionKind::Description, "description");
   description_ = parseDescription({reinterpret_cast<const char*>(description.data()), description.size()}, file);
@@ -71,6 +74,12 @@ FvxFile::FvxFile(const fs::path& file) : path_(file) {
     for (std::size_t channel = 0; channel < kChannels; ++channel)
       if (hasChannel(Channel(channel))) chunks_[std::size_t(level)][channel] = readIndex(Channel(channel), level);
   readRegions();
+}
+
+std::span<const std::byte> FvxFile::bytes(std::uint64_t offset, std::uint64_t count) const {
+  const std::uint64_t first = offset / kPageBytes * kPageBytes;
+  madvise(const_cast<char*>(map_.data()) + first, offset + count - first, MADV_WILLNEED);
+  return std::as_bytes(std::span(map_.data() + offset, count));
 }
 
 void FvxFile::failDamaged(const std::string& what) const {

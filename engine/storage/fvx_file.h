@@ -60,9 +60,8 @@ class FvxFile {
   void checkAll() const;
 
  private:
-  std::span<const std::byte> bytes(std::uint64_t offset, std::uint64_t count) const {
-    return std::as_bytes(std::span(map_.data() + offset, count));
-  }
+  /// Bytes of the file, which are all going to be read.
+  std::span<const std::byte> bytes(std::uint64_t offset, std::uint64_t count) const;
   void checkHeader() const;
   const Section* find(SectionKind kind, Channel channel = {}, int level = 0) const;
   std::span<const std::byte> checked(const Section& section) const;

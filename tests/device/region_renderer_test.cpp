@@ -26,7 +26,7 @@ const Classification kThin{.densityScale = 0.4};
 class RegionRendererTest : public DeviceTest {
  protected:
   /// Regions with and without neighbours on each side, the last ones narrower than a halo.
-  static Volume noise() { return randomVolume({131, 70, 129}, shearedTransform({131, 70, 129}), 0.5, 3.0); }
+  static Volume noise() { return randomVolume({131, 66, 67}, shearedTransform({131, 66, 67}), 0.5, 3.0); }
 
   std::shared_ptr<const FvxFile> bake(const Volume& volume, const Classification& classification, bool keepScalars = true) const {
     bakeVolume(folder_ / "a.fvx", volume, classification, {.keepScalars = keepScalars});
@@ -39,7 +39,7 @@ class RegionRendererTest : public DeviceTest {
   };
   /// From a corner, with a light at infinity, one beside the volume and ambient light.
   static View litView(const Volume& volume) {
-    View view{.camera = framingCamera(volume, 35.0, 25.0, 1.0, {}), .settings = {.size = {72, 64}, .depth = true, .lod = 0.0f}};
+    View view{.camera = framingCamera(volume, 35.0, 25.0, 1.0, {}), .settings = {.size = {72, 64}, .lod = 0.0f, .depth = true}};
     view.settings.attenuation = AttenuationLookup::Bilinear;
     view.settings.lighting = Lighting{.ambient = glm::dvec3(0.2)};
     view.settings.lighting->attenuation = LightAttenuation::Table;
@@ -50,7 +50,7 @@ class RegionRendererTest : public DeviceTest {
   FixedSums sumsWith(const Device& device, const std::shared_ptr<const FvxFile>& file, const View& view, bool keepsRegions,
                      const SharePart& part = {}) const {
     RegionRenderer renderer(device, file, kThin, {}, keepsRegions);
-    renderer.renderShares(view.camera, view.settings, part);
+    if (keepsRegions) renderer.renderShares(view.camera, view.settings, part);
     return renderer.renderShares(view.camera, view.settings, part);
   }
 
@@ -93,7 +93,7 @@ TEST_F(RegionRendererTest, CpuAndGpuSweepARegionToTheSameTableInSlabsAndAtOnce) 
   std::vector<StageTime> times;
   const BakedRegion region = readBakedRegion(*file, file->regions(0)[file->regions(0).size() / 2]);
   const BuiltVolume built = buildVolume(device(), region.volume, kThin, times);
-  const DeviceEntryDepths depths(device(), region.depths);
+  const DeviceEntryDepths depths(device(), region.volume.dimensions, region.depths);
   std::vector<Table> tables;
   for (const SweepStyle style : {SweepStyle{.voxelsPerThread = 16, .slabBytes = 1 << 24}, SweepStyle{.voxelsPerThread = 4, .slabBytes = 1 << 24},
                                  SweepStyle{.voxelsPerThread = 4, .slabBytes = 0, .mostSlabBytes = 0}}) {
@@ -114,7 +114,7 @@ TEST_F(RegionRendererTest, TheSumsHaveTheSameBitsWithAnyMemoryAndAnyParts) {
   const View view = litView(volume);
   const FixedSums all = sumsWith(device(), file, view, true);
   EXPECT_NE(all.values, std::vector<std::int64_t>(all.values.size(), 0));
-  EXPECT_EQ(sumsWith(device(), file, view, false).values, all.values) << "regions read again for each frame";
+  EXPECT_EQ(sumsWith(device(), file, view, false).values, all.values) << "one region at a time";
   for (const std::uint64_t mebibytes : {64, 128}) {
     const Device limited(instance(), "", mebibytes << 20);
     EXPECT_EQ(sumsWith(limited, file, view, true).values, all.values) << mebibytes;
@@ -141,7 +141,7 @@ TEST_F(RegionRendererTest, TheImageIsThatOfTheWholeVolumesSplats) {
 }
 
 TEST_F(RegionRendererTest, CoarseLevelsAreReadFromAfarAndWhatIsOutsideTheImageIsNot) {
-  const Volume volume = makeProcedural("cloud", 256);
+  const Volume volume = makeProcedural("cloud", 160);
   const Classification classification{.densityScale = 8.0};
   const auto file = bake(volume, classification, false);
   FrameSettings settings{.size = {40, 40}, .attenuation = AttenuationLookup::Bilinear};
@@ -156,10 +156,10 @@ TEST_F(RegionRendererTest, CoarseLevelsAreReadFromAfarAndWhatIsOutsideTheImageIs
   EXPECT_EQ(renderer.counts().drawn[0], file->regions(0).size());
   EXPECT_GT(psnr(coarse, fine), 45.0);
   Camera part = whole;
-  part.verticalFov *= 0.2;
+  part.verticalFov *= 0.03;
   renderer.render(part, settings);
   EXPECT_GT(renderer.counts().read, 0u);
-  EXPECT_LT(renderer.counts().read, file->regions(0).size() / 2);
+  EXPECT_LT(renderer.counts().read, file->regions(0).size() * 3 / 4);
 }
 
 TEST_F(RegionRendererTest, WhatNeedsTheWholeVolumeIsSaid) {
