@@ -98,11 +98,11 @@ TEST_F(BakeCommand, ACoarserLevelIsDrawnWhereItShowsTheSameOrWhereMemoryIsShort)
 /// A part of the volume, close up, so that its voxels are needed.
 TEST_F(BakeCommand, WhatDoesNotFitIsDrawnRegionByRegionToTheSameBitsInAnyMemory) {
   expectSuccess(run("bake procedural:cloud @a.fvx --resolution 288 --quiet"));
-  const std::string render = "render @a.fvx --size 40 --camera-position 3,1,2 --look-at 0,0,0 --fov 4 --float ";
-  expectSuccess(run(render + "@shares.exr --share 0/1 --quiet"));
+  const std::string render = "render @a.fvx --size 40 --camera-position 3,1,2 --look-at 0,0,0 --fov 2 ";
+  expectSuccess(run(render + "@shares.exr --share 0/1 --float --quiet"));
   ASSERT_GT(largestDifference(picture("shares.exr"), Image{.size = {40, 40}, .pixels = std::vector<glm::vec4>(1600)}), 0.1);
-  for (const int limit : {40, 64}) {
-    const ProgramResult result = run(render + fmt::format("@limited.exr --verbose --memory-limit {}", limit));
+  for (const int limit : {48, 64}) {
+    const ProgramResult result = run(render + fmt::format("@limited.exr --float --verbose --memory-limit {}", limit));
     expectSuccess(result);
     EXPECT_NE(result.err.find("region by region: the volume does not fit"), std::string::npos) << result.err;
     EXPECT_EQ(largestDifference(picture("limited.exr"), picture("shares.exr")), 0.0) << limit;
