@@ -191,6 +191,14 @@ std::vector<std::byte> contentBytes(const ContentCells& content) {
   return bytes;
 }
 
+struct EncodedRegion {
+  RegionEntry entry;
+  std::vector<std::byte> bytes;
+};
+
+/// Regions that are encoded at the same time.
+constexpr std::size_t kRegionBatch = 32;
+
 /// The chunks of a channel of a level.
 struct ChunkStore {
   std::unique_ptr<Spool> spool;
@@ -273,20 +281,25 @@ struct FvxWriter::State {
     to.spool->append(chunk.bytes);
   }
 
+  /// Regions are always compressed: they are not used in place.
   void storeRegions(std::size_t level, std::span<const glm::ivec3> cells, const SweptRegions& swept) {
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      std::vector<std::byte> bytes = swept.bytes(i);
-      RegionEntry entry{.cell = cells[i],
-                        .level = std::uint32_t(level),
-                        .parts = swept.parts(i),
-                        .offset = regionSpool->bytes(),
-                        .bytes = bytes.size()};
-      if (settings.compress && !bytes.empty()) entry.codec = compressPlanes(sizeof(std::uint16_t), bytes);
-      entry.storedBytes = bytes.size();
-      entry.hash = XXH3_64bits(bytes.data(), bytes.size());
-      regions.push_back(entry);
-      bytes.resize(roundUp(bytes.size(), kChunkAlignment));
-      regionSpool->append(bytes);
+    std::vector<EncodedRegion> batch;
+    for (std::size_t first = 0; first < cells.size(); first += batch.size()) {
+      batch.assign(std::min(kRegionBatch, cells.size() - first), {});
+      tbb::parallel_for(std::size_t(0), batch.size(), [&](std::size_t i) {
+        auto& [entry, bytes] = batch[i];
+        bytes = swept.bytes(first + i);
+        entry = {.cell = cells[first + i], .level = std::uint32_t(level), .parts = swept.parts(first + i), .bytes = bytes.size()};
+        entry.codec = compressPlanes(sizeof(std::uint16_t), bytes);
+        entry.storedBytes = bytes.size();
+        entry.hash = XXH3_64bits(bytes.data(), bytes.size());
+      });
+      for (auto& [entry, bytes] : batch) {
+        entry.offset = regionSpool->bytes();
+        regions.push_back(entry);
+        bytes.resize(roundUp(bytes.size(), kChunkAlignment));
+        regionSpool->append(bytes);
+      }
     }
   }
 
