@@ -138,7 +138,7 @@ struct SweepSlab {
 struct SweepEntry {
   uvec2 depths;        // device address
   int marchFace;       // row of side 0 on the face across the march axis; rows follow each other by rowLength
-  int sideFace;        // row of the lowest plane on the face across the side axis
+  int sideFace;        // first quad, in the slab's buffer, of the rows of the face across the side axis, from the lowest plane
   int rowFace;         // depth of the lowest plane and side 0 on the face across x
   int rowFaceMarch, rowFaceSide;  // strides along the march and the side axis
   int rowLength;

@@ -54,16 +54,12 @@ bool hasSideRows(const fvx::EntryFace& face) {
   return face.axis == 1 && face.direction.z != 0;
 }
 
-/// Of a direction's side rows among those of all directions.
-int sideNumber(glm::ivec3 direction) {
-  int number = 0;
-  for (const fvx::EntryFace& face : fvx::entryFaces()) {
-    if (!hasSideRows(face)) continue;
-    if (face.direction == direction) return number;
-    ++number;
-  }
-  FV_CHECK_EQ(number, -1);
-  return number;
+/// How many directions have their side rows before those of this one.
+int sidesBefore(glm::ivec3 direction) {
+  const auto own = std::ranges::find_if(fvx::entryFaces(), [&](const fvx::EntryFace& face) {
+    return hasSideRows(face) && face.direction == direction;
+  });
+  return int(std::count_if(fvx::entryFaces().begin(), own, hasSideRows));
 }
 
 /// Where the lines of a direction find their depths as they enter a part of a volume.
@@ -80,7 +76,7 @@ shader::SweepEntry sweepEntry(const SlabSweep& sweep, glm::ivec3 direction, cons
   if (direction.z != 0) {
     entry.marchFace = faceOf(2);
     const int quads = sweep.volume.layout.rowPitch / 4;
-    if (direction.y != 0) entry.sideFace = int(firstSideQuad) + sideNumber(direction) * extent.z * quads;
+    if (direction.y != 0) entry.sideFace = int(firstSideQuad) + sidesBefore(direction) * extent.z * quads;
     entry.rowFaceMarch = extent.y;
     entry.rowFaceSide = 1;
     return entry;
