@@ -97,7 +97,7 @@ TEST_F(BakeCommand, ACoarserLevelIsDrawnWhereItShowsTheSameOrWhereMemoryIsShort)
 
 /// A part of the volume, close up, so that its voxels are needed.
 TEST_F(BakeCommand, WhatDoesNotFitIsDrawnRegionByRegionToTheSameBitsInAnyMemory) {
-  expectSuccess(run("bake procedural:cloud @a.fvx --resolution 288 --quiet"));
+  expectSuccess(run("bake procedural:cloud @a.fvx --resolution 192 --quiet"));
   const std::string render = "render @a.fvx --size 40 --camera-position 3,1,2 --look-at 0,0,0 --fov 2 ";
   expectSuccess(run(render + "@shares.exr --share 0/1 --float --quiet"));
   ASSERT_GT(largestDifference(picture("shares.exr"), Image{.size = {40, 40}, .pixels = std::vector<glm::vec4>(1600)}), 0.1);
