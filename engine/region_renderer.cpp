@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <unordered_map>
 
 #include "engine/attenuation/attenuation_table.h"
@@ -120,6 +121,22 @@ class RegionChoice {
   std::unordered_map<std::uint64_t, const RegionEntry*> known_;
   std::vector<std::vector<const RegionEntry*>> levels_;
 };
+
+/// The regions of a part by share, and within a share by level, as splats of one level have the same units.
+using RegionBatches = std::map<std::pair<int, int>, std::vector<const RegionEntry*>>;
+
+RegionBatches batchesOf(const FvxFile& file, const RegionChoice& choice, const SharePart& part, RegionRenderer::Counts& counts) {
+  RegionBatches batches;
+  counts = {.drawn = std::vector<std::size_t>(choice.levels().size())};
+  for (int level = 0; level < file.levels(); ++level)
+    for (const RegionEntry* region : choice.levels()[std::size_t(level)]) {
+      const int share = shareOf(std::uint64_t(region - file.regions(level).data()));
+      if (!part.holds(share)) continue;
+      batches[{share, level}].push_back(region);
+      ++counts.drawn[std::size_t(level)];
+    }
+  return batches;
+}
 
 /// Kernels of coarse levels reach farther beyond the box than those of voxels.
 void widenCovered(FrameConstants& frame, const FrameSettings& settings) {
@@ -302,24 +319,13 @@ FixedSums RegionRenderer::renderShares(const Camera& camera, const FrameSettings
     commands.submitAndWait();
   }
 
-  // By share, and within it by level: splats of one level have the same units.
-  std::map<std::pair<int, int>, std::vector<const RegionEntry*>> batches;
-  state.counts = {.drawn = std::vector<std::size_t>(choice.levels().size())};
-  std::size_t count = 0;
-  for (int level = 0; level < state.file->levels(); ++level)
-    for (const RegionEntry* region : choice.levels()[std::size_t(level)]) {
-      const int share = shareOf(std::uint64_t(region - state.file->regions(level).data()));
-      if (!part.holds(share)) continue;
-      batches[{share, level}].push_back(region);
-      ++state.counts.drawn[std::size_t(level)];
-      ++count;
-    }
+  const RegionBatches batches = batchesOf(*state.file, choice, part, state.counts);
   std::erase_if(state.kept, [&](const auto& kept) {
-    const auto& level = choice.levels()[kept.first->level];
-    return !std::ranges::binary_search(level, kept.first);
+    return !std::ranges::binary_search(choice.levels()[kept.first->level], kept.first);
   });
   State::Frame frame{.camera = camera, .settings = settings, .targets = *targets};
   std::size_t drawn = 0;
+  const std::size_t count = std::accumulate(state.counts.drawn.begin(), state.counts.drawn.end(), std::size_t(0));
   for (const auto& [shareAndLevel, regions] : batches)
     for (const RegionEntry* region : regions) {
       state.draw(frame, *region, region == regions.back());
