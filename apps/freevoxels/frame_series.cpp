@@ -261,7 +261,7 @@ void FrameSeries::drawRegions(std::shared_ptr<const fvx::FvxFile> file, std::spa
   Scene view = resolve(std::make_shared<const Volume>(bakedOutline(*file)), frames.front().input);
   const std::vector<Camera> cameras = beginVolume(view, frames, file.get());
   spdlog::debug("drawn by splats, region by region: {}",
-                options_.drawsShares() ? "each process reads its own shares alone" : "the volume does not fit into memory at once");
+                options_.drawsShares() ? "only the regions of the own shares are read" : "the volume does not fit into memory at once");
   RegionRenderer renderer(device_, std::move(file), view.classification, options_.method.table(), frames.size() > 1);
   drawFrames(renderer, std::move(view), cameras, frames, 0);
   const RegionRenderer::Counts counts = renderer.counts();

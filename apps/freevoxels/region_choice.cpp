@@ -29,7 +29,7 @@ std::shared_ptr<const fvx::FvxFile> drawableByRegions(const RenderOptions& optio
 }
 
 bool needsRegions(const RenderOptions& options, const Device& device, const fvx::FvxFile& file, int level) {
-  if (options.drawsShares()) return true;
+  if (options.drawsShares() && !drawsByGathering(options.frameSettings())) return true;
   const glm::u64vec3 box(file.dimensions(level));
   if (box.x * box.y * box.z > maximumVoxels(device)) return true;
   std::uint64_t active = 0;
