@@ -166,7 +166,7 @@ void Renderer::State::recordDrawing(Commands& commands, const Frame& frame) {
   if (frame.constants.cull.hiddenDepth == 0.0) return;
   cutter->recordDeferred(commands, cutInputs(frame), frame.targets->colorEnergy, frame.targets->opticalDepth);
   drawing.firstChunk = drawing.chunkCount;
-  drawing.continued = true;
+  drawing.continued = drawing.sameFrame = true;
   splats->record(commands, drawing, frame.constants, *frame.targets);
 }
 

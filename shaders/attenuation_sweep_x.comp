@@ -1,12 +1,17 @@
 #version 460
 // The attenuation table for the directions +x and -x: Subr et al. 2007, Section 3.1, Eq. 5. A thread a row.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #include "stored_codes.glsl"
 
 layout(constant_id = 1) const int kStepX = 1;  // step of the march: 1 or -1
 
+layout(constant_id = 2) const bool kOfPart = false;  // as in attenuation_sweep.comp
+
 layout(local_size_x = kSweepThreads) in;
 layout(scalar, push_constant) uniform Push { SweepPush push; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer EntryDepths { float values[]; };
 layout(binding = 0) uniform textureBuffer extinction;
 
 void main() {
@@ -14,7 +19,8 @@ void main() {
   if (row >= push.lineCount) return;
   const int quads = push.rowPitch / 4;
   const int first = push.marchStart / 4 + row * quads;
-  float depth = 0.0;
+  // Padding before the first voxel adds nothing.
+  float depth = kOfPart ? EntryDepths(push.entry.depths).values[push.entry.rowFace + row] : 0.0;
   for (int i = 0; i < quads; ++i) {
     const int quad = first + (kStepX > 0 ? i : quads - 1 - i);
     const vec4 sigma = texelFetch(extinction, quad - push.slab.firstQuad);

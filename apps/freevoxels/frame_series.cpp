@@ -10,6 +10,7 @@
 #include "apps/freevoxels/failure.h"
 #include "apps/freevoxels/share_group.h"
 #include "engine/octree/volume_limits.h"
+#include "engine/region_renderer.h"
 #include "engine/storage/baked_volume.h"
 #include "engine/volume/content_hash.h"
 #include "engine/vulkan/pipeline.h"
@@ -28,8 +29,8 @@ std::string timeText(std::chrono::duration<double> time) {
   return fmt::format("{} h {} min", seconds / 3600, seconds / 60 % 60);
 }
 
-std::string whyNothingIsSeen(const Renderer& renderer) {
-  if (renderer.occupiedVoxelCount() == 0u) return "all voxels are transparent; raise --density-scale, or change --transfer-function";
+std::string whyNothingIsSeen(bool isTransparent) {
+  if (isTransparent) return "all voxels are transparent; raise --density-scale, or change --transfer-function";
   return "the camera looks past the volume, or what it sees is transparent; leave out --camera-position and --look-at to frame it";
 }
 
@@ -103,10 +104,13 @@ void FrameSeries::draw(std::span<const Frame> frames) {
 
 void FrameSeries::drawFilm(std::span<const Frame> frames) {
   const std::vector<std::string> inputs = volumesOf(frames);
-  VolumesAhead volumes(inputs, [this, turn = int(framesOfFirstVolume(frames))](const std::string& input) {
-    // Of a baked volume nothing finer is read than is needed.
+  VolumesAhead volumes(inputs, [this, turn = int(framesOfFirstVolume(frames)), count = inputs.size()](const std::string& input) {
+    // Of a baked volume nothing finer is read than is needed, and nothing at all if its regions are read one by one.
     const SceneOptions scene = sceneOf(input);
     const int level = scene.finestLevelNeeded(double(options_.frameSettings().lod), turn);
+    if (count == 1)
+      if (const auto file = drawableByRegions(options_, scene, turn); file && needsRegions(options_, device_, *file, level))
+        return std::shared_ptr<const Volume>();
     return std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level));
   });
   std::size_t failed = 0;
@@ -139,27 +143,33 @@ void FrameSeries::drawFilm(std::span<const Frame> frames) {
   fail(ErrorKind::Input, "{} of {} volumes could not be drawn, for the reasons above", failed, inputs.size());
 }
 
-/// A baked volume that the device cannot hold is drawn from a coarser level.
+/// A baked volume that the device cannot hold is drawn region by region where that is possible, else from a coarser level. `volume` is
+/// null where it is known beforehand that regions are drawn.
 void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<const Frame> frames) {
   const SceneOptions scene = sceneOf(frames.front().input);
   const std::shared_ptr<const fvx::FvxFile> file = scene.input.baked();
-  const int levels = file ? file->levels() : 1;
   const RunReport before = report_;
   const std::size_t drawn = drawn_;
   const std::optional<Scene> reference = reference_;
-  for (int level = scene.finestLevelNeeded(double(options_.frameSettings().lod), int(frames.size()));; ++level) {
+  std::shared_ptr<const fvx::FvxFile> regions = volume ? nullptr : file;
+  bool triedRegions = !volume || frames.size() != frames_;
+  for (int level = scene.finestLevelNeeded(double(options_.frameSettings().lod), int(frames.size()));;) {
     try {
-      return drawVolume(std::move(volume), frames);
+      return regions ? drawRegions(regions, frames) : drawVolume(std::move(volume), frames);
     } catch (const Error& error) {
-      if (file) level = std::max(level, finestLevel(*file, maximumVoxels(device_)));  // which is the one that was opened
-      // The processes of a group cannot change the level each by itself.
-      if (error.kind() != ErrorKind::OutOfMemory || level + 1 >= levels || options_.group != nullptr) throw;
-      spdlog::warn("{}; drawing it at 1/{} of its resolution", withOptions(error), 1 << (level + 1));
+      // Processes that draw shares cannot change the level each by itself.
+      if (error.kind() != ErrorKind::OutOfMemory || options_.drawsShares()) throw;
+      regions = std::exchange(triedRegions, true) ? nullptr : drawableByRegions(options_, scene, int(frames.size()));
+      if (!regions) {
+        if (file) level = std::max(level, finestLevel(*file, maximumVoxels(device_)));  // which is the one that was opened
+        if (++level >= (file ? file->levels() : 1)) throw;
+        spdlog::warn("{}; drawing it at 1/{} of its resolution", withOptions(error), 1 << level);
+      }
     }
     report_ = before;
     drawn_ = drawn;
     reference_ = reference;
-    volume = std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level + 1));
+    volume = regions ? nullptr : std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level));
   }
 }
 
@@ -192,11 +202,13 @@ std::map<std::string, std::string> FrameSeries::facts() const {
 }
 
 /// Fails where the processes of the group would not draw parts of one picture.
-void FrameSeries::agree(const Scene& view) {
+void FrameSeries::agree(const Scene& view, const fvx::FvxFile* file) {
   if (options_.drawsShares()) {
     const bool hasEnvironment = view.lighting && view.lighting->environment;
     report_.contentHash =
         contentHash(*view.volume, view.classification, hasEnvironment ? view.lighting->environment.get() : nullptr);
+    // Of regions the volume's values are not read: the header's checksum stands for those of all sections.
+    if (file != nullptr) report_.contentHash += fmt::format("-{:016x}", file->header().hash);
   }
   if (options_.group == nullptr) return;
   options_.group->agree("another version of the program", programVersion());
@@ -220,8 +232,8 @@ void FrameSeries::begin(const Scene& view, std::size_t frames) {
   mentionCpu(device_);
 }
 
-void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, std::span<const Frame> frames) {
-  Scene view = resolve(std::move(volume), frames.front().input);
+/// Resolves what a volume's frames have in common. The regions of `file` are drawn where it is not null.
+std::vector<Camera> FrameSeries::beginVolume(Scene& view, std::span<const Frame> frames, const fvx::FvxFile* file) {
   const bool isFirst = !reference_;
   std::vector<Camera> cameras{view.camera};
   if (frames.size() > 1) cameras = sceneOf(frames.front().input).cameras(*view.volume, view.classification, int(frames.size()));
@@ -231,14 +243,38 @@ void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, std::span<con
     begin(view, frames.size());
   else
     logWarnings(*view.volume, !view.classification.transferFunction);
-  agree(view);
+  agree(view, file);
   if (isFirst || !options_.fixedView) reference_ = view;
+  return cameras;
+}
 
-  FrameSettings settings = options_.frameSettings();
-  settings.lighting = view.lighting;
+void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, std::span<const Frame> frames) {
+  Scene view = resolve(std::move(volume), frames.front().input);
+  const std::vector<Camera> cameras = beginVolume(view, frames);
   Renderer renderer(device_, *view.volume, view.classification, options_.method.table(), prefixed(line_.progress(), prefix()));
   const std::vector<StageTime> built = renderer.timings();
   addTimes(report_.stages, built);
+  drawFrames(renderer, std::move(view), cameras, frames, built.size());
+}
+
+void FrameSeries::drawRegions(std::shared_ptr<const fvx::FvxFile> file, std::span<const Frame> frames) {
+  Scene view = resolve(std::make_shared<const Volume>(bakedOutline(*file)), frames.front().input);
+  const std::vector<Camera> cameras = beginVolume(view, frames, file.get());
+  spdlog::debug("drawn by splats, region by region: {}",
+                options_.drawsShares() ? "only the regions of the own shares are read" : "the volume does not fit into memory at once");
+  RegionRenderer renderer(device_, std::move(file), view.classification, options_.method.table(), frames.size() > 1);
+  drawFrames(renderer, std::move(view), cameras, frames, 0);
+  const RegionRenderer::Counts counts = renderer.counts();
+  for (std::size_t level = 0; level < counts.drawn.size(); ++level)
+    if (counts.drawn[level] > 0)
+      spdlog::debug("{} regions of {}³ blocks of {}³ voxels drawn for the last frame", counts.drawn[level], fvx::kRegionEdge, 1 << level);
+}
+
+template <typename AnyRenderer>
+void FrameSeries::drawFrames(AnyRenderer& renderer, Scene view, const std::vector<Camera>& cameras, std::span<const Frame> frames,
+                             std::size_t stagesBefore) {
+  FrameSettings settings = options_.frameSettings();
+  settings.lighting = view.lighting;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (options_.group != nullptr && !options_.group->draws(drawn_)) {
       drawnElsewhere_.push_back(&frames[i]);
@@ -248,14 +284,15 @@ void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, std::span<con
     view.camera = cameras[i];
     drawFrame(renderer, view, settings, frames[i]);
     const std::vector<StageTime> times = renderer.timings();
-    addTimes(report_.stages, std::span(times).subspan(built.size()));
+    addTimes(report_.stages, std::span(times).subspan(stagesBefore));
   }
   addToReport(renderer, *view.volume);
   for (const Frame* empty : std::exchange(waiting_, {})) writeEmpty(*empty);
 }
 
 /// The sums of this process, or of its whole group on the process that writes the frame; on the others of the group none.
-std::optional<FixedSums> FrameSeries::drawSums(Renderer& renderer, const Camera& camera, const FrameSettings& settings) {
+template <typename AnyRenderer>
+std::optional<FixedSums> FrameSeries::drawSums(AnyRenderer& renderer, const Camera& camera, const FrameSettings& settings) {
   ShareGroup* const group = options_.group;
   const SharePart part = group != nullptr ? group->part() : options_.shares.whole();
   FixedSums sums = renderer.renderShares(camera, settings, part, prefixed(line_.progress(), prefix()));
@@ -265,7 +302,8 @@ std::optional<FixedSums> FrameSeries::drawSums(Renderer& renderer, const Camera&
   return {};
 }
 
-void FrameSeries::drawFrame(Renderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame) {
+template <typename AnyRenderer>
+void FrameSeries::drawFrame(AnyRenderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame) {
   Image image;
   if (options_.drawsShares()) {
     const std::optional<FixedSums> sums = drawSums(renderer, view.camera, settings);
@@ -288,7 +326,7 @@ void FrameSeries::drawFrame(Renderer& renderer, const Scene& view, const FrameSe
   if (const std::size_t pixels = clearPixelsThatAreNoNumbers(image); pixels > 0)
     spdlog::warn("{}{} pixels are beyond the range of numbers and become black: use less extreme lights, emission and distances", name,
                  pixels);
-  if (showsNothing(image)) spdlog::warn("{}nothing is seen: {}", name, whyNothingIsSeen(renderer));
+  if (showsNothing(image)) spdlog::warn("{}nothing is seen: {}", name, whyNothingIsSeen(renderer.occupiedVoxelCount() == 0u));
   write(std::move(image), view, frame);
 }
 
@@ -342,7 +380,8 @@ void FrameSeries::writeEmpty(const Frame& frame) {
 }
 
 /// Of the last volume.
-void FrameSeries::addToReport(const Renderer& renderer, const Volume& volume) {
+template <typename AnyRenderer>
+void FrameSeries::addToReport(const AnyRenderer& renderer, const Volume& volume) {
   report_.lackedRoomForRays |= renderer.lackedRoomForRays();
   report_.lackedRoomForGather |= renderer.lackedRoomForGather();
   report_.visibleVoxels = renderer.occupiedVoxelCount();

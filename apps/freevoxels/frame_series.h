@@ -12,6 +12,7 @@
 
 #include "apps/freevoxels/background_writer.h"
 #include "apps/freevoxels/progress_line.h"
+#include "apps/freevoxels/region_choice.h"
 #include "apps/freevoxels/render_options.h"
 #include "engine/image/fixed_sums.h"
 #include "engine/renderer.h"
@@ -53,10 +54,18 @@ class FrameSeries {
   void drawFilm(std::span<const Frame> frames);
   void drawFitting(std::shared_ptr<const Volume> volume, std::span<const Frame> frames);
   void drawVolume(std::shared_ptr<const Volume> volume, std::span<const Frame> frames);
+  void drawRegions(std::shared_ptr<const fvx::FvxFile> file, std::span<const Frame> frames);
+  std::vector<Camera> beginVolume(Scene& view, std::span<const Frame> frames, const fvx::FvxFile* file = nullptr);
+  /// Draws with a Renderer or a RegionRenderer.
+  template <typename AnyRenderer>
+  void drawFrames(AnyRenderer& renderer, Scene view, const std::vector<Camera>& cameras, std::span<const Frame> frames,
+                  std::size_t stagesBefore);
   void begin(const Scene& view, std::size_t frames);
-  void agree(const Scene& view);
-  void drawFrame(Renderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame);
-  std::optional<FixedSums> drawSums(Renderer& renderer, const Camera& camera, const FrameSettings& settings);
+  void agree(const Scene& view, const fvx::FvxFile* file);
+  template <typename AnyRenderer>
+  void drawFrame(AnyRenderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame);
+  template <typename AnyRenderer>
+  std::optional<FixedSums> drawSums(AnyRenderer& renderer, const Camera& camera, const FrameSettings& settings);
   void write(Image image, const Scene& view, const Frame& frame);
   void writeEmpty(const Frame& frame);
   void finishWriting();
@@ -65,7 +74,8 @@ class FrameSeries {
   OptionList describe(const Scene& view, const std::string& input) const;
   std::map<std::string, std::string> facts() const;
   Scene resolve(std::shared_ptr<const Volume> volume, const std::string& input) const;
-  void addToReport(const Renderer& renderer, const Volume& volume);
+  template <typename AnyRenderer>
+  void addToReport(const AnyRenderer& renderer, const Volume& volume);
   std::string prefix() const;
 
   const RenderOptions& options_;

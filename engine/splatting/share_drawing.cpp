@@ -34,7 +34,7 @@ FixedSums ShareDrawing::draw(Commands& commands, Inputs inputs, const SharePart&
       inputs.drawing.chunkCount = chunks[share];
       inputs.splats.record(drawing, inputs.drawing, inputs.frame, inputs.targets);
       accumulate_.record(drawing, inputs.frame, inputs.targets);
-      inputs.drawing.continued = true;  // the targets are 0 again
+      inputs.drawing.continued = inputs.drawing.sameFrame = true;  // the targets are 0 again
     }
     drawing.submitAndWait();
     addTimes(times, drawing.times());

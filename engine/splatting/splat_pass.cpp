@@ -120,7 +120,7 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
     commands.transition(*target, inputs.continued ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED,
                         VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kOutput | kCompute, kOutput);
 
-  if (!inputs.continued) recordFrame(commands, inputs.volume, frame);
+  if (!inputs.sameFrame) recordFrame(commands, inputs.volume, frame);
   const std::uint32_t endChunk = inputs.firstChunk + inputs.chunkCount;
   for (std::uint32_t chunk = inputs.firstChunk; chunk < endChunk; ++chunk) {
     const VkDeviceSize arguments = chunk * sizeof(shader::ChunkArguments);

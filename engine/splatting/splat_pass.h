@@ -72,6 +72,7 @@ class SplatPass {
     const BlockList* visible;                  ///< the blocks to draw, by FrameConstants::detail
     std::uint32_t firstChunk = 0, chunkCount = 0;  ///< the chunks of `visible` to draw
     bool continued = false;  ///< whether the targets, in layout GENERAL, hold the sums of earlier splats
+    bool sameFrame = false;  ///< whether the pass has the constants of `frame` from the call before
     const Buffer* lights = nullptr;  ///< shader::Light of each light; only with lighting
     const Buffer* order = nullptr;   ///< the occupied voxels in the order to draw them; null for the order of the list
     /// Called where a chunk's splats are set up, with their buffer of shader::Splat and the chunk; may be empty.

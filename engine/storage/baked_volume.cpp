@@ -205,13 +205,37 @@ std::uint64_t activeVoxels(std::span<const ChunkEntry> chunks) {
 
 /// Makes the blocks of a level the voxels of a volume.
 void makeCoarse(Volume& volume, const FvxFile& file, int level) {
-  const double edge = double(1 << level);
-  const glm::dmat4 toMiddle = glm::translate(glm::dmat4(1.0), glm::dvec3(0.5 * (edge - 1.0)));
-  volume.indexToWorld = volume.indexToWorld * glm::scale(toMiddle, glm::dvec3(edge));
+  volume.indexToWorld = fvx::levelToWorld(volume.indexToWorld, level);
   volume.dimensions = file.dimensions(level);
   volume.indexOrigin = glm::ivec3(0);
   volume.activeVoxels = activeVoxels(file.chunks(Channel::Scalars, level));
   if (volume.temperature) volume.temperature->activeVoxels = activeVoxels(file.chunks(Channel::Temperature, level));
+}
+
+/// Copies the chunks of a region into a box with its halo, one set of bricks for each value of a voxel.
+std::vector<ScalarBricks> readRegionChunks(const FvxFile& file, Channel channel, const fvx::RegionEntry& region, const fvx::VoxelBox& box) {
+  constexpr int n = ScalarBricks::kEdge, m = fvx::kChunkEdge / n;
+  const int level = int(region.level), components = fvx::valuesPerVoxel(channel);
+  const glm::ivec3 corner = box.first % n, firstCell = box.first / n;
+  std::vector<ScalarBricks> result(std::size_t(components), ScalarBricks(box.extent(), corner));
+  const fvx::Encoding& encoding = *file.description().encodings[std::size_t(channel)];
+  const fvx::Decoder decoder(encoding);
+  const std::size_t brickBytes = fvx::kBrickVoxels * encoding.bytesPerValue();
+  std::vector<std::byte> unpacked;
+  for (int child = 0; child < 8; ++child) {
+    const glm::ivec3 cell = 2 * region.cell + glm::ivec3(child & 1, child >> 1 & 1, child >> 2);
+    const ChunkEntry* const chunk = file.find(channel, level, cell);
+    if (chunk == nullptr) continue;
+    std::span<const std::byte> bytes = file.read(channel, *chunk, unpacked);
+    for (int brick = 0; brick < fvx::kChunkBricks; ++brick) {
+      if ((chunk->brickMask >> brick & 1u) == 0) continue;
+      for (ScalarBricks& values : result) {
+        decoder.decode(bytes.first(brickBytes), values.makeBrick(cell * m + glm::ivec3(brick % m, brick / m % m, brick / (m * m)) - firstCell));
+        bytes = bytes.subspan(brickBytes);
+      }
+    }
+  }
+  return result;
 }
 
 Volume readLevel(const std::shared_ptr<const FvxFile>& file, int level) {
@@ -249,6 +273,9 @@ void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volum
     }
     const fvx::Description description{.volume = summarised(volume.outline, classification, !settings.keepScalars, writer),
                                        .encodings = write.encodings};
+    // Elsewhere extinction depends on more than the voxel, or light on more than extinction.
+    if (densities && !classification.emission)
+      writer.sweepRegions({.densityScale = classification.densityScale, .indexToWorld = volume.outline.indexToWorld}, progress);
     if (progress) progress(kWritingStage, 0.0);
     writer.finish(temporary, description, volume.content, settings.provenance);
   });
@@ -278,6 +305,28 @@ Volume readBaked(const std::shared_ptr<const FvxFile>& file, int level) {
   } catch (const std::bad_alloc&) {
     fail(ErrorKind::OutOfMemory, "not enough memory for level {} of '{}'; free some", level, file->path().string());
   }
+}
+
+BakedRegion readBakedRegion(const FvxFile& file, const fvx::RegionEntry& region) {
+  const int level = int(region.level);
+  const glm::ivec3 size = file.dimensions(level);
+  const fvx::VoxelBox box = fvx::regionWithHalo(region.cell, size), own = fvx::regionVoxels(region.cell, size);
+  fvx::RegionSurroundings beside = file.readRegion(region);
+  BakedRegion result{.volume = bakedOutline(file, level),
+                     .own = {own.first - box.first, own.end - box.first},
+                     .depths = std::move(beside.depths)};
+  Volume& volume = result.volume;
+  volume.dimensions = box.extent();
+  volume.indexToWorld = glm::translate(volume.indexToWorld, glm::dvec3(box.first));
+  volume.temperature.reset();
+  volume.scalars = std::move(readRegionChunks(file, Channel::Scalars, region, box).front());
+  if (!beside.halo.empty())
+    fvx::forHaloRows(region.cell, size, [&](glm::ivec3 first, int end, std::size_t index) {
+      for (glm::ivec3 voxel = first; voxel.x < end; ++voxel.x, ++index)
+        if (beside.halo[index] > 0.0f) volume.scalars.set(voxel - box.first, beside.halo[index]);
+    });
+  if (volume.albedo) std::ranges::move(readRegionChunks(file, Channel::Albedo, region, box), volume.albedo->values.begin());
+  return result;
 }
 
 int finestLevel(const fvx::FvxFile& file, std::uint64_t maximumVoxels) {

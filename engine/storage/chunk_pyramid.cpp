@@ -1,6 +1,7 @@
 #include "engine/storage/chunk_pyramid.h"
 
 #include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 
 namespace freevoxels::fvx {
@@ -39,6 +40,11 @@ std::vector<glm::ivec3> levelDimensions(glm::ivec3 dimensions) {
   std::vector<glm::ivec3> levels{dimensions};
   while (std::max({levels.back().x, levels.back().y, levels.back().z}) > kChunkEdge) levels.push_back((levels.back() + 1) / 2);
   return levels;
+}
+
+glm::dmat4 levelToWorld(const glm::dmat4& indexToWorld, int level) {
+  const double edge = double(1 << level);
+  return indexToWorld * glm::scale(glm::translate(glm::dmat4(1.0), glm::dvec3(0.5 * (edge - 1.0))), glm::dvec3(edge));
 }
 
 ChunkEighth coarser(const ChunkValues& chunk, glm::ivec3 dimensions, WithoutData withoutData) {

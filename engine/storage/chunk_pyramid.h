@@ -32,6 +32,9 @@ struct ChunkValues {
 /// Dimensions of each level, level 0 first: halved and rounded up until one chunk holds all.
 std::vector<glm::ivec3> levelDimensions(glm::ivec3 dimensions);
 
+/// From voxel indices of a level to the world: a voxel of level l is a cube of 2^l voxels of level 0.
+glm::dmat4 levelToWorld(const glm::dmat4& indexToWorld, int level);
+
 /// The means of each 2^3 voxels of a chunk, as the eighth of its parent chunk: kChunkEdge / 2 voxels along
 /// each axis, x fastest. Voxels beyond `dimensions`, which are those of the chunk's level, do not count.
 struct ChunkEighth {

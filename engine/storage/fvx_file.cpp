@@ -1,8 +1,8 @@
 #include "engine/storage/fvx_file.h"
 
+#include <sys/mman.h>
 #include <tbb/parallel_for.h>
 #include <xxhash.h>
-#include <zstd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -11,6 +11,8 @@
 
 #include "engine/core/error.h"
 #include "engine/storage/chunk_pyramid.h"
+#include "engine/storage/hilbert.h"
+#include "engine/storage/plane_codec.h"
 
 namespace freevoxels::fvx {
 
@@ -58,6 +60,8 @@ FvxFile::FvxFile(const fs::path& file) : path_(file) {
   } catch (const std::exception&) {
     fail(ErrorKind::Input, "cannot read '{}': it cannot be mapped into memory; check its permissions", file.string());
   }
+  // What is read is said exactly: the kernel's own guesses are of megabytes.
+  madvise(const_cast<char*>(map_.data()), size, MADV_RANDOM);
   checkHeader();
   const std::span<const std::byte> description = required(SectionKind::Description, "description");
   description_ = parseDescription({reinterpret_cast<const char*>(description.data()), description.size()}, file);
@@ -69,6 +73,13 @@ FvxFile::FvxFile(const fs::path& file) : path_(file) {
   for (int level = 0; level < levels(); ++level)
     for (std::size_t channel = 0; channel < kChannels; ++channel)
       if (hasChannel(Channel(channel))) chunks_[std::size_t(level)][channel] = readIndex(Channel(channel), level);
+  readRegions();
+}
+
+std::span<const std::byte> FvxFile::bytes(std::uint64_t offset, std::uint64_t count) const {
+  const std::uint64_t first = offset / kPageBytes * kPageBytes;
+  madvise(const_cast<char*>(map_.data()) + first, offset + count - first, MADV_WILLNEED);
+  return std::as_bytes(std::span(map_.data() + offset, count));
 }
 
 void FvxFile::failDamaged(const std::string& what) const {
@@ -158,21 +169,77 @@ void FvxFile::checkEntry(const ChunkEntry& entry, const Section& chunks, Channel
     failDamaged(fmt::format("the entry of chunk {},{},{} of level {} is impossible", entry.cell.x, entry.cell.y, entry.cell.z, level));
 }
 
-std::span<const std::byte> FvxFile::read(Channel channel, const ChunkEntry& chunk, std::vector<std::byte>& unpacked) const {
-  const std::span<const std::byte> stored = bytes(chunk.offset, chunk.storedBytes);
-  const auto failChunk = [&](const char* what) {
-    failDamaged(fmt::format("{} of chunk {},{},{} at byte {}", what, chunk.cell.x, chunk.cell.y, chunk.cell.z, chunk.offset));
-  };
-  if (hashOf(stored) != chunk.hash) failChunk("the checksum is wrong");
-  if (chunk.codec == Codec::None) return stored;
-  std::vector<std::byte> planes(chunk.bytes);
-  if (ZSTD_decompress(planes.data(), planes.size(), stored.data(), stored.size()) != planes.size())
-    failChunk("the compressed bytes are wrong");
-  unpacked.resize(planes.size());
-  const std::size_t width = description_.encodings[std::size_t(channel)]->bytesPerValue(), values = planes.size() / width;
-  for (std::size_t plane = 0; plane < width; ++plane)
-    for (std::size_t i = 0; i < values; ++i) unpacked[i * width + plane] = planes[plane * values + i];
+std::span<const std::byte> FvxFile::unpack(std::uint64_t offset, std::uint64_t storedBytes, std::uint64_t size, std::uint64_t hash,
+                                           Codec codec, std::size_t bytesPerValue, std::vector<std::byte>& unpacked,
+                                           const std::string& what) const {
+  const std::span<const std::byte> stored = bytes(offset, storedBytes);
+  if (hashOf(stored) != hash) failDamaged(fmt::format("the checksum of {} at byte {} is wrong", what, offset));
+  if (codec == Codec::None) return stored;
+  unpacked.resize(size);
+  if (!decompressPlanes(stored, bytesPerValue, unpacked)) failDamaged(fmt::format("the compressed bytes of {} at byte {} are wrong", what, offset));
   return unpacked;
+}
+
+std::span<const std::byte> FvxFile::read(Channel channel, const ChunkEntry& chunk, std::vector<std::byte>& unpacked) const {
+  return unpack(chunk.offset, chunk.storedBytes, chunk.bytes, chunk.hash, chunk.codec,
+                description_.encodings[std::size_t(channel)]->bytesPerValue(), unpacked,
+                fmt::format("chunk {},{},{}", chunk.cell.x, chunk.cell.y, chunk.cell.z));
+}
+
+const ChunkEntry* FvxFile::find(Channel channel, int level, glm::ivec3 cell) const {
+  const std::span<const ChunkEntry> all = chunks(channel, level);
+  const int bits = hilbertBits((dimensions(level) + kChunkEdge - 1) / kChunkEdge);
+  const auto place = [&](glm::ivec3 c) { return hilbertIndex(glm::uvec3(c), bits); };
+  const auto found = std::ranges::lower_bound(all, place(cell), {}, [&](const ChunkEntry& entry) { return place(entry.cell); });
+  return found == all.end() || found->cell != cell ? nullptr : &*found;
+}
+
+RegionSurroundings FvxFile::readRegion(const RegionEntry& region) const {
+  std::vector<std::byte> unpacked;
+  const std::span<const std::byte> bytes =
+      unpack(region.offset, region.storedBytes, region.bytes, region.hash, region.codec, sizeof(std::uint16_t), unpacked,
+             fmt::format("region {},{},{} of level {}", region.cell.x, region.cell.y, region.cell.z, region.level));
+  return decodeRegion(region.cell, dimensions(int(region.level)), region.parts, *description_.encodings[std::size_t(Channel::Scalars)], bytes);
+}
+
+void FvxFile::checkEntry(const RegionEntry& entry, const Section& regions) const {
+  const auto impossible = [&] {
+    failDamaged(fmt::format("the entry of region {},{},{} of level {} is impossible", entry.cell.x, entry.cell.y, entry.cell.z, entry.level));
+  };
+  if (entry.level >= dimensions_.size() || entry.parts >= 2 * kHaloPart) impossible();
+  const glm::ivec3 size = dimensions(int(entry.level)), cells = regionCells(size);
+  if (glm::any(glm::lessThan(entry.cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(entry.cell, cells))) impossible();
+  const std::uint64_t expected =
+      regionBytes(entry.cell, size, entry.parts, *description_.encodings[std::size_t(Channel::Scalars)]);
+  const bool inside = entry.offset >= regions.offset && entry.offset - regions.offset <= regions.bytes &&
+                      entry.storedBytes <= regions.bytes - (entry.offset - regions.offset) && entry.offset % kChunkAlignment == 0;
+  const bool stored = entry.codec == Codec::None ? entry.storedBytes == entry.bytes : entry.codec == Codec::PlanesZstd;
+  if (!inside || !stored || entry.bytes != expected) impossible();
+}
+
+void FvxFile::readRegions() {
+  regions_.resize(dimensions_.size());
+  const Section* const index = find(SectionKind::RegionIndex);
+  if (index == nullptr) return;
+  const Section* const regions = find(SectionKind::Regions);
+  const std::span<const std::byte> raw = checked(*index);
+  if (regions == nullptr || raw.size() % sizeof(RegionEntry) != 0) failDamaged("the index of its regions does not fit them");
+  const std::span entries(reinterpret_cast<const RegionEntry*>(raw.data()), raw.size() / sizeof(RegionEntry));
+  for (std::size_t first = 0, end = 0; first < entries.size(); first = end) {
+    for (end = first; end < entries.size() && entries[end].level == entries[first].level; ++end) checkEntry(entries[end], *regions);
+    std::span<const RegionEntry>& ofLevel = regions_[entries[first].level];
+    if (!ofLevel.empty()) failDamaged("the index of its regions is out of order");
+    ofLevel = entries.subspan(first, end - first);
+  }
+  for (int level = 0; level < levels(); ++level) {
+    std::size_t next = 0;
+    for (const ChunkEntry& chunk : chunks(Channel::Scalars, level)) {
+      const glm::ivec3 region = chunk.cell * kChunkEdge / kRegionEdge;
+      const std::span<const RegionEntry> known = regions_[std::size_t(level)];
+      if (next < known.size() && known[next].cell == region) ++next;
+      if (next == 0 || known[next - 1].cell != region) failDamaged(fmt::format("a region of level {} is missing in the index", level));
+    }
+  }
 }
 
 void FvxFile::checkAll() const {
@@ -185,6 +252,8 @@ void FvxFile::checkAll() const {
         read(Channel(channel), all[i], unpacked);
       });
     }
+  for (int level = 0; level < levels(); ++level)
+    for (const RegionEntry& region : regions(level)) readRegion(region);
 }
 
 }  // namespace freevoxels::fvx

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "engine/storage/regions.h"
 #include "engine/storage/fvx_description.h"
 #include "engine/volume/subject.h"
 
@@ -47,13 +48,20 @@ class FvxFile {
   /// `unpacked`; others lie in the mapped file, which exists as long as this object. Fails with
   /// ErrorKind::Input if the chunk is damaged.
   std::span<const std::byte> read(Channel channel, const ChunkEntry& chunk, std::vector<std::byte>& unpacked) const;
+  /// A chunk of a level; null if it has no data.
+  const ChunkEntry* find(Channel channel, int level, glm::ivec3 cell) const;
+  /// Whether the file has what regions need to be drawn on their own (regions.h).
+  bool hasRegions() const { return find(SectionKind::RegionIndex) != nullptr; }
+  /// The regions of a level that have chunks of scalars, in Hilbert order; none if the file has no regions.
+  std::span<const RegionEntry> regions(int level) const { return regions_[std::size_t(level)]; }
+  /// Fails with ErrorKind::Input if what is stored of the region is damaged.
+  RegionSurroundings readRegion(const RegionEntry& region) const;
   /// Reads the whole file and fails with ErrorKind::Input if any part is damaged.
   void checkAll() const;
 
  private:
-  std::span<const std::byte> bytes(std::uint64_t offset, std::uint64_t count) const {
-    return std::as_bytes(std::span(map_.data() + offset, count));
-  }
+  /// Bytes of the file, which are all going to be read.
+  std::span<const std::byte> bytes(std::uint64_t offset, std::uint64_t count) const;
   void checkHeader() const;
   const Section* find(SectionKind kind, Channel channel = {}, int level = 0) const;
   std::span<const std::byte> checked(const Section& section) const;
@@ -61,6 +69,12 @@ class FvxFile {
   ContentCells readContent() const;
   std::span<const ChunkEntry> readIndex(Channel channel, int level) const;
   void checkEntry(const ChunkEntry& entry, const Section& chunks, Channel channel, int level) const;
+  void readRegions();
+  void checkEntry(const RegionEntry& entry, const Section& regions) const;
+  /// What an entry of an index refers to, unpacked: in the mapped file, or in `unpacked`. `what` begins the sentence.
+  std::span<const std::byte> unpack(std::uint64_t offset, std::uint64_t storedBytes, std::uint64_t bytes, std::uint64_t hash,
+                                    Codec codec, std::size_t bytesPerValue, std::vector<std::byte>& unpacked,
+                                    const std::string& what) const;
   [[noreturn]] void failDamaged(const std::string& what) const;
 
   std::filesystem::path path_;
@@ -70,6 +84,7 @@ class FvxFile {
   std::string_view provenance_;
   std::vector<glm::ivec3> dimensions_;
   std::vector<std::array<std::span<const ChunkEntry>, kChannels>> chunks_;
+  std::vector<std::span<const RegionEntry>> regions_;  ///< by level
 };
 
 }  // namespace freevoxels::fvx

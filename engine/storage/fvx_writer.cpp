@@ -1,72 +1,25 @@
 #include "engine/storage/fvx_writer.h"
 
-#include <fcntl.h>
 #include <tbb/parallel_for.h>
-#include <unistd.h>
 #include <xxhash.h>
-#include <zstd.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <limits>
-#include <system_error>
 
 #include "engine/core/checked_file.h"
 #include "engine/core/error.h"
+#include "engine/storage/region_sweep.h"
+#include "engine/storage/plane_codec.h"
+#include "engine/storage/spool.h"
 
 namespace freevoxels::fvx {
 
 namespace {
 
-constexpr int kZstdLevel = 3;
-
 std::uint64_t roundUp(std::uint64_t bytes, std::uint64_t alignment) {
   return (bytes + alignment - 1) / alignment * alignment;
 }
-
-/// An unnamed file, which disappears when it is closed or the program ends.
-class Spool {
- public:
-  explicit Spool(const std::filesystem::path& folder) {
-    std::string name = (folder / ".freevoxels-bake.XXXXXX").string();
-    const int descriptor = mkstemp(name.data());
-    if (descriptor < 0) throwErrno();
-    unlink(name.c_str());
-    file_ = fdopen(descriptor, "w+b");
-    if (file_ == nullptr) {
-      close(descriptor);
-      throwErrno();
-    }
-  }
-  ~Spool() { std::fclose(file_); }
-  Spool(const Spool&) = delete;
-  Spool& operator=(const Spool&) = delete;
-
-  std::uint64_t bytes() const { return bytes_; }
-  void append(std::span<const std::byte> bytes) {
-    if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) throwErrno();
-    bytes_ += bytes.size();
-  }
-  /// Reads the whole file, a piece at a time.
-  template <typename Function>
-  void readAll(const Function& take) {
-    if (std::fflush(file_) != 0 || std::fseek(file_, 0, SEEK_SET) != 0) throwErrno();
-    std::vector<std::byte> piece(std::size_t(1) << 20);
-    for (std::uint64_t left = bytes_; left > 0;) {
-      const std::size_t count = std::min<std::uint64_t>(piece.size(), left);
-      if (std::fread(piece.data(), 1, count, file_) != count) throwErrno();
-      take(std::span<const std::byte>(piece).first(count));
-      left -= count;
-    }
-  }
-
- private:
-  [[noreturn]] static void throwErrno() { throw std::system_error(errno ? errno : EIO, std::generic_category()); }
-
-  std::FILE* file_ = nullptr;
-  std::uint64_t bytes_ = 0;
-};
 
 struct EncodedChunk {
   ChunkEntry entry;
@@ -81,20 +34,6 @@ std::uint64_t bricksThat(const std::vector<float>& values, const Holds& holds) {
     if (std::any_of(values.begin() + std::ptrdiff_t(first), values.begin() + std::ptrdiff_t(first + kBrickVoxels), holds))
       mask |= std::uint64_t(1) << first / kBrickVoxels % kChunkBricks;
   return mask;
-}
-
-void compress(std::size_t bytesPerValue, std::vector<std::byte>& bytes, ChunkEntry& entry) {
-  std::vector<std::byte> planes(bytes.size());
-  const std::size_t values = bytes.size() / bytesPerValue;
-  for (std::size_t plane = 0; plane < bytesPerValue; ++plane)
-    for (std::size_t i = 0; i < values; ++i) planes[plane * values + i] = bytes[i * bytesPerValue + plane];
-  std::vector<std::byte> packed(ZSTD_compressBound(bytes.size()));
-  const std::size_t size = ZSTD_compress(packed.data(), packed.size(), planes.data(), planes.size(), kZstdLevel);
-  if (ZSTD_isError(size)) throw std::runtime_error(ZSTD_getErrorName(size));
-  if (size >= bytes.size()) return;
-  packed.resize(size);
-  bytes = std::move(packed);
-  entry.codec = Codec::PlanesZstd;
 }
 
 class ChunkEncoder {
@@ -127,7 +66,7 @@ class ChunkEncoder {
       }
     }
     if (entry.activeVoxels == 0) entry.minimum = entry.maximum = 0.0f;
-    if (settings_.compress) compress(encoding.bytesPerValue(), result.bytes, entry);
+    if (settings_.compress) entry.codec = compressPlanes(encoding.bytesPerValue(), result.bytes);
     entry.storedBytes = result.bytes.size();
     entry.hash = XXH3_64bits(result.bytes.data(), result.bytes.size());
     return result;
@@ -171,6 +110,78 @@ void setExtinctions(const Classification& classification, ChunkEntry& entry) {
   }
 }
 
+/// The densities of planes of a level, from its spooled chunks of scalars.
+class SpooledPlanes {
+ public:
+  SpooledPlanes(glm::ivec3 dimensions, std::span<const ChunkEntry> chunks, const Spool& spool, const Encoding& encoding)
+      : dimensions_(dimensions),
+        chunks_(chunks),
+        spool_(spool),
+        bytesPerValue_(encoding.bytesPerValue()),
+        decoder_(encoding) {}
+
+  void read(int first, std::span<float> densities) const {
+    std::ranges::fill(densities, 0.0f);
+    tbb::parallel_for(std::size_t(0), chunks_.size(), [&](std::size_t i) {
+      if (chunks_[i].cell.z == first / kChunkEdge) readChunk(chunks_[i], first, densities);
+    });
+  }
+
+ private:
+  static constexpr int kEdge = ScalarBricks::kEdge, kBricks = kChunkEdge / kEdge;
+
+  /// The bricks of the layer that begins at plane `first`, which are consecutive.
+  void readChunk(const ChunkEntry& chunk, int first, std::span<float> densities) const {
+    const int layer = first / kEdge % kBricks, number = layer * kBricks * kBricks;
+    const std::size_t brickBytes = kBrickVoxels * bytesPerValue_;
+    const auto before = std::size_t(std::popcount(chunk.brickMask & ((std::uint64_t(1) << number) - 1)));
+    const std::uint64_t mask = chunk.brickMask >> number & 0xffff;
+    if (mask == 0) return;
+    std::vector<std::byte> bytes(std::size_t(std::popcount(mask)) * brickBytes);
+    if (chunk.codec == Codec::None) {
+      spool_.readAt(chunk.offset + before * brickBytes, bytes);
+    } else {
+      std::vector<std::byte> stored(chunk.storedBytes), all(chunk.bytes);
+      spool_.readAt(chunk.offset, stored);
+      FV_CHECK_EQ(decompressPlanes(stored, bytesPerValue_, all), true);
+      std::ranges::copy(std::span(all).subspan(before * brickBytes, bytes.size()), bytes.begin());
+    }
+    std::span<const std::byte> rest(bytes);
+    for (int brick = 0; brick < kBricks * kBricks; ++brick) {
+      if ((mask >> brick & 1u) == 0) continue;
+      ScalarBricks::Brick values;
+      decoder_.decode(rest.first(brickBytes), values);
+      rest = rest.subspan(brickBytes);
+      place(values, chunk.cell * kChunkEdge + glm::ivec3(brick % kBricks, brick / kBricks, layer) * kEdge, densities);
+    }
+  }
+
+  void place(const ScalarBricks::Brick& values, glm::ivec3 first, std::span<float> densities) const {
+    const glm::ivec3 end = glm::min(dimensions_ - first, kEdge);
+    const std::size_t width = std::size_t(dimensions_.x), plane = width * std::size_t(dimensions_.y);
+    for (glm::ivec3 v(0); v.z < end.z; ++v.z)
+      for (v.y = 0; v.y < end.y; ++v.y) {
+        float* const row = &densities[std::size_t(v.z) * plane + std::size_t(first.y + v.y) * width + std::size_t(first.x)];
+        for (v.x = 0; v.x < end.x; ++v.x) row[v.x] = std::max(values[ScalarBricks::indexInBrick(v)], 0.0f);
+      }
+  }
+
+  glm::ivec3 dimensions_;
+  std::span<const ChunkEntry> chunks_;
+  const Spool& spool_;
+  std::size_t bytesPerValue_;
+  Decoder decoder_;
+};
+
+/// The regions that have chunks, in the order of these.
+std::vector<glm::ivec3> regionsOf(std::span<const ChunkEntry> chunks) {
+  std::vector<glm::ivec3> regions;
+  for (const ChunkEntry& chunk : chunks)
+    if (const glm::ivec3 region = chunk.cell * kChunkEdge / kRegionEdge; regions.empty() || regions.back() != region)
+      regions.push_back(region);
+  return regions;
+}
+
 std::vector<std::byte> contentBytes(const ContentCells& content) {
   const ContentHeader header{.cells = content.cells.dimensions, .edge = content.edge};
   std::vector<std::byte> bytes(sizeof(header) + (content.cells.values.size() + 7) / 8);
@@ -179,6 +190,14 @@ std::vector<std::byte> contentBytes(const ContentCells& content) {
     if (content.cells.values[i] != 0) bytes[sizeof(header) + i / 8] |= std::byte(1 << i % 8);
   return bytes;
 }
+
+struct EncodedRegion {
+  RegionEntry entry;
+  std::vector<std::byte> bytes;
+};
+
+/// Regions that are encoded at the same time.
+constexpr std::size_t kRegionBatch = 32;
 
 /// The chunks of a channel of a level.
 struct ChunkStore {
@@ -236,14 +255,17 @@ struct FvxWriter::State {
   WriteSettings settings;
   std::vector<glm::ivec3> dimensions;  ///< by level
   std::vector<std::array<ChunkStore, kChannels>> stores;  ///< by level
+  std::unique_ptr<Spool> regionSpool;  ///< null without regions
+  std::vector<RegionEntry> regions;    ///< with offsets in the spool
+  std::filesystem::path folder;
   ChunkEncoder encoder{settings};
   ChunkPyramid pyramid{settings.dimensions, settings.withoutData, [this](int level, const ChunkValues& chunk) {
                          for (std::size_t channel = 0; channel < kChannels; ++channel)
                            if (settings.encodings[channel]) store(std::size_t(level), channel, encoder.encode(chunk, channel));
                        }};
 
-  State(const std::filesystem::path& folder, const WriteSettings& given)
-      : settings(given), dimensions(levelDimensions(given.dimensions)), stores(dimensions.size()) {
+  State(const std::filesystem::path& spoolFolder, const WriteSettings& given)
+      : settings(given), dimensions(levelDimensions(given.dimensions)), stores(dimensions.size()), folder(spoolFolder) {
     FV_CHECK_LE(dimensions.size(), std::size_t(kMostLevels));
     for (auto& level : stores)
       for (std::size_t channel = 0; channel < kChannels; ++channel)
@@ -257,6 +279,35 @@ struct FvxWriter::State {
     to.entries.push_back(chunk.entry);
     chunk.bytes.resize(roundUp(chunk.bytes.size(), kChunkAlignment));
     to.spool->append(chunk.bytes);
+  }
+
+  /// Regions are always compressed: they are not used in place.
+  void storeRegions(std::size_t level, std::span<const glm::ivec3> cells, const SweptRegions& swept) {
+    std::vector<EncodedRegion> batch;
+    for (std::size_t first = 0; first < cells.size(); first += batch.size()) {
+      batch.assign(std::min(kRegionBatch, cells.size() - first), {});
+      tbb::parallel_for(std::size_t(0), batch.size(), [&](std::size_t i) {
+        auto& [entry, bytes] = batch[i];
+        bytes = swept.bytes(first + i);
+        entry = {.cell = cells[first + i], .level = std::uint32_t(level), .parts = swept.parts(first + i), .bytes = bytes.size()};
+        entry.codec = compressPlanes(sizeof(std::uint16_t), bytes);
+        entry.storedBytes = bytes.size();
+        entry.hash = XXH3_64bits(bytes.data(), bytes.size());
+      });
+      for (auto& [entry, bytes] : batch) {
+        entry.offset = regionSpool->bytes();
+        regions.push_back(entry);
+        bytes.resize(roundUp(bytes.size(), kChunkAlignment));
+        regionSpool->append(bytes);
+      }
+    }
+  }
+
+  void writeRegions(SectionWriter& file) {
+    const std::uint64_t first = file.next() + roundUp(regions.size() * sizeof(RegionEntry), kPageBytes);
+    for (RegionEntry& entry : regions) entry.offset += first;
+    file.section(SectionKind::RegionIndex, Channel(), 0, [&](const auto& take) { take(std::as_bytes(std::span(regions))); });
+    file.section(SectionKind::Regions, Channel(), 0, [&](const auto& take) { regionSpool->readAll(take); });
   }
 
   void writeChunks(SectionWriter& file, std::size_t level, std::size_t channel, const Classification& classification) {
@@ -306,6 +357,29 @@ FvxWriter::Summary FvxWriter::summary(Channel channel) const {
   return sum;
 }
 
+void FvxWriter::sweepRegions(const RegionSettings& swept, const Progress& progress) {
+  State& state = *state_;
+  state.pyramid.finish();
+  state.regionSpool = std::make_unique<Spool>(state.folder);
+  const Encoding& encoding = *state.settings.encodings[std::size_t(Channel::Scalars)];
+  for (std::size_t level = state.stores.size(); level-- > 0;) {
+    ChunkStore& store = state.stores[level][std::size_t(Channel::Scalars)];
+    store.spool->flush();
+    const SpooledPlanes planes(state.dimensions[level], store.entries, *store.spool, encoding);
+    const SweptLevel sweptLevel{.dimensions = state.dimensions[level],
+                                .indexToWorld = levelToWorld(swept.indexToWorld, int(level)),
+                                .regions = regionsOf(store.entries),
+                                .planes = [&](int first, std::span<float> densities) { planes.read(first, densities); },
+                                .densityScale = swept.densityScale,
+                                .encoding = encoding};
+    SweptRegions regions(state.folder);
+    regions.sweep(sweptLevel, [&](double fraction) {
+      if (progress && level == 0) progress("sweeping", fraction);  // the coarser ones take a seventh of the time
+    });
+    state.storeRegions(level, sweptLevel.regions, regions);
+  }
+}
+
 void FvxWriter::finish(const std::filesystem::path& file, const Description& description, const ContentCells& content,
                        const std::string& provenance) {
   State& state = *state_;
@@ -320,6 +394,7 @@ void FvxWriter::finish(const std::filesystem::path& file, const Description& des
   for (std::size_t level = state.stores.size(); level-- > 0;)
     for (std::size_t channel = 0; channel < kChannels; ++channel)
       if (state.settings.encodings[channel]) state.writeChunks(writer, level, channel, *description.volume.classification);
+  if (state.regionSpool) state.writeRegions(writer);
   writer.finish();
 }
 

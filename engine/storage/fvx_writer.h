@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "engine/core/stages.h"
 #include "engine/storage/chunk_pyramid.h"
 #include "engine/storage/fvx_description.h"
 #include "engine/volume/subject.h"
@@ -19,6 +20,12 @@ struct WriteSettings {
   /// Whether to leave out bricks of scalars of which none is above 0, in addition to those without data.
   bool leaveOutZeros = false;
   bool compress = false;
+};
+
+/// What densities are swept with (region_sweep.h).
+struct RegionSettings {
+  double densityScale = 1.0;  ///< extinction per world unit at density 1
+  glm::dmat4 indexToWorld{1.0};
 };
 
 /// Throws std::system_error if it cannot write: to be used within writeAtomically (core/atomic_file.h).
@@ -37,6 +44,8 @@ class FvxWriter {
     float minimum = 0.0f, maximum = 0.0f;
   };
   Summary summary(Channel channel) const;
+  /// Sweeps densities for the regions of all levels (regions.h). To be called after the last chunk.
+  void sweepRegions(const RegionSettings& settings, const Progress& progress);
   /// Writes the file. `provenance` is JSON for readers of the file.
   void finish(const std::filesystem::path& file, const Description& description, const ContentCells& content,
               const std::string& provenance);

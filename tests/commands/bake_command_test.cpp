@@ -95,6 +95,23 @@ TEST_F(BakeCommand, ACoarserLevelIsDrawnWhereItShowsTheSameOrWhereMemoryIsShort)
   EXPECT_NE(limited.err.find("of its resolution"), std::string::npos) << limited.err;
 }
 
+/// A part of the volume, close up, so that its voxels are needed.
+TEST_F(BakeCommand, WhatDoesNotFitIsDrawnRegionByRegionToTheSameBitsInAnyMemory) {
+  expectSuccess(run("bake procedural:cloud @a.fvx --resolution 192 --quiet"));
+  const std::string render = "render @a.fvx --size 40 --camera-position 3,1,2 --look-at 0,0,0 --fov 2 ";
+  expectSuccess(run(render + "@shares.exr --share 0/1 --draw splats --float --quiet"));
+  ASSERT_GT(largestDifference(picture("shares.exr"), Image{.size = {40, 40}, .pixels = std::vector<glm::vec4>(1600)}), 0.1);
+  for (const int limit : {48, 64}) {
+    const ProgramResult result = run(render + fmt::format("@limited.exr --float --verbose --memory-limit {}", limit));
+    expectSuccess(result);
+    EXPECT_NE(result.err.find("region by region: the volume does not fit"), std::string::npos) << result.err;
+    EXPECT_EQ(largestDifference(picture("limited.exr"), picture("shares.exr")), 0.0) << limit;
+  }
+  for (const std::string part : {"0", "1"}) expectSuccess(run(render + "@part" + part + ".exr --quiet --sums --draw splats --share " + part + "/2"));
+  expectSuccess(run("merge @part0.exr @part1.exr @merged.exr --float --quiet"));
+  EXPECT_EQ(largestDifference(picture("merged.exr"), picture("shares.exr")), 0.0);
+}
+
 TEST_F(BakeCommand, BadOutputsAreRefused) {
   expectCleanRefusal("bake procedural:cloud @a.vdb", ExitCode::Usage, ".fvx");
   expectCleanRefusal("bake procedural:cloud @missing/a.fvx", ExitCode::Output, "missing");

@@ -1,7 +1,11 @@
 #include "engine/storage/baked_volume.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "engine/storage/procedural_stream.h"
@@ -211,6 +215,46 @@ TEST(BakedVolume, WhatIsSeenIsInTheFileWhateverTheLevel) {
   EXPECT_EQ(stored.points, found.points);
   EXPECT_EQ(stored.centre, found.centre);
   EXPECT_EQ(bakedOutline(file, 2).dimensions, glm::ivec3(18, 11, 10));
+}
+
+/// Bytes of a file that are in memory.
+std::uint64_t cachedBytes(const std::filesystem::path& file) {
+  const auto size = std::size_t(std::filesystem::file_size(file));
+  const int descriptor = open(file.c_str(), O_RDONLY);
+  void* const map = mmap(nullptr, size, PROT_READ, MAP_SHARED, descriptor, 0);
+  close(descriptor);
+  std::vector<unsigned char> pages((size + 4095) / 4096);
+  mincore(map, size, pages.data());
+  munmap(map, size);
+  return std::uint64_t(std::ranges::count_if(pages, [](unsigned char page) { return (page & 1) != 0; })) * 4096;
+}
+
+void forget(const std::filesystem::path& file) {
+  const int descriptor = open(file.c_str(), O_RDWR);
+  fsync(descriptor);
+  posix_fadvise(descriptor, 0, 0, POSIX_FADV_DONTNEED);
+  close(descriptor);
+}
+
+TEST(BakedVolume, ReadersOfSharesReadTheirOwnRegionsOfTheFileAlone) {
+  const test::TemporaryFolder folder;
+  const Volume volume = makeVolume({256, 256, 128}, glm::dmat4(1.0), [](int x, int y, int z) { return 0.1 + 0.001 * (x + y + z); });
+  bakeVolume(folder / "a.fvx", volume, {.densityScale = 0.01}, {});
+  forget(folder / "a.fvx");
+  if (cachedBytes(folder / "a.fvx") > 0) GTEST_SKIP() << "this file system keeps files in memory";
+  constexpr std::size_t kReaders = 4;
+  const auto size = double(std::filesystem::file_size(folder / "a.fvx"));
+  for (std::size_t reader = 0; reader < kReaders; ++reader) {
+    {
+      const FvxFile file(folder / "a.fvx");
+      ASSERT_EQ(file.regions(0).size(), 32u);
+      for (std::size_t i = reader; i < file.regions(0).size(); i += kReaders) readBakedRegion(file, file.regions(0)[i]);
+    }
+    // The kernel reads ahead, and coarse levels, which none of them reads, are a seventh.
+    EXPECT_GT(double(cachedBytes(folder / "a.fvx")), 0.7 * size / kReaders);
+    EXPECT_LT(double(cachedBytes(folder / "a.fvx")), 1.5 * size / kReaders);
+    forget(folder / "a.fvx");
+  }
 }
 
 TEST(BakedVolume, AVolumeThatIsTooLongIsRefused) {
