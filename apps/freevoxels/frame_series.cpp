@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <limits>
 
+#include "apps/freevoxels/colored_parts.h"
 #include "apps/freevoxels/share_group.h"
 #include "engine/core/error.h"
 #include "engine/octree/volume_limits.h"
@@ -187,6 +188,7 @@ std::map<std::string, std::string> FrameSeries::facts() const {
   if (options_.drawsShares()) {
     facts["share"] = sharePartText(options_.shares.whole());
     facts["content"] = report_.contentHash;
+    if (options_.shares.coloredParts) facts["color-parts"] = std::to_string(*options_.shares.coloredParts);
   }
   return facts;
 }
@@ -258,6 +260,8 @@ void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, std::span<con
 std::optional<FixedSums> FrameSeries::drawSums(Renderer& renderer, const Camera& camera, const FrameSettings& settings) {
   ShareGroup* const group = options_.group;
   const SharePart part = group != nullptr ? group->part() : options_.shares.whole();
+  if (options_.shares.coloredParts)
+    return drawColoredParts(renderer, camera, settings, *options_.shares.coloredParts, prefixed(line_.progress(), prefix()));
   FixedSums sums = renderer.renderShares(camera, settings, part, prefixed(line_.progress(), prefix()));
   if (group == nullptr) return sums;
   const StageTimer timer(report_.stages, "add up sums");

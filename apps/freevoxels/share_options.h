@@ -13,10 +13,13 @@ namespace freevoxels {
 struct ShareOptions {
   std::optional<SharePart> part;
   bool sums = false;
+  std::optional<int> coloredParts;  ///< number of parts that an image shows by colours
 
   void add(CLI::App& app);
+  /// Fails with ExitCode::Usage where the options contradict each other.
+  void check() const;
   /// Whether frames are drawn share by share.
-  bool isGiven() const { return part.has_value() || sums; }
+  bool isGiven() const { return part.has_value() || sums || coloredParts.has_value(); }
   /// All shares where the option is not given.
   SharePart whole() const { return part.value_or(SharePart{}); }
 };
