@@ -151,6 +151,18 @@ bool MpiJob::addUp(FixedSums& sums) {
   return rankInGroup_ == 0;
 }
 
+void MpiJob::bring(std::vector<std::byte>& bytes, int from) {
+  std::uint64_t count = bytes.size();
+  if (rank_ == from) {
+    MPI_Send(&count, 1, MPI_UINT64_T, 0, 0, MPI_COMM_WORLD);
+    MPI_Send(bytes.data(), int(count), MPI_BYTE, 0, 0, MPI_COMM_WORLD);
+    return;
+  }
+  MPI_Recv(&count, 1, MPI_UINT64_T, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  bytes.resize(count);
+  MPI_Recv(bytes.data(), int(count), MPI_BYTE, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+}
+
 void MpiJob::logStages(const RunReport& report) {
   std::string mine;
   for (const StageTime& stage : report.stages) mine += fmt::format("{}\t{}\n", stage.name, stage.milliseconds);

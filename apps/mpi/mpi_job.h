@@ -36,6 +36,8 @@ class MpiJob : public ShareGroup {
   bool draws(std::size_t frame) const override { return int(frame % std::size_t(groupCount_)) == group_; }
   SharePart part() const override { return {rankInGroup_, sizeOfGroup_}; }
   bool addUp(FixedSums& sums) override;
+  SharePart place() const override { return {rank_, size_}; }
+  void bring(std::vector<std::byte>& bytes, int from) override;
   void logStages(const RunReport& report) override;
 
  private:

@@ -74,6 +74,18 @@ TEST_F(MpiTest, AnEyeInsideSeesTheBitsOfMergedShares) {
   EXPECT_EQ(readBytes(folder / "all.png"), readBytes(folder / "merged.png"));
 }
 
+/// 64 chunks of two channels: four stretches, which do not come out even for three ranks.
+TEST_F(MpiTest, AnyNumberOfRanksBakesTheBytesOfOneProcess) {
+  const std::string bake = "bake procedural:fire --resolution 97 --compress --quiet ";
+  expectSuccess(run(bake + "@one.fvx"));
+  const std::string expected = readBytes(folder / "one.fvx");
+  for (const int ranks : {1, 2, 3}) {
+    const ProgramResult result = runMpi(ranks, bake + "@all.fvx");
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(readBytes(folder / "all.fvx"), expected) << ranks;
+  }
+}
+
 TEST_F(MpiTest, FramesAreSplitOverGroupsOfRanks) {
   const std::string turn = "turntable procedural:cloud --resolution 24 --size 48x36 --frames 3 ";
   expectSuccess(run(turn + "@one_#.png --share 0/1 --quiet"));
