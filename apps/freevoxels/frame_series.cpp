@@ -249,44 +249,56 @@ void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, std::span<con
     }
     view.camera = cameras[i];
     drawFrame(renderer, view, settings, frames[i]);
+    ++drawn_;
     const std::vector<StageTime> times = renderer.timings();
     addTimes(report_.stages, std::span(times).subspan(built.size()));
   }
+  finishAddingUp(renderer);
   addToReport(renderer, *view.volume);
   for (const Frame* empty : std::exchange(waiting_, {})) writeEmpty(*empty);
 }
 
-/// The sums of this process, or of its whole group on the process that writes the frame; on the others of the group none.
-std::optional<FixedSums> FrameSeries::drawSums(Renderer& renderer, const Camera& camera, const FrameSettings& settings) {
-  ShareGroup* const group = options_.group;
-  const SharePart part = group != nullptr ? group->part() : options_.shares.whole();
-  if (options_.shares.coloredParts)
-    return drawColoredParts(renderer, camera, settings, *options_.shares.coloredParts, prefixed(line_.progress(), prefix()));
-  FixedSums sums = renderer.renderShares(camera, settings, part, prefixed(line_.progress(), prefix()));
-  if (group == nullptr) return sums;
-  const StageTimer timer(report_.stages, "add up sums");
-  if (group->addUp(sums)) return sums;
-  return {};
+/// The sums of this process's shares.
+FixedSums FrameSeries::drawSums(Renderer& renderer, const Camera& camera, const FrameSettings& settings) {
+  const Progress progress = prefixed(line_.progress(), prefix());
+  if (options_.shares.coloredParts) return drawColoredParts(renderer, camera, settings, *options_.shares.coloredParts, progress);
+  const SharePart part = options_.group != nullptr ? options_.group->part() : options_.shares.whole();
+  return renderer.renderShares(camera, settings, part, progress);
 }
 
 void FrameSeries::drawFrame(Renderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame) {
-  Image image;
-  if (options_.drawsShares()) {
-    const std::optional<FixedSums> sums = drawSums(renderer, view.camera, settings);
-    if (!sums || options_.shares.sums) {
-      if (sums) {
-        const DeferredInterrupts wholeFile;
-        const StageTimer timer(report_.stages, "write pictures");
-        writeSums(frame.files.front(), *sums, options_.scene.withOutputs(frame.files).header(view, "render", describe(view, frame.input), facts()));
-        printNames(frame);
-      }
-      ++drawn_;
-      return;
-    }
-    image = resolveSums(*sums, settings.composite == Composite::Normalised);
+  if (!options_.drawsShares())
+    return complete(renderer.render(view.camera, settings, prefixed(line_.progress(), prefix())), renderer, view, frame);
+  FixedSums sums = drawSums(renderer, view.camera, settings);
+  if (options_.group != nullptr) {
+    finishAddingUp(renderer);
+    addingUp_ = {&frame, view, std::async([group = options_.group, sums = std::move(sums)]() mutable {
+                   AddedUp result;
+                   const StageTimer timer(result.times, "add up sums");
+                   if (group->addUp(sums)) result.sums = std::move(sums);
+                   return result;
+                 })};
+  } else if (options_.shares.sums) {
+    const DeferredInterrupts wholeFile;
+    const StageTimer timer(report_.stages, "write pictures");
+    writeSums(frame.files.front(), sums, options_.scene.withOutputs(frame.files).header(view, "render", describe(view, frame.input), facts()));
+    printNames(frame);
   } else {
-    image = renderer.render(view.camera, settings, prefixed(line_.progress(), prefix()));
+    complete(resolveSums(sums, settings.composite == Composite::Normalised), renderer, view, frame);
   }
+}
+
+/// Waits for the sums of the group's last frame, and writes its image where they are.
+void FrameSeries::finishAddingUp(const Renderer& renderer) {
+  if (!addingUp_.result.valid()) return;
+  const AddedUp added = addingUp_.result.get();
+  addTimes(report_.stages, added.times);
+  if (!added.sums) return;
+  const bool normalised = options_.frameSettings().composite == Composite::Normalised;
+  complete(resolveSums(*added.sums, normalised), renderer, addingUp_.view, *addingUp_.frame);
+}
+
+void FrameSeries::complete(Image image, const Renderer& renderer, const Scene& view, const Frame& frame) {
   const std::string name = frames_ == 1 ? "" : frame.files.front() + ": ";
   line_.erase();
   if (const std::size_t pixels = clearPixelsThatAreNoNumbers(image); pixels > 0)
@@ -304,7 +316,6 @@ void FrameSeries::write(Image image, const Scene& view, const Frame& frame) {
   writer_.start([scene = options_.scene.withOutputs(frame.files), image = std::move(image), view,
                  options = describe(view, frame.input), facts = facts()] { scene.write(image, view, "render", options, facts); });
   written_ = &frame;
-  ++drawn_;
 }
 
 /// Waits until the frame before is written, and prints the names of its files.
@@ -329,10 +340,8 @@ void FrameSeries::writeEmpty(const Frame& frame) {
     waiting_.push_back(&frame);
     return;
   }
-  if (!options_.leads()) {
-    ++drawn_;
-    return;
-  }
+  ++drawn_;
+  if (!options_.leads()) return;
   const FrameSettings settings = options_.frameSettings();
   const std::size_t pixels = std::size_t(settings.size.x) * std::size_t(settings.size.y);
   Image image{.size = settings.size, .pixels = std::vector<glm::vec4>(pixels, glm::vec4(0.0f))};

@@ -56,7 +56,9 @@ class FrameSeries {
   void begin(const Scene& view, std::size_t frames);
   void agree(const Scene& view);
   void drawFrame(Renderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame);
-  std::optional<FixedSums> drawSums(Renderer& renderer, const Camera& camera, const FrameSettings& settings);
+  FixedSums drawSums(Renderer& renderer, const Camera& camera, const FrameSettings& settings);
+  void finishAddingUp(const Renderer& renderer);
+  void complete(Image image, const Renderer& renderer, const Scene& view, const Frame& frame);
   void write(Image image, const Scene& view, const Frame& frame);
   void writeEmpty(const Frame& frame);
   void finishWriting();
@@ -68,6 +70,17 @@ class FrameSeries {
   void addToReport(const Renderer& renderer, const Volume& volume);
   std::string prefix() const;
 
+  struct AddedUp {
+    std::optional<FixedSums> sums;  ///< on the process that writes the frame
+    std::vector<StageTime> times;
+  };
+  /// The sums of the group's last frame, which are added up while the next one is drawn.
+  struct AddingUp {
+    const Frame* frame = nullptr;
+    Scene view;
+    std::future<AddedUp> result;
+  };
+
   const RenderOptions& options_;
   const Device& device_;
   RunReport& report_;
@@ -76,6 +89,7 @@ class FrameSeries {
   std::chrono::steady_clock::time_point begun_;
   std::optional<Scene> reference_;    ///< the first frame's with a fixed view, else the last one's
   BackgroundWriter writer_;
+  AddingUp addingUp_;
   const Frame* written_ = nullptr;  ///< that `writer_` is writing
   std::vector<const Frame*> drawnElsewhere_;  ///< frames of other processes of the group
   std::vector<const Frame*> waiting_;  ///< empty frames before any frame that says how they are seen

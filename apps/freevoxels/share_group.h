@@ -30,7 +30,8 @@ class ShareGroup {
   virtual bool draws(std::size_t frame) const = 0;
   /// The shares that this process draws of such a frame.
   virtual SharePart part() const = 0;
-  /// Adds up the sums of all processes that draw the frame. True on the one that has the total afterwards.
+  /// Adds up the sums of all processes that draw the frame. True on the one that has the total afterwards. May be called by another
+  /// thread, but not while any other function is called.
   virtual bool addUp(FixedSums& sums) = 0;
   /// This process among all processes, and their number.
   virtual SharePart place() const = 0;

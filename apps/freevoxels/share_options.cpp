@@ -48,6 +48,11 @@ void ShareOptions::check() const {
   if (coloredParts && (part || sums)) fail(ExitCode::Usage, "--color-parts shows all parts in one image: leave --share and --sums out");
 }
 
+void checkRanks(int ranks) {
+  if (ranks > kShares)
+    fail(ExitCode::Usage, "{} ranks are more than the {} shares that a frame is divided into: start {} or fewer", ranks, kShares, kShares);
+}
+
 FrameSettings sharedSettings(FrameSettings settings) {
   if (settings.composite == Composite::Sorted)
     fail(ExitCode::Usage, "a sorted image cannot be divided into shares: leave --composite sorted out");

@@ -28,7 +28,11 @@ struct ShareOptions {
 SharePart readSharePart(const std::string& name, const std::string& text);
 std::string sharePartText(const SharePart& part);
 
-/// Settings of a frame that is drawn share by share: nothing is left out as hidden, which other shares' sums would have to tell. Fails with ExitCode::Usage where a method was asked for that cannot be divided.
+/// Fails with ExitCode::Usage where there are more processes than shares.
+void checkRanks(int ranks);
+
+/// Settings of a frame that is drawn share by share: nothing is left out as hidden, which other shares' sums would have to tell. Fails
+/// with ExitCode::Usage where a method was asked for that cannot be divided.
 FrameSettings sharedSettings(FrameSettings settings);
 
 }  // namespace freevoxels
