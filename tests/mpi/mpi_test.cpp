@@ -159,6 +159,24 @@ TEST_F(MpiTest, AFullDiskOfRankZeroEndsTheJobAndLeavesNoFile) {
   EXPECT_EQ(folder.fileCount(), 0u);
 }
 
+/// The scripts for Slurm as it runs them, but with mpirun in the place of srun, and the tasks of the array one after the other.
+TEST_F(MpiTest, TheJobScriptsForSlurmDrawTheSameImage) {
+  writeBytes(folder / "srun",
+             "#!/bin/sh\n[ \"$1 $2\" = '--mpi=pmix --kill-on-bad-exit=1' ] || exit 99\nshift 2\n"
+             "exec '" FREEVOXELS_MPIRUN "' --map-by :OVERSUBSCRIBE --bind-to none -n 2 \"$@\"\n");
+  std::filesystem::permissions(folder / "srun", std::filesystem::perms::owner_all);
+  const std::string programs = std::filesystem::path(FREEVOXELS_MPI_PROGRAM).parent_path().string();
+  const std::string script = "set -e; cd '" + folder.path().string() + "'; PATH='" + folder.path().string() + ":" + programs + "':$PATH\n"
+                             "freevoxels generate cube a.vdb --resolution 12 --quiet\n"
+                             "bash " FREEVOXELS_JOB_SCRIPTS "/mpi_job.sh a.vdb all.png --size 32 --quiet\n"
+                             "export SLURM_ARRAY_TASK_MIN=5 SLURM_ARRAY_TASK_COUNT=2\n"
+                             "for task in 5 6; do SLURM_ARRAY_TASK_ID=$task bash " FREEVOXELS_JOB_SCRIPTS "/array_job.sh a.vdb --size 32 --quiet; done\n"
+                             "freevoxels merge part_*.exr merged.png --quiet\n";
+  const ProgramResult result = runProgramFile("/bin/sh", {"-c", script});
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(readBytes(folder / "merged.png"), readBytes(folder / "all.png"));
+}
+
 TEST_F(MpiTest, ProcessesThatDoNotKnowEachOtherAreRefused) {
   setenv("SLURM_STEP_NUM_TASKS", "4", 1);
   const ProgramResult result = runProgramFile(FREEVOXELS_MPI_PROGRAM, words("render procedural:cube @a.png"));
