@@ -22,7 +22,7 @@ std::filesystem::path programBeside(const char* name) {
 std::optional<double> millisecondsOfJob(int ranks, int frames, const std::string& volume, int resolution, const std::string& folder) {
   const std::string command = fmt::format(
       "LP_NUM_THREADS=1 mpirun --map-by :OVERSUBSCRIBE --bind-to none -n {} '{}' turntable procedural:{} '{}/frame_#.png' --frames {} "
-      "--resolution {} --size 1024 --unlit --quiet > '{}/log' 2>&1",
+      "--resolution {} --size 1024 --unlit --draw splats --quiet > '{}/log' 2>&1",
       ranks, programBeside("freevoxels-mpi").string(), volume, folder, frames, resolution, folder);
   const auto start = std::chrono::steady_clock::now();
   if (std::system(command.c_str()) != 0) return {};
