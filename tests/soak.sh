@@ -9,9 +9,11 @@ frames="${1:-1000}"
 volumes="${2:-200}"
 folder="$(mktemp -d)"
 trap 'rm -rf "$folder"' EXIT
+failed=0
 
 # soak NAME COMMAND...: runs it and samples resident KiB and open files of the process. The largest of the last quarter may be at most
-# 2 % and 4 MiB above that of the second quarter (the first one fills caches), and no file more may be open.
+# 2 % and 4 MiB above that of the second quarter (the first one fills caches); at most two files more, which are being
+# read or written, may be open.
 soak() {
   local name="$1" samples="$folder/samples" pid
   shift
@@ -34,13 +36,14 @@ soak() {
       before = most(memory, quarter, 2 * quarter); after = most(memory, 3 * quarter, NR - 1)
       filesBefore = most(files, quarter, 2 * quarter); filesAfter = most(files, 3 * quarter, NR - 1)
       printf "soak: %s: %d MiB and %d files, at the end %d MiB and %d files\n", name, before / 1024, filesBefore, after / 1024, filesAfter
-      if (after > 1.02 * before + 4096 || filesAfter > filesBefore) { print "soak: " name " FAILED: not flat"; exit 1 }
-    }' "$samples"
+      if (after > 1.02 * before + 4096 || filesAfter > filesBefore + 2) { print "soak: " name " FAILED: not flat"; exit 1 }
+    }' "$samples" || failed=1
 }
 
 soak "$frames frames" "$program" turntable procedural:cloud "$folder/frame_#####.png" --resolution 32 --size 64 --frames "$frames" --quiet
 
 for kind in 0 1 2 3; do "$program" generate cloud "$folder/made_$kind.vdb" --resolution $((28 + 4 * kind)) --quiet; done
-for i in $(seq 1 "$volumes"); do ln -s "made_$((i % 4)).vdb" "$folder/volume_$(printf %05d "$i").vdb"; done
+for i in $(seq 1 "$volumes"); do cp "$folder/made_$((i % 4)).vdb" "$folder/volume_$(printf %05d "$i").vdb"; done
 soak "$volumes volumes" "$program" render "$folder/volume_#####.vdb" "$folder/volume_#####.png" --size 64 --quiet
+[ "$failed" -eq 0 ] || exit 1
 echo "soak: PASSED"
