@@ -52,6 +52,8 @@ struct Renderer::State {
     std::shared_ptr<const SplatTargets> targets;
     const AttenuationTable* table = nullptr;  ///< where the frame reads it
     const Buffer* order = nullptr;            ///< of the voxels, where they are sorted
+    const CutCandidates* candidates = nullptr;  ///< of a frame that draws some shares only
+    bool isCut() const { return !constants.detail.isOneLevel() || !constants.cull.leavesNothingOut(); }
   };
   VolumeMemory memoryOfVolume() const;
   const BuiltVolume& builtWithBlocks(const Progress& progress = {});
@@ -136,13 +138,14 @@ CutInputs Renderer::State::cutInputs(const Frame& frame) const {
           .setup = frame.constants.setup,
           .rays = frame.constants.resolve,
           .detail = frame.constants.detail,
-          .cull = frame.constants.cull};
+          .cull = frame.constants.cull,
+          .candidates = frame.candidates};
 }
 
 /// The blocks to draw, without those that the table calls hidden.
 SplatPass::Inputs Renderer::State::recordList(Commands& commands, const Frame& frame) {
   const FrameConstants& constants = frame.constants;
-  lastWasCut = !constants.detail.isOneLevel() || !constants.cull.leavesNothingOut();
+  lastWasCut = frame.isCut();
   lastLevel = constants.detail.finest;
   SplatPass::Inputs drawing{.volume = built.volume, .table = frame.table, .order = frame.order};
   if (constants.lit) drawing.lights = &lights->lights();
@@ -315,13 +318,18 @@ FixedSums Renderer::State::gatherShares(const Camera& camera, const FrameSetting
 FixedSums Renderer::State::splatShares(const Camera& camera, const FrameSettings& settings, const SharePart& part,
                                        const Progress& progress) {
   Commands commands(device);
-  const Frame frame = prepareSplats(commands, camera, settings, progress);
+  Frame frame = prepareSplats(commands, camera, settings, progress);
   if (!shares || shares->hasDistance() != settings.depth) shares = std::make_unique<ShareDrawing>(device, built, settings.depth);
+  if (frame.isCut()) {
+    const StageTimer timer(frameTimes, kChoosingShares);
+    frame.candidates = shares->candidates(part);
+  }
   const SplatPass::Inputs drawing = recordList(commands, frame);
+  const std::uint64_t mostBlocks = lastWasCut ? cutter->mostBlocks() : built.volume.stored[std::size_t(lastLevel)];
   FixedSums layout = sumsLayout(built.volume, frame.constants, settings);
   const std::optional<int> wholeLevel = lastWasCut ? std::nullopt : std::optional(lastLevel);
-  return shares->draw(commands, {*splats, drawing, wholeLevel, frame.constants, *frame.targets, std::move(layout)}, part, frameTimes,
-                      progress);
+  return shares->draw(commands, {*splats, drawing, mostBlocks, wholeLevel, frame.constants, *frame.targets, std::move(layout)}, part,
+                      frameTimes, progress);
 }
 
 std::shared_ptr<const SplatTargets> Renderer::State::recordImage(Commands& commands, const Camera& camera,

@@ -29,6 +29,9 @@ namespace freevoxels {
 /// The image of a frame that was left on the device. Waits.
 Image downloadImage(const Device& device, const SplatTargets& targets);
 
+/// A stage of renderShares, once for a part: the list of the blocks that it has to look at.
+inline constexpr const char* kChoosingShares = "choose blocks of shares";
+
 class Renderer {
  public:
   /// Uploads the volume, which must outlive the renderer, and makes what every frame needs: classified blocks

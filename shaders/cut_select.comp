@@ -22,6 +22,9 @@ layout(constant_id = 1) const bool kDeferred = false;
 // no thread takes.
 layout(constant_id = 2) const bool kVoxels = false;
 
+// Whether only some of the blocks are candidates (engine/visibility/cut_candidates.h).
+layout(constant_id = 3) const bool kSome = false;
+
 layout(local_size_x = kCutThreads) in;
 // A byte for each block above the voxels, four in a word: which of its children to test, and which of them
 // are deferred.
@@ -30,6 +33,8 @@ layout(scalar, binding = 4) buffer Deferred { uint deferred[]; };
 layout(scalar, binding = 5) writeonly buffer Masks { uint masks[]; };
 layout(scalar, binding = 6) buffer GroupCounts { uint groupCounts[]; };
 layout(scalar, binding = 7) buffer Counts { CutCounts counts; };
+// kSome: for each parent of the list, a bit for each child that is a candidate.
+layout(scalar, binding = 10) readonly buffer Candidates { uint candidates[]; };
 
 shared CutCounts sums;
 shared uint asked[kCutSlotsPerGroup];  // the slots to test, in any order
@@ -55,9 +60,11 @@ bool isOutside(vec3 center, int edge) {
   return false;
 }
 
-// The index of a slot's parent among the blocks above the voxels: its rank, because the list is in the order
-// of ranks.
-uint parentPlace(uint slot) { return frame.levels[push.level + 1].firstRank - frame.coarseFirst + slot / 8; }
+// The index of a slot's parent among the blocks above the voxels: its rank. The list of all blocks is in the order of ranks.
+uint parentPlace(uint slot) {
+  const BlockLevel level = frame.levels[push.level + 1];
+  return (kSome ? rankAt(level, parents[slot / 8]) : level.firstRank + slot / 8) - frame.coarseFirst;
+}
 
 // Which of a thread's slots to test, a bit each.
 uint candidateSlots(uint first) {
@@ -68,7 +75,9 @@ uint candidateSlots(uint first) {
     if (first + 8 * i >= push.slotCount) break;
     const uint parent = parentPlace(first + 8 * i);
     const uint word = kDeferred ? deferred[parent / 4] : children[parent / 4];
-    bits |= (word >> (8 * (parent & 3)) & 255) << (8 * i);
+    uint tested = word >> (8 * (parent & 3)) & 255;
+    if (kSome) tested &= candidates[first / 8 + i];
+    bits |= tested << (8 * i);
   }
   return bits;
 }

@@ -26,12 +26,13 @@ struct Scaling {
   struct Ranks {
     int count = 1;
     double slowest = 0.0, mean = 0.0;  ///< milliseconds to draw a rank's shares
+    double undivided = 0.0;            ///< milliseconds of the slowest rank that no number of ranks makes less: its sums' copy to the host
     std::vector<double> speedUps;      ///< by network; of one rank, none
   };
   std::string volume;          ///< "opaque head 512^3"
   std::uint64_t blocks = 0;    ///< drawn
   std::uint64_t bytes = 0;     ///< that a rank sends of its sums
-  double undivided = 0.0;      ///< milliseconds of the same frame drawn at once, without shares
+  double atOnce = 0.0;         ///< milliseconds of the same frame drawn at once, without shares
   std::vector<Ranks> ranks;
 };
 

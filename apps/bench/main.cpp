@@ -8,6 +8,7 @@
 
 #include "apps/bench/bench_stages.h"
 #include "apps/bench/cluster.h"
+#include "apps/bench/real_ranks.h"
 #include "apps/freevoxels/device_options.h"
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/text_table.h"
@@ -168,10 +169,23 @@ nlohmann::ordered_json toJson(const Device& device, const Results& results) {
   return json;
 }
 
+/// What real ranks take beside the modelled ones.
+void printRealRanks(int resolution) {
+  const std::string volume = "cloud";
+  const std::optional<double> one = bench::frameOfRealRanks(1, volume, resolution);
+  const std::optional<double> two = one ? bench::frameOfRealRanks(2, volume, resolution) : std::nullopt;
+  if (!two)
+    fmt::print("real ranks: not run, as mpirun or freevoxels-mpi is not there or failed\n");
+  else
+    fmt::print("real ranks, {} {}^3, one thread each: {:.1f} ms a frame by 1, {:.1f} ms by 2: speed-up {:.2f}\n", volume, resolution, *one,
+               *two, *one / *two);
+}
+
 /// Frames that are divided among ranks, instead of the stages.
 void measureCluster(const Device& device, bool quick, const std::string& svg) {
   const std::vector<bench::Scaling> scalings = bench::cluster(device, quick ? 128 : 512);
   for (const std::string& line : bench::tableLines(scalings)) fmt::print("{}\n", line);
+  printRealRanks(quick ? 128 : 256);
   if (svg.empty()) return;
   std::string plot = svgPlot(bench::speedUpPlot(scalings));
   plot.insert(std::string_view("<svg").size(), R"( xmlns="http://www.w3.org/2000/svg")");  // a file of its own needs its namespace

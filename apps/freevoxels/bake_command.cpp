@@ -10,6 +10,7 @@
 #include "apps/freevoxels/progress_line.h"
 #include "engine/core/error.h"
 #include "engine/storage/procedural_stream.h"
+#include "engine/volume/content_hash.h"
 
 namespace freevoxels {
 
@@ -77,17 +78,35 @@ BakeSettings BakeCommand::settings(const Volume& volume, const Classification& c
           .provenance = json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace)};
 }
 
+void BakeCommand::agree(const std::string& content, const BakeSettings& settings) const {
+  if (group_ == nullptr) return;
+  group_->agree("another version of the program", programVersion());
+  group_->agree("another volume or transfer function", content);
+  nlohmann::json provenance = nlohmann::json::parse(settings.provenance);
+  provenance.erase("volume");  // the volume's own name may differ from machine to machine
+  provenance["options"].erase("input");
+  group_->agree("other options", fmt::format("{} {} {}", settings.keepScalars, settings.compress, provenance.dump()));
+}
+
+BakeTeam BakeCommand::team() const {
+  if (group_ == nullptr) return {};
+  const SharePart place = group_->place();
+  return {.index = place.index, .count = place.count, .bring = [this](std::vector<std::byte>& bytes, int from) { group_->bring(bytes, from); }};
+}
+
 void BakeCommand::run() {
   messages_.apply();
+  if (!leads()) spdlog::set_level(spdlog::level::err);
+  if (group_ != nullptr) group_->begin();
   scene_.input.checkGiven();
   if (file_.empty()) fail(ErrorKind::Usage, "OUT.fvx is required: name a file to write");
   if (std::filesystem::path(file_).extension() != ".fvx")
     fail(ErrorKind::Usage, "'{}' is not named .fvx, and bake writes baked volumes; name it so", file_);
   scene_.checkLook();
-  checkOutput(file_);
+  if (leads()) checkOutput(file_);
   if (!proceduralName(scene_.input.input)) checkDistinct({scene_.input.input, file_});
 
-  ProgressLine line(!messages_.quiet);
+  ProgressLine line(!messages_.quiet && leads());
   line.begin("reading " + scene_.input.input);
   const std::optional<std::string> name = proceduralName(scene_.input.input);
   const glm::u64vec3 size(scene_.input.resolution.value_or(glm::ivec3(kDefaultResolution)));
@@ -96,7 +115,7 @@ void BakeCommand::run() {
   else
     bake(line);
   line.erase();
-  if (!messages_.quiet) fmt::print("{}\n", file_);
+  if (!messages_.quiet && leads()) fmt::print("{}\n", file_);
 }
 
 void BakeCommand::bake(ProgressLine& line) const {
@@ -108,7 +127,9 @@ void BakeCommand::bake(ProgressLine& line) const {
   line.erase();
   scene_.warn({.volume = volume, .classification = classification});
   BakeProgress progress(line);
-  bakeVolume(file_, *volume, classification, settings(*volume, classification), progress.progress());
+  const BakeSettings chosen = settings(*volume, classification);
+  if (group_ != nullptr) agree(contentHash(*volume, classification, nullptr), chosen);
+  bakeVolume(file_, *volume, classification, chosen, progress.progress(), team());
 }
 
 void BakeCommand::bakeProcedural(const std::string& name, ProgressLine& line) const {
@@ -120,7 +141,9 @@ void BakeCommand::bakeProcedural(const std::string& name, ProgressLine& line) co
   const Classification classification = scene_.resolveClassification(sample);
   const StreamedVolume stream = proceduralStream(field, sample, classification);
   BakeProgress progress(line);
-  bakeStreamed(file_, stream, classification, settings(sample, classification), progress.progress());
+  const BakeSettings chosen = settings(sample, classification);
+  if (group_ != nullptr) agree(contentHash(sample, classification, nullptr), chosen);
+  bakeStreamed(file_, stream, classification, chosen, progress.progress(), team());
 }
 
 }  // namespace freevoxels

@@ -3,6 +3,7 @@
 
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/scene_options.h"
+#include "apps/freevoxels/share_group.h"
 #include "engine/storage/baked_volume.h"
 
 namespace freevoxels {
@@ -11,6 +12,8 @@ class ProgressLine;
 
 class BakeCommand {
  public:
+  /// `group`: the processes that bake together, or null; lives longer.
+  explicit BakeCommand(ShareGroup* group = nullptr) : group_(group) {}
   void add(CLI::App& app);
 
  private:
@@ -21,6 +24,12 @@ class BakeCommand {
   /// Options of the file, for a volume with this classification.
   BakeSettings settings(const Volume& volume, const Classification& classification) const;
 
+  /// Fails where the processes of the group would not bake the same file.
+  void agree(const std::string& content, const BakeSettings& settings) const;
+  BakeTeam team() const;
+  bool leads() const { return group_ == nullptr || group_->leads(); }
+
+  ShareGroup* group_;
   SceneOptions scene_;  ///< the volume and its classification; the rest stays as it is
   std::string file_;
   bool keepScalars_ = false, compress_ = false;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "apps/freevoxels/failure.h"
+#include "apps/freevoxels/colored_parts.h"
 #include "apps/freevoxels/share_group.h"
 #include "engine/octree/volume_limits.h"
 #include "engine/region_renderer.h"
@@ -27,6 +28,12 @@ std::string timeText(std::chrono::duration<double> time) {
   if (seconds < 60) return fmt::format("{} s", seconds);
   if (seconds < 3600) return fmt::format("{} min {} s", seconds / 60, seconds % 60);
   return fmt::format("{} h {} min", seconds / 3600, seconds / 60 % 60);
+}
+
+/// Whether nothing of the volume has extinction or emission, as far as is known.
+template <typename AnyRenderer>
+bool isTransparent(const AnyRenderer& renderer) {
+  return renderer.occupiedVoxelCount() == 0u;
 }
 
 std::string whyNothingIsSeen(bool isTransparent) {
@@ -197,6 +204,7 @@ std::map<std::string, std::string> FrameSeries::facts() const {
   if (options_.drawsShares()) {
     facts["share"] = sharePartText(options_.shares.whole());
     facts["content"] = report_.contentHash;
+    if (options_.shares.coloredParts) facts["color-parts"] = std::to_string(*options_.shares.coloredParts);
   }
   return facts;
 }
@@ -283,50 +291,66 @@ void FrameSeries::drawFrames(AnyRenderer& renderer, Scene view, const std::vecto
     }
     view.camera = cameras[i];
     drawFrame(renderer, view, settings, frames[i]);
+    ++drawn_;
     const std::vector<StageTime> times = renderer.timings();
     addTimes(report_.stages, std::span(times).subspan(stagesBefore));
   }
+  finishAddingUp();
   addToReport(renderer, *view.volume);
   for (const Frame* empty : std::exchange(waiting_, {})) writeEmpty(*empty);
 }
 
-/// The sums of this process, or of its whole group on the process that writes the frame; on the others of the group none.
+/// The sums of this process's shares.
 template <typename AnyRenderer>
-std::optional<FixedSums> FrameSeries::drawSums(AnyRenderer& renderer, const Camera& camera, const FrameSettings& settings) {
-  ShareGroup* const group = options_.group;
-  const SharePart part = group != nullptr ? group->part() : options_.shares.whole();
-  FixedSums sums = renderer.renderShares(camera, settings, part, prefixed(line_.progress(), prefix()));
-  if (group == nullptr) return sums;
-  const StageTimer timer(report_.stages, "add up sums");
-  if (group->addUp(sums)) return sums;
-  return {};
+FixedSums FrameSeries::drawSums(AnyRenderer& renderer, const Camera& camera, const FrameSettings& settings) {
+  const Progress progress = prefixed(line_.progress(), prefix());
+  if constexpr (std::is_same_v<AnyRenderer, Renderer>) {
+    if (options_.shares.coloredParts) return drawColoredParts(renderer, camera, settings, *options_.shares.coloredParts, progress);
+  }
+  const SharePart part = options_.group != nullptr ? options_.group->part() : options_.shares.whole();
+  return renderer.renderShares(camera, settings, part, progress);
 }
 
 template <typename AnyRenderer>
 void FrameSeries::drawFrame(AnyRenderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame) {
-  Image image;
-  if (options_.drawsShares()) {
-    const std::optional<FixedSums> sums = drawSums(renderer, view.camera, settings);
-    if (!sums || options_.shares.sums) {
-      if (sums) {
-        const DeferredInterrupts wholeFile;
-        const StageTimer timer(report_.stages, "write pictures");
-        writeSums(frame.files.front(), *sums, options_.scene.withOutputs(frame.files).header(view, "render", describe(view, frame.input), facts()));
-        printNames(frame);
-      }
-      ++drawn_;
-      return;
-    }
-    image = resolveSums(*sums, settings.composite == Composite::Normalised);
+  if (!options_.drawsShares())
+    return complete(renderer.render(view.camera, settings, prefixed(line_.progress(), prefix())), isTransparent(renderer), view, frame);
+  FixedSums sums = drawSums(renderer, view.camera, settings);
+  if (options_.group != nullptr) {
+    finishAddingUp();
+    addingUp_ = {&frame, view, isTransparent(renderer), std::async([group = options_.group, sums = std::move(sums)]() mutable {
+                   AddedUp result;
+                   const StageTimer timer(result.times, "add up sums");
+                   if (group->addUp(sums)) result.sums = std::move(sums);
+                   return result;
+                 })};
+  } else if (options_.shares.sums) {
+    const DeferredInterrupts wholeFile;
+    const StageTimer timer(report_.stages, "write pictures");
+    writeSums(frame.files.front(), sums, options_.scene.withOutputs(frame.files).header(view, "render", describe(view, frame.input), facts()));
+    printNames(frame);
   } else {
-    image = renderer.render(view.camera, settings, prefixed(line_.progress(), prefix()));
+    complete(resolveSums(sums, settings.composite == Composite::Normalised), isTransparent(renderer), view, frame);
   }
+}
+
+/// Waits for the sums of the group's last frame, and writes its image where they are.
+void FrameSeries::finishAddingUp() {
+  if (!addingUp_.result.valid()) return;
+  const AddedUp added = addingUp_.result.get();
+  addTimes(report_.stages, added.times);
+  if (!added.sums) return;
+  const bool normalised = options_.frameSettings().composite == Composite::Normalised;
+  complete(resolveSums(*added.sums, normalised), addingUp_.isTransparent, addingUp_.view, *addingUp_.frame);
+}
+
+void FrameSeries::complete(Image image, bool isTransparent, const Scene& view, const Frame& frame) {
   const std::string name = frames_ == 1 ? "" : frame.files.front() + ": ";
   line_.erase();
   if (const std::size_t pixels = clearPixelsThatAreNoNumbers(image); pixels > 0)
     spdlog::warn("{}{} pixels are beyond the range of numbers and become black: use less extreme lights, emission and distances", name,
                  pixels);
-  if (showsNothing(image)) spdlog::warn("{}nothing is seen: {}", name, whyNothingIsSeen(renderer.occupiedVoxelCount() == 0u));
+  if (showsNothing(image)) spdlog::warn("{}nothing is seen: {}", name, whyNothingIsSeen(isTransparent));
   write(std::move(image), view, frame);
 }
 
@@ -338,7 +362,6 @@ void FrameSeries::write(Image image, const Scene& view, const Frame& frame) {
   writer_.start([scene = options_.scene.withOutputs(frame.files), image = std::move(image), view,
                  options = describe(view, frame.input), facts = facts()] { scene.write(image, view, "render", options, facts); });
   written_ = &frame;
-  ++drawn_;
 }
 
 /// Waits until the frame before is written, and prints the names of its files.
@@ -363,10 +386,8 @@ void FrameSeries::writeEmpty(const Frame& frame) {
     waiting_.push_back(&frame);
     return;
   }
-  if (!options_.leads()) {
-    ++drawn_;
-    return;
-  }
+  ++drawn_;
+  if (!options_.leads()) return;
   const FrameSettings settings = options_.frameSettings();
   const std::size_t pixels = std::size_t(settings.size.x) * std::size_t(settings.size.y);
   Image image{.size = settings.size, .pixels = std::vector<glm::vec4>(pixels, glm::vec4(0.0f))};

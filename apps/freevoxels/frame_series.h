@@ -65,7 +65,9 @@ class FrameSeries {
   template <typename AnyRenderer>
   void drawFrame(AnyRenderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame);
   template <typename AnyRenderer>
-  std::optional<FixedSums> drawSums(AnyRenderer& renderer, const Camera& camera, const FrameSettings& settings);
+  FixedSums drawSums(AnyRenderer& renderer, const Camera& camera, const FrameSettings& settings);
+  void finishAddingUp();
+  void complete(Image image, bool isTransparent, const Scene& view, const Frame& frame);
   void write(Image image, const Scene& view, const Frame& frame);
   void writeEmpty(const Frame& frame);
   void finishWriting();
@@ -78,6 +80,18 @@ class FrameSeries {
   void addToReport(const AnyRenderer& renderer, const Volume& volume);
   std::string prefix() const;
 
+  struct AddedUp {
+    std::optional<FixedSums> sums;  ///< on the process that writes the frame
+    std::vector<StageTime> times;
+  };
+  /// The sums of the group's last frame, which are added up while the next one is drawn.
+  struct AddingUp {
+    const Frame* frame = nullptr;
+    Scene view;
+    bool isTransparent = false;  ///< whether nothing of the volume has extinction or emission
+    std::future<AddedUp> result;
+  };
+
   const RenderOptions& options_;
   const Device& device_;
   RunReport& report_;
@@ -86,6 +100,7 @@ class FrameSeries {
   std::chrono::steady_clock::time_point begun_;
   std::optional<Scene> reference_;    ///< the first frame's with a fixed view, else the last one's
   BackgroundWriter writer_;
+  AddingUp addingUp_;
   const Frame* written_ = nullptr;  ///< that `writer_` is writing
   std::vector<const Frame*> drawnElsewhere_;  ///< frames of other processes of the group
   std::vector<const Frame*> waiting_;  ///< empty frames before any frame that says how they are seen

@@ -17,7 +17,7 @@ constexpr std::uint64_t kLeastDeviceBytes = 12;
 
 std::shared_ptr<const fvx::FvxFile> drawableByRegions(const RenderOptions& options, const SceneOptions& scene, int frames) {
   std::shared_ptr<const fvx::FvxFile> file = scene.input.baked();
-  if (!file) return nullptr;
+  if (!file || options.shares.coloredParts) return nullptr;
   const Scene view = scene.resolve(std::make_shared<const Volume>(bakedOutline(*file)));
   std::vector<Camera> cameras{view.camera};
   if (frames > 1) cameras = scene.cameras(*view.volume, view.classification, frames);
@@ -30,7 +30,7 @@ std::shared_ptr<const fvx::FvxFile> drawableByRegions(const RenderOptions& optio
 }
 
 bool needsRegions(const RenderOptions& options, const Device& device, const fvx::FvxFile& file, int level) {
-  if (options.drawsShares() && !drawsByGathering(options.frameSettings())) return true;
+  if (options.drawsShares() && !options.shares.coloredParts && !drawsByGathering(options.frameSettings())) return true;
   const glm::u64vec3 box(file.dimensions(level));
   if (box.x * box.y * box.z > maximumVoxels(device)) return true;
   std::uint64_t active = 0;

@@ -40,6 +40,7 @@ FrameSettings RenderOptions::frameSettings() const {
 
 void RenderOptions::checkShares(std::span<const Frame> frames) const {
   frameSettings();
+  shares.check();
   if (!shares.sums) return;
   for (const Frame& frame : frames)
     if (frame.files.size() != 1 || !isExr(frame.files.front()))

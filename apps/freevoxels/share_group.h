@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "apps/freevoxels/timings_file.h"
 #include "engine/image/fixed_sums.h"
@@ -29,8 +30,13 @@ class ShareGroup {
   virtual bool draws(std::size_t frame) const = 0;
   /// The shares that this process draws of such a frame.
   virtual SharePart part() const = 0;
-  /// Adds up the sums of all processes that draw the frame. True on the one that has the total afterwards.
+  /// Adds up the sums of all processes that draw the frame. True on the one that has the total afterwards. May be called by another
+  /// thread, but not while any other function is called.
   virtual bool addUp(FixedSums& sums) = 0;
+  /// This process among all processes, and their number.
+  virtual SharePart place() const = 0;
+  /// Moves the bytes from process `from` to the leading one; to be called by these two.
+  virtual void bring(std::vector<std::byte>& bytes, int from) = 0;
   /// Prints the least, mean and most time of each stage over all processes, with --verbose. All of them must call it.
   virtual void logStages(const RunReport& report) = 0;
 };

@@ -38,6 +38,19 @@ void ShareOptions::add(CLI::App& app) {
       ->group(kGroup);
   app.add_flag("--sums", sums, "Write the sums of the part, an .exr that 'freevoxels merge' adds up with the others, instead of an image")
       ->group(kGroup);
+  addWholeNumber(app, "--color-parts", "N", coloredParts,
+                 "Show how N processes divide the volume: give every voxel the colour of the part I of N that draws it",
+                 {1.0, double(kShares)})
+      ->group(kGroup);
+}
+
+void ShareOptions::check() const {
+  if (coloredParts && (part || sums)) fail(ErrorKind::Usage, "--color-parts shows all parts in one image: leave --share and --sums out");
+}
+
+void checkRanks(int ranks) {
+  if (ranks > kShares)
+    fail(ErrorKind::Usage, "{} ranks are more than the {} shares that a frame is divided into: start {} or fewer", ranks, kShares, kShares);
 }
 
 FrameSettings sharedSettings(FrameSettings settings) {

@@ -1,4 +1,4 @@
-// freevoxels-mpi render | turntable: the commands of freevoxels, drawn by all processes of an MPI job together.
+// freevoxels-mpi render | turntable | bake: the commands of freevoxels, done by all processes of an MPI job together.
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <thread>
 
+#include "apps/freevoxels/bake_command.h"
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/render_command.h"
 #include "apps/freevoxels/turntable_command.h"
@@ -27,14 +28,17 @@ int main(int argc, char** argv) {
   CLI::App app("Draws volumes as freevoxels does, by all processes of an MPI job together.", "freevoxels-mpi");
   freevoxels::RenderCommand render(&job);
   freevoxels::TurntableCommand turntable(&job);
+  freevoxels::BakeCommand bake(&job);
   render.add(app);
   turntable.add(app);
+  bake.add(app);
   app.require_subcommand(1);
   app.footer(
       "Examples:\n"
       "  mpirun -n 4 freevoxels-mpi render cloud.vdb cloud.exr\n"
       "  srun --mpi=pmix freevoxels-mpi turntable cloud.vdb orbit_####.png --ranks-per-frame 2\n"
-      "Every rank reads the volume; rank 0 prints and writes. The picture has the same bits for any number of ranks.");
+      "  mpirun -n 4 freevoxels-mpi bake cloud.vdb cloud.fvx --compress\n"
+      "Every rank reads the volume; rank 0 prints and writes. Images and files have the same bits for any number of ranks.");
 
   const int exitCode = freevoxels::runProgram(app, argc, argv, [&] {
     if (job.leads()) return;

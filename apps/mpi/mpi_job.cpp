@@ -8,21 +8,26 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <map>
 #include <sstream>
+#include <thread>
 
+#include "apps/freevoxels/share_options.h"
 #include "apps/freevoxels/text_table.h"
 #include "engine/core/error.h"
-#include "engine/storage/hilbert.h"
 #include "engine/vulkan/device.h"
 
 namespace freevoxels {
 
 namespace {
 
-/// Integers of one MPI_Reduce: counts are ints, and the library's own copies stay small.
-constexpr std::size_t kValuesAtOnce = std::size_t(1) << 22;
+/// Integers of one piece of the sums: pieces are on their way at the same time, along the steps of the reduction.
+constexpr std::size_t kValuesAtOnce = std::size_t(1) << 18;
+
+/// Between two looks at the pieces. A thread that waits in MPI itself would take a processor from drawing.
+constexpr std::chrono::microseconds kBetweenLooks{100};
 
 /// The number of processes that the launcher's environment variables speak of, 1 where there are none.
 int launchedProcesses() {
@@ -63,7 +68,7 @@ std::string layoutText(const FixedSums& sums) {
 }  // namespace
 
 MpiJob::MpiJob(int& argc, char**& argv) {
-  MPI_Init(&argc, &argv);
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &threads_);
   MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, rank_, MPI_INFO_NULL, &node_);
@@ -96,8 +101,9 @@ void MpiJob::begin() {
          "{} processes were started, but each is alone: this program is built with Open MPI; start it with Open MPI's mpirun, or with "
          "srun --mpi=pmix",
          launched);
-  if (size_ > kShares)
-    fail(ErrorKind::Usage, "{} ranks are more than the {} shares that a frame is divided into: start {} or fewer", size_, kShares, kShares);
+  if (threads_ < MPI_THREAD_SERIALIZED)
+    fail(ErrorKind::Usage, "this MPI library lets only the main thread use it: start the job with one that has MPI_THREAD_SERIALIZED");
+  checkRanks(size_);
 }
 
 void MpiJob::splitFrames(int ranksPerFrame) {
@@ -143,12 +149,33 @@ void MpiJob::agreeWithin(MPI_Comm processes, const std::string& what, const std:
 
 bool MpiJob::addUp(FixedSums& sums) {
   agreeWithin(frameGroup_, "a device that needs another method", layoutText(sums) + " " + sums.method);
+  std::vector<MPI_Request> pieces;
+  pieces.reserve(sums.values.size() / kValuesAtOnce + 1);  // their places must not change
   for (std::size_t first = 0; first < sums.values.size(); first += kValuesAtOnce) {
     const int count = int(std::min(kValuesAtOnce, sums.values.size() - first));
     std::int64_t* values = sums.values.data() + first;
-    MPI_Reduce(rankInGroup_ == 0 ? MPI_IN_PLACE : values, values, count, MPI_INT64_T, MPI_SUM, 0, frameGroup_);
+    MPI_Ireduce(rankInGroup_ == 0 ? MPI_IN_PLACE : values, values, count, MPI_INT64_T, MPI_SUM, 0, frameGroup_,
+                &pieces.emplace_back(MPI_REQUEST_NULL));
   }
+  const auto complete = [&] {
+    int all = 0;
+    MPI_Testall(int(pieces.size()), pieces.data(), &all, MPI_STATUSES_IGNORE);
+    return all != 0;
+  };
+  while (!complete()) std::this_thread::sleep_for(kBetweenLooks);
   return rankInGroup_ == 0;
+}
+
+void MpiJob::bring(std::vector<std::byte>& bytes, int from) {
+  std::uint64_t count = bytes.size();
+  if (rank_ == from) {
+    MPI_Send(&count, 1, MPI_UINT64_T, 0, 0, MPI_COMM_WORLD);
+    MPI_Send(bytes.data(), int(count), MPI_BYTE, 0, 0, MPI_COMM_WORLD);
+    return;
+  }
+  MPI_Recv(&count, 1, MPI_UINT64_T, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  bytes.resize(count);
+  MPI_Recv(bytes.data(), int(count), MPI_BYTE, from, 0, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
 }
 
 void MpiJob::logStages(const RunReport& report) {

@@ -36,6 +36,8 @@ class MpiJob : public ShareGroup {
   bool draws(std::size_t frame) const override { return int(frame % std::size_t(groupCount_)) == group_; }
   SharePart part() const override { return {rankInGroup_, sizeOfGroup_}; }
   bool addUp(FixedSums& sums) override;
+  SharePart place() const override { return {rank_, size_}; }
+  void bring(std::vector<std::byte>& bytes, int from) override;
   void logStages(const RunReport& report) override;
 
  private:
@@ -43,6 +45,7 @@ class MpiJob : public ShareGroup {
   void agreeWithin(MPI_Comm processes, const std::string& what, const std::string& text) const;
 
   int rank_ = 0, size_ = 1;
+  int threads_ = MPI_THREAD_SINGLE;  ///< how threads may call MPI
   MPI_Comm node_ = MPI_COMM_NULL;  ///< the processes on this node
   int rankOnNode_ = 0, sizeOfNode_ = 1;
   MPI_Comm frameGroup_ = MPI_COMM_NULL;  ///< the processes that draw a frame together

@@ -104,6 +104,7 @@ void checkHeader(const std::filesystem::path& file, const Imf::Header& header, s
 Image decode(const std::filesystem::path& file, std::int64_t maximumPixels) {
   constexpr std::int64_t kPixelsOfABand = 1 << 20;
   useAllProcessors();
+  checkExrAttributes(file);
   Imf::MultiPartInputFile exr(file.c_str(), Imf::globalThreadCount(), false);
   const Imf::Header& header = exr.header(0);
   checkHeader(file, header, maximumPixels);

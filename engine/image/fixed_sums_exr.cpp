@@ -102,6 +102,7 @@ FixedSums readLayout(const std::filesystem::path& file, const Imf::Header& heade
 }
 
 SumsFile decode(const std::filesystem::path& file) {
+  checkExrAttributes(file);
   Imf::InputFile exr(file.c_str());
   const Imf::Header& header = exr.header();
   if (!hasChannels(header))
@@ -148,7 +149,10 @@ SumsFile readSums(const std::filesystem::path& file) {
 }
 
 bool holdsSums(const std::filesystem::path& file) {
-  return guarded(file, [&] { return hasChannels(Imf::InputFile(file.c_str()).header()); });
+  return guarded(file, [&] {
+    checkExrAttributes(file);
+    return hasChannels(Imf::InputFile(file.c_str()).header());
+  });
 }
 
 }  // namespace freevoxels

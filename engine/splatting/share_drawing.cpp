@@ -13,7 +13,8 @@ constexpr std::size_t kSharesAtOnce = 16;
 
 FixedSums ShareDrawing::draw(Commands& commands, Inputs inputs, const SharePart& part, std::vector<StageTime>& times,
                              const Progress& progress) {
-  list_.record(commands, inputs.drawing.volume, *inputs.drawing.visible, inputs.drawing.chunkCount, inputs.wholeLevel);
+  list_.record(commands, inputs.drawing.volume, *inputs.drawing.visible, inputs.drawing.chunkCount, inputs.mostBlocks,
+               inputs.wholeLevel);
   accumulate_.recordClear(commands, std::move(inputs.layout));
   commands.submitAndWait(progress);
   addTimes(times, commands.times());

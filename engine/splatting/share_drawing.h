@@ -17,6 +17,7 @@ class ShareDrawing {
   struct Inputs {
     SplatPass& splats;
     SplatPass::Inputs drawing;  ///< all blocks of the frame; none may be left out as hidden by others
+    std::uint64_t mostBlocks;  ///< an upper bound of their number
     std::optional<int> wholeLevel;  ///< the level, if these are all blocks of a level
     const FrameConstants& frame;
     const SplatTargets& targets;
@@ -27,6 +28,8 @@ class ShareDrawing {
   /// which it is added to the sums. Blocks until the device is done.
   FixedSums draw(Commands& commands, Inputs inputs, const SharePart& part, std::vector<StageTime>& times, const Progress& progress);
 
+  /// The blocks that a cut of these shares has to look at; null: all.
+  const CutCandidates* candidates(const SharePart& part) { return list_.candidates(part); }
   bool hasDistance() const { return withDistance_; }
 
  private:

@@ -40,14 +40,15 @@ shader::ShareFrame shareFrame(const DeviceVolume& volume, const ChunkShares& dea
 
 ShareList::ShareList(const Device& device, const BuiltVolume& built)
     : device_(device),
+      built_(built),
+      dealt_(dealChunks(built.volume.hierarchy, coveringBlocks(device, built))),
       keys_(makeComputePipeline(device, shaders::share_key)),
       sort_(device),
       frame_(device, sizeof(shader::ShareFrame), MemoryUse::Device, "share frame"),
       counts_(device, kCountBytes, MemoryUse::Device, "blocks of shares") {
-  const ChunkShares dealt = dealChunks(built.volume.hierarchy, coveringBlocks(device, built));
-  shares_ = Buffer(device, std::max<std::uint64_t>(dealt.shares.size(), 1) * sizeof(std::uint32_t), MemoryUse::Device, "shares");
-  if (!dealt.shares.empty()) upload(device, shares_, std::as_bytes(std::span(dealt.shares)));
-  const shader::ShareFrame frame = shareFrame(built.volume, dealt);
+  shares_ = Buffer(device, std::max<std::uint64_t>(dealt_.shares.size(), 1) * sizeof(std::uint32_t), MemoryUse::Device, "shares");
+  if (!dealt_.shares.empty()) upload(device, shares_, std::as_bytes(std::span(dealt_.shares)));
+  const shader::ShareFrame frame = shareFrame(built.volume, dealt_);
   upload(device, frame_, std::as_bytes(std::span(&frame, 1)));
 }
 
@@ -57,17 +58,23 @@ void ShareList::makeRoom(std::uint64_t blocks) {
   pairs_ = makeSortPairs(device_, blocks);
 }
 
+const CutCandidates* ShareList::candidates(const SharePart& part) {
+  if (part.count == 1) return nullptr;
+  if (!candidates_) candidates_.emplace(device_, built_, dealt_);
+  return &candidates_->of(part);
+}
+
 void ShareList::record(Commands& commands, const DeviceVolume& volume, const BlockList& drawn, std::uint32_t chunkCount,
-                       std::optional<int> wholeLevel) {
+                       std::uint64_t mostBlocks, std::optional<int> wholeLevel) {
   if (wholeLevel && wholeLevel == groupedLevel_) return;
   groupedLevel_.reset();  // until the commands are done
   recordedLevel_ = wholeLevel;
-  makeRoom(drawn.indices.bytes() / sizeof(std::uint32_t));
+  makeRoom(mostBlocks);
   const std::array<Binding, 9> bindings{&frame_,       &drawn.indices, &drawn.chunks,  &volume.occupancy, &shares_,
                                         &pairs_.count, &pairs_.keys,   &pairs_.values, &counts_};
   commands.beginPass("shares");
   commands.clear(counts_);
-  commands.dispatchLinear(keys_, bindings, shader::ShareKeyPush{chunkCount}, pairs_.capacity);
+  commands.dispatchLinear(keys_, bindings, shader::ShareKeyPush{chunkCount}, mostBlocks);
   commands.barrier(kCompute, kCompute);
   sort_.record(commands, pairs_, kShareBits);
 }

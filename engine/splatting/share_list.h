@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "engine/octree/volume_builder.h"
-#include "engine/splatting/shares.h"
 #include "engine/splatting/radix_sort.h"
+#include "engine/splatting/share_candidates.h"
 #include "engine/octree/block_list.h"
 
 namespace freevoxels {
@@ -16,13 +16,16 @@ namespace freevoxels {
 /// COMPUTE share_key.comp and those of RadixSort
 class ShareList {
  public:
-  /// Distributes the volume's chunks to the shares. Reads back the lists of blocks that cover chunks.
+  /// Distributes the chunks of the volume, which must outlive the list, to the shares. Reads back the lists of blocks that cover chunks.
   ShareList(const Device& device, const BuiltVolume& built);
 
-  /// Groups the blocks of the first `chunkCount` draw chunks of `drawn` by share. Within a share blocks keep
+  /// The candidates of a cut for these shares; null: all blocks, of which all shares are drawn.
+  const CutCandidates* candidates(const SharePart& part);
+
+  /// Groups the blocks of the first `chunkCount` draw chunks of `drawn`, at most `mostBlocks`, by share. Within a share blocks keep
   /// their order. If they are all blocks of a level, `wholeLevel`, they stay grouped for later frames.
   void record(Commands& commands, const DeviceVolume& volume, const BlockList& drawn, std::uint32_t chunkCount,
-              std::optional<int> wholeLevel);
+              std::uint64_t mostBlocks, std::optional<int> wholeLevel);
 
   /// After the recorded commands are complete: makes the draw chunks of these shares, which chunks() then
   /// has. Blocks until the device is done.
@@ -38,6 +41,9 @@ class ShareList {
   void makeRoom(std::uint64_t blocks);
 
   const Device& device_;
+  const BuiltVolume& built_;
+  ChunkShares dealt_;
+  std::optional<ShareCandidates> candidates_;
   Pipeline keys_;
   RadixSort sort_;
   SortPairs pairs_;

@@ -24,7 +24,8 @@ using fvx::ChunkValues;
 using fvx::EncodingKind;
 using fvx::FvxFile;
 
-constexpr std::size_t kBatchChunks = 64;
+/// Chunks that are held at a time, and that one process of a team encodes in turn.
+constexpr std::size_t kBatchChunks = 16;
 
 fvx::Encoding scalarEncoding(const Volume& volume, glm::vec2 range, const Classification& classification, bool keepScalars) {
   if (keepScalars) return {};
@@ -246,10 +247,28 @@ Volume readLevel(const std::shared_ptr<const FvxFile>& file, int level) {
   return volume;
 }
 
+/// Encodes this process's stretches of the chunks. The one that has the writer adds them all, in order; while it adds one, the others
+/// encode theirs.
+void encodeInTurn(std::span<const glm::ivec3> cells, const ChunkSource& chunk, const fvx::WriteSettings& settings, const BakeTeam& team,
+                  fvx::FvxWriter* writer, const Progress& progress) {
+  int owner = 0;
+  for (std::size_t first = 0; first < cells.size(); first += kBatchChunks, owner = (owner + 1) % team.count) {
+    if (progress) progress("baking", double(first) / double(cells.size()));
+    std::vector<std::byte> encoded;
+    if (owner == team.index) {
+      std::vector<ChunkValues> batch(std::min(kBatchChunks, cells.size() - first));
+      tbb::parallel_for(std::size_t(0), batch.size(), [&](std::size_t i) { batch[i] = chunk(cells[first + i]); });
+      encoded = fvx::encodeChunks(settings, batch);
+    }
+    if (owner != 0 && (owner == team.index || writer != nullptr)) team.bring(encoded, owner);
+    if (writer != nullptr) writer->add(encoded);
+  }
+}
+
 }  // namespace
 
 void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volume, const Classification& classification,
-                  const BakeSettings& settings, const Progress& progress) {
+                  const BakeSettings& settings, const Progress& progress, const BakeTeam& team) {
   const glm::ivec3 dimensions = volume.outline.dimensions;
   const int longest = std::max({dimensions.x, dimensions.y, dimensions.z});
   if (longest > fvx::kLongestEdge)
@@ -263,14 +282,13 @@ void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volum
       .leaveOutZeros = densities && !settings.keepScalars,
       .compress = settings.compress};
   const std::vector<glm::ivec3> cells = hilbertOrder((dimensions + fvx::kChunkEdge - 1) / fvx::kChunkEdge);
+  const auto spread = [&](fvx::FvxWriter* writer) {
+    encodeInTurn(cells, volume.chunk, write, team, writer, progress);
+  };
+  if (team.index != 0) return spread(nullptr);
   writeAtomically(file, [&](const std::filesystem::path& temporary) {
     fvx::FvxWriter writer(file.has_parent_path() ? file.parent_path() : ".", write);
-    for (std::size_t first = 0; first < cells.size(); first += kBatchChunks) {
-      if (progress) progress("baking", double(first) / double(cells.size()));
-      std::vector<ChunkValues> batch(std::min(kBatchChunks, cells.size() - first));
-      tbb::parallel_for(std::size_t(0), batch.size(), [&](std::size_t i) { batch[i] = volume.chunk(cells[first + i]); });
-      writer.add(batch);
-    }
+    spread(&writer);
     const fvx::Description description{.volume = summarised(volume.outline, classification, !settings.keepScalars, writer),
                                        .encodings = write.encodings};
     // Elsewhere extinction depends on more than the voxel, or light on more than extinction.
@@ -282,13 +300,13 @@ void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volum
 }
 
 void bakeVolume(const std::filesystem::path& file, const Volume& volume, const Classification& classification,
-                const BakeSettings& settings, const Progress& progress) {
+                const BakeSettings& settings, const Progress& progress, const BakeTeam& team) {
   bakeStreamed(file,
                {.outline = outlineOf(volume),
                 .content = contentCells(volume, classification),
                 .range = {volume.minimum, volume.maximum},
                 .chunk = [&](glm::ivec3 cell) { return chunkOf(volume, cell); }},
-               classification, settings, progress);
+               classification, settings, progress, team);
 }
 
 Volume bakedOutline(const FvxFile& file, int level) {

@@ -25,6 +25,14 @@ struct BakeSettings {
   std::string provenance = "{}";  ///< JSON for readers of the file
 };
 
+/// The processes that bake a volume together; by default this one alone. All of them have the volume. Stretches of chunks are dealt to
+/// them in turn, and the first one writes the file, which has the same bytes for any number.
+struct BakeTeam {
+  int index = 0, count = 1;
+  /// Moves the bytes from process `from` to the first one; called by these two, with the same sequence of calls on both.
+  std::function<void(std::vector<std::byte>& bytes, int from)> bring = {};
+};
+
 /// The values of a chunk of the finest level; called by several threads.
 using ChunkSource = std::function<fvx::ChunkValues(glm::ivec3 cell)>;
 
@@ -39,14 +47,14 @@ struct StreamedVolume {
   ChunkSource chunk;
 };
 void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volume, const Classification& classification,
-                  const BakeSettings& settings, const Progress& progress = {});
+                  const BakeSettings& settings, const Progress& progress = {}, const BakeTeam& team = {});
 
 /// Stage of Progress from which on the file exists under a temporary name: whoever ends the program before leaves nothing behind.
 inline constexpr std::string_view kWritingStage = "writing the file";
 
 /// Writes the volume, its coarser levels and its classification. Atomic (core/atomic_file.h).
 void bakeVolume(const std::filesystem::path& file, const Volume& volume, const Classification& classification,
-                const BakeSettings& settings, const Progress& progress = {});
+                const BakeSettings& settings, const Progress& progress = {}, const BakeTeam& team = {});
 
 /// Reads a level of a baked file: the voxels, or for a level above 0 blocks of 2^level voxels along each
 /// axis, each their mean, at the same place in the world. Every chunk that is read is verified first. Values

@@ -9,8 +9,9 @@
 
 #include "engine/core/checked_file.h"
 #include "engine/core/error.h"
-#include "engine/storage/region_sweep.h"
+#include "engine/storage/packed_bytes.h"
 #include "engine/storage/plane_codec.h"
+#include "engine/storage/region_sweep.h"
 #include "engine/storage/spool.h"
 
 namespace freevoxels::fvx {
@@ -251,6 +252,30 @@ class SectionWriter {
 
 }  // namespace
 
+std::vector<std::byte> encodeChunks(const WriteSettings& settings, std::span<const ChunkValues> chunks) {
+  const ChunkEncoder encoder(settings);
+  std::vector<std::array<EncodedChunk, kChannels>> encoded(chunks.size());
+  std::vector<ChunkEighth> eighths(chunks.size());
+  tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t i) {
+    if (chunks[i].empty()) return;
+    for (std::size_t channel = 0; channel < kChannels; ++channel)
+      if (settings.encodings[channel]) encoded[i][channel] = encoder.encode(chunks[i], channel);
+    eighths[i] = coarser(chunks[i], settings.dimensions, settings.withoutData);
+  });
+  BytePacker bytes;
+  for (std::size_t i = 0; i < chunks.size(); ++i) {
+    if (chunks[i].empty()) continue;
+    for (std::size_t channel = 0; channel < kChannels; ++channel) {
+      if (!settings.encodings[channel]) continue;
+      bytes.value(encoded[i][channel].entry);
+      bytes.values(encoded[i][channel].bytes);
+    }
+    bytes.value(eighths[i].cell);
+    for (const std::vector<float>& values : eighths[i].channels) bytes.values(values);
+  }
+  return bytes.take();
+}
+
 struct FvxWriter::State {
   WriteSettings settings;
   std::vector<glm::ivec3> dimensions;  ///< by level
@@ -329,20 +354,20 @@ FvxWriter::FvxWriter(const std::filesystem::path& folder, const WriteSettings& s
 
 FvxWriter::~FvxWriter() = default;
 
-void FvxWriter::add(std::span<const ChunkValues> chunks) {
+void FvxWriter::add(std::span<const std::byte> encoded) {
   State& state = *state_;
-  std::vector<std::array<EncodedChunk, kChannels>> encoded(chunks.size());
-  std::vector<ChunkEighth> eighths(chunks.size());
-  tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t i) {
-    if (chunks[i].empty()) return;
-    for (std::size_t channel = 0; channel < kChannels; ++channel)
-      if (state.settings.encodings[channel]) encoded[i][channel] = state.encoder.encode(chunks[i], channel);
-    eighths[i] = coarser(chunks[i], state.settings.dimensions, state.settings.withoutData);
-  });
-  for (std::size_t i = 0; i < chunks.size(); ++i) {
-    if (chunks[i].empty()) continue;
-    for (std::size_t channel = 0; channel < kChannels; ++channel) state.store(0, channel, std::move(encoded[i][channel]));
-    state.pyramid.add(eighths[i]);
+  for (ByteUnpacker bytes(encoded); !bytes.atEnd();) {
+    for (std::size_t channel = 0; channel < kChannels; ++channel) {
+      if (!state.settings.encodings[channel]) continue;
+      EncodedChunk chunk;
+      bytes.value(chunk.entry);
+      bytes.values(chunk.bytes);
+      state.store(0, channel, std::move(chunk));
+    }
+    ChunkEighth eighth;
+    bytes.value(eighth.cell);
+    for (std::vector<float>& values : eighth.channels) bytes.values(values);
+    state.pyramid.add(eighth);
   }
 }
 

@@ -28,6 +28,10 @@ struct RegionSettings {
   glm::dmat4 indexToWorld{1.0};
 };
 
+/// Encodes chunks of level 0, with the means that the levels above need of them, for FvxWriter::add, which may be in another process.
+/// Uses all threads.
+std::vector<std::byte> encodeChunks(const WriteSettings& settings, std::span<const ChunkValues> chunks);
+
 /// Throws std::system_error if it cannot write: to be used within writeAtomically (core/atomic_file.h).
 class FvxWriter {
  public:
@@ -36,8 +40,9 @@ class FvxWriter {
   FvxWriter(const std::filesystem::path& folder, const WriteSettings& settings);
   ~FvxWriter();
 
-  /// Adds the next chunks of level 0, in Hilbert order (hilbert.h); those without data may be left out.
-  void add(std::span<const ChunkValues> chunks);
+  /// Adds the next chunks of level 0, which encodeChunks made with the same settings. All chunks come in Hilbert order (hilbert.h);
+  /// those without data may be left out.
+  void add(std::span<const std::byte> encoded);
   /// Counts and ranges of the chunks of level 0 so far; ranges of channels without active voxels are 0.
   struct Summary {
     std::uint64_t activeVoxels = 0;

@@ -19,7 +19,6 @@ std::uint64_t groupsFor(std::uint64_t slots) {
   return (slots + shader::kCutSlotsPerGroup - 1) / shader::kCutSlotsPerGroup;
 }
 
-
 void makeLarger(const Device& device, Buffer& buffer, std::uint64_t bytes, const char* name,
                 VkBufferUsageFlags usage = 0) {
   if (buffer.bytes() >= bytes) return;
@@ -30,7 +29,14 @@ void makeLarger(const Device& device, Buffer& buffer, std::uint64_t bytes, const
 /// Upper bound of the number of drawn blocks: every drawn block contains at least one occupied block of the
 /// finest level, and shares it with no other.
 std::uint64_t mostDrawn(const CutInputs& inputs) {
-  return std::max<std::uint64_t>(inputs.volume.stored[std::size_t(inputs.detail.finest)], 1);
+  std::uint64_t most = inputs.volume.stored[std::size_t(inputs.detail.finest)];
+  if (inputs.candidates != nullptr) {
+    std::uint64_t candidates = 1;  // the coarsest
+    for (std::size_t level = std::size_t(inputs.detail.finest); level < inputs.candidates->levels.size(); ++level)
+      candidates += inputs.candidates->levels[level].mostBlocks;
+    most = std::min(most, candidates);
+  }
+  return std::max<std::uint64_t>(most, 1);
 }
 
 /// For each direction, the least stored optical depth that hides a block whose line of sight has length 1 a
@@ -82,6 +88,7 @@ shader::CutFrame cutFrame(const CutInputs& inputs) {
 
 CutPass::CutPass(const Device& device, AttenuationCode code)
     : device_(device),
+      code_(code),
       scan_(makeComputePipeline(device, shaders::compact_scan)),
       write_(makeComputePipeline(device, shaders::cut_write)),
       cover_(device),
@@ -90,11 +97,11 @@ CutPass::CutPass(const Device& device, AttenuationCode code)
       counts_(device, sizeof(shader::CutCounts), MemoryUse::Device, "cut counts") {
   for (const Part part : {Part::First, Part::Deferred})
     for (const std::uint32_t voxels : {0u, 1u})
-      select_[std::size_t(part)][voxels] = makeComputePipeline(device, shaders::cut_select, {std::uint32_t(code), std::uint32_t(part), voxels});
+      select_[std::size_t(part)][voxels] = makeComputePipeline(device, shaders::cut_select, {std::uint32_t(code), std::uint32_t(part), voxels, 0u});
 }
 
 void CutPass::makeRoom(const CutInputs& inputs) {
-  const std::uint64_t most = mostDrawn(inputs);
+  const std::uint64_t most = mostBlocks_ = mostDrawn(inputs);
   const std::uint64_t groups = std::max<std::uint64_t>(groupCount_, 1);
   const std::uint64_t coarse = std::max<std::uint64_t>((inputs.volume.coarseBlocks() + 3) / 4 * 4, 4);
   cut_.chunkCount = 2 * std::uint32_t((most + shader::kSplatsPerChunk - 1) / shader::kSplatsPerChunk);
@@ -115,9 +122,13 @@ std::vector<CutPass::Level> CutPass::planLevels(const CutInputs& inputs, Part pa
   firstGroups_.clear();
   const int top = inputs.volume.hierarchy.top();
   for (int level = finest_; level <= top; ++level) {
-    const std::uint64_t slots = level == top ? 1 : 8 * inputs.volume.stored[std::size_t(level) + 1];
+    const CutCandidates::Level* const some =
+        inputs.candidates != nullptr && level < top ? &inputs.candidates->levels[std::size_t(level)] : nullptr;
+    const std::uint64_t parents = some != nullptr ? some->parentCount : level == top ? 0 : inputs.volume.stored[std::size_t(level) + 1];
+    const std::uint64_t slots = level == top ? 1 : 8 * parents;
     levels.push_back(
-        {.parents = &inputs.lists.of(std::min(level + 1, top), inputs.voxels).indices,
+        {.parents = some != nullptr ? &some->parents : &inputs.lists.of(std::min(level + 1, top), inputs.voxels).indices,
+         .children = some != nullptr ? &some->children : nullptr,
          .push = {
              .level = level, .slotCount = std::uint32_t(slots), .firstGroup = std::uint32_t(firstGroup)}});
     if (level > inputs.detail.coarsest) continue;
@@ -162,8 +173,11 @@ void CutPass::recordPart(Commands& commands, const CutInputs& inputs, Part part)
 void CutPass::recordSelect(Commands& commands, const CutInputs& inputs, std::span<const Level> levels,
                            Part part) {
   const Buffer& anyBuffer = frame_;
+  if (inputs.candidates != nullptr && selectCandidates_[0].handle() == VK_NULL_HANDLE)
+    for (const std::uint32_t voxels : {0u, 1u})
+      selectCandidates_[voxels] = makeComputePipeline(device_, shaders::cut_select, {std::uint32_t(code_), 0u, voxels, 1u});
   for (const Level& level : levels | std::views::reverse) {
-    const std::array<Binding, 10> bindings{&frame_,
+    const std::array<Binding, 11> bindings{&frame_,
                                            level.parents,
                                            &inputs.volume.occupancy,
                                            &children_,
@@ -172,10 +186,12 @@ void CutPass::recordSelect(Commands& commands, const CutInputs& inputs, std::spa
                                            &cut_.groupOffsets,
                                            &counts_,
                                            inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
-                                           part == Part::Deferred ? &cover_.tiles() : &anyBuffer};
+                                           part == Part::Deferred ? &cover_.tiles() : &anyBuffer,
+                                           level.children != nullptr ? level.children : &anyBuffer};
+    const std::size_t voxels = level.push.level == 0 ? 1 : 0;
+    const Pipeline& select = level.children != nullptr ? selectCandidates_[voxels] : select_[std::size_t(part)][voxels];
     if (level.push.slotCount > 0)
-      commands.dispatchLinear(select_[std::size_t(part)][level.push.level == 0 ? 1 : 0], bindings, level.push,
-                              groupsFor(level.push.slotCount) * shader::kCutThreads);
+      commands.dispatchLinear(select, bindings, level.push, groupsFor(level.push.slotCount) * shader::kCutThreads);
     commands.barrier(kCompute, kCompute);
   }
 }

@@ -11,6 +11,7 @@
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/visibility/cull_rule.h"
+#include "engine/visibility/cut_candidates.h"
 #include "engine/visibility/detail_rule.h"
 #include "engine/visibility/tile_opacity_pass.h"
 
@@ -26,6 +27,7 @@ struct CutInputs {
   const shader::ResolvePush& rays;
   const DetailRule& detail;
   const CullRule& cull;
+  const CutCandidates* candidates = nullptr;  ///< null: all blocks. Only for the first phase.
 };
 
 /// Numbers of blocks of all levels that were considered: those of the coarsest level, and those whose parent
@@ -54,12 +56,14 @@ class CutPass {
   /// The blocks to draw, level by level in a fixed order. The first half of the chunks belongs to the first
   /// phase.
   const BlockList& blocks() const { return cut_; }
+  /// An upper bound of the number of blocks of the first phase.
+  std::uint64_t mostBlocks() const { return mostBlocks_; }
   /// The counts of the last cut. Reads back.
   CutCounts counts() const;
 
  private:
   struct Level {
-    const Buffer* parents;
+    const Buffer *parents, *children;  ///< children: those that are candidates, or null
     shader::CutPush push;
   };
   enum class Part : std::uint32_t { First, Deferred };
@@ -71,7 +75,9 @@ class CutPass {
   std::vector<std::uint64_t> drawnByLevel() const;
 
   const Device& device_;
+  AttenuationCode code_;
   std::array<std::array<Pipeline, 2>, 2> select_;  ///< by Part, and for blocks or voxels
+  std::array<Pipeline, 2> selectCandidates_;       ///< the first phase among candidates, made when it is first needed
   Pipeline scan_, write_;
   TileOpacityPass cover_;
   Buffer frame_;                ///< shader::CutFrame
@@ -79,6 +85,7 @@ class CutPass {
   Buffer masks_;                ///< uint: a bit for each slot (candidate_slot.glsl) of the levels that are drawn
   Buffer counts_;               ///< shader::CutCounts
   BlockList cut_;           ///< has groupOffsets for both parts, one after the other, each with its total
+  std::uint64_t mostBlocks_ = 0;
   int finest_ = 0;
   std::uint32_t groupCount_ = 0;  ///< number of workgroups of the levels that are drawn
   bool hasDeferred_ = false;

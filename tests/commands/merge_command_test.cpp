@@ -91,6 +91,28 @@ TEST_F(MergeCommandTest, WhatCannotBeSharedIsRefused) {
   expectCleanRefusal(render + "@a.exr @b.exr --share 0/2 --sums", ExitCode::Usage, "--sums");
   expectCleanRefusal(render + "@a.exr --share 0/2 --sums --composite sorted", ExitCode::Usage, "sorted");
   expectCleanRefusal(render + "@a.exr --share 0/2 --sums --float", ExitCode::Usage, "--float");
+  expectCleanRefusal(render + "@a.exr --share 0/2 --color-parts 2", ExitCode::Usage, "--color-parts");
+  expectCleanRefusal(render + "@a.exr --color-parts 257", ExitCode::Usage, "--color-parts");
+}
+
+/// One part: the whole in a single colour. Several: the same opacity, and colours that differ.
+TEST_F(MergeCommandTest, ColoredPartsKeepLuminanceAndOpacity) {
+  const auto draw = [&](const std::string& file, const std::string& options) {
+    expectSuccess(run("render " + std::string(kScene) + "@" + file + " --float " + options));
+    return readExr(folder / file);
+  };
+  const auto luminance = [](glm::vec4 pixel) { return 0.2126f * pixel.r + 0.7152f * pixel.g + 0.0722f * pixel.b; };
+  const Image whole = draw("whole.exr", "--share 0/1"), one = draw("one.exr", "--color-parts 1"), five = draw("five.exr", "--color-parts 5");
+  const glm::vec3 color = glm::vec3(one.pixels[64 * 24 + 32]) / luminance(whole.pixels[64 * 24 + 32]);
+  std::size_t otherColors = 0;
+  for (std::size_t i = 0; i < whole.pixels.size(); ++i) {
+    EXPECT_EQ(one.pixels[i].a, whole.pixels[i].a);
+    EXPECT_EQ(five.pixels[i].a, whole.pixels[i].a);
+    const glm::vec3 expected = color * luminance(whole.pixels[i]);
+    EXPECT_LT(glm::length(glm::vec3(one.pixels[i]) - expected), 1e-5f) << i;
+    if (glm::length(glm::vec3(five.pixels[i]) - expected) > 0.05f) ++otherColors;
+  }
+  EXPECT_GT(otherColors, whole.pixels.size() / 10);
 }
 
 }  // namespace freevoxels::test

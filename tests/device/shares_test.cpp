@@ -187,6 +187,17 @@ TEST_F(SharesTest, NoShareIsEmptyAndNoneIsLeftOutUnnoticed) {
   EXPECT_NE(fewer.values, whole.values);
 }
 
+/// A part's own chunks and the few blocks above them: a 64th of the shares has a 64th of 512 chunks.
+TEST_F(SharesTest, APartLooksAtItsOwnBlocksOnly) {
+  const Scene scene = levels();
+  Renderer renderer(device(), scene.volume, scene.classification, {});
+  renderer.renderShares(scene.camera, scene.settings, {});
+  const CutCounts whole = renderer.cutCounts();
+  renderer.renderShares(scene.camera, scene.settings, {5, 64});
+  EXPECT_LT(renderer.cutCounts().considered, whole.considered / 16);
+  EXPECT_GT(renderer.cutCounts().considered, 0u);
+}
+
 TEST_F(SharesTest, RectangleHoldsAllThatIsDrawn) {
   Scene scene = litFog();
   scene.camera.verticalFov *= 4.0;  // the volume in the middle of a larger image

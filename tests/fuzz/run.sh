@@ -17,9 +17,10 @@ mkdir -p "$build/failures"
 for kind in "${kinds[@]}"; do
   mkdir -p "$build/corpus/$kind"
   echo "fuzz: $kind for $seconds s"
+  status=0
   "$build/${kind}_fuzz" -max_total_time="$seconds" -max_len=65536 -timeout=20 -rss_limit_mb=4096 -print_final_stats=1 \
-    -artifact_prefix="$build/failures/$kind-" "$build/corpus/$kind" "$build/seeds-made/$kind" 2>&1 |
-    grep -E "^stat::|ERROR|SUMMARY|runtime error|DONE|Test unit" || true
-  [ "${PIPESTATUS[0]}" -eq 0 ] || { echo "fuzz: $kind FAILED, see $build/failures"; exit 1; }
+    -artifact_prefix="$build/failures/$kind-" "$build/corpus/$kind" "$build/seeds-made/$kind" >"$build/$kind.log" 2>&1 || status=$?
+  grep -E "^stat::|ERROR|SUMMARY|runtime error|DONE|Test unit" "$build/$kind.log" || true
+  [ "$status" -eq 0 ] || { echo "fuzz: $kind FAILED, see $build/$kind.log and $build/failures"; exit 1; }
 done
 echo "fuzz: PASSED"

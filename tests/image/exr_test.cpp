@@ -11,6 +11,7 @@
 #include "engine/core/error.h"
 #include "engine/image/image.h"
 #include "tests/limited_disk.h"
+#include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
 namespace freevoxels {
@@ -130,6 +131,21 @@ TEST(Exr, RefusesToReadMissingForeignAndTruncatedFiles) {
       EXPECT_EQ(error.kind(), ErrorKind::Input);
       EXPECT_NE(std::string(error.what()).find((folder / name).string()), std::string::npos) << error.what();
     }
+  }
+}
+
+/// Whatever an attribute's length says, no more memory is taken than the file has bytes.
+TEST(Exr, RefusesAttributesThatAreLongerThanTheFile) {
+  const TemporaryFolder folder;
+  const auto file = folder / "a.exr";
+  writeExr(file, makeImage({8, 4}, false), {.metadata = {{"freevoxels:note", "short"}}});
+  std::string bytes = readBytes(file);
+  const std::string name = std::string("freevoxels:note") + '\0' + "string" + '\0';
+  const std::size_t length = bytes.find(name) + name.size();
+  for (const int high : {0x69, 0xff}) {
+    bytes[length + 3] = char(high);
+    writeBytes(file, bytes);
+    test::expectRefusal([&] { readExr(file); }, ErrorKind::Input, {"a.exr", "freevoxels:note", "longer than the file"});
   }
 }
 

@@ -29,6 +29,14 @@ class MpiTest : public CommandTest {
   }
   ProgramResult runMpi(int ranks, const std::string& text) const { return runProgramFile(FREEVOXELS_MPIRUN, launch(ranks, text)); }
 
+  /// The ranks run this line of a shell, in which each can be treated in its own way.
+  ProgramResult runScript(int ranks, const std::string& script) const {
+    Arguments arguments = launch(ranks, "");
+    arguments.pop_back();
+    for (const char* word : {"/bin/sh", "-c", script.c_str()}) arguments.emplace_back(word);
+    return runProgramFile(FREEVOXELS_MPIRUN, arguments);
+  }
+
   /// This exit code, one sentence of the program's own among the launcher's, and no file more than before.
   void expectMpiRefusal(int ranks, const std::string& text, ExitCode code, const std::string& mention) const {
     SCOPED_TRACE(text);
@@ -74,15 +82,30 @@ TEST_F(MpiTest, AnEyeInsideSeesTheBitsOfMergedShares) {
   EXPECT_EQ(readBytes(folder / "all.png"), readBytes(folder / "merged.png"));
 }
 
+/// 64 chunks of two channels: four stretches, which do not come out even for three ranks.
+TEST_F(MpiTest, AnyNumberOfRanksBakesTheBytesOfOneProcess) {
+  const std::string bake = "bake procedural:fire --resolution 97 --compress --quiet ";
+  expectSuccess(run(bake + "@one.fvx"));
+  const std::string expected = readBytes(folder / "one.fvx");
+  for (const int ranks : {1, 2, 3}) {
+    const ProgramResult result = runMpi(ranks, bake + "@all.fvx");
+    ASSERT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_EQ(readBytes(folder / "all.fvx"), expected) << ranks;
+  }
+}
+
 TEST_F(MpiTest, FramesAreSplitOverGroupsOfRanks) {
   const std::string turn = "turntable procedural:cloud --resolution 24 --size 48x36 --frames 3 ";
   expectSuccess(run(turn + "@one_#.png --share 0/1 --quiet"));
+  // Sums of a frame are added up while the next one is drawn.
+  expectSuccess(runMpi(2, turn + "@both_#.png --quiet"));
   const ProgramResult result = runMpi(3, turn + "@all_#.png --ranks-per-frame 1");
   ASSERT_EQ(result.exitCode, 0) << result.err;
   std::string expected;
   for (const char* frame : {"0", "1", "2"}) {
     const std::string name = std::string("all_") + frame + ".png";
     EXPECT_EQ(readBytes(folder / name), readBytes(folder / (std::string("one_") + frame + ".png")));
+    EXPECT_EQ(readBytes(folder / (std::string("both_") + frame + ".png")), readBytes(folder / name));
     expected += (folder / name).string() + "\n";
   }
   EXPECT_EQ(result.out, expected);  // once, by rank 0
@@ -108,14 +131,50 @@ TEST_F(MpiTest, RanksWithDifferentFilesAreRefused) {
   expectSuccess(run("generate cloud @1.vdb --resolution 16 --quiet"));
   const std::string command = std::string("exec ") + FREEVOXELS_MPI_PROGRAM + " render " + folder.path().string() +
                               "/$OMPI_COMM_WORLD_RANK.vdb " + (folder / "a.png").string() + " --density-scale 1 --size 32x32";
-  Arguments arguments = launch(2, "");
-  arguments.pop_back();
-  for (const char* word : {"/bin/sh", "-c", command.c_str()}) arguments.emplace_back(word);
-  const ProgramResult result = runProgramFile(FREEVOXELS_MPIRUN, arguments);
+  const ProgramResult result = runScript(2, command);
   EXPECT_EQ(result.exitCode, int(ExitCode::Input)) << result.err;
   EXPECT_NE(result.err.find("rank 1"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("another volume"), std::string::npos) << result.err;
   EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
+}
+
+/// Rank 1 lacks memory for rays from the eye and would look transmittance up in the table: sums that must not be added.
+TEST_F(MpiTest, RanksWhoseDevicesNeedOtherMethodsAreRefused) {
+  const ProgramResult result = runScript(2, "[ $OMPI_COMM_WORLD_RANK = 1 ] && less='--memory-limit 14'; exec " + std::string(FREEVOXELS_MPI_PROGRAM) +
+                                                " render procedural:cloud " + (folder / "a.png").string() +
+                                                " --resolution 96 --size 64 --camera-position 0.05,0.1,0 --look-at 0.3,0,-0.2 --unlit --draw splats $less");
+  EXPECT_EQ(result.exitCode, int(ExitCode::Input)) << result.err;
+  EXPECT_NE(result.err.find("has a device that needs another method than rank 0"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("rank 1"), std::string::npos) << result.err;
+  EXPECT_EQ(folder.fileCount(), 0u);
+}
+
+TEST_F(MpiTest, AFullDiskOfRankZeroEndsTheJobAndLeavesNoFile) {
+  setenv("OMPI_MCA_btl", "self,tcp", 1);  // whose files are not limited
+  const ProgramResult result = runScript(2, "[ $OMPI_COMM_WORLD_RANK = 0 ] && ulimit -f 8; exec " + std::string(FREEVOXELS_MPI_PROGRAM) +
+                                                " render procedural:cloud " + (folder / "a.exr").string() + " --resolution 24 --size 128 --float --quiet");
+  EXPECT_EQ(result.exitCode, int(ExitCode::Output)) << result.err;
+  EXPECT_EQ(sentences(result.err), 1) << result.err;
+  EXPECT_NE(result.err.find("a.exr"), std::string::npos) << result.err;
+  EXPECT_EQ(folder.fileCount(), 0u);
+}
+
+/// The scripts for Slurm as it runs them, but with mpirun in the place of srun, and the tasks of the array one after the other.
+TEST_F(MpiTest, TheJobScriptsForSlurmDrawTheSameImage) {
+  writeBytes(folder / "srun",
+             "#!/bin/sh\n[ \"$1 $2\" = '--mpi=pmix --kill-on-bad-exit=1' ] || exit 99\nshift 2\n"
+             "exec '" FREEVOXELS_MPIRUN "' --map-by :OVERSUBSCRIBE --bind-to none -n 2 \"$@\"\n");
+  std::filesystem::permissions(folder / "srun", std::filesystem::perms::owner_all);
+  const std::string programs = std::filesystem::path(FREEVOXELS_MPI_PROGRAM).parent_path().string();
+  const std::string script = "set -e; cd '" + folder.path().string() + "'; PATH='" + folder.path().string() + ":" + programs + "':$PATH\n"
+                             "freevoxels generate cube a.vdb --resolution 12 --quiet\n"
+                             "bash " FREEVOXELS_JOB_SCRIPTS "/mpi_job.sh a.vdb all.png --size 32 --quiet\n"
+                             "export SLURM_ARRAY_TASK_MIN=5 SLURM_ARRAY_TASK_COUNT=2\n"
+                             "for task in 5 6; do SLURM_ARRAY_TASK_ID=$task bash " FREEVOXELS_JOB_SCRIPTS "/array_job.sh a.vdb --size 32 --quiet; done\n"
+                             "freevoxels merge part_*.exr merged.png --quiet\n";
+  const ProgramResult result = runProgramFile("/bin/sh", {"-c", script});
+  ASSERT_EQ(result.exitCode, 0) << result.err;
+  EXPECT_EQ(readBytes(folder / "merged.png"), readBytes(folder / "all.png"));
 }
 
 TEST_F(MpiTest, ProcessesThatDoNotKnowEachOtherAreRefused) {
@@ -132,11 +191,8 @@ TEST_F(MpiTest, AKilledRankEndsTheJobAndLeavesNoFile) {
   const std::string command = std::string("if [ $OMPI_COMM_WORLD_RANK = 1 ]; then (sleep 1; kill -9 $$) & fi; exec ") +
                               FREEVOXELS_MPI_PROGRAM + " turntable procedural:cloud --resolution 48 --size 512x512 --frames 1000 " +
                               (folder / "a_####.exr").string() + " --quiet";
-  Arguments arguments = launch(3, "");
-  arguments.pop_back();
-  for (const char* word : {"/bin/sh", "-c", command.c_str()}) arguments.emplace_back(word);
   const auto start = std::chrono::steady_clock::now();
-  const ProgramResult result = runProgramFile(FREEVOXELS_MPIRUN, arguments);
+  const ProgramResult result = runScript(3, command);
   EXPECT_NE(result.exitCode, 0);
   EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
   for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
