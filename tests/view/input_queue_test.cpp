@@ -46,7 +46,7 @@ TEST(InputQueue, AClickIsSeenAndWhereItWas) {
 TEST(InputQueue, ModifiersHoldForWhatIsBetweenThem) {
   EXPECT_EQ(frames({key(GLFW_KEY_LEFT_CONTROL, true), key('S', true), key('S', false),
                     key(GLFW_KEY_LEFT_CONTROL, false)}),
-            "200011")
+            "20000011")
       << "and what is typed then waits for the field";
   EXPECT_EQ(frames({key(GLFW_KEY_LEFT_SHIFT, true),
                     {.kind = Kind::Wheel, .value = {0.0, 1.0}},
