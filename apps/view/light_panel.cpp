@@ -58,7 +58,7 @@ glm::dvec3 roundedDirection(glm::dvec3 direction) {
 bool drawDirection(Light& light, const Camera& camera) {
   const glm::dmat3 toCamera(worldToCamera(camera));
   glm::dvec3 seen = toCamera * glm::normalize(light.place);
-  bool changed = drawLightBall("ball", kBall * ImGui::GetFontSize(), seen, light.color);
+  bool changed = drawLightBall(beginRow("Direction"), kBall * ImGui::GetFontSize(), seen, light.color);
   if (changed) light.place = roundedDirection(glm::transpose(toCamera) * seen);
   glm::dvec2 angles = anglesOf(light.place);
   bool turned = slide("Azimuth", angles.x, -180.0, 180.0, "%.0f°");
@@ -123,6 +123,13 @@ bool drawScattering(LightingOptions& options) {
     changed |= slideOptional("Surface share", options.surface, 1.0, 0.0, 1.0);
     hint("Share of the light that surfaces reflect; the rest is scattered as in fog", "--surface-share");
   }
+  int orders = options.scattering.value_or(kDefaultScattering);
+  if (ImGui::SliderInt(beginRow("Scattering"), &orders, 1, 8, orders == 1 ? "single" : "%d orders", ImGuiSliderFlags_AlwaysClamp)) {
+    options.scattering = orders;
+    if (orders == kDefaultScattering) options.scattering.reset();
+    changed = true;
+  }
+  hint("Orders of scattering in fog; 1 is single scattering", "--scattering");
   changed |= slideOptional("Phase g", options.phaseG, 0.0, -kMostPhaseG, kMostPhaseG, "%.2f");
   hint("Henyey-Greenstein asymmetry: forwards above 0, backwards below", "--phase-g");
   changed |= choose("Shadows", kLightAttenuationWords, options.attenuation, int(LightAttenuation::Auto));

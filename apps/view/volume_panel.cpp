@@ -1,10 +1,12 @@
 #include "apps/view/volume_panel.h"
 
 #include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <imgui.h>
 
 #include "apps/freevoxels/input_options.h"
 #include "apps/view/actions.h"
@@ -73,9 +75,9 @@ void VolumePanel::drawFacts(const ViewState& state) {
   if (!state.latest || state.latest->request.scene.input.input != file) return;
   const Volume& volume = *state.latest->scene.volume;
   const glm::ivec3 size = volume.dimensions;
-  const double active = double(volume.activeVoxels);
-  ImGui::TextDisabled("%d × %d × %d voxels, %.3g %s active", size.x, size.y, size.z, active < 1e5 ? active : 1e-6 * active,
-                      active < 1e5 ? "" : "million");
+  const double millions = 1e-6 * double(volume.activeVoxels);
+  const std::string active = millions < 0.1 ? fmt::format("{}", volume.activeVoxels) : fmt::format("{:.3g} million", millions);
+  ImGui::TextDisabled("%d × %d × %d voxels, %s active", size.x, size.y, size.z, active.c_str());
   ImGui::TextDisabled("values %.4g to %.4g, voxel size %.3g", double(volume.minimum), double(volume.maximum), volume.voxelSize());
 }
 

@@ -297,6 +297,39 @@ TEST_F(Viewer, AFolderIsGoneThroughToAFile) {
   expectQuietEnd(*session);
 }
 
+TEST_F(Viewer, ThePanelsValuesAreDraggedAndAFinishedImageIsShownBrighterWithoutDrawingIt) {
+  writeBytes(folder / "tf.json", R"({"opacity": [[0, 0], [1, 0.5]]})");
+  const auto session = use("procedural:cloud --resolution 32 --verbose");
+  const auto wholeImages = [&] {
+    const std::string said = readBytes(folder / "said.txt");
+    int count = 0;
+    for (std::size_t at = said.find("whole image"); at != std::string::npos; at = said.find("whole image", at + 1)) ++count;
+    return count;
+  };
+  const std::string before = session->save('s', "before.png");
+  const int drawn = wholeImages();
+  session->hands("mousemove 228 385 mousedown 1 mousemove 240 385 mousemove 262 385 mouseup 1 mousemove 700 300");
+  EXPECT_NE(session->save('s', "brighter.png"), before);
+  EXPECT_GT(sceneOf(*session, "brighter.json").at("output").at("exposure"), 0.5);
+  EXPECT_EQ(wholeImages(), drawn);
+
+  session->hands("mousemove 143 151 click 1 mousemove 700 300");  // the box that clips
+  EXPECT_EQ(sceneOf(*session, "clipped.json").at("input").at("clip-box").size(), 6u);
+  session->hands("key ctrl+z");
+  EXPECT_FALSE(sceneOf(*session, "unclipped.json").at("input").contains("clip-box"));
+
+  session->open("tf.json");
+  const std::string function = sceneOf(*session, "function.json").at("classification").at("transfer-function").dump();
+  session->hands("mousemove 700 300 mousedown 3 mousemove 760 300 mousemove 640 340 mouseup 3");
+  const nlohmann::json windowed = sceneOf(*session, "windowed.json");
+  EXPECT_NE(windowed.at("classification").at("transfer-function").dump(), function);
+
+  session->hands("mousemove 337 600 mousedown 1 mousemove 420 600 mousemove 440 600 mouseup 1 mousemove 700 300");
+  session->save('s', "narrow.png");
+  EXPECT_NEAR(readPng(folder / "narrow.png").size.x, kWindow.x - 443, 4) << "the panel's border is dragged";
+  EXPECT_EQ(session->quit().exitCode, 0);
+}
+
 TEST_F(Viewer, ItEndsAtOnceWhileItDraws) {
   const auto session = use("procedural:cloud --resolution 96 --draw splats --attenuation exact");
   session->hands("sleep 0.5 mousemove 700 300 mousedown 1 mousemove 760 330");
