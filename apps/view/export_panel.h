@@ -34,6 +34,7 @@ class ExportPanel {
   /// Gives up what is being written.
   void cancel();
 
+  bool isBusy() const { return job_.busy(); }
   /// For an image to be complete, not for what is being written.
   bool waits() const { return !waiting_.empty() && !job_.busy(); }
   /// What is being written and the fraction of it that is done; nothing if there is none.

@@ -153,6 +153,11 @@ bool ImageDirector::isComplete(const ViewState& state) const {
   return state.whole && state.whole->request.number == lastRequest_ && !isPending(state) && state.latest == state.whole;
 }
 
+void ImageDirector::end() {
+  quick_.end();
+  whole_.end();
+}
+
 std::optional<std::pair<std::string, double>> ImageDirector::activity() const {
   const auto activity = whole_.activity();
   return activity ? activity : quick_.activity();

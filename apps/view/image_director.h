@@ -31,6 +31,10 @@ class ImageDirector {
   bool isSettled() const { return answered_ == lastRequest_ && askedOfWhole_ == lastRequest_ && !refines_; }
   std::optional<std::pair<std::string, double>> activity() const;
 
+  /// Abandons everything, for good, without waiting for that.
+  void end();
+  bool isBusy() const { return quick_.isBusy() || whole_.isBusy(); }
+
  private:
   static bool isPending(const ViewState& state) { return state.changed || state.moved; }
   void askOfChange(const ViewState& state);

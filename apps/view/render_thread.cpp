@@ -19,12 +19,21 @@ RenderThread::RenderThread(const Device& device, VolumeCache& volumes, std::func
     : device_(device), volumes_(volumes), finished_(std::move(finished)), thread_([this] { run(); }) {}
 
 RenderThread::~RenderThread() {
+  end();
+  thread_.join();
+}
+
+void RenderThread::end() {
   {
     const std::lock_guard lock(mutex_);
     ends_ = true;
   }
   asked_.notify_one();
-  thread_.join();
+}
+
+bool RenderThread::isBusy() const {
+  const std::lock_guard lock(mutex_);
+  return busy_;
 }
 
 void RenderThread::ask(ImageRequest request) {

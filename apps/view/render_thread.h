@@ -35,8 +35,11 @@ class RenderThread {
   void ask(ImageRequest request);
   /// Abandons the image that is being made and the request that waits, if any: no result comes of them.
   void abandon();
+  /// Abandons everything, for good, without waiting for that.
+  void end();
   /// How long the image that is being made has taken by now; 0 while none is.
   std::chrono::milliseconds busyFor() const;
+  bool isBusy() const;
   /// The last result since the last call.
   std::optional<Result> take();
   /// The current stage and the fraction of it that is done; nothing while it waits or has just started.

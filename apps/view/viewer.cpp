@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <thread>
 
 #include "apps/freevoxels/failure.h"
 #include "apps/freevoxels/frame_names.h"
@@ -32,6 +34,7 @@ constexpr float kPanelWidth = 340.0f;
 constexpr std::chrono::milliseconds kPaint{60};      // between frames while an image is made that is wanted soon
 constexpr std::chrono::milliseconds kFade{140};      // from a quick image to the whole one
 constexpr std::chrono::milliseconds kOneEdit{400};   // after which a change is another step to undo
+constexpr std::chrono::milliseconds kLongestEnd{150};  // for threads to abandon what they do
 constexpr double kIdleSeconds = 0.25;                // between frames in which nothing happens
 constexpr double kSoonSeconds = 0.01;                // in which something does
 
@@ -335,8 +338,21 @@ void Viewer::run() {
     storeThumbnail();
     if (options_.screenshot && completeFrames_ >= options_.after.value_or(1)) return;
   }
+  end();
+}
+
+/// What cannot be abandoned, such as the reading of a large file, ends with the process: outputs are complete or not there at all.
+void Viewer::end() {
   window_.hide();
   storeLastScene();
+  director_.end();
+  export_.cancel();
+  const Clock::time_point latest = Clock::now() + kLongestEnd;
+  const auto isBusy = [this] { return director_.isBusy() || export_.isBusy() || look_.waits() || grids_.isMaking(); };
+  while (isBusy() && Clock::now() < latest) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  if (!isBusy()) return;
+  spdlog::shutdown();
+  std::_Exit(int(ExitCode::Success));
 }
 
 }  // namespace freevoxels

@@ -56,6 +56,7 @@ class Viewer {
   void storeLastScene();
   double patience() const;
   void writeScreenshot() const;
+  void end();
 
   const ViewOptions options_;
   Window window_;
