@@ -74,7 +74,7 @@ std::vector<std::string> filesOfTurn(const std::string& pattern, int frames) {
   return files;
 }
 
-/// Of which the standard input is the image.
+/// The command that reads an image from its standard input into the clipboard.
 std::vector<std::string> clipboardCommand() {
   if (std::getenv("WAYLAND_DISPLAY") != nullptr) return {"wl-copy", "--type", "image/png"};
   return {"xclip", "-selection", "clipboard", "-target", "image/png", "-in"};

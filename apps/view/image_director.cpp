@@ -63,11 +63,15 @@ bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThr
   state.problem.clear();
   const ImageRequest& request = result.drawn->request;
   const double time = result.drawn->milliseconds;
-  if (request.purpose == Purpose::Move) movePace_.took(time);
+  // The first image of a movement also makes what the others keep.
+  if (request.purpose == Purpose::Move && state.latest && state.latest->request.purpose == Purpose::Move) movePace_.took(time);
   if (request.purpose == Purpose::Edit) editPace_.took(time);
   if (&thread == &whole_) wholeRevision_ = request.revision;
   const bool isWhole = request.purpose == Purpose::Whole;
-  if (isWhole) wholeIsQuick_ = time < kQuickMilliseconds;
+  if (isWhole) {
+    drawsWhole_ = false;
+    wholeIsQuick_ = time < kQuickMilliseconds;
+  }
   const std::uint64_t shown = state.latest ? state.latest->request.number : 0;
   const bool wholeIsThere = state.whole && request.number <= state.whole->request.number;
   return request.number >= shown && (isWhole || !wholeIsThere);
@@ -106,7 +110,8 @@ void ImageDirector::askOfChange(const ViewState& state) {
     return whole_.ask(request(state, Purpose::Whole, kAllVoxels, 1.0));
   }
   // A whole image in full size is given up for what is wanted now.
-  if (state.changed || askedOfWhole_ > answered_) whole_.abandon();
+  if (state.changed || drawsWhole_) whole_.abandon();
+  drawsWhole_ = false;
   const bool moves = !state.changed && wholeRevision_ == revision_ && state.diagnosis.shown == Shown::Image;
   const AdaptiveResolution& pace = moves ? movePace_ : editPace_;
   askedVoxels_ = pace.voxelsAlongEdge();
@@ -125,6 +130,7 @@ void ImageDirector::refine(const ViewState& state) {
     quick_.ask(request(state, Purpose::Refine, askedVoxels_, 1.0));
   } else {
     askedOfWhole_ = lastRequest_;
+    drawsWhole_ = true;
     whole_.ask(request(state, Purpose::Whole, kAllVoxels, 1.0));
   }
 }

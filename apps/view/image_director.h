@@ -53,7 +53,7 @@ class ImageDirector {
   Purpose lastPurpose_ = Purpose::Whole;
   int askedVoxels_ = kAllVoxels;  ///< of the last quick image
   bool refines_ = false;          ///< whether a step of refinement is being drawn
-  bool wholeIsQuick_ = false;
+  bool wholeIsQuick_ = false, drawsWhole_ = false;  ///< drawsWhole_: a whole image in full size was asked for, and has not come
 };
 
 }  // namespace freevoxels

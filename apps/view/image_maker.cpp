@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 #include "engine/image/display_pass.h"
 #include "engine/volume/coarse_volume.h"
@@ -114,7 +115,8 @@ DrawnImage withOutput(const DrawnImage& drawn, const OutputOptions& output) {
 
 DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progress) {
   request.scene.checkLook();
-  if (progress) progress("reading " + request.scene.input.input, 0.0);
+  const std::string before = std::exchange(input_, request.scene.input.input);
+  if (progress) progress(before == input_ ? "preparing" : "reading " + input_, 0.0);
   DrawnImage drawn{.request = request,
                    .scene = resolve(request),
                    .wholeDimensions = volumes_.wholeDimensions(),

@@ -91,6 +91,7 @@ class ImageMaker {
   std::shared_ptr<const Volume> whole_, coarse_;  ///< coarse_ is made from whole_, or equal to it
   int blockEdge_ = 0;                             ///< block edge of coarse_
   bool coarseIsOfDensities_ = false;
+  std::string input_;           ///< of the last request
   std::optional<Scene> scene_;  ///< of the last request
   std::uint64_t revision_ = 0;
   std::string rendererOptions_;

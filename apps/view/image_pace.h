@@ -26,7 +26,7 @@ class ImageRate {
 
 class AdaptiveResolution {
  public:
-  /// Of images that begin with all voxels if `all`, as only the camera moves; otherwise these are never chosen.
+  /// With `all`, images have all voxels at first, as only the camera moves; otherwise they never have.
   explicit AdaptiveResolution(bool all = false) : all_(all), step_(all ? 0 : 2) {}
 
   /// Largest number of voxels along the longest edge of the volume.

@@ -121,7 +121,7 @@ void drawDot(const DirectionDot& dot, ImVec2 centre, bool chosen) {
   if (chosen) list.AddCircle(dot.place, 2.0f * kDotRadius, IM_COL32(90, 160, 255, 255));
 }
 
-/// Of those that face the camera, the one under the mouse.
+/// The direction under the mouse, among those that face the camera.
 std::optional<int> dotUnderMouse(const std::vector<DirectionDot>& dots) {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   float nearest = 8.0f * 8.0f;
@@ -285,6 +285,7 @@ void drawInspectPanel(ViewState& state) {
   if (diagnosis.shown == Shown::Blocks) drawBlockControls(state);
   if (diagnosis.shown == Shown::TableSlice || diagnosis.shown == Shown::TableImage)
     drawTableControls(state);
+  heading("Directions of the attenuation table, from the eye");
   drawSphere(state, state.method.table().directions);
   drawMethod(state);
   drawFigures(*state.latest);

@@ -30,7 +30,7 @@ class PresetImages {
   PresetImages(const PresetImages&) = delete;
   PresetImages& operator=(const PresetImages&) = delete;
 
-  /// Of a preset by its index; null while it is drawn. `latest` is the image whose volume, camera and light they have.
+  /// The image of a preset by its index; null while it is drawn. `latest` is the image whose volume, camera and light they have.
   const Texture* of(std::size_t preset, const std::shared_ptr<const DrawnImage>& latest);
 
  private:

@@ -28,7 +28,7 @@ double roundLength(double length);
 /// World length of a pixel at the look-at point, of an image `height` pixels high.
 double pixelLength(const Camera& camera, double height);
 
-/// Of the axes drawn in the corner, the one whose end is under the mouse: 0 to 5 for +x, -x, +y, -y, +z, -z.
+/// The axis in the corner whose end is under the mouse: 0 to 5 for +x, -x, +y, -y, +z, -z.
 std::optional<int> axisUnderMouse(const Camera& camera, const ImageFrame& frame);
 
 /// The box that clips the volume, with a handle in the middle of each side.

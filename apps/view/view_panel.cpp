@@ -63,7 +63,7 @@ void drawBookmarks(ViewState& state, SessionStore& store) {
   hint("Keeps this camera for this volume, in later sessions, too (Ctrl+B)");
 }
 
-/// Of these, no image is drawn again: they only affect how it is shown and written.
+/// These only affect how an image is shown and written: it is not drawn again.
 void drawBackground(ViewState& state) {
   OutputOptions& output = state.scene.output;
   std::vector<std::string> words{"dark gradient", "transparent"};

@@ -16,7 +16,7 @@ class ImageMakerTest : public DeviceTest {
     request.scene.lighting.lights.push_back({.light = {.place = {0.0, 1.0, 0.0}}});
     return request;
   }
-  /// Of that name, in the order of the image's stages; a stage has its time only where it is new, or where
+  /// The times of that name, in the order of the image's stages; a stage has its time only where it is new, or where
   /// it is of the volume that is kept.
   static std::vector<double> timesOf(const DrawnImage& drawn, const std::string& stage) {
     std::vector<double> times;
