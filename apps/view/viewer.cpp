@@ -241,6 +241,7 @@ void Viewer::act() {
     perform(*action);
     restored |= *action == Action::Undo || *action == Action::Redo;
   }
+  if (restored) state_.bookmarks = store_.bookmarks(state_.scene.input.input);  // maybe another volume
   if (area_.hasTurned()) store_.setKnowsHowToTurn();
   export_.follow(state_);
   if (export_.waits()) volume_.frames().pause();  // for the whole image of this frame
