@@ -26,6 +26,10 @@ Volume openBaked(const std::shared_ptr<const fvx::FvxFile>& file, std::uint64_t 
   return volume;
 }
 
+std::string clipText(const VoxelBox& box) {
+  return fmt::format("{},{},{},{},{},{}", box.first.x, box.first.y, box.first.z, box.last.x, box.last.y, box.last.z);
+}
+
 }  // namespace
 
 std::uint64_t machineMemoryBytes() {
@@ -76,6 +80,21 @@ void InputOptions::addGrid(CLI::App& app) {
       ->group("Input");
 }
 
+void InputOptions::addClip(CLI::App& app) {
+  app.add_option_function<std::string>(
+         "--clip-box",
+         [this](const std::string& text) {
+           constexpr int kLargest = 1 << 20;  // beyond any volume
+           const std::vector<double> n = readNumbers("--clip-box", "X0,Y0,Z0,X1,Y1,Z1", 6, text, {0.0, double(kLargest)});
+           clipBox = VoxelBox{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+         },
+         "Draw only these voxels: the first and the last ones along x, y and z, inclusive, in the volume's box, whose voxels "
+         "'freevoxels info' counts")
+      ->take_last()
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1")
+      ->group("Input");
+}
+
 void InputOptions::checkGiven() const {
   if (input.empty()) fail(ErrorKind::Usage, "IN is required: name an OpenVDB file, or procedural:NAME");
 }
@@ -83,6 +102,10 @@ void InputOptions::checkGiven() const {
 void InputOptions::check() const {
   if (grid && !proceduralName(input) && fvx::isFvx(input))
     fail(ErrorKind::Usage, "--grid chooses among the grids of an OpenVDB file, and '{}' is a baked volume", input);
+  if (clipBox && glm::any(glm::greaterThan(clipBox->first, clipBox->last)))
+    fail(ErrorKind::Usage, "--clip-box {} is empty: give the smaller coordinates first", clipText(*clipBox));
+  if (clipBox && !proceduralName(input) && fvx::isFvx(input))
+    fail(ErrorKind::Usage, "--clip-box does not apply to a baked volume such as '{}': clip the volume that it is baked of", input);
   if (proceduralName(input)) {
     if (grid) fail(ErrorKind::Usage, "--grid chooses among the grids of a file, and {} has one", input);
   } else if (resolution) {
@@ -99,10 +122,19 @@ std::shared_ptr<const fvx::FvxFile> InputOptions::baked() const {
 Volume InputOptions::open(std::uint64_t maximumVoxels, const MoreGrids& more, int level) const {
   const std::optional<std::string> name = proceduralName(input);
   if (const auto file = baked()) return openBaked(file, maximumVoxels, level);
-  if (!name) return readVdb(input, grid.value_or(""), maximumVoxels, more);
+  if (!name) return clip(readVdb(input, grid.value_or(""), maximumVoxels, more));
   Volume volume = openProcedural(*name, resolution, maximumVoxels);
   if (!more.temperature) volume.temperature.reset();
-  return volume;
+  return clip(std::move(volume));
+}
+
+Volume InputOptions::clip(Volume volume) const {
+  if (!clipBox) return volume;
+  const glm::ivec3 size = volume.dimensions;
+  if (glm::any(glm::greaterThanEqual(clipBox->first, size)))
+    fail(ErrorKind::Usage, "--clip-box {} has no voxel of the volume's box, which has {} x {} x {}", clipText(*clipBox), size.x, size.y,
+         size.z);
+  return clippedVolume(volume, *clipBox);
 }
 
 void InputOptions::describe(OptionList& options) const {
@@ -110,6 +142,7 @@ void InputOptions::describe(OptionList& options) const {
   if (grid) options.emplace_back("--grid", *grid);
   if (proceduralName(input))
     options.emplace_back("--resolution", resolutionText(resolution.value_or(glm::ivec3(kDefaultResolution))));
+  if (clipBox) options.emplace_back("--clip-box", clipText(*clipBox));
 }
 
 std::vector<std::string> warningsOf(const Volume& volume, bool scalarsAreDensities) {

@@ -8,6 +8,7 @@
 
 #include "apps/freevoxels/option_values.h"
 #include "engine/storage/fvx_file.h"
+#include "engine/volume/coarse_volume.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/volume.h"
 
@@ -33,15 +34,20 @@ struct InputOptions {
   std::string input;
   std::optional<std::string> grid;
   std::optional<glm::ivec3> resolution;
+  std::optional<VoxelBox> clipBox;  ///< of the volume's box; the voxels outside are not drawn
 
   /// IN and --resolution.
   void add(CLI::App& app);
   /// Adds --grid.
   void addGrid(CLI::App& app);
+  /// Adds --clip-box.
+  void addClip(CLI::App& app);
   /// Fails with ErrorKind::Usage without IN.
   void checkGiven() const;
   /// Fails with ErrorKind::Usage for options that do not apply to this input.
   void check() const;
+  /// The part of a volume in the clip box. Fails with ErrorKind::Usage if they have no voxel in common.
+  Volume clip(Volume volume) const;
   /// A procedural volume has its temperatures if any are requested; a baked one always has its temperatures
   /// and albedos. If the box of a baked volume is too large at `level`, the finest level that fits is opened,
   /// with a warning.

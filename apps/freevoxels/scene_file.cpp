@@ -28,7 +28,7 @@ struct Replaced {
   const char* option;
   std::vector<const char*> others;
 };
-const std::vector<Replaced> kReplaced{{"IN", {"--grid", "--resolution"}},
+const std::vector<Replaced> kReplaced{{"IN", {"--grid", "--resolution", "--clip-box"}},
                                       {"--shading", {"--surface-share"}},
                                       {"--paper",
                                        {"--composite", "--attenuation", "--directions", "--code",

@@ -27,6 +27,7 @@ void makeEmissionLight(Scene& scene) {
 void SceneOptions::add(CLI::App& app) {
   input.add(app);
   input.addGrid(app);
+  input.addClip(app);
   output.add(app);
   addLook(app);
   file.addSave(app);

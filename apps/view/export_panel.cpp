@@ -1,6 +1,5 @@
 #include "apps/view/export_panel.h"
 
-#include <GLFW/glfw3.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -8,15 +7,16 @@
 #include <filesystem>
 
 #include "apps/freevoxels/frame_names.h"
-#include "apps/view/file_field.h"
-#include "apps/view/picture_files.h"
-#include "apps/view/wrapped_command.h"
+#include "apps/view/export_files.h"
+#include "apps/view/theme.h"
+#include "apps/view/widgets.h"
+#include "engine/core/error.h"
 
 namespace freevoxels {
 
 namespace {
 
-constexpr int kMostCommandLines = 9;  // that are seen at once
+constexpr int kMostCommandLines = 7;  // that are seen at once
 
 std::string savedSentence(const std::string& file) {
   std::error_code unknown;
@@ -24,101 +24,106 @@ std::string savedSentence(const std::string& file) {
   return "saved " + (unknown ? file : whole.lexically_normal().string());
 }
 
+void drawCommand(const DrawnImage& drawn, const std::string& file) {
+  ImGui::PushFont(monospacedFont());
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const float room = ImGui::GetContentRegionAvail().x - 2.0f * style.FramePadding.x - style.ScrollbarSize;
+  const auto columns = std::size_t(std::max(room / ImGui::CalcTextSize("M").x, 1.0f));
+  std::string wrapped = wrappedCommand(commandOf(drawn, file), columns);
+  const auto lines = int(1 + std::ranges::count(wrapped, '\n'));
+  const float height = float(std::min(lines, kMostCommandLines)) * ImGui::GetTextLineHeight();
+  ImGui::InputTextMultiline("##command", &wrapped, {-1.0f, height + 2.0f * style.FramePadding.y}, ImGuiInputTextFlags_ReadOnly);
+  ImGui::PopFont();
+}
+
 }  // namespace
 
-ExportPanel::ExportPanel(const Device& device, int turnFrames, std::function<void()> finished)
-    : device_(device), turnFrames_(turnFrames), job_(std::move(finished)) {}
+ExportPanel::ExportPanel(const Device& device, FileDialog& dialog, int turnFrames, std::function<void()> finished)
+    : device_(device), dialog_(dialog), turnFrames_(turnFrames), job_(std::move(finished)) {}
 
-void ExportPanel::takeKeys() {
-  if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false) && !ImGui::GetIO().WantTextInput) cancel();
-  if (!ImGui::GetIO().KeyCtrl) return;
-  if (ImGui::IsKeyPressed(GLFW_KEY_S, false)) focus_ = Field::Picture;
-  if (ImGui::IsKeyPressed(GLFW_KEY_E, false)) focus_ = Field::Scene;
-  if (ImGui::IsKeyPressed(GLFW_KEY_T, false)) focus_ = Field::Turn;
+void ExportPanel::askImage() {
+  dialog_.save("Save image", imageName_, {".png", ".exr", ".jpg", ".jpeg"}, [this](const std::string& file) {
+    imageName_ = file;
+    want({[this, file](const DrawnImage& drawn, const Progress&) { saveImage(device_, drawn, file); }, savedSentence(file)});
+  });
+}
+
+void ExportPanel::askScene() {
+  dialog_.save("Save scene", sceneName_, {".json"}, [this](const std::string& file) {
+    sceneName_ = file;
+    want({[file](const DrawnImage& drawn, const Progress&) { saveScene(drawn, file); }, savedSentence(file)});
+  });
+}
+
+void ExportPanel::askTurntable() {
+  dialog_.save("Save turntable: # stands for the digits of a frame's number", turnName_, {".png", ".exr", ".jpg"},
+               [this](const std::string& pattern) {
+                 turnName_ = pattern;
+                 want({[this, pattern, frames = turnFrames_](const DrawnImage& of, const Progress& progress) {
+                         saveTurn(device_, of, pattern, frames, progress);
+                       },
+                       fmt::format("saved {} frames: {}", turnFrames_, pattern)});
+               });
+}
+
+void ExportPanel::copyImage() {
+  if (!canCopyImages()) return want({[](const DrawnImage&, const Progress&) {}, ""});
+  want({[this](const DrawnImage& drawn, const Progress&) { freevoxels::copyImage(device_, drawn); }, "copied the image"});
+}
+
+void ExportPanel::copyCommand(ViewState& state) {
+  if (!state.whole) return;
+  ImGui::SetClipboardText(commandOf(*state.whole, "image.png").c_str());
+  state.notice = "copied the render command";
 }
 
 void ExportPanel::draw(ViewState& state) {
-  takeKeys();
-  begin(state);
-  if (focus_ != Field::None) ImGui::SetNextItemOpen(true);
   if (!ImGui::CollapsingHeader("Export", ImGuiTreeNodeFlags_DefaultOpen)) return;
-  ImGui::PushID("take away");
-  if (state.whole) drawCommand(*state.whole, meantFile(pictureName_));
-  drawPictureFields(state);
-  drawTurn(state.whole.get());
-  drawWork();
+  ImGui::PushID("export");
+  const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+  if (ImGui::Button("Save image...", {half, 0.0f})) askImage();
+  hint("Writes .png, .jpg or .exr (Ctrl+S)");
+  ImGui::SameLine();
+  if (ImGui::Button("Save scene...", {half, 0.0f})) askScene();
+  hint("Writes all options as JSON (Ctrl+E)", "--save-scene");
+  if (ImGui::Button("Copy image", {half, 0.0f})) copyImage();
+  hint("To the clipboard (Ctrl+C)");
+  ImGui::SameLine();
+  if (ImGui::Button("Copy command", {half, 0.0f})) copyCommand(state);
+  hint("Copies the command line that renders this image (Ctrl+Shift+C)");
+  OutputOptions& output = state.scene.output;
+  if (ImGui::TreeNode("Turntable")) {
+    ImGui::InputInt(beginRow("Frames"), &turnFrames_, 1, 10);
+    hint("Of a full turn", "--frames");
+    turnFrames_ = std::clamp(turnFrames_, 1, kMaximumFrames);
+    if (ImGui::Button("Save turntable...", {half, 0.0f})) askTurntable();
+    hint("Writes an image for each frame of a full turn (Ctrl+T)");
+    ImGui::SameLine();
+    if (ImGui::Button("Copy turntable cmd", {half, 0.0f}) && state.whole) {
+      ImGui::SetClipboardText(turnCommandOf(*state.whole, turnName_, turnFrames_).c_str());
+      state.notice = "copied the turntable command";
+    }
+    hint("Copies the command line that renders these frames");
+    ImGui::TreePop();
+  }
+  if (ImGui::TreeNode("Command line and .exr")) {
+    if (tick("32-bit floats", output.fullFloat)) state.retoned = true;
+    hint("Of an .exr, instead of 16 bits", "--float");
+    if (tick("Depth channel", output.aovs.depth)) state.changed = true;
+    hint("In an .exr", "--aov depth");
+    if (state.whole) drawCommand(*state.whole, imageName_);
+    ImGui::TreePop();
+  }
   ImGui::PopID();
 }
 
-void ExportPanel::drawCommand(const Picture& picture, const std::string& file) {
-  const float width = ImGui::GetContentRegionAvail().x;
-  const ImGuiStyle& style = ImGui::GetStyle();
-  const float room = width - 2.0f * style.FramePadding.x - style.ScrollbarSize;
-  const auto columns = std::size_t(std::max(room / ImGui::CalcTextSize("M").x, 1.0f));
-  const std::string command = commandOf(picture, file);
-  std::string wrapped = wrappedCommand(command, columns);
-  const auto lines = int(1 + std::ranges::count(wrapped, '\n'));
-  const float height = float(std::min(lines, kMostCommandLines)) * ImGui::GetTextLineHeight();
-  ImGui::InputTextMultiline("##command", &wrapped, {width, height + 2.0f * style.FramePadding.y},
-                            ImGuiInputTextFlags_ReadOnly);
-  if (ImGui::Button("Copy command line")) ImGui::SetClipboardText(command.c_str());
-}
-
-bool ExportPanel::wants(Field field, const char* button, std::string& name) {
-  const bool focused = focus_ == field;
-  if (focused) focus_ = Field::None;
-  return fileField(button, name, focused);
-}
-
-void ExportPanel::drawPictureFields(ViewState& state) {
-  if (wants(Field::Picture, "Save picture", pictureName_)) {
-    const std::string file = meantFile(pictureName_);
-    want({[this, file](const Picture& picture, const Progress&) { savePicture(device_, picture, file); },
-          savedSentence(file)});
-  }
-  OutputOptions& output = state.scene.output;
-  state.changed |= ImGui::Checkbox(".exr of 32 bits", &output.fullFloat);
-  ImGui::SameLine();
-  state.changed |= ImGui::Checkbox("with depth", &output.aovs.depth);
-  if (wants(Field::Scene, "Save scene", sceneName_)) {
-    const std::string file = meantFile(sceneName_);
-    want(
-        {[file](const Picture& picture, const Progress&) { saveScene(picture, file); }, savedSentence(file)});
-  }
-}
-
-void ExportPanel::drawTurn(const Picture* picture) {
-  if (wants(Field::Turn, "Save turn", turnName_)) {
-    const std::string pattern = meantFile(turnName_);
-    want({[this, pattern, frames = turnFrames_](const Picture& of, const Progress& progress) {
-            saveTurn(device_, of, pattern, frames, progress);
-          },
-          fmt::format("saved {} frames: {}", turnFrames_, pattern)});
-  }
-  ImGui::SetNextItemWidth(0.3f * ImGui::GetContentRegionAvail().x);
-  ImGui::InputInt("frames", &turnFrames_, 1, 10);
-  turnFrames_ = std::clamp(turnFrames_, 1, kMaximumFrames);
-  ImGui::SameLine();
-  if (ImGui::Button("Copy command line##turn") && picture != nullptr)
-    ImGui::SetClipboardText(turnCommandOf(*picture, meantFile(turnName_), turnFrames_).c_str());
-}
-
-void ExportPanel::drawWork() {
-  const bool busy = job_.busy();
-  if (busy || !waiting_.empty()) {
-    const auto [stage, fraction] =
-        busy ? job_.activity() : std::pair<std::string, double>("waiting for the whole picture", 0.0);
-    ImGui::TextWrapped("%s", stage.c_str());
-    if (ImGui::Button("Cancel")) cancel();
-    ImGui::SameLine();
-    ImGui::ProgressBar(float(fraction), {-1.0f, 0.0f});
-  } else {
-    drawSentence(last_.sentence, last_.done);
-  }
+std::optional<std::pair<std::string, double>> ExportPanel::activity() const {
+  if (job_.busy()) return job_.activity();
+  if (!waiting_.empty()) return std::pair<std::string, double>("waiting for the complete image", 0.0);
+  return std::nullopt;
 }
 
 void ExportPanel::want(Task task) {
-  last_ = {};
   waiting_.push_back(std::move(task));
 }
 
@@ -127,18 +132,22 @@ void ExportPanel::cancel() {
   job_.cancel();
 }
 
-void ExportPanel::begin(const ViewState& state) {
-  if (std::optional<ExportJob::Outcome> outcome = job_.take()) last_ = std::move(*outcome);
+void ExportPanel::follow(ViewState& state) {
+  if (const std::optional<ExportJob::Outcome> outcome = job_.take()) (outcome->done ? state.notice : state.problem) = outcome->sentence;
   if (waiting_.empty() || job_.busy()) return;
   if (state.failed) {
-    last_ = {false, "not saved, as there is no picture: " + state.problem};
+    state.problem = "not saved, as there is no image: " + state.problem;
     waiting_.clear();
   } else if (state.complete) {
-    Task& next = waiting_.front();
-    job_.start([work = std::move(next.work),
-                picture = state.whole](const Progress& progress) { work(*picture, progress); },
-               std::move(next.done));
+    Task next = std::move(waiting_.front());
     waiting_.pop_front();
+    if (next.done.empty()) {
+      copyCommand(state);
+      state.notice = "copied the render command: images can be copied if xclip or wl-clipboard is installed";
+      return;
+    }
+    job_.start([work = std::move(next.work), drawn = state.whole](const Progress& progress) { work(*drawn, progress); },
+               std::move(next.done));
   }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// "Export": the command line that renders the shown image, and buttons that save image, scene and turntable.
+// The panel "Export": the command line that renders the shown image, and saving of image, scene and turntable.
 
 #include <deque>
 #include <functional>
@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/view/export_job.h"
+#include "apps/view/file_dialog.h"
 #include "apps/view/view_state.h"
 
 namespace freevoxels {
@@ -14,39 +15,45 @@ namespace freevoxels {
 class ExportPanel {
  public:
   /// `finished` is called, by another thread, when something has been written.
-  ExportPanel(const Device& device, int turnFrames, std::function<void()> finished);
+  ExportPanel(const Device& device, FileDialog& dialog, int turnFrames, std::function<void()> finished);
 
-  /// Into the current Dear ImGui window. What is wanted of a picture is written when it is complete. Ctrl+S,
-  /// Ctrl+E and Ctrl+T ask for the names of a picture, a scene and a turn; Escape gives up what is being
-  /// written.
+  /// Into the current Dear ImGui window.
   void draw(ViewState& state);
-  /// For a picture to be complete, not for what is being written.
+  /// Starts what waits for the complete image, and passes on what came of it as ViewState::notice or problem. To be called in
+  /// every frame.
+  void follow(ViewState& state);
+
+  /// These ask for a file name. What is asked for is written when the image is complete.
+  void askImage();
+  void askScene();
+  void askTurntable();
+  /// Copies the complete image to the clipboard, where a program for that is installed (wl-copy or xclip); otherwise its command
+  /// line, and says so.
+  void copyImage();
+  static void copyCommand(ViewState& state);
+  /// Gives up what is being written.
+  void cancel();
+
+  bool isBusy() const { return job_.busy(); }
+  /// For an image to be complete, not for what is being written.
   bool waits() const { return !waiting_.empty() && !job_.busy(); }
+  /// What is being written and the fraction of it that is done; nothing if there is none.
+  std::optional<std::pair<std::string, double>> activity() const;
 
  private:
-  enum class Field { None, Picture, Scene, Turn };
   struct Task {
-    std::function<void(const Picture&, const Progress&)> work;
+    std::function<void(const DrawnImage&, const Progress&)> work;
     std::string done;
   };
 
-  void takeKeys();
-  static void drawCommand(const Picture& picture, const std::string& file);
-  void drawPictureFields(ViewState& state);
-  void drawTurn(const Picture* picture);
-  void drawWork();
-  bool wants(Field field, const char* button, std::string& name);
   void want(Task task);
-  void cancel();
-  void begin(const ViewState& state);
 
   const Device& device_;
-  std::string pictureName_ = "picture.png", sceneName_ = "scene.json", turnName_ = "turn_####.png";
+  FileDialog& dialog_;
+  std::string imageName_ = "image.png", sceneName_ = "scene.json", turnName_ = "turn_####.png";
   int turnFrames_;
-  Field focus_ = Field::None;
-  std::deque<Task> waiting_;  ///< for the picture to be complete
-  ExportJob::Outcome last_;
-  ExportJob job_;  ///< ends before what it uses
+  std::deque<Task> waiting_;  ///< for the image to be complete
+  ExportJob job_;             ///< ends before what it uses
 };
 
 }  // namespace freevoxels

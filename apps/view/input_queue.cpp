@@ -10,7 +10,7 @@ namespace {
 
 using Kind = InputEvent::Kind;
 
-constexpr int kShortcutFrames = 3;  // until a field that is asked for has the cursor
+constexpr int kShortcutFrames = 5;  // until a field that is asked for has the cursor
 constexpr int kSettlingFrames = 3;  // in which Dear ImGui shows what came of an event
 
 bool isControl(const InputEvent& event) {
@@ -54,7 +54,8 @@ std::vector<InputEvent> InputQueue::nextFrame() {
     const InputEvent& next = events_.front();
     if (std::ranges::any_of(frame, [&](const InputEvent& before) { return hides(next, before); })) break;
     if (isControl(next)) control_ = next.down;
-    if (control_ && next.kind == Kind::Key && next.down && !isModifier(next)) held_ = kShortcutFrames;
+    const bool confirms = next.kind == Kind::Key && next.code == GLFW_KEY_ENTER;
+    if (next.kind == Kind::Key && next.down && (confirms || (control_ && !isModifier(next)))) held_ = kShortcutFrames;
     frame.push_back(next);
     events_.pop_front();
   }

@@ -22,8 +22,8 @@ class InputQueue {
   void add(const InputEvent& event) { events_.push_back(event); }
   /// Whether the window has shown the results of all events.
   bool settled() const { return events_.empty() && unsettled_ == 0; }
-  /// The next events in their order, as many as one frame can distinguish. A shortcut with Ctrl may move the
-  /// cursor into a field, which takes some frames; text typed meanwhile waits.
+  /// The next events in their order, as many as one frame can distinguish. A shortcut with Ctrl, or
+  /// Enter, may move the cursor into a field, which takes some frames; text typed meanwhile waits.
   std::vector<InputEvent> nextFrame();
 
  private:

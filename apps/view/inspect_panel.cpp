@@ -1,20 +1,74 @@
 #include "apps/view/inspect_panel.h"
 
-#include <fmt/format.h>
-#include <imgui.h>
-
 #include <algorithm>
 #include <array>
+#include <fmt/format.h>
+#include <imgui.h>
 #include <optional>
 #include <vector>
 
-#include "apps/view/block_picture.h"
+#include "apps/view/diagnosis.h"
 #include "apps/view/widgets.h"
 #include "engine/scene/directions.h"
 
 namespace freevoxels {
 
 namespace {
+
+constexpr double kLeastThreshold = 1e-5, kMostThreshold = 0.1;
+
+struct Usual {
+  TableSettings table;
+  FrameSettings frame;
+};
+
+/// What is not given comes to.
+Usual usualOf(bool paper) {
+  const MethodOptions none{.paper = paper};
+  Usual usual{.table = none.table()};
+  none.apply(usual.frame);
+  return usual;
+}
+
+bool drawPaper(MethodOptions& method) {
+  bool paper = method.paper;
+  if (!tick("As in the paper", paper)) {
+    hint("Subr et al. 2007: additive, nearest, no gradient", "--paper");
+    return false;
+  }
+  method = {.paper = paper, .hierarchyFilter = method.hierarchyFilter, .cullThreshold = method.cullThreshold};
+  return true;
+}
+
+bool drawTable(MethodOptions& method, const TableSettings& usual) {
+  bool changed = choose("Directions", kDirectionWords, method.directions, int(usual.directions) - 1);
+  hint("Of the attenuation table; 98 are more exact, and take more memory and time", "--directions");
+  changed |= choose("Code", kCodeWords, method.code, int(usual.code));
+  hint("What a byte of the table holds: optical depth, or transmittance", "--code");
+  changed |= choose("Block mean", kHierarchyFilterWords, method.hierarchyFilter, int(usual.filter));
+  hint("Mean of the transmittances of a block's voxels", "--hierarchy-filter");
+  changed |= tick("Path length corr.", method.pathLengthCorrection, usual.pathLengthCorrection);
+  hint("A diagonal step counts its full length", "--path-length-correction");
+  return changed;
+}
+
+bool drawDetail(MethodOptions& method, const FrameSettings& usual) {
+  bool changed = tick("Gradient in splats", method.gradient, usual.gradient);
+  hint("Transmittance varies across a splat", "--gradient");
+  changed |= slideOptional("Level of detail", method.lod, double(usual.lod), 0.0, 8.0, "%.2g px");
+  hint("Blocks up to so many pixels wide are drawn as one", "--lod");
+  changed |= tick("Occlusion culling", method.culling, usual.culling);
+  hint("Leaves out blocks outside of the image or behind others", "--culling");
+  ImGui::BeginDisabled(!method.culling.value_or(usual.culling));
+  double threshold = method.cullThreshold.value_or(double(usual.cullThreshold));
+  if (slideLogarithmic("Cull threshold", threshold, kLeastThreshold, kMostThreshold)) {
+    method.cullThreshold = threshold;
+    changed = true;
+  }
+  hint("Share of a block's light that reaches the eye, below which it is left out", "--cull-threshold");
+  ImGui::EndDisabled();
+  return changed;
+}
 
 constexpr float kSphereRadius = 62.0f;  // pixels at the usual density of text
 constexpr float kDotRadius = 3.5f;
@@ -67,7 +121,7 @@ void drawDot(const DirectionDot& dot, ImVec2 centre, bool chosen) {
   if (chosen) list.AddCircle(dot.place, 2.0f * kDotRadius, IM_COL32(90, 160, 255, 255));
 }
 
-/// Of those that face the camera, the one under the mouse.
+/// The direction under the mouse, among those that face the camera.
 std::optional<int> dotUnderMouse(const std::vector<DirectionDot>& dots) {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   float nearest = 8.0f * 8.0f;
@@ -110,12 +164,12 @@ void drawSphere(ViewState& state, DirectionSet set) {
 void drawTableControls(ViewState& state) {
   Diagnosis& diagnosis = state.diagnosis;
   const DirectionSet set = state.method.table().directions;
-  state.changed |= ImGui::SliderInt("direction", &diagnosis.direction, 0, directionCount(set) - 1);
+  state.changed |= ImGui::SliderInt(beginRow("Direction"), &diagnosis.direction, 0, directionCount(set) - 1);
   diagnosis.direction = std::clamp(diagnosis.direction, 0, directionCount(set) - 1);
   if (diagnosis.shown != Shown::TableSlice) return;
-  state.changed |= ImGui::Combo("across", &diagnosis.axis, "x\0y\0z\0");
+  state.changed |= ImGui::Combo(beginRow("Across"), &diagnosis.axis, "x\0y\0z\0");
   auto place = float(diagnosis.place);
-  if (ImGui::SliderFloat("at", &place, 0.0f, 1.0f)) {
+  if (ImGui::SliderFloat(beginRow("At"), &place, 0.0f, 1.0f)) {
     diagnosis.place = double(place);
     state.changed = true;
   }
@@ -123,7 +177,7 @@ void drawTableControls(ViewState& state) {
 
 void drawBlockControls(ViewState& state) {
   bool kept = state.diagnosis.chosenFor.has_value();
-  if (ImGui::Checkbox("keep the choice, look from elsewhere", &kept)) {
+  if (ImGui::Checkbox("Keep the cut, look from elsewhere", &kept)) {
     state.diagnosis.chosenFor = kept ? state.camera : std::nullopt;
     state.changed = true;
   }
@@ -138,15 +192,15 @@ void drawBlockControls(ViewState& state) {
                                               shownColor(levelColor(int(level)), 1.0f));
     ImGui::Dummy({size, size});
     ImGui::SameLine();
-    ImGui::Text("%llu of %d^3 voxels", static_cast<unsigned long long>(drawn[level]), 1 << level);
+    ImGui::Text("%llu of %d³ voxels", static_cast<unsigned long long>(drawn[level]), 1 << level);
   }
 }
 
 void drawComparison(ViewState& state) {
-  static constexpr std::array kNames{"nothing", "sorted back to front", "the paper's method", "exact rays",
+  static constexpr std::array kNames{"nothing", "sorted splats", "the paper's method", "exact rays",
                                      "every voxel, no culling"};
   int chosen = state.comparison;
-  if (!ImGui::BeginCombo("beside it", kNames[std::size_t(chosen)])) return;
+  if (!ImGui::BeginCombo(beginRow("Compare with"), kNames[std::size_t(chosen)])) return;
   for (int i = 0; i < int(kNames.size()); ++i)
     if (ImGui::Selectable(kNames[std::size_t(i)], i == chosen)) {
       state.comparison = i;
@@ -159,52 +213,83 @@ std::string megabytes(std::uint64_t bytes) {
   return fmt::format("{:.1f} MiB", double(bytes) / double(1 << 20));
 }
 
-void drawFigures(const Picture& picture) {
+void drawFigures(const DrawnImage& drawn) {
   if (!ImGui::TreeNode("Times, memory, counts")) return;
   const auto line = [](const std::string& name, const std::string& value) {
     ImGui::TextUnformatted(name.c_str());
     ImGui::SameLine(0.6f * ImGui::GetContentRegionAvail().x);
     ImGui::TextUnformatted(value.c_str());
   };
-  for (const StageTime& time : picture.times)
+  for (const StageTime& time : drawn.times)
     line(time.name + (time.onDevice ? " (device)" : ""), fmt::format("{:.2f} ms", time.milliseconds));
   ImGui::Separator();
-  const VolumeMemory& memory = picture.memory;
+  const VolumeMemory& memory = drawn.memory;
   line("extinction", megabytes(memory.extinction + memory.occupancy));
   line("table", megabytes(memory.table - memory.unseen));
   line("colours, light", megabytes(memory.colors + memory.emission));
   line("lists, splats", megabytes(memory.lists + memory.splats));
   ImGui::Separator();
-  if (picture.visibleVoxels) line("voxels", fmt::format("{}", *picture.visibleVoxels));
-  line("considered", fmt::format("{}", picture.cut.considered));
-  line("empty", fmt::format("{}", picture.cut.empty));
-  line("outside", fmt::format("{}", picture.cut.outside));
-  line("hidden", fmt::format("{}", picture.cut.hidden));
+  if (drawn.visibleVoxels) line("voxels", fmt::format("{}", *drawn.visibleVoxels));
+  line("considered", fmt::format("{}", drawn.cut.considered));
+  line("empty", fmt::format("{}", drawn.cut.empty));
+  line("outside", fmt::format("{}", drawn.cut.outside));
+  line("hidden", fmt::format("{}", drawn.cut.hidden));
   std::uint64_t splats = 0;
-  for (const std::uint64_t count : picture.cut.drawn) splats += count;
+  for (const std::uint64_t count : drawn.cut.drawn) splats += count;
   line("splats", fmt::format("{}", splats));
   ImGui::TreePop();
+}
+
+/// The choice of the renderer's method, and of what it shows in its place.
+void drawMethod(ViewState& state) {
+  if (!ImGui::TreeNode("Method")) return;
+  MethodOptions& method = state.method;
+  bool changed = choose("Draw", kDrawWords, method.draw, 0);
+  hint("By gathering samples along rays, or by splats; auto: gathering where it is possible", "--draw");
+  const bool gathers = method.draw == int(Draw::Gather);
+  if (gathers) method.composite = method.attenuation = std::nullopt;
+  changed |= drawPaper(method);
+  const Usual usual = usualOf(method.paper);
+  changed |= choose("Composite", kCompositeWords, method.composite, int(usual.frame.composite));
+  hint("How splats become an image; sorted is classic splatting", "--composite");
+  const bool sorted = method.composite == int(Composite::Sorted);
+  ImGui::BeginDisabled(sorted || gathers);
+  changed |= choose("Attenuation", kAttenuationWords, method.attenuation, int(usual.frame.attenuation));
+  hint("Transmittance to the eye: from the table, or exact by rays", "--attenuation");
+  changed |= drawDetail(method, usual.frame);
+  ImGui::EndDisabled();
+  changed |= drawTable(method, usual.table);
+  if (ImGui::Button("Back to the defaults")) {
+    method = {};
+    changed = true;
+  }
+  ImGui::TreePop();
+  state.changed |= changed;
 }
 
 }  // namespace
 
 void drawInspectPanel(ViewState& state) {
   if (!ImGui::CollapsingHeader("Inspect") || !state.latest || !state.camera) return;
+  ImGui::PushID("inspect");
   Diagnosis& diagnosis = state.diagnosis;
   int shown = int(diagnosis.shown);
   if (ImGui::Combo(
-          "show", &shown,
-          "the picture\0E, what is seen\0transmittance, exp(-T)\0blocks by level\0slice of the table\0"
+          beginRow("Show"), &shown,
+          "image\0energy E\0transmittance, exp(-T)\0blocks by level\0slice of the table\0"
           "table on the volume\0")) {
     diagnosis.shown = Shown(shown);
     state.changed = true;
   }
-  if (diagnosis.shown == Shown::Picture) drawComparison(state);
+  if (diagnosis.shown == Shown::Image) drawComparison(state);
   if (diagnosis.shown == Shown::Blocks) drawBlockControls(state);
-  if (diagnosis.shown == Shown::TableSlice || diagnosis.shown == Shown::TablePicture)
+  if (diagnosis.shown == Shown::TableSlice || diagnosis.shown == Shown::TableImage)
     drawTableControls(state);
+  heading("Directions of the attenuation table, from the eye");
   drawSphere(state, state.method.table().directions);
+  drawMethod(state);
   drawFigures(*state.latest);
+  ImGui::PopID();
 }
 
 }  // namespace freevoxels

@@ -1,5 +1,5 @@
 #pragma once
-// How the picture is made: table, blocks, sums, times; and another method beside it.
+// The panel "Inspect": the drawing method, and how an image is made.
 
 #include "apps/view/view_state.h"
 

@@ -1,11 +1,21 @@
 #pragma once
-// The panel of lights and scattering.
+// The panel "Light": lights, light from around, and scattering.
 
+#include <glm/glm.hpp>
 #include <string>
 
+#include "apps/freevoxels/lighting_options.h"
 #include "apps/view/view_state.h"
+#include "engine/scene/camera.h"
 
 namespace freevoxels {
+
+/// `direction` is the unit vector towards the light in camera space: right, up, towards the eye. `size` is
+/// the width on the screen. Returns true if the user changed it.
+bool drawLightBall(const char* name, float size, glm::dvec3& direction, glm::dvec3 color);
+
+/// `camera` is that of the image. Returns true if a light was changed.
+bool drawLights(LightingOptions& options, const Camera& camera, const Volume& volume);
 
 class LightPanel {
  public:

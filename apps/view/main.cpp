@@ -19,12 +19,8 @@ int main(int argc, char** argv) {
       "  freevoxels-view procedural:head --transfer-function apps/transfer_functions/bone.json\n"
       "  freevoxels-view smoke_####.vdb\n"
       "  freevoxels-view --scene apps/scenes/cloud.json --screenshot window.png\n"
-      "Drag to turn, with Shift to pan, with Ctrl or the wheel to come nearer, with the right button to look "
-      "around; W A S D Q E fly, F frames the volume, 1 to 6 look along the axes, O changes the projection, "
-      "Space "
-      "plays a sequence. Ctrl+O opens a file (or drop it onto the window), Ctrl+S saves the picture, Ctrl+E "
-      "the "
-      "scene, Ctrl+T a turn, and Escape gives that up; Ctrl+Q ends.\n"
+      "Drag to turn, Shift + drag to pan, wheel to come nearer. Ctrl+O opens a file, Ctrl+S saves the image, Ctrl+Z undoes an "
+      "edit; F1 lists all keys.\n"
       "Exit codes: as of 'freevoxels'.");
   app.callback([&options] {
     options.prepare();

@@ -8,7 +8,7 @@
 namespace freevoxels {
 
 /// A volume (.vdb, .fvx, `procedural:NAME`, or the pattern of a sequence), a scene or a transfer function (.json),
-/// or the light around (.exr). What is wrong with the file itself is said later, by the picture, but for a
+/// or the light around (.exr). What is wrong with the file itself is said later, by the image, but for a
 /// scene. Fails with `state` as it was.
 void openFile(ViewState& state, const std::string& file);
 

@@ -19,15 +19,24 @@ RenderThread::RenderThread(const Device& device, VolumeCache& volumes, std::func
     : device_(device), volumes_(volumes), finished_(std::move(finished)), thread_([this] { run(); }) {}
 
 RenderThread::~RenderThread() {
+  end();
+  thread_.join();
+}
+
+void RenderThread::end() {
   {
     const std::lock_guard lock(mutex_);
     ends_ = true;
   }
   asked_.notify_one();
-  thread_.join();
 }
 
-void RenderThread::ask(PictureRequest request) {
+bool RenderThread::isBusy() const {
+  const std::lock_guard lock(mutex_);
+  return busy_;
+}
+
+void RenderThread::ask(ImageRequest request) {
   {
     const std::lock_guard lock(mutex_);
     waiting_ = std::move(request);
@@ -58,36 +67,36 @@ std::optional<std::pair<std::string, double>> RenderThread::activity() const {
   return activity_;
 }
 
-std::shared_ptr<const Picture> RenderThread::makePicture(const PictureRequest& request) {
+std::shared_ptr<const DrawnImage> RenderThread::makeImage(const ImageRequest& request) {
   const Progress progress = [this](std::string_view stage, double fraction) {
     const std::lock_guard lock(mutex_);
     if (ends_ || abandons_) throw Abandoned();
     activity_.emplace(std::string(stage), fraction);
   };
-  const auto makerOf = [this](std::unique_ptr<PictureMaker>& maker) -> PictureMaker& {
-    if (!maker) maker = std::make_unique<PictureMaker>(device_, volumes_);
+  const auto makerOf = [this](std::unique_ptr<ImageMaker>& maker) -> ImageMaker& {
+    if (!maker) maker = std::make_unique<ImageMaker>(device_, volumes_);
     return *maker;
   };
-  auto picture = std::make_shared<Picture>(makerOf(maker_).make(request, progress));
+  auto drawn = std::make_shared<DrawnImage>(makerOf(maker_).make(request, progress));
   if (!request.compared) {
     comparing_ = nullptr;
-    return picture;
+    return drawn;
   }
-  PictureRequest other = request;
+  ImageRequest other = request;
   other.method = *request.compared;
   other.diagnosis = {};
   const bool sameTable = tableText(other.method.table()) == tableText(request.method.table());
-  Picture compared = makerOf(sameTable ? maker_ : comparing_).make(other, progress);
-  picture->compared = std::move(compared.shown);
-  picture->milliseconds += compared.milliseconds;
-  return picture;
+  DrawnImage compared = makerOf(sameTable ? maker_ : comparing_).make(other, progress);
+  drawn->compared = std::move(compared.shown);
+  drawn->milliseconds += compared.milliseconds;
+  return drawn;
 }
 
 /// Nothing where it was abandoned.
-std::optional<RenderThread::Result> RenderThread::answer(const PictureRequest& request) {
+std::optional<RenderThread::Result> RenderThread::answer(const ImageRequest& request) {
   Result result{.number = request.number};
   try {
-    result.picture = makePicture(request);
+    result.drawn = makeImage(request);
   } catch (const Abandoned&) {
     return std::nullopt;
   } catch (...) {
@@ -102,7 +111,7 @@ void RenderThread::run() {
   for (;;) {
     asked_.wait(lock, [this] { return ends_ || waiting_; });
     if (ends_) return;
-    const PictureRequest request = *std::exchange(waiting_, std::nullopt);
+    const ImageRequest request = *std::exchange(waiting_, std::nullopt);
     activity_.emplace("drawing", 0.0);
     busy_ = true;
     abandons_ = false;

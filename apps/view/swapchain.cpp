@@ -175,7 +175,7 @@ void Swapchain::present() {
 
 std::vector<std::uint8_t> Swapchain::read() const {
   if (!readable_)
-    fail(ErrorKind::Device, "{} does not let the images of windows be read: take the picture's own file",
+    fail(ErrorKind::Device, "{} does not let the images of windows be read: take the image's own file",
          device_.description().name);
   const std::size_t texels = std::size_t(size_.x) * std::size_t(size_.y);
   const Buffer buffer(device_, 4 * texels, MemoryUse::Readback, "screenshot");

@@ -62,6 +62,11 @@ std::size_t insert(Points& points, const typename Points::value_type& point) {
 
 }  // namespace
 
+double roundedTo(double value, double step) {
+  const double steps = std::round(value / step);
+  return step < 1.0 ? steps / std::round(1.0 / step) : steps * std::round(step);
+}
+
 TransferModel TransferModel::read(const std::string& text, const Volume& volume) {
   const bool isInline = isInlineJson(text);
   // Refuses whatever is wrong.
@@ -132,6 +137,15 @@ bool TransferModel::removeColor(std::size_t point) {
   if (color.size() < 2) return false;
   color.erase(color.begin() + std::ptrdiff_t(point));
   return true;
+}
+
+void TransferModel::moveWindow(glm::dvec2 all, glm::dvec2 widthAndMiddle) {
+  const glm::dvec2 now = range.value_or(all);
+  const double widest = 2.0 * (all.y - all.x), narrowest = 5e-4 * widest;
+  const double width = std::clamp(now.y - now.x + widthAndMiddle.x, narrowest, widest);
+  const double middle = std::clamp(0.5 * (now.x + now.y) + widthAndMiddle.y, all.x, all.y);
+  const double step = std::pow(10.0, std::floor(std::log10(width)) - 4.0);
+  range = glm::dvec2(roundedTo(middle - 0.5 * width, step), roundedTo(middle + 0.5 * width, step));
 }
 
 void TransferModel::takeCurves(const TransferModel& other) {

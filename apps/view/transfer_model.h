@@ -11,6 +11,9 @@
 
 namespace freevoxels {
 
+/// Rounds to a multiple of a power of ten, without the rest that a product would have.
+double roundedTo(double value, double step);
+
 /// Least distance between the points of a list.
 inline constexpr double kLeastPointGap = 1e-3;
 
@@ -48,6 +51,9 @@ struct TransferModel {
   bool removeOpacity(std::size_t point);
   /// Does nothing and returns false for the only point.
   bool removeColor(std::size_t point);
+
+  /// Changes the range, which is `all` if it is not given, by a width and a middle. It stays wide enough to have an inside.
+  void moveWindow(glm::dvec2 all, glm::dvec2 widthAndMiddle);
 
   /// Replaces the curves; range and unit distance stay.
   void takeCurves(const TransferModel& other);

@@ -40,7 +40,7 @@ void makeRoom(const Device& device, Buffer& buffer, std::uint64_t bytes, const c
   buffer = Buffer(device, std::max(2 * bytes, kLeast), MemoryUse::Upload, name, usage);
 }
 
-/// Of a clip rectangle, in pixels of the image.
+/// A clip rectangle in pixels of the image.
 VkRect2D scissorOf(const ImVec4& clip, const ImDrawData& triangles, glm::ivec2 size) {
   const glm::vec2 origin(triangles.DisplayPos.x, triangles.DisplayPos.y);
   const glm::vec2 scale(triangles.FramebufferScale.x, triangles.FramebufferScale.y);

@@ -18,6 +18,7 @@ constexpr int kMostFrames = 1'000'000;
 void ViewOptions::add(CLI::App& app) {
   scene.input.add(app);
   scene.input.addGrid(app);
+  scene.input.addClip(app);
   scene.output.addForm(app);
   scene.addLook(app);
   scene.lighting.addMethod(app);
@@ -56,7 +57,7 @@ void ViewOptions::prepare() {
   takeScene();
   if (!screenshot) return;
   if (!isPng(*screenshot))
-    fail(ErrorKind::Usage, "'{}' is not a picture of a window; name it .png", *screenshot);
+    fail(ErrorKind::Usage, "'{}' is no image of a window; name it .png", *screenshot);
   checkOutput(*screenshot);
 }
 

@@ -5,7 +5,7 @@
 namespace freevoxels {
 
 std::optional<MethodOptions> ViewState::comparedMethod() const {
-  if (diagnosis.shown != Shown::Picture) return std::nullopt;
+  if (diagnosis.shown != Shown::Image) return std::nullopt;
   MethodOptions other = method;
   switch (comparison) {
     case 1:
@@ -34,7 +34,7 @@ void ViewState::look(const Camera& from) {
   }
   camera = from;
   scene.camera.look(from);
-  changed = true;
+  moved = true;
 }
 
 void ViewState::begin(const Scene& first) {
@@ -58,7 +58,7 @@ void ViewState::show(const SceneOptions& other, const std::optional<Sequence>& f
 void ViewState::showFrame(const std::string& file) {
   scene.input.input = file;
   changed = true;
-  if (!camera) return;  // the first picture says what is not given
+  if (!camera) return;  // the first image says what is not given
   scene.camera.look(*camera);
   const Classification& now = latest->scene.classification;
   ClassificationOptions& classification = scene.classification;
@@ -67,6 +67,41 @@ void ViewState::showFrame(const std::string& file) {
   scene.emission.strength = now.emission->strength;
   scene.emission.temperatureScale = now.emission->temperatureScale;
   scene.emission.temperatureOffset = now.emission->temperatureOffset;
+}
+
+void ViewState::clip(const std::optional<VoxelBox>& box) {
+  if (!latest) return;
+  const Classification& now = latest->scene.classification;
+  ClassificationOptions& options = scene.classification;
+  if (!now.transferFunction && !options.transferFunction && !options.densityScale && !latest->scene.volume->classificationIsFixed)
+    options.densityScale = now.densityScale;
+  scene.input.clipBox = box;
+  changed = true;
+}
+
+void EditHistory::follow(const Edits& now, bool changed, bool busy) {
+  if (changed && settled_ && !open_) {
+    past_.push_back(*settled_);
+    if (past_.size() > kMost) past_.pop_front();
+    future_.clear();
+    open_ = true;
+  }
+  if (changed || busy || !now.camera) return;
+  open_ = false;
+  settled_ = now;
+}
+
+void EditHistory::step(ViewState& state, std::deque<Edits>& from, std::deque<Edits>& to) {
+  if (from.empty()) return;
+  to.push_back(state);
+  const glm::ivec2 size = state.scene.camera.size;
+  static_cast<Edits&>(state) = std::move(from.back());
+  from.pop_back();
+  state.scene.camera.size = size;
+  state.problem.clear();
+  state.changed = true;
+  settled_ = state;
+  open_ = false;
 }
 
 }  // namespace freevoxels

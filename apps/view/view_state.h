@@ -1,36 +1,52 @@
 #pragma once
-// The state of the viewer, which the panels change.
+// The state of the viewer, which the panels change, and its history.
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/freevoxels/method_options.h"
 #include "apps/freevoxels/scene_options.h"
-#include "apps/view/picture_maker.h"
 #include "apps/freevoxels/sequence.h"
+#include "apps/view/image_maker.h"
 
 namespace freevoxels {
 
-struct ViewState {
+/// What the user edits, and undoes.
+struct Edits {
   SceneOptions scene;
   MethodOptions method;
   Diagnosis diagnosis;
   int comparison = 0;  ///< 0 for none, or the argument of comparedMethod
-  float split = 0.5f;  ///< fraction of the image's width left of the split
   /// The sequence of which the volume is a frame.
   std::optional<Sequence> sequence;
-  /// Set by the code that changes one of the above; an image is then requested and it is cleared.
-  bool changed = true;
-
   /// The camera of the scene's options. Unknown before the first image, which resolves what is not given.
   std::optional<Camera> camera;
+};
+
+/// What is drawn over the image.
+struct Overlays {
+  bool axes = true, box = false, scaleBar = true, colorBar = true, slices = false;
+};
+
+struct ViewState : Edits {
+  float split = 0.5f;  ///< fraction of the image's width left of the split
+  Overlays overlays;
+  std::vector<Camera> bookmarks;  ///< of the volume
+  /// Set by the code that changes one of the Edits; an image is then requested and they are cleared. `moved` is for the camera
+  /// alone, `retoned` for what only affects how a finished image is shown or written.
+  bool changed = true, moved = false, retoned = false;
+
   /// The last image of all voxels in full size, and the last image.
-  std::shared_ptr<const Picture> whole, latest;
+  std::shared_ptr<const DrawnImage> whole, latest;
   /// Images a second while they follow each other; 0 for a single one.
-  double picturesPerSecond = 0.0;
+  double imagesPerSecond = 0.0;
   /// The reason why there is no newer image.
   std::string problem;
+  /// The result of the last command that is not an image.
+  std::string notice;
   /// Whether `latest`, or a problem, belongs to the current options; whether `whole` does; whether a whole
   /// image of them cannot be drawn.
   bool answered = false, complete = false, failed = false;
@@ -47,6 +63,29 @@ struct ViewState {
   /// Opens another frame of the sequence with the same camera. Automatic settings stay those of the frame
   /// before, so that an animation does not flicker.
   void showFrame(const std::string& file);
+  /// Draws these voxels only; all without a box. The density scale stays what it is, although less of the volume is there.
+  void clip(const std::optional<VoxelBox>& box);
+};
+
+/// Earlier states of the edits. All changes between two moments in which the user does nothing are one step.
+class EditHistory {
+ public:
+  /// Called once a frame. `changed`: the edits were changed by the user since the last call. `busy`: more of the same change may
+  /// follow, such as while a mouse button is down.
+  void follow(const Edits& now, bool changed, bool busy);
+  bool canUndo() const { return !past_.empty(); }
+  bool canRedo() const { return !future_.empty(); }
+  /// Restores the state before the last step, with the current image size. Does nothing if there is none.
+  void undo(ViewState& state) { step(state, past_, future_); }
+  void redo(ViewState& state) { step(state, future_, past_); }
+
+ private:
+  static constexpr std::size_t kMost = 200;
+  void step(ViewState& state, std::deque<Edits>& from, std::deque<Edits>& to);
+
+  std::deque<Edits> past_, future_;
+  std::optional<Edits> settled_;  ///< when the user last did nothing
+  bool open_ = false;             ///< whether the last step may get more changes
 };
 
 }  // namespace freevoxels

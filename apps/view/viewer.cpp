@@ -1,18 +1,27 @@
 #include "apps/view/viewer.h"
 
 #include <GLFW/glfw3.h>
+#include <fmt/format.h>
 #include <imgui.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <thread>
 
+#include "apps/freevoxels/failure.h"
 #include "apps/freevoxels/frame_names.h"
-#include "apps/view/panels.h"
+#include "apps/view/export_files.h"
+#include "apps/view/inspect_panel.h"
+#include "apps/view/navigation.h"
+#include "apps/view/opened_file.h"
+#include "apps/view/theme.h"
+#include "apps/view/view_panel.h"
+#include "apps/view/window_parts.h"
 #include "engine/core/error.h"
 #include "engine/image/image.h"
-#include "engine/octree/volume_limits.h"
 
 namespace freevoxels {
 
@@ -20,18 +29,25 @@ namespace {
 
 constexpr std::array kDeviceExtensions{VK_KHR_SWAPCHAIN_EXTENSION_NAME};
 constexpr glm::ivec2 kWindowSize{1280, 800};
-constexpr float kFontPixels = 13.0f;
-constexpr float kSidebar = 340.0f;
+constexpr float kPanelWidth = 340.0f;
 
-constexpr double kQuickMilliseconds = 45.0;       // that a whole picture may take while something moves
-constexpr std::chrono::milliseconds kNotQuick{150};  // after which one that was quick before is no longer
-constexpr std::chrono::milliseconds kStill{120};  // before the whole picture is begun
-constexpr std::chrono::milliseconds kPaint{60};  // between frames while a picture is made that is wanted soon
-constexpr double kIdleSeconds = 0.25;            // between frames in which nothing happens
-constexpr double kSoonSeconds = 0.01;            // in which something does
+constexpr std::chrono::milliseconds kPaint{60};      // between frames while an image is made that is wanted soon
+constexpr std::chrono::milliseconds kFade{140};      // from a quick image to the whole one
+constexpr std::chrono::milliseconds kOneEdit{400};   // after which a change is another step to undo
+constexpr std::chrono::milliseconds kLongestEnd{150};  // for threads to abandon what they do
+constexpr double kIdleSeconds = 0.25;                // between frames in which nothing happens
+constexpr double kSoonSeconds = 0.01;                // in which something does
 
 std::string titleOf(const ViewState& state) {
   return state.scene.input.input + " - FreeVoxels";
+}
+
+std::string openedName(const ViewState& state) {
+  return state.sequence ? state.sequence->pattern : state.scene.input.input;
+}
+
+void makeTexture(const Device& device, std::unique_ptr<Texture>& texture, glm::ivec2 size) {
+  if (!texture || texture->size() != size) texture = std::make_unique<Texture>(device, size, "image");
 }
 
 }  // namespace
@@ -42,175 +58,242 @@ Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const View
       device_(options.device.open(instance, kDeviceExtensions)),
       swapchain_(instance, *device_, window_),
       display_(*device_),
-      state_{.scene = options.scene, .method = options.method, .sequence = options.sequence},
-      files_(!options.screenshot),
-      takeAway_(*device_, options.frames.value_or(kDefaultFrames), Window::wake),
-      volumes_(maximumVoxels(*device_)),
-      quick_(*device_, volumes_, Window::wake),
-      whole_(*device_, volumes_, Window::wake) {
-  ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;
-  ImFontConfig font;
-  font.SizePixels = std::round(kFontPixels * window_.contentScale());
-  io.Fonts->AddFontDefault(&font);
-  ImGui::StyleColorsDark();
-  ImGui::GetStyle().ScaleAllSizes(window_.contentScale());
-  files_.remember(state_.sequence ? state_.sequence->pattern : state_.scene.input.input);
+      state_{{.scene = options.scene, .method = options.method, .sequence = options.sequence}},
+      store_(options.screenshot ? std::filesystem::path() : sessionFolder()),
+      dialog_(*device_, store_),
+      look_(*device_),
+      export_(*device_, dialog_, options.frames.value_or(kDefaultFrames), Window::wake),
+      slices_(*device_),
+      director_(*device_, options.screenshot.has_value()),
+      panelWidth_(kPanelWidth * window_.contentScale()) {
+  ImGui::GetIO().IniFilename = nullptr;
+  applyTheme(window_.contentScale());
   painter_ = std::make_unique<UiPainter>(*device_, swapchain_.format());
+  opened(openedName(state_));
 }
 
-void Viewer::show(const std::shared_ptr<const Picture>& picture) {
-  state_.latest = picture;
-  newPicture_ = true;
-  rate_.add(Clock::now());
-  state_.picturesPerSecond = rate_.perSecond();
-  spdlog::debug("{} picture, {}x{}: {:.1f} ms, {:.1f} a second", picture == state_.whole ? "whole" : "quick",
-                picture->shown->size().x, picture->shown->size().y, picture->milliseconds,
-                state_.picturesPerSecond);
-  const bool isAsked = picture->request.number == lastRequest_ && !state_.changed;
-  if (!state_.camera && isAsked) state_.begin(picture->scene);
-  makeTexture(texture_, picture->shown->size());
-  if (picture->compared)
-    makeTexture(comparedTexture_, picture->compared->size());
+void Viewer::open(const std::string& file) {
+  try {
+    if (file != store_.lastScene()) storeLastScene();
+    openFile(state_, file);
+    if (file != store_.lastScene() && isWorthRemembering(file)) opened(file);
+  } catch (...) {
+    state_.problem = currentFailure().sentence;
+  }
+}
+
+/// A volume or a scene that makes an image on its own.
+void Viewer::opened(const std::string& file) {
+  if (isWorthRemembering(file)) store_.remember(file);
+  thumbnailOf_ = proceduralName(file) ? file : std::filesystem::absolute(file).lexically_normal().string();
+  state_.bookmarks = store_.bookmarks(state_.scene.input.input);
+}
+
+void Viewer::takeImages() {
+  std::exception_ptr failure;
+  if (director_.take(state_, failure)) showLatest();
+  if (options_.screenshot && failure) std::rethrow_exception(failure);
+}
+
+void Viewer::showLatest() {
+  newImage_ = true;
+  const DrawnImage& drawn = *state_.latest;
+  const bool isWhole = state_.latest == state_.whole;
+  before_ = nullptr;
+  if (isWhole && texture_ && state_.scene.output.look().background) before_ = std::move(texture_);
+  shown_ = Clock::now();
+  makeTexture(*device_, texture_, drawn.shown->size());
+  if (drawn.compared)
+    makeTexture(*device_, comparedTexture_, drawn.compared->size());
   else
     comparedTexture_ = nullptr;
 }
 
-void Viewer::makeTexture(std::unique_ptr<Texture>& texture, glm::ivec2 size) const {
-  if (!texture || texture->size() != size) texture = std::make_unique<Texture>(*device_, size, "picture");
+bool Viewer::fades() const {
+  return before_ && Clock::now() - shown_ < kFade;
 }
 
 /// Before the panels, which show the textures.
-void Viewer::recordPicture(Commands& commands) const {
-  if (!newPicture_) return;
+void Viewer::recordImage(Commands& commands) const {
+  if (!newImage_) return;
   const DisplayLook look = state_.scene.output.look();
   display_.record(commands, *state_.latest->shown, look, *texture_);
   if (comparedTexture_) display_.record(commands, *state_.latest->compared, look, *comparedTexture_);
 }
 
-PictureRequest Viewer::request() const {
-  return {.scene = state_.scene,
-          .method = state_.method,
-          .diagnosis = state_.diagnosis,
-          .compared = state_.comparedMethod(),
-          .number = lastRequest_};
+std::array<ActionState, kActions> Viewer::actionStates() const {
+  std::array<ActionState, kActions> states;
+  const auto of = [&](Action action) -> ActionState& { return states[std::size_t(action)]; };
+  std::error_code unknown;
+  of(Action::RestoreScene).enabled = !store_.lastScene().empty() && std::filesystem::exists(store_.lastScene(), unknown);
+  of(Action::Undo).enabled = history_.canUndo();
+  of(Action::Redo).enabled = history_.canRedo();
+  for (const Action action : {Action::CopyImage, Action::CopyCommand}) of(action).enabled = state_.whole != nullptr;
+  of(Action::Axes).ticked = state_.overlays.axes;
+  of(Action::Box).ticked = state_.overlays.box;
+  of(Action::ScaleBar).ticked = state_.overlays.scaleBar;
+  of(Action::ColorBar).ticked = state_.overlays.colorBar;
+  of(Action::Slices).ticked = state_.overlays.slices;
+  of(Action::Panel).ticked = showsPanel_;
+  return states;
 }
 
-void Viewer::takeResults() {
-  const auto take = [this](RenderThread& thread) {
-    const std::optional<RenderThread::Result> result = thread.take();
-    if (!result) return false;
-    answered_ = std::max(answered_, result->number);
-    if (!result->picture) {
-      state_.problem = result->problem;
-      if (&thread == &whole_) failed_ = result->number;
-      if (options_.screenshot) std::rethrow_exception(result->failure);
-      return false;
-    }
-    state_.problem.clear();
-    const bool isWhole = &thread == &whole_;
-    // A whole picture is not replaced by a quick one of the same.
-    const std::uint64_t shown = state_.latest ? state_.latest->request.number : 0;
-    if (result->number < shown ||
-        (!isWhole && state_.whole && result->number <= state_.whole->request.number))
-      return false;
-    if (isWhole) state_.whole = result->picture;
-    show(result->picture);
-    return true;
-  };
-  if (take(quick_)) pace_.took(state_.latest->milliseconds);
-  if (take(whole_)) wholeIsQuick_ = state_.latest->milliseconds < kQuickMilliseconds;
+void Viewer::look(Action action) {
+  if (!state_.camera) return;
+  if (action == Action::FrameVolume && state_.latest) state_.look(framedVolume(state_));
+  if (action == Action::Projection) state_.look(withOtherProjection(*state_.camera));
+  const int axis = int(action) - int(Action::FromRight);
+  if (axis >= 0 && axis < 6) state_.look(alongAxis(*state_.camera, axis));
 }
 
-/// While things change, pictures are made quickly; of what stays, one is made of everything, and abandoned when something
-/// changes again.
-void Viewer::ask() {
-  if (area_.pixels().x > 0 && area_.pixels().y > 0 && state_.scene.camera.size != area_.pixels()) {
-    state_.scene.camera.size = area_.pixels();
-    state_.changed = true;
+void Viewer::perform(Action action) {
+  const auto flip = [](bool& shown) { shown = !shown; };
+  switch (action) {
+    case Action::Open: return dialog_.open([this](const std::string& file) { open(file); });
+    case Action::RestoreScene: return open(store_.lastScene().string());
+    case Action::SaveImage: return export_.askImage();
+    case Action::SaveScene: return export_.askScene();
+    case Action::SaveTurntable: return export_.askTurntable();
+    case Action::Quit: return window_.close();
+    case Action::Undo: return history_.undo(state_);
+    case Action::Redo: return history_.redo(state_);
+    case Action::CopyImage: return export_.copyImage();
+    case Action::CopyCommand: return ExportPanel::copyCommand(state_);
+    case Action::AddBookmark: return addBookmark(state_, store_);
+    case Action::Axes: return flip(state_.overlays.axes);
+    case Action::Box: return flip(state_.overlays.box);
+    case Action::ScaleBar: return flip(state_.overlays.scaleBar);
+    case Action::ColorBar: return flip(state_.overlays.colorBar);
+    case Action::Slices: return flip(state_.overlays.slices);
+    case Action::Panel: return flip(showsPanel_);
+    case Action::Keys: return flip(showsKeys_);
+    case Action::Cancel: return export_.cancel();
+    default: return look(action);
   }
-  if (area_.pixels().x == 0) return;
+}
+
+void Viewer::drawSidePanel(float top, float height) {
+  beginPart("panels", {0.0f, top}, {panelWidth_ - kSplitterWidth * window_.contentScale(), height}, ImGui::GetStyle().WindowPadding);
+  volume_.draw(state_, grids_);
+  look_.draw(state_, grids_);
+  light_.draw(state_);
+  drawViewPanel(state_, store_);
+  export_.draw(state_);
+  drawInspectPanel(state_);
+  ImGui::End();
+}
+
+void Viewer::drawImage(float left, float width, float top, float height) {
+  beginPart("image", {left, top}, {width, height}, {0.0f, 0.0f}, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  const std::chrono::duration<float> since = Clock::now() - shown_;
+  area_.draw(state_, {.image = texture_.get(),
+                      .before = fades() ? before_.get() : nullptr,
+                      .compared = comparedTexture_.get(),
+                      .weight = since / std::chrono::duration<float>(kFade)});
+  if (state_.overlays.slices) slices_.drawOutlines(state_, {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()});
+  if (!options_.screenshot && !store_.knowsHowToTurn() && state_.camera) drawTurnHint();
+  ImGui::End();
+}
+
+void Viewer::drawSlices(float left, float top, float height) {
+  beginPart("slices", {left, top}, {ImGui::GetIO().DisplaySize.x - left, height}, {4.0f, 4.0f},
+            ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  slices_.draw(state_);
+  ImGui::End();
+}
+
+void Viewer::drawWindow() {
+  state_.complete = director_.isComplete(state_) && !state_.retoned;
+  state_.failed = director_.hasFailed(state_);
+  state_.answered = director_.isAnswered(state_);
+  float top = 0.0f;
+  chosen_.reset();
+  if (ImGui::BeginMainMenuBar()) {
+    chosen_ = drawMenus(actionStates());
+    top = ImGui::GetWindowSize().y;
+    ImGui::EndMainMenuBar();
+  }
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  const float status = ImGui::GetFrameHeight(), height = std::max(display.y - top - status, 1.0f);
+  panelWidth_ = std::min(panelWidth_, std::max(0.6f * display.x, 1.0f));
+  const float left = showsPanel_ ? panelWidth_ : 0.0f;
+  if (showsPanel_) {
+    drawSidePanel(top, height);
+    drawSplitter(panelWidth_, window_.contentScale(), top, height);
+  }
+  const float room = std::max(display.x - left, 1.0f), slices = state_.overlays.slices ? std::floor(0.3f * room) : 0.0f;
+  drawImage(left, room - slices, top, height);
+  if (slices > 1.0f) drawSlices(left + room - slices, top, height);
+  const auto writing = export_.activity();
+  drawStatusBar(state_, writing ? writing : director_.activity(), writing.has_value(), display.y - status, status);
+  dialog_.draw();
+  drawKeysWindow(showsKeys_);
+}
+
+/// What the user has asked for in this frame.
+void Viewer::act() {
+  volume_.frames().follow(state_);
+  bool restored = false;
+  const auto pressed = pressedAction();
+  for (const std::optional<Action> action : {pressed, chosen_}) {
+    if (!action) continue;
+    history_.follow(state_, false, false);  // it is a step of its own
+    perform(*action);
+    restored |= *action == Action::Undo || *action == Action::Redo;
+  }
+  if (restored) state_.bookmarks = store_.bookmarks(state_.scene.input.input);  // maybe another volume
+  if (area_.hasTurned()) store_.setKnowsHowToTurn();
+  export_.follow(state_);
+  if (export_.waits()) volume_.frames().pause();  // for the whole image of this frame
+  const bool plays = volume_.frames().plays();
   const Clock::time_point now = Clock::now();
-  if (state_.changed) {
-    state_.changed = false;
-    lastChange_ = now;
-    ++lastRequest_;
-    PictureRequest quick = request();
-    if (whole_.busyFor() > kNotQuick) wholeIsQuick_ = false;
-    if (wholeIsQuick_ || options_.screenshot) {
-      askedOfWhole_ = lastRequest_;
-      whole_.ask(std::move(quick));
-      return;
-    }
-    whole_.abandon();
-    quick.voxelsAlongEdge = pace_.voxelsAlongEdge();
-    quick.scene.camera.size =
-        glm::max(glm::ivec2(glm::round(pace_.scale() * glm::dvec2(quick.scene.camera.size))), glm::ivec2(1));
-    quick_.ask(std::move(quick));
-  }
-  // Not both at once, as they share the processor.
-  const bool still =
-      now - lastChange_ >= kStill && answered_ == lastRequest_ && !area_.moves() && !frames_.plays();
-  if (still && askedOfWhole_ != lastRequest_) {
-    askedOfWhole_ = lastRequest_;
-    whole_.ask(request());
-  }
-}
-
-bool Viewer::isComplete() const {
-  return state_.whole && state_.whole->request.number == lastRequest_ && !state_.changed &&
-         state_.latest == state_.whole;
-}
-
-void Viewer::drawPanels() {
-  state_.complete = isComplete();
-  state_.failed = failed_ == lastRequest_ && !state_.changed;
-  state_.answered = answered_ == lastRequest_ && !state_.changed;
+  edited_ = !plays && !restored && (state_.changed || state_.moved || state_.retoned);
+  if (edited_) lastEdit_ = now;
   const ImGuiIO& io = ImGui::GetIO();
-  if (io.KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Q, false)) window_.close();
-  constexpr ImGuiWindowFlags kFixed = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
-                                      ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                                      ImGuiWindowFlags_NoSavedSettings;
-  const float sidebar = std::min(kSidebar * window_.contentScale(), 0.5f * io.DisplaySize.x);
-  ImGui::SetNextWindowPos({0.0f, 0.0f});
-  ImGui::SetNextWindowSize({sidebar, io.DisplaySize.y});
-  ImGui::Begin("panels", nullptr, kFixed);
-  const auto activity = whole_.activity() ? whole_.activity() : quick_.activity();
-  files_.draw(state_);
-  frames_.draw(state_);
-  drawPanelsOf(state_, activity, looks_);
-  takeAway_.draw(state_);
-  if (takeAway_.waits()) frames_.pause();  // for the whole picture of this frame
-  ImGui::End();
-
-  ImGui::SetNextWindowPos({sidebar, 0.0f});
-  ImGui::SetNextWindowSize({io.DisplaySize.x - sidebar, io.DisplaySize.y});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0f, 0.0f});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);  // which would hide a part of the picture
-  ImGui::Begin("picture", nullptr,
-               kFixed | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  ImGui::PopStyleVar(2);
-  area_.draw(state_, texture_.get(), comparedTexture_.get());
-  ImGui::End();
+  const bool held = io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2] || (ImGui::IsAnyItemActive() && !dialog_.isOpen());
+  history_.follow(state_, edited_, held || plays || now - lastEdit_ < kOneEdit);
+  if (state_.retoned) {
+    newImage_ = state_.latest != nullptr;
+    state_.retoned = false;
+  }
+  takeOutput();
 }
 
-/// On a processor that draws it all, a window painted at every move of the mouse leaves no time for pictures.
+/// A finished image is shown and saved with the output options of now, whatever they were when it was asked for.
+void Viewer::takeOutput() {
+  const auto take = [this](std::shared_ptr<const DrawnImage>& drawn) {
+    if (drawn && !sameOutput(drawn->request.scene.output, state_.scene.output))
+      drawn = std::make_shared<const DrawnImage>(withOutput(*drawn, state_.scene.output));
+  };
+  const bool both = state_.latest == state_.whole;
+  take(state_.whole);
+  if (both)
+    state_.latest = state_.whole;
+  else
+    take(state_.latest);
+}
+
+/// On a processor that draws it all, a window painted at every move of the mouse leaves no time for images.
 bool Viewer::paints() const {
-  const bool waits = answered_ < lastRequest_ && texture_;
-  return !waits || newPicture_ || Clock::now() - painted_ >= kPaint;
+  const bool waits = !state_.answered && texture_;
+  return !waits || newImage_ || Clock::now() - painted_ >= kPaint;
 }
 
 void Viewer::drawFrame() {
   const bool paint = paints();
   if (paint && !swapchain_.acquire()) return;
+  // Dear ImGui would go from field to field.
+  ImGui::GetIO().KeyMap[ImGuiKey_Tab] = ImGui::GetIO().WantTextInput ? GLFW_KEY_TAB : -1;
   window_.beginFrame();
-  drawPanels();
+  drawWindow();
+  act();
   ImGui::Render();
   if (!paint) return;
   painted_ = Clock::now();
-  painter_->draw(*ImGui::GetDrawData(), swapchain_, [this](Commands& commands) { recordPicture(commands); });
-  newPicture_ = false;
-  if (isComplete() && !looks_.waits()) ++completeFrames_;
+  painter_->draw(*ImGui::GetDrawData(), swapchain_, [this](Commands& commands) { recordImage(commands); });
+  newImage_ = false;
+  if (!fades()) before_ = nullptr;
+  if (director_.isComplete(state_) && !look_.waits() && !grids_.isMaking()) ++completeFrames_;
   if (options_.screenshot && completeFrames_ == options_.after.value_or(1)) writeScreenshot();
   swapchain_.present();
 }
@@ -220,25 +303,57 @@ void Viewer::writeScreenshot() const {
   writePngTexels(*options_.screenshot, swapchain_.size(), swapchain_.read());
 }
 
+/// The first complete image of an opened file.
+void Viewer::storeThumbnail() {
+  if (thumbnailOf_.empty() || !director_.isComplete(state_) || fades() || options_.screenshot) return;
+  store_.storeThumbnail(thumbnailOf_, downloadImage(*device_, *state_.whole->image), state_.scene.output.look());
+  thumbnailOf_.clear();
+}
+
+void Viewer::storeLastScene() {
+  if (store_.lastScene().empty() || !state_.whole) return;
+  try {
+    std::filesystem::create_directories(store_.lastScene().parent_path());
+    saveScene(*state_.whole, store_.lastScene().string());
+  } catch (const std::exception& problem) {
+    spdlog::debug("{}", problem.what());
+  }
+}
+
 /// Until something is to be done, if nothing happens.
 double Viewer::patience() const {
-  if (options_.screenshot || window_.inputWaits()) return 0.0;
-  const bool settles = answered_ < lastRequest_ || (!isComplete() && askedOfWhole_ != lastRequest_);
-  return area_.moves() || frames_.plays() || settles ? kSoonSeconds : kIdleSeconds;
+  if (options_.screenshot || window_.inputWaits() || newImage_) return 0.0;
+  const bool busy = area_.moves() || fades() || !director_.isSettled() || (volume_.frames().plays());
+  return busy ? kSoonSeconds : kIdleSeconds;
 }
 
 void Viewer::run() {
   std::string title;
   while (!window_.wantsToClose()) {
     Window::waitForEvents(patience());
-    for (const std::string& file : window_.takeDropped()) files_.open(state_, file);
+    for (const std::string& file : window_.takeDropped()) open(file);
     if (title != titleOf(state_)) window_.setTitle(title = titleOf(state_));
-    takeResults();
+    takeImages();
     drawFrame();
-    ask();
+    director_.ask(state_, area_.pixels(), area_.moves() || volume_.frames().plays());
+    storeThumbnail();
     if (options_.screenshot && completeFrames_ >= options_.after.value_or(1)) return;
   }
+  end();
+}
+
+/// What cannot be abandoned, such as the reading of a large file, ends with the process: outputs are complete or not there at all.
+void Viewer::end() {
   window_.hide();
+  storeLastScene();
+  director_.end();
+  export_.cancel();
+  const Clock::time_point latest = Clock::now() + kLongestEnd;
+  const auto isBusy = [this] { return director_.isBusy() || export_.isBusy() || look_.waits() || grids_.isMaking(); };
+  while (isBusy() && Clock::now() < latest) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  if (!isBusy()) return;
+  spdlog::shutdown();
+  std::_Exit(int(ExitCode::Success));
 }
 
 }  // namespace freevoxels

@@ -1,22 +1,24 @@
 #pragma once
 // The window with its panels, and the threads that make the images in it.
 
+#include <array>
 #include <chrono>
 #include <memory>
 
-#include "apps/view/adaptive_resolution.h"
-#include "apps/view/appearance_panels.h"
+#include "apps/view/actions.h"
 #include "apps/view/export_panel.h"
-#include "apps/view/files_panel.h"
-#include "apps/view/picture_area.h"
-#include "apps/view/picture_rate.h"
-#include "apps/view/render_thread.h"
-#include "apps/view/sequence_panel.h"
+#include "apps/view/file_dialog.h"
+#include "apps/view/image_area.h"
+#include "apps/view/image_director.h"
+#include "apps/view/light_panel.h"
+#include "apps/view/look_panel.h"
+#include "apps/view/session_store.h"
+#include "apps/view/slice_view.h"
 #include "apps/view/swapchain.h"
 #include "apps/view/ui_painter.h"
 #include "apps/view/view_options.h"
 #include "apps/view/view_state.h"
-#include "apps/view/volume_cache.h"
+#include "apps/view/volume_panel.h"
 #include "apps/view/window.h"
 #include "engine/image/display_pass.h"
 
@@ -33,42 +35,57 @@ class Viewer {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void takeResults();
-  void show(const std::shared_ptr<const Picture>& picture);
-  void makeTexture(std::unique_ptr<Texture>& texture, glm::ivec2 size) const;
-  void recordPicture(Commands& commands) const;
-  PictureRequest request() const;
-  void ask();
+  void takeImages();
+  void showLatest();
+  void recordImage(Commands& commands) const;
   bool paints() const;
+  bool fades() const;
   void drawFrame();
-  void drawPanels();
-  bool isComplete() const;
+  void drawWindow();
+  void drawSidePanel(float top, float height);
+  void drawImage(float left, float width, float top, float height);
+  void drawSlices(float left, float top, float height);
+  void act();
+  void takeOutput();
+  void perform(Action action);
+  void look(Action action);
+  std::array<ActionState, kActions> actionStates() const;
+  void open(const std::string& file);
+  void opened(const std::string& file);
+  void storeThumbnail();
+  void storeLastScene();
   double patience() const;
   void writeScreenshot() const;
+  void end();
 
   const ViewOptions options_;
   Window window_;
-  const std::unique_ptr<Device> device_;  ///< that makes the pictures and draws the window
+  const std::unique_ptr<Device> device_;  ///< that makes the images and draws the window
   Swapchain swapchain_;
   std::unique_ptr<UiPainter> painter_;
   DisplayPass display_;
+  std::unique_ptr<Texture> texture_, before_, comparedTexture_;
 
   ViewState state_;
-  LookPanels looks_;
-  PictureArea area_;
-  FilesPanel files_;
-  SequencePanel frames_;
-  ExportPanel takeAway_;
-  std::unique_ptr<Texture> texture_, comparedTexture_;
+  EditHistory history_;
+  SessionStore store_;
+  FileDialog dialog_;
+  GridList grids_;
+  VolumePanel volume_;
+  LookPanel look_;
+  LightPanel light_;
+  ExportPanel export_;
+  ImageArea area_;
+  SliceView slices_;
+  ImageDirector director_;
 
-  VolumeCache volumes_;
-  RenderThread quick_, whole_;  ///< for images of few voxels, and of all voxels
-  std::uint64_t lastRequest_ = 0, askedOfWhole_ = 0, answered_ = 0, failed_ = 0;
-  Clock::time_point lastChange_, painted_;
-  bool newPicture_ = false;  ///< in state_.latest, and not in the textures yet
-  PictureRate rate_;         ///< rate of all images that are shown
-  AdaptiveResolution pace_;
-  bool wholeIsQuick_ = false;
+  float panelWidth_;
+  bool showsPanel_ = true, showsKeys_ = false;
+  std::optional<Action> chosen_;       ///< in the menus
+  std::string thumbnailOf_;            ///< the opened file that has no thumbnail yet
+  bool edited_ = false;                ///< in the last frame
+  Clock::time_point lastEdit_, painted_, shown_;
+  bool newImage_ = false;  ///< in state_.latest, and not in the textures yet
   int completeFrames_ = 0;
 };
 

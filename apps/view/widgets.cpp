@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "engine/image/srgb.h"
 
@@ -12,7 +13,10 @@ namespace freevoxels {
 
 namespace {
 
-constexpr float kLabelWidth = 10.5f;  // of the font's size
+constexpr float kLabelWidth = 8.2f;  // in units of the font's size
+
+std::string rowName;
+ImVec2 labelLow, labelHigh;  // of the last row
 
 /// As many digits as a slider shows, so that a command line stays short.
 double withFewDigits(double value) {
@@ -20,10 +24,11 @@ double withFewDigits(double value) {
   return roundedTo(value, std::pow(10.0, std::floor(std::log10(std::abs(value))) - 3.0));
 }
 
-bool slideBy(const char* label, double& value, double low, double high, const char* format,
+/// `name` is a widget's, after beginRow().
+bool slideBy(const char* name, double& value, double low, double high, const char* format,
              ImGuiSliderFlags flags) {
   double slid = value;
-  if (!ImGui::SliderScalar(label, ImGuiDataType_Double, &slid, &low, &high, format,
+  if (!ImGui::SliderScalar(name, ImGuiDataType_Double, &slid, &low, &high, format,
                            flags | ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat))
     return false;
   slid = withFewDigits(slid);
@@ -34,21 +39,50 @@ bool slideBy(const char* label, double& value, double low, double high, const ch
 
 }  // namespace
 
-double roundedTo(double value, double step) {
-  const double steps = std::round(value / step);
-  return step < 1.0 ? steps / std::round(1.0 / step) : steps * std::round(step);
+const char* beginRow(const char* label) {
+  const float width = kLabelWidth * ImGui::GetFontSize(), height = ImGui::GetFrameHeight();
+  labelLow = ImGui::GetCursorScreenPos();
+  labelHigh = {labelLow.x + width, labelLow.y + height};
+  const std::string_view shown = std::string_view(label).substr(0, std::string_view(label).find("##"));
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(shown.data(), shown.data() + shown.size());
+  ImGui::SameLine();
+  ImGui::SetCursorScreenPos({labelHigh.x, labelLow.y});
+  ImGui::SetNextItemWidth(-1.0f);
+  rowName = std::string("##") + label;
+  return rowName.c_str();
 }
 
-LabelRoom::LabelRoom() {
-  ImGui::PushItemWidth(-kLabelWidth * ImGui::GetFontSize());
+void heading(const char* text) {
+  ImGui::Spacing();
+  ImGui::TextDisabled("%s", text);
 }
 
-LabelRoom::~LabelRoom() {
-  ImGui::PopItemWidth();
+void hint(const char* text, const char* option) {
+  const bool label = ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(labelLow, labelHigh) &&
+                     ImGui::GetItemRectMin().y == labelLow.y;
+  if (!label && !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+  ImGui::BeginTooltip();
+  ImGui::PushTextWrapPos(24.0f * ImGui::GetFontSize());
+  ImGui::TextUnformatted(text);
+  if (option != nullptr) ImGui::TextDisabled("%s", option);
+  ImGui::PopTextWrapPos();
+  ImGui::EndTooltip();
 }
 
-void hint(const char* text) {
-  if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) ImGui::SetTooltip("%s", text);
+void drawSentence(const std::string& sentence, bool good) {
+  if (sentence.empty()) return;
+  ImGui::PushStyleColor(ImGuiCol_Text, good ? ImVec4(0.6f, 0.85f, 0.6f, 1.0f) : ImVec4(1.0f, 0.55f, 0.45f, 1.0f));
+  ImGui::TextWrapped("%s", sentence.c_str());
+  ImGui::PopStyleColor();
+}
+
+std::string meantFile(const std::string& text) {
+  const std::size_t first = text.find_first_not_of(' ');
+  if (first == std::string::npos) return "";
+  const std::string name = text.substr(first, text.find_last_not_of(' ') + 1 - first);
+  const char* const home = std::getenv("HOME");
+  return name.starts_with("~/") && home != nullptr ? home + name.substr(1) : name;
 }
 
 std::uint32_t shownColor(glm::dvec3 linear, float alpha) {
@@ -61,17 +95,17 @@ bool editColor(const char* label, glm::dvec3& linear) {
   const double brightness = std::max({linear.r, linear.g, linear.b, 1.0});
   glm::vec3 shown(linear / brightness);
   for (int c = 0; c < 3; ++c) shown[c] = srgbFromLinear(shown[c]);
-  if (!ImGui::ColorEdit3(label, &shown.x)) return false;
+  if (!ImGui::ColorEdit3(beginRow(label), &shown.x)) return false;
   for (int c = 0; c < 3; ++c) linear[c] = roundedTo(brightness * double(linearFromSrgb(shown[c])), 1e-4);
   return true;
 }
 
 bool slide(const char* label, double& value, double low, double high, const char* format) {
-  return slideBy(label, value, low, high, format, ImGuiSliderFlags_None);
+  return slideBy(beginRow(label), value, low, high, format, ImGuiSliderFlags_None);
 }
 
 bool slideLogarithmic(const char* label, double& value, double low, double high, const char* format) {
-  return slideBy(label, value, low, high, format, ImGuiSliderFlags_Logarithmic);
+  return slideBy(beginRow(label), value, low, high, format, ImGuiSliderFlags_Logarithmic);
 }
 
 bool slideOptional(const char* label, std::optional<double>& value, double usual, double low, double high,
@@ -84,7 +118,7 @@ bool slideOptional(const char* label, std::optional<double>& value, double usual
 }
 
 bool dragVector(const char* label, glm::dvec3& value, double step) {
-  if (!ImGui::DragScalarN(label, ImGuiDataType_Double, &value.x, 3, float(step), nullptr, nullptr, "%.3g",
+  if (!ImGui::DragScalarN(beginRow(label), ImGuiDataType_Double, &value.x, 3, float(step), nullptr, nullptr, "%.3g",
                           ImGuiSliderFlags_NoRoundToFormat))
     return false;
   for (int c = 0; c < 3; ++c)
@@ -96,7 +130,7 @@ bool dragVector(const char* label, glm::dvec3& value, double step) {
 
 bool choose(const char* label, const std::vector<std::string>& words, int& value) {
   bool changed = false;
-  if (!ImGui::BeginCombo(label, words[std::size_t(value)].c_str())) return false;
+  if (!ImGui::BeginCombo(beginRow(label), words[std::size_t(value)].c_str())) return false;
   for (int i = 0; i < int(words.size()); ++i)
     if (ImGui::Selectable(words[std::size_t(i)].c_str(), i == value) && i != value) {
       value = i;
@@ -114,38 +148,40 @@ bool choose(const char* label, const std::vector<std::string>& words, std::optio
   return true;
 }
 
+bool tick(const char* label, bool& value) {
+  ImGui::SetCursorPosX(ImGui::GetCursorPosX() + kLabelWidth * ImGui::GetFontSize());
+  return ImGui::Checkbox(label, &value);
+}
+
 bool tick(const char* label, std::optional<bool>& value, bool usual) {
   bool ticked = value.value_or(usual);
-  if (!ImGui::Checkbox(label, &ticked)) return false;
+  if (!tick(label, ticked)) return false;
   value = ticked;
   if (ticked == usual) value.reset();
   return true;
 }
 
 bool editText(const char* label, std::string& text, const char* whenEmpty) {
-  ImGui::InputTextWithHint(label, whenEmpty, &text);
+  ImGui::InputTextWithHint(beginRow(label), whenEmpty, &text);
   return ImGui::IsItemDeactivatedAfterEdit();
 }
 
-bool smallButtonAtRight(const char* label) {
-  const ImGuiStyle& style = ImGui::GetStyle();
-  const float width = ImGui::CalcTextSize(label, nullptr, true).x + 2.0f * style.FramePadding.x;
-  ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
-  return ImGui::SmallButton(label);
-}
-
-bool AutomaticSlider::draw(const char* label, const char* meaning, std::optional<double>& value,
-                           std::optional<double> automatic) {
+bool AutomaticSlider::draw(const char* label, const char* meaning, const char* option, std::optional<double>& value,
+                           std::optional<double> automatic, const char* format) {
   if (automatic) middle_ = automatic;
   if (!middle_ && value) middle_ = value;
   const double middle = middle_ && *middle_ > 0.0 ? *middle_ : 1.0;
   double slid = value.value_or(middle);
-  bool changed = slideLogarithmic(label, slid, middle / factor_, middle * factor_);
-  hint(meaning);
+  const float reset = value ? ImGui::CalcTextSize("auto").x + 2.0f * ImGui::GetStyle().FramePadding.x : 0.0f;
+  const char* const name = beginRow(label);
+  if (value) ImGui::SetNextItemWidth(-reset - ImGui::GetStyle().ItemInnerSpacing.x);
+  bool changed = slideBy(name, slid, middle / factor_, middle * factor_, format, ImGuiSliderFlags_Logarithmic);
+  hint(meaning, option);
   if (changed) value = slid;
   if (value) {
     ImGui::PushID(label);
-    if (smallButtonAtRight("auto")) {
+    ImGui::SameLine(0.0f, ImGui::GetStyle().ItemInnerSpacing.x);
+    if (ImGui::Button("auto")) {
       value.reset();
       changed = true;
     }

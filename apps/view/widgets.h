@@ -1,6 +1,6 @@
 #pragma once
-// Widgets for the types of the options. All return whether the value was changed in this frame; all have a
-// label at the right.
+// Widgets for the types of the options: a label at the left and the value at the right. All return whether the user changed the
+// value in this frame.
 
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -9,26 +9,20 @@
 #include <vector>
 
 #include "apps/freevoxels/failure.h"
+#include "apps/view/transfer_model.h"
 #include "apps/view/view_state.h"
 
 namespace freevoxels {
 
-/// Reserves space for the labels of a panel as long as it exists.
-class LabelRoom {
- public:
-  LabelRoom();
-  ~LabelRoom();
-  LabelRoom(const LabelRoom&) = delete;
-  LabelRoom& operator=(const LabelRoom&) = delete;
-};
+/// Begins a line with a label at its left; the next widget fills the rest. Returns that widget's name for Dear ImGui, which is
+/// valid until the next call.
+const char* beginRow(const char* label);
+/// A heading within a panel.
+void heading(const char* text);
+/// A tooltip for the last widget and its label; `option` is the command line's name of it.
+void hint(const char* text, const char* option = nullptr);
 
-/// To the next multiple of a power of ten, without the rest that a product would have.
-double roundedTo(double value, double step);
-
-/// A tooltip of one short line for the last widget.
-void hint(const char* text);
-
-/// As Dear ImGui draws it. Of a linear colour, cut to 0..1.
+/// A linear colour as Dear ImGui draws it, clamped to 0..1.
 std::uint32_t shownColor(glm::dvec3 linear, float alpha);
 
 /// A colour that is shown as sRGB and stored as linear. Colours brighter than 1 keep their brightness.
@@ -44,11 +38,16 @@ bool dragVector(const char* label, glm::dvec3& value, double step);
 bool choose(const char* label, const std::vector<std::string>& words, int& value);
 /// The value is not given if it is the usual one.
 bool choose(const char* label, const std::vector<std::string>& words, std::optional<int>& value, int usual);
+bool tick(const char* label, bool& value);
 bool tick(const char* label, std::optional<bool>& value, bool usual);
 /// Returns true when the text is complete: at Enter, or when the cursor leaves it.
 bool editText(const char* label, std::string& text, const char* whenEmpty);
-/// A button at the right end of the line, for which the previous widget must leave space.
-bool smallButtonAtRight(const char* label);
+
+/// Shows a sentence about an error or a success.
+void drawSentence(const std::string& sentence, bool good);
+
+/// The file of a typed name: "~/" is the home folder, surrounding blanks are removed.
+std::string meantFile(const std::string& text);
 
 /// A slider whose middle is the value that is used if none is given: the last automatic value that is known,
 /// or else the first that was seen.
@@ -57,8 +56,8 @@ class AutomaticSlider {
   /// The range in both directions.
   explicit AutomaticSlider(double factor = 100.0) : factor_(factor) {}
 
-  bool draw(const char* label, const char* meaning, std::optional<double>& value,
-            std::optional<double> automatic);
+  bool draw(const char* label, const char* meaning, const char* option, std::optional<double>& value,
+            std::optional<double> automatic, const char* format = "%.4g");
 
  private:
   double factor_;

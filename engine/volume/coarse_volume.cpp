@@ -2,6 +2,8 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "engine/core/error.h"
+
 namespace freevoxels {
 
 namespace {
@@ -43,6 +45,27 @@ Volume coarseVolume(const Volume& volume, int factor, WithoutData withoutData) {
   }
   summariseValues(coarse);
   return coarse;
+}
+
+Volume clippedVolume(const Volume& volume, const VoxelBox& box) {
+  const glm::ivec3 low = glm::max(box.first, glm::ivec3(0)), high = glm::min(box.last, volume.dimensions - 1);
+  for (int axis = 0; axis < 3; ++axis) FV_CHECK_LE(low[axis], high[axis]);
+  Volume part = volume;
+  part.scalars = volume.scalars.cropped(low, high);
+  if (volume.temperature) {
+    part.temperature->values = volume.temperature->values.cropped(low, high);
+    summariseValues(*part.temperature);
+  }
+  if (volume.albedo)
+    for (std::size_t c = 0; c < volume.albedo->values.size(); ++c)
+      part.albedo->values[c] = volume.albedo->values[c].cropped(low, high);
+  part.dimensions = high - low + 1;
+  part.indexOrigin += low;
+  part.indexToWorld[3] = volume.indexToWorld * glm::dvec4(glm::dvec3(low), 1.0);
+  summariseValues(part);
+  part.minimum = volume.minimum;
+  part.maximum = volume.maximum;
+  return part;
 }
 
 }  // namespace freevoxels

@@ -1,5 +1,5 @@
 #pragma once
-// A volume with fewer voxels, for quick images.
+// Volumes with fewer voxels: means of blocks, for quick images, and parts.
 
 #include "engine/volume/volume.h"
 
@@ -14,5 +14,15 @@ enum class WithoutData {
 /// A volume whose voxels are the means of blocks of factor³ voxels, at the same place in the world.
 /// Temperatures and albedos are means of the voxels that have data.
 Volume coarseVolume(const Volume& volume, int factor, WithoutData withoutData);
+
+/// Voxels from `first` to `last`, inclusive.
+struct VoxelBox {
+  glm::ivec3 first{0}, last{0};
+};
+
+/// The part of a volume in a box, which is cut to the volume's box and must then have at least one voxel. Every voxel keeps its
+/// value and its place in the world; outside of the box there is no data. `minimum` and `maximum` stay those of the whole volume,
+/// so that a transfer function without a range means the same.
+Volume clippedVolume(const Volume& volume, const VoxelBox& box);
 
 }  // namespace freevoxels

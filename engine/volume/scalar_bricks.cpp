@@ -67,9 +67,16 @@ ScalarBricks ScalarBricks::cropped(glm::ivec3 low, glm::ivec3 high) const {
   result.reserve(bricks().size());
   for (std::size_t i = 0; i < bricks().size(); ++i) {
     const glm::ivec3 cell = cells_[i] - place / kEdge;
-    if (glm::all(glm::greaterThanEqual(cell, glm::ivec3(0))) &&
-        glm::all(glm::lessThan(cell, result.cellCount_)))
-      result.makeBrick(cell) = bricks()[i];
+    if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(cell, result.cellCount_))) continue;
+    Brick& brick = result.makeBrick(cell);
+    brick = bricks()[i];
+    const glm::ivec3 first = cell * kEdge - result.corner_;  // of the brick, in the new box
+    const glm::ivec3 begin = glm::max(-first, glm::ivec3(0)), end = glm::min(result.dimensions_ - first, glm::ivec3(kEdge));
+    if (begin == glm::ivec3(0) && end == glm::ivec3(kEdge)) continue;
+    for (glm::ivec3 v(0); v.z < kEdge; ++v.z)
+      for (v.y = 0; v.y < kEdge; ++v.y)
+        for (v.x = 0; v.x < kEdge; ++v.x)
+          if (glm::any(glm::lessThan(v, begin)) || glm::any(glm::greaterThanEqual(v, end))) brick[indexInBrick(v)] = kInactiveVoxel;
   }
   return result;
 }

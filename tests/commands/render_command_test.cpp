@@ -412,6 +412,20 @@ TEST_F(RenderCommand, ACropIsThePartOfTheWholeToTheByte) {
     expectCleanRefusal(view + "@none.exr --crop " + crop, ExitCode::Usage, "--crop");
 }
 
+TEST_F(RenderCommand, AClippedVolumeIsTheVolumeWithoutTheRest) {
+  // The cut is within a brick of 8 voxels.
+  expectSuccess(run("render procedural:cube @half.exr --resolution 16 --density-scale 3 --unlit --camera-position 0,0,3 --look-at "
+                    "0,0,0 --size 64 --clip-box 0,0,0,6,15,99 --save-scene @half.json --quiet"));
+  const Image half = readExr(folder / "half.exr");
+  const auto alpha = [&](int x) { return half.pixels[std::size_t(32 * 64 + x)].a; };
+  EXPECT_GT(alpha(28), 0.5f);
+  EXPECT_LT(alpha(36), 0.01f) << "the right half is gone";
+  expectSuccess(run("render --scene @half.json @again.exr --quiet"));
+  EXPECT_TRUE(readBytes(folder / "half.exr") == readBytes(folder / "again.exr"));
+  for (const char* box : {"0,0,0,1,2", "5,0,0,4,9,9", "99,0,0,100,9,9", "-1,0,0,5,5,5", "a,0,0,1,1,1"})
+    expectCleanRefusal(std::string("render procedural:cube @none.exr --resolution 16 --clip-box ") + box, ExitCode::Usage, "--clip-box");
+}
+
 TEST_F(RenderCommand, ImagesMayBeJpegAndPngOf16Bits) {
   expectSuccess(run(std::string("render procedural:cloud @a.jpg @b.JPEG @c.png --png-bits 16") + kSmall));
   EXPECT_TRUE(readBytes(folder / "a.jpg").starts_with("\xff\xd8\xff"));

@@ -1,6 +1,7 @@
 // freevoxels-view: its window on a display of the tests' own, used as a person does.
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -13,8 +14,10 @@ namespace freevoxels::test {
 
 namespace {
 
-constexpr int kSidebar = 340;     // pixels at the window's left that are not the picture's
-constexpr int kAxesCorner = 100;  // at the picture's lower left, with the axes
+// Pixels of the window that are not the image's: at its left, and above and below it.
+constexpr int kPanel = 340, kBar = 21;
+// Those of the image that have something drawn over them: the axes at the lower left, the scale bar at the lower right.
+constexpr glm::ivec2 kAxes{100, 100}, kScaleBar{240, 60};
 constexpr glm::ivec2 kWindow{1280, 800};
 
 class Viewer : public CommandTest {
@@ -50,41 +53,45 @@ class Viewer : public CommandTest {
   std::optional<Display> display;
 };
 
-/// What of the window's picture is not that of the file, but for the axes.
-int differingPixels(const Image& window, const Image& picture) {
+bool isCovered(glm::ivec2 pixel, glm::ivec2 size) {
+  const glm::ivec2 fromRight = size - pixel;
+  return (pixel.x < kAxes.x && fromRight.y <= kAxes.y) || (fromRight.x <= kScaleBar.x && fromRight.y <= kScaleBar.y);
+}
+
+/// Pixels of the window's image that are not those of the file, except where something is drawn over them.
+int differingPixels(const Image& window, const Image& image) {
   int different = 0;
-  for (int y = 0; y < picture.size.y; ++y)
-    for (int x = 0; x < picture.size.x; ++x) {
-      if (x < kAxesCorner && y >= picture.size.y - kAxesCorner) continue;
-      const int column = x + window.size.x - picture.size.x;
-      different += window.pixels[std::size_t(y * window.size.x + column)] !=
-                   picture.pixels[std::size_t(y * picture.size.x + x)];
+  for (int y = 0; y < image.size.y; ++y)
+    for (int x = 0; x < image.size.x; ++x) {
+      if (isCovered({x, y}, image.size)) continue;
+      const int place = x + window.size.x - image.size.x + (y + kBar) * window.size.x;
+      different += window.pixels[std::size_t(place)] != image.pixels[std::size_t(y * image.size.x + x)];
     }
   return different;
 }
 
 }  // namespace
 
-TEST_F(Viewer, TheWindowShowsThePictureOfRender) {
+TEST_F(Viewer, TheWindowShowsTheImageOfRender) {
   const std::string options =
       " --resolution 32 --orbit 200,15 --background 0.1,0.2,0.3 --light direction=1,1,0";
   const ProgramResult shown = view("procedural:cloud --screenshot @window.png" + options);
   EXPECT_EQ(shown.exitCode, 0);
   EXPECT_EQ(shown.err, "");
-  const std::string size = fmt::format(" --size {}x{}", kWindow.x - kSidebar, kWindow.y);
-  expectSuccess(run("render procedural:cloud @picture.png --quiet" + options + size));
-  const Image window = readPng(folder / "window.png"), picture = readPng(folder / "picture.png");
+  const std::string size = fmt::format(" --size {}x{}", kWindow.x - kPanel, kWindow.y - 2 * kBar);
+  expectSuccess(run("render procedural:cloud @image.png --quiet" + options + size));
+  const Image window = readPng(folder / "window.png"), drawn = readPng(folder / "image.png");
   ASSERT_EQ(window.size, kWindow);
-  EXPECT_EQ(differingPixels(window, picture), 0);
-  EXPECT_NE(picture.pixels[std::size_t(400 * picture.size.x + 470)], picture.pixels.front());
+  EXPECT_EQ(differingPixels(window, drawn), 0);
+  EXPECT_NE(drawn.pixels[std::size_t(400 * drawn.size.x + 470)], drawn.pixels.front());
   EXPECT_EQ(folder.fileCount(), 2u) << "a screenshot remembers no file";
 }
 
 TEST_F(Viewer, WhatIsTakenAwayIsWhatTheProgramsMake) {
-  const auto session = use("procedural:cloud --resolution 32 --frames 3 --background 0.1,0.2,0.3");
+  const auto session = use("procedural:cloud --resolution 32 --frames 3 --background 0.1,0.2,0.3 --clip-box 3,0,0,99,18,99");
   session->hands("windowsize @ 560 240");
   const std::string before = session->save('s', "before.png");
-  session->hands("mousemove 420 100 mousedown 1 mousemove 450 120 mouseup 1");
+  session->hands("mousemove 440 100 mousedown 1 mousemove 470 120 mouseup 1");
   const std::string png = session->save('s', "a.png"), exr = session->save('s', "a.exr");
   const std::string scene = session->save('e', "a.json");
   EXPECT_NE(before, png) << "the drag has turned it";
@@ -112,17 +119,19 @@ TEST_F(Viewer, WhatIsTakenAwayIsWhatTheProgramsMake) {
 
 TEST_F(Viewer, HandsMoveTheCamera) {
   const auto session = use("procedural:cloud --resolution 16");
-  session->hands("windowsize @ 440 100");
+  session->hands("windowsize @ 440 142");  // the image is 100 pixels high
   const nlohmann::json first = sceneOf(*session, "0.json");
-  session->hands("mousemove 400 40 click 4");
+  session->hands("mousemove 400 60 click 4");
   const nlohmann::json nearer = sceneOf(*session, "1.json");
   EXPECT_LT(glm::distance(armOf(nearer), 0.9 * armOf(first)), 1e-9);
-  session->hands("mousemove 400 40 mousedown 1 mousemove 410 40 mouseup 1");
+  session->hands("mousemove 400 60 mousedown 1 mousemove 410 60 mouseup 1");
   const glm::dvec3 arm = armOf(sceneOf(*session, "2.json")), was = armOf(nearer);
   EXPECT_NEAR(glm::length(arm), glm::length(was), 1e-9);
   EXPECT_NEAR(arm.y, was.y, 1e-9);
   EXPECT_NEAR(was.z * arm.x - was.x * arm.z, -std::sin(0.1 * M_PI) * (was.x * was.x + was.z * was.z), 1e-9)
       << "a tenth of the height is a tenth of half a turn";
+  for (int i = 0; i < 5; ++i) session->hands(fmt::format("mousemove {} 60 click 1", 390 + 7 * i));
+  EXPECT_EQ(armOf(sceneOf(*session, "clicked.json")), arm) << "a motion before a press turns nothing";
   for (int axis = 0; axis < 6; ++axis) {
     session->hands("key " + std::to_string(axis + 1));
     glm::dvec3 side(0.0);
@@ -152,9 +161,9 @@ TEST_F(Viewer, AWindowMayChangeAndGoAway) {
   session->hands("windowmap @ mousemove 400 100");
   session->hands("windowsize --sync @ 500 200");
   session->save('s', "a.png");
-  EXPECT_EQ(readPng(folder / "a.png").size.y, 200);
+  EXPECT_EQ(readPng(folder / "a.png").size.y, 200 - 2 * kBar);
   session->hands("windowsize --sync @ 640 480");
-  session->hands("key w");  // begins another picture
+  session->hands("key w");  // begins another image
   expectQuietEnd(*session);
 }
 
@@ -165,6 +174,7 @@ TEST_F(Viewer, BadFilesAreSaidAndTheWindowStays) {
   session->hands("windowsize @ 600 200");
   session->save('s', "a.png");
   session->open("none.vdb");
+  session->hands("key Escape");  // the dialog says why and stays
   session->open("bad.vdb");
   session->hands("mousemove 500 100 click 4 key 3");
   session->open("good.vdb");
@@ -212,11 +222,122 @@ TEST_F(Viewer, ATurnIsGivenUp) {
   EXPECT_FALSE(std::filesystem::exists(folder / "turn_998.png"));
   int frames = 0;
   while (std::filesystem::exists(folder / fmt::format("turn_{:03}.png", frames))) {
-    EXPECT_EQ(readPng(folder / fmt::format("turn_{:03}.png", frames)).size.y, 200);
+    EXPECT_EQ(readPng(folder / fmt::format("turn_{:03}.png", frames)).size.y, 200 - 2 * kBar);
     ++frames;
   }
-  EXPECT_EQ(int(folder.fileCount()), frames + 2) << "the picture, what it said, and no part of a frame";
+  EXPECT_EQ(int(folder.fileCount()), frames + 3) << "the image, what it said, its state, and no part of a frame";
   expectQuietEnd(*session);
+}
+
+TEST_F(Viewer, EditsAreUndoneAndTheLastSceneComesBack) {
+  nlohmann::json last;
+  {
+    const auto session = use("procedural:cloud --resolution 16");
+    session->hands("windowsize @ 600 200");
+    const nlohmann::json first = sceneOf(*session, "first.json");
+    session->hands("mousemove 500 100 key 1");
+    const nlohmann::json right = sceneOf(*session, "right.json");
+    ASSERT_NE(armOf(right), armOf(first));
+    session->hands("mousemove 500 100 key 3");
+    sceneOf(*session, "above.json");
+    session->hands("key ctrl+z");
+    EXPECT_EQ(sceneOf(*session, "undone.json"), right);
+    session->hands("key ctrl+z");
+    EXPECT_EQ(vectorOf(sceneOf(*session, "undone2.json"), "camera-position"), vectorOf(first, "camera-position"));
+    session->hands("key ctrl+y");
+    last = sceneOf(*session, "redone.json");
+    EXPECT_EQ(last, right);
+    session->hands("key Tab");  // hides the panel
+    session->save('s', "wide.png");
+    EXPECT_EQ(readPng(folder / "wide.png").size.x, 600);
+    session->hands("key Tab");
+    expectQuietEnd(*session);
+  }
+  const auto session = use("procedural:cube --resolution 16");
+  session->hands("windowsize @ 600 200");
+  session->save('s', "cube.png");
+  session->hands("key ctrl+shift+o");
+  const nlohmann::json restored = sceneOf(*session, "restored.json");
+  EXPECT_EQ(restored.at("input"), last.at("input"));
+  EXPECT_EQ(vectorOf(restored, "camera-position"), vectorOf(last, "camera-position"));
+  expectQuietEnd(*session);
+}
+
+TEST_F(Viewer, TheImageIsCopiedByTheClipboardsProgram) {
+  std::filesystem::create_directory(folder / "programs");
+  const std::filesystem::path program = folder / "programs/xclip";
+  writeBytes(program, "#!/bin/sh\ncat > part && mv part copied.png\n");
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", (program.parent_path().string() + ":" + path).c_str(), 1);
+  const auto session = use("procedural:cloud --resolution 16");
+  setenv("PATH", path.c_str(), 1);
+  session->hands("windowsize @ 600 200");
+  const std::string saved = session->save('s', "a.png");
+  session->hands("key ctrl+c");
+  session->save('e', "after.json");  // comes after the copy
+  EXPECT_TRUE(readBytes(folder / "copied.png") == saved);
+  expectQuietEnd(*session);
+}
+
+TEST_F(Viewer, AFolderIsGoneThroughToAFile) {
+  std::filesystem::create_directories(folder / "below/deeper");
+  expectSuccess(run("generate cube @below/deeper/good.vdb --resolution 16 --quiet"));
+  const auto session = use("procedural:cloud --resolution 16");
+  session->hands("windowsize @ 900 600");
+  session->save('s', "a.png");
+  session->open("below");
+  session->hands("sleep 0.5 type --delay 1 deeper");
+  session->hands("key Return");
+  session->hands("sleep 0.5 type --delay 1 good.vdb");
+  session->hands("key Return mousemove 700 300");
+  session->saveAll('e', "b.json", "below/deeper/b.json");  // the dialog stays in the folder
+  const nlohmann::json scene = nlohmann::json::parse(readBytes(folder / "below/deeper/b.json"));
+  EXPECT_EQ(scene.at("input").at("volume"), "good.vdb");
+  expectQuietEnd(*session);
+}
+
+TEST_F(Viewer, ThePanelsValuesAreDraggedAndAFinishedImageIsShownBrighterWithoutDrawingIt) {
+  writeBytes(folder / "tf.json", R"({"opacity": [[0, 0], [1, 0.5]]})");
+  const auto session = use("procedural:cloud --resolution 32 --verbose");
+  const auto wholeImages = [&] {
+    const std::string said = readBytes(folder / "said.txt");
+    int count = 0;
+    for (std::size_t at = said.find("whole image"); at != std::string::npos; at = said.find("whole image", at + 1)) ++count;
+    return count;
+  };
+  const std::string before = session->save('s', "before.png");
+  const int drawn = wholeImages();
+  session->hands("mousemove 228 385 mousedown 1 mousemove 240 385 mousemove 262 385 mouseup 1 mousemove 700 300");
+  EXPECT_NE(session->save('s', "brighter.png"), before);
+  EXPECT_GT(sceneOf(*session, "brighter.json").at("output").at("exposure"), 0.5);
+  EXPECT_EQ(wholeImages(), drawn);
+
+  session->hands("mousemove 143 151 click 1 mousemove 700 300");  // the box that clips
+  EXPECT_EQ(sceneOf(*session, "clipped.json").at("input").at("clip-box").size(), 6u);
+  session->hands("key ctrl+z");
+  EXPECT_FALSE(sceneOf(*session, "unclipped.json").at("input").contains("clip-box"));
+
+  session->open("tf.json");
+  const std::string function = sceneOf(*session, "function.json").at("classification").at("transfer-function").dump();
+  session->hands("mousemove 700 300 mousedown 3 mousemove 760 300 mousemove 640 340 mouseup 3");
+  const nlohmann::json windowed = sceneOf(*session, "windowed.json");
+  EXPECT_NE(windowed.at("classification").at("transfer-function").dump(), function);
+
+  session->hands("mousemove 337 600 mousedown 1 mousemove 420 600 mousemove 440 600 mouseup 1 mousemove 700 300");
+  session->save('s', "narrow.png");
+  EXPECT_NEAR(readPng(folder / "narrow.png").size.x, kWindow.x - 443, 4) << "the panel's border is dragged";
+  EXPECT_EQ(session->quit().exitCode, 0);
+}
+
+TEST_F(Viewer, ItEndsAtOnceWhileItDraws) {
+  const auto session = use("procedural:cloud --resolution 256");  // takes seconds to compute, which nothing interrupts
+  session->hands("sleep 0.5 mousemove 700 300 mousedown 1 mousemove 760 330");
+  const auto start = std::chrono::steady_clock::now();
+  const ProgramResult result = session->quit();
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+  EXPECT_EQ(result.exitCode, 0);
+  EXPECT_LT(time.count(), 3.0) << "0.3 s where nothing else runs";
 }
 
 TEST_F(Viewer, WithoutADisplayItSaysSo) {

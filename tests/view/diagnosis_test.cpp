@@ -77,9 +77,9 @@ TEST_F(DiagnosisTest, EnergyIsOverItsLargest) {
 /// From the light's side the volume is white, from the other dark.
 TEST_F(DiagnosisTest, TheTableOnTheVolumeIsBrightWhereItsDirectionComesOut) {
   const Image towards =
-      diagnosis({.shown = Shown::TablePicture, .direction = directionTowards({0.0, 0.0, 1.0})});
+      diagnosis({.shown = Shown::TableImage, .direction = directionTowards({0.0, 0.0, 1.0})});
   const Image away =
-      diagnosis({.shown = Shown::TablePicture, .direction = directionTowards({0.0, 0.0, -1.0})});
+      diagnosis({.shown = Shown::TableImage, .direction = directionTowards({0.0, 0.0, -1.0})});
   EXPECT_GT(pixelAt(towards, 0.6, 0.5).r, 0.8f);
   EXPECT_LT(pixelAt(away, 0.6, 0.5).r, 0.3f);
 }

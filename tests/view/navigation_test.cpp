@@ -48,7 +48,7 @@ TEST(Navigation, AnOrbitKeepsTheDistanceTheTargetAndUp) {
   }
 }
 
-TEST(Navigation, AnOrbitOfThePicturesHeightIsHalfATurn) {
+TEST(Navigation, AnOrbitOfTheImagesHeightIsHalfATurn) {
   Camera before = obliqueCamera();
   before.up = {0.0, 1.0, 0.0};
   const glm::dvec3 arm = before.position - before.lookAt;

@@ -85,7 +85,7 @@ TEST_F(OpenedFile, ATransferFunctionTakesThePlaceOfDensities) {
   EXPECT_TRUE(state.changed);
 }
 
-TEST_F(OpenedFile, APictureIsTheLightAround) {
+TEST_F(OpenedFile, AnImageIsTheLightAround) {
   const std::string file = made("sky.exr");
   openFile(state, file);
   EXPECT_EQ(state.scene.lighting.environment, file);
@@ -102,7 +102,7 @@ TEST_F(OpenedFile, WhatIsNoneOfThemIsRefused) {
   expectRefused(made("c.json", R"({"input": {"volume": "missing.vdb"}})"), {"missing.vdb"});
 }
 
-TEST_F(OpenedFile, OnlyWhatMakesAPictureIsRemembered) {
+TEST_F(OpenedFile, OnlyWhatMakesAnImageIsRemembered) {
   EXPECT_TRUE(isWorthRemembering(made("smoke.vdb")));
   EXPECT_TRUE(isWorthRemembering(made("scene.json", R"({"camera": {}})")));
   EXPECT_FALSE(isWorthRemembering(made("tf.json", R"({"opacity": [[0, 1]]})")));

@@ -10,8 +10,8 @@ namespace {
 
 class RenderThreadTest : public DeviceTest {
  protected:
-  static PictureRequest request(std::uint64_t number, int size) {
-    PictureRequest request;
+  static ImageRequest request(std::uint64_t number, int size) {
+    ImageRequest request;
     request.scene.input = {.input = "procedural:cloud", .grid = std::nullopt, .resolution = glm::ivec3(48)};
     request.scene.camera.size = {size, size};
     request.number = number;
@@ -21,7 +21,7 @@ class RenderThreadTest : public DeviceTest {
     std::unique_lock lock(mutex_);
     ASSERT_TRUE(changed_.wait_for(lock, std::chrono::seconds(60), [&] { return finished_ >= times; }));
   }
-  /// Until a picture is being made, unless it is complete already.
+  /// Until an image is being made, unless it is complete already.
   void waitForDrawing(int finishedBefore) {
     const auto isFinished = [&] {
       const std::lock_guard lock(mutex_);
@@ -41,7 +41,7 @@ class RenderThreadTest : public DeviceTest {
                        }};
 };
 
-TEST_F(RenderThreadTest, AnAbandonedPictureHasNoResultAndTheNextOneIsAsIfItWereTheFirst) {
+TEST_F(RenderThreadTest, AnAbandonedImageHasNoResultAndTheNextOneIsAsIfItWereTheFirst) {
   for (int round = 0; round < 4; ++round) {  // abandoned at different places
     thread_.ask(request(1, 900));
     waitForDrawing(2 * round);
@@ -49,15 +49,15 @@ TEST_F(RenderThreadTest, AnAbandonedPictureHasNoResultAndTheNextOneIsAsIfItWereT
     thread_.abandon();
     waitForFinish(2 * round + 1);
     const std::optional<RenderThread::Result> abandoned = thread_.take();
-    EXPECT_TRUE(!abandoned || abandoned->picture) << "it was complete just before, or there is none";
+    EXPECT_TRUE(!abandoned || abandoned->drawn) << "it was complete just before, or there is none";
     thread_.ask(request(2, 64));
     waitForFinish(2 * round + 2);
     const std::optional<RenderThread::Result> next = thread_.take();
-    ASSERT_TRUE(next && next->picture) << (next ? next->problem : "no result");
+    ASSERT_TRUE(next && next->drawn) << (next ? next->problem : "no result");
     EXPECT_EQ(next->number, 2u);
     VolumeCache volumes(1u << 30);
-    const Picture expected = PictureMaker(device(), volumes).make(request(2, 64), {});
-    EXPECT_EQ(downloadImage(device(), *next->picture->image).pixels, downloadImage(device(), *expected.image).pixels);
+    const DrawnImage expected = ImageMaker(device(), volumes).make(request(2, 64), {});
+    EXPECT_EQ(downloadImage(device(), *next->drawn->image).pixels, downloadImage(device(), *expected.image).pixels);
   }
 }
 
@@ -73,7 +73,7 @@ TEST_F(RenderThreadTest, WhatWaitsIsAbandonedToo) {
     last = thread_.take();
     ASSERT_LT(times, 4);
   }
-  EXPECT_EQ(last->picture->shown->size(), glm::ivec2(32));
+  EXPECT_EQ(last->drawn->shown->size(), glm::ivec2(32));
 }
 
 }  // namespace

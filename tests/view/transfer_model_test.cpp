@@ -122,5 +122,16 @@ TEST(TransferModel, OtherCurvesKeepRangeAndUnitDistance) {
   EXPECT_EQ(*model.unitDistance, 0.5);
 }
 
+TEST(TransferModel, TheWindowMovesWithinTheValues) {
+  TransferModel model;
+  const glm::dvec2 all(0.0, 100.0);
+  model.moveWindow(all, {-50.0, 10.0});
+  EXPECT_EQ(model.range, glm::dvec2(35.0, 85.0)) << "half as wide, about a higher level";
+  model.moveWindow(all, {0.0, 1000.0});
+  EXPECT_EQ(model.range, glm::dvec2(75.0, 125.0)) << "the level is at most the largest value";
+  model.moveWindow(all, {-1000.0, 0.0});
+  EXPECT_LT(model.range->x, model.range->y);
+}
+
 }  // namespace
 }  // namespace freevoxels

@@ -91,6 +91,22 @@ TEST(CoarseVolume, TemperaturesAndAlbedosComeAlong) {
   for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(coarse.albedo->values[c].at(glm::ivec3(0)), 0.25f * float(c));
 }
 
+TEST(ClippedVolume, VoxelsInTheBoxKeepValueAndPlaceAndOthersAreGone) {
+  Volume volume = makeVolume({20, 13, 9}, glm::dmat4(2.0), [](int x, int y, int z) { return float(x + 100 * y + 10000 * z); });
+  volume.albedo = AlbedoGrid{.name = "albedo", .values = {volume.scalars, volume.scalars, volume.scalars}};
+  const Volume part = clippedVolume(volume, {{3, 5, 2}, {100, 9, 4}});
+  EXPECT_EQ(part.dimensions, glm::ivec3(17, 5, 3)) << "the box is cut to that of the volume";
+  EXPECT_EQ(part.activeVoxels, 17u * 5u * 3u);
+  for (const glm::ivec3 voxel : {glm::ivec3(0), glm::ivec3(16, 4, 2), glm::ivec3(7, 1, 1)}) {
+    const glm::ivec3 whole = voxel + glm::ivec3(3, 5, 2);
+    EXPECT_EQ(part.scalars.at(voxel), volume.scalars.at(whole));
+    EXPECT_EQ(part.albedo->values[1].at(voxel), volume.scalars.at(whole));
+    EXPECT_EQ(part.indexToWorld * glm::dvec4(voxel, 1.0), volume.indexToWorld * glm::dvec4(whole, 1.0));
+  }
+  EXPECT_EQ(part.minimum, volume.minimum);
+  EXPECT_EQ(part.maximum, volume.maximum) << "a transfer function means the same";
+}
+
 TEST(CoarseVolume, KeepsTheOpticalDepthOfAColumn) {
   const Volume fine = numberedVolume({4, 4, 6});
   const Volume coarse = coarseVolume(fine, 2, WithoutData::Zero);

@@ -1,0 +1,204 @@
+#include "apps/view/export_files.h"
+
+#include <CLI/CLI.hpp>
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <span>
+#include <sstream>
+#include <vector>
+
+#include "apps/freevoxels/background_writer.h"
+#include "apps/freevoxels/frame_names.h"
+#include "apps/freevoxels/render_options.h"
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr std::string_view kBreak = " \\\n";  // which a shell passes over
+constexpr std::size_t kBreakColumns = 2;
+
+/// Split at blanks outside of single quotes.
+std::vector<std::string_view> wordsOf(std::string_view command) {
+  std::vector<std::string_view> words;
+  bool quoted = false;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i <= command.size(); ++i) {
+    if (i == command.size() || (command[i] == ' ' && !quoted)) {
+      if (i > first) words.push_back(command.substr(first, i - first));
+      first = i + 1;
+    } else if (command[i] == '\'') {
+      quoted = !quoted;
+    } else if (command[i] == '\\' && !quoted) {
+      ++i;  // what follows stands for itself
+    }
+  }
+  return words;
+}
+
+/// A word that is longer than a line, where nothing in it keeps a shell from joining it again.
+std::string inPieces(std::string_view word, std::size_t columns) {
+  std::string pieces;
+  const bool plain = word.find_first_of("'\"\\") == std::string_view::npos;
+  for (; plain && columns > 1 && word.size() > columns; word.remove_prefix(columns - 1)) {
+    pieces += word.substr(0, columns - 1);
+    pieces += "\\\n";
+  }
+  return pieces.append(word);
+}
+
+/// The options of the image that count where it is written to these files.
+SceneOptions sceneInto(const DrawnImage& drawn, std::vector<std::string> files) {
+  SceneOptions scene = drawn.request.scene.withOutputs(std::move(files));
+  scene.output.leaveOutUnhonoured();
+  return scene;
+}
+
+OptionList optionsOf(const SceneOptions& scene, const DrawnImage& drawn) {
+  OptionList method;
+  drawn.request.method.describe(method);
+  return scene.describe(drawn.scene, method);
+}
+
+std::vector<std::string> filesOfTurn(const std::string& pattern, int frames) {
+  std::vector<std::string> files;
+  for (int frame = 0; frame < frames; ++frame) files.push_back(frameName(pattern, frame));
+  return files;
+}
+
+/// The command that reads an image from its standard input into the clipboard.
+std::vector<std::string> clipboardCommand() {
+  if (std::getenv("WAYLAND_DISPLAY") != nullptr) return {"wl-copy", "--type", "image/png"};
+  return {"xclip", "-selection", "clipboard", "-target", "image/png", "-in"};
+}
+
+/// Empty if it is not installed.
+std::string programPath(const std::string& name) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path != nullptr ? path : "");
+  for (std::string folder; std::getline(folders, folder, ':');)
+    if (access((folder + "/" + name).c_str(), X_OK) == 0) return folder + "/" + name;
+  return "";
+}
+
+/// A file without a name that has these bytes.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(std::span<const std::uint8_t> bytes) : file_(std::tmpfile()) {
+    if (file_ == nullptr || std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size() || std::fflush(file_) != 0)
+      fail(ErrorKind::Output, "cannot write a temporary file for the clipboard: make room in '{}'",
+           std::filesystem::temp_directory_path().string());
+    std::rewind(file_);
+  }
+  ~TemporaryFile() {
+    if (file_ != nullptr) std::fclose(file_);
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  int descriptor() const { return fileno(file_); }
+
+ private:
+  std::FILE* file_;
+};
+
+}  // namespace
+
+std::string wrappedCommand(std::string_view command, std::size_t columns) {
+  std::string text;
+  std::size_t used = 0;
+  for (const std::string_view word : wordsOf(command)) {
+    const bool fits = used + 1 + word.size() + kBreakColumns <= columns;
+    if (used > 0) text += fits ? " " : kBreak;
+    const std::string pieces = used > 0 && fits ? std::string(word) : inPieces(word, columns);
+    used = used > 0 && fits ? used + 1 + word.size() : pieces.size() - (pieces.rfind('\n') + 1);
+    text += pieces;
+  }
+  return text;
+}
+
+std::string commandOf(const DrawnImage& drawn, const std::string& file) {
+  return commandInto("render", optionsOf(sceneInto(drawn, {file}), drawn), file);
+}
+
+std::string turnCommandOf(const DrawnImage& drawn, const std::string& pattern, int frames) {
+  const SceneOptions scene = sceneInto(drawn, {pattern});
+  OptionList options = optionsOf(scene, drawn);
+  scene.camera.describeTurn(options);
+  options.emplace_back("--frames", fmt::format("{}", frames));
+  return commandInto("turntable", options, pattern);
+}
+
+void saveImage(const Device& device, const DrawnImage& drawn, const std::string& file) {
+  const SceneOptions scene = sceneInto(drawn, {file});
+  scene.check();
+  scene.write(downloadImage(device, *drawn.image), drawn.scene, "render", optionsOf(scene, drawn),
+              {{"device", drawn.device.name}, {"driver", drawn.device.driver}});
+}
+
+bool canCopyImages() {
+  return !programPath(clipboardCommand().front()).empty();
+}
+
+void copyImage(const Device& device, const DrawnImage& drawn) {
+  const TemporaryFile png(encodePng(downloadImage(device, *drawn.image), drawn.request.scene.output.look()));
+  const std::vector<std::string> command = clipboardCommand();
+  std::vector<char*> words;
+  for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  posix_spawn_file_actions_t files;
+  posix_spawn_file_actions_init(&files);
+  posix_spawn_file_actions_adddup2(&files, png.descriptor(), STDIN_FILENO);
+  // The program stays in the background with what it has open.
+  for (const int output : {STDOUT_FILENO, STDERR_FILENO})
+    posix_spawn_file_actions_addopen(&files, output, "/dev/null", O_WRONLY, 0);
+  pid_t child = -1;
+  const int problem = posix_spawnp(&child, words[0], &files, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&files);
+  int status = 0;
+  if (problem != 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+    fail(ErrorKind::Output, "'{}' did not take the image: copy the render command instead", command.front());
+}
+
+void saveScene(const DrawnImage& drawn, const std::string& file) {
+  sceneInto(drawn, {}).check({file});
+  CLI::App command;
+  RenderOptions render;
+  render.add(command);  // whose options are the keys
+  render.scene.file.saved = file;
+  render.scene.save(drawn.options);
+}
+
+void saveTurn(const Device& device, const DrawnImage& drawn, const std::string& pattern, int frames,
+              const Progress& progress) {
+  const std::vector<std::string> files = filesOfTurn(pattern, frames);
+  ImageRequest request = drawn.request;
+  request.scene = sceneInto(drawn, files);
+  request.scene.check();
+  const std::vector<Camera> cameras =
+      request.scene.cameras(*drawn.scene.volume, drawn.scene.classification, frames);
+
+  VolumeCache volumes(request.scene, drawn.scene.volume);
+  ImageMaker maker(device, volumes);
+  BackgroundWriter writer;
+  for (int frame = 0; frame < frames; ++frame) {
+    const double start = double(frame) / frames;
+    const Progress ofFrame = [&](std::string_view stage, double fraction) {
+      progress(fmt::format("frame {} of {}: {}", frame + 1, frames, stage), start + fraction / frames);
+    };
+    request.scene.camera.look(cameras[std::size_t(frame)]);
+    writer.start([&device, drawn = maker.make(request, ofFrame), &file = files[std::size_t(frame)]] {
+      saveImage(device, drawn, file);
+    });
+  }
+  writer.finish();
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,33 @@
+#pragma once
+// Exports of an image: the files and command lines of `freevoxels render` and `turntable`.
+
+#include <string>
+#include <string_view>
+
+#include "apps/view/image_maker.h"
+
+namespace freevoxels {
+
+/// Breaks a command into lines of at most `columns` characters: between words, or inside words that are
+/// longer and not quoted. A shell reads the lines as the same command.
+std::string wrappedCommand(std::string_view command, std::size_t columns);
+
+/// The command line that makes the image again, into `file`.
+std::string commandOf(const DrawnImage& drawn, const std::string& file);
+/// The command line of a full turn that starts with the image, or, if the camera is automatic, fills all
+/// frames with the volume.
+std::string turnCommandOf(const DrawnImage& drawn, const std::string& pattern, int frames);
+
+/// Writes an image of this device with all that `freevoxels render` would write. Fails as that does.
+void saveImage(const Device& device, const DrawnImage& drawn, const std::string& file);
+/// Whether a program is installed that puts images into the clipboard: wl-copy under Wayland, xclip under X11.
+bool canCopyImages();
+/// Calls this program with the image as a PNG. Fails with ErrorKind::Output if the program does.
+void copyImage(const Device& device, const DrawnImage& drawn);
+/// Writes the scene as `freevoxels render --save-scene` does.
+void saveScene(const DrawnImage& drawn, const std::string& file);
+/// Writes the frames of turnCommandOf's command.
+void saveTurn(const Device& device, const DrawnImage& drawn, const std::string& pattern, int frames,
+              const Progress& progress);
+
+}  // namespace freevoxels

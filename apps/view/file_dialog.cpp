@@ -1,0 +1,302 @@
+#include "apps/view/file_dialog.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <ctime>
+#include <set>
+
+#include "apps/freevoxels/input_options.h"
+#include "apps/freevoxels/sequence.h"
+#include "apps/view/ui_painter.h"
+#include "apps/view/widgets.h"
+#include "engine/core/error.h"
+#include "engine/volume/procedural.h"
+
+namespace freevoxels {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostFiles = 20000;  // that are listed
+
+std::string sizeText(std::uintmax_t bytes) {
+  if (bytes < 1024) return fmt::format("{} B", bytes);
+  if (bytes < 1024 * 1024) return fmt::format("{:.0f} KiB", double(bytes) / 1024.0);
+  return fmt::format("{:.1f} MiB", double(bytes) / (1024.0 * 1024.0));
+}
+
+std::string timeText(fs::file_time_type time) {
+  const auto system = std::chrono::file_clock::to_sys(time);
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(std::chrono::time_point_cast<std::chrono::seconds>(system));
+  std::tm local{};
+  localtime_r(&seconds, &local);
+  char text[32];
+  std::strftime(text, sizeof(text), "%Y-%m-%d %H:%M", &local);
+  return text;
+}
+
+bool hasEnding(const fs::path& file, const std::vector<std::string>& endings) {
+  std::string extension = file.extension().string();
+  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return std::ranges::find(endings, extension) != endings.end();
+}
+
+}  // namespace
+
+FileDialog::FileDialog(const Device& device, const SessionStore& store)
+    : device_(device), store_(store), start_(fs::current_path()), folder_(start_) {}
+
+void FileDialog::open(std::function<void(const std::string&)> chosen) {
+  begin("Open", {".vdb", ".fvx", ".json", ".exr"}, std::move(chosen));
+  saves_ = false;
+  name_.clear();
+}
+
+void FileDialog::save(const char* title, const std::string& name, std::vector<std::string> endings,
+                      std::function<void(const std::string&)> chosen) {
+  begin(title, std::move(endings), std::move(chosen));
+  saves_ = true;
+  name_ = name;
+}
+
+void FileDialog::begin(const char* title, std::vector<std::string> endings, std::function<void(const std::string&)> chosen) {
+  title_ = title;
+  endings_ = std::move(endings);
+  chosen_ = std::move(chosen);
+  asked_ = focus_ = true;
+  showsRecent_ = false;
+  thumbnails_.clear();
+  go(folder_);
+}
+
+void FileDialog::go(fs::path folder) {
+  problem_.clear();
+  showsRecent_ = false;
+  std::vector<Entry> folders;
+  std::vector<fs::directory_entry> files;
+  std::error_code problem;
+  for (fs::directory_iterator at(folder, problem), end; !problem && at != end && files.size() < kMostFiles; at.increment(problem)) {
+    std::error_code unknown;
+    if (at->path().filename().string().starts_with('.')) continue;
+    if (at->is_directory(unknown))
+      folders.push_back({.name = at->path().filename().string() + "/", .shown = at->path().filename().string() + "/"});
+    else if (all_ || hasEnding(at->path(), endings_))
+      files.push_back(*at);
+  }
+  if (problem) {
+    problem_ = fmt::format("cannot read the folder '{}': {}", folder.string(), problem.message());
+    return;
+  }
+  folder_ = std::move(folder);
+  entries_ = std::move(folders);
+  std::ranges::sort(entries_, {}, &Entry::name);
+  std::ranges::sort(files, {}, [](const fs::directory_entry& file) { return file.path(); });
+  addFiles(files);
+}
+
+/// The frames of a sequence are one entry beside the files themselves.
+void FileDialog::addFiles(const std::vector<fs::directory_entry>& files) {
+  std::set<std::string> framesOfSome;
+  for (const fs::directory_entry& file : files) {
+    const std::string name = file.path().filename().string(), stem = file.path().stem().string();
+    std::error_code unknown;
+    const std::uintmax_t bytes = file.file_size(unknown);
+    const fs::file_time_type time = file.last_write_time(unknown);
+    const bool isNumbered = !saves_ && hasEnding(file.path(), {".vdb"}) && !stem.empty() && std::isdigit(stem.back()) != 0;
+    if (isNumbered && !framesOfSome.contains(file.path().string()))
+      if (const std::optional<Sequence> sequence = sequenceAround(file.path().string())) {
+        framesOfSome.insert(sequence->files.begin(), sequence->files.end());
+        const std::string pattern = fs::path(sequence->pattern).filename().string();
+        entries_.push_back(
+            {.name = pattern, .shown = fmt::format("{}  ({} frames)", pattern, sequence->files.size()), .time = time});
+      }
+    entries_.push_back({.name = name, .shown = name, .bytes = bytes, .time = time});
+  }
+}
+
+void FileDialog::confirm(const std::string& typed) {
+  const std::string meant = meantFile(typed);
+  if (meant.empty()) return;
+  std::error_code unknown;
+  if (!saves_ && proceduralName(meant)) {
+    chosen_(meant);
+    return ImGui::CloseCurrentPopup();
+  }
+  const fs::path path = (folder_ / meant).lexically_normal();
+  if (fs::is_directory(path, unknown)) {
+    go(path);
+    if (problem_.empty() && !saves_) name_.clear();
+    focus_ = true;
+    return;
+  }
+  if (!saves_ && !isPattern(meant) && !fs::exists(path, unknown)) {
+    problem_ = fmt::format("cannot read '{}': there is no such file; check its name", meant);
+    focus_ = true;
+    return;
+  }
+  const fs::path below = path.lexically_relative(start_);
+  const bool isBelow = !below.empty() && *below.begin() != "..";
+  ImGui::CloseCurrentPopup();
+  chosen_(isBelow ? below.string() : path.string());
+}
+
+void FileDialog::drawPlaces() {
+  const auto place = [&](const char* label, const fs::path& folder) {
+    if (ImGui::Selectable(label, !showsRecent_ && folder == folder_)) go(folder);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", folder.c_str());
+  };
+  if (!saves_ && ImGui::Selectable("Recent, samples", showsRecent_)) showsRecent_ = true;
+  place("Working folder", start_);
+  if (const char* const home = std::getenv("HOME"); home != nullptr && *home == '/') place("Home", home);
+  place("File system", "/");
+  ImGui::Separator();
+  std::set<fs::path> folders;
+  for (const std::string& file : store_.recent())
+    if (!proceduralName(file)) folders.insert(fs::path(file).parent_path());
+  for (const fs::path& folder : folders) place(folder.filename().empty() ? "/" : folder.filename().c_str(), folder);
+}
+
+void FileDialog::drawList() {
+  constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit;
+  if (!ImGui::BeginTable("files", 3, kFlags)) return;
+  ImGui::TableSetupScrollFreeze(0, 1);
+  ImGui::TableSetupColumn("Name", ImGuiTableColumnFlags_WidthStretch);
+  ImGui::TableSetupColumn("Size");
+  ImGui::TableSetupColumn("Changed");
+  ImGui::TableHeadersRow();
+  std::string chosen;
+  for (const Entry& entry : entries_) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    constexpr ImGuiSelectableFlags kRow = ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick;
+    if (ImGui::Selectable(entry.shown.c_str(), entry.name == name_, kRow)) {
+      if (!entry.isFolder()) name_ = entry.name;
+      if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) chosen = entry.name;
+    }
+    ImGui::TableNextColumn();
+    if (!entry.isFolder() && entry.bytes > 0) ImGui::TextDisabled("%s", sizeText(entry.bytes).c_str());
+    ImGui::TableNextColumn();
+    if (!entry.isFolder()) ImGui::TextDisabled("%s", timeText(entry.time).c_str());
+  }
+  ImGui::EndTable();
+  if (!chosen.empty()) confirm(chosen);  // which may replace the entries
+}
+
+const Texture* FileDialog::thumbnail(const std::string& file) {
+  const auto [found, isNew] = thumbnails_.try_emplace(file);
+  const fs::path path = store_.thumbnail(file);
+  std::error_code unknown;
+  if (isNew && !path.empty() && fs::exists(path, unknown)) try {
+      const Image image = readPng(path);
+      found->second = std::make_unique<Texture>(device_, image.size, "thumbnail");
+      found->second->upload(device_, srgbTexels(image, {.background = Background{}}));
+    } catch (const Error&) {
+      found->second = nullptr;
+    }
+  return found->second.get();
+}
+
+/// A thumbnail with its name; true if it is clicked.
+bool FileDialog::drawTile(const std::string& file, const std::string& label) {
+  const float scale = ImGui::GetFontSize() / 15.0f;
+  const ImVec2 size(scale * float(SessionStore::kThumbnailSize.x), scale * float(SessionStore::kThumbnailSize.y));
+  ImGui::PushID(file.c_str());
+  ImGui::BeginGroup();
+  const ImVec2 low = ImGui::GetCursorScreenPos(), high(low.x + size.x, low.y + size.y);
+  const bool clicked = ImGui::InvisibleButton("tile", {size.x, size.y + ImGui::GetTextLineHeightWithSpacing()});
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg), 3.0f);
+  if (const Texture* const image = thumbnail(file)) list.AddImage(textureId(*image), low, high);
+  if (ImGui::IsItemHovered()) {
+    list.AddRect(low, high, ImGui::GetColorU32(ImGuiCol_CheckMark), 3.0f, 0, 2.0f);
+    ImGui::SetTooltip("%s", file.c_str());
+  }
+  list.PushClipRect(low, {high.x, high.y + ImGui::GetTextLineHeightWithSpacing()}, true);
+  list.AddText({low.x, high.y + 2.0f}, ImGui::GetColorU32(ImGuiCol_Text), label.c_str());
+  list.PopClipRect();
+  ImGui::EndGroup();
+  ImGui::PopID();
+  return clicked;
+}
+
+void FileDialog::drawRecent() {
+  const float step = ImGui::GetFontSize() / 15.0f * float(SessionStore::kThumbnailSize.x) + ImGui::GetStyle().ItemSpacing.x;
+  const int columns = std::max(int(ImGui::GetContentRegionAvail().x / step), 1);
+  std::string chosen;
+  int tile = 0;
+  const auto draw = [&](const std::string& file, const std::string& label) {
+    if (tile++ % columns != 0) ImGui::SameLine();
+    if (drawTile(file, label)) chosen = file;
+  };
+  for (const std::string& file : store_.recent())
+    if (!proceduralName(file)) draw(file, fs::path(file).filename().string());
+  if (tile == 0) ImGui::TextDisabled("No file was opened yet.");
+  ImGui::Spacing();
+  ImGui::TextDisabled("Samples");
+  tile = 0;
+  for (const ProceduralKind& kind : proceduralKinds()) draw("procedural:" + std::string(kind.name), std::string(kind.name));
+  if (!chosen.empty()) confirm(chosen);
+}
+
+void FileDialog::drawName() {
+  std::error_code unknown;
+  const std::string meant = meantFile(name_);
+  const bool replaces = saves_ && !meant.empty() && fs::is_regular_file(folder_ / meant, unknown);
+  ImGui::SetNextItemWidth(-1.0f);
+  if (focus_ || !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();  // what is typed is a name
+  focus_ = false;
+  const bool entered =
+      ImGui::InputTextWithHint("##name", saves_ ? "" : "a file, a folder, smoke_####.vdb or procedural:cloud", &name_,
+                               ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  if (!problem_.empty())
+    drawSentence(problem_, false);
+  else if (replaces)
+    drawSentence("A file of this name exists and is replaced.", false);
+  else
+    ImGui::TextUnformatted("");
+  bool sure = ImGui::Button(!saves_ ? "Open" : replaces ? "Replace" : "Save", {6.0f * ImGui::GetFontSize(), 0.0f});
+  ImGui::SameLine();
+  if (ImGui::Button("Cancel", {6.0f * ImGui::GetFontSize(), 0.0f}) || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false))
+    ImGui::CloseCurrentPopup();
+  ImGui::SameLine();
+  if (ImGui::Checkbox("All files", &all_)) go(folder_);
+  if (entered || sure) confirm(name_);
+}
+
+void FileDialog::draw() {
+  if (asked_) ImGui::OpenPopup("files");
+  asked_ = false;
+  const ImVec2 display = ImGui::GetIO().DisplaySize;
+  const float text = ImGui::GetFontSize();
+  ImGui::SetNextWindowPos({0.5f * display.x, 0.5f * display.y}, ImGuiCond_Always, {0.5f, 0.5f});
+  ImGui::SetNextWindowSize({std::min(54.0f * text, display.x), std::min(34.0f * text, display.y)});
+  isOpen_ = ImGui::BeginPopupModal("files", nullptr, ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize);
+  if (!isOpen_) return;
+  ImGui::TextUnformatted(title_.c_str());
+  ImGui::SameLine();
+  ImGui::TextDisabled("%s", folder_.c_str());
+  ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize("Up").x - 2.0f * ImGui::GetStyle().FramePadding.x);
+  if (ImGui::SmallButton("Up") && folder_.has_parent_path()) go(folder_.parent_path());
+  const float below = 2.0f * ImGui::GetFrameHeightWithSpacing() + ImGui::GetTextLineHeightWithSpacing();
+  ImGui::BeginChild("places", {10.0f * text, -below});
+  drawPlaces();
+  ImGui::EndChild();
+  ImGui::SameLine();
+  ImGui::BeginChild("list", {0.0f, -below});
+  if (showsRecent_)
+    drawRecent();
+  else
+    drawList();
+  ImGui::EndChild();
+  drawName();
+  ImGui::EndPopup();
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,186 @@
+#include "apps/view/image_area.h"
+
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/view/actions.h"
+#include "apps/view/navigation.h"
+#include "apps/view/transfer_model.h"
+#include "apps/view/ui_painter.h"
+#include "apps/view/widgets.h"
+#include "engine/volume/subject.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr double kDollyPerNotch = 0.9;
+constexpr double kFlightPerSecond = 0.5;  // of the box's longest edge
+constexpr float kSplitReach = 8.0f;       // of the mouse, to take the split
+constexpr float kCheckEdge = 12.0f;       // of the squares behind what is transparent
+
+bool isDown(int key) {
+  return ImGui::IsKeyDown(key);
+}
+
+double longestEdge(const Volume& volume) {
+  const glm::dmat3 axes(volume.indexToWorld);
+  double longest = 0.0;
+  for (int axis = 0; axis < 3; ++axis)
+    longest = std::max(longest, glm::length(axes[axis]) * volume.dimensions[axis]);
+  return longest;
+}
+
+/// What is transparent shows as squares.
+void drawChecks(const ImageFrame& frame) {
+  const auto [low, high] = frame;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(low, high, IM_COL32(38, 38, 38, 255));
+  for (float y = low.y; y < high.y; y += kCheckEdge)
+    for (float x = low.x + (int((y - low.y) / kCheckEdge) % 2 != 0 ? kCheckEdge : 0.0f); x < high.x;
+         x += 2 * kCheckEdge)
+      list.AddRectFilled({x, y}, {std::min(x + kCheckEdge, high.x), std::min(y + kCheckEdge, high.y)},
+                         IM_COL32(46, 46, 46, 255));
+}
+
+/// The other method's image, right of the split.
+void drawCompared(const Texture& texture, float part, const ImageFrame& frame) {
+  const auto [low, high] = frame;
+  const float split = low.x + part * (high.x - low.x);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRect({split, low.y}, high, true);
+  drawChecks(frame);
+  list.AddImage(textureId(texture), low, high);
+  list.PopClipRect();
+  list.AddLine({split, low.y}, {split, high.y}, IM_COL32(255, 200, 60, 255), 2.0f);
+}
+
+void drawTextures(const ShownTextures& textures, float split, const ImageFrame& frame) {
+  drawChecks(frame);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const bool fades = textures.before != nullptr && textures.weight < 1.0f;
+  if (fades) list.AddImage(textureId(*textures.before), frame.low, frame.high);
+  const auto alpha = fades ? ImU32(255.0f * textures.weight) : 255u;
+  if (textures.image != nullptr)
+    list.AddImage(textureId(*textures.image), frame.low, frame.high, {0.0f, 0.0f}, {1.0f, 1.0f}, IM_COL32(255, 255, 255, alpha));
+  if (textures.compared != nullptr) drawCompared(*textures.compared, split, frame);
+}
+
+/// Moves the values under the curves of the transfer function: to the right a wider window, upwards a lower level, as on the
+/// console of a scanner. False if there is no transfer function.
+bool changeWindow(ViewState& state, glm::dvec2 way) {
+  std::optional<std::string>& text = state.scene.classification.transferFunction;
+  if (!text || !state.latest) return false;
+  const Volume& volume = *state.latest->scene.volume;
+  const double all = double(volume.maximum) - double(volume.minimum);
+  if (way == glm::dvec2(0.0) || !(all > 0.0)) return true;
+  attempt(state, [&] {
+    TransferModel model = TransferModel::read(*text, volume);
+    model.moveWindow(glm::dvec2(volume.minimum, volume.maximum), {way.x * all, -way.y * all});
+    text = model.json();
+    state.changed = true;
+  });
+  return true;
+}
+
+}  // namespace
+
+Camera framedVolume(const ViewState& state) {
+  const double aspect = double(state.scene.camera.size.x) / double(state.scene.camera.size.y);
+  Subject subject = contentOf(*state.latest->scene.volume, state.latest->scene.classification);
+  subject.centre = imageCentre(*state.camera, subject);
+  return framed(*state.camera, subject, aspect);
+}
+
+void ImageArea::press(ViewState& state, const ShownTextures& textures, const ImageFrame& frame) {
+  const float split = frame.low.x + state.split * frame.size().x;
+  const std::optional<int> axis =
+      state.overlays.axes && ImGui::IsMouseDown(ImGuiMouseButton_Left) ? axisUnderMouse(*state.camera, frame) : std::nullopt;
+  const ClipHandles handles(state, frame);
+  const ClipHandles::Handle* const clip = ImGui::IsMouseDown(ImGuiMouseButton_Left) ? handles.hovered() : nullptr;
+  held_ = Held::Camera;
+  if (clip != nullptr) {
+    held_ = Held::Clip;
+    clip_ = {clip->side, clip->step, {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y}, *state.scene.input.clipBox};
+  } else if (axis) {
+    held_ = Held::Axes;
+    state.look(alongAxis(*state.camera, *axis));
+  } else if (textures.compared != nullptr && std::abs(ImGui::GetIO().MousePos.x - split) < kSplitReach) {
+    held_ = Held::Split;
+  }
+}
+
+/// The side follows the mouse along its axis.
+void ImageArea::dragClip(ViewState& state) const {
+  const glm::vec2 way = glm::vec2(ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y) - clip_.mouse;
+  const float length = glm::dot(clip_.step, clip_.step);
+  if (length <= 0.0f || !state.scene.input.clipBox) return;
+  const int voxels = int(std::lround(glm::dot(way, clip_.step) / length));
+  const VoxelBox box = withSideMoved(clip_.box, clip_.side, voxels, state.latest->wholeDimensions);
+  const VoxelBox& now = *state.scene.input.clipBox;
+  if (box.first != now.first || box.last != now.last) state.clip(box);
+}
+
+void ImageArea::drag(ViewState& state, const ImageFrame& frame) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const glm::dvec2 way = glm::dvec2(io.MouseDelta.x, -io.MouseDelta.y) / double(frame.size().y);
+  const bool left = ImGui::IsMouseDown(ImGuiMouseButton_Left);
+  if (way == glm::dvec2(0.0)) return;
+  if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || (left && io.KeyShift)) {
+    state.look(panned(*state.camera, way));
+  } else if (ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
+    if (io.KeyShift || !changeWindow(state, way)) state.look(turned(*state.camera, way));
+  } else if (left && io.KeyCtrl) {
+    state.look(dollied(*state.camera, std::exp(-4.0 * way.y)));
+  } else if (left) {
+    state.look(orbited(*state.camera, way));
+    turned_ = true;
+  }
+}
+
+void ImageArea::fly(ViewState& state) {
+  glm::dvec3 way(double(isDown(GLFW_KEY_D)) - double(isDown(GLFW_KEY_A)),
+                 double(isDown(GLFW_KEY_E)) - double(isDown(GLFW_KEY_Q)),
+                 double(isDown(GLFW_KEY_W)) - double(isDown(GLFW_KEY_S)));
+  if (way == glm::dvec3(0.0) || !state.latest) return;
+  moves_ = true;
+  const double pace = ImGui::GetIO().KeyShift ? 4.0 : 1.0;
+  way *=
+      pace * kFlightPerSecond * longestEdge(*state.latest->scene.volume) * double(ImGui::GetIO().DeltaTime);
+  state.look(flown(*state.camera, way));
+}
+
+void ImageArea::draw(ViewState& state, const ShownTextures& textures) {
+  const ImGuiIO& io = ImGui::GetIO();
+  const ImVec2 low = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+  pixels_ = glm::max(
+      glm::ivec2(glm::vec2(room.x * io.DisplayFramebufferScale.x, room.y * io.DisplayFramebufferScale.y)),
+      glm::ivec2(0));
+  moves_ = false;
+  if (room.x < 1.0f || room.y < 1.0f) return;
+  const ImageFrame frame{low, {low.x + room.x, low.y + room.y}};
+  drawTextures(textures, state.split, frame);
+  constexpr ImGuiButtonFlags kAnyButton = ImGuiButtonFlags_MouseButtonLeft |
+                                          ImGuiButtonFlags_MouseButtonMiddle |
+                                          ImGuiButtonFlags_MouseButtonRight;
+  ImGui::InvisibleButton("image", room, kAnyButton);
+  if (!state.camera) return;
+  const bool hovered = ImGui::IsItemHovered();
+  drawOverlays(state, frame);
+  if (ImGui::IsItemActivated())
+    press(state, textures, frame);  // a motion of this frame was before the press
+  else if (ImGui::IsItemActive() && held_ == Held::Camera)
+    drag(state, frame);
+  else if (ImGui::IsItemActive() && held_ == Held::Clip)
+    dragClip(state);
+  else if (ImGui::IsItemActive() && held_ == Held::Split)
+    state.split = std::clamp((io.MousePos.x - low.x) / room.x, 0.0f, 1.0f);
+  moves_ = ImGui::IsItemActive() && held_ == Held::Camera;
+  if (hovered && io.MouseWheel != 0.0f) state.look(dollied(*state.camera, std::pow(kDollyPerNotch, double(io.MouseWheel))));
+  if (keysAreFree() && !io.KeyCtrl) fly(state);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,172 @@
+#include "apps/view/image_director.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+
+#include "apps/view/window.h"
+#include "engine/octree/volume_limits.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr double kQuickMilliseconds = 45.0;          // that a whole image may take while something moves
+constexpr std::chrono::milliseconds kNotQuick{150};  // after which one that was quick before is no longer
+constexpr std::chrono::milliseconds kStill{120};     // before better images are begun
+
+const char* nameOf(Purpose purpose) {
+  switch (purpose) {
+    case Purpose::Move:
+    case Purpose::Edit:
+      return "quick";
+    case Purpose::Refine:
+      return "finer";
+    case Purpose::Whole:
+      break;
+  }
+  return "whole";
+}
+
+}  // namespace
+
+ImageDirector::ImageDirector(const Device& device, bool wholeOnly)
+    : volumes_(maximumVoxels(device)),
+      quick_(device, volumes_, Window::wake),
+      whole_(device, volumes_, Window::wake),
+      wholeOnly_(wholeOnly) {}
+
+ImageRequest ImageDirector::request(const ViewState& state, Purpose purpose, int voxels, double scale) const {
+  ImageRequest request{.scene = state.scene,
+                       .method = state.method,
+                       .diagnosis = state.diagnosis,
+                       .compared = state.comparedMethod(),
+                       .number = lastRequest_,
+                       .revision = revision_,
+                       .purpose = purpose,
+                       .voxelsAlongEdge = voxels};
+  glm::ivec2& size = request.scene.camera.size;
+  size = glm::max(glm::ivec2(glm::round(scale * glm::dvec2(size))), glm::ivec2(1));
+  return request;
+}
+
+/// False for what is not better than what is shown.
+bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThread::Result& result, std::exception_ptr& failure) {
+  answered_ = std::max(answered_, result.number);
+  if (&thread == &quick_) refines_ = false;
+  if (!result.drawn) {
+    state.problem = result.problem;
+    failure = result.failure;
+    if (&thread == &whole_) failed_ = result.number;
+    return false;
+  }
+  state.problem.clear();
+  const ImageRequest& request = result.drawn->request;
+  const double time = result.drawn->milliseconds;
+  // The first image of a movement also makes what the others keep.
+  if (request.purpose == Purpose::Move && state.latest && state.latest->request.purpose == Purpose::Move) movePace_.took(time);
+  if (request.purpose == Purpose::Edit) editPace_.took(time);
+  if (&thread == &whole_) wholeRevision_ = request.revision;
+  const bool isWhole = request.purpose == Purpose::Whole;
+  if (isWhole) {
+    drawsWhole_ = false;
+    wholeIsQuick_ = time < kQuickMilliseconds;
+  }
+  const std::uint64_t shown = state.latest ? state.latest->request.number : 0;
+  const bool wholeIsThere = state.whole && request.number <= state.whole->request.number;
+  return request.number >= shown && (isWhole || !wholeIsThere);
+}
+
+bool ImageDirector::take(ViewState& state, std::exception_ptr& failure) {
+  bool isNew = false;
+  for (RenderThread* const thread : {&quick_, &whole_}) {
+    const std::optional<RenderThread::Result> result = thread->take();
+    if (!result || !keep(state, *thread, *result, failure)) continue;
+    std::shared_ptr<const DrawnImage> drawn = result->drawn;
+    if (drawn->request.purpose == Purpose::Whole) state.whole = drawn;
+    state.latest = std::move(drawn);
+    isNew = true;
+    rate_.add(Clock::now());
+    state.imagesPerSecond = rate_.perSecond();
+    const DrawnImage& image = *state.latest;
+    spdlog::debug("{} image, {}x{}: {:.1f} ms, {:.1f} a second", nameOf(image.request.purpose), image.shown->size().x,
+                  image.shown->size().y, image.milliseconds, state.imagesPerSecond);
+    if (image.request.number != lastRequest_ || isPending(state)) continue;
+    if (!state.camera) {
+      state.begin(image.scene);
+      ++revision_;  // what was automatic is given now
+    } else if (image.request.purpose == Purpose::Whole) {
+      state.camera = image.scene.camera;  // an automatic camera is another one after a resize
+    }
+  }
+  return isNew;
+}
+
+void ImageDirector::askOfChange(const ViewState& state) {
+  lastPurpose_ = state.changed ? Purpose::Edit : Purpose::Move;
+  if (whole_.busyFor() > kNotQuick) wholeIsQuick_ = false;
+  if (wholeOnly_ || wholeIsQuick_) {
+    askedOfWhole_ = lastRequest_;
+    return whole_.ask(request(state, Purpose::Whole, kAllVoxels, 1.0));
+  }
+  // A whole image in full size is given up for what is wanted now.
+  if (state.changed || drawsWhole_) whole_.abandon();
+  drawsWhole_ = false;
+  const bool moves = !state.changed && wholeRevision_ == revision_ && state.diagnosis.shown == Shown::Image;
+  const AdaptiveResolution& pace = moves ? movePace_ : editPace_;
+  askedVoxels_ = pace.voxelsAlongEdge();
+  RenderThread& thread = askedVoxels_ == kAllVoxels ? whole_ : quick_;
+  thread.ask(request(state, moves ? Purpose::Move : Purpose::Edit, askedVoxels_, pace.scale()));
+}
+
+/// Not two images at once, as they share the processor.
+void ImageDirector::refine(const ViewState& state) {
+  const glm::ivec3 size = state.latest ? state.latest->scene.volume->dimensions : glm::ivec3(0);
+  const int longest = std::max({size.x, size.y, size.z});
+  const bool hasStep = lastPurpose_ == Purpose::Edit && askedVoxels_ < longest / 3;
+  if (hasStep) {
+    askedVoxels_ *= 2;
+    refines_ = true;
+    quick_.ask(request(state, Purpose::Refine, askedVoxels_, 1.0));
+  } else {
+    askedOfWhole_ = lastRequest_;
+    drawsWhole_ = true;
+    whole_.ask(request(state, Purpose::Whole, kAllVoxels, 1.0));
+  }
+}
+
+void ImageDirector::ask(ViewState& state, glm::ivec2 pixels, bool moves) {
+  if (pixels.x < 1 || pixels.y < 1) return;
+  if (state.scene.camera.size != pixels) {
+    state.scene.camera.size = pixels;
+    state.moved = true;
+    if (!state.camera) state.changed = true;
+  }
+  const Clock::time_point now = Clock::now();
+  if (isPending(state)) {
+    if (state.changed) ++revision_;
+    lastChange_ = now;
+    ++lastRequest_;
+    refines_ = false;
+    askOfChange(state);
+    state.changed = state.moved = false;
+  } else if (now - lastChange_ >= kStill && answered_ == lastRequest_ && askedOfWhole_ != lastRequest_ && !refines_ && !moves) {
+    refine(state);
+  }
+}
+
+bool ImageDirector::isComplete(const ViewState& state) const {
+  return state.whole && state.whole->request.number == lastRequest_ && !isPending(state) && state.latest == state.whole;
+}
+
+void ImageDirector::end() {
+  quick_.end();
+  whole_.end();
+}
+
+std::optional<std::pair<std::string, double>> ImageDirector::activity() const {
+  const auto activity = whole_.activity();
+  return activity ? activity : quick_.activity();
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,60 @@
+#pragma once
+// Which images are drawn, and when.
+
+#include <chrono>
+#include <exception>
+
+#include "apps/view/image_pace.h"
+#include "apps/view/render_thread.h"
+#include "apps/view/view_state.h"
+
+namespace freevoxels {
+
+/// Asks for images of the options as they change: quick ones while something moves, then better ones up to the whole image.
+class ImageDirector {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// With `wholeOnly`, quick images are never asked for.
+  ImageDirector(const Device& device, bool wholeOnly);
+
+  /// Takes the images that are complete. True if ViewState::latest is another one now. `state` gets the problem of one that
+  /// cannot be drawn; what was thrown is returned in `failure`.
+  bool take(ViewState& state, std::exception_ptr& failure);
+  /// Asks for what is needed next, of an image of `pixels`. `moves`: more changes may follow at once.
+  void ask(ViewState& state, glm::ivec2 pixels, bool moves);
+
+  /// Whether the last image is the whole image of the current options; whether there is an answer of any kind.
+  bool isComplete(const ViewState& state) const;
+  bool isAnswered(const ViewState& state) const { return answered_ == lastRequest_ && !isPending(state); }
+  bool hasFailed(const ViewState& state) const { return failed_ == lastRequest_ && !isPending(state); }
+  /// Whether nothing has to be asked for before something changes.
+  bool isSettled() const { return answered_ == lastRequest_ && askedOfWhole_ == lastRequest_ && !refines_; }
+  std::optional<std::pair<std::string, double>> activity() const;
+
+  /// Abandons everything, for good, without waiting for that.
+  void end();
+  bool isBusy() const { return quick_.isBusy() || whole_.isBusy(); }
+
+ private:
+  static bool isPending(const ViewState& state) { return state.changed || state.moved; }
+  void askOfChange(const ViewState& state);
+  void refine(const ViewState& state);
+  bool keep(ViewState& state, RenderThread& thread, const RenderThread::Result& result, std::exception_ptr& failure);
+  ImageRequest request(const ViewState& state, Purpose purpose, int voxels, double scale) const;
+
+  VolumeCache volumes_;
+  RenderThread quick_, whole_;  ///< for images of few voxels, and of all voxels
+  const bool wholeOnly_;
+  std::uint64_t lastRequest_ = 0, askedOfWhole_ = 0, answered_ = 0, failed_ = 0;
+  std::uint64_t revision_ = 1, wholeRevision_ = 0;  ///< of everything but the camera; that of the last image of all voxels
+  Clock::time_point lastChange_;
+  AdaptiveResolution movePace_{true}, editPace_;
+  ImageRate rate_;
+  Purpose lastPurpose_ = Purpose::Whole;
+  int askedVoxels_ = kAllVoxels;  ///< of the last quick image
+  bool refines_ = false;          ///< whether a step of refinement is being drawn
+  bool wholeIsQuick_ = false, drawsWhole_ = false;  ///< drawsWhole_: a whole image in full size was asked for, and has not come
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,150 @@
+#include "apps/view/image_maker.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+
+#include "engine/image/display_pass.h"
+#include "engine/volume/coarse_volume.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// Different for whatever is read differently.
+std::string nameOf(const SceneOptions& scene, bool clipped) {
+  OptionList options;
+  InputOptions input = scene.input;
+  if (!clipped) input.clipBox.reset();
+  input.describe(options);
+  options.emplace_back("temperature", scene.emission.grid().value_or("none"));
+  options.emplace_back("albedo", scene.classification.albedoGrid.value_or("none"));
+  return commandText(options);
+}
+
+int blockEdge(const Volume& volume, int voxelsAlongEdge) {
+  const glm::ivec3 size = volume.dimensions;
+  return 1 + (std::max({size.x, size.y, size.z}) - 1) / voxelsAlongEdge;
+}
+
+}  // namespace
+
+VolumeCache::VolumeCache(const SceneOptions& scene, std::shared_ptr<const Volume> volume)
+    : maximumVoxels_(volume->voxelCount()), clippedName_(nameOf(scene, true)), clipped_(std::move(volume)) {}
+
+std::shared_ptr<const Volume> VolumeCache::read(const SceneOptions& scene) {
+  const std::lock_guard lock(mutex_);
+  const std::string clippedName = nameOf(scene, true);
+  if (clipped_ && clippedName == clippedName_) return clipped_;
+  clipped_ = nullptr;  // not both at once
+  const std::string name = nameOf(scene, false);
+  if (!whole_ || name != name_) {
+    whole_ = nullptr;
+    SceneOptions unclipped = scene;
+    unclipped.input.clipBox.reset();
+    whole_ = std::make_shared<const Volume>(unclipped.readVolume(maximumVoxels_));
+    logWarnings(*whole_, false);
+    name_ = name;
+  }
+  clipped_ = scene.input.clipBox ? std::make_shared<const Volume>(scene.input.clip(*whole_)) : whole_;
+  clippedName_ = clippedName;
+  return clipped_;
+}
+
+glm::ivec3 VolumeCache::wholeDimensions() const {
+  const std::lock_guard lock(mutex_);
+  return whole_ ? whole_->dimensions : glm::ivec3(0);
+}
+
+ImageMaker::ImageMaker(const Device& device, VolumeCache& volumes)
+    : device_(device), volumes_(volumes), diagnoser_(device) {}
+
+std::shared_ptr<const Volume> ImageMaker::coarse(const Scene& scene, int voxelsAlongEdge) {
+  const bool densities = !scene.classification.transferFunction;
+  const int edge = blockEdge(*scene.volume, voxelsAlongEdge);
+  if (whole_ == scene.volume && edge == blockEdge_ && densities == coarseIsOfDensities_) return coarse_;
+  whole_ = scene.volume;
+  blockEdge_ = edge;
+  coarseIsOfDensities_ = densities;
+  coarse_ = edge <= 1 ? whole_
+                      : std::make_shared<const Volume>(coarseVolume(
+                            *whole_, edge, densities ? WithoutData::Zero : WithoutData::Ignored));
+  rendererOptions_.clear();
+  return coarse_;
+}
+
+void ImageMaker::makeRenderer(const Scene& scene, const ImageRequest& request, const Progress& progress) {
+  const std::shared_ptr<const Volume> volume = coarse(scene, request.voxelsAlongEdge);
+  const std::string options = request.scene.rendererText(scene, request.method.table());
+  if (renderer_ && options == rendererOptions_) return;
+  renderer_ = nullptr;  // not both at once
+  diagnoser_.reset();
+  rendererOptions_.clear();
+  renderer_ =
+      std::make_unique<Renderer>(device_, *volume, scene.classification, request.method.table(), progress);
+  rendererOptions_ = options;
+}
+
+/// Sums over the volume, the environment and the histogram are made once for all cameras.
+Scene ImageMaker::resolve(const ImageRequest& request) {
+  std::shared_ptr<const Volume> volume = volumes_.read(request.scene);
+  if (scene_ && request.revision != 0 && request.revision == revision_ && scene_->volume == volume) {
+    scene_->camera = request.scene.cameras(*volume, scene_->classification).front();
+    return *scene_;
+  }
+  scene_.reset();
+  scene_ = request.scene.resolve(std::move(volume));
+  revision_ = request.revision;
+  return *scene_;
+}
+
+bool sameOutput(const OutputOptions& a, const OutputOptions& b) {
+  OptionList first, second;
+  a.describe(first);
+  b.describe(second);
+  return first == second;
+}
+
+DrawnImage withOutput(const DrawnImage& drawn, const OutputOptions& output) {
+  DrawnImage result = drawn;
+  result.request.scene.output = output;
+  OptionList method;
+  result.request.method.describe(method);
+  result.options = result.request.scene.describe(result.scene, method);
+  return result;
+}
+
+DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progress) {
+  request.scene.checkLook();
+  const std::string before = std::exchange(input_, request.scene.input.input);
+  if (progress) progress(before == input_ ? "preparing" : "reading " + input_, 0.0);
+  DrawnImage drawn{.request = request,
+                   .scene = resolve(request),
+                   .wholeDimensions = volumes_.wholeDimensions(),
+                  .device = device_.description()};
+  const auto start = std::chrono::steady_clock::now();
+  makeRenderer(drawn.scene, request, progress);
+
+  FrameSettings settings{.size = request.scene.camera.size,
+                         .depth = request.scene.output.wantsDepth(),
+                         .lighting = drawn.scene.lighting};
+  request.method.apply(settings);
+  drawn.image = renderer_->renderOnDevice(drawn.scene.camera, settings, progress);
+  drawn.shown = {drawn.image, &drawn.image->colorEnergy};
+  OptionList method;
+  request.method.describe(method);
+  drawn.options = request.scene.describe(drawn.scene, method);
+  drawn.times = renderer_->timings();
+  drawn.memory = renderer_->memory();
+  drawn.cut = renderer_->cutCounts();
+  drawn.visibleVoxels = renderer_->occupiedVoxelCount();
+  if (request.diagnosis.shown != Shown::Image)
+    drawn.shown = std::make_shared<const RenderTarget>(
+        uploadImage(device_, diagnoser_.make(request.diagnosis, *renderer_, *coarse_, request.method.table(),
+                                             drawn.scene.camera, settings)));
+  drawn.milliseconds =
+      std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  return drawn;
+}
+
+}  // namespace freevoxels

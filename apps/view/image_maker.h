@@ -1,0 +1,102 @@
+#pragma once
+// Makes the images of the viewer's options, as `freevoxels render` does, of a volume that is read once.
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "apps/freevoxels/method_options.h"
+#include "apps/freevoxels/scene_options.h"
+#include "apps/view/diagnosis.h"
+#include "apps/view/image_pace.h"
+#include "engine/renderer.h"
+
+namespace freevoxels {
+
+class VolumeCache {
+ public:
+  explicit VolumeCache(std::uint64_t maximumVoxels) : maximumVoxels_(maximumVoxels) {}
+
+  /// The volume that the options name was read already, and clipped.
+  VolumeCache(const SceneOptions& scene, std::shared_ptr<const Volume> volume);
+
+  /// The volume that the options name, read and clipped unless it is the last one; whoever comes meanwhile waits for it.
+  std::shared_ptr<const Volume> read(const SceneOptions& scene);
+  /// The size of its box before it was clipped.
+  glm::ivec3 wholeDimensions() const;
+
+ private:
+  const std::uint64_t maximumVoxels_;
+  mutable std::mutex mutex_;
+  std::string name_, clippedName_;
+  std::shared_ptr<const Volume> whole_, clipped_;
+};
+
+/// What an image is drawn for: while the camera moves, while something else changes, as a step from there to the whole image, or
+/// as that, of all voxels and pixels.
+enum class Purpose { Move, Edit, Refine, Whole };
+
+/// The input of an image, to be copied to another thread.
+struct ImageRequest {
+  SceneOptions scene;
+  MethodOptions method;
+  Diagnosis diagnosis;
+  std::optional<MethodOptions> compared;  ///< another method for comparison
+  std::uint64_t number = 0;               ///< larger than that of all earlier requests
+  /// The same for requests that differ in camera and size alone, so that the rest of the scene is not resolved again; 0 if that is
+  /// not known.
+  std::uint64_t revision = 0;
+  Purpose purpose = Purpose::Whole;
+  /// Largest number of voxels along the volume's longest edge. Of larger volumes, means of blocks are drawn.
+  int voxelsAlongEdge = kAllVoxels;
+};
+
+struct DrawnImage {
+  ImageRequest request;    ///< the request that it answers
+  Scene scene;               ///< the resolved scene, with all voxels of the volume
+  glm::ivec3 wholeDimensions{0};  ///< of the volume's box before it was clipped
+  OptionList options;        ///< options that make the same pixels
+  DeviceDescription device;  ///< device that made it
+  std::shared_ptr<const SplatTargets> image;     ///< on the device, which must outlive the image
+  std::shared_ptr<const RenderTarget> shown;     ///< the same image, or the diagnosis in its place
+  std::shared_ptr<const RenderTarget> compared;  ///< of the other method, or null
+  std::vector<StageTime> times;
+  double milliseconds = 0.0;  ///< in total, without reading files
+  VolumeMemory memory;
+  CutCounts cut;
+  std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::occupiedVoxelCount
+};
+
+/// Whether images are shown and written alike.
+bool sameOutput(const OutputOptions& a, const OutputOptions& b);
+/// The same image with other options of how it is shown and written.
+DrawnImage withOutput(const DrawnImage& drawn, const OutputOptions& output);
+
+/// Keeps a volume on a device, and updates only what a request changes.
+class ImageMaker {
+ public:
+  ImageMaker(const Device& device, VolumeCache& volumes);
+
+  /// Fails as `freevoxels render` does.
+  DrawnImage make(const ImageRequest& request, const Progress& progress);
+
+ private:
+  Scene resolve(const ImageRequest& request);
+  void makeRenderer(const Scene& scene, const ImageRequest& request, const Progress& progress);
+  std::shared_ptr<const Volume> coarse(const Scene& scene, int voxelsAlongEdge);
+
+  const Device& device_;
+  VolumeCache& volumes_;
+  std::shared_ptr<const Volume> whole_, coarse_;  ///< coarse_ is made from whole_, or equal to it
+  int blockEdge_ = 0;                             ///< block edge of coarse_
+  bool coarseIsOfDensities_ = false;
+  std::string input_;           ///< of the last request
+  std::optional<Scene> scene_;  ///< of the last request
+  std::uint64_t revision_ = 0;
+  std::string rendererOptions_;
+  std::unique_ptr<Renderer> renderer_;
+  Diagnoser diagnoser_;
+};
+
+}  // namespace freevoxels

@@ -1,0 +1,285 @@
+#include "apps/view/look_panel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+#include <spdlog/spdlog.h>
+
+#include "apps/view/theme.h"
+#include "apps/view/transfer_presets.h"
+#include "apps/view/ui_painter.h"
+#include "engine/core/atomic_file.h"
+#include "engine/image/image.h"
+
+namespace freevoxels {
+
+namespace {
+
+glm::dvec2 rangeOf(const TransferModel& model, const Volume& volume) {
+  return model.range.value_or(glm::dvec2(volume.minimum, volume.maximum));
+}
+
+constexpr double kLeastOffset = -2000.0, kMostOffset = 4000.0;  // kelvin
+
+}  // namespace
+
+PresetImages::PresetImages(const Device& device)
+    : device_(device), images_([this](const std::shared_ptr<const DrawnImage>& like) { return draw(*like); }) {}
+
+PresetImages::~PresetImages() {
+  ends_ = true;
+}
+
+/// An empty image where it cannot be drawn.
+std::vector<Image> PresetImages::draw(const DrawnImage& like) const {
+  constexpr int kVoxels = 48;
+  struct Abandoned {};
+  const Progress progress = [this](std::string_view, double) {
+    if (ends_) throw Abandoned();
+  };
+  ImageRequest request{.scene = like.request.scene, .method = like.request.method, .voxelsAlongEdge = kVoxels};
+  request.scene.camera.size = 2 * kSize;
+  VolumeCache volumes(request.scene, like.scene.volume);
+  std::vector<Image> images(kTransferPresets.size());
+  for (std::size_t i = 0; i < kTransferPresets.size(); ++i) try {
+      if (ends_) break;
+      request.scene.classification = {.transferFunction = kTransferPresets[i].json};
+      ImageMaker maker(device_, volumes);
+      images[i] = downloadImage(device_, *maker.make(request, progress).image);
+    } catch (const Abandoned&) {
+      break;
+    } catch (const std::exception& problem) {
+      spdlog::debug("image of the preset {}: {}", kTransferPresets[i].name, problem.what());
+    }
+  return images;
+}
+
+const Texture* PresetImages::of(std::size_t preset, const std::shared_ptr<const DrawnImage>& latest) {
+  if (!like_ || like_->scene.volume != latest->scene.volume) {
+    like_ = latest;
+    textures_.clear();
+  }
+  const std::vector<Image>* const images = images_.of(like_);
+  if (images == nullptr) return nullptr;
+  textures_.resize(images->size());
+  const Image& image = (*images)[preset];
+  if (!textures_[preset] && !image.pixels.empty()) {
+    textures_[preset] = std::make_unique<Texture>(device_, image.size, "preset");
+    textures_[preset]->upload(device_, srgbTexels(image, {.background = Background{}}));
+  }
+  return textures_[preset].get();
+}
+
+void ClassificationPanel::draw(ViewState& state) {
+  ImGui::PushID("classification");
+  drawKind(state);
+  if (state.scene.classification.transferFunction)
+    drawTransferFunction(state);
+  else
+    drawDensity(state);
+  ImGui::PopID();
+}
+
+/// Another volume, or options that were changed elsewhere.
+void ClassificationPanel::follow(ViewState& state) {
+  const Volume& volume = *state.latest->scene.volume;
+  const std::optional<std::string>& text = state.scene.classification.transferFunction;
+  if (volume.source != volume_) {
+    volume_ = volume.source;
+    histogram_.forget();
+    density_ = {};
+    model_.range.reset();
+    model_.unitDistance.reset();
+    if (text) modelText_.clear();  // which may have both
+  }
+  if (!text || *text == modelText_) return;
+  modelText_ = *text;
+  deselect();
+  if (!isInlineJson(*text)) file_ = *text;
+  attempt(state, [&] { model_ = TransferModel::read(*text, volume); });
+}
+
+void ClassificationPanel::deselect() {
+  curve_ = {};
+  strip_ = {};
+  preset_.clear();
+}
+
+void ClassificationPanel::drawKind(ViewState& state) {
+  ClassificationOptions& options = state.scene.classification;
+  int kind = options.transferFunction ? 1 : 0;
+  if (!choose("Classification", {"density", "transfer function"}, kind)) return;
+  if (kind == 0) {
+    options = density_;
+    if (!options.densityScale)  // else a scan has a transfer function again
+      options.densityScale = automaticDensityScale(*state.latest->scene.volume, kAutomaticOpticalDepth);
+  } else {
+    density_ = options;
+    if (modelText_.empty()) {
+      model_.takeCurves(TransferModel::read(kTransferPresets[0].json, *state.latest->scene.volume));
+      preset_ = kTransferPresets[0].name;
+    }
+    options = {.transferFunction = modelText_ = model_.json()};
+  }
+  state.changed = true;
+}
+
+void ClassificationPanel::drawDensity(ViewState& state) {
+  ClassificationOptions& options = state.scene.classification;
+  const Classification& resolved = state.latest->scene.classification;
+  const bool automatic = !options.densityScale && !resolved.transferFunction;
+  state.changed |=
+      scale_.draw("Density scale", "Extinction per world unit where the density is 1", "--density-scale",
+                  options.densityScale, automatic ? std::optional(resolved.densityScale) : std::nullopt);
+  const glm::vec3 usual = resolved.transferFunction ? Classification{}.albedo : resolved.albedo;
+  glm::dvec3 color = options.albedo.value_or(glm::dvec3(usual));
+  if (editColor("Albedo", color)) {
+    options.albedo = color;
+    state.changed = true;
+  }
+  hint("Share of the light that a voxel scatters", "--albedo");
+}
+
+void ClassificationPanel::drawTransferFunction(ViewState& state) {
+  const Volume& volume = *state.latest->scene.volume;
+  bool changed = drawPresets(state);
+  if (curve_.draw(model_, rangeOf(model_, volume), histogram_.of(state.latest->scene.volume)) |
+      strip_.draw(model_)) {
+    preset_.clear();
+    changed = true;
+  }
+  changed |= drawRange(volume);
+  changed |= unitDistance_.draw("Unit distance", "World length that the opacities are of", "unit_distance of --transfer-function",
+                                model_.unitDistance,
+                                volume.voxelSize());
+  changed |= drawFile(state);
+  if (!changed) return;
+  modelText_ = model_.json();
+  state.scene.classification = {.transferFunction = modelText_};
+  state.changed = true;
+}
+
+bool ClassificationPanel::drawPresets(const ViewState& state) {
+  bool changed = false;
+  if (!ImGui::BeginCombo(beginRow("Preset"), preset_.empty() ? "own" : preset_.c_str(), ImGuiComboFlags_HeightLargest)) return false;
+  const float scale = ImGui::GetFontSize() / kFontPixels;
+  const ImVec2 tile(scale * float(PresetImages::kSize.x), scale * float(PresetImages::kSize.y));
+  for (std::size_t i = 0; i < kTransferPresets.size(); ++i) {
+    const TransferPreset& preset = kTransferPresets[i];
+    ImGui::PushID(int(i));
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    if (ImGui::Selectable("##preset", preset_ == preset.name, 0, {0.0f, tile.y})) {
+      deselect();
+      model_.takeCurves(TransferModel::read(preset.json, *state.latest->scene.volume));
+      preset_ = preset.name;
+      changed = true;
+    }
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImVec2 high(low.x + tile.x, low.y + tile.y);
+    list.AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg));
+    if (const Texture* const image = presets_.of(i, state.latest)) list.AddImage(textureId(*image), low, high);
+    list.AddText({high.x + 8.0f, low.y + 0.5f * (tile.y - ImGui::GetFontSize())}, ImGui::GetColorU32(ImGuiCol_Text), preset.name);
+    ImGui::PopID();
+  }
+  ImGui::EndCombo();
+  return changed;
+}
+
+/// As on the console of a CT scanner: the middle and the width of the values that the curve is over.
+bool ClassificationPanel::drawRange(const Volume& volume) {
+  const double least = volume.minimum, most = volume.maximum, all = most - least;
+  if (!(all > 0.0)) return false;
+  constexpr double kNarrowest = 1e-3, kWidest = 2.0;
+  const glm::dvec2 range = rangeOf(model_, volume);
+  double middle = 0.5 * (range.x + range.y), width = range.y - range.x;
+  bool changed = slide("Level", middle, least, most, "%.4g");
+  hint("Value in the middle of the curve; right drag in the image changes it, too", "range of --transfer-function");
+  changed |= slideLogarithmic("Window", width, kNarrowest * all, kWidest * all);
+  hint("Width of the values under the curve; right drag in the image changes it, too", "range of --transfer-function");
+  if (changed) model_.moveWindow({least, most}, {width - (range.y - range.x), middle - 0.5 * (range.x + range.y)});
+  if (model_.range && ImGui::Button("Window of all values", {-1.0f, 0.0f})) {
+    model_.range.reset();
+    changed = true;
+  }
+  return changed;
+}
+
+bool ClassificationPanel::drawFile(ViewState& state) {
+  const float buttons = ImGui::CalcTextSize("LoadSave").x + 4.0f * ImGui::GetStyle().FramePadding.x + 2.0f * ImGui::GetStyle().ItemSpacing.x;
+  const char* const field = beginRow("File");
+  ImGui::SetNextItemWidth(-buttons);
+  ImGui::InputTextWithHint(field, "name.json", &file_);
+  ImGui::SameLine();
+  bool loaded = false;
+  if (ImGui::Button("Load") && !file_.empty())
+    attempt(state, [&] {
+      model_ = TransferModel::read(file_, *state.latest->scene.volume);
+      deselect();
+      loaded = true;
+    });
+  hint("Reads the curves from this file", "--transfer-function");
+  ImGui::SameLine();
+  if (ImGui::Button("Save") && !file_.empty())
+    attempt(state, [&] {
+      writeTextAtomically(file_, model_.json() + "\n");
+      state.notice = "saved " + file_;
+    });
+  hint("Writes the curves into this file", "--transfer-function");
+  return loaded;
+}
+
+void LookPanel::draw(ViewState& state, GridList& grids) {
+  if (state.latest) classification_.follow(state);
+  if (!ImGui::CollapsingHeader("Look", ImGuiTreeNodeFlags_DefaultOpen) || !state.latest) return;
+  classification_.draw(state);
+  emission_.draw(state, grids);
+}
+
+void EmissionPanel::draw(ViewState& state, GridList& grids) {
+  const std::vector<GridChoice>* const all = grids.of(state.scene.input.input);
+  if (!all) return;
+  ImGui::PushID("emission");
+  EmissionOptions& options = state.scene.emission;
+  const bool mayShine = all->empty() || std::ranges::any_of(*all, &GridChoice::isReal);
+  bool shines = options.grid().has_value();
+  if (shines || mayShine) {
+    if (tick("Emission", shines)) {
+      options = {};
+      options.emission = shines;
+      state.changed = true;
+    }
+    hint("Hot voxels shine as black bodies", "--emission");
+  }
+  if (shines) state.changed |= drawOptions(state, *all);
+  ImGui::PopID();
+}
+
+bool EmissionPanel::drawOptions(ViewState& state, const std::vector<GridChoice>& grids) {
+  EmissionOptions& options = state.scene.emission;
+  bool changed = false;
+  if (grids.size() > 1) {
+    changed |= chooseGrid("Temperature", grids, &GridChoice::isReal, "automatic", options.temperatureGrid);
+    hint("Grid of the temperatures", "--temperature-grid");
+  }
+  const std::optional<Emission>& resolved = state.latest->scene.classification.emission;
+  if (!resolved) return changed;
+  const auto automatic = [](const std::optional<double>& given, double value) {
+    return given ? std::nullopt : std::optional(value);
+  };
+  changed |= strength_.draw("Strength", "Luminance per world unit at 2000 K", "--emission", options.strength,
+                            automatic(options.strength, resolved->strength));
+  changed |= scale_.draw("Scale", "Kelvin for each unit of the grid's values", "--temperature-scale", options.temperatureScale,
+                         automatic(options.temperatureScale, resolved->temperatureScale), "%.4g K");
+  if (options.temperatureScale && !options.temperatureOffset)  // which a scale of its own would make 0
+    options.temperatureOffset = resolved->temperatureOffset;
+  double offset = options.temperatureOffset.value_or(resolved->temperatureOffset);
+  if (slide("Offset", offset, kLeastOffset, kMostOffset, "%.0f K")) {
+    options.temperatureOffset = offset;
+    changed = true;
+  }
+  hint("Temperature where the grid's value is 0", "--temperature-offset");
+  return changed;
+}
+
+}  // namespace freevoxels

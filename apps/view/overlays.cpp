@@ -1,0 +1,217 @@
+#include "apps/view/overlays.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "apps/view/transfer_model.h"
+#include "apps/view/widgets.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr std::array kAxisColors{IM_COL32(224, 96, 88, 255), IM_COL32(124, 196, 96, 255), IM_COL32(92, 148, 240, 255)};
+constexpr ImU32 kInk = IM_COL32(235, 235, 240, 255), kShade = IM_COL32(0, 0, 0, 150), kBox = IM_COL32(200, 205, 215, 110);
+
+float unit() {
+  return ImGui::GetFontSize() / 15.0f;
+}
+
+/// Legible on any image.
+void drawText(ImDrawList& list, ImVec2 place, ImU32 color, const std::string& text) {
+  list.AddText({place.x + 1.0f, place.y + 1.0f}, kShade, text.c_str());
+  list.AddText(place, color, text.c_str());
+}
+
+/// An end of the axes in the corner.
+struct AxisEnd {
+  int axis = 0;  ///< 0 to 5
+  ImVec2 place;
+  double nearness = 0.0;
+};
+
+std::array<AxisEnd, 6> axisEnds(const Camera& camera, const ImageFrame& frame, ImVec2& centre) {
+  const float length = 34.0f * unit();
+  centre = {frame.low.x + 52.0f * unit(), frame.high.y - 52.0f * unit()};
+  const glm::dmat3 toCamera(worldToCamera(camera));
+  std::array<AxisEnd, 6> ends;
+  for (int i = 0; i < 6; ++i) {
+    const glm::dvec3 seen = toCamera[i / 2] * (i % 2 == 0 ? 1.0 : -1.0);
+    ends[std::size_t(i)] = {i, {centre.x + length * float(seen.x), centre.y - length * float(seen.y)}, seen.z};
+  }
+  std::ranges::sort(ends, {}, &AxisEnd::nearness);
+  return ends;
+}
+
+void drawAxes(const Camera& camera, const ImageFrame& frame) {
+  constexpr std::array kNames{"x", "y", "z"};
+  ImVec2 centre;
+  const auto ends = axisEnds(camera, frame, centre);
+  const std::optional<int> hovered = axisUnderMouse(camera, frame);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float radius = 8.0f * unit();
+  for (const AxisEnd& end : ends) {
+    const ImU32 color = kAxisColors[std::size_t(end.axis / 2)];
+    const bool positive = end.axis % 2 == 0;
+    if (positive) list.AddLine(centre, end.place, color, 2.0f * unit());
+    list.AddCircleFilled(end.place, radius, positive ? color : IM_COL32(40, 42, 48, 200));
+    if (!positive) list.AddCircle(end.place, radius, (color & 0x00FFFFFF) | 0xB0000000);
+    if (hovered == end.axis) list.AddCircle(end.place, radius + 1.5f, kInk, 0, 2.0f);
+    if (!positive) continue;
+    const char* const name = kNames[std::size_t(end.axis / 2)];
+    const ImVec2 text = ImGui::CalcTextSize(name);
+    list.AddText({end.place.x - 0.5f * text.x, end.place.y - 0.55f * text.y}, IM_COL32(20, 20, 24, 255), name);
+  }
+}
+
+/// The volume's box with the world coordinates of two opposite corners.
+void drawBox(const Volume& volume, const Camera& camera, const ImageFrame& frame) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const auto corner = [&](int i) {
+    const glm::dvec3 index = glm::dvec3(i & 1, i >> 1 & 1, i >> 2 & 1) * glm::dvec3(volume.dimensions) - 0.5;
+    return glm::dvec3(volume.indexToWorld * glm::dvec4(index, 1.0));
+  };
+  for (int i = 0; i < 8; ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((i >> axis & 1) != 0) continue;
+      const auto from = frame.place(camera, corner(i)), to = frame.place(camera, corner(i | 1 << axis));
+      if (from && to) list.AddLine(*from, *to, i == 0 ? kAxisColors[std::size_t(axis)] : kBox, i == 0 ? 2.0f : 1.0f);
+    }
+  for (const int i : {0, 7})
+    if (const auto place = frame.place(camera, corner(i))) {
+      const glm::dvec3 world = corner(i);
+      drawText(list, {place->x + 5.0f, place->y + 2.0f}, kInk, fmt::format("{:.3g}, {:.3g}, {:.3g}", world.x, world.y, world.z));
+    }
+}
+
+void drawScaleBar(const Camera& camera, const ImageFrame& frame) {
+  const double pixel = pixelLength(camera, double(frame.size().y));
+  const double length = roundLength(140.0 * double(unit()) * pixel);
+  const auto width = float(length / pixel);
+  const ImVec2 end(frame.high.x - 18.0f * unit(), frame.high.y - 18.0f * unit());
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  for (const auto& [shift, color] : {std::pair(1.0f, kShade), std::pair(0.0f, kInk)}) {
+    const ImVec2 right(end.x + shift, end.y + shift), left(right.x - width, right.y);
+    list.AddLine(left, right, color, 2.0f);
+    for (const ImVec2 at : {left, right}) list.AddLine({at.x, at.y - 5.0f}, {at.x, at.y + 1.0f}, color, 2.0f);
+  }
+  const std::string text = fmt::format("{:g} {}", length, length == 1.0 ? "unit" : "units");
+  const float textWidth = ImGui::CalcTextSize(text.c_str()).x;
+  drawText(list, {end.x - 0.5f * (width + textWidth), end.y - 1.5f * ImGui::GetFontSize()}, kInk, text);
+}
+
+/// The colours of the transfer function with the values of its ends and middle.
+void drawColorBar(const ViewState& state, const ImageFrame& frame) {
+  const auto& function = state.latest->scene.classification.transferFunction;
+  if (!function) return;
+  const float height = std::min(220.0f * unit(), 0.4f * frame.size().y), width = 12.0f * unit();
+  const ImVec2 low(frame.high.x - 18.0f * unit() - width, frame.low.y + 18.0f * unit());
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const double least = std::min(function->opacity.front().scalar, function->color.front().scalar);
+  const double span = double(std::max(function->opacity.back().scalar, function->color.back().scalar)) - least;
+  TransferModel model;
+  for (const auto& [scalar, color] : function->color)
+    model.color.push_back({span > 0.0 ? (double(scalar) - least) / span : 0.0, glm::dvec3(color)});
+  for (float y = 0.0f; y < height; y += 1.0f)
+    list.AddRectFilled({low.x, low.y + y}, {low.x + width, low.y + y + 1.0f},
+                       shownColor(model.colorAt(1.0 - double(y / height)), 1.0f));
+  list.AddRect({low.x - 1.0f, low.y - 1.0f}, {low.x + width + 1.0f, low.y + height + 1.0f}, kShade);
+  for (const double x : {0.0, 0.5, 1.0}) {
+    const std::string text = fmt::format("{:.4g}", least + x * span);
+    const float y = low.y + float(1.0 - x) * height;
+    drawText(list, {low.x - 6.0f - ImGui::CalcTextSize(text.c_str()).x, y - 0.5f * ImGui::GetFontSize()}, kInk, text);
+  }
+}
+
+}  // namespace
+
+std::optional<ImVec2> ImageFrame::place(const Camera& camera, glm::dvec3 world) const {
+  const glm::dvec3 seen(worldToCamera(camera) * glm::dvec4(world, 1.0));
+  if (!camera.orthographic && seen.z > -1e-6) return std::nullopt;
+  const double halfHeight =
+      camera.orthographic ? 0.5 * camera.orthographicHeight : -seen.z * std::tan(0.5 * glm::radians(camera.verticalFov));
+  const double pixels = 0.5 * double(high.y - low.y) / halfHeight;
+  return ImVec2(0.5f * (low.x + high.x) + float(seen.x * pixels), 0.5f * (low.y + high.y) - float(seen.y * pixels));
+}
+
+double roundLength(double length) {
+  const double power = std::pow(10.0, std::floor(std::log10(length)));
+  return (length >= 5.0 * power ? 5.0 : length >= 2.0 * power ? 2.0 : 1.0) * power;
+}
+
+double pixelLength(const Camera& camera, double height) {
+  const double length = camera.orthographic ? camera.orthographicHeight
+                                            : 2.0 * glm::distance(camera.position, camera.lookAt) *
+                                                  std::tan(0.5 * glm::radians(camera.verticalFov));
+  return length / height;
+}
+
+std::optional<int> axisUnderMouse(const Camera& camera, const ImageFrame& frame) {
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  ImVec2 centre;
+  const auto ends = axisEnds(camera, frame, centre);
+  std::optional<int> found;
+  for (const AxisEnd& end : ends)  // the nearest last
+    if (std::hypot(end.place.x - mouse.x, end.place.y - mouse.y) <= 9.0f * unit()) found = end.axis;
+  return found;
+}
+
+ClipHandles::ClipHandles(const ViewState& state, const ImageFrame& frame) {
+  if (!state.scene.input.clipBox || !state.latest || !state.latest->request.scene.input.clipBox) return;
+  const VoxelBox& box = *state.scene.input.clipBox;
+  const glm::dvec3 first(box.first), last(glm::min(box.last, state.latest->wholeDimensions - 1));
+  // The drawn volume begins at the first voxel of the box that it was drawn with.
+  const glm::dvec3 drawnFirst(state.latest->request.scene.input.clipBox->first);
+  const auto place = [&](glm::dvec3 voxel) {
+    return frame.place(*state.camera, glm::dvec3(state.latest->scene.volume->indexToWorld * glm::dvec4(voxel - drawnFirst, 1.0)));
+  };
+  for (int side = 0; side < 6; ++side) {
+    const int axis = side / 2;
+    glm::dvec3 middle = 0.5 * (first + last);
+    middle[axis] = side % 2 == 0 ? first[axis] - 0.5 : last[axis] + 0.5;
+    glm::dvec3 next = middle;
+    next[axis] += 1.0;
+    const auto from = place(middle), to = place(next);
+    if (from && to) handles.push_back({side, *from, {to->x - from->x, to->y - from->y}});
+  }
+}
+
+const ClipHandles::Handle* ClipHandles::hovered() const {
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  for (const Handle& handle : handles)
+    if (std::hypot(handle.place.x - mouse.x, handle.place.y - mouse.y) < 9.0f * unit()) return &handle;
+  return nullptr;
+}
+
+VoxelBox withSideMoved(const VoxelBox& box, int side, int voxels, glm::ivec3 dimensions) {
+  VoxelBox moved{box.first, glm::min(box.last, dimensions - 1)};
+  const int axis = side / 2;
+  if (side % 2 == 0)
+    moved.first[axis] = std::clamp(moved.first[axis] + voxels, 0, moved.last[axis]);
+  else
+    moved.last[axis] = std::clamp(moved.last[axis] + voxels, moved.first[axis], dimensions[axis] - 1);
+  return moved;
+}
+
+void drawOverlays(const ViewState& state, const ImageFrame& frame) {
+  const Camera& camera = *state.camera;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRect(frame.low, frame.high, true);
+  const bool isVolume = state.latest && state.diagnosis.shown == Shown::Image;
+  const ClipHandles clip(state, frame);
+  if ((state.overlays.box || !clip.handles.empty()) && state.latest) drawBox(*state.latest->scene.volume, camera, frame);
+  if (state.overlays.colorBar && isVolume) drawColorBar(state, frame);
+  if (state.overlays.scaleBar) drawScaleBar(camera, frame);
+  if (state.overlays.axes) drawAxes(camera, frame);
+  const ClipHandles::Handle* const hovered = clip.hovered();
+  for (const ClipHandles::Handle& handle : clip.handles) {
+    list.AddCircleFilled(handle.place, 7.0f * unit(), kAxisColors[std::size_t(handle.side / 2)]);
+    list.AddCircle(handle.place, 7.0f * unit(), &handle == hovered ? kInk : kShade, 0, 2.0f);
+  }
+  list.PopClipRect();
+}
+
+}  // namespace freevoxels

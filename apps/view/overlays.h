@@ -1,0 +1,55 @@
+#pragma once
+// What is drawn over the image: axes, the volume's box, scale bar and colour bar.
+
+#include <imgui.h>
+
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/view/view_state.h"
+#include "engine/scene/camera.h"
+
+namespace freevoxels {
+
+/// The image's rectangle in the window.
+struct ImageFrame {
+  ImVec2 low, high;
+
+  glm::vec2 size() const { return {high.x - low.x, high.y - low.y}; }
+  /// The place of a world position; nothing where it is behind the eye.
+  std::optional<ImVec2> place(const Camera& camera, glm::dvec3 world) const;
+};
+
+/// A round length: 1, 2 or 5 times a power of ten, the largest that is at most `length`, which is above 0.
+double roundLength(double length);
+
+/// World length of a pixel at the look-at point, of an image `height` pixels high.
+double pixelLength(const Camera& camera, double height);
+
+/// The axis in the corner whose end is under the mouse: 0 to 5 for +x, -x, +y, -y, +z, -z.
+std::optional<int> axisUnderMouse(const Camera& camera, const ImageFrame& frame);
+
+/// The box that clips the volume, with a handle in the middle of each side.
+struct ClipHandles {
+  struct Handle {
+    int side = 0;        ///< 0 to 5: the first and last voxel along x, y and z
+    ImVec2 place;        ///< in the window
+    glm::vec2 step{0.0f};  ///< by which it moves for each voxel
+  };
+  std::vector<Handle> handles;  ///< those that are before the eye
+
+  /// None where nothing is clipped. `state` has a camera and an image.
+  ClipHandles(const ViewState& state, const ImageFrame& frame);
+  /// The one under the mouse.
+  const Handle* hovered() const;
+};
+
+/// The box with one side moved by a number of voxels, at least one voxel thick and inside of a volume of `dimensions`.
+VoxelBox withSideMoved(const VoxelBox& box, int side, int voxels, glm::ivec3 dimensions);
+
+/// Draws what ViewState::overlays has, into the current Dear ImGui window. `state` has a camera.
+void drawOverlays(const ViewState& state, const ImageFrame& frame);
+
+}  // namespace freevoxels

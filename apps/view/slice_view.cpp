@@ -1,0 +1,148 @@
+#include "apps/view/slice_view.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/view/ui_painter.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr std::array kColors{IM_COL32(224, 96, 88, 255), IM_COL32(124, 196, 96, 255), IM_COL32(92, 148, 240, 255)};
+
+/// The values that are black and white: those of the transfer function, or all.
+glm::dvec2 shownRange(const Scene& scene) {
+  const auto& function = scene.classification.transferFunction;
+  if (!function || function->opacity.size() < 2) return {scene.volume->minimum, scene.volume->maximum};
+  return {function->opacity.front().scalar, function->opacity.back().scalar};
+}
+
+double voxelEdge(const Volume& volume, int axis) {
+  return glm::length(glm::dvec3(volume.indexToWorld[axis]));
+}
+
+}  // namespace
+
+int upAxis(const Volume& volume) {
+  const glm::dvec3 up = glm::abs(glm::transpose(glm::dmat3(volume.indexToWorld)) * volume.up);
+  return up.y > up.z ? 1 : 2;
+}
+
+glm::ivec2 sliceAxes(int axis, int up) {
+  const int other = 3 - up;
+  return axis == 0 ? glm::ivec2(other, up) : glm::ivec2(0, axis == up ? other : up);
+}
+
+std::vector<std::uint8_t> sliceTexels(const Volume& volume, int axis, int voxel, glm::dvec2 range) {
+  const auto [right, up] = std::pair(sliceAxes(axis, upAxis(volume)).x, sliceAxes(axis, upAxis(volume)).y);
+  const double width = range.y - range.x;
+  std::vector<std::uint8_t> texels;
+  texels.reserve(4 * std::size_t(volume.dimensions[right]) * std::size_t(volume.dimensions[up]));
+  glm::ivec3 place;
+  place[axis] = voxel;
+  for (place[up] = volume.dimensions[up] - 1; place[up] >= 0; --place[up])
+    for (place[right] = 0; place[right] < volume.dimensions[right]; ++place[right]) {
+      const float value = volume.scalars.at(place);
+      const double part = width > 0.0 ? std::clamp((double(value) - range.x) / width, 0.0, 1.0) : 1.0;
+      const auto grey = std::uint8_t(std::lround(255.0 * part));
+      if (value == kInactiveVoxel)
+        texels.insert(texels.end(), {16, 19, 30, 255});
+      else
+        texels.insert(texels.end(), {grey, grey, grey, 255});
+    }
+  return texels;
+}
+
+void SliceView::follow(const ViewState& state) {
+  const std::shared_ptr<const Volume>& volume = state.latest->scene.volume;
+  if (volume == volume_) return;
+  const bool sameBox = volume_ && volume_->dimensions == volume->dimensions;  // as of the frames of a sequence
+  volume_ = volume;
+  if (!sameBox) voxel_ = volume->dimensions / 2;
+  for (Slice& slice : slices_) slice.texture = nullptr;
+}
+
+void SliceView::handle(int axis, const ImageFrame& frame) {
+  const glm::ivec2 axes = sliceAxes(axis, upAxis(*volume_));
+  const ImGuiIO& io = ImGui::GetIO();
+  const glm::ivec3 last = volume_->dimensions - 1;
+  glm::ivec3 under = voxel_;
+  under[axes.x] = int(std::floor((io.MousePos.x - frame.low.x) / frame.size().x * float(volume_->dimensions[axes.x])));
+  under[axes.y] = int(std::floor((frame.high.y - io.MousePos.y) / frame.size().y * float(volume_->dimensions[axes.y])));
+  const bool inside = glm::clamp(under, glm::ivec3(0), last) == under;
+  if (ImGui::IsItemActive()) voxel_ = glm::clamp(under, glm::ivec3(0), last);
+  if (!ImGui::IsItemHovered()) return;
+  if (io.MouseWheel != 0.0f)
+    voxel_[axis] = std::clamp(voxel_[axis] + (io.MouseWheel > 0.0f ? 1 : -1), 0, last[axis]);
+  if (!inside) return;
+  const float value = volume_->scalars.at(under);
+  const std::string text = value == kInactiveVoxel ? "no data" : fmt::format("{:.5g}", value);
+  ImGui::SetTooltip("voxel %d, %d, %d: %s", under.x, under.y, under.z, text.c_str());
+}
+
+/// Fitted into `size` with the proportions of the world.
+void SliceView::drawSlice(int axis, ImVec2 size, glm::dvec2 range) {
+  Slice& slice = slices_[std::size_t(axis)];
+  const glm::ivec2 axes = sliceAxes(axis, upAxis(*volume_));
+  if (!slice.texture || slice.voxel != voxel_[axis] || slice.range != range) {
+    slice.voxel = voxel_[axis];
+    slice.range = range;
+    slice.texture = std::make_unique<Texture>(device_, glm::ivec2(volume_->dimensions[axes.x], volume_->dimensions[axes.y]), "slice");
+    slice.texture->upload(device_, sliceTexels(*volume_, axis, slice.voxel, range));
+  }
+  const double width = voxelEdge(*volume_, axes.x) * volume_->dimensions[axes.x];
+  const double height = voxelEdge(*volume_, axes.y) * volume_->dimensions[axes.y];
+  const double pixels = std::min(double(size.x) / width, double(size.y) / height);
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const ImVec2 low(corner.x + 0.5f * (size.x - float(pixels * width)), corner.y + 0.5f * (size.y - float(pixels * height)));
+  const ImageFrame frame{low, {low.x + float(pixels * width), low.y + float(pixels * height)}};
+  const char* const name = axis == 0 ? "sagittal" : axis == upAxis(*volume_) ? "axial" : "coronal";
+  ImGui::InvisibleButton(name, size);
+  handle(axis, frame);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddImage(textureId(*slice.texture), frame.low, frame.high);
+  const auto place = [&](int along, float least, float most) {
+    return least + (float(voxel_[along]) + 0.5f) / float(volume_->dimensions[along]) * (most - least);
+  };
+  const float x = place(axes.x, frame.low.x, frame.high.x), y = place(axes.y, frame.high.y, frame.low.y);
+  constexpr ImU32 kAlpha = 0xA0FFFFFF;
+  list.AddLine({x, frame.low.y}, {x, frame.high.y}, kColors[std::size_t(axes.x)] & kAlpha);
+  list.AddLine({frame.low.x, y}, {frame.high.x, y}, kColors[std::size_t(axes.y)] & kAlpha);
+  list.AddRect(frame.low, frame.high, kColors[std::size_t(axis)]);
+  const std::string title = fmt::format("{}  {} = {}", name, "xyz"[axis], voxel_[axis]);
+  list.AddText({corner.x + 5.0f, corner.y + 2.0f}, kColors[std::size_t(axis)], title.c_str());
+}
+
+void SliceView::draw(const ViewState& state) {
+  if (!state.latest) return;
+  follow(state);
+  const glm::dvec2 range = shownRange(state.latest->scene);
+  const ImVec2 room = ImGui::GetContentRegionAvail();
+  const float gap = ImGui::GetStyle().ItemSpacing.y;
+  const int up = upAxis(*volume_);
+  for (const int axis : {up, 3 - up, 0}) drawSlice(axis, {std::max(room.x, 1.0f), std::max((room.y - 2.0f * gap) / 3.0f, 1.0f)}, range);
+}
+
+void SliceView::drawOutlines(const ViewState& state, const ImageFrame& frame) const {
+  if (!volume_ || !state.camera) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    const glm::ivec2 axes = sliceAxes(axis, upAxis(*volume_));
+    std::array<std::optional<ImVec2>, 4> corners;
+    for (int i = 0; i < 4; ++i) {
+      glm::dvec3 index;
+      index[axis] = voxel_[axis];
+      index[axes.x] = (i == 1 || i == 2 ? volume_->dimensions[axes.x] : 0) - 0.5;
+      index[axes.y] = (i >= 2 ? volume_->dimensions[axes.y] : 0) - 0.5;
+      corners[std::size_t(i)] = frame.place(*state.camera, glm::dvec3(volume_->indexToWorld * glm::dvec4(index, 1.0)));
+    }
+    for (std::size_t i = 0; i < 4; ++i)
+      if (corners[i] && corners[(i + 1) % 4])
+        ImGui::GetWindowDrawList()->AddLine(*corners[i], *corners[(i + 1) % 4], kColors[std::size_t(axis)] & 0xB0FFFFFF, 1.5f);
+  }
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,194 @@
+#include "apps/view/volume_panel.h"
+
+#include <GLFW/glfw3.h>
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "apps/freevoxels/input_options.h"
+#include "apps/view/actions.h"
+#include "apps/view/widgets.h"
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr float kMostFramesPerSecond = 120.0f;
+
+int frameOf(const ViewState& state) {
+  const auto& files = state.sequence->files;
+  return int(std::ranges::find(files, state.scene.input.input) - files.begin());
+}
+
+}  // namespace
+
+std::vector<GridChoice> GridList::list(const std::string& input) {
+  if (proceduralName(input)) return {};
+  try {
+    return listVdb(input);
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+bool chooseGrid(const char* label, const std::vector<GridChoice>& grids, bool GridChoice::*suits,
+                const char* none, std::optional<std::string>& name) {
+  std::vector<std::string> words{none};
+  for (const GridChoice& grid : grids)
+    if (grid.*suits) words.push_back(grid.name);
+  const auto given = name ? std::ranges::find(words.begin() + 1, words.end(), *name) : words.begin();
+  if (given == words.end()) words.push_back(*name);
+  int chosen = name ? int(std::ranges::find(words.begin() + 1, words.end(), *name) - words.begin()) : 0;
+  if (!choose(label, words, chosen)) return false;
+  name.reset();
+  if (chosen > 0) name = words[std::size_t(chosen)];
+  return true;
+}
+
+void VolumePanel::drawGrids(ViewState& state, GridList& grids) {
+  const std::vector<GridChoice>* const all = grids.of(state.scene.input.input);
+  if (!all) return;
+  const bool someDensities = std::ranges::count(*all, true, &GridChoice::isDensity) > 1;
+  const bool someColors = std::ranges::count(*all, true, &GridChoice::isAlbedo) > 0;
+  ClassificationOptions& classification = state.scene.classification;
+  if (someDensities) {
+    if (chooseGrid("Grid", *all, &GridChoice::isDensity, "automatic", state.scene.input.grid)) {
+      classification.densityScale.reset();  // that of other values
+      state.changed = true;
+    }
+    hint("The densities, or the values of a transfer function", "--grid");
+  }
+  if (someColors && !classification.transferFunction) {
+    state.changed |= chooseGrid("Albedo grid", *all, &GridChoice::isAlbedo, "one colour", classification.albedoGrid);
+    hint("Albedos voxel by voxel", "--albedo-grid");
+  }
+}
+
+void VolumePanel::drawFacts(const ViewState& state) {
+  const std::string& file = state.scene.input.input;
+  ImGui::TextUnformatted(std::filesystem::path(file).filename().c_str());
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", file.c_str());
+  if (!state.latest || state.latest->request.scene.input.input != file) return;
+  const Volume& volume = *state.latest->scene.volume;
+  const glm::ivec3 size = volume.dimensions;
+  const double millions = 1e-6 * double(volume.activeVoxels);
+  const std::string active = millions < 0.1 ? fmt::format("{}", volume.activeVoxels) : fmt::format("{:.3g} million", millions);
+  ImGui::TextDisabled("%d × %d × %d voxels, %s active", size.x, size.y, size.z, active.c_str());
+  ImGui::TextDisabled("values %.4g to %.4g, voxel size %.3g", double(volume.minimum), double(volume.maximum), volume.voxelSize());
+}
+
+void VolumePanel::drawClip(ViewState& state) {
+  if (!state.latest || state.latest->wholeDimensions == glm::ivec3(0) || state.latest->scene.volume->classification) return;
+  const glm::ivec3 last = state.latest->wholeDimensions - 1;
+  std::optional<VoxelBox> box = state.scene.input.clipBox;
+  bool clips = box.has_value();
+  if (tick("Clip box", clips)) return state.clip(clips ? std::optional(VoxelBox{glm::ivec3(0), last}) : std::nullopt);
+  hint("Draws only the voxels in a box, whose sides can be dragged in the image", "--clip-box");
+  if (!box) return;
+  bool changed = false;
+  for (int axis = 0; axis < 3; ++axis) {
+    constexpr std::array kLabels{"Voxels in x", "Voxels in y", "Voxels in z"};
+    int first = box->first[axis], end = std::min(box->last[axis], last[axis]);
+    changed |= ImGui::DragIntRange2(beginRow(kLabels[std::size_t(axis)]), &first, &end, 0.3f, 0, last[axis], "%d", "%d",
+                                    ImGuiSliderFlags_AlwaysClamp);
+    hint("First and last voxel that is drawn; drag a number", "--clip-box");
+    box->first[axis] = first;
+    box->last[axis] = std::max(first, end);
+  }
+  if (changed) state.clip(box);
+}
+
+void VolumePanel::draw(ViewState& state, GridList& grids) {
+  if (!ImGui::CollapsingHeader("Volume", ImGuiTreeNodeFlags_DefaultOpen)) return;
+  ImGui::PushID("volume");
+  drawFacts(state);
+  if (proceduralName(state.scene.input.input)) {
+    int resolution = state.scene.input.resolution ? state.scene.input.resolution->x : kDefaultResolution;
+    ImGui::SliderInt(beginRow("Resolution"), &resolution, 16, 512, "%d voxels",
+                     ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    hint("Voxels along the edge of the box", "--resolution");
+    if (ImGui::IsItemActive()) resolution_ = resolution;
+    if (ImGui::IsItemDeactivatedAfterEdit() && resolution_) {
+      state.scene.input.resolution = glm::ivec3(*resolution_);
+      state.changed = true;
+    }
+  }
+  drawGrids(state, grids);
+  drawClip(state);
+  frames_.draw(state);
+  ImGui::PopID();
+}
+
+/// A file may be one of several, found once it is opened.
+void SequencePanel::offer(ViewState& state) {
+  const std::string& file = state.scene.input.input;
+  if (offeredFor_ != file) {
+    offeredFor_ = file;
+    offered_ = proceduralName(file) ? std::nullopt : sequenceAround(file);
+  }
+  if (!offered_) return;
+  const std::string text = fmt::format("Open all {} frames", offered_->files.size());
+  if (ImGui::Button(text.c_str(), {-1.0f, 0.0f})) state.sequence = offered_;
+}
+
+void SequencePanel::drawControls(ViewState& state, int& frame) {
+  const int last = int(state.sequence->files.size()) - 1;
+  const std::string& file = state.sequence->files[std::size_t(std::clamp(frame, 0, last))];
+  if (ImGui::SliderInt(beginRow("Frame"), &frame, 0, last, std::filesystem::path(file).filename().c_str(),
+                       ImGuiSliderFlags_AlwaysClamp)) {
+    plays_ = false;
+  }
+  if (ImGui::Button(plays_ ? "Pause (space)###play" : "Play (space)###play", {-1.0f, 0.0f})) playOrPause();
+  ImGui::SliderFloat(beginRow("Rate"), &framesPerSecond_, 1.0f, kMostFramesPerSecond, "%.0f frames/s",
+                     ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+  drawSentence(problem_, false);
+}
+
+void SequencePanel::playOrPause() {
+  plays_ = !plays_;
+  problem_.clear();
+}
+
+void SequencePanel::takeKeys(int frames, int& frame) {
+  if (!keysAreFree()) return;
+  if (ImGui::IsKeyPressed(GLFW_KEY_SPACE, false)) playOrPause();
+  const int step = int(ImGui::IsKeyPressed(GLFW_KEY_PERIOD)) - int(ImGui::IsKeyPressed(GLFW_KEY_COMMA));
+  if (step == 0) return;
+  plays_ = false;
+  frame = (frame + step + frames) % frames;
+}
+
+void SequencePanel::play(const ViewState& state, int& frame) {
+  const Clock::time_point now = Clock::now();
+  const std::chrono::duration<float> time(1.0f / framesPerSecond_);
+  if (!plays_ || state.changed || !state.answered || now - shown_ < time) return;
+  if (!state.problem.empty()) problem_ = state.problem;
+  shown_ = now;
+  frame = (frame + 1) % int(state.sequence->files.size());
+}
+
+void SequencePanel::draw(ViewState& state) {
+  if (!state.sequence) return offer(state);
+  const int before = frameOf(state);
+  int frame = before;
+  drawControls(state, frame);
+  if (frame != before) state.showFrame(state.sequence->files[std::size_t(frame)]);
+}
+
+void SequencePanel::follow(ViewState& state) {
+  if (!state.sequence) {
+    plays_ = false;
+    return;
+  }
+  const int before = frameOf(state);
+  int frame = before;
+  takeKeys(int(state.sequence->files.size()), frame);
+  play(state, frame);
+  if (frame != before) state.showFrame(state.sequence->files[std::size_t(frame)]);
+}
+
+}  // namespace freevoxels

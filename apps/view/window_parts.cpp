@@ -1,0 +1,81 @@
+#include "apps/view/window_parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace freevoxels {
+
+namespace {
+
+constexpr float kLeastPanelWidth = 240.0f;
+
+std::string timeText(const DrawnImage& drawn, bool whole, double perSecond) {
+  const std::string often = whole || perSecond == 0.0 ? "" : fmt::format(", {:.0f} images/s", perSecond);
+  const glm::ivec2 size = drawn.shown->size();
+  return fmt::format("{}   {} × {} px, {:.0f} ms{}", whole ? "complete" : "quick", size.x, size.y, drawn.milliseconds, often);
+}
+
+}  // namespace
+
+void beginPart(const char* name, ImVec2 low, ImVec2 size, ImVec2 padding, ImGuiWindowFlags flags) {
+  ImGui::SetNextWindowPos(low);
+  ImGui::SetNextWindowSize({std::max(size.x, 1.0f), std::max(size.y, 1.0f)});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, padding);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1.0f, 1.0f});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);  // which would hide a part of the image
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 0.0f);
+  ImGui::Begin(name, nullptr, kFixedWindow | flags);
+  ImGui::PopStyleVar(4);
+}
+
+void drawSplitter(float& panelWidth, float scale, float top, float height) {
+  const float width = kSplitterWidth * scale;
+  beginPart("splitter", {panelWidth - width, top}, {width, height}, {0.0f, 0.0f}, 0);
+  ImGui::InvisibleButton("splitter", {width, std::max(height, 1.0f)});
+  if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
+    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    ImGui::GetWindowDrawList()->AddRectFilled(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
+                                              ImGui::GetColorU32(ImGuiCol_SliderGrab));
+  }
+  if (ImGui::IsItemActive())
+    panelWidth = std::clamp(ImGui::GetIO().MousePos.x + 0.5f * width, kLeastPanelWidth * scale,
+                             std::max(0.6f * ImGui::GetIO().DisplaySize.x, kLeastPanelWidth * scale));
+  ImGui::End();
+}
+
+void drawStatusBar(const ViewState& state, const Activity& activity, bool writes, float top, float height) {
+  const float width = ImGui::GetIO().DisplaySize.x, text = ImGui::GetFontSize();
+  ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_MenuBarBg));
+  beginPart("status", {0.0f, top}, {width, height}, {0.6f * text, 0.5f * (height - text)}, ImGuiWindowFlags_NoScrollbar);
+  ImGui::PopStyleColor();
+  if (!state.problem.empty()) {
+    ImGui::TextColored({1.0f, 0.55f, 0.45f, 1.0f}, "%s", state.problem.c_str());
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", state.problem.c_str());
+  } else if (activity) {
+    ImGui::Text("%s  %.0f %%%s", activity->first.c_str(), 100.0 * activity->second, writes ? "   (Escape cancels)" : "");
+  } else {
+    ImGui::TextUnformatted(state.notice.c_str());
+  }
+  if (state.latest) {
+    const std::string time = timeText(*state.latest, state.latest == state.whole, state.imagesPerSecond);
+    const float room = ImGui::CalcTextSize(time.c_str()).x + 0.6f * text;
+    if (ImGui::GetItemRectMax().x < width - room - text) {
+      ImGui::SameLine(width - room);
+      ImGui::TextDisabled("%s", time.c_str());
+    }
+  }
+  ImGui::End();
+}
+
+void drawTurnHint() {
+  const char* const text = "Drag to turn, Shift + drag to pan, wheel to zoom.  F1 lists all keys.";
+  const ImVec2 size = ImGui::CalcTextSize(text), low = ImGui::GetWindowPos(), room = ImGui::GetWindowSize();
+  const ImVec2 place(low.x + 0.5f * (room.x - size.x), low.y + room.y - 3.2f * size.y);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled({place.x - size.y, place.y - 0.5f * size.y}, {place.x + size.x + size.y, place.y + 1.5f * size.y},
+                     IM_COL32(20, 22, 26, 215), size.y);
+  list.AddText(place, IM_COL32(235, 235, 240, 255), text);
+}
+
+}  // namespace freevoxels

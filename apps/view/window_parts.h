@@ -1,0 +1,34 @@
+#pragma once
+// The parts that the window is divided into.
+
+#include <imgui.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "apps/view/view_state.h"
+
+namespace freevoxels {
+
+inline constexpr ImGuiWindowFlags kFixedWindow = ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoTitleBar |
+                                                 ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings;
+
+inline constexpr float kSplitterWidth = 6.0f;
+
+/// Begins a Dear ImGui window without border at a place in the window; ImGui::End() ends it.
+void beginPart(const char* name, ImVec2 low, ImVec2 size, ImVec2 padding, ImGuiWindowFlags flags = 0);
+
+/// The border at the right end of the panel, kSplitterWidth wide, which can be dragged. `scale` is Window::contentScale().
+void drawSplitter(float& panelWidth, float scale, float top, float height);
+
+/// What is being done, and the fraction of it that is done.
+using Activity = std::optional<std::pair<std::string, double>>;
+
+/// The last problem, `activity`, or the last notice, and the size and time of the image. `writes`: the activity can be cancelled.
+void drawStatusBar(const ViewState& state, const Activity& activity, bool writes, float top, float height);
+
+/// A line in the current part on how to turn, for those who have not turned yet.
+void drawTurnHint();
+
+}  // namespace freevoxels

@@ -1,0 +1,72 @@
+#include "apps/view/image_director.h"
+
+#include <chrono>
+#include <thread>
+#include <vector>
+
+#include "apps/view/navigation.h"
+#include "tests/device/device_fixture.h"
+
+namespace freevoxels {
+namespace {
+
+class ImageDirectorTest : public DeviceTest {
+ protected:
+  ImageDirectorTest() {
+    state.scene.input = {.input = "procedural:cube", .grid = std::nullopt, .resolution = glm::ivec3(150)};
+    state.scene.lighting.unlit = true;
+  }
+  /// Asks and takes until the image is complete; returns what was shown on the way.
+  std::vector<ImageRequest> follow() {
+    std::vector<ImageRequest> shown;
+    std::exception_ptr failure;
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    do {
+      director.ask(state, {64, 48}, false);
+      if (director.take(state, failure)) shown.push_back(state.latest->request);
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    } while (!director.isComplete(state) && !failure && std::chrono::steady_clock::now() < end);
+    EXPECT_EQ(failure, ErrorKind::Success) << state.problem;
+    EXPECT_TRUE(director.isComplete(state));
+    return shown;
+  }
+
+  ViewState state;
+  ImageDirector director{device(), false};
+};
+
+TEST_F(ImageDirectorTest, RefinesInStepsAndMovesWithAllVoxels) {
+  const std::vector<ImageRequest> first = follow();
+  ASSERT_EQ(first.size(), 3u);
+  EXPECT_EQ(first[0].purpose, Purpose::Edit);
+  EXPECT_EQ(first[1].purpose, Purpose::Refine);
+  EXPECT_EQ(first[1].voxelsAlongEdge, 2 * first[0].voxelsAlongEdge);
+  EXPECT_EQ(first[1].scene.camera.size, glm::ivec2(64, 48)) << "in full size";
+  EXPECT_EQ(first[2].purpose, Purpose::Whole);
+
+  state.look(orbited(*state.camera, {0.1, 0.0}));
+  const std::vector<ImageRequest> moved = follow();
+  ASSERT_FALSE(moved.empty());
+  for (const ImageRequest& request : moved) EXPECT_EQ(request.voxelsAlongEdge, kAllVoxels);
+  EXPECT_EQ(moved.back().purpose, Purpose::Whole);
+  EXPECT_EQ(state.whole->scene.camera.position, state.camera->position);
+  EXPECT_EQ(moved.back().revision, moved.front().revision) << "nothing else is resolved again";
+}
+
+TEST_F(ImageDirectorTest, AnAutomaticCameraFollowsTheWindow) {
+  follow();
+  const Camera before = *state.camera;
+  director.ask(state, {30, 90}, false);
+  std::exception_ptr failure;
+  for (int i = 0; i < 20'000 && !director.isComplete(state); ++i) {
+    director.take(state, failure);
+    director.ask(state, {30, 90}, false);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  ASSERT_TRUE(director.isComplete(state));
+  EXPECT_NE(state.camera->position, before.position) << "it fits the volume into a narrow image";
+  EXPECT_EQ(state.camera->position, state.whole->scene.camera.position);
+}
+
+}  // namespace
+}  // namespace freevoxels

@@ -1,0 +1,63 @@
+#include "apps/view/image_maker.h"
+
+#include <algorithm>
+
+#include "tests/device/device_fixture.h"
+
+namespace freevoxels {
+namespace {
+
+class ImageMakerTest : public DeviceTest {
+ protected:
+  static ImageRequest litCloud() {
+    ImageRequest request;
+    request.scene.input = {.input = "procedural:cloud", .grid = std::nullopt, .resolution = glm::ivec3(24)};
+    request.scene.camera.size = {48, 48};
+    request.scene.lighting.lights.push_back({.light = {.place = {0.0, 1.0, 0.0}}});
+    return request;
+  }
+  /// The times of that name, in the order of the image's stages; a stage has its time only where it is new, or where
+  /// it is of the volume that is kept.
+  static std::vector<double> timesOf(const DrawnImage& drawn, const std::string& stage) {
+    std::vector<double> times;
+    for (const StageTime& time : drawn.times)
+      if (time.name == stage) times.push_back(time.milliseconds);
+    return times;
+  }
+
+  VolumeCache volumes_{1u << 30};
+  ImageMaker maker_{device(), volumes_};
+};
+
+TEST_F(ImageMakerTest, TurningALightKeepsTheVolumeAndItsOccupancy) {
+  ImageRequest request = litCloud();
+  const DrawnImage first = maker_.make(request, {});
+  request.scene.lighting.lights[0].light.place = {1.0, 0.0, 0.0};
+  const DrawnImage turned = maker_.make(request, {});
+  EXPECT_NE(downloadImage(device(), *turned.image).pixels, downloadImage(device(), *first.image).pixels);
+  ASSERT_EQ(timesOf(first, "upload").size(), 1u);
+  EXPECT_EQ(timesOf(turned, "upload"), timesOf(first, "upload")) << "measured once";
+  EXPECT_EQ(timesOf(first, "bricks").size(), 1u);
+  EXPECT_EQ(timesOf(turned, "bricks").size(), 0u);
+}
+
+TEST_F(ImageMakerTest, AnotherClassificationMakesAnotherOccupancy) {
+  ImageRequest request = litCloud();
+  maker_.make(request, {});
+  request.scene.classification.transferFunction = R"({"opacity": [[0, 0], [1, 0.5]]})";
+  EXPECT_EQ(timesOf(maker_.make(request, {}), "bricks").size(), 1u);
+}
+
+TEST_F(ImageMakerTest, LightingAShiningVolumeMakesItsLightFallOnIt) {
+  ImageRequest request = litCloud();
+  request.scene.input.input = "procedural:fire";
+  request.scene.emission.emission = true;
+  request.scene.lighting.unlit = true;
+  maker_.make(request, {});
+  request.scene.lighting.unlit = false;
+  const DrawnImage kept = maker_.make(request, {}), made = ImageMaker(device(), volumes_).make(request, {});
+  EXPECT_EQ(downloadImage(device(), *kept.image).pixels, downloadImage(device(), *made.image).pixels);
+}
+
+}  // namespace
+}  // namespace freevoxels

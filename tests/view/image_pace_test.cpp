@@ -1,0 +1,72 @@
+#include "apps/view/image_pace.h"
+
+#include <gtest/gtest.h>
+
+namespace freevoxels {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(ImageRate, IsThatOfTheLastTwoSeconds) {
+  ImageRate rate;
+  ImageRate::Clock::time_point now{};
+  for (int i = 0; i < 10; ++i) rate.add(now += milliseconds(200));
+  EXPECT_DOUBLE_EQ(rate.perSecond(), 5.0);
+  for (int i = 0; i < 40; ++i) rate.add(now += milliseconds(50));
+  EXPECT_DOUBLE_EQ(rate.perSecond(), 20.0);
+}
+
+TEST(ImageRate, BeginsAnewAfterAPause) {
+  ImageRate rate;
+  ImageRate::Clock::time_point now{};
+  EXPECT_EQ(rate.perSecond(), 0.0);
+  for (int i = 0; i < 5; ++i) rate.add(now += milliseconds(100));
+  EXPECT_DOUBLE_EQ(rate.perSecond(), 10.0);
+  rate.add(now += milliseconds(3000));
+  EXPECT_EQ(rate.perSecond(), 0.0) << "one image has no rate";
+  rate.add(now += milliseconds(250));
+  rate.add(now += milliseconds(250));
+  EXPECT_DOUBLE_EQ(rate.perSecond(), 4.0);
+}
+
+/// Milliseconds of an image, for splats and for pixels.
+double timeOf(const AdaptiveResolution& pace, double splats, double pixels) {
+  const double voxels = pace.voxelsAlongEdge() / 64.0;
+  return splats * voxels * voxels * voxels + pixels * pace.scale() * pace.scale();
+}
+
+TEST(AdaptiveResolution, ComesToImagesThatAreQuickEnoughAndStays) {
+  for (const double splats : {1.0, 30.0, 100.0, 150.0, 1000.0})
+    for (const double pixels : {1.0, 20.0, 100.0, 400.0}) {
+      AdaptiveResolution pace;
+      int changes = 0;
+      for (int i = 0; i < 120; ++i) {
+        const int before = pace.voxelsAlongEdge();
+        pace.took(timeOf(pace, splats, pixels));
+        changes += pace.voxelsAlongEdge() != before;
+      }
+      EXPECT_LE(changes, 4) << splats << " " << pixels;
+      EXPECT_LT(timeOf(pace, splats, pixels), 60.0)
+          << splats << " " << pixels << " " << pace.voxelsAlongEdge();
+    }
+}
+
+TEST(AdaptiveResolution, IsAsFineAsTimeAllows) {
+  AdaptiveResolution pace;
+  for (int i = 0; i < 20; ++i) pace.took(500.0);
+  EXPECT_LT(pace.voxelsAlongEdge(), 48);
+  for (int i = 0; i < 1000; ++i) pace.took(timeOf(pace, 5.0, 20.0));
+  EXPECT_EQ(pace.voxelsAlongEdge(), 64);
+  EXPECT_EQ(pace.scale(), 1.0);
+}
+
+TEST(AdaptiveResolution, DoesNotChangeTheVoxelsForOneSlowImage) {
+  AdaptiveResolution pace;
+  for (int i = 0; i < 10; ++i) pace.took(32.0);
+  const int before = pace.voxelsAlongEdge();
+  pace.took(5000.0);
+  EXPECT_EQ(pace.voxelsAlongEdge(), before);
+}
+
+}  // namespace
+}  // namespace freevoxels

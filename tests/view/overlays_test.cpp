@@ -1,0 +1,52 @@
+#include "apps/view/overlays.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace freevoxels {
+namespace {
+
+TEST(Overlays, ScaleBarsHaveRoundLengths) {
+  for (const auto& [length, round] : {std::pair(1.0, 1.0), {1.9, 1.0}, {2.0, 2.0}, {4.99, 2.0}, {5.1, 5.0}, {73.0, 50.0}, {0.034, 0.02}})
+    EXPECT_NEAR(roundLength(length), round, 1e-12 * round) << length;
+}
+
+TEST(Overlays, APixelAtTheLookAtPointHasItsLength) {
+  Camera camera;
+  camera.position = {0.0, 0.0, 10.0};
+  camera.verticalFov = 90.0;
+  EXPECT_NEAR(pixelLength(camera, 200.0), 0.1, 1e-12);
+  camera.orthographic = true;
+  camera.orthographicHeight = 4.0;
+  EXPECT_NEAR(pixelLength(camera, 200.0), 0.02, 1e-12);
+}
+
+TEST(Overlays, WorldPositionsHaveThePlacesThatTheyHaveInTheImage) {
+  const ImageFrame frame{{100.0f, 50.0f}, {500.0f, 250.0f}};
+  Camera camera;
+  camera.position = {0.0, 0.0, 10.0};
+  camera.lookAt = glm::dvec3(0.0);
+  camera.verticalFov = 90.0;
+  const auto middle = frame.place(camera, glm::dvec3(0.0)), corner = frame.place(camera, {10.0, 10.0, 0.0});
+  ASSERT_TRUE(middle && corner);
+  EXPECT_NEAR(middle->x, 300.0f, 1e-3f);
+  EXPECT_NEAR(middle->y, 150.0f, 1e-3f);
+  EXPECT_NEAR(corner->x, 400.0f, 1e-3f) << "half the height to the right";
+  EXPECT_NEAR(corner->y, 50.0f, 1e-3f) << "the upper edge";
+  EXPECT_FALSE(frame.place(camera, {0.0, 0.0, 11.0})) << "behind the eye";
+}
+
+TEST(Overlays, ASideOfTheClipBoxStaysInsideAndDoesNotPassTheOther) {
+  const VoxelBox box{{2, 0, 0}, {7, 9, 99}};
+  const glm::ivec3 dimensions(10);
+  EXPECT_EQ(withSideMoved(box, 0, 3, dimensions).first.x, 5);
+  EXPECT_EQ(withSideMoved(box, 0, 30, dimensions).first.x, 7);
+  EXPECT_EQ(withSideMoved(box, 0, -30, dimensions).first.x, 0);
+  EXPECT_EQ(withSideMoved(box, 1, 30, dimensions).last.x, 9);
+  EXPECT_EQ(withSideMoved(box, 1, -30, dimensions).last.x, 2);
+  EXPECT_EQ(withSideMoved(box, 5, -1, dimensions).last.z, 8) << "from the volume's side, which the box was beyond";
+}
+
+}  // namespace
+}  // namespace freevoxels

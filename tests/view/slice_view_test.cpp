@@ -1,0 +1,41 @@
+#include "apps/view/slice_view.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/volume/procedural.h"
+
+namespace freevoxels {
+namespace {
+
+/// The grey of a texel.
+int greyAt(const std::vector<std::uint8_t>& texels, int width, int column, int row) {
+  return texels[4 * (std::size_t(row) * std::size_t(width) + std::size_t(column))];
+}
+
+TEST(SliceTexels, HaveTheValuesOfTheirVoxels) {
+  Volume volume = makeVolume({5, 4, 3}, glm::dmat4(1.0), [](int x, int y, int z) {
+    return x == 4 ? kInactiveVoxel : float(x + 4 * y + 16 * z);
+  });
+  volume.up = {0.0, 0.0, 1.0};
+  const glm::dvec2 range(0.0, 51.0);  // 5 grey levels a unit
+  const auto axial = sliceTexels(volume, 2, 1, range), coronal = sliceTexels(volume, 1, 2, range), sagittal = sliceTexels(volume, 0, 3, range);
+  ASSERT_EQ(axial.size(), 4u * 5u * 4u);
+  EXPECT_EQ(greyAt(axial, 5, 2, 0), 5 * (2 + 4 * 3 + 16)) << "the top row has the largest y";
+  EXPECT_EQ(greyAt(axial, 5, 0, 3), 5 * 16);
+  EXPECT_EQ(greyAt(coronal, 5, 3, 2), 5 * (3 + 8)) << "z is upwards";
+  EXPECT_EQ(greyAt(sagittal, 4, 1, 0), 5 * (3 + 4 + 32));
+  EXPECT_NE(axial[4 * 4 + 2], axial[4 * 4]) << "a voxel without data is not grey";
+  volume.up = {0.0, 1.0, 0.0};
+  EXPECT_EQ(greyAt(sliceTexels(volume, 0, 3, range), 3, 1, 0), 5 * (3 + 12 + 16)) << "y is upwards where it is up in the world";
+}
+
+TEST(SliceTexels, ValuesBeyondTheRangeAreBlackAndWhite) {
+  const Volume volume = makeVolume({3, 1, 1}, glm::dmat4(1.0), [](int x, int, int) { return float(x); });
+  const auto texels = sliceTexels(volume, 2, 0, {0.9, 1.1});
+  EXPECT_EQ(greyAt(texels, 3, 0, 0), 0);
+  EXPECT_NEAR(greyAt(texels, 3, 1, 0), 127, 1);
+  EXPECT_EQ(greyAt(texels, 3, 2, 0), 255);
+}
+
+}  // namespace
+}  // namespace freevoxels

@@ -1,0 +1,96 @@
+#include "apps/view/view_state.h"
+
+#include <gtest/gtest.h>
+
+namespace freevoxels {
+namespace {
+
+class EditHistoryTest : public testing::Test {
+ protected:
+  EditHistoryTest() {
+    state.scene.camera.size = {300, 200};
+    state.camera = Camera{};
+    rest();
+  }
+  void rest() { history.follow(state, false, false); }
+  void expose(double stops, bool busy = true) {
+    state.scene.output.exposure = stops;
+    history.follow(state, true, busy);
+  }
+  std::optional<double> exposure() const { return state.scene.output.exposure; }
+
+  ViewState state;
+  EditHistory history;
+};
+
+TEST_F(EditHistoryTest, UndoAndRedoGoThroughTheStepsInOrder) {
+  for (const double stops : {1.0, 2.0, 3.0}) {
+    expose(stops);
+    rest();
+  }
+  history.undo(state);
+  EXPECT_EQ(exposure(), 2.0);
+  EXPECT_TRUE(state.changed) << "an image of it is asked for";
+  history.undo(state);
+  history.undo(state);
+  EXPECT_EQ(exposure(), std::nullopt);
+  EXPECT_FALSE(history.canUndo());
+  history.undo(state);
+  EXPECT_EQ(exposure(), std::nullopt) << "there is nothing before";
+  history.redo(state);
+  history.redo(state);
+  history.redo(state);
+  EXPECT_EQ(exposure(), 3.0);
+  EXPECT_FALSE(history.canRedo());
+}
+
+TEST_F(EditHistoryTest, ADragIsOneStep) {
+  for (int i = 1; i <= 10; ++i) {
+    expose(0.1 * i);
+    history.follow(state, false, true);  // the button is held, and the mouse rests
+  }
+  rest();
+  history.undo(state);
+  EXPECT_EQ(exposure(), std::nullopt);
+  EXPECT_FALSE(history.canUndo());
+}
+
+TEST_F(EditHistoryTest, AnEditAfterUndoForgetsWhatWasUndone) {
+  expose(1.0);
+  rest();
+  history.undo(state);
+  rest();
+  expose(5.0);
+  rest();
+  EXPECT_FALSE(history.canRedo());
+  history.undo(state);
+  EXPECT_EQ(exposure(), std::nullopt);
+}
+
+TEST_F(EditHistoryTest, AnotherVolumeIsAStepAndTheWindowKeepsItsSize) {
+  state.scene.input.input = "procedural:cloud";
+  rest();
+  SceneOptions other = state.scene;
+  other.input.input = "procedural:head";
+  state.show(other, std::nullopt);
+  history.follow(state, true, false);
+  state.camera = Camera{};  // of the first image
+  rest();
+  state.scene.camera.size = {640, 480};
+  history.undo(state);
+  EXPECT_EQ(state.scene.input.input, "procedural:cloud");
+  EXPECT_TRUE(state.camera);
+  EXPECT_EQ(state.scene.camera.size, glm::ivec2(640, 480));
+}
+
+TEST_F(EditHistoryTest, WhatIsChosenForTheFirstImageIsNoEdit) {
+  EditHistory fresh;
+  ViewState opened;
+  fresh.follow(opened, true, false);
+  opened.camera = Camera{};
+  fresh.follow(opened, false, false);
+  EXPECT_FALSE(fresh.canUndo());
+}
+
+}  // namespace
+}  // namespace freevoxels
