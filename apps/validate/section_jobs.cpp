@@ -40,7 +40,7 @@ constexpr int kLeastResolutionWithGoals = kLarge;
 constexpr int kQuickLightPicture = 64;
 constexpr int kQuickSky = 24;  ///< voxels along an edge for skies, for which the oracle is slow
 constexpr int kDetailResolution = kMedium;
-constexpr int kTurntableResolution = kMedium, kTurntableFrames = 72, kTurntablePicture = 64;
+constexpr int kTurntableResolution = kMedium, kTurntableFrames = 36, kTurntablePicture = 128;
 constexpr int kQuickFlightFrames = 8, kWholeFlightFrames = 60, kFlightPicture = 64;
 constexpr int kFlightSubject = 2;  ///< index into kQualitySubjects: the cloud
 

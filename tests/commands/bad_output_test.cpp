@@ -23,7 +23,7 @@ void expectDiskFull(const TemporaryFolder& folder, const std::string& arguments)
   SCOPED_TRACE(arguments);
   const auto runHere = [&](const std::filesystem::path&) {
     const ProgramResult result = runFreevoxels(words(folder, arguments));
-    throw Error(ExitCode(result.exitCode), result.err);
+    throw Error(ErrorKind(result.exitCode), result.err);
   };
   EXPECT_EXIT(exitWithErrorOnLimitedDisk(folder.path(), 4096, runHere),
               testing::ExitedWithCode(int(ExitCode::Output)), "^freevoxels: .*free some space");
