@@ -18,7 +18,7 @@ namespace freevoxels {
 namespace {
 
 constexpr double kTurntableElevation = 10.0;
-constexpr double kLargestJump = 0.5;  ///< dB
+constexpr double kLargestJump = 1.0;  ///< dB
 /// Scales differences so that those below 1/8 can be distinguished.
 constexpr float kDifferenceGain = 8.0f;
 

@@ -30,7 +30,7 @@ QualityResult pictureQuality(const StageMaker& make, const QualityScene& scene,
 /// The largest step between neighbours of a series of at least two points. `where` is the x of the earlier of the two.
 Check largestJump(const std::vector<glm::dvec2>& series, double tolerance, std::string name);
 
-/// A quarter of a turn in `frames` steps at elevation 10 from one distance: PSNR of the first method, whose frames may differ by 0.5 dB
+/// A quarter of a turn in `frames` steps at elevation 10 from one distance: PSNR of the first method, whose frames may differ by 1 dB
 /// from their neighbours, of the others with goals for every view, and of sorted blending.
 ReportSection turntableQuality(const StageMaker& make, const QualityScene& scene, int frames,
                                int pictureEdge);
