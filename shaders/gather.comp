@@ -9,11 +9,8 @@
 #include "gather_ray.glsl"
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
-#include "fixed_point.glsl"
 #include "packed_light.glsl"
 #include "packed_gradient.glsl"
-#include "ray_lookup.glsl"
-#include "transfer_table.glsl"
 
 // Compiled for each combination of these, because drivers take long to specialise code of this size:
 const bool kScalars = SCALARS;    // whether voxels are classified after interpolation
@@ -226,46 +223,7 @@ vec3 voxelPosition(Ray ray, float slice) {
   return (position + 0.5) * ray.edge - 0.5;
 }
 
-// The transmittance between the eye and a position on a ray, in slices of the level, from the eye's rays. The planes of their face may lie
-// across another axis than the ray's slices: the depth is then interpolated between the ray's positions on the planes around.
-float transmittanceBefore(Ray ray, float slice) {
-  if ((slice - ray.eye) * ray.direction <= 0.0) return 1.0;
-  vec3 along;
-  along[kAxis] = ray.direction;
-  along[kSideA] = ray.slope.x * ray.direction;
-  along[kSideB] = ray.slope.y * ray.direction;
-  const FaceRays fan = frame.part.fans[fanIndex(along)];
-  const vec3 layer = along / abs(along[fan.axis]);
-  // Depths in front of a layer are those half a layer before its plane.
-  const vec3 position = voxelPosition(ray, slice) + (kScalars ? 0.0 : 0.5) * layer;
-  const float plane = (position[fan.axis] - float(fan.firstPlane)) * float(fan.direction);
-  const float part = max(plane - floor(plane + 1e-3), 0.0);
-  const float before = rayTransmittance(fan, position - part * layer);
-  if (part < 1e-3) return before;
-  return pow(max(before, 1e-30), 1.0 - part) * pow(max(rayTransmittance(fan, position + (1.0 - part) * layer), 1e-30), part);
-}
-
-// Adds the sums of the last brick to those of the part.
-void endBrick(inout Sums sums, Ray ray) {
-  if (sums.brick == 0) return;
-  const GatherPart part = frame.part;
-  [[unroll]] for (int c = 0; c < 3; ++c)
-    partSums[c] = addFixed(partSums[c], frame.sourceUnit * sums.color[c], part.colorDigits, partFits);
-  partSums[3] = addFixed(partSums[3], sums.begin - sums.transmittance, part.energyDigits, partFits);
-  partSums[4] = addFixed(partSums[4], min(sums.depth, kMostBrickDepth), part.depthDigits, partFits);
-  partSums[5] = addFixed(partSums[5], ray.perSlice * sums.distance, part.distanceDigits, partFits);
-  sums.brick = 0;
-}
-
-// Begins the sums of a brick where the ray first meets its medium, from the position `slice` on.
-void enterBrick(inout Sums sums, Ray ray, int brick, float slice) {
-  if (sums.brick == brick) return;
-  endBrick(sums, ray);
-  sums.brick = brick;
-  sums.color = vec3(0.0);
-  sums.distance = sums.depth = 0.0;
-  sums.begin = sums.transmittance = transmittanceBefore(ray, slice);
-}
+#include "gather_parts.glsl"
 
 vec4 extinctionsOf(int quad) {
   const uvec2 halves = mediumQuad(quad);
@@ -405,176 +363,7 @@ void addLitStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int
   last = found;
 }
 
-// `halfStep` is the ray's movement along the sides in half a slice.
-Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye) {
-  vec4 weights;
-  const int quad = quadAt(level, position, slice, weights);
-  const uvec2 pairs = mediumQuad(quad);
-  const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
-  Found found;
-  if (kSampled) {
-    found.depths = depthsTowardsLights(quad, weights);
-    found.ambient = ambientAt(quad, weights);
-  }
-  [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = codes[i] != 0 ? weights[i] : 0.0;
-  found.coverage = weights.x + weights.y + weights.z + weights.w;
-  // Beyond the sides of the volume a quad has weights for two of its blocks only.
-  const bool whole = all(notEqual(codes, uvec4(0))) && found.coverage > 0.9999;
-  const vec4 scalars = (vec4(codes) - 1.0) * (float(kTransferIntervals) / float(kScalarCodes));
-  found.scalar = max(dot(weights, scalars) / max(found.coverage, 1e-20), 0.0);
-  // The bilinear function of the quad, continued beyond the quad.
-  const float twist = scalars.x - scalars.y - scalars.z + scalars.w;
-  const vec2 change = vec2(mix(scalars.y - scalars.x, scalars.w - scalars.z, weights.z + weights.w),
-                           mix(scalars.z - scalars.x, scalars.w - scalars.y, weights.y + weights.w));
-  const float even = whole ? halfStep.x * halfStep.y * twist : 0.0, odd = whole ? dot(halfStep, change) : 0.0;
-  found.ahead = found.scalar + even + odd;
-  found.behind = found.scalar + even - odd;
-  found.change = whole ? change : vec2(0.0);
-  tableAt(found.scalar, found.integral, found.medium);
-  found.arriving = vec4(-1.0);
-  found.gradient = vec3(0.0);
-  found.hasGradient = false;
-  found.light = vec3(1.0);
-  if (kLit) {
-    // Voxels that are not occupied have no light; that of the others counts.
-    const uvec4 packed = sourceQuad(quad);
-    [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = packed[i] != 0 ? weights[i] : 0.0;
-    found.light = sourceAt(quad, packed, weights, toEye) / max(weights.x + weights.y + weights.z + weights.w, 1e-20);
-  }
-  return found;
-}
-
-// The scalar at a position in index space, and the coverage by voxels with data.
-vec2 scalarNear(Slices level, vec3 position) {
-  const float low = floor(position[kAxis]), part = position[kAxis] - low;
-  vec2 sum = vec2(0.0);
-  [[unroll]] for (int i = 0; i < 2; ++i) {
-    const int slice = int(low) + i;
-    if ((i == 1 && part == 0.0) || slice < 0 || slice >= level.count) continue;
-    vec4 weights;
-    const uvec2 pairs = mediumQuad(quadAt(level, vec2(position[kSideA], position[kSideB]), slice, weights));
-    const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
-    weights *= i == 0 ? 1.0 - part : part;
-    [[unroll]] for (int k = 0; k < 4; ++k) weights[k] = codes[k] != 0 ? weights[k] : 0.0;
-    sum += vec2(dot(weights, vec4(codes) - 1.0), weights.x + weights.y + weights.z + weights.w);
-  }
-  return vec2(max(sum.x / max(sum.y, 1e-20), 0.0) * (float(kTransferIntervals) / float(kScalarCodes)), sum.y);
-}
-
-// Adds to the depths towards lights, which are known from a layer further on, the depths up to there. Where
-// little is visible, the extinction is taken as constant on this path.
-vec4 depthsAt(Slices level, Found at, vec3 position, bool shows) {
-  vec4 depths = at.depths;
-  [[unroll]] for (int i = 0; i < kMostSampleLights; ++i) {
-    if (i >= kLights) continue;
-    vec3 way = frame.lights[i].across;
-    if (frame.lights[i].atInfinity == 0) {
-      way = frame.lights[i].place - position;
-      way /= max(max(abs(way.x), max(abs(way.y), abs(way.z))), 1e-6);
-    }
-    const float layer = length(frame.indexToWorld * way) * frame.extinctionUnit;
-    if (!shows) {
-      depths[i] += layer * at.coverage * at.medium.a;
-      continue;
-    }
-    const vec2 next = scalarNear(level, position + way);
-    vec4 integral, medium;
-    tableAt(next.x, integral, medium);
-    const float mean = at.coverage == 0.0 ? medium.a
-                       : next.y == 0.0    ? at.medium.a
-                                          : meanBetween(at.scalar, at.integral, at.medium, next.x, integral, medium).a;
-    depths[i] += layer * 0.5 * (at.coverage + next.y) * mean;
-  }
-  return depths;
-}
-
-// The relative change of the extinction from a scalar less `reach` to that plus `reach`, relative to the
-// larger value.
-float changeAcross(float scalar, float reach) {
-  vec4 integral, above, below;
-  tableAt(min(scalar + reach, float(kTransferIntervals)), integral, above);
-  tableAt(max(scalar - reach, 0.0), integral, below);
-  return (above.a - below.a) / max(max(above.a, below.a), 1e-20);
-}
-
-// Scalars change linearly from a slice to the middle of the stretch and on to the next slice, so that integrals of the
-// transfer function give the means. In the middle both slices' functions count half. A slice that is not `within` the level's
-// slices has no data.
-void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within) {
-  const int there = within ? slice : slice - int(ray.direction);
-  Found found = scalarAt(level, ray.origin + ray.slope * float(there), there, 0.5 * ray.direction * ray.slope, ray.toEye);
-  const int brick = ownBrick;
-  if (!within) found.coverage = 0.0;
-  const float coverage = 0.5 * (last.coverage + found.coverage);
-  Found first = last, second = found;
-  if (last.coverage == 0.0) first = found;
-  if (found.coverage == 0.0) second = last;
-  const bool both = last.coverage > 0.0 && found.coverage > 0.0;
-  const float middle = both ? clamp(0.5 * (first.ahead + second.behind), 0.0, float(kTransferIntervals)) : first.scalar;
-  vec4 integral, medium;
-  tableAt(middle, integral, medium);
-  vec4 near = meanBetween(first.scalar, first.integral, first.medium, middle, integral, medium);
-  vec4 far = meanBetween(middle, integral, medium, second.scalar, second.integral, second.medium);
-  if (kParts) {
-    if (brick == 0 || coverage == 0.0 || near.a + far.a == 0.0) {
-      last = found;
-      return;
-    }
-    enterBrick(sums, ray, brick, float(slice) - ray.direction);
-    last.arriving = vec4(-1.0);  // as it may have been computed for another brick, less exactly
-  }
-  if (kLit) {
-    near.rgb *= mix(first.light, second.light, 0.25);
-    far.rgb *= mix(first.light, second.light, 0.75);
-  }
-  const float ahead = (float(slice) - ray.eye) * ray.direction;
-  const float nearLayer = ray.layer * mix(last.coverage, found.coverage, 0.25);
-  const float farLayer = ray.layer * mix(last.coverage, found.coverage, 0.75);
-  Lit nearLit, farLit;
-  if (kSampled) {
-    const float nearPart = near.a + far.a > 0.0 ? near.a / (near.a + far.a) : 0.5;
-    nearLit.ambientChange = (second.ambient - first.ambient) * nearPart;
-    nearLit.ambientBegin = first.ambient;
-    farLit.ambientChange = second.ambient - first.ambient - nearLit.ambientChange;
-    farLit.ambientBegin = first.ambient + nearLit.ambientChange;
-    nearLit.position = farLit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
-    if (kSurfaces) {
-      nearLit.surface = farLit.surface = 0.0;
-      if (sums.transmittance * (nearLayer * near.a + farLayer * far.a) > 2.0 * kLeastShaded) {
-        findGradients(last, found, level, ray, slice);
-        const vec3 nearGradient = mix(last.gradient, found.gradient, 0.25), farGradient = mix(last.gradient, found.gradient, 0.75);
-        const float nearChange = changeAcross(mix(first.scalar, second.scalar, 0.25), length(nearGradient));
-        const float farChange = changeAcross(mix(first.scalar, second.scalar, 0.75), length(farGradient));
-        setSurface(nearLit, nearGradient, -nearChange);
-        setSurface(farLit, farGradient, -farChange);
-        const vec3 outwards = -sign(nearChange + farChange) * (nearGradient + farGradient);
-        const Outside outside = outsideOf(level, ray, float(slice) - 0.5 * ray.direction, outwards);
-        lightFrom(nearLit, outside);
-        lightFrom(farLit, outside);
-      }
-    }
-    // Along a stretch the depth towards a light changes as the depth towards the eye does, since both are
-    // integrals of the same extinction.
-    if (kLights > 0 && near.a + far.a > 0.0) {
-      if (last.depths.x < 0.0) {
-        vec4 weights;
-        const int before = slice - int(ray.direction);
-        last.depths = depthsTowardsLights(quadAt(level, ray.origin + ray.slope * float(before), clamp(before, 0, level.count - 1), weights), weights);
-      }
-      bool shows = sums.transmittance * (nearLayer * near.a + farLayer * far.a) > kLeastShaded;
-      if (kSurfaces) shows = shows && min(nearLit.surface, farLit.surface) < kMostlySurface;
-      if (last.arriving.x < 0.0) last.arriving = depthsAt(level, last, voxelPosition(ray, float(slice) - ray.direction), shows);
-      found.arriving = depthsAt(level, found, voxelPosition(ray, float(slice)), shows);
-      nearLit.begin = last.arriving;
-      nearLit.change = (found.arriving - last.arriving) * near.a / (near.a + far.a);
-      farLit.begin = nearLit.begin + nearLit.change;
-      farLit.change = found.arriving - farLit.begin;
-    }
-  }
-  addPart(sums, near, nearLayer * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75, nearLit, ray.toEye);
-  addPart(sums, far, farLayer * clamp(ahead, 0.0, 0.5), ahead - 0.25, farLit, ray.toEye);
-  last = found;
-}
+#include "gather_scalars.glsl"
 
 // The number of groups of ray.group slices, starting at `slice` in the ray's direction, that are empty; 0 if
 // the first, or the `before` slices in front of it, may not be.
@@ -692,14 +481,6 @@ Slices slicesOf(int number) {
   slices.skipStrides = ivec3(skipStrides[kSideA], skipStrides[kSideB], skipStrides[kAxis]);
   slices.lastSkip = ivec3(level.lastSkip[kSideA], level.lastSkip[kSideB], level.lastSkip[kAxis]);
   return slices;
-}
-
-void storePart(ivec2 place) {
-  const int number = place.x + frame.part.extent.x * place.y, samples = frame.part.extent.x * frame.part.extent.y;
-  PartSums sums = PartSums(frame.part.sums);
-  [[unroll]] for (int c = 0; c < 6; ++c)
-    sums.values[c * samples + number] = partSums[c];
-  if (!partFits) atomicOr(Overflow(frame.part.overflow).overflow, 1u);
 }
 
 void main() {

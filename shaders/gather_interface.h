@@ -37,6 +37,11 @@ FV_CONSTANT int kScalarCodes = 65534;
 // Variance in squared voxels of the footprint's radial kernel along one axis. A slice's tent lacks it along
 // the tilt.
 FV_CONSTANT float kFootprintVariance = 0.1624f;
+// The stencil that restores it: its strength, measured, which exceeds the missing variance because the stencil is coarse; the largest variance
+// that it adds, beyond which the middle weight would be nearly 0; and the least transmittance that it distinguishes from 0.
+FV_CONSTANT float kStencilStrength = 1.2f;
+FV_CONSTANT float kMostVariance = 0.8f;
+FV_CONSTANT float kLeastTransmittance = 1e-6f;
 
 // A ray marches along the major axis of the image's middle, unless its component along that is less than this
 // fraction of its largest component: so most frames read one axis. The other constant is the number of slices

@@ -18,10 +18,6 @@ layout(binding = 2) uniform textureBuffer distances;    // sum of e times distan
 layout(binding = 3, rgba32f) writeonly uniform imageBuffer colorEnergyOut;
 layout(binding = 4, r32f) writeonly uniform imageBuffer distancesOut;
 
-const float kStencilStrength = 1.2;   // measured; larger than the missing variance, because the stencil is coarse
-const float kLeastTransmittance = 1e-6;  // that the stencil distinguishes from 0
-const float kMostVariance = 0.8;      // beyond it the middle weight would be nearly 0
-
 int placeOf(ivec2 index) {
   const ivec2 inside = clamp(index, ivec2(0), frame.samples - 1);
   return inside.x + inside.y * frame.samples.x;

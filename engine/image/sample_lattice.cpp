@@ -9,14 +9,14 @@
 #include <stdexcept>
 
 #include "engine/core/error.h"
+#include "shaders/gather_interface.h"
 
 namespace freevoxels {
 
 namespace {
 
-// As in shaders/gather_interface.h and gather_stencil.comp.
-constexpr double kFootprintVariance = 0.1624, kStencilStrength = 1.2, kLeastAlong = 0.5;
-constexpr double kMostVariance = 0.8, kLeastTransmittance = 1e-6;
+using namespace shader;
+
 constexpr double kNoDistance = -1.0;
 constexpr int kMostSamples = 1 << 16;
 
@@ -49,7 +49,7 @@ int marchAxis(const SampleLattice& lattice, glm::dvec2 position) {
   glm::dvec3 along;
   for (int axis = 0; axis < 3; ++axis) along[axis] = std::abs(glm::dot(lattice.axes[std::size_t(axis)].along, glm::dvec3(1.0, position)));
   const double largest = std::max({along.x, along.y, along.z});
-  if (!seen || along[lattice.mainAxis] >= kLeastAlong * largest) return lattice.mainAxis;
+  if (!seen || along[lattice.mainAxis] >= double(kLeastAlong) * largest) return lattice.mainAxis;
   return along.x == largest ? 0 : along.y == largest ? 1 : 2;
 }
 
@@ -59,10 +59,10 @@ glm::dvec3 missingCovariance(const SampleLattice& lattice, glm::dvec2 position, 
   const double scale = lattice.orthographic ? 1.0 : 1.0 / distance;
   const glm::dvec2 tilt = scale * (axis.tilt - axis.tiltDepth * position);
   const double pixels = scale * lattice.pixelsPerVoxel, widening = std::max(1.0 - pixels * pixels, 0.0);
-  const glm::dvec3 covariance = kFootprintVariance / (lattice.pitch * lattice.pitch) *
-                                (kStencilStrength * glm::dvec3(tilt.x * tilt.x, tilt.x * tilt.y, tilt.y * tilt.y) +
+  const glm::dvec3 covariance = double(kFootprintVariance) / (lattice.pitch * lattice.pitch) *
+                                (double(kStencilStrength) * glm::dvec3(tilt.x * tilt.x, tilt.x * tilt.y, tilt.y * tilt.y) +
                                  glm::dvec3(widening, 0.0, widening));
-  return covariance * std::min(kMostVariance / std::max(covariance.x + covariance.z, 1e-20), 1.0);
+  return covariance * std::min(double(kMostVariance) / std::max(covariance.x + covariance.z, 1e-20), 1.0);
 }
 
 LatticeSample stencilAt(const SampleLattice& lattice, const std::vector<LatticeSample>& samples, glm::ivec2 index) {
@@ -83,10 +83,10 @@ LatticeSample stencilAt(const SampleLattice& lattice, const std::vector<LatticeS
   double depth = 0.0;
   for (std::size_t i = 0; i < 9; ++i) {
     sum.add(weights[i], *around[i]);
-    depth -= weights[i] * std::log(std::max(1.0 - around[i]->color.a, kLeastTransmittance));
+    depth -= weights[i] * std::log(std::max(1.0 - around[i]->color.a, double(kLeastTransmittance)));
   }
   LatticeSample result = sum.sum();
-  if (lattice.scalars || result.color.a <= kLeastTransmittance) return result;
+  if (lattice.scalars || result.color.a <= double(kLeastTransmittance)) return result;
   // Footprints add up optical depths; interpolated scalars have none of their own.
   const double scale = -std::expm1(-std::max(depth, 0.0)) / result.color.a;
   return {scale * result.color, scale * result.distance};

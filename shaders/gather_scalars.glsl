@@ -1,0 +1,183 @@
+// Part of gather.comp, whose rays and sums it reads: voxels that are classified after interpolation.
+#ifndef GATHER_SCALARS_GLSL
+#define GATHER_SCALARS_GLSL
+#include "transfer_table.glsl"
+
+// `halfStep` is the ray's movement along the sides in half a slice.
+Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye) {
+  vec4 weights;
+  const int quad = quadAt(level, position, slice, weights);
+  const uvec2 pairs = mediumQuad(quad);
+  const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
+  Found found;
+  if (kSampled) {
+    found.depths = depthsTowardsLights(quad, weights);
+    found.ambient = ambientAt(quad, weights);
+  }
+  [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = codes[i] != 0 ? weights[i] : 0.0;
+  found.coverage = weights.x + weights.y + weights.z + weights.w;
+  // Beyond the sides of the volume a quad has weights for two of its blocks only.
+  const bool whole = all(notEqual(codes, uvec4(0))) && found.coverage > 0.9999;
+  const vec4 scalars = (vec4(codes) - 1.0) * (float(kTransferIntervals) / float(kScalarCodes));
+  found.scalar = max(dot(weights, scalars) / max(found.coverage, 1e-20), 0.0);
+  // The bilinear function of the quad, continued beyond the quad.
+  const float twist = scalars.x - scalars.y - scalars.z + scalars.w;
+  const vec2 change = vec2(mix(scalars.y - scalars.x, scalars.w - scalars.z, weights.z + weights.w),
+                           mix(scalars.z - scalars.x, scalars.w - scalars.y, weights.y + weights.w));
+  const float even = whole ? halfStep.x * halfStep.y * twist : 0.0, odd = whole ? dot(halfStep, change) : 0.0;
+  found.ahead = found.scalar + even + odd;
+  found.behind = found.scalar + even - odd;
+  found.change = whole ? change : vec2(0.0);
+  tableAt(found.scalar, found.integral, found.medium);
+  found.arriving = vec4(-1.0);
+  found.gradient = vec3(0.0);
+  found.hasGradient = false;
+  found.light = vec3(1.0);
+  if (kLit) {
+    // Voxels that are not occupied have no light; that of the others counts.
+    const uvec4 packed = sourceQuad(quad);
+    [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = packed[i] != 0 ? weights[i] : 0.0;
+    found.light = sourceAt(quad, packed, weights, toEye) / max(weights.x + weights.y + weights.z + weights.w, 1e-20);
+  }
+  return found;
+}
+
+// The scalar at a position in index space, and the coverage by voxels with data.
+vec2 scalarNear(Slices level, vec3 position) {
+  const float low = floor(position[kAxis]), part = position[kAxis] - low;
+  vec2 sum = vec2(0.0);
+  [[unroll]] for (int i = 0; i < 2; ++i) {
+    const int slice = int(low) + i;
+    if ((i == 1 && part == 0.0) || slice < 0 || slice >= level.count) continue;
+    vec4 weights;
+    const uvec2 pairs = mediumQuad(quadAt(level, vec2(position[kSideA], position[kSideB]), slice, weights));
+    const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
+    weights *= i == 0 ? 1.0 - part : part;
+    [[unroll]] for (int k = 0; k < 4; ++k) weights[k] = codes[k] != 0 ? weights[k] : 0.0;
+    sum += vec2(dot(weights, vec4(codes) - 1.0), weights.x + weights.y + weights.z + weights.w);
+  }
+  return vec2(max(sum.x / max(sum.y, 1e-20), 0.0) * (float(kTransferIntervals) / float(kScalarCodes)), sum.y);
+}
+
+// Adds to the depths towards lights, which are known from a layer further on, the depths up to there. Where
+// little is visible, the extinction is taken as constant on this path.
+vec4 depthsAt(Slices level, Found at, vec3 position, bool shows) {
+  vec4 depths = at.depths;
+  [[unroll]] for (int i = 0; i < kMostSampleLights; ++i) {
+    if (i >= kLights) continue;
+    vec3 way = frame.lights[i].across;
+    if (frame.lights[i].atInfinity == 0) {
+      way = frame.lights[i].place - position;
+      way /= max(max(abs(way.x), max(abs(way.y), abs(way.z))), 1e-6);
+    }
+    const float layer = length(frame.indexToWorld * way) * frame.extinctionUnit;
+    if (!shows) {
+      depths[i] += layer * at.coverage * at.medium.a;
+      continue;
+    }
+    const vec2 next = scalarNear(level, position + way);
+    vec4 integral, medium;
+    tableAt(next.x, integral, medium);
+    const float mean = at.coverage == 0.0 ? medium.a
+                       : next.y == 0.0    ? at.medium.a
+                                          : meanBetween(at.scalar, at.integral, at.medium, next.x, integral, medium).a;
+    depths[i] += layer * 0.5 * (at.coverage + next.y) * mean;
+  }
+  return depths;
+}
+
+// The relative change of the extinction from a scalar less `reach` to that plus `reach`, relative to the
+// larger value.
+float changeAcross(float scalar, float reach) {
+  vec4 integral, above, below;
+  tableAt(min(scalar + reach, float(kTransferIntervals)), integral, above);
+  tableAt(max(scalar - reach, 0.0), integral, below);
+  return (above.a - below.a) / max(max(above.a, below.a), 1e-20);
+}
+
+// The lighting of both halves of a stretch, of which the part `shown` of the pixel is seen. `first` and `second` have the values of its ends,
+// those of the other end where one has no data.
+void lightStretch(out Lit nearLit, out Lit farLit, inout Found last, inout Found found, Found first, Found second, float nearExtinction,
+                  float farExtinction, float shown, Slices level, Ray ray, int slice) {
+  const float nearPart = nearExtinction + farExtinction > 0.0 ? nearExtinction / (nearExtinction + farExtinction) : 0.5;
+  nearLit.ambientChange = (second.ambient - first.ambient) * nearPart;
+  nearLit.ambientBegin = first.ambient;
+  farLit.ambientChange = second.ambient - first.ambient - nearLit.ambientChange;
+  farLit.ambientBegin = first.ambient + nearLit.ambientChange;
+  nearLit.position = farLit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
+  if (kSurfaces) {
+    nearLit.surface = farLit.surface = 0.0;
+    if (shown > 2.0 * kLeastShaded) {
+      findGradients(last, found, level, ray, slice);
+      const vec3 nearGradient = mix(last.gradient, found.gradient, 0.25), farGradient = mix(last.gradient, found.gradient, 0.75);
+      const float nearChange = changeAcross(mix(first.scalar, second.scalar, 0.25), length(nearGradient));
+      const float farChange = changeAcross(mix(first.scalar, second.scalar, 0.75), length(farGradient));
+      setSurface(nearLit, nearGradient, -nearChange);
+      setSurface(farLit, farGradient, -farChange);
+      const vec3 outwards = -sign(nearChange + farChange) * (nearGradient + farGradient);
+      const Outside outside = outsideOf(level, ray, float(slice) - 0.5 * ray.direction, outwards);
+      lightFrom(nearLit, outside);
+      lightFrom(farLit, outside);
+    }
+  }
+  // Along a stretch the depth towards a light changes as the depth towards the eye does, since both are
+  // integrals of the same extinction.
+  if (kLights > 0 && nearExtinction + farExtinction > 0.0) {
+    if (last.depths.x < 0.0) {
+      vec4 weights;
+      const int before = slice - int(ray.direction);
+      last.depths = depthsTowardsLights(quadAt(level, ray.origin + ray.slope * float(before), clamp(before, 0, level.count - 1), weights), weights);
+    }
+    bool shows = shown > kLeastShaded;
+    if (kSurfaces) shows = shows && min(nearLit.surface, farLit.surface) < kMostlySurface;
+    if (last.arriving.x < 0.0) last.arriving = depthsAt(level, last, voxelPosition(ray, float(slice) - ray.direction), shows);
+    found.arriving = depthsAt(level, found, voxelPosition(ray, float(slice)), shows);
+    nearLit.begin = last.arriving;
+    nearLit.change = (found.arriving - last.arriving) * nearExtinction / (nearExtinction + farExtinction);
+    farLit.begin = nearLit.begin + nearLit.change;
+    farLit.change = found.arriving - farLit.begin;
+  }
+}
+
+// Scalars change linearly from a slice to the middle of the stretch and on to the next slice, so that integrals of the
+// transfer function give the means. In the middle both slices' functions count half. A slice that is not `within` the level's
+// slices has no data.
+void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within) {
+  const int there = within ? slice : slice - int(ray.direction);
+  Found found = scalarAt(level, ray.origin + ray.slope * float(there), there, 0.5 * ray.direction * ray.slope, ray.toEye);
+  const int brick = ownBrick;
+  if (!within) found.coverage = 0.0;
+  const float coverage = 0.5 * (last.coverage + found.coverage);
+  Found first = last, second = found;
+  if (last.coverage == 0.0) first = found;
+  if (found.coverage == 0.0) second = last;
+  const bool both = last.coverage > 0.0 && found.coverage > 0.0;
+  const float middle = both ? clamp(0.5 * (first.ahead + second.behind), 0.0, float(kTransferIntervals)) : first.scalar;
+  vec4 integral, medium;
+  tableAt(middle, integral, medium);
+  vec4 near = meanBetween(first.scalar, first.integral, first.medium, middle, integral, medium);
+  vec4 far = meanBetween(middle, integral, medium, second.scalar, second.integral, second.medium);
+  if (kParts) {
+    if (brick == 0 || coverage == 0.0 || near.a + far.a == 0.0) {
+      last = found;
+      return;
+    }
+    enterBrick(sums, ray, brick, float(slice) - ray.direction);
+    last.arriving = vec4(-1.0);  // as it may have been computed for another brick, less exactly
+  }
+  if (kLit) {
+    near.rgb *= mix(first.light, second.light, 0.25);
+    far.rgb *= mix(first.light, second.light, 0.75);
+  }
+  const float ahead = (float(slice) - ray.eye) * ray.direction;
+  const float nearLayer = ray.layer * mix(last.coverage, found.coverage, 0.25);
+  const float farLayer = ray.layer * mix(last.coverage, found.coverage, 0.75);
+  const float shown = sums.transmittance * (nearLayer * near.a + farLayer * far.a);
+  Lit nearLit, farLit;
+  if (kSampled) lightStretch(nearLit, farLit, last, found, first, second, near.a, far.a, shown, level, ray, slice);
+  addPart(sums, near, nearLayer * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75, nearLit, ray.toEye);
+  addPart(sums, far, farLayer * clamp(ahead, 0.0, 0.5), ahead - 0.25, farLit, ray.toEye);
+  last = found;
+}
+
+#endif
