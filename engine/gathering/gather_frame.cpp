@@ -101,10 +101,10 @@ bool readsLevel(const shader::GatherFrame& frame, const SeenRectangle& seen, int
 }
 
 /// The slices of each level that are read by rays whose component along the axis has this sign. A level
-/// begins where its blocks are small on the image for all rays between the positions `seen`, at a multiple of
-/// its blocks' edge, so that every voxel counts once.
+/// begins where its blocks are small on the image for all rays between the positions `seen`, or for an orthographic camera by
+/// DetailRule::coarsestShare, at a multiple of its blocks' edge, so that every voxel counts once.
 void setSlices(shader::GatherAxis& axis, int number, int sign, const HierarchyLayout& hierarchy,
-               const DetailRule& detail, const SeenRectangle& seen) {
+               const DetailRule& detail, const SeenRectangle& seen, bool orthographic) {
   const int voxels = hierarchy.levels.front().dimensions[number];
   std::vector<int> begins(std::size_t(detail.coarsest) + 2);  // in voxels along the ray's direction
   double steepest = 0.0;
@@ -117,8 +117,8 @@ void setSlices(shader::GatherAxis& axis, int number, int sign, const HierarchyLa
       begins[std::size_t(level)] = first;
       continue;
     }
-    const double distance = edge * steepest / std::max(detail.edgePerDistance, 1e-300);
-    const double place = double(axis.eye.x) + 0.5 + sign * distance;
+    const double place = orthographic ? first + sign * (1.0 - detail.coarsestShare) * voxels
+                                      : double(axis.eye.x) + 0.5 + sign * edge * steepest / std::max(detail.edgePerDistance, 1e-300);
     const double aligned = (sign > 0 ? std::ceil(place / edge) : std::floor(place / edge)) * edge;
     begins[std::size_t(level)] = int(std::clamp(aligned, 0.0, double((voxels + (1 << level) - 1) >> level << level)));
   }
@@ -172,7 +172,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   // Seen obliquely, the blocks at a slice's near end become small long after those of its far end: a level may come in slice by
   // slice only after the rule calls all of its blocks small.
   DetailRule slabs = detail;
-  if (!orthographic) slabs.finest = std::max(detail.finest - 1, 0);
+  if (!orthographic || detail.coarsestShare < 1.0) slabs.finest = std::max(detail.finest - 1, 0);
 
   shader::GatherFrame frame{.finest = slabs.finest,
                             .coarsest = detail.coarsest,
@@ -197,7 +197,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   for (int axis = 0; axis < 3; ++axis) {
     frame.axes[axis] = gatherAxis(rays, toPixel, axis, 0.5 * (dimensions[axis] - 1), orthographic);
     for (const int sign : {-1, 1})
-      setSlices(frame.axes[axis], axis, sign, volume.hierarchy, slabs, seenInImage);
+      setSlices(frame.axes[axis], axis, sign, volume.hierarchy, slabs, seenInImage, orthographic);
   }
   while (frame.finest < frame.coarsest && !readsLevel(frame, seenInImage, frame.finest)) ++frame.finest;
   return frame;

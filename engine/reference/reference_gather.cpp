@@ -116,7 +116,7 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
       detail_(detailRule(HierarchyLayout(volume.dimensions), rays_, settings.size, double(settings.lod))) {
   FV_CHECK_EQ(settings.lighting.has_value(), false);
   // Levels come in slice by slice, which may be complete only after all blocks are small.
-  if (!rays_.orthographic) detail_.finest = std::max(detail_.finest - 1, 0);
+  if (!rays_.orthographic || detail_.coarsestShare < 1.0) detail_.finest = std::max(detail_.finest - 1, 0);
   const Ray middle = rayThrough(glm::dvec2(0.0));
   toPixel_ = glm::inverse(rays_.orthographic ? glm::dmat3(rays_.originX, rays_.originY, middle.direction)
                                              : glm::dmat3(rays_.directionX, rays_.directionY, middle.direction));
@@ -182,7 +182,8 @@ int ReferenceGather::firstVoxel(const Ray& ray, int axis, int level) const {
   const glm::dvec2 seenFrom = glm::clamp(seenLow_, -edgeOfImage, edgeOfImage), seenTo = glm::clamp(seenHigh_, -edgeOfImage, edgeOfImage);
   for (const double x : {seenFrom.x, seenTo.x})
     for (const double y : {seenFrom.y, seenTo.y}) steepest = std::max(steepest, std::abs(rayThrough({x, y}).direction[axis]));
-  const double border = ray.origin[axis] + 0.5 + sign * edge * steepest / detail_.edgePerDistance;
+  const double border = rays_.orthographic ? (sign > 0 ? 0.0 : voxels) + sign * (1.0 - detail_.coarsestShare) * voxels
+                                           : ray.origin[axis] + 0.5 + sign * edge * steepest / detail_.edgePerDistance;
   const double number = sign > 0 ? std::ceil(border / edge) : std::floor(border / edge);
   return int(std::clamp(number, 0.0, double((voxels + edge - 1) / edge))) * edge;
 }

@@ -12,6 +12,9 @@ namespace {
 /// Relative margin for the device's rounding of distances.
 constexpr double kMargin = 1e-3;
 
+/// Relative change of an orthographic camera's scale during which a level comes in.
+constexpr double kLevelRange = 0.25;
+
 /// Largest length in pixels of a voxel's edge at distance 1, at the sides of the image, where perspective
 /// stretches it; for an orthographic camera anywhere.
 double pixelsPerEdge(const glm::dmat3& rows, const PixelRays& rays, glm::ivec2 imageSize) {
@@ -57,6 +60,8 @@ DetailRule detailRule(const HierarchyLayout& hierarchy, const PixelRays& rays, g
     while (rule.coarsest < hierarchy.top() && Block{.level = rule.coarsest + 1}.edge() * pixels <= lod)
       ++rule.coarsest;
     rule.finest = rule.coarsest;
+    if (rule.coarsest > 0)
+      rule.coarsestShare = std::min((lod / (Block{.level = rule.coarsest}.edge() * pixels) - 1.0) / kLevelRange, 1.0);
     return rule;
   }
   rule.edgePerDistance = std::min(lod / pixels, 0.5 / (kFootprintRadius * glm::length(rows[2])));

@@ -15,6 +15,10 @@ namespace freevoxels {
 struct DetailRule {
   int finest = 0, coarsest = 0;  ///< range of the levels that this frame can draw
   double edgePerDistance = 0.0;  ///< voxels per world unit; perspective only
+  /// Orthographic only: share of the volume's depth, from its far end, in which a gathered frame draws the coarsest level; nearer to the
+  /// eye it draws the next finer one. Grows from 0 to 1 while a zoom makes the coarsest level's blocks a fifth smaller than `lod`, so
+  /// that the level does not change in one frame. Splats are all of the coarsest level.
+  double coarsestShare = 1.0;
   glm::dvec3 viewAxis{0.0};      ///< a position's distance from the eye plane is viewAxis . (position - eye)
   glm::dvec3 eye{0.0};           ///< in index space; perspective only
 

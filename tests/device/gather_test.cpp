@@ -413,6 +413,44 @@ TEST_F(GatherTest, ASlowZoomShowsNoStepWhereTheLevelChanges) {
   EXPECT_LT(found.back(), found.front() - 1.0);  // the level did change
 }
 
+/// So does it for an orthographic camera, to which all blocks of a level are equally small.
+TEST_F(GatherTest, ASlowOrthographicZoomShowsNoStepWhereTheLevelChanges) {
+  const Scene scene = cloud(64);
+  Renderer renderer(device(), scene.volume, scene.classification, {});
+  Camera camera;
+  camera.orthographic = true;
+  camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, camera);
+  const double framed = camera.orthographicHeight;
+  FrameSettings settings{.size = {96, 96}, .draw = Draw::Gather};
+  Image last;
+  double largestStep = 0.0, largestError = 0.0;
+  for (int i = 0; i < 40; ++i) {
+    camera.orthographicHeight = framed * std::pow(1.02, i);
+    const auto render = [&](float lod) {
+      settings.lod = lod;
+      return renderer.render(camera, settings);
+    };
+    // The image less that of the voxels is the error of the levels; a zoom shows how that changes from frame to frame.
+    Image error = render(1.0f);
+    const Image voxels = render(0.0f);
+    for (std::size_t p = 0; p < error.pixels.size(); ++p) error.pixels[p] -= voxels.pixels[p];
+    const auto difference = [](const Image& a, const Image* b) {
+      double sum = 0.0;
+      for (std::size_t p = 0; p < a.pixels.size(); ++p) {
+        const glm::vec4 d = a.pixels[p] - (b ? b->pixels[p] : glm::vec4(0.0f));
+        sum += double(glm::dot(d, d)) / 4.0;
+      }
+      return std::sqrt(sum / double(a.pixels.size()));
+    };
+    if (i > 0) largestStep = std::max(largestStep, difference(error, &last));
+    largestError = std::max(largestError, difference(error, nullptr));
+    last = std::move(error);
+  }
+  EXPECT_GT(largestError, 0.0);
+  EXPECT_LT(largestStep, 0.4 * largestError);
+  EXPECT_LT(largestStep, 1.0 / 255.0);
+}
+
 TEST_F(GatherTest, DistanceIsTheMeanOfWhatIsSeen) {
   const glm::ivec3 n(16, 16, 16);
   const Volume slice =
