@@ -58,7 +58,6 @@ class RegionRenderer {
   std::optional<std::uint64_t> occupiedVoxelCount() const { return {}; }
   CutCounts cutCounts() const { return {}; }
   bool lackedRoomForRays() const { return false; }
-  bool lackedRoomForGather() const { return false; }
   /// The table of a region, bytes [direction][voxel of the region with its halo]. For tests.
   std::vector<std::vector<std::uint8_t>> downloadTable(const fvx::RegionEntry& region);
 

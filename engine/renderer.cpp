@@ -57,7 +57,7 @@ Image downloadImage(const Device& device, const SplatTargets& targets) {
 }
 
 std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSettings& settings) {
-  FV_CHECK_LT(int(settings.composite), int(Composite::Sorted));
+  FV_CHECK_EQ(settings.composite == Composite::Sorted, false);
   checkCamera(camera);
   checkFrameFits(state_->device, settings);
   State& state = *state_;
@@ -81,7 +81,7 @@ GatherStages Renderer::renderGatherStages(const Camera& camera, const FrameSetti
 }
 
 FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& wanted, const SharePart& part, const Progress& progress) {
-  FV_CHECK_LT(int(wanted.composite), int(Composite::Sorted));
+  FV_CHECK_EQ(wanted.composite == Composite::Sorted, false);
   FV_CHECK_LT(part.index, part.count);
   FV_CHECK_LE(part.count, kShares);
   checkCamera(camera);
@@ -89,16 +89,8 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
   State& state = *state_;
   FrameSettings settings = wanted;
   settings.cullThreshold = 0.0f;
-  state.lastLackedGather = false;
-  if (drawsByGathering(settings)) {
-    try {
-      return state.gatherShares(camera, settings, part, progress);
-    } catch (const Error& error) {
-      if (settings.draw != Draw::Auto || error.kind() != ErrorKind::OutOfMemory) throw;
-    }
-    state.lastLackedGather = true;
-  }
-  return state.splatShares(camera, settings, part, progress);
+  return drawsByGathering(settings) ? state.gatherShares(camera, settings, part, progress)
+                                    : state.splatShares(camera, settings, part, progress);
 }
 
 VolumeMemory Renderer::memory() const {
@@ -118,10 +110,6 @@ std::optional<std::uint64_t> Renderer::occupiedVoxelCount() const {
 
 bool Renderer::lackedRoomForRays() const {
   return state_->lastLackedRays;
-}
-
-bool Renderer::lackedRoomForGather() const {
-  return state_->lastLackedGather;
 }
 
 std::vector<float> Renderer::downloadExtinction() const {

@@ -77,8 +77,6 @@ class Renderer {
   /// Whether the last frame used Bilinear for Auto only because the device lacks memory for rays from the
   /// eye.
   bool lackedRoomForRays() const;
-  /// Whether the last frame used Splats for Draw::Auto only because the device lacks memory for the gather.
-  bool lackedRoomForGather() const;
   /// Extinction per world unit, voxels x fastest without padding. For tests and validation, like all
   /// functions below.
   std::vector<float> downloadExtinction() const;

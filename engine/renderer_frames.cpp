@@ -47,7 +47,7 @@ const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progres
   addTimes(frameTimes, commands.times());
   try {
     pruneOpaqueRuns(device, *table, frameTimes);
-  } catch (const Error&) {  // planes that are pruned in part are of no use
+  } catch (...) {  // a table of which only some planes are pruned cannot be used
     table.reset();
     throw;
   }
@@ -260,18 +260,9 @@ FixedSums Renderer::State::splatShares(const Camera& camera, const FrameSettings
 std::shared_ptr<const SplatTargets> Renderer::State::recordImage(Commands& commands, const Camera& camera,
                                                                  const FrameSettings& settings,
                                                                  const Progress& progress) {
-  lastLackedGather = false;
-  if (drawsByGathering(settings)) {
-    try {
-      return recordGather(commands, camera, settings, progress);
-    } catch (const Error& error) {
-      if (settings.draw != Draw::Auto || error.kind() != ErrorKind::OutOfMemory) throw;
-    }
-    lastLackedGather = true;
-  }
+  if (drawsByGathering(settings)) return recordGather(commands, camera, settings, progress);
   Frame frame = recordSplats(commands, camera, settings, progress);
-  if (settings.composite != Composite::Sorted || settings.depth)
-    resolve->record(commands, frame.constants, *frame.targets);
+  if (settings.composite != Composite::Sorted || settings.depth) resolve->record(commands, frame.constants, *frame.targets);
   return frame.targets;
 }
 

@@ -35,7 +35,7 @@ struct Renderer::State {
   const BlockList* lastDrawn = nullptr;
   bool lastWasCut = false;  ///< whether lastDrawn is the list of `cutter`
   int lastLevel = 0;        ///< otherwise the level of all drawn blocks
-  bool lastLackedRays = false, lastLackedGather = false;
+  bool lastLackedRays = false;
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
   std::unique_ptr<DepthSort> sort;

@@ -404,7 +404,6 @@ void FrameSeries::writeEmpty(const Frame& frame) {
 template <typename AnyRenderer>
 void FrameSeries::addToReport(const AnyRenderer& renderer, const Volume& volume) {
   report_.lackedRoomForRays |= renderer.lackedRoomForRays();
-  report_.lackedRoomForGather |= renderer.lackedRoomForGather();
   report_.visibleVoxels = renderer.occupiedVoxelCount();
   report_.voxels = volume.voxelCount();
   report_.memory = renderer.memory();

@@ -88,9 +88,19 @@ void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
   sums.distanceTexels = TexelView(device_, sums.distances, VK_FORMAT_R32_SFLOAT);
 }
 
-void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
+void GatherPass::setLattice(const shader::GatherFrame& frame) {
   lattice_ = {.samples = frame.samples, .pitch = double(frame.pitch), .first = frame.firstSample};
   direct_ = lattice_.isPixels(frame.size);
+}
+
+void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
+  setLattice(frame);
+  const std::uint64_t samples = std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y);
+  makeRoom(gathered_, samples);
+  if (!direct_) {
+    makeRoom(smoothed_, samples);
+    makeRoom(rows_, std::uint64_t(frame.size.x) * std::uint64_t(frame.samples.y));
+  }
   commands.update(frame_, frame);
 }
 
@@ -114,16 +124,16 @@ void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume,
 }
 
 void GatherPass::recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
-  makeRoom(gathered_, std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y));
   dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), frame.samples, false);
   commands.barrier(kCompute, kCompute);
 }
 
 void GatherPass::recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
                             const TexelView& skips) {
-  commands.beginPass("gather");
-  begin(commands, frame);
+  setLattice(frame);
   makeRoom(gathered_, 1);  // a binding needs a buffer
+  commands.beginPass("gather");
+  commands.update(frame_, frame);
   dispatchSamples(commands, volume, frame, numbers, skips, frame.part.extent, true);
 }
 
@@ -138,7 +148,6 @@ std::vector<Binding> GatherPass::imageBindings(const Sums& from, const Sums& to,
 }
 
 void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets) {
-  if (!direct_) makeRoom(smoothed_, std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y));
   const Pipeline stencil =
       makeImagePass(device_, shaders::gather_stencil, targets.distance.exists(), direct_, scalars);
   commands.dispatch(stencil, imageBindings(gathered_, direct_ ? gathered_ : smoothed_, targets), glm::ivec3(frame.samples, 1));
@@ -147,7 +156,6 @@ void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& fr
 
 void GatherPass::recordUpsampling(Commands& commands, const shader::GatherFrame& frame, const SplatTargets& targets) {
   if (direct_) return;
-  makeRoom(rows_, std::uint64_t(frame.size.x) * std::uint64_t(frame.samples.y));
   for (const bool alongY : {false, true}) {
     const Pipeline upsample =
         makeImagePass(device_, shaders::gather_upsample, targets.distance.exists(), alongY);
@@ -159,10 +167,10 @@ void GatherPass::recordUpsampling(Commands& commands, const shader::GatherFrame&
 
 void GatherPass::record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
                         const SplatTargets& targets) {
+  begin(commands, frame);
   for (const RenderTarget* target : targets.all())
     commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kCompute, kCompute);
   commands.beginPass("gather");
-  begin(commands, frame);
   recordSamples(commands, volume, frame);
   commands.beginPass("gather image");
   recordStencil(commands, frame, volume.hasScalars(), targets);

@@ -27,7 +27,7 @@ class GatherPass {
   void record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
               const SplatTargets& targets);
 
-  /// The steps of record(), for tests that alter what lies between them: begin() writes the frame that the steps after it read.
+  /// The steps of record(), for tests that alter what lies between them: begin() allocates the sums and writes the frame that the steps after it read.
   /// The targets have to be in layout GENERAL.
   void begin(Commands& commands, const shader::GatherFrame& frame);
   void recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
@@ -35,21 +35,21 @@ class GatherPass {
   /// The sums of the bricks of a part, in fixed point, instead of those of all samples. `frame.part` is filled in.
   void recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
                   const TexelView& skips);
-  /// Nothing where the lattice is that of the pixels.
+  /// Does nothing if the lattice is that of the pixels.
   void recordUpsampling(Commands& commands, const shader::GatherFrame& frame, const SplatTargets& targets);
 
-  /// Of the last frame; for validation and tests. The downloads wait.
+  /// The lattice and the sums of the last frame; for validation and tests. The downloads wait.
   const GatherLattice& lattice() const { return lattice_; }
   std::vector<GatherSums> downloadGathered() const { return download(gathered_); }
   std::vector<GatherSums> downloadSmoothed() const;
 
  private:
-
   /// C and E (four floats), and the sum of e times distance, of every sample.
   struct Sums {
     Buffer colorEnergy, distances;
     TexelView colorEnergyTexels, distanceTexels;
   };
+  void setLattice(const shader::GatherFrame& frame);
   void makeRoom(Sums& sums, std::uint64_t samples);
   void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
                        const TexelView& skips, glm::ivec2 extent, bool parts);
