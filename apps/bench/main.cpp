@@ -7,13 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/bench/bench_stages.h"
-#include "apps/bench/cluster.h"
 #include "apps/bench/real_ranks.h"
 #include "apps/freevoxels/device_options.h"
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/text_table.h"
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
+#include "engine/validation/cluster_scaling.h"
 #include "engine/validation/svg_plot.h"
 
 namespace {
@@ -181,13 +181,23 @@ void printRealRanks(int resolution) {
                *two, *one / *two);
 }
 
+std::vector<std::string> tableLines(const ReportTable& table) {
+  TextTable text{.columns = std::vector(table.columns.size(), TextTable::Align::Right), .rows = {table.columns}};
+  std::ranges::copy(table.rows, std::back_inserter(text.rows));
+  return text.lines();
+}
+
 /// Frames that are divided among ranks, instead of the stages.
 void measureCluster(const Device& device, bool quick, const std::string& svg) {
-  const std::vector<bench::Scaling> scalings = bench::cluster(device, quick ? 128 : 512);
-  for (const std::string& line : bench::tableLines(scalings)) fmt::print("{}\n", line);
+  const ReportSection section = clusterSection(clusterScalings(device, quick ? 128 : 512));
+  for (const ReportTable& table : section.tables) {
+    fmt::print("{}\n", table.caption);
+    for (const std::string& line : tableLines(table)) fmt::print("{}\n", line);
+  }
+  fmt::print("{}\n", section.text);
   printRealRanks(quick ? 128 : 256);
   if (svg.empty()) return;
-  std::string plot = svgPlot(bench::speedUpPlot(scalings));
+  std::string plot = svgPlot(section.plots.front());
   plot.insert(std::string_view("<svg").size(), R"( xmlns="http://www.w3.org/2000/svg")");  // a file of its own needs its namespace
   writeTextAtomically(svg, plot);
 }

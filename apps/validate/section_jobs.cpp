@@ -11,6 +11,7 @@
 #include "engine/octree/volume_limits.h"
 #include "engine/renderer.h"
 #include "engine/validation/closed_forms.h"
+#include "engine/validation/cluster_scaling.h"
 #include "engine/validation/culling_checks.h"
 #include "engine/validation/detail_quality.h"
 #include "engine/validation/emission_checks.h"
@@ -195,6 +196,14 @@ void addPaperFigures(std::vector<SectionJob>& jobs, const Device& device) {
   jobs.push_back({"leakage against layers", [&device] { return leakageOfLayers(deviceStages(device), {}); }});
 }
 
+/// Quick runs do without: its times need large volumes, and tests check the bits.
+void addCluster(std::vector<SectionJob>& jobs, const Device& device, const Extent& extent) {
+  if (extent.quick) return;
+  const int resolution = extent.resolution.value_or(kLarge);
+  jobs.push_back({fmt::format("ranks of a cluster at {}^3", resolution),
+                  [resolution, &device] { return clusterSection(clusterScalings(device, resolution)); }});
+}
+
 /// One view of a file's volume: the default method and sorted blending.
 ReportSection fileQuality(const Device& device, const ValidationScene& scene, int pictureEdge) {
   const std::vector<QualityMethod>& all = qualityMethods();
@@ -229,6 +238,7 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
   addQuality(jobs, device, extent);
   if (!extent.quick && !extent.resolution) addTurntable(jobs, device);
   if (!extent.resolution) addFlight(jobs, device, extent);
+  addCluster(jobs, device, extent);
   for (const std::string& file : extent.files) {
     const auto scene = std::make_shared<ValidationScene>(
         makeValidationScene(InputOptions{.input = file}.open(maximumVoxels(device)), SceneColor::Density,

@@ -194,6 +194,16 @@ const ChunkEntry* FvxFile::find(Channel channel, int level, glm::ivec3 cell) con
   return found == all.end() || found->cell != cell ? nullptr : &*found;
 }
 
+std::uint64_t FvxFile::bytesToRead(const RegionEntry& region) const {
+  std::uint64_t bytes = region.storedBytes;
+  for (std::size_t channel = 0; channel < kChannels; ++channel)
+    for (int child = 0; child < 8; ++child) {
+      const glm::ivec3 cell = 2 * region.cell + glm::ivec3(child & 1, child >> 1 & 1, child >> 2);
+      if (const ChunkEntry* const chunk = find(Channel(channel), int(region.level), cell)) bytes += chunk->storedBytes;
+    }
+  return bytes;
+}
+
 RegionSurroundings FvxFile::readRegion(const RegionEntry& region) const {
   std::vector<std::byte> unpacked;
   const std::span<const std::byte> bytes =

@@ -54,6 +54,8 @@ class FvxFile {
   bool hasRegions() const { return find(SectionKind::RegionIndex) != nullptr; }
   /// The regions of a level that have chunks of scalars, in Hilbert order; none if the file has no regions.
   std::span<const RegionEntry> regions(int level) const { return regions_[std::size_t(level)]; }
+  /// What drawing a region reads of the file: its chunks of every channel, and what it has beside them.
+  std::uint64_t bytesToRead(const RegionEntry& region) const;
   /// Fails with ErrorKind::Input if what is stored of the region is damaged.
   RegionSurroundings readRegion(const RegionEntry& region) const;
   /// Reads the whole file and fails with ErrorKind::Input if any part is damaged.
