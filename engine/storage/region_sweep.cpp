@@ -102,7 +102,8 @@ class LevelSweep {
   void closeRegions(int first) {
     const int last = upwards_ ? std::min(first + kSweptPlanes, level_.dimensions.z) : first;
     std::erase_if(open_, [&](const auto& entry) {
-      const auto& [region, opened] = entry;
+      const int region = entry.first;  // Clang 14 captures no structured bindings
+      const auto& opened = entry.second;
       const VoxelBox box = regionWithHalo(level_.regions[std::size_t(region)], level_.dimensions);
       if (upwards_ ? box.end.z > last : box.first.z < last) return false;
       const auto store = [&](std::size_t part, std::span<const std::byte> bytes) {

@@ -1,4 +1,4 @@
-// Writes small valid files for the fuzzers to begin with: seeds FOLDER, into FOLDER/{vdb,exr,png,json}.
+// Writes small valid files for the fuzzers to begin with: seeds FOLDER, into FOLDER/{vdb,exr,png,json,fvx}.
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
@@ -8,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "engine/image/image.h"
+#include "engine/storage/baked_volume.h"
 #include "engine/volume/vdb_grids.h"
 
 namespace {
@@ -72,12 +73,26 @@ void writeFunctions(const fs::path& folder) {
   std::ofstream(folder / "short.json") << R"({"opacity": [[0.25, 1e-3]], "color": [[0, 1, 1, 1]]})";
 }
 
+void writeBakedVolumes(const fs::path& folder) {
+  const auto makeBricks = [](float scale) {
+    return ScalarBricks::make({40, 9, 8}, [scale](glm::ivec3 v) { return v.y > 5 ? kInactiveVoxel : scale * float(v.x + v.y); });
+  };
+  Volume volume{.source = "seed", .dimensions = {40, 9, 8}, .scalars = makeBricks(0.02f)};
+  summariseValues(volume);
+  bakeVolume(folder / "plain.fvx", volume, {}, {});
+  bakeVolume(folder / "scalars.fvx", volume, {}, {.keepScalars = true, .compress = true});
+  volume.temperature = TemperatureGrid{.name = "heat", .values = makeBricks(100.0f)};
+  summariseValues(*volume.temperature);
+  bakeVolume(folder / "heat.fvx", volume, {}, {.compress = true});
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const fs::path folder = argc > 1 ? argv[1] : ".";
-  for (const char* kind : {"vdb", "exr", "png", "json"}) fs::create_directories(folder / kind);
+  for (const char* kind : {"vdb", "exr", "png", "json", "fvx"}) fs::create_directories(folder / kind);
   writeVolumes(folder / "vdb");
   writeImages(folder);
   writeFunctions(folder / "json");
+  writeBakedVolumes(folder / "fvx");
 }
