@@ -16,6 +16,7 @@
 
 #include "apps/freevoxels/share_options.h"
 #include "apps/freevoxels/text_table.h"
+#include "apps/mpi/local_share.h"
 #include "engine/core/error.h"
 #include "engine/vulkan/device.h"
 
@@ -89,7 +90,7 @@ void MpiJob::shareProcessors() const {
   cpu_set_t own{}, all{};
   if (sched_getaffinity(0, sizeof(own), &own) != 0) return;
   MPI_Allreduce(&own, &all, int(sizeof(own)), MPI_BYTE, MPI_BOR, node_);
-  const int threads = std::clamp(CPU_COUNT(&all) / sizeOfNode_, 1, std::max(CPU_COUNT(&own), 1));
+  const int threads = threadsOfRank(CPU_COUNT(&all), CPU_COUNT(&own), sizeOfNode_);
   setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 0);
   static tbb::global_control control(tbb::global_control::max_allowed_parallelism, std::size_t(threads));
 }
@@ -134,7 +135,7 @@ std::string MpiJob::deviceSelector() const {
   std::vector<std::string> gpus;
   for (const DeviceDescription& device : listDevices(instance))
     if (device.rejections.empty() && device.type.ends_with("GPU")) gpus.push_back(device.uuid);
-  return gpus.empty() ? "" : gpus[std::size_t(rankOnNode_) % gpus.size()];
+  return gpuOfRank(gpus, rankOnNode_);
 }
 
 void MpiJob::agreeWithin(MPI_Comm processes, const std::string& what, const std::string& text) const {
