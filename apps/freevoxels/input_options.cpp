@@ -30,6 +30,10 @@ std::string clipText(const VoxelBox& box) {
   return fmt::format("{},{},{},{},{},{}", box.first.x, box.first.y, box.first.z, box.last.x, box.last.y, box.last.z);
 }
 
+std::string clipText(const ClipPlane& plane) {
+  return fmt::format("{},{},{},{},{},{}", plane.point.x, plane.point.y, plane.point.z, plane.normal.x, plane.normal.y, plane.normal.z);
+}
+
 }  // namespace
 
 std::uint64_t machineMemoryBytes() {
@@ -93,6 +97,16 @@ void InputOptions::addClip(CLI::App& app) {
       ->take_last()
       ->type_name("X0,Y0,Z0,X1,Y1,Z1")
       ->group("Input");
+  app.add_option_function<std::string>(
+         "--clip-plane",
+         [this](const std::string& text) {
+           const std::vector<double> n = readNumbers("--clip-plane", "X,Y,Z,NX,NY,NZ", 6, text, {-1e30, 1e30});
+           clipPlane = ClipPlane{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+         },
+         "Draw only the voxels behind the plane through the world position X,Y,Z: the side away from its normal NX,NY,NZ")
+      ->take_last()
+      ->type_name("X,Y,Z,NX,NY,NZ")
+      ->group("Input");
 }
 
 void InputOptions::checkGiven() const {
@@ -104,8 +118,11 @@ void InputOptions::check() const {
     fail(ErrorKind::Usage, "--grid chooses among the grids of an OpenVDB file, and '{}' is a baked volume", input);
   if (clipBox && glm::any(glm::greaterThan(clipBox->first, clipBox->last)))
     fail(ErrorKind::Usage, "--clip-box {} is empty: give the smaller coordinates first", clipText(*clipBox));
-  if (clipBox && !proceduralName(input) && fvx::isFvx(input))
-    fail(ErrorKind::Usage, "--clip-box does not apply to a baked volume such as '{}': clip the volume that it is baked of", input);
+  if (clipPlane && glm::length(clipPlane->normal) < 1e-30)
+    fail(ErrorKind::Usage, "--clip-plane {} has a normal of length 0: give one such as 1,0,0", clipText(*clipPlane));
+  if ((clipBox || clipPlane) && !proceduralName(input) && fvx::isFvx(input))
+    fail(ErrorKind::Usage, "{} does not apply to a baked volume such as '{}': clip the volume that it is baked of",
+         clipBox ? "--clip-box" : "--clip-plane", input);
   if (proceduralName(input)) {
     if (grid) fail(ErrorKind::Usage, "--grid chooses among the grids of a file, and {} has one", input);
   } else if (resolution) {
@@ -129,12 +146,17 @@ Volume InputOptions::open(std::uint64_t maximumVoxels, const MoreGrids& more, in
 }
 
 Volume InputOptions::clip(Volume volume) const {
-  if (!clipBox) return volume;
   const glm::ivec3 size = volume.dimensions;
-  if (glm::any(glm::greaterThanEqual(clipBox->first, size)))
+  if (clipBox && glm::any(glm::greaterThanEqual(clipBox->first, size)))
     fail(ErrorKind::Usage, "--clip-box {} has no voxel of the volume's box, which has {} x {} x {}", clipText(*clipBox), size.x, size.y,
          size.z);
-  return clippedVolume(volume, *clipBox);
+  if (clipBox) volume = clippedVolume(volume, *clipBox);
+  if (!clipPlane) return volume;
+  const bool hadVoxels = volume.activeVoxels > 0;
+  volume = clippedVolume(volume, *clipPlane);
+  if (hadVoxels && volume.activeVoxels == 0)
+    fail(ErrorKind::Usage, "--clip-plane {} has no voxel behind it: move it, or turn its normal round", clipText(*clipPlane));
+  return volume;
 }
 
 void InputOptions::describe(OptionList& options) const {
@@ -143,6 +165,7 @@ void InputOptions::describe(OptionList& options) const {
   if (proceduralName(input))
     options.emplace_back("--resolution", resolutionText(resolution.value_or(glm::ivec3(kDefaultResolution))));
   if (clipBox) options.emplace_back("--clip-box", clipText(*clipBox));
+  if (clipPlane) options.emplace_back("--clip-plane", clipText(*clipPlane));
 }
 
 std::vector<std::string> warningsOf(const Volume& volume, bool scalarsAreDensities) {

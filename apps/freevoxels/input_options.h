@@ -35,18 +35,19 @@ struct InputOptions {
   std::optional<std::string> grid;
   std::optional<glm::ivec3> resolution;
   std::optional<VoxelBox> clipBox;  ///< of the volume's box; the voxels outside are not drawn
+  std::optional<ClipPlane> clipPlane;  ///< voxels in front of it are not drawn
 
   /// IN and --resolution.
   void add(CLI::App& app);
   /// Adds --grid.
   void addGrid(CLI::App& app);
-  /// Adds --clip-box.
+  /// Adds --clip-box and --clip-plane.
   void addClip(CLI::App& app);
   /// Fails with ErrorKind::Usage without IN.
   void checkGiven() const;
   /// Fails with ErrorKind::Usage for options that do not apply to this input.
   void check() const;
-  /// The part of a volume in the clip box. Fails with ErrorKind::Usage if they have no voxel in common.
+  /// The part of a volume in the clip box and behind the clip plane. Fails with ErrorKind::Usage if there is none.
   Volume clip(Volume volume) const;
   /// A procedural volume has its temperatures if any are requested; a baked one always has its temperatures
   /// and albedos. If the box of a baked volume is too large at `level`, the finest level that fits is opened,

@@ -28,7 +28,7 @@ struct Replaced {
   const char* option;
   std::vector<const char*> others;
 };
-const std::vector<Replaced> kReplaced{{"IN", {"--grid", "--resolution", "--clip-box"}},
+const std::vector<Replaced> kReplaced{{"IN", {"--grid", "--resolution", "--clip-box", "--clip-plane"}},
                                       {"--shading", {"--surface-share"}},
                                       {"--paper",
                                        {"--composite", "--attenuation", "--directions", "--code",

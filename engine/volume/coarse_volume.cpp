@@ -23,6 +23,39 @@ ScalarBricks coarseBricks(const ScalarBricks& fine, glm::ivec3 dimensions, int f
   });
 }
 
+/// The signed distance of voxels from a plane, above 0 on the side that is clipped, in world units.
+struct VoxelDistance {
+  glm::dvec3 step;     ///< change for each voxel along x, y and z
+  double first = 0.0;  ///< of the box's voxel (0,0,0)
+
+  VoxelDistance(const glm::dmat4& indexToWorld, const ClipPlane& plane) {
+    const glm::dvec3 normal = glm::normalize(plane.normal);
+    step = normal * glm::dmat3(indexToWorld);
+    first = glm::dot(normal, glm::dvec3(indexToWorld[3]) - plane.point);
+  }
+  double at(glm::dvec3 voxel) const { return first + glm::dot(step, voxel); }
+};
+
+/// Whether a brick stays depends on its place alone, so that bricks of scalars still cover those of temperatures.
+ScalarBricks clippedBricks(const ScalarBricks& all, const VoxelDistance& distance) {
+  constexpr int n = ScalarBricks::kEdge;
+  ScalarBricks kept(all.dimensions(), all.corner());
+  const glm::dvec3 half = glm::dvec3(0.5 * (n - 1));
+  const double reach = glm::dot(glm::abs(distance.step), half);
+  for (std::size_t i = 0; i < all.bricks().size(); ++i) {
+    const glm::ivec3 first = all.firstVoxel(i);
+    const double middle = distance.at(glm::dvec3(first) + half);
+    if (middle - reach > 0.0) continue;
+    ScalarBricks::Brick& brick = kept.makeBrick(all.cell(i)) = all.bricks()[i];
+    if (middle + reach <= 0.0) continue;
+    for (glm::ivec3 v(0); v.z < n; ++v.z)
+      for (v.y = 0; v.y < n; ++v.y)
+        for (v.x = 0; v.x < n; ++v.x)
+          if (distance.at(first + v) > 0.0) brick[ScalarBricks::indexInBrick(v)] = kInactiveVoxel;
+  }
+  return kept;
+}
+
 }  // namespace
 
 Volume coarseVolume(const Volume& volume, int factor, WithoutData withoutData) {
@@ -62,6 +95,23 @@ Volume clippedVolume(const Volume& volume, const VoxelBox& box) {
   part.dimensions = high - low + 1;
   part.indexOrigin += low;
   part.indexToWorld[3] = volume.indexToWorld * glm::dvec4(glm::dvec3(low), 1.0);
+  summariseValues(part);
+  part.minimum = volume.minimum;
+  part.maximum = volume.maximum;
+  return part;
+}
+
+Volume clippedVolume(const Volume& volume, const ClipPlane& plane) {
+  const VoxelDistance distance(volume.indexToWorld, plane);
+  Volume part = volume;
+  const auto clip = [&](ScalarBricks& bricks) { bricks = clippedBricks(bricks, distance); };
+  clip(part.scalars);
+  if (part.temperature) {
+    clip(part.temperature->values);
+    summariseValues(*part.temperature);
+  }
+  if (part.albedo)
+    for (ScalarBricks& values : part.albedo->values) clip(values);
   summariseValues(part);
   part.minimum = volume.minimum;
   part.maximum = volume.maximum;

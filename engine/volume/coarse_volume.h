@@ -25,4 +25,13 @@ struct VoxelBox {
 /// so that a transfer function without a range means the same.
 Volume clippedVolume(const Volume& volume, const VoxelBox& box);
 
+/// A plane in the world. What lies on the side to which `normal` points is clipped; its length, which is not 0, means nothing.
+struct ClipPlane {
+  glm::dvec3 point{0.0}, normal{1.0, 0.0, 0.0};
+};
+
+/// The volume without the voxels whose centres lie on the clipped side of a plane. The box and everything else stay as they are,
+/// `minimum` and `maximum` too. There may be no voxel left.
+Volume clippedVolume(const Volume& volume, const ClipPlane& plane);
+
 }  // namespace freevoxels

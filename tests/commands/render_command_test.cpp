@@ -426,6 +426,22 @@ TEST_F(RenderCommand, AClippedVolumeIsTheVolumeWithoutTheRest) {
     expectCleanRefusal(std::string("render procedural:cube @none.exr --resolution 16 --clip-box ") + box, ExitCode::Usage, "--clip-box");
 }
 
+TEST_F(RenderCommand, APlaneClipsWhatIsInFrontOfIt) {
+  const std::string view = "render procedural:cube --resolution 16 --density-scale 3 --unlit --camera-position 0,0,3 --look-at 0,0,0 "
+                           "--size 64 --quiet ";
+  // Behind the plane x + y = 0 is what is left of and below a diagonal of the image.
+  expectSuccess(run(view + "@half.exr --clip-plane 0,0,0,2,2,0 --save-scene @half.json"));
+  const Image half = readExr(folder / "half.exr");
+  const auto alpha = [&](int x, int y) { return half.pixels[std::size_t(y * 64 + x)].a; };
+  EXPECT_GT(alpha(26, 38), 0.5f);
+  EXPECT_GT(alpha(38, 38), 0.0f) << "on the diagonal";
+  EXPECT_LT(alpha(38, 26), 0.01f);
+  expectSuccess(run("render --scene @half.json @again.exr --quiet"));
+  EXPECT_TRUE(readBytes(folder / "half.exr") == readBytes(folder / "again.exr"));
+  for (const char* plane : {"0,0,0,1,0", "0,0,0,0,0,0", "-9,0,0,1,0,0", "0,0,nan,1,0,0"})
+    expectCleanRefusal(view + "@none.exr --clip-plane " + plane, ExitCode::Usage, "--clip-plane");
+}
+
 TEST_F(RenderCommand, ImagesMayBeJpegAndPngOf16Bits) {
   expectSuccess(run(std::string("render procedural:cloud @a.jpg @b.JPEG @c.png --png-bits 16") + kSmall));
   EXPECT_TRUE(readBytes(folder / "a.jpg").starts_with("\xff\xd8\xff"));

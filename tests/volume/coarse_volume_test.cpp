@@ -94,7 +94,7 @@ TEST(CoarseVolume, TemperaturesAndAlbedosComeAlong) {
 TEST(ClippedVolume, VoxelsInTheBoxKeepValueAndPlaceAndOthersAreGone) {
   Volume volume = makeVolume({20, 13, 9}, glm::dmat4(2.0), [](int x, int y, int z) { return float(x + 100 * y + 10000 * z); });
   volume.albedo = AlbedoGrid{.name = "albedo", .values = {volume.scalars, volume.scalars, volume.scalars}};
-  const Volume part = clippedVolume(volume, {{3, 5, 2}, {100, 9, 4}});
+  const Volume part = clippedVolume(volume, VoxelBox{{3, 5, 2}, {100, 9, 4}});
   EXPECT_EQ(part.dimensions, glm::ivec3(17, 5, 3)) << "the box is cut to that of the volume";
   EXPECT_EQ(part.activeVoxels, 17u * 5u * 3u);
   for (const glm::ivec3 voxel : {glm::ivec3(0), glm::ivec3(16, 4, 2), glm::ivec3(7, 1, 1)}) {
@@ -116,6 +116,34 @@ TEST(CoarseVolume, KeepsTheOpticalDepthOfAColumn) {
                            fine.scalar(1, 1, z));
   for (int z = 0; z < 3; ++z) inBlocks += coarse.voxelSize() * double(coarse.scalar(0, 0, z));
   EXPECT_NEAR(inBlocks, whole, 1e-9 * whole);
+}
+
+TEST(ClippedVolume, APlaneRemovesTheVoxelsWhoseCentresAreInFrontOfIt) {
+  const ClipPlane plane{.point = {6.0, 5.0, 9.0}, .normal = {1.0, -2.0, 0.5}};
+  const auto isKept = [&](const Volume& volume, glm::ivec3 v) {
+    return glm::dot(plane.normal, glm::dvec3(volume.indexToWorld * glm::dvec4(v, 1.0)) - plane.point) <= 0.0;
+  };
+  Volume whole = numberedVolume({19, 20, 21}, obliqueTransform());
+  whole.temperature = TemperatureGrid{.name = "heat", .values = whole.scalars};
+  summariseValues(*whole.temperature);
+  const Volume inBox = clippedVolume(whole, VoxelBox{{3, 2, 1}, {18, 17, 20}});  // whose bricks begin before the box
+  for (const Volume* volume : std::initializer_list<const Volume*>{&whole, &inBox}) {
+    const Volume part = clippedVolume(*volume, plane);
+    ASSERT_EQ(part.dimensions, volume->dimensions);
+    EXPECT_EQ(part.maximum, whole.maximum) << "the range of a transfer function stays";
+    std::uint64_t kept = 0;
+    for (glm::ivec3 v(0); v.z < part.dimensions.z; ++v.z)
+      for (v.y = 0; v.y < part.dimensions.y; ++v.y)
+        for (v.x = 0; v.x < part.dimensions.x; ++v.x) {
+          const float expected = isKept(part, v) ? volume->scalars.at(v) : kInactiveVoxel;
+          ASSERT_EQ(part.scalars.at(v), expected) << v.x << "," << v.y << "," << v.z;
+          ASSERT_EQ(part.temperature->values.at(v), expected);
+          kept += isKept(part, v) ? 1 : 0;
+        }
+    EXPECT_EQ(part.activeVoxels, kept);
+    EXPECT_GT(kept, part.voxelCount() / 10);
+    EXPECT_LT(kept, part.voxelCount() / 10 * 9);
+  }
 }
 
 }  // namespace
