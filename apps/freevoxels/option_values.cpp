@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "engine/core/error.h"
+#include "engine/core/nearest_name.h"
 #include "engine/image/srgb.h"
 
 namespace freevoxels {
@@ -52,10 +53,21 @@ std::string rangeText(const Expectation& expected) {
   return "";
 }
 
+bool isColor(const Expectation& expected) {
+  return expected.form.starts_with("R,G,B");
+}
+
+std::string colorSuggestion(const std::string& text) {
+  std::vector<std::string> names;
+  for (const NamedColor& color : kNamedColors) names.emplace_back(color.name);
+  return suggestion(text, names);
+}
+
 [[noreturn]] void refuse(const Expectation& expected, const std::string& text) {
   const bool one = expected.count <= 1;
-  fail(ErrorKind::Usage, "{} takes {}, {}{} number{}{}, not '{}'", expected.option, expected.form,
-       one ? "a " : "", expected.whole ? "whole" : "finite", one ? "" : "s", rangeText(expected), text);
+  fail(ErrorKind::Usage, "{} takes {}, {}{} number{}{}{}, not '{}'{}", expected.option, expected.form, one ? "a " : "",
+       expected.whole ? "whole" : "finite", one ? "" : "s", rangeText(expected),
+       isColor(expected) ? ", or a colour such as #ff8000 or white" : "", text, isColor(expected) ? colorSuggestion(text) : "");
 }
 
 std::optional<double> parseNumber(std::string_view word, const Expectation& expected) {
@@ -70,7 +82,7 @@ std::optional<double> parseNumber(std::string_view word, const Expectation& expe
 }
 
 std::vector<double> parseNumbers(const std::string& text, const Expectation& expected) {
-  if (expected.form.starts_with("R,G,B"))
+  if (isColor(expected))
     if (const std::optional<glm::dvec3> color = namedColor(text)) return {color->r, color->g, color->b};
   std::vector<double> values;
   if (expected.count == 0 && text.empty()) return values;
