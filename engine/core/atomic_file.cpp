@@ -1,6 +1,7 @@
 #include "engine/core/atomic_file.h"
 
 #include <fcntl.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -124,6 +125,13 @@ class PendingFile {
   /// Opening it opens the pending file.
   const fs::path& path() const { return path_; }
 
+  /// Whether the file has all the bytes that a process may write into one.
+  bool isAtLimit() const {
+    rlimit limit{};
+    struct stat status {};
+    return getrlimit(RLIMIT_FSIZE, &limit) == 0 && fstat(descriptor_, &status) == 0 && rlim_t(status.st_size) >= limit.rlim_cur;
+  }
+
   void publish() {
     takeModeOfTarget();
     flushToDisk(descriptor_);
@@ -197,7 +205,12 @@ void writeAtomically(const std::filesystem::path& destination,
   reportAbout(destination, [&] { pending.emplace(followLinks(destination)); });
   // While a sentence is made of a failure, the file is still there: it is what fills the disk.
   reportAbout(destination, [&] {
-    write(pending->path());
+    try {
+      write(pending->path());
+    } catch (const std::exception&) {  // not every library says that this was the reason
+      if (pending->isAtLimit()) throw std::system_error(EFBIG, std::generic_category());
+      throw;
+    }
     pending->publish();
   });
 }

@@ -116,6 +116,7 @@ TEST_F(BadOutput, LimitsOfTheShellEndInOneSentence) {
 #endif
   const Arguments render = words(std::string(kRender) + "@a.exr");
   expectRefusal(runLimited("-f 4", render), ExitCode::Output, "ulimit -f");
+  expectRefusal(runLimited("-f 4", words("generate cloud @cloud.vdb --resolution 32 --quiet")), ExitCode::Output, "ulimit -f");
   for (const char* space : {"-v 200000", "-v 400000"}) expectRefusal(runLimited(space, render), ExitCode::OutOfMemory, "ulimit -v");
   EXPECT_EQ(folder.fileCount(), 0u);
 }
