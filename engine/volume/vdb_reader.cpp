@@ -24,7 +24,7 @@ std::string VdbReader::readString() {
 }
 
 void VdbReader::readBytes(void* bytes, std::size_t count) {
-  if (count > size_ - position_) failTruncated(position_ + count);
+  require(count);
   stream_.read(static_cast<char*>(bytes), std::streamsize(count));
   position_ += count;
   if (!stream_) fail(ErrorKind::Input, "cannot read '{}': the disk reports an error", file_.string());
@@ -32,7 +32,7 @@ void VdbReader::readBytes(void* bytes, std::size_t count) {
 
 void VdbReader::skip(std::uint64_t bytes) {
   constexpr std::uint64_t kSeekWorthwhile = 1 << 16;  // a seek drops what the stream has read ahead
-  if (bytes > size_ - position_) failTruncated(position_ + bytes);
+  require(bytes);
   if (bytes >= kSeekWorthwhile) return seek(position_ + bytes);
   stream_.ignore(std::streamsize(bytes));
   position_ += bytes;

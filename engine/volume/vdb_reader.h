@@ -27,6 +27,10 @@ class VdbReader {
   void readBytes(void* bytes, std::size_t count);
   void skip(std::uint64_t bytes);
   void seek(std::uint64_t position);
+  /// Fails unless at least so many bytes follow.
+  void require(std::uint64_t bytes) const {
+    if (bytes > size_ - position_) failTruncated(position_ + bytes);
+  }
 
   std::uint64_t position() const { return position_; }
   std::uint64_t size() const { return size_; }

@@ -72,6 +72,19 @@ TEST_F(Vdb, AStreamedFileIsReadAndRefusedWhenTruncated) {
   }
 }
 
+TEST_F(Vdb, AStreamThatCountsMoreGridsThanItHasRoomForIsRefused) {
+  {
+    std::ofstream stream(file, std::ios::binary);
+    openvdb::io::Stream(stream).write(openvdb::GridPtrVec{makeGrid("density", 0.2f)});
+  }
+  constexpr std::size_t kGridCount = 61;  // signature, versions, identifier, and no metadata
+  std::string bytes = readBytes(file);
+  ASSERT_EQ(bytes[kGridCount], 1);
+  bytes[kGridCount + 3] = 0x64;
+  writeBytes(file, bytes);
+  expectReadRefused({file.string(), "incomplete"});
+}
+
 TEST_F(Vdb, ANewerFormatIsTriedWithoutNoiseAndAnAncientOneIsRefused) {
   write({makeGrid("density", 0.5f)});
   std::string bytes = readBytes(file);
