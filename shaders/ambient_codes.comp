@@ -37,7 +37,7 @@ void main() {
   const uint brick = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
   if (brick >= push.count) return;
   const int row = int(gl_LocalInvocationIndex);
-  const ivec3 first = ivec3(texelFetch(brickCells, int(push.firstBrick + brick)).xyz) +
+  const ivec3 first = push.firstBlock + ivec3(texelFetch(brickCells, int(push.firstBrick + brick)).xyz) +
                       ivec3(0, row % kGatherBrickEdge, row / kGatherBrickEdge);
   const uint pair = ((push.firstBrick + brick) * kGatherBrickBlocks + row * kGatherBrickEdge) / 2;
   for (int x = 0; x < kGatherBrickEdge; x += 2)

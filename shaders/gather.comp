@@ -17,6 +17,7 @@ const bool kScalars = SCALARS;    // whether voxels are classified after interpo
 const bool kSampled = SAMPLED;    // whether light is evaluated at samples
 const bool kSurfaces = SURFACES;  // whether they then may be surfaces
 const bool kParts = PARTS;        // whether only the bricks of a part are marched (GatherPart)
+const bool kRegion = REGION;      // whether only a cube of the volume is marched, behind those that were marched before (GatherRegion)
 
 layout(constant_id = 0) const int kAxis = 2;          // rays with another axis are marched by other dispatches
 layout(constant_id = 1) const bool kTowards = false;  // whether the light of blocks depends on the direction to the eye
@@ -35,8 +36,8 @@ layout(binding = 1) uniform utextureBuffer brickNumbers;     // with kParts, bri
 layout(binding = 2) uniform utextureBuffer mediumQuads;      // extinctions, four halves; or four codes of scalars
 layout(binding = 3) uniform utextureBuffer sourceQuads;      // four packed source terms; only with kColored
 layout(binding = 4) uniform utextureBuffer towardsQuads;     // four times three bytes; only with kTowards
-layout(binding = 5, rgba32f) writeonly uniform imageBuffer colorEnergy;  // C, E
-layout(binding = 6, r32f) writeonly uniform imageBuffer distances;       // sum of e times distance
+layout(binding = 5, rgba32f) SUMS_ACCESS uniform imageBuffer colorEnergy;  // C, E
+layout(binding = 6, r32f) SUMS_ACCESS uniform imageBuffer distances;       // sum of e times distance
 
 // Codes of optical depths, 16 bits each: towards each light, then for each channel those that ambient light
 // has passed.
@@ -86,6 +87,7 @@ struct Slices {
   int firstSkip;
   ivec3 skipStrides;    // of the sides and the axis
   ivec3 lastSkip;       // of the sides and the axis
+  ivec3 first, begin, end;  // with kRegion: GatherRegion, of the sides and the axis
 };
 
 struct Sums {
@@ -98,10 +100,10 @@ struct Sums {
   int brick;            // 0 if none was entered
 };
 
-// With kParts: sums of the bricks so far, in fixed point (SumChannel), whether they were in range, and the brick of the last quad if it
-// belongs to the part, otherwise 0.
+// With kParts: sums of the bricks so far, in fixed point (SumChannel), and whether they were in range.
 uvec2 partSums[6];
 bool partFits = true;
+// The brick of the last quad if it belongs to the part, otherwise 0; with kRegion 1 if the quad is in the cube.
 int ownBrick = 0;
 
 // The weights of a quad's two neighbours along a side; sets `low` to the quad that has them.
@@ -116,6 +118,10 @@ vec2 sideWeights(float position, int count, out int low) {
 
 // The brick at a position on the sides and the axis.
 int brickAt(Slices level, ivec3 place) {
+  if (kRegion) {
+    ownBrick = all(greaterThanEqual(place, level.begin)) && all(lessThan(place, level.end)) ? 1 : 0;
+    place -= level.first;
+  }
   const ivec3 cell = place >> kBrickLevels;
   const uint brick = texelFetch(brickNumbers, level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
                                                   cell.z * level.cellStrides.z).x;
@@ -307,9 +313,9 @@ void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
   const int quad = quadAt(level, ray.origin + ray.slope * float(slice), slice, weights);
   const float ahead = (float(slice) - ray.eye) * ray.direction;
   const vec4 medium = mediumAt(quad, weights, extinctionsOf(quad), ray.toEye);
-  if (kParts) {
+  if (kParts || kRegion) {
     if (ownBrick == 0 || medium == vec4(0.0)) return;
-    enterBrick(sums, ray, ownBrick, float(slice) - 0.5 * ray.direction);
+    if (kParts) enterBrick(sums, ray, ownBrick, float(slice) - 0.5 * ray.direction);
   }
   Lit lit;
   addPart(sums, medium, ray.layer * partInFront(ahead), ahead, lit, ray.toEye);
@@ -335,12 +341,12 @@ void addLitStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int
   Found found = litAt(level, ray, within ? slice : slice - int(ray.direction), within);
   const int brick = ownBrick;
   const vec4 medium = 0.5 * (last.medium + found.medium);
-  if (kParts) {
+  if (kParts || kRegion) {
     if (brick == 0 || medium == vec4(0.0)) {
       last = found;
       return;
     }
-    enterBrick(sums, ray, brick, float(slice) - ray.direction);
+    if (kParts) enterBrick(sums, ray, brick, float(slice) - ray.direction);
   }
   const float ahead = (float(slice) - ray.eye) * ray.direction;
   Lit lit;
@@ -370,7 +376,9 @@ void addLitStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int
 int emptyGroups(Slices level, Ray ray, int slice, int before) {
   const float first = float(slice) - ray.direction * float(before), last = float(slice) + ray.direction * float(ray.group - 1);
   const vec2 low = min(ray.origin + ray.slope * first, ray.origin + ray.slope * last);
-  const ivec3 cell = clamp(ivec3(floor(vec3(low, min(first, last)))) >> kSkipLevels, ivec3(0), level.lastSkip);
+  ivec3 place = ivec3(floor(vec3(low, min(first, last))));
+  if (kRegion) place -= level.first;
+  const ivec3 cell = clamp(place >> kSkipLevels, ivec3(0), level.lastSkip);
   return int(texelFetch(skipCells, level.firstSkip + cell.x * level.skipStrides.x + cell.y * level.skipStrides.y +
                                        cell.z * level.skipStrides.z).x);
 }
@@ -390,6 +398,19 @@ ivec2 slicesOnRay(Slices level, Ray ray, ivec2 slices) {
   // There are no slices beyond what 32 bits can count.
   range = clamp(range, vec2(slices) - vec2(1.0), vec2(slices) + vec2(1.0));
   return ivec2(max(int(floor(range.x)), slices.x), min(int(ceil(range.y)), slices.y - 1));
+}
+
+// With kRegion: the slices, of which the first and the last may be too many, on which the ray is in the cube.
+ivec2 slicesInRegion(Slices level, Ray ray) {
+  vec2 range = vec2(level.begin.z, level.end.z - 1);
+  [[unroll]] for (int side = 0; side < 2; ++side) {
+    const float slope = abs(ray.slope[side]) < 1e-7 ? 1e-7 : ray.slope[side];
+    // The first cube of the volume has the positions up to a voxel before it, too.
+    const float a = (float(level.begin[side]) - 1.0 - ray.origin[side]) / slope, b = (float(level.end[side]) - ray.origin[side]) / slope;
+    range = vec2(max(range.x, min(a, b)), min(range.y, max(a, b)));
+  }
+  range = clamp(range, vec2(level.begin.z - 2), vec2(level.end.z + 2));
+  return ivec2(floor(range.x), ceil(range.y));
 }
 
 Found nothingFound() {
@@ -439,6 +460,15 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float end, bool
   const int begin = slice;
   if (scalars || kSampled) ++left;
   Found last = nothingFound();
+  if (kRegion) {
+    const ivec2 own = slicesInRegion(level, ray);
+    const int before = max(direction > 0 ? own.x - slice : slice - own.y, 0);
+    slice += direction * before;
+    // And the slice that ends the last stretch.
+    left = min(left - before, (direction > 0 ? own.y - slice : slice - own.x) + 2);
+    if (left <= 0) return;
+    if ((scalars || kSampled) && slice != begin) last = foundAt(level, ray, slice - direction, scalars);
+  }
   // The loops test their conditions at the end: lavapipe executes the body of other loops once more, masked.
   do {
     int empty;
@@ -480,13 +510,20 @@ Slices slicesOf(int number) {
   slices.firstSkip = level.firstSkip;
   slices.skipStrides = ivec3(skipStrides[kSideA], skipStrides[kSideB], skipStrides[kAxis]);
   slices.lastSkip = ivec3(level.lastSkip[kSideA], level.lastSkip[kSideB], level.lastSkip[kAxis]);
+  if (kRegion) {
+    const GatherRegion region = frame.region;
+    slices.first = ivec3(region.first[kSideA], region.first[kSideB], region.first[kAxis]);
+    slices.begin = ivec3(region.begin[kSideA], region.begin[kSideB], region.begin[kAxis]);
+    slices.end = ivec3(region.end[kSideA], region.end[kSideB], region.end[kAxis]);
+  }
   return slices;
 }
 
 void main() {
   ivec2 index = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(index, kParts ? frame.part.extent : frame.samples))) return;
+  if (any(greaterThanEqual(index, kParts ? frame.part.extent : kRegion ? frame.region.extent : frame.samples))) return;
   if (kParts) index += frame.part.first;
+  if (kRegion) index += frame.region.corner;
   const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);
   const vec3 components = alongAxes(position);
   if (marchAxis(position, components) != kAxis) return;
@@ -501,6 +538,14 @@ void main() {
   if (kParts)
     [[unroll]] for (int c = 0; c < 6; ++c) partSums[c] = uvec2(0);
   float distance = 0.0;  // sum of e times world distance from the eye plane
+  const int place = index.x + index.y * frame.samples.x;
+  vec3 colorBefore = vec3(0.0);
+#ifdef CONTINUES_SUMS
+  const vec4 before = imageLoad(colorEnergy, place);
+  colorBefore = before.rgb;
+  sums.transmittance -= before.a;
+  distance = imageLoad(distances, place).x;
+#endif
   for (int number = frame.finest; number <= frame.coarsest; ++number) {
     // In blocks of the level, the centre of whose first is at half an edge minus half a voxel.
     const float edge = float(1 << number);
@@ -527,8 +572,8 @@ void main() {
   }
   // For a ray that ended before the volume, what lies behind counts like what is in front.
   const float energy = 1.0 - sums.transmittance;
-  const float whole = sums.transmittance > frame.end ? 1.0 : 1.0 / energy;
-  const int place = index.x + index.y * frame.samples.x;
-  imageStore(colorEnergy, place, whole * vec4(frame.sourceUnit * sums.color, energy));
+  const bool complete = !kRegion || frame.region.isLast != 0;
+  const float whole = sums.transmittance > frame.end || !complete ? 1.0 : 1.0 / energy;
+  imageStore(colorEnergy, place, whole * vec4(colorBefore + frame.sourceUnit * sums.color, energy));
   imageStore(distances, place, vec4(whole * distance));
 }

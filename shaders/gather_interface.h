@@ -98,8 +98,18 @@ struct GatherPart {
   int colorDigits, energyDigits, depthDigits, distanceDigits;  // behind the binary point
 };
 
+// A cube of a volume whose voxels alone are on the device (engine/gathering/gather_region.h): rays march what is in it, behind the cubes that
+// were marched before, of which the sums of the lattice hold the results. Positions on rays are those in the whole volume.
+struct GatherRegion {
+  ivec3 first;            // first voxel of the box around the cube, whose bricks and cells the levels number; a multiple of a brick's edge
+  ivec3 begin, end;       // the cube has the quads of the voxels from `begin` to `end` - 1
+  ivec2 corner, extent;   // the rectangle of the lattice from which the cube is seen
+  int isLast;             // 1 if the sums are then complete
+};
+
 struct GatherFrame {
   GatherPart part;        // only where the dispatch is specialised for parts
+  GatherRegion region;    // only where it is specialised for regions
   SampleLight lights[kMostSampleLights];
   vec3 tint;              // factor of the extinction between light and voxel
   float phaseG;
@@ -180,6 +190,18 @@ struct LightDepthsPush {
   uvec2 depths;
 };
 
+// light_planes.comp: the planes slab.begin to slab.end - 1 of a face of a light's rays.
+FV_CONSTANT uint kOtherFan = 0xffffu;  // the code of voxels that the light reaches through another face
+struct LightPlanes {
+  FaceRays fan;
+  RaySlab slab;
+  ivec2 sides;       // the volume's dimensions on the sides of the face
+  mat3 indexToWorld; // linear part
+  vec3 place;        // of the light in index space; at infinity the direction towards it
+  int atInfinity;
+  int fanIndex;
+};
+
 // ambient_sweep.comp
 struct AmbientSweepPush {
   ivec3 cells;
@@ -201,6 +223,7 @@ struct AmbientCodesPush {
   ivec3 cells;
   int cellEdge;      // voxels
   int blockEdge;     // voxels
+  ivec3 firstBlock;  // of the box whose bricks these are, among the blocks of the cells' volume
   int firstLight;    // of the channel
   int firstWeight;   // first weight to divide by; -1 for none
   uint firstBrick;

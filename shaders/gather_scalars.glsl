@@ -157,11 +157,13 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
   tableAt(middle, integral, medium);
   vec4 near = meanBetween(first.scalar, first.integral, first.medium, middle, integral, medium);
   vec4 far = meanBetween(middle, integral, medium, second.scalar, second.integral, second.medium);
-  if (kParts) {
+  if (kParts || kRegion) {
     if (brick == 0 || coverage == 0.0 || near.a + far.a == 0.0) {
       last = found;
       return;
     }
+  }
+  if (kParts) {
     enterBrick(sums, ray, brick, float(slice) - ray.direction);
     last.arriving = vec4(-1.0);  // as it may have been computed for another brick, less exactly
   }

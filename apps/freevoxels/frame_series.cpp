@@ -12,6 +12,7 @@
 #include "apps/freevoxels/share_group.h"
 #include "engine/octree/volume_limits.h"
 #include "engine/region_renderer.h"
+#include "engine/streamed_renderer.h"
 #include "engine/storage/baked_volume.h"
 #include "engine/volume/content_hash.h"
 #include "engine/vulkan/pipeline.h"
@@ -112,12 +113,10 @@ void FrameSeries::draw(std::span<const Frame> frames) {
 void FrameSeries::drawFilm(std::span<const Frame> frames) {
   const std::vector<std::string> inputs = volumesOf(frames);
   VolumesAhead volumes(inputs, [this, turn = int(framesOfFirstVolume(frames)), count = inputs.size()](const std::string& input) {
-    // Of a baked volume nothing finer is read than is needed, and nothing at all if its regions are read one by one.
+    // Of a baked volume nothing finer is read than is needed, and nothing at all if it is drawn piece by piece.
     const SceneOptions scene = sceneOf(input);
     const int level = scene.finestLevelNeeded(double(options_.frameSettings().lod), turn);
-    if (count == 1)
-      if (const auto file = drawableByRegions(options_, scene, turn); file && needsRegions(options_, device_, *file, level))
-        return std::shared_ptr<const Volume>();
+    if (count == 1 && needsPieces(options_, device_, pieceDrawing(options_, scene, turn), level)) return std::shared_ptr<const Volume>();
     return std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level));
   });
   std::size_t failed = 0;
@@ -150,33 +149,39 @@ void FrameSeries::drawFilm(std::span<const Frame> frames) {
   fail(ErrorKind::Input, "{} of {} volumes could not be drawn, for the reasons above", failed, inputs.size());
 }
 
-/// A baked volume that the device cannot hold is drawn region by region where that is possible, else from a coarser level. `volume` is
-/// null where it is known beforehand that regions are drawn.
+/// A baked volume that the device cannot hold is drawn piece by piece where that is possible, else from a coarser level. `volume` is
+/// null where it is known beforehand that pieces are drawn.
 void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<const Frame> frames) {
   const SceneOptions scene = sceneOf(frames.front().input);
-  const std::shared_ptr<const fvx::FvxFile> file = scene.input.baked();
+  // The frames of one volume alone: of a film's volumes, two are in memory anyway.
+  PieceDrawing pieces{.file = scene.input.baked()};
+  if (pieces.file && frames.size() == frames_) pieces = pieceDrawing(options_, scene, int(frames.size()));
+  const std::shared_ptr<const fvx::FvxFile> file = pieces.file;
   const RunReport before = report_;
   const std::size_t drawn = drawn_;
   const std::optional<Scene> reference = reference_;
-  std::shared_ptr<const fvx::FvxFile> regions = volume ? nullptr : file;
-  bool triedRegions = !volume || frames.size() != frames_;
+  bool inPieces = !volume, triedPieces = inPieces || pieces.way == PieceDrawing::Way::None;
   for (int level = scene.finestLevelNeeded(double(options_.frameSettings().lod), int(frames.size()));;) {
     try {
-      return regions ? drawRegions(regions, frames) : drawVolume(std::move(volume), frames);
+      return inPieces ? drawPieces(pieces, level, frames) : drawVolume(std::move(volume), pieces, frames);
     } catch (const Error& error) {
       // Processes that draw shares cannot change the level each by itself.
       if (error.kind() != ErrorKind::OutOfMemory || options_.drawsShares()) throw;
-      regions = std::exchange(triedRegions, true) ? nullptr : drawableByRegions(options_, scene, int(frames.size()));
-      if (!regions) {
+      inPieces = !std::exchange(triedPieces, true);
+      if (inPieces) {
+        spdlog::debug("{}; drawing it piece by piece", withOptions(error));
+      } else {
         if (file) level = std::max(level, finestLevel(*file, maximumVoxels(device_)));  // which is the one that was opened
         if (++level >= (file ? file->levels() : 1)) throw;
-        spdlog::warn("{}; drawing it at 1/{} of its resolution", withOptions(error), 1 << level);
+        const std::string why = pieces.whyNone.empty() ? "" : fmt::format(", and it cannot be drawn piece by piece: {}", pieces.whyNone);
+        spdlog::warn("{}{}; drawing it at 1/{} of its resolution", withOptions(error), why, 1 << level);
+        pieces.way = PieceDrawing::Way::None;  // the coarser level need not be exact
       }
     }
     report_ = before;
     drawn_ = drawn;
     reference_ = reference;
-    volume = regions ? nullptr : std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level));
+    volume = inPieces ? nullptr : std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level));
   }
 }
 
@@ -256,33 +261,54 @@ std::vector<Camera> FrameSeries::beginVolume(Scene& view, std::span<const Frame>
   return cameras;
 }
 
-void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, std::span<const Frame> frames) {
+/// Where the frames could be drawn cube by cube, nothing is drawn otherwise for lack of memory: the image does not depend on it.
+void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, const PieceDrawing& pieces, std::span<const Frame> frames) {
   Scene view = resolve(std::move(volume), frames.front().input);
   const std::vector<Camera> cameras = beginVolume(view, frames);
   Renderer renderer(device_, *view.volume, view.classification, options_.method.table(), prefixed(line_.progress(), prefix()));
   const std::vector<StageTime> built = renderer.timings();
   addTimes(report_.stages, built);
-  drawFrames(renderer, std::move(view), cameras, frames, built.size());
+  FrameSettings settings = options_.frameSettings();
+  settings.lighting = view.lighting;
+  if (pieces.way == PieceDrawing::Way::Cubes) {
+    settings.draw = Draw::Gather;
+    if (settings.lighting) settings.lighting->attenuation = lightAttenuationFor(settings);
+  }
+  drawFrames(renderer, std::move(settings), std::move(view), cameras, frames, built.size());
 }
 
-void FrameSeries::drawRegions(std::shared_ptr<const fvx::FvxFile> file, std::span<const Frame> frames) {
-  Scene view = resolve(std::make_shared<const Volume>(bakedOutline(*file)), frames.front().input);
-  const std::vector<Camera> cameras = beginVolume(view, frames, file.get());
-  spdlog::debug("drawn by splats, region by region: {}",
-                options_.drawsShares() ? "only the regions of the own shares are read" : "the volume does not fit into memory at once");
-  RegionRenderer renderer(device_, std::move(file), view.classification, options_.method.table(), frames.size() > 1);
-  drawFrames(renderer, std::move(view), cameras, frames, 0);
+void FrameSeries::drawPieces(const PieceDrawing& pieces, int level, std::span<const Frame> frames) {
+  const bool cubes = pieces.way == PieceDrawing::Way::Cubes;
+  Scene view = resolve(std::make_shared<const Volume>(bakedOutline(*pieces.file, cubes ? level : 0)), frames.front().input);
+  const std::vector<Camera> cameras = beginVolume(view, frames, pieces.file.get());
+  FrameSettings settings = options_.frameSettings();
+  settings.lighting = view.lighting;
+  if (cubes) {
+    spdlog::debug("drawn by gathering, cube by cube: the volume does not fit into memory at once");
+    StreamedRenderer renderer(device_, pieces.file, level, view.classification, options_.method.table());
+    drawFrames(renderer, std::move(settings), std::move(view), cameras, frames, 0);
+    for (std::size_t above = 0; above < renderer.cubesRead().size(); ++above)
+      if (renderer.cubesRead()[above] > 0)
+        spdlog::debug("{} cubes of {}³ blocks of {}³ voxels drawn for the last frame", renderer.cubesRead()[above],
+                      StreamedRenderer::kCubeEdge, 1 << (std::size_t(level) + above));
+    return;
+  }
+  if (options_.drawsShares())
+    spdlog::debug("drawn by splats, region by region: only the regions of the own shares are read");
+  else
+    spdlog::debug("drawn by splats, region by region: the volume does not fit into memory at once, and gathering is not possible so: {}",
+                  pieces.whyNotCubes);
+  RegionRenderer renderer(device_, pieces.file, view.classification, options_.method.table(), frames.size() > 1);
+  drawFrames(renderer, std::move(settings), std::move(view), cameras, frames, 0);
   const RegionRenderer::Counts counts = renderer.counts();
-  for (std::size_t level = 0; level < counts.drawn.size(); ++level)
-    if (counts.drawn[level] > 0)
-      spdlog::debug("{} regions of {}³ blocks of {}³ voxels drawn for the last frame", counts.drawn[level], fvx::kRegionEdge, 1 << level);
+  for (std::size_t i = 0; i < counts.drawn.size(); ++i)
+    if (counts.drawn[i] > 0)
+      spdlog::debug("{} regions of {}³ blocks of {}³ voxels drawn for the last frame", counts.drawn[i], fvx::kRegionEdge, 1 << i);
 }
 
 template <typename AnyRenderer>
-void FrameSeries::drawFrames(AnyRenderer& renderer, Scene view, const std::vector<Camera>& cameras, std::span<const Frame> frames,
-                             std::size_t stagesBefore) {
-  FrameSettings settings = options_.frameSettings();
-  settings.lighting = view.lighting;
+void FrameSeries::drawFrames(AnyRenderer& renderer, FrameSettings settings, Scene view, const std::vector<Camera>& cameras,
+                             std::span<const Frame> frames, std::size_t stagesBefore) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (options_.group != nullptr && !options_.group->draws(drawn_)) {
       drawnElsewhere_.push_back(&frames[i]);
@@ -315,6 +341,12 @@ template <typename AnyRenderer>
 void FrameSeries::drawFrame(AnyRenderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame) {
   if (!options_.drawsShares())
     return complete(renderer.render(view.camera, settings, prefixed(line_.progress(), prefix())), isTransparent(renderer), view, frame);
+  if constexpr (!std::is_same_v<AnyRenderer, StreamedRenderer>) drawShares(renderer, view, settings, frame);
+}
+
+/// Draws this process's shares, and hands on or writes their sums or the image of them.
+template <typename AnyRenderer>
+void FrameSeries::drawShares(AnyRenderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame) {
   FixedSums sums = drawSums(renderer, view.camera, settings);
   if (options_.group != nullptr) {
     finishAddingUp();

@@ -53,17 +53,19 @@ class FrameSeries {
  private:
   void drawFilm(std::span<const Frame> frames);
   void drawFitting(std::shared_ptr<const Volume> volume, std::span<const Frame> frames);
-  void drawVolume(std::shared_ptr<const Volume> volume, std::span<const Frame> frames);
-  void drawRegions(std::shared_ptr<const fvx::FvxFile> file, std::span<const Frame> frames);
+  void drawVolume(std::shared_ptr<const Volume> volume, const PieceDrawing& pieces, std::span<const Frame> frames);
+  void drawPieces(const PieceDrawing& pieces, int level, std::span<const Frame> frames);
   std::vector<Camera> beginVolume(Scene& view, std::span<const Frame> frames, const fvx::FvxFile* file = nullptr);
-  /// Draws with a Renderer or a RegionRenderer.
+  /// Draws with a Renderer, a StreamedRenderer or a RegionRenderer.
   template <typename AnyRenderer>
-  void drawFrames(AnyRenderer& renderer, Scene view, const std::vector<Camera>& cameras, std::span<const Frame> frames,
-                  std::size_t stagesBefore);
+  void drawFrames(AnyRenderer& renderer, FrameSettings settings, Scene view, const std::vector<Camera>& cameras,
+                  std::span<const Frame> frames, std::size_t stagesBefore);
   void begin(const Scene& view, std::size_t frames);
   void agree(const Scene& view, const fvx::FvxFile* file);
   template <typename AnyRenderer>
   void drawFrame(AnyRenderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame);
+  template <typename AnyRenderer>
+  void drawShares(AnyRenderer& renderer, const Scene& view, const FrameSettings& settings, const Frame& frame);
   template <typename AnyRenderer>
   FixedSums drawSums(AnyRenderer& renderer, const Camera& camera, const FrameSettings& settings);
   void finishAddingUp();

@@ -1,10 +1,10 @@
 #include "apps/freevoxels/region_choice.h"
 
-#include <spdlog/spdlog.h>
-
 #include "apps/freevoxels/failure.h"
+#include "engine/attenuation/ray_sweep.h"
 #include "engine/octree/volume_limits.h"
 #include "engine/region_renderer.h"
+#include "engine/streamed_renderer.h"
 
 namespace freevoxels {
 
@@ -12,30 +12,63 @@ namespace {
 
 /// The least that a voxel with data takes on the device: its extinction and its place in the lists of what is drawn.
 constexpr std::uint64_t kLeastDeviceBytes = 12;
+/// What a quad of the gather takes: extinctions; and for each light codes and quads of them.
+constexpr std::uint64_t kMediumQuadBytes = 8, kLightBytes = 8 + 2;
+
+/// The least that the gather needs of the device for a level.
+std::uint64_t leastGatherBytes(const PieceDrawing& pieces, int level) {
+  std::uint64_t bricks = 0;
+  for (const fvx::ChunkEntry& chunk : pieces.file->chunks(fvx::Channel::Scalars, level)) bricks += std::uint64_t(chunk.bricks());
+  std::uint64_t quadBytes = kMediumQuadBytes, rays = 0;
+  if (pieces.settings.lighting) {
+    const glm::dmat4 indexToWorld = fvx::levelToWorld(pieces.file->description().volume.indexToWorld, level);
+    for (const Light& light : pieces.settings.lighting->lights) {
+      rays += rayBytes(pieces.file->dimensions(level), lightSource(light, indexToWorld));
+      quadBytes += kLightBytes;
+    }
+  }
+  return bricks * fvx::kBrickVoxels * quadBytes + rays;
+}
 
 }  // namespace
 
-std::shared_ptr<const fvx::FvxFile> drawableByRegions(const RenderOptions& options, const SceneOptions& scene, int frames) {
-  std::shared_ptr<const fvx::FvxFile> file = scene.input.baked();
-  if (!file || options.shares.coloredParts) return nullptr;
-  const Scene view = scene.resolve(std::make_shared<const Volume>(bakedOutline(*file)));
+PieceDrawing pieceDrawing(const RenderOptions& options, const SceneOptions& scene, int frames) {
+  PieceDrawing result{.file = scene.input.baked()};
+  if (!result.file || options.shares.coloredParts) return result;
+  const Scene view = scene.resolve(std::make_shared<const Volume>(bakedOutline(*result.file)));
   std::vector<Camera> cameras{view.camera};
   if (frames > 1) cameras = scene.cameras(*view.volume, view.classification, frames);
-  FrameSettings settings = options.frameSettings();
-  settings.lighting = view.lighting;
+  result.settings = options.frameSettings();
+  result.settings.lighting = view.lighting;
+  if (!options.drawsShares()) {
+    const std::optional<std::string> reason = scene.isAsBaked(*view.volume, view.classification)
+                                                  ? StreamedRenderer::whyNot(*result.file, view.classification, result.settings)
+                                                  : "another transfer function than the baked one needs all scalars";
+    if (!reason) {
+      result.way = PieceDrawing::Way::Cubes;
+      return result;
+    }
+    result.whyNotCubes = withOptions(*reason);
+  }
   const std::optional<std::string> reason =
-      RegionRenderer::whyNot(*file, view.classification, options.method.table(), cameras, settings);
-  if (reason) spdlog::debug("{} cannot be drawn region by region: {}", file->path().string(), withOptions(*reason));
-  return reason ? nullptr : file;
+      RegionRenderer::whyNot(*result.file, view.classification, options.method.table(), cameras, result.settings);
+  if (reason)
+    result.whyNone = result.whyNotCubes.empty() || !drawsByGathering(result.settings) ? withOptions(*reason) : result.whyNotCubes;
+  else
+    result.way = PieceDrawing::Way::Regions;
+  return result;
 }
 
-bool needsRegions(const RenderOptions& options, const Device& device, const fvx::FvxFile& file, int level) {
-  if (options.drawsShares() && !options.shares.coloredParts && !drawsByGathering(options.frameSettings())) return true;
+bool needsPieces(const RenderOptions& options, const Device& device, const PieceDrawing& pieces, int level) {
+  if (pieces.way == PieceDrawing::Way::None) return false;
+  if (options.drawsShares() && !drawsByGathering(pieces.settings)) return true;
+  const fvx::FvxFile& file = *pieces.file;
   const glm::u64vec3 box(file.dimensions(level));
   if (box.x * box.y * box.z > maximumVoxels(device)) return true;
   std::uint64_t active = 0;
   for (const fvx::ChunkEntry& chunk : file.chunks(fvx::Channel::Scalars, level)) active += chunk.activeVoxels;
-  return active > device.memoryBytes() / kLeastDeviceBytes || active > machineMemoryBytes() / 2 / sizeof(float);
+  if (active > device.memoryBytes() / kLeastDeviceBytes || active > machineMemoryBytes() / 2 / sizeof(float)) return true;
+  return pieces.way == PieceDrawing::Way::Cubes && leastGatherBytes(pieces, level) > device.memoryBytes();
 }
 
 }  // namespace freevoxels

@@ -1,18 +1,27 @@
 #pragma once
-// Whether frames of a baked volume are drawn region by region (engine/region_renderer.h).
+// Whether frames of a baked volume are drawn piece by piece: by gathering, cube by cube (engine/streamed_renderer.h), or by splats, region by
+// region (engine/region_renderer.h).
 
 #include <memory>
+#include <string>
 
 #include "apps/freevoxels/render_options.h"
 #include "engine/storage/fvx_file.h"
 
 namespace freevoxels {
 
-/// The baked volume of a scene, where its frames can be drawn region by region; null otherwise, the reason being said with --verbose.
-std::shared_ptr<const fvx::FvxFile> drawableByRegions(const RenderOptions& options, const SceneOptions& scene, int frames);
+/// How frames of a volume can be drawn that is not in memory as a whole.
+struct PieceDrawing {
+  enum class Way { None, Cubes, Regions };
+  Way way = Way::None;
+  std::shared_ptr<const fvx::FvxFile> file = nullptr;  ///< null where the volume is no baked one
+  FrameSettings settings = {};                         ///< of the frames, with lighting
+  std::string whyNotCubes = {}, whyNone = {};          ///< clauses, with the names of options
+};
+PieceDrawing pieceDrawing(const RenderOptions& options, const SceneOptions& scene, int frames);
 
-/// Whether they are: always where shares are drawn by splats, so that a process reads its own part of the file alone; otherwise where
-/// the device or this machine cannot hold `level`, from which they would be drawn else. The answer is certain only where it is yes.
-bool needsRegions(const RenderOptions& options, const Device& device, const fvx::FvxFile& file, int level);
+/// Whether they are, where they can be: always where shares are drawn by splats, so that a process reads its own part of the file alone;
+/// otherwise where the device or this machine cannot hold what is drawn of `level` at once. The answer is certain only where it is yes.
+bool needsPieces(const RenderOptions& options, const Device& device, const PieceDrawing& pieces, int level);
 
 }  // namespace freevoxels

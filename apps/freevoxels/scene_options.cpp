@@ -109,12 +109,15 @@ int SceneOptions::finestLevelNeeded(double lod, int frames) const {
   return std::max(level - 1, 0);
 }
 
+bool SceneOptions::isAsBaked(const Volume& volume, const Classification& classified) const {
+  // Another density scale leaves the content as it is; a transfer function does not.
+  return volume.classification &&
+         (volume.classificationIsFixed || (!classified.transferFunction && !volume.classification->transferFunction));
+}
+
 std::vector<Camera> SceneOptions::cameras(const Volume& volume, const Classification& classified, int frames) const {
   const auto content = [&] {
-    // Another density scale leaves the content as it is; a transfer function does not.
-    const bool asBaked = volume.classification && (volume.classificationIsFixed || (!classified.transferFunction &&
-                                                                                    !volume.classification->transferFunction));
-    if (!asBaked) return contentOf(volume, classified);
+    if (!isAsBaked(volume, classified)) return contentOf(volume, classified);
     const std::shared_ptr<const fvx::FvxFile> baked = input.baked();
     return subjectOf(baked->content(), baked->description().volume);
   };

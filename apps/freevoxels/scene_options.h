@@ -50,6 +50,8 @@ struct SceneOptions {
   /// The level of a baked volume that frames with this level of detail (FrameSettings::lod) need: one finer than the finest of which
   /// anything is drawn. 0 of other volumes, and where the levels are of scalars that are classified by a transfer function.
   int finestLevelNeeded(double lod, int frames) const;
+  /// Whether what is seen of a baked volume is what its file says, as its classification is the baked one or differs in density alone.
+  bool isAsBaked(const Volume& volume, const Classification& classification) const;
   /// As CameraOptions::resolve; a baked volume's content is read from its file, so that it does not depend on the level.
   std::vector<Camera> cameras(const Volume& volume, const Classification& classification, int frames = 1) const;
   /// Reads the other files and resolves the scene.

@@ -17,20 +17,6 @@ std::uint64_t depthBytes(const FaceRays& fan) {
   return fan.rays() * std::uint64_t((fan.planeCount + 1) / 2) * sizeof(std::uint32_t);
 }
 
-shader::FaceRays deviceFan(const FaceRays& fan, VkDeviceAddress depths) {
-  return {.axis = fan.axis,
-          .direction = fan.direction,
-          .firstPlane = fan.firstPlane,
-          .planeCount = fan.planeCount,
-          .rayCount = fan.rayCount,
-          .origin = fan.origin,
-          .slope = fan.slope,
-          .convergence = float(fan.convergence),
-          .farthest = float(fan.farthest),
-          .spacing = float(fan.spacing),
-          .depths = addressWords(depths)};
-}
-
 /// Bytes of the extinction of a slab, which fit into a processor's cache. A slab exceeds this only if four
 /// planes do.
 constexpr std::uint64_t kSlabBytes = std::uint64_t(8) << 20;
@@ -111,6 +97,20 @@ void checkFits(const Device& device, const RayRoom& room, std::uint64_t mostByte
 }
 
 }  // namespace
+
+shader::FaceRays deviceFan(const FaceRays& fan, VkDeviceAddress depths) {
+  return {.axis = fan.axis,
+          .direction = fan.direction,
+          .firstPlane = fan.firstPlane,
+          .planeCount = fan.planeCount,
+          .rayCount = fan.rayCount,
+          .origin = fan.origin,
+          .slope = fan.slope,
+          .convergence = float(fan.convergence),
+          .farthest = float(fan.farthest),
+          .spacing = float(fan.spacing),
+          .depths = addressWords(depths)};
+}
 
 std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source) {
   return roomFor(faceRays(dimensions, source), dimensions).bytes();

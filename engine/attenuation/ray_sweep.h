@@ -14,6 +14,9 @@
 
 namespace freevoxels {
 
+/// A face's rays as shaders have them, with the device address of their depths.
+shader::FaceRays deviceFan(const FaceRays& fan, VkDeviceAddress depths);
+
 /// Bytes of device memory for the rays of a source.
 std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source);
 

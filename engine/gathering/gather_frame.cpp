@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "engine/gathering/gather_pass.h"
 
@@ -154,6 +155,31 @@ glm::ivec2 sampleCount(glm::ivec2 size, double pitch) {
 }
 
 }  // namespace
+
+std::optional<SampleRectangle> samplesThatSee(const DeviceVolume& volume, const Camera& camera, const shader::GatherFrame& frame,
+                                              glm::ivec3 begin, glm::ivec3 end) {
+  constexpr double kMargin = 2.0;  // samples
+  const CentredRays rays(pixelRays(camera, frame.size, volume.indexToWorld), frame.size);
+  const bool orthographic = frame.orthographic != 0;
+  const glm::dmat3 toPixel = glm::inverse(orthographic ? glm::dmat3(rays.originX, rays.originY, rays.direction)
+                                                       : glm::dmat3(rays.directionX, rays.directionY, rays.direction));
+  glm::dvec2 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+  int behind = 0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 place = glm::mix(glm::dvec3(begin) - 1.0, glm::dvec3(end), glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2));
+    const glm::dvec3 pixel = toPixel * (place - rays.origin);
+    behind += !orthographic && !(pixel.z > 1e-6) ? 1 : 0;
+    const glm::dvec2 position = (glm::dvec2(pixel) / (orthographic ? 1.0 : std::max(pixel.z, 1e-6)) - glm::dvec2(frame.firstSample)) / double(frame.pitch);
+    low = glm::min(low, position);
+    high = glm::max(high, position);
+  }
+  if (behind == 8) return {};
+  if (behind > 0) return SampleRectangle{.first = glm::ivec2(0), .extent = frame.samples};
+  const glm::dvec2 last(frame.samples - 1);
+  if (glm::any(glm::lessThan(high + kMargin, glm::dvec2(0.0))) || glm::any(glm::greaterThan(low - kMargin, last))) return {};
+  const glm::ivec2 first(glm::clamp(glm::floor(low) - kMargin, glm::dvec2(0.0), last));
+  return SampleRectangle{.first = first, .extent = glm::ivec2(glm::clamp(glm::ceil(high) + kMargin, glm::dvec2(first), last)) - first + 1};
+}
 
 shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& camera, const FrameSettings& settings,
                                     const DetailRule& detail, double end) {

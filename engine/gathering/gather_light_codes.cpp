@@ -35,10 +35,10 @@ void GatherVolume::prepareSampled(const Lighting* lighting, std::vector<StageTim
   sampled_ = lights;
   ambientChannels_ = channels;
   const int edge = channels > 0 ? ambientCellEdge(volume_.dimensions, lighting->phaseG != 0.0) : 0;
-  if (edge > 0 && (!ambient_ || ambient_->edge() != edge)) {
+  if (surroundings_ == nullptr && edge > 0 && (!ownAmbient_ || ownAmbient_->edge() != edge)) {
     const StageTimer timer(times, "ambient cells");
     dropLightCodes();
-    ambient_.emplace(device_, volume_, classification_, edge);
+    ownAmbient_.emplace(device_, volume_, classification_, edge);
   }
   const std::uint64_t bytes = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks * sizeof(std::uint16_t);
   for (int slot = 0; slot < shader::kMostLightSlots; ++slot) {
@@ -47,6 +47,9 @@ void GatherVolume::prepareSampled(const Lighting* lighting, std::vector<StageTim
       codes = {};
     else if (codes.bytes() == 0)
       codes = Buffer(device_, bytes, MemoryUse::Device, "codes of light");
+    if (surroundings_ == nullptr || slot >= sampleLights()) continue;
+    const std::vector<std::uint16_t> given = surroundings_->codes(slot, *this);
+    upload(device_, codes, std::as_bytes(std::span(given)));
   }
 }
 
@@ -57,15 +60,15 @@ void GatherVolume::dropLightCodes() {
 
 /// Computes the codes of all blocks of bricks, occupied or not.
 void GatherVolume::recordLightCodes(Commands& commands, const Shading& shading) {
-  if (ambientChannels_ > 0 && ambient_->record(commands, *shading.lighting, shading.frame.eye)) dropLightCodes();
+  if (surroundings_ == nullptr && ambientChannels_ > 0 && ownAmbient_->record(commands, *shading.lighting, shading.frame.eye)) dropLightCodes();
   if ((wantedLevels_ & ~lightLevels_) == 0) return;
   commands.beginPass("light depths");
   if (lightLevels_ == 0)
-    for (int slot = 0; slot < lightSlots(); ++slot) commands.clear(lightCodes_[std::size_t(slot)]);  // of the empty brick
+    for (int slot = surroundings_ != nullptr ? sampleLights() : 0; slot < lightSlots(); ++slot) commands.clear(lightCodes_[std::size_t(slot)]);  // of the empty brick
   for (int level = 0; level <= built_.volume.hierarchy.top(); ++level) {
     if (((wantedLevels_ & ~lightLevels_) >> level & 1u) == 0 || firstBricks_[std::size_t(level)] == firstBricks_[std::size_t(level) + 1])
       continue;
-    recordLightDepths(commands, shading, level);
+    if (surroundings_ == nullptr) recordLightDepths(commands, shading, level);
     recordAmbientCodes(commands, level);
   }
   commands.barrier(kCompute, kCompute);
@@ -94,16 +97,17 @@ void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading,
 void GatherVolume::recordAmbientCodes(Commands& commands, int level) {
   if (ambientChannels_ == 0) return;
   const Pipeline pass = makeComputePipeline(device_, shaders::ambient_codes);
-  const std::array<Binding, 2> bindings{&brickCellTexels_, &ambient_->light()};
+  const std::array<Binding, 2> bindings{&brickCellTexels_, &ambient().light()};
   const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
-  const glm::ivec3 cells = ambient_->cells();
+  const glm::ivec3 cells = ambient().cells();
   const int cellCount = cells.x * cells.y * cells.z;
   for (int channel = 0; channel < ambientChannels_; ++channel) {
     const shader::AmbientCodesPush push{.cells = cells,
-                                        .cellEdge = ambient_->edge(),
+                                        .cellEdge = ambient().edge(),
                                         .blockEdge = 1 << level,
+                                        .firstBlock = surroundings_ != nullptr ? surroundings_->first : glm::ivec3(0),
                                         .firstLight = channel * cellCount,
-                                        .firstWeight = ambient_->hasWeights() ? ambientChannels_ * cellCount : -1,
+                                        .firstWeight = ambient().hasWeights() ? ambientChannels_ * cellCount : -1,
                                         .firstBrick = first,
                                         .count = count,
                                         .codes = addressWords(lightCodes_[std::size_t(sampleLights() + channel)].address())};
@@ -168,14 +172,15 @@ void GatherVolume::describeLights(shader::GatherFrame& frame) const {
   const glm::dmat3 linear(volume.indexToWorld);
   for (std::size_t i = 0; i < sampled_.size(); ++i) {
     const Light& light = sampled_[i];
-    const glm::dvec3 place = light.atInfinity ? glm::normalize(light.place) : lightSource(light, volume.indexToWorld).place;
+    const glm::dvec3 first = surroundings_ != nullptr ? glm::dvec3(surroundings_->first) : glm::dvec3(0.0);
+    const glm::dvec3 place = light.atInfinity ? glm::normalize(light.place) : lightSource(light, volume.indexToWorld).place + first;
     frame.lights[i] = {.place = place, .atInfinity = light.atInfinity ? 1 : 0, .color = light.intensity * light.color};
     if (light.atInfinity) {
       const glm::dvec3 way = lightSource(light, volume.indexToWorld).place, size = glm::abs(way);
       frame.lights[i].across = way / std::max({size.x, size.y, size.z});
     }
   }
-  if (ambientChannels_ > 0) frame.ambient = ambient_->unshadowed();
+  if (ambientChannels_ > 0) frame.ambient = ambient().unshadowed();
   frame.tint = lighting_->tint;
   frame.phaseG = float(lighting_->phaseG);
   frame.surface = float(lighting_->surface);

@@ -5,16 +5,22 @@
 
 #include "embedded/gather_post_lit.h"
 #include "embedded/gather_post_lit_parts.h"
+#include "embedded/gather_post_lit_region.h"
 #include "embedded/gather_post_surfaces.h"
 #include "embedded/gather_post_surfaces_parts.h"
+#include "embedded/gather_post_surfaces_region.h"
 #include "embedded/gather_post_unlit.h"
 #include "embedded/gather_post_unlit_parts.h"
+#include "embedded/gather_post_unlit_region.h"
 #include "embedded/gather_pre_lit.h"
 #include "embedded/gather_pre_lit_parts.h"
+#include "embedded/gather_pre_lit_region.h"
 #include "embedded/gather_pre_surfaces.h"
 #include "embedded/gather_pre_surfaces_parts.h"
+#include "embedded/gather_pre_surfaces_region.h"
 #include "embedded/gather_pre_unlit.h"
 #include "embedded/gather_pre_unlit_parts.h"
+#include "embedded/gather_pre_unlit_region.h"
 #include "embedded/gather_stencil.h"
 #include "embedded/gather_upsample.h"
 
@@ -24,22 +30,23 @@ namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 
-const Shader& gatherShader(const GatherVolume& volume, bool parts) {
+/// The shaders for the whole volume, for a part and for a region.
+const std::array<const Shader*, 3>& gatherShaders(const GatherVolume& volume) {
   using namespace shaders;
-  constexpr std::array<std::array<std::array<const Shader*, 2>, 3>, 2> kShaders{{
-      {{{&gather_pre_unlit, &gather_pre_unlit_parts},
-        {&gather_pre_lit, &gather_pre_lit_parts},
-        {&gather_pre_surfaces, &gather_pre_surfaces_parts}}},
-      {{{&gather_post_unlit, &gather_post_unlit_parts},
-        {&gather_post_lit, &gather_post_lit_parts},
-        {&gather_post_surfaces, &gather_post_surfaces_parts}}},
+  static constexpr std::array<std::array<std::array<const Shader*, 3>, 3>, 2> kShaders{{
+      {{{&gather_pre_unlit, &gather_pre_unlit_parts, &gather_pre_unlit_region},
+        {&gather_pre_lit, &gather_pre_lit_parts, &gather_pre_lit_region},
+        {&gather_pre_surfaces, &gather_pre_surfaces_parts, &gather_pre_surfaces_region}}},
+      {{{&gather_post_unlit, &gather_post_unlit_parts, &gather_post_unlit_region},
+        {&gather_post_lit, &gather_post_lit_parts, &gather_post_lit_region},
+        {&gather_post_surfaces, &gather_post_surfaces_parts, &gather_post_surfaces_region}}},
   }};
   const bool sampled = volume.sampleLights() > 0 || volume.ambientChannels() > 0;
-  return *kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : sampled ? 1 : 0][parts];
+  return kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : sampled ? 1 : 0];
 }
 
-Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, bool parts) {
-  return makeComputePipeline(device, gatherShader(volume, parts),
+Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, const Shader& shader) {
+  return makeComputePipeline(device, shader,
                              {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.isLit(), volume.inPieces(),
                               std::uint32_t(volume.sampleLights()), std::uint32_t(volume.ambientChannels()),
                               std::uint32_t(volume.octaves()), volume.isTinted()});
@@ -105,7 +112,8 @@ void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
 }
 
 void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
-                                 const TexelView& numbers, const TexelView& skips, glm::ivec2 extent, bool parts) {
+                                 const TexelView& numbers, const TexelView& skips, glm::ivec2 extent, Extent marched) {
+  const Shader& shader = *gatherShaders(volume)[std::size_t(marched)];
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
     const GatherVolume::Quads& quads = volume.quads(axis);
@@ -119,12 +127,12 @@ void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume,
                                   &volume.transferTable(),
                                   &skips};
     for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
-    commands.dispatch(makeGather(device_, axis, volume, parts), bindings, glm::ivec3(extent, 1));
+    commands.dispatch(makeGather(device_, axis, volume, shader), bindings, glm::ivec3(extent, 1));
   }
 }
 
 void GatherPass::recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
-  dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), frame.samples, false);
+  dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), frame.samples, Extent::Whole);
   commands.barrier(kCompute, kCompute);
 }
 
@@ -134,7 +142,20 @@ void GatherPass::recordPart(Commands& commands, const GatherVolume& volume, cons
   makeRoom(gathered_, 1);  // a binding needs a buffer
   commands.beginPass("gather");
   commands.update(frame_, frame);
-  dispatchSamples(commands, volume, frame, numbers, skips, frame.part.extent, true);
+  dispatchSamples(commands, volume, frame, numbers, skips, frame.part.extent, Extent::Part);
+}
+
+void GatherPass::recordClear(Commands& commands, const shader::GatherFrame& frame) {
+  makeRoom(gathered_, std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y));
+  commands.clear(gathered_.colorEnergy);
+  commands.clear(gathered_.distances);
+}
+
+void GatherPass::recordRegion(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
+  commands.beginPass("gather");
+  begin(commands, frame);
+  dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), frame.region.extent, Extent::Region);
+  commands.barrier(kCompute, kCompute);
 }
 
 std::vector<Binding> GatherPass::imageBindings(const Sums& from, const Sums& to, const SplatTargets& targets) const {
@@ -168,12 +189,22 @@ void GatherPass::recordUpsampling(Commands& commands, const shader::GatherFrame&
 void GatherPass::record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
                         const SplatTargets& targets) {
   begin(commands, frame);
-  for (const RenderTarget* target : targets.all())
-    commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kCompute, kCompute);
   commands.beginPass("gather");
   recordSamples(commands, volume, frame);
+  recordPixels(commands, frame, volume.hasScalars(), targets);
+}
+
+void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets) {
+  begin(commands, frame);
+  recordPixels(commands, frame, scalars, targets);
+}
+
+/// The image of the gathered samples.
+void GatherPass::recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets) {
   commands.beginPass("gather image");
-  recordStencil(commands, frame, volume.hasScalars(), targets);
+  for (const RenderTarget* target : targets.all())
+    commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kCompute, kCompute);
+  recordStencil(commands, frame, scalars, targets);
   recordUpsampling(commands, frame, targets);
   commands.barrier(kCompute, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
 }

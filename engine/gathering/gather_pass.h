@@ -4,6 +4,8 @@
 // pixels. The transmittance to the eye is computed along each sample's ray: Subr et al. 2007, Section 2.1,
 // Eq. 4, without an attenuation table.
 
+#include <optional>
+
 #include "engine/gathering/gather_stages.h"
 #include "engine/gathering/gather_volume.h"
 #include "engine/splatting/splat_pass.h"
@@ -18,6 +20,15 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
 
 /// Whether some ray of the lattice may march along this axis.
 bool someRayHasAxis(const shader::GatherFrame& frame, int axis);
+
+/// A rectangle of samples of a lattice.
+struct SampleRectangle {
+  glm::ivec2 first{0}, extent{0};
+};
+/// The samples of a frame of `volume` whose rays may meet what is interpolated of the voxels from `begin` to `end` - 1; nothing if there are
+/// none.
+std::optional<SampleRectangle> samplesThatSee(const DeviceVolume& volume, const Camera& camera, const shader::GatherFrame& frame, glm::ivec3 begin,
+                                              glm::ivec3 end);
 
 /// COMPUTE gather.comp, gather_stencil.comp and gather_upsample.comp: premultiplied RGBA in `targets.colorEnergy` and the
 /// mean distance in `targets.distance`, if that exists. Leaves the targets in layout GENERAL, visible to transfer.
@@ -35,6 +46,12 @@ class GatherPass {
   /// The sums of the bricks of a part, in fixed point, instead of those of all samples. `frame.part` is filled in.
   void recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
                   const TexelView& skips);
+  /// The sums of a volume that is on the device region by region: first recordClear, then recordRegion for one after the other, in the order
+  /// in which rays meet them, and with `frame.region.isLast` for the last one. `frame.region` is filled in. Then recordImage.
+  void recordClear(Commands& commands, const shader::GatherFrame& frame);
+  void recordRegion(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
+  /// The image in `targets`, as record() leaves it; `frame` is that of the whole volume.
+  void recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets);
   /// Does nothing if the lattice is that of the pixels.
   void recordUpsampling(Commands& commands, const shader::GatherFrame& frame, const SplatTargets& targets);
 
@@ -51,8 +68,10 @@ class GatherPass {
   };
   void setLattice(const shader::GatherFrame& frame);
   void makeRoom(Sums& sums, std::uint64_t samples);
+  enum class Extent { Whole, Part, Region };  ///< what of the volume is marched
   void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
-                       const TexelView& skips, glm::ivec2 extent, bool parts);
+                       const TexelView& skips, glm::ivec2 extent, Extent marched);
+  void recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets);
   std::vector<GatherSums> download(const Sums& sums) const;
   std::vector<Binding> imageBindings(const Sums& from, const Sums& to, const SplatTargets& targets) const;
 

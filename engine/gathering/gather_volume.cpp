@@ -47,11 +47,12 @@ float meanLayer(const DeviceVolume& volume) {
 }  // namespace
 
 GatherVolume::GatherVolume(const Device& device, const Volume& volume, const Classification& classification,
-                           const BuiltVolume& built, std::vector<StageTime>& times)
+                           const BuiltVolume& built, std::vector<StageTime>& times, const SurroundingLight* surroundings)
     : device_(device),
       volume_(volume),
       classification_(classification),
       built_(built),
+      surroundings_(surroundings),
       frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "shading frame") {
   makeBricks(times);
   const std::uint32_t bricks = firstBricks_.back();

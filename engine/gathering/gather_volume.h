@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 
@@ -18,14 +19,24 @@
 
 namespace freevoxels {
 
+class GatherVolume;
+
+/// What reaches a box from the lights of the volume of which it is a part.
+struct SurroundingLight {
+  glm::ivec3 first{0};           ///< the box's first voxel in the volume
+  const AmbientPass* ambient = nullptr;  ///< of the volume, up to date; null without ambient light
+  /// Codes of depths towards a light, 16 bits a block, in the order of the box's bricks; those of brick 0 are 0.
+  std::function<std::vector<std::uint16_t>(int light, const GatherVolume& box)> codes;
+};
+
 /// COMPUTE shade_blocks.comp and brick_quads.comp, for the first frame and for every frame whose light or
 /// axes differ from those of the previous one. Belongs to one volume, which must outlive it.
 class GatherVolume {
  public:
   /// Finds the bricks and adds the time of that to `times`. The other arguments must outlive this object.
-  /// Fails with ErrorKind::OutOfMemory.
+  /// With `surroundings`, lights at samples are those, and only voxels are read. Fails with ErrorKind::OutOfMemory.
   GatherVolume(const Device& device, const Volume& volume, const Classification& classification, const BuiltVolume& built,
-               std::vector<StageTime>& times);
+               std::vector<StageTime>& times, const SurroundingLight* surroundings = nullptr);
 
   /// The input of shading a frame. `lighting` and `lights` are null without lighting.
   struct Shading {
@@ -102,6 +113,7 @@ class GatherVolume {
   void makeSources();
   void prepareSampled(const Lighting* lighting, std::vector<StageTime>& times);
   int lightSlots() const { return sampleLights() + ambientChannels_; }
+  const AmbientPass& ambient() const { return surroundings_ != nullptr ? *surroundings_->ambient : *ownAmbient_; }
   void describeLights(shader::GatherFrame& frame) const;
   void dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t most);
   void makeRoom(Quads& quads, const std::array<bool, 3>& axes);
@@ -126,6 +138,7 @@ class GatherVolume {
   const Volume& volume_;
   const Classification& classification_;
   const BuiltVolume& built_;
+  const SurroundingLight* surroundings_;
   Pipeline shadePass_;
   Buffer frame_;  ///< shader::SetupFrame
   Buffer brickNumbers_;  ///< number of the brick by level and cell; 0 is the empty brick
@@ -147,7 +160,7 @@ class GatherVolume {
   std::optional<Lighting> lighting_;
   std::vector<Light> sampled_;  ///< lights that are evaluated at samples
   int ambientChannels_ = 0;     ///< channels of ambient light evaluated at samples; 0 if there is none
-  std::optional<AmbientPass> ambient_;
+  std::optional<AmbientPass> ownAmbient_;
   /// 16 bits a block, in bricks: sqrt(optical depth / kOpaqueDepth) towards each light, and for each ambient
   /// channel that of -log of the fraction of the unshadowed light that reaches it.
   std::array<Buffer, shader::kMostLightSlots> lightCodes_;

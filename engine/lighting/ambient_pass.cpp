@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <span>
 
 #include "embedded/ambient_sweep.h"
 
@@ -71,12 +70,12 @@ std::vector<float> cellExtinctions(const Volume& volume, const Classification& c
 }
 
 AmbientPass::AmbientPass(const Device& device, const Volume& volume, const Classification& classification, int edge)
-    : device_(device),
-      indexToWorld_(volume.indexToWorld),
-      edge_(edge),
-      cells_((volume.dimensions + edge_ - 1) / edge_) {
-  const std::vector<float> extinctions = cellExtinctions(volume, classification, edge_);
-  const auto bytes = std::as_bytes(std::span(extinctions));
+    : AmbientPass(device, volume.dimensions, volume.indexToWorld, edge, cellExtinctions(volume, classification, edge)) {}
+
+AmbientPass::AmbientPass(const Device& device, glm::ivec3 dimensions, const glm::dmat4& indexToWorld, int edge,
+                         std::span<const float> extinctions)
+    : device_(device), indexToWorld_(indexToWorld), edge_(edge), cells_((dimensions + edge_ - 1) / edge_) {
+  const auto bytes = std::as_bytes(extinctions);
   extinction_ = Buffer(device, bytes.size(), MemoryUse::Device, "extinctions of cells");
   upload(device, extinction_, bytes);
 }

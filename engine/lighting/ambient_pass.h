@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "engine/scene/directions.h"
@@ -31,6 +32,8 @@ class AmbientPass {
   /// Reads all voxels on the host. `edge` is the number of voxels along a cell's edge. Fails with
   /// ErrorKind::OutOfMemory.
   AmbientPass(const Device& device, const Volume& volume, const Classification& classification, int edge);
+  /// For a volume whose cellExtinctions() are given.
+  AmbientPass(const Device& device, glm::ivec3 dimensions, const glm::dmat4& indexToWorld, int edge, std::span<const float> extinctions);
 
   /// One channel for uniform light without a tint, otherwise one for each colour.
   static int channelCount(const Lighting& lighting);

@@ -96,10 +96,30 @@ TEST_F(BakeCommand, ACoarserLevelIsDrawnWhereItShowsTheSameOrWhereMemoryIsShort)
 }
 
 /// A part of the volume, close up, so that its voxels are needed.
-TEST_F(BakeCommand, WhatDoesNotFitIsDrawnRegionByRegionToTheSameBitsInAnyMemory) {
+TEST_F(BakeCommand, WhatDoesNotFitIsDrawnCubeByCubeAsTheWholeVolumeIs) {
   expectSuccess(run("bake procedural:cloud @a.fvx --resolution 192 --quiet"));
-  const std::string render = "render @a.fvx --size 40 --camera-position 3,1,2 --look-at 0,0,0 --fov 2 ";
-  expectSuccess(run(render + "@shares.exr --share 0/1 --draw splats --float --quiet"));
+  const std::string render = "render @a.fvx --size 40 --camera-position 3,1,2 --look-at 0,0,0 --fov 2 --float ";
+  expectSuccess(run(render + "@whole.exr --unlit --quiet"));
+  ASSERT_GT(largestDifference(picture("whole.exr"), Image{.size = {40, 40}, .pixels = std::vector<glm::vec4>(1600)}), 0.1);
+  std::vector<Image> inCubes;
+  for (const int limit : {48, 64, 128, 256}) {
+    const ProgramResult result = run(render + fmt::format("@limited.exr --unlit --verbose --memory-limit {}", limit));
+    expectSuccess(result);
+    EXPECT_GE(psnr(picture("limited.exr"), picture("whole.exr")), 60.0) << limit;
+    if (result.err.find("cube by cube: the volume does not fit") != std::string::npos) inCubes.push_back(picture("limited.exr"));
+  }
+  ASSERT_GE(inCubes.size(), 2u);
+  for (const Image& image : inCubes) EXPECT_EQ(image.pixels, inCubes.front().pixels);
+
+  const ProgramResult table = run(render + "@table.exr --light-attenuation table --verbose --memory-limit 48");
+  expectSuccess(table);
+  EXPECT_NE(table.err.find("gathering is not possible so: shadows from the table need"), std::string::npos) << table.err;
+}
+
+TEST_F(BakeCommand, SplatsOfWhatDoesNotFitAreDrawnRegionByRegionToTheSameBitsInAnyMemory) {
+  expectSuccess(run("bake procedural:cloud @a.fvx --resolution 192 --quiet"));
+  const std::string render = "render @a.fvx --size 40 --camera-position 3,1,2 --look-at 0,0,0 --fov 2 --draw splats ";
+  expectSuccess(run(render + "@shares.exr --share 0/1 --float --quiet"));
   ASSERT_GT(largestDifference(picture("shares.exr"), Image{.size = {40, 40}, .pixels = std::vector<glm::vec4>(1600)}), 0.1);
   for (const int limit : {48, 64}) {
     const ProgramResult result = run(render + fmt::format("@limited.exr --float --verbose --memory-limit {}", limit));
@@ -107,7 +127,7 @@ TEST_F(BakeCommand, WhatDoesNotFitIsDrawnRegionByRegionToTheSameBitsInAnyMemory)
     EXPECT_NE(result.err.find("region by region: the volume does not fit"), std::string::npos) << result.err;
     EXPECT_EQ(largestDifference(picture("limited.exr"), picture("shares.exr")), 0.0) << limit;
   }
-  for (const std::string part : {"0", "1"}) expectSuccess(run(render + "@part" + part + ".exr --quiet --sums --draw splats --share " + part + "/2"));
+  for (const std::string part : {"0", "1"}) expectSuccess(run(render + "@part" + part + ".exr --quiet --sums --share " + part + "/2"));
   expectSuccess(run("merge @part0.exr @part1.exr @merged.exr --float --quiet"));
   EXPECT_EQ(largestDifference(picture("merged.exr"), picture("shares.exr")), 0.0);
 }

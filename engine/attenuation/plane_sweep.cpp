@@ -1,0 +1,302 @@
+#include "engine/attenuation/plane_sweep.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <optional>
+#include <system_error>
+
+#include "embedded/light_planes.h"
+#include "embedded/ray_sweep.h"
+#include "engine/attenuation/ray_sweep.h"
+#include "engine/core/error.h"
+#include "engine/core/parameter.h"
+#include "engine/octree/device_volume.h"
+#include "engine/storage/baked_box.h"
+#include "engine/storage/chunk_pyramid.h"
+#include "engine/volume/coarse_cells.h"
+#include "engine/volume/transfer_table.h"
+#include "engine/vulkan/commands.h"
+#include "shaders/gather_interface.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr int kEdge = ScalarBricks::kEdge;
+constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+constexpr VkPipelineStageFlags2 kTransfer = VK_PIPELINE_STAGE_2_TRANSFER_BIT;
+constexpr int kMostPlanes = 8, kLeastPlanes = 2;  ///< that are swept at a time
+
+/// What a sweep looks up of a voxel: its extinction per world unit, or its scalar in intervals of the transfer function's table.
+class VoxelValues {
+ public:
+  explicit VoxelValues(const BakedLevel& level) : scale_(float(level.classification.densityScale)) {
+    if (!level.classification.transferFunction) return;
+    const Volume& volume = level.file->description().volume;
+    table_.emplace(*level.classification.transferFunction, volume.minimum, volume.maximum);
+  }
+  bool areScalars() const { return table_.has_value(); }
+  float outside() const { return areScalars() ? -1.0f : 0.0f; }
+  const TransferTable& table() const { return *table_; }
+  float at(float scalar) const {
+    if (!areScalars()) return std::min(std::max(scalar, 0.0f) * scale_, float(kMaximumExtinction));
+    const std::uint16_t code = table_->code(scalar);
+    return code == 0 ? -1.0f : (float(code) - 1.0f) * (float(shader::kTransferIntervals) / float(shader::kScalarCodes));
+  }
+
+ private:
+  float scale_;
+  std::optional<TransferTable> table_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> bricksAround(const fvx::FvxFile& file, int level) {
+  constexpr int m = fvx::kChunkEdge / kEdge;
+  Cells cells((file.dimensions(level) + kEdge - 1) / kEdge);
+  for (const fvx::ChunkEntry& chunk : file.chunks(fvx::Channel::Scalars, level))
+    for (int brick = 0; brick < fvx::kChunkBricks; ++brick)
+      if ((chunk.brickMask >> brick & 1u) != 0)
+        cells.values[cells.index(chunk.cell * m + glm::ivec3(brick % m, brick / m % m, brick / (m * m)))] = 1;
+  return spread(cells, -1, 1).values;
+}
+
+/// The sweep of one face.
+class SweptLight::Sweep {
+ public:
+  Sweep(SweptLight& light, const Device& device, const BakedLevel& level, const VoxelValues& values, const FaceRays& fan, int fanNumber)
+      : light_(light),
+        device_(device),
+        level_(level),
+        values_(values),
+        fan_(fan),
+        fanNumber_(fanNumber),
+        dimensions_(level.file->dimensions(level.level)),
+        sides_(dimensions_[(fan.axis + 1) % 3], dimensions_[(fan.axis + 2) % 3]),
+        strideB_(sides_.x + 2),
+        planeStride_(strideB_ * (sides_.y + 2)) {
+    planes_ = kMostPlanes;
+    while (planes_ > kLeastPlanes && bytes() > device.availableBytes()) planes_ /= 2;
+    if (bytes() > device.availableBytes())
+      fail(ErrorKind::OutOfMemory, "exact shadows of this light need {} MiB, and {} has {} MiB left: use {}", bytes() >> 20,
+           device.description().name, device.availableBytes() >> 20, Parameter("light-attenuation", "table"));
+    slab_ = Buffer(device, slabVoxels() * sizeof(float), MemoryUse::Device, "extinction around rays", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+    slabTexels_ = TexelView(device, slab_, VK_FORMAT_R32_SFLOAT);
+    carried_ = Buffer(device, fan.rays() * sizeof(float), MemoryUse::Device, "ray depths between slabs");
+    depths_ = Buffer(device, depthBytes(), MemoryUse::Device, "ray depths");
+    frame_ = Buffer(device, sizeof(shader::LightPlanes), MemoryUse::Device, "planes of a light", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+    codes_ = Buffer(device, codeBytes(), MemoryUse::Device, "codes of light");
+    sweep_ = makeComputePipeline(device, shaders::ray_sweep, {values.areScalars()});
+    lookUp_ = makeComputePipeline(device, shaders::light_planes, {values.areScalars()});
+    if (!values.areScalars()) return;
+    const std::vector<glm::vec4> texels = values.table().texels(kStoredDepth * level.file->description().volume.voxelSize());
+    table_ = Buffer(device, texels.size() * sizeof(glm::vec4), MemoryUse::Device, "transfer function table",
+                    VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+    upload(device, table_, std::as_bytes(std::span(texels)));
+    tableTexels_ = TexelView(device, table_);
+  }
+
+  void run(const glm::dmat4& indexToWorld, std::vector<StageTime>& times, const Progress& progress) {
+    indexToWorld_ = glm::dmat3(indexToWorld);
+    around_ = bricksAround(*level_.file, level_.level);
+    for (int begin = 0; begin < fan_.planeCount; begin += planes_) {
+      if (progress) progress("sweeping light", double(begin) / double(fan_.planeCount));
+      sweepPlanes(begin, std::min(begin + planes_, fan_.planeCount), times);
+    }
+    storeLayer();
+    light_.codes_.flush();
+  }
+
+ private:
+  std::uint64_t slabVoxels() const { return std::uint64_t(planes_ + 1) * std::uint64_t(planeStride_); }
+  /// The pairs of planes of a slab, and the pair before them.
+  std::uint64_t depthBytes() const { return fan_.rays() * std::uint64_t(planes_ / 2 + 1) * sizeof(std::uint32_t); }
+  std::uint64_t codeWords() const { return std::uint64_t((sides_.x + 1) / 2) * std::uint64_t(sides_.y); }
+  std::uint64_t codeBytes() const { return codeWords() * std::uint64_t(planes_) * sizeof(std::uint32_t); }
+  std::uint64_t bytes() const {
+    return slabVoxels() * sizeof(float) + fan_.rays() * sizeof(float) + depthBytes() + codeBytes();
+  }
+  int coordinateOf(int plane) const { return fan_.firstPlane + fan_.direction * plane; }
+
+  /// The bricks of the layer that has a plane; those of the last two layers are kept.
+  const Volume& layer(int number) {
+    const auto found = layers_.find(number);
+    if (found != layers_.end()) return found->second;
+    if (layers_.size() > 1) layers_.erase(fan_.direction > 0 ? layers_.begin() : std::prev(layers_.end()));
+    fvx::VoxelBox box{.first = glm::ivec3(0), .end = dimensions_};
+    box.first[fan_.axis] = number * kEdge;
+    box.end[fan_.axis] = std::min((number + 1) * kEdge, dimensions_[fan_.axis]);
+    return layers_.emplace(number, readBakedBox(*level_.file, level_.level, box)).first->second;
+  }
+
+  /// Writes a plane of the volume into a plane of the slab, whose border stays empty.
+  void fill(int coordinate, std::span<float> plane) {
+    std::ranges::fill(plane, values_.outside());
+    if (coordinate < 0 || coordinate >= dimensions_[fan_.axis]) return;
+    const ScalarBricks& bricks = layer(coordinate / kEdge).scalars;
+    const int axisA = (fan_.axis + 1) % 3, axisB = (fan_.axis + 2) % 3;
+    for (std::size_t i = 0; i < bricks.bricks().size(); ++i) {
+      const ScalarBricks::Brick& brick = bricks.bricks()[i];
+      const glm::ivec3 first = bricks.firstVoxel(i), end = glm::min(bricks.dimensions() - first, kEdge);
+      glm::ivec3 v;
+      v[fan_.axis] = coordinate % kEdge;
+      for (v[axisB] = 0; v[axisB] < end[axisB]; ++v[axisB])
+        for (v[axisA] = 0; v[axisA] < end[axisA]; ++v[axisA])
+          plane[std::size_t(first[axisA] + v[axisA] + 1 + strideB_ * (first[axisB] + v[axisB] + 1))] =
+              values_.at(brick[ScalarBricks::indexInBrick(v)]);
+    }
+  }
+
+  void sweepPlanes(int begin, int end, std::vector<StageTime>& times) {
+    {
+      const StageTimer timer(times, "read planes");
+      std::vector<float> slab(slabVoxels());
+      for (int i = 0; i <= planes_; ++i)
+        fill(coordinateOf(begin - 1 + i), std::span(slab).subspan(std::size_t(i) * std::size_t(planeStride_), std::size_t(planeStride_)));
+      upload(device_, slab_, std::as_bytes(std::span(slab)));
+    }
+    // The depths of plane 2k and 2k + 1 are in pair k; in the buffer, pair begin / 2 - 1 is the first.
+    const VkDeviceSize pairBytes = fan_.rays() * sizeof(std::uint32_t);
+    const VkDeviceAddress depths = depths_.address() - pairBytes * VkDeviceSize(std::int64_t(begin / 2 - 1));
+    const shader::FaceRays fan = deviceFan(fan_, depths);
+    const shader::RaySlab place{.begin = begin,
+                                .end = end,
+                                .origin = 1 + strideB_ + (1 - begin) * planeStride_,
+                                .planeStride = planeStride_,
+                                .strideA = 1,
+                                .strideB = strideB_};
+    // Extinctions of the transfer function's table are in another unit.
+    const double unit = values_.areScalars() ? 1.0 / (kStoredDepth * level_.file->description().volume.voxelSize()) : 1.0;
+    Commands commands(device_);
+    commands.beginPass("light sweep");
+    if (begin > 0) {
+      commands.copy(depths_, depths_, {.srcOffset = pairBytes * VkDeviceSize(planes_ / 2), .dstOffset = 0, .size = pairBytes});
+      commands.barrier(kTransfer, kCompute);
+    }
+    const std::array<Binding, 3> rays{&slabTexels_, &carried_, values_.areScalars() ? &tableTexels_ : &slabTexels_};
+    commands.dispatchLinear(sweep_, rays, shader::RaySweepPush{.fan = fan, .indexToWorld = unit * indexToWorld_, .sides = sides_, .slab = place},
+                            fan_.rays());
+    commands.barrier(kCompute, kCompute);
+    commands.beginPass("light depths");
+    commands.update(frame_, shader::LightPlanes{.fan = fan,
+                                                .slab = place,
+                                                .sides = sides_,
+                                                .indexToWorld = indexToWorld_,
+                                                .place = light_.source_.place,
+                                                .atInfinity = light_.source_.atInfinity ? 1 : 0,
+                                                .fanIndex = fanNumber_});
+    const std::array<Binding, 3> lookUps{&frame_, &slabTexels_, &codes_};
+    commands.dispatch(lookUp_, lookUps, glm::ivec3((sides_.x + 1) / 2, sides_.y, end - begin));
+    commands.submitAndWait();
+    addTimes(times, commands.times());
+    const StageTimer timer(times, "keep light");
+    std::vector<std::uint16_t> codes(codeBytes() / sizeof(std::uint16_t));
+    download(device_, codes_, std::as_writable_bytes(std::span(codes)));
+    for (int plane = begin; plane < end; ++plane)
+      keep(coordinateOf(plane), std::span(codes).subspan(std::size_t(plane - begin) * 2 * codeWords(), 2 * codeWords()));
+  }
+
+  /// Copies the codes of a plane into the bricks of its layer.
+  void keep(int coordinate, std::span<const std::uint16_t> codes) {
+    const int number = coordinate / kEdge;
+    if (number != keptLayer_) {
+      storeLayer();
+      keptLayer_ = number;
+    }
+    const int axisA = (fan_.axis + 1) % 3, axisB = (fan_.axis + 2) % 3;
+    const glm::ivec3 bricks = light_.bricks_;
+    glm::ivec3 brick;
+    brick[fan_.axis] = number;
+    for (brick[axisB] = 0; brick[axisB] < bricks[axisB]; ++brick[axisB])
+      for (brick[axisA] = 0; brick[axisA] < bricks[axisA]; ++brick[axisA]) {
+        const std::size_t index = light_.indexOf(brick);
+        if (around_[index] == 0) continue;
+        const auto [place, isNew] = kept_.try_emplace(index);
+        if (isNew) place->second.fill(std::uint16_t(shader::kOtherFan));
+        const glm::ivec3 end = glm::min(dimensions_ - brick * kEdge, kEdge);
+        glm::ivec3 v;
+        v[fan_.axis] = coordinate % kEdge;
+        for (v[axisB] = 0; v[axisB] < end[axisB]; ++v[axisB])
+          for (v[axisA] = 0; v[axisA] < end[axisA]; ++v[axisA]) {
+            const int a = brick[axisA] * kEdge + v[axisA], b = brick[axisB] * kEdge + v[axisB];
+            place->second[ScalarBricks::indexInBrick(v)] = codes[std::size_t(a) + std::size_t(b) * std::size_t((sides_.x + 1) / 2 * 2)];
+          }
+      }
+  }
+
+  /// Adds the bricks of a layer to the file. What a voxel has through another face stays.
+  void storeLayer() {
+    for (auto& [index, codes] : kept_) {
+      std::uint32_t& record = light_.records_[index];
+      if (record != 0) {
+        BrickCodes before;
+        light_.codes_.readAt(std::uint64_t(record - 1) * sizeof(BrickCodes), std::as_writable_bytes(std::span(before)));
+        for (std::size_t i = 0; i < codes.size(); ++i)
+          if (codes[i] == shader::kOtherFan) codes[i] = before[i];
+      }
+      record = std::uint32_t(light_.codes_.bytes() / sizeof(BrickCodes)) + 1;
+      light_.codes_.append(std::as_bytes(std::span(codes)));
+    }
+    kept_.clear();
+  }
+
+  SweptLight& light_;
+  const Device& device_;
+  const BakedLevel& level_;
+  const VoxelValues& values_;
+  const FaceRays fan_;
+  const int fanNumber_;
+  const glm::ivec3 dimensions_;
+  const glm::ivec2 sides_;
+  const int strideB_, planeStride_;
+  int planes_ = kMostPlanes;
+  glm::dmat3 indexToWorld_{1.0};
+  Buffer slab_, carried_, depths_, frame_, codes_, table_;
+  TexelView slabTexels_, tableTexels_;
+  Pipeline sweep_, lookUp_;
+  std::map<int, Volume> layers_;
+  std::vector<std::uint8_t> around_;
+  int keptLayer_ = -1;
+  std::map<std::size_t, BrickCodes> kept_;
+};
+
+namespace {
+
+[[noreturn]] void failTemporary(const std::system_error& error) {
+  fail(ErrorKind::Output, "the depths towards a light cannot be kept in a temporary file in {}: {}; make room there, or draw without shadows",
+       std::filesystem::temp_directory_path().string(), error.code().message());
+}
+
+}  // namespace
+
+SweptLight::SweptLight(const Device& device, const BakedLevel& level, const RaySource& source, std::vector<StageTime>& times,
+                       const Progress& progress) try
+    : source_(source),
+      bricks_((level.file->dimensions(level.level) + kEdge - 1) / kEdge),
+      records_(std::size_t(bricks_.x) * std::size_t(bricks_.y) * std::size_t(bricks_.z), 0),
+      codes_(std::filesystem::temp_directory_path()) {
+  const VoxelValues values(level);
+  const glm::dmat4 indexToWorld = fvx::levelToWorld(level.file->description().volume.indexToWorld, level.level);
+  const std::array<FaceRays, 6> fans = faceRays(level.file->dimensions(level.level), source);
+  for (int i = 0; i < 6; ++i)
+    if (fans[std::size_t(i)].planeCount > 0) Sweep(*this, device, level, values, fans[std::size_t(i)], i).run(indexToWorld, times, progress);
+} catch (const std::system_error& error) {
+  failTemporary(error);
+}
+
+std::size_t SweptLight::indexOf(glm::ivec3 brick) const {
+  return std::size_t(brick.x) + std::size_t(bricks_.x) * (std::size_t(brick.y) + std::size_t(bricks_.y) * std::size_t(brick.z));
+}
+
+void SweptLight::read(glm::ivec3 brick, std::span<std::uint16_t> codes) const {
+  const std::uint32_t record = records_[indexOf(brick)];
+  if (record == 0) {
+    std::ranges::fill(codes, std::uint16_t(0));
+    return;
+  }
+  codes_.readAt(std::uint64_t(record - 1) * sizeof(BrickCodes), std::as_writable_bytes(codes));
+  std::ranges::replace(codes, std::uint16_t(shader::kOtherFan), std::uint16_t(0));
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,59 @@
+#pragma once
+// Optical depths towards a light at all voxels of a baked level that need not fit into memory: the sweep of ray_sweep.h, plane by plane
+// from the file. Only some planes are in memory at a time; the depths of voxels go to a temporary file, from which those of any brick
+// can be read.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "engine/core/stages.h"
+#include "engine/scene/source_rays.h"
+#include "engine/storage/fvx_file.h"
+#include "engine/storage/spool.h"
+#include "engine/volume/classification.h"
+#include "engine/vulkan/device.h"
+
+namespace freevoxels {
+
+/// A level of a baked file and how it is classified. Without a transfer function, or by one after interpolation.
+struct BakedLevel {
+  std::shared_ptr<const fvx::FvxFile> file;
+  int level = 0;
+  Classification classification;
+};
+
+class SweptLight {
+ public:
+  /// Codes of a brick's voxels, x fastest: sqrt(depth / kOpaqueDepth) in 16 bits, for scalars the depth of the next voxel towards the
+  /// light, as light_depths.comp has it.
+  using BrickCodes = std::array<std::uint16_t, ScalarBricks::kEdge * ScalarBricks::kEdge * ScalarBricks::kEdge>;
+
+  /// COMPUTE ray_sweep.comp and light_planes.comp, a few planes of a face at a time. `source` is in the level's index space. The codes
+  /// take 1 KiB on the disk for each brick with data and each of its neighbours, in the system's folder for temporary files. Blocks;
+  /// adds the times to `times`. Fails with ErrorKind::OutOfMemory.
+  SweptLight(const Device& device, const BakedLevel& level, const RaySource& source, std::vector<StageTime>& times,
+             const Progress& progress = {});
+
+  const RaySource& source() const { return source_; }
+  /// Of a brick of the level; 0 where no brick nearby has data.
+  void read(glm::ivec3 brick, std::span<std::uint16_t> codes) const;
+
+ private:
+  class Sweep;
+  std::size_t indexOf(glm::ivec3 brick) const;
+
+  RaySource source_;
+  glm::ivec3 bricks_{0};                ///< along the axes
+  std::vector<std::uint32_t> records_;  ///< by brick: 0 where there is none, or the number of its codes in `codes_`, from 1
+  fvx::Spool codes_;
+};
+
+/// Marks the bricks of a level that have data, and their neighbours.
+std::vector<std::uint8_t> bricksAround(const fvx::FvxFile& file, int level);
+
+}  // namespace freevoxels

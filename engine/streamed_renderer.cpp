@@ -1,0 +1,390 @@
+#include "engine/streamed_renderer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <span>
+#include <utility>
+
+#include "engine/attenuation/plane_sweep.h"
+#include "engine/core/error.h"
+#include "engine/core/parameter.h"
+#include "engine/gathering/gather_pass.h"
+#include "engine/lighting/ambient_pass.h"
+#include "engine/octree/volume_builder.h"
+#include "engine/storage/baked_box.h"
+#include "engine/splatting/splat_pass.h"
+#include "engine/vulkan/target_readback.h"
+
+namespace freevoxels {
+
+namespace {
+
+using fvx::FvxFile;
+
+constexpr int kEdge = StreamedRenderer::kCubeEdge, kHalo = StreamedRenderer::kCubeHalo, kBrick = ScalarBricks::kEdge;
+static_assert(kEdge % fvx::kChunkEdge == 0 && kHalo % kBrick == 0);
+
+/// The box and the classification of a level, without anything on the device.
+DeviceVolume outlineOnDevice(const Volume& volume, const Classification& classification) {
+  return {.layout = GridLayout(volume.dimensions),
+          .hierarchy = HierarchyLayout(volume.dimensions),
+          .indexToWorld = volume.indexToWorld,
+          .albedo = classification.albedo,
+          .hasColors = volume.albedo.has_value() || classification.transferFunction.has_value(),
+          .voxelSize = volume.voxelSize()};
+}
+
+/// Whether the coarser levels of a file are those of the octree: means of extinctions, of one colour.
+bool hasOctree(const Volume& volume, const Classification& classification) {
+  return !classification.transferFunction && !volume.albedo;
+}
+
+FrameSettings exactSettings(const FrameSettings& wanted, bool octree) {
+  FrameSettings settings = wanted;
+  settings.draw = Draw::Gather;
+  settings.attenuation = AttenuationLookup::Exact;
+  if (settings.lighting) settings.lighting->attenuation = LightAttenuation::Exact;
+  if (!octree) settings.lod = 0.0f;
+  return settings;
+}
+
+fvx::VoxelBox cubeVoxels(glm::ivec3 cell, glm::ivec3 dimensions) { return {cell * kEdge, glm::min((cell + 1) * kEdge, dimensions)}; }
+
+fvx::VoxelBox withHalo(const fvx::VoxelBox& cube, glm::ivec3 dimensions) {
+  return {glm::max(cube.first - kHalo, 0), glm::min(cube.end + kHalo, dimensions)};
+}
+
+/// A level of the file as frames read it.
+struct StreamedLevel {
+  BakedLevel baked;
+  Volume outline;
+  DeviceVolume onDevice;
+  std::vector<glm::ivec3> cubes;      ///< in and beside which there are voxels with data
+  std::optional<AmbientPass> ambient;
+  std::vector<std::unique_ptr<SweptLight>> lights;
+
+  StreamedLevel(std::shared_ptr<const FvxFile> file, int level, const Classification& classification)
+      : baked{.file = std::move(file), .level = level, .classification = classification},
+        outline(bakedOutline(*baked.file, level)),
+        onDevice(outlineOnDevice(outline, classification)) {
+    const glm::ivec3 bricks = (outline.dimensions + kBrick - 1) / kBrick, cells = (outline.dimensions + kEdge - 1) / kEdge;
+    const std::vector<std::uint8_t> around = bricksAround(*baked.file, level);
+    std::vector<bool> isMet(std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z));
+    std::size_t i = 0;
+    for (glm::ivec3 brick(0); brick.z < bricks.z; ++brick.z)
+      for (brick.y = 0; brick.y < bricks.y; ++brick.y)
+        for (brick.x = 0; brick.x < bricks.x; ++brick.x, ++i) {
+          if (around[i] == 0) continue;
+          const glm::ivec3 cell = brick * kBrick / kEdge;
+          const auto number = std::size_t(cell.x) + std::size_t(cells.x) * (std::size_t(cell.y) + std::size_t(cells.y) * std::size_t(cell.z));
+          if (!isMet[number]) cubes.push_back(cell);
+          isMet[number] = true;
+        }
+  }
+
+  void prepareLights(const Device& device, const Lighting& lighting, std::vector<StageTime>& times, const Progress& progress);
+  void prepareAmbient(const Device& device, const Lighting& lighting, const RaySource& eye, std::vector<StageTime>& times,
+                      const Progress& progress);
+};
+
+/// Keeps what was swept for lights that stand.
+void StreamedLevel::prepareLights(const Device& device, const Lighting& lighting, std::vector<StageTime>& times, const Progress& progress) {
+  std::vector<std::unique_ptr<SweptLight>> before = std::exchange(lights, {});
+  for (const Light& light : lighting.lights) {
+    const RaySource source = lightSource(light, outline.indexToWorld);
+    const auto same = std::ranges::find_if(before, [&](const auto& swept) { return swept && swept->source() == source; });
+    lights.push_back(same != before.end() ? std::move(*same) : std::make_unique<SweptLight>(device, baked, source, times, progress));
+  }
+}
+
+void StreamedLevel::prepareAmbient(const Device& device, const Lighting& lighting, const RaySource& eye, std::vector<StageTime>& times,
+                                   const Progress& progress) {
+  const glm::ivec3 dimensions = outline.dimensions;
+  const int edge = ambientCellEdge(dimensions, lighting.phaseG != 0.0);
+  FV_CHECK_EQ(kEdge % edge, 0);
+  if (!ambient || ambient->edge() != edge) {
+    const StageTimer timer(times, "ambient cells");
+    ambient.reset();
+    const glm::ivec3 cells = (dimensions + edge - 1) / edge;
+    std::vector<float> extinctions(std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z), 0.0f);
+    for (std::size_t i = 0; i < cubes.size(); ++i) {
+      if (progress) progress("reading ambient cells", double(i) / double(cubes.size()));
+      const fvx::VoxelBox cube = cubeVoxels(cubes[i], dimensions);
+      const Volume volume = readBakedBox(*baked.file, baked.level, cube);
+      const std::vector<float> part = cellExtinctions(volume, baked.classification, edge);
+      const glm::ivec3 size = (cube.extent() + edge - 1) / edge, first = cube.first / edge;
+      for (int z = 0; z < size.z; ++z)
+        for (int y = 0; y < size.y; ++y)
+          std::copy_n(part.begin() + std::ptrdiff_t(size.x * (y + size.y * z)), size.x,
+                      extinctions.begin() + std::ptrdiff_t(first.x) +
+                          std::ptrdiff_t(cells.x) * (first.y + y + std::ptrdiff_t(cells.y) * (first.z + z)));
+    }
+    ambient.emplace(device, dimensions, outline.indexToWorld, edge, extinctions);
+  }
+  Commands commands(device);
+  if (!ambient->record(commands, lighting, eye)) return;
+  commands.submitAndWait(progress);
+  addTimes(times, commands.times());
+}
+
+/// How far a cube is behind the eye's, in cubes: rays meet cubes in ascending order.
+int behindEye(glm::ivec3 cell, const RaySource& eye) {
+  int sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (eye.atInfinity)
+      sum += eye.place[axis] > 0.0 ? -cell[axis] : cell[axis];
+    else
+      sum += std::abs(cell[axis] - int(std::floor(std::clamp(eye.place[axis] / kEdge, -1e6, 1e6))));
+  }
+  return sum;
+}
+
+}  // namespace
+
+struct StreamedRenderer::State {
+  const Device& device;
+  std::shared_ptr<const FvxFile> file;
+  int level;
+  Classification classification;
+  TableSettings table;
+  std::map<int, StreamedLevel> levels;  ///< by level above `level`
+  std::optional<GatherPass> gather;
+  TargetPool targetPool;
+  TargetReadback colorReadback, distanceReadback;
+  std::vector<StageTime> times;
+  std::vector<std::size_t> cubesRead;
+
+  struct Frame {
+    const Camera& camera;
+    const FrameSettings& settings;
+    const Progress& progress;
+    shader::GatherFrame lattice;  ///< of the whole volume
+  };
+
+  StreamedLevel& levelAt(int above) { return levels.try_emplace(above, file, level + above, classification).first->second; }
+  Frame begin(const Camera& camera, const FrameSettings& settings, const Progress& progress);
+  shader::GatherFrame frameOf(const Frame& frame, const StreamedLevel& level, int above) const;
+  /// What is drawn at a time.
+  struct Cube {
+    int above = 0;
+    fvx::VoxelBox voxels;
+    SampleRectangle seen;
+  };
+  std::vector<Cube> cubesOf(const Frame& frame, int above);
+  void drawLevel(const Frame& frame, int above, std::span<const Cube> cubes, bool isLastLevel);
+  void drawCube(const Frame& frame, const StreamedLevel& level, const shader::GatherFrame& whole, const Cube& cube, bool isLast);
+  Image resolve(const Frame& frame);
+};
+
+/// The lattice and the levels of a frame, as if all of the volume were in memory.
+StreamedRenderer::State::Frame StreamedRenderer::State::begin(const Camera& camera, const FrameSettings& settings, const Progress& progress) {
+  const StreamedLevel& base = levelAt(0);
+  FrameConstants constants = makeFrameConstants(device, base.onDevice, table, camera, settings);
+  const int most = file->levels() - 1 - level;
+  constants.detail.coarsest = std::min(constants.detail.coarsest, most);
+  constants.detail.finest = std::min(constants.detail.finest, most);
+  return {.camera = camera,
+          .settings = settings,
+          .progress = progress,
+          .lattice = makeGatherFrame(base.onDevice, camera, settings, constants.detail, constants.hiddenTransmittance)};
+}
+
+/// The frame of a level whose blocks take the place of voxels.
+shader::GatherFrame StreamedRenderer::State::frameOf(const Frame& frame, const StreamedLevel& streamed, int above) const {
+  shader::GatherFrame result = makeGatherFrame(streamed.onDevice, frame.camera, frame.settings, {}, double(frame.lattice.end));
+  result.samples = frame.lattice.samples;
+  result.firstSample = frame.lattice.firstSample;
+  result.pitch = frame.lattice.pitch;
+  result.mainAxis = frame.lattice.mainAxis;
+  result.seenLow = frame.lattice.seenLow;
+  result.seenHigh = frame.lattice.seenHigh;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int sign = 0; sign < 2; ++sign) result.axes[axis].slices[sign][0] = frame.lattice.axes[axis].slices[sign][above];
+  return result;
+}
+
+namespace {
+
+/// Whether a frame reads slices of the cube.
+bool isRead(const shader::GatherFrame& frame, const fvx::VoxelBox& cube) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!someRayHasAxis(frame, axis)) continue;
+    for (const auto& ofSign : frame.axes[axis].slices)
+      if (ofSign[0].x < cube.end[axis] && ofSign[0].y > cube.first[axis]) return true;
+  }
+  return false;
+}
+
+/// The codes of a light in the order of a box's bricks.
+std::vector<std::uint16_t> codesOf(const SweptLight& light, const GatherVolume& inBox, glm::ivec3 firstBrick) {
+  std::vector<std::uint16_t> codes(std::size_t(inBox.brickCount()) * shader::kGatherBrickBlocks, 0);
+  const glm::ivec3 size = inBox.cells().bricks.front();
+  std::size_t cell = 0;
+  for (glm::ivec3 brick(0); brick.z < size.z; ++brick.z)
+    for (brick.y = 0; brick.y < size.y; ++brick.y)
+      for (brick.x = 0; brick.x < size.x; ++brick.x, ++cell)
+        if (const std::uint32_t number = inBox.cells().numbers[cell]; number != 0)
+          light.read(firstBrick + brick, std::span(codes).subspan(std::size_t(number) * shader::kGatherBrickBlocks, shader::kGatherBrickBlocks));
+  return codes;
+}
+
+}  // namespace
+
+/// In the order in which rays meet them.
+std::vector<StreamedRenderer::State::Cube> StreamedRenderer::State::cubesOf(const Frame& frame, int above) {
+  const StreamedLevel& streamed = levelAt(above);
+  const RaySource eye = eyeSource(frame.camera, streamed.outline.indexToWorld);
+  const shader::GatherFrame whole = frameOf(frame, streamed, above);
+  std::vector<glm::ivec3> cells = streamed.cubes;
+  std::ranges::stable_sort(cells, {}, [&](glm::ivec3 cell) { return behindEye(cell, eye); });
+  std::vector<Cube> cubes;
+  for (const glm::ivec3 cell : cells) {
+    const fvx::VoxelBox voxels = cubeVoxels(cell, streamed.outline.dimensions);
+    if (!isRead(whole, voxels)) continue;
+    if (const auto seen = samplesThatSee(streamed.onDevice, frame.camera, whole, voxels.first, voxels.end))
+      cubes.push_back({.above = above, .voxels = voxels, .seen = *seen});
+  }
+  return cubes;
+}
+
+void StreamedRenderer::State::drawLevel(const Frame& frame, int above, std::span<const Cube> cubes, bool isLastLevel) {
+  if (cubes.empty()) return;
+  StreamedLevel& streamed = levelAt(above);
+  if (frame.settings.lighting) {
+    const RaySource eye = eyeSource(frame.camera, streamed.outline.indexToWorld);
+    streamed.prepareLights(device, *frame.settings.lighting, times, frame.progress);
+    if (frame.settings.lighting->hasAmbient()) streamed.prepareAmbient(device, *frame.settings.lighting, eye, times, frame.progress);
+  }
+  const shader::GatherFrame whole = frameOf(frame, streamed, above);
+  for (std::size_t i = 0; i < cubes.size(); ++i) {
+    if (frame.progress) frame.progress("drawing cubes", double(i) / double(cubes.size()));
+    drawCube(frame, streamed, whole, cubes[i], isLastLevel && i + 1 == cubes.size());
+    ++cubesRead[std::size_t(above)];
+  }
+}
+
+void StreamedRenderer::State::drawCube(const Frame& frame, const StreamedLevel& streamed, const shader::GatherFrame& whole, const Cube& cube,
+                                       bool isLast) {
+  const fvx::VoxelBox box = withHalo(cube.voxels, streamed.outline.dimensions);
+  Volume volume;
+  {
+    const StageTimer timer(times, "read cubes");
+    volume = readBakedBox(*file, streamed.baked.level, box);
+  }
+  const BuiltVolume built = buildVolume(device, volume, classification, times);
+  const SurroundingLight light{
+      .first = box.first,
+      .ambient = streamed.ambient ? &*streamed.ambient : nullptr,
+      .codes = [&](int number, const GatherVolume& inBox) { return codesOf(*streamed.lights[std::size_t(number)], inBox, box.first / kBrick); }};
+  GatherVolume inBox(device, volume, classification, built, times, &light);
+  FrameConstants constants = makeFrameConstants(device, built.volume, table, frame.camera, frame.settings);
+  constants.detail.finest = constants.detail.coarsest = 0;
+  const GatherVolume::Shading shading{.frame = constants,
+                                      .table = nullptr,
+                                      .lighting = frame.settings.lighting ? &*frame.settings.lighting : nullptr,
+                                      .lights = nullptr,
+                                      .axes = {someRayHasAxis(whole, 0), someRayHasAxis(whole, 1), someRayHasAxis(whole, 2)}};
+  inBox.prepare(shading, times);
+  Commands commands(device);
+  inBox.record(commands, shading);
+  shader::GatherFrame gatherFrame = whole;
+  inBox.describe(gatherFrame);  // what record() has made too
+  gatherFrame.levels[0].dimensions = streamed.outline.dimensions;
+  gatherFrame.region = {.first = box.first,
+                        .begin = cube.voxels.first,
+                        .end = cube.voxels.end,
+                        .corner = cube.seen.first,
+                        .extent = cube.seen.extent};
+  const auto march = [&](Commands& recording) {
+    gather->recordRegion(recording, inBox, gatherFrame);
+    recording.submitAndWait(frame.progress);
+    addTimes(times, recording.times());
+  };
+  march(commands);
+  if (!isLast) return;
+  // Completes the sums of all samples, with a cube that holds nothing.
+  gatherFrame.region.end = gatherFrame.region.begin;
+  gatherFrame.region.corner = glm::ivec2(0);
+  gatherFrame.region.extent = gatherFrame.samples;
+  gatherFrame.region.isLast = 1;
+  Commands completing(device);
+  march(completing);
+}
+
+Image StreamedRenderer::State::resolve(const Frame& frame) {
+  const std::shared_ptr<const SplatTargets> targets = targetPool.take(device, frame.settings, TargetKind::Image);
+  Commands commands(device);
+  gather->recordImage(commands, frame.lattice, classification.isPost(levelAt(0).outline), *targets);
+  commands.beginPass("read back");
+  colorReadback.record(device, commands, targets->colorEnergy);
+  if (frame.settings.depth) distanceReadback.record(device, commands, targets->distance);
+  commands.submitAndWait(frame.progress);
+  addTimes(times, commands.times());
+  const StageTimer timer(times, "copy to host");
+  return {.size = frame.settings.size,
+          .pixels = colorReadback.read<glm::vec4>(),
+          .depth = frame.settings.depth ? distanceReadback.read<float>() : std::vector<float>()};
+}
+
+std::optional<std::string> StreamedRenderer::whyNot(const FvxFile& file, const Classification& classification, const FrameSettings& settings) {
+  const Volume& volume = file.description().volume;
+  if (!drawsByGathering(settings)) return "splats are drawn of the whole volume";
+  if (classification.emission) return "emission lights the whole volume";
+  if (classification.transferFunction && !classification.isPost(volume))
+    return fmt::format("{} needs the whole volume", Parameter("classification", "pre"));
+  if (!settings.lighting) return {};
+  const Lighting& lighting = *settings.lighting;
+  if (lightAttenuationFor(settings) == LightAttenuation::Table) return "shadows from the table need the whole volume";
+  if (lighting.lights.size() > std::size_t(shader::kMostSampleLights))
+    return fmt::format("more than {} lights need the whole volume", shader::kMostSampleLights);
+  if (lighting.hasAmbient() && ambientCellEdge(volume.dimensions, lighting.phaseG != 0.0) > kEdge)
+    return "the volume is too long for ambient light with a phase function";
+  return {};
+}
+
+StreamedRenderer::StreamedRenderer(const Device& device, std::shared_ptr<const FvxFile> file, int level, const Classification& classification,
+                                   const TableSettings& table)
+    : state_(new State{.device = device, .file = std::move(file), .level = level, .classification = classification, .table = table}) {}
+
+StreamedRenderer::~StreamedRenderer() = default;
+
+Image StreamedRenderer::render(const Camera& camera, const FrameSettings& wanted, const Progress& progress) {
+  State& state = *state_;
+  checkCamera(camera);
+  checkFrameFits(state.device, wanted);
+  state.times.clear();
+  const FrameSettings settings = exactSettings(wanted, hasOctree(state.levelAt(0).outline, state.classification));
+  const State::Frame frame = state.begin(camera, settings, progress);
+  state.cubesRead.assign(std::size_t(frame.lattice.coarsest) + 1, 0);
+  if (!state.gather) state.gather.emplace(state.device);
+  {
+    Commands commands(state.device);
+    state.gather->recordClear(commands, frame.lattice);
+    commands.submitAndWait();
+  }
+  std::vector<std::vector<State::Cube>> levels(state.cubesRead.size());
+  std::size_t last = 0;
+  for (int above = frame.lattice.finest; above <= frame.lattice.coarsest; ++above) {
+    levels[std::size_t(above)] = state.cubesOf(frame, above);
+    if (!levels[std::size_t(above)].empty()) last = std::size_t(above);
+  }
+  for (std::size_t above = 0; above < levels.size(); ++above) state.drawLevel(frame, int(above), levels[above], above == last);
+  return state.resolve(frame);
+}
+
+std::vector<StageTime> StreamedRenderer::timings() const { return state_->times; }
+
+const std::vector<std::size_t>& StreamedRenderer::cubesRead() const { return state_->cubesRead; }
+
+VolumeMemory StreamedRenderer::memory() const {
+  const DeviceVolume& whole = state_->levelAt(0).onDevice;
+  const HierarchyLayout hierarchy(glm::min(whole.layout.dimensions, kCubeEdge + 2 * kCubeHalo));
+  std::vector<std::uint64_t> blocks;
+  for (const GridLayout& level : hierarchy.levels) blocks.push_back(level.voxels());
+  VolumeMemory memory = volumeMemory(hierarchy, blocks, state_->table.directions, {.colors = whole.hasColors}, sweepStyle(state_->device));
+  memory.table = memory.sweep = memory.splats = 0;
+  return memory;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,54 @@
+#version 460
+// Optical depth from the centres of all voxels of some planes to a light, from the light's rays on these planes: what light_depths.comp
+// computes, for planes of a volume that is not on the device as a whole. A thread writes two voxels of a row.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+#extension GL_EXT_samplerless_texture_functions : require
+#include "gather_interface.h"
+#include "ray_lookup.glsl"
+
+// Whether rays hold depths of positions (scalars), or those in front of layers.
+layout(constant_id = 0) const bool kScalars = false;
+
+layout(local_size_x = kExpandTile, local_size_y = kExpandTile) in;
+layout(scalar, binding = 0) uniform Planes { LightPlanes planes; };
+layout(binding = 1) uniform samplerBuffer extinction;  // of the slab's voxels
+layout(scalar, binding = 2) writeonly buffer Codes { uint codes[]; };  // kOtherFan where the voxel is not on this face
+
+const float kAtSource = 1e-3;  // in voxels: at a smaller distance from a light the direction is undefined
+
+float depthUpTo(vec3 position) {
+  const int plane = (int(round(position[planes.fan.axis])) - planes.fan.firstPlane) * planes.fan.direction;
+  return plane < 0 ? 0.0 : rayDepth(planes.fan, position).x;
+}
+
+uint codeOf(ivec2 side, int plane) {
+  const int axis = planes.fan.axis;
+  vec3 center;
+  center[axis] = float(planes.fan.firstPlane + planes.fan.direction * plane);
+  center[(axis + 1) % 3] = float(side.x);
+  center[(axis + 2) % 3] = float(side.y);
+  vec3 toLight = planes.place - (planes.atInfinity == 0 ? center : vec3(0.0));
+  if (dot(toLight, toLight) < kAtSource * kAtSource) toLight = vec3(0.0, 0.0, 1.0);
+  if (planes.atInfinity == 0 && fanIndex(-toLight) != planes.fanIndex) return kOtherFan;
+  const vec3 size = abs(toLight);
+  const vec3 layer = toLight / max(size.x, max(size.y, size.z));
+  float depth;
+  if (kScalars) {
+    depth = depthUpTo(center + layer);
+  } else {
+    const int voxel = planes.slab.origin + plane * planes.slab.planeStride + side.x * planes.slab.strideA + side.y * planes.slab.strideB;
+    depth = depthUpTo(center) + 0.5 * texelFetch(extinction, voxel).x * length(planes.indexToWorld * layer);
+  }
+  return min(uint(sqrt(clamp(depth / kOpaqueDepth, 0.0, 1.0)) * 65535.0 + 0.5), kOtherFan - 1);
+}
+
+void main() {
+  const ivec3 place = ivec3(gl_GlobalInvocationID);
+  const ivec2 pairs = ivec2((planes.sides.x + 1) / 2, planes.sides.y);
+  if (any(greaterThanEqual(place.xy, pairs))) return;
+  const int plane = planes.slab.begin + place.z;
+  const ivec2 side = ivec2(2 * place.x, place.y);
+  codes[place.x + pairs.x * (place.y + pairs.y * place.z)] = codeOf(side, plane) | codeOf(side + ivec2(1, 0), plane) << 16;
+}
