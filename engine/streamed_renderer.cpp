@@ -192,7 +192,7 @@ StreamedRenderer::State::Frame StreamedRenderer::State::begin(const Camera& came
 
 /// The frame of a level whose blocks take the place of voxels.
 shader::GatherFrame StreamedRenderer::State::frameOf(const Frame& frame, const StreamedLevel& streamed, int above) const {
-  shader::GatherFrame result = makeGatherFrame(streamed.onDevice, frame.camera, frame.settings, {}, double(frame.lattice.end));
+  shader::GatherFrame result = makeGatherFrame(streamed.onDevice, frame.camera, frame.settings, {}, double(frame.lattice.endTransmittance));
   result.samples = frame.lattice.samples;
   result.firstSample = frame.lattice.firstSample;
   result.pitch = frame.lattice.pitch;

@@ -9,7 +9,7 @@ namespace freevoxels::shader {
 #endif
 
 FV_CONSTANT int kGatherTile = 8;          // samples along the edge of a workgroup of the passes over the lattice
-FV_CONSTANT int kShadeThreads = 64;
+FV_CONSTANT int kShadeThreads = 64;      // of a workgroup of shade_blocks.comp
 // The gather reads blocks in bricks of 8^3, which are cells of the octree this number of levels above the
 // blocks.
 FV_CONSTANT int kBrickLevels = 3;
@@ -28,30 +28,32 @@ FV_CONSTANT int kMostPieces = 32;
 FV_CONSTANT int kMostSampleLights = 4;
 // Quads of codes of light: a slot for each light, then one for each channel of ambient light.
 FV_CONSTANT int kMostLightSlots = kMostSampleLights + 3;
-FV_CONSTANT int kAmbientThreads = 64;
+FV_CONSTANT int kAmbientThreads = 64;     // of a workgroup of ambient_sweep.comp
 // For classification after interpolation: the number of the transfer function's intervals of the scalar, and
 // that of the codes of scalars, which start at 1.
 FV_CONSTANT int kTransferIntervals = 4096;
 FV_CONSTANT int kScalarCodes = 65534;
 
-// Variance in squared voxels of the footprint's radial kernel along one axis. A slice's tent lacks it along
-// the tilt.
+// Variance in squared voxels of the footprint's radial kernel along one axis. A slice's bilinear tent has it across the slice and none
+// along its normal, so that it is too narrow where it is seen obliquely (engine/docs/gather.md).
 FV_CONSTANT float kFootprintVariance = 0.1624f;
-// The stencil that restores it: its strength, measured, which exceeds the missing variance because the stencil is coarse; the largest variance
-// that it adds, beyond which the middle weight would be nearly 0; and the least transmittance that it distinguishes from 0.
+// Factor of the missing variance for the stencil of 3x3 samples that restores it, tuned against the oracle on an opaque head and thin
+// shells; it exceeds 1 because the stencil is coarse.
 FV_CONSTANT float kStencilStrength = 1.2f;
+// Largest variance that the stencil adds, in squares of the pitch: beyond it the middle weight would be nearly 0.
 FV_CONSTANT float kMostVariance = 0.8f;
+// Least transmittance that the stencil distinguishes from 0.
 FV_CONSTANT float kLeastTransmittance = 1e-6f;
 
 // A ray marches along the major axis of the image's middle, unless its component along that is less than this
-// fraction of its largest component: so most frames read one axis. The other constant is the number of slices
-// that such rays test together, as they move by more than a block a slice.
+// fraction of its largest component: so most frames read one axis.
 FV_CONSTANT float kLeastAlong = 0.5f;
+// Slices that are tested for emptiness together on rays that move by more than a block a slice, instead of kSkipGroup.
 FV_CONSTANT int kObliqueGroup = kSkipGroup / 2;
 
-// The bit of a brick's number that says that the brick belongs to the part that is drawn, and the largest optical depth that a brick adds to
-// its sample: what is behind that is invisible.
+// The bit of a brick's number that says that the brick belongs to the part that is drawn.
 FV_CONSTANT uint kOwnBrick = 0x80000000u;
+// Largest optical depth that a brick of a part adds to its sample: what is behind that is invisible.
 FV_CONSTANT float kMostBrickDepth = 16.0f;
 
 // How rays meet the slices of blocks across one index axis. Pixel positions (x, y) are relative to the
@@ -82,7 +84,7 @@ struct GatherLevel {
 
 // A light that is evaluated at samples.
 struct SampleLight {
-  vec3 place;          // position in index space; at infinity the unit vector towards the light in world space
+  vec3 positionOrDirection;  // position in index space; at infinity the unit vector towards the light in world space
   int atInfinity;
   vec3 color;          // colour times irradiance, for a position at distance 1
   vec3 across;         // at infinity the direction towards it in index space, of the length of a layer
@@ -132,7 +134,7 @@ struct GatherFrame {
   float extinctionUnit;   // extinction per world unit of a stored 1
   float sourceUnit;       // radiance of a source term that equals the stored extinction
   vec3 color;             // source term over extinction, if all blocks have the same
-  float end;              // transmittance at which rays end
+  float endTransmittance; // at which rays end
   int orthographic;
   int mainAxis;           // the major axis of the ray in the image's middle
   vec2 seenLow, seenHigh; // range of pixel positions of the rays that meet the volume

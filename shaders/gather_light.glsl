@@ -1,52 +1,53 @@
-// Part of gather.comp, whose frame and constants it reads: the light that a part of a ray scatters to the
-// eye.
+// The light that a segment of a ray scatters to the eye, and its addition to the ray's sums.
 #ifndef GATHER_LIGHT_GLSL
 #define GATHER_LIGHT_GLSL
+#include "gather_march.glsl"
 #include "surface_scattering.glsl"
 
-// The mean of exp(-depth) over a part along which the depth changes from 0 to x, of either sign.
+const float kMostLightDepth = 0.99 * kOpaqueDepth;  // approximately the end of the code of depths along rays
+
+// The mean of exp(-depth) over a segment along which the depth changes linearly from 0 to x, of either sign.
 float meanTransmittance(float x) { return abs(x) < 0.02 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(-x)) / x; }
 
-// The lighting of a part of a ray: optical depths towards the lights at its beginning, and their change along
-// it.
-struct Lit {
-  vec4 begin, change;
-  vec3 ambientBegin, ambientChange;  // those that ambient light has passed, by channel
-  vec3 position;        // of its middle, in index space
+// The light that arrives at a segment of a ray.
+struct SegmentLight {
+  vec4 begin, change;   // optical depths towards the lights at the segment's beginning, and their change along it
+  vec3 ambientBegin, ambientChange;  // the same for the depths that ambient light has passed, by channel
+  vec3 position;        // of the segment's middle, in index space
   vec3 normal;          // outward unit normal of a surface there, in world space
-  float surface;        // fraction that is reflected like a surface
-  vec4 outside;         // optical depths towards the lights from outside of the surface
+  float surface;        // fraction of the light that is reflected as by a surface, 0..1
+  vec4 outside;         // optical depths towards the lights from a point outside of the surface
 };
 
-// The addition of a surface to the sum of lightOf(). A surface that faces the light is not shadowed by its
+// What a surface adds to the sum of lightOf(). A surface that faces the light is not shadowed by its
 // own voxels, which would take half of the light on average.
-vec3 surfaceLight(Lit lit, int light, vec3 way, float depth, vec3 toEye) {
-  const bool facing = dot(lit.normal, way) > 0.0;
+vec3 surfaceLight(SegmentLight lit, int light, vec3 toLight, float depth, vec3 toEye) {
+  const bool facing = dot(lit.normal, toLight) > 0.0;
   const float begin = facing ? lit.outside[light] : lit.begin[light], change = facing ? 0.0 : lit.change[light];
   const vec3 tint = kTinted ? frame.tint : vec3(1.0);
   vec3 through;
   [[unroll]] for (int c = 0; c < 3; ++c) through[c] = exp(-tint[c] * begin) * meanTransmittance(depth + tint[c] * change);
-  return lit.surface * (facing ? 0.5 : 1.0) * surfaceScattering(lit.normal, way, toEye) * through;
+  return lit.surface * (facing ? 0.5 : 1.0) * surfaceScattering(lit.normal, toLight, toEye) * through;
 }
 
-// The mean over the part of the light that is scattered to the eye for albedo 1, times the transmittance of
-// what is in front within the part, whose optical depth is `depth`.
-vec3 lightOf(int light, Lit lit, float depth, vec3 toEye) {
+// The light of one source that a segment scatters to the eye, for albedo 1: its mean over the segment, attenuated by what lies in front
+// within the segment. `depth` is the segment's optical depth.
+vec3 lightOf(int light, SegmentLight lit, float depth, vec3 toEye) {
   const SampleLight source = frame.lights[light];
-  vec3 way = source.place;
+  vec3 toLight = source.positionOrDirection;
   float distance2 = 1.0;
   if (source.atInfinity == 0) {
-    way = frame.indexToWorld * (source.place - lit.position);
-    distance2 = max(dot(way, way), frame.nearestLight2);
-    way *= inversesqrt(max(dot(way, way), 1e-30));
+    toLight = frame.indexToWorld * (source.positionOrDirection - lit.position);
+    distance2 = max(dot(toLight, toLight), frame.nearestLight2);
+    toLight *= inversesqrt(max(dot(toLight, toLight), 1e-30));
   }
   const float begin = lit.begin[light], change = lit.change[light];
-  // At the end of its code a depth may be larger, and a tint would let light through.
+  // A stored depth at the end of its range stands for any larger one; times a tint below 1 it would let light through.
   if (kTinted && begin + max(change, 0.0) >= kMostLightDepth) return vec3(0.0);
   vec3 sum = vec3(0.0);
   float scale = 1.0;
   for (int octave = 0; octave < kOctaves; ++octave) {
-    float phase = frame.phaseG == 0.0 ? 1.0 / (4.0 * kPi) : phaseFunction(scale * frame.phaseG, -way, toEye);
+    float phase = frame.phaseG == 0.0 ? 1.0 / (4.0 * kPi) : phaseFunction(scale * frame.phaseG, -toLight, toEye);
     if (kSurfaces) phase *= 1.0 - lit.surface;
     vec3 through;
     if (kTinted)
@@ -57,8 +58,49 @@ vec3 lightOf(int light, Lit lit, float depth, vec3 toEye) {
     sum += scale * phase * through;
     scale *= frame.octaveScale;
   }
-  if (kSurfaces && lit.surface > 0.0) sum += surfaceLight(lit, light, way, depth, toEye);
+  if (kSurfaces && lit.surface > 0.0) sum += surfaceLight(lit, light, toLight, depth, toEye);
   return source.color / distance2 * sum;
+}
+
+// Adds a segment of the ray with a constant source term (rgb) and extinction (a), whose middle is `ahead` slices from the eye. The light
+// that leaves it is dimmed by the mean of its own transmittance. `segmentLength` is in units of 1 / extinction.
+void addSegment(inout Sums sums, vec4 medium, float segmentLength, float ahead, SegmentLight lit, vec3 toEye) {
+  const float depth = segmentLength * medium.a;
+  const float through = exp(-depth);
+  const float rest = sums.transmittance * through;
+  vec3 leaving = vec3(depth < 0.01 ? 1.0 - 0.5 * depth : (1.0 - through) / depth);
+  if (kSampled) {
+    leaving = vec3(0.0);
+    [[unroll]] for (int c = 0; c < 3; ++c)
+      if (c < kAmbient) leaving[c] = exp(-lit.ambientBegin[c]) * meanTransmittance(depth + lit.ambientChange[c]);
+    leaving = frame.ambient * (kAmbient == 1 ? leaving.rrr : leaving);
+    [[unroll]] for (int i = 0; i < kMostSampleLights; ++i)
+      if (i < kLights) leaving += lightOf(i, lit, depth, toEye);
+  }
+  sums.color += sums.transmittance * segmentLength * leaving * medium.rgb;
+  sums.distance += (sums.transmittance - rest) * max(ahead, 0.0);
+  sums.transmittance = rest;
+  if (kParts) sums.depth += depth;
+}
+
+float lightDepth(int slot, int quad, vec4 weights) {
+  const uvec2 pairs = lightQuad(slot, quad);
+  const float root = dot(weights, vec4(unpackUnorm2x16(pairs.x), unpackUnorm2x16(pairs.y)));
+  return root * root * kOpaqueDepth;
+}
+
+vec4 depthsTowardsLights(int quad, vec4 weights) {
+  vec4 depths = vec4(0.0);
+  [[unroll]] for (int i = 0; i < kMostSampleLights; ++i)
+    if (i < kLights) depths[i] = lightDepth(i, quad, weights);
+  return depths;
+}
+
+vec3 ambientAt(int quad, vec4 weights) {
+  vec3 depths = vec3(0.0);
+  [[unroll]] for (int c = 0; c < 3; ++c)
+    if (c < kAmbient) depths[c] = lightDepth(kLights + c, quad, weights);
+  return depths;
 }
 
 #endif

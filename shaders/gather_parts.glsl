@@ -1,11 +1,12 @@
-// Part of gather.comp, whose rays and sums it reads: the sums of the bricks of a part (GatherPart), in fixed point.
+// The sums of the bricks of a part (GatherPart), in fixed point.
 #ifndef GATHER_PARTS_GLSL
 #define GATHER_PARTS_GLSL
 #include "fixed_point.glsl"
+#include "gather_march.glsl"
 #include "ray_lookup.glsl"
 
-// The transmittance between the eye and a position on a ray, in slices of the level, from the eye's rays. The planes of their face may lie
-// across another axis than the ray's slices: the depth is then interpolated between the ray's positions on the planes around.
+// The transmittance between the eye and a position on a ray, in slices of the level, from the eye's rays. These are stored on planes across
+// one axis, which may differ from the axis of this ray's slices; the depth is then interpolated between the two planes around the position.
 float transmittanceBefore(Ray ray, float slice) {
   if ((slice - ray.eye) * ray.direction <= 0.0) return 1.0;
   vec3 along;
@@ -17,10 +18,10 @@ float transmittanceBefore(Ray ray, float slice) {
   // Depths in front of a layer are those half a layer before its plane.
   const vec3 position = voxelPosition(ray, slice) + (kScalars ? 0.0 : 0.5) * layer;
   const float plane = (position[fan.axis] - float(fan.firstPlane)) * float(fan.direction);
-  const float part = max(plane - floor(plane + 1e-3), 0.0);
-  const float before = rayTransmittance(fan, position - part * layer);
-  if (part < 1e-3) return before;
-  return pow(max(before, 1e-30), 1.0 - part) * pow(max(rayTransmittance(fan, position + (1.0 - part) * layer), 1e-30), part);
+  const float fraction = max(plane - floor(plane + 1e-3), 0.0);
+  const float before = rayTransmittance(fan, position - fraction * layer);
+  if (fraction < 1e-3) return before;
+  return pow(max(before, 1e-30), 1.0 - fraction) * pow(max(rayTransmittance(fan, position + (1.0 - fraction) * layer), 1e-30), fraction);
 }
 
 // Adds the sums of the last brick to those of the part.
@@ -45,11 +46,11 @@ void enterBrick(inout Sums sums, Ray ray, int brick, float slice) {
   sums.begin = sums.transmittance = transmittanceBefore(ray, slice);
 }
 
-void storePart(ivec2 place) {
-  const int number = place.x + frame.part.extent.x * place.y, samples = frame.part.extent.x * frame.part.extent.y;
+void storePart(ivec2 index) {
+  const int sampleIndex = index.x + frame.part.extent.x * index.y, samples = frame.part.extent.x * frame.part.extent.y;
   PartSums sums = PartSums(frame.part.sums);
   [[unroll]] for (int c = 0; c < 6; ++c)
-    sums.values[c * samples + number] = partSums[c];
+    sums.values[c * samples + sampleIndex] = partSums[c];
   if (!partFits) atomicOr(Overflow(frame.part.overflow).overflow, 1u);
 }
 

@@ -1,15 +1,18 @@
-// Part of gather.comp, whose rays and sums it reads: voxels that are classified after interpolation.
+// Voxels that are classified after interpolation, by integrals of the transfer function.
 #ifndef GATHER_SCALARS_GLSL
 #define GATHER_SCALARS_GLSL
+#include "gather_blocks.glsl"
 #include "transfer_table.glsl"
 
+const float kMostlySurface = 0.95;        // surface share from which on other scattering is neglected
+
 // `halfStep` is the ray's movement along the sides in half a slice.
-Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye) {
+SliceValues scalarValuesAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye) {
   vec4 weights;
   const int quad = quadAt(level, position, slice, weights);
   const uvec2 pairs = mediumQuad(quad);
   const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
-  Found found;
+  SliceValues found;
   if (kSampled) {
     found.depths = depthsTowardsLights(quad, weights);
     found.ambient = ambientAt(quad, weights);
@@ -44,15 +47,15 @@ Found scalarAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye
 
 // The scalar at a position in index space, and the coverage by voxels with data.
 vec2 scalarNear(Slices level, vec3 position) {
-  const float low = floor(position[kAxis]), part = position[kAxis] - low;
+  const float low = floor(position[kAxis]), fraction = position[kAxis] - low;
   vec2 sum = vec2(0.0);
   [[unroll]] for (int i = 0; i < 2; ++i) {
     const int slice = int(low) + i;
-    if ((i == 1 && part == 0.0) || slice < 0 || slice >= level.count) continue;
+    if ((i == 1 && fraction == 0.0) || slice < 0 || slice >= level.count) continue;
     vec4 weights;
     const uvec2 pairs = mediumQuad(quadAt(level, vec2(position[kSideA], position[kSideB]), slice, weights));
     const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
-    weights *= i == 0 ? 1.0 - part : part;
+    weights *= i == 0 ? 1.0 - fraction : fraction;
     [[unroll]] for (int k = 0; k < 4; ++k) weights[k] = codes[k] != 0 ? weights[k] : 0.0;
     sum += vec2(dot(weights, vec4(codes) - 1.0), weights.x + weights.y + weights.z + weights.w);
   }
@@ -61,21 +64,21 @@ vec2 scalarNear(Slices level, vec3 position) {
 
 // Adds to the depths towards lights, which are known from a layer further on, the depths up to there. Where
 // little is visible, the extinction is taken as constant on this path.
-vec4 depthsAt(Slices level, Found at, vec3 position, bool shows) {
+vec4 depthsAt(Slices level, SliceValues at, vec3 position, bool shows) {
   vec4 depths = at.depths;
   [[unroll]] for (int i = 0; i < kMostSampleLights; ++i) {
     if (i >= kLights) continue;
-    vec3 way = frame.lights[i].across;
+    vec3 toLight = frame.lights[i].across;
     if (frame.lights[i].atInfinity == 0) {
-      way = frame.lights[i].place - position;
-      way /= max(max(abs(way.x), max(abs(way.y), abs(way.z))), 1e-6);
+      toLight = frame.lights[i].positionOrDirection - position;
+      toLight /= max(max(abs(toLight.x), max(abs(toLight.y), abs(toLight.z))), 1e-6);
     }
-    const float layer = length(frame.indexToWorld * way) * frame.extinctionUnit;
+    const float layer = length(frame.indexToWorld * toLight) * frame.extinctionUnit;
     if (!shows) {
       depths[i] += layer * at.coverage * at.medium.a;
       continue;
     }
-    const vec2 next = scalarNear(level, position + way);
+    const vec2 next = scalarNear(level, position + toLight);
     vec4 integral, medium;
     tableAt(next.x, integral, medium);
     const float mean = at.coverage == 0.0 ? medium.a
@@ -95,9 +98,9 @@ float changeAcross(float scalar, float reach) {
   return (above.a - below.a) / max(max(above.a, below.a), 1e-20);
 }
 
-// The lighting of both halves of a stretch, of which the part `shown` of the pixel is seen. `first` and `second` have the values of its ends,
-// those of the other end where one has no data.
-void lightStretch(out Lit nearLit, out Lit farLit, inout Found last, inout Found found, Found first, Found second, float nearExtinction,
+// Lights the two halves of a stretch. `first` and `second` are the values at its ends; where an end has no data, those of the other end.
+// `shown` is the stretch's share of the pixel's alpha.
+void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout SliceValues last, inout SliceValues found, SliceValues first, SliceValues second, float nearExtinction,
                   float farExtinction, float shown, Slices level, Ray ray, int slice) {
   const float nearPart = nearExtinction + farExtinction > 0.0 ? nearExtinction / (nearExtinction + farExtinction) : 0.5;
   nearLit.ambientChange = (second.ambient - first.ambient) * nearPart;
@@ -142,13 +145,13 @@ void lightStretch(out Lit nearLit, out Lit farLit, inout Found last, inout Found
 // Scalars change linearly from a slice to the middle of the stretch and on to the next slice, so that integrals of the
 // transfer function give the means. In the middle both slices' functions count half. A slice that is not `within` the level's
 // slices has no data.
-void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int slice, bool within) {
+void addStretch(inout Sums sums, inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
   const int there = within ? slice : slice - int(ray.direction);
-  Found found = scalarAt(level, ray.origin + ray.slope * float(there), there, 0.5 * ray.direction * ray.slope, ray.toEye);
+  SliceValues found = scalarValuesAt(level, ray.origin + ray.slope * float(there), there, 0.5 * ray.direction * ray.slope, ray.toEye);
   const int brick = ownBrick;
   if (!within) found.coverage = 0.0;
   const float coverage = 0.5 * (last.coverage + found.coverage);
-  Found first = last, second = found;
+  SliceValues first = last, second = found;
   if (last.coverage == 0.0) first = found;
   if (found.coverage == 0.0) second = last;
   const bool both = last.coverage > 0.0 && found.coverage > 0.0;
@@ -175,10 +178,10 @@ void addStretch(inout Sums sums, inout Found last, Slices level, Ray ray, int sl
   const float nearLayer = ray.layer * mix(last.coverage, found.coverage, 0.25);
   const float farLayer = ray.layer * mix(last.coverage, found.coverage, 0.75);
   const float shown = sums.transmittance * (nearLayer * near.a + farLayer * far.a);
-  Lit nearLit, farLit;
+  SegmentLight nearLit, farLit;
   if (kSampled) lightStretch(nearLit, farLit, last, found, first, second, near.a, far.a, shown, level, ray, slice);
-  addPart(sums, near, nearLayer * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75, nearLit, ray.toEye);
-  addPart(sums, far, farLayer * clamp(ahead, 0.0, 0.5), ahead - 0.25, farLit, ray.toEye);
+  addSegment(sums, near, nearLayer * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75, nearLit, ray.toEye);
+  addSegment(sums, far, farLayer * clamp(ahead, 0.0, 0.5), ahead - 0.25, farLit, ray.toEye);
   last = found;
 }
 

@@ -46,7 +46,7 @@ void main() {
     colors[i] = texelFetch(colorEnergy, place);
     weighted[i] = texelFetch(distances, place).x;
   }
-  // Beside a silhouette only the neighbours have a distance.
+  // The mean of all nine samples, as a sample beside a silhouette has no distance of its own.
   float energy = 0.0, distance = 0.0;
   [[unroll]] for (int i = 0; i < 9; ++i) {
     energy += colors[i].a;

@@ -68,8 +68,8 @@ shader::GatherAxis gatherAxis(const CentredRays& rays, const glm::dmat3& toPixel
     const glm::dvec3 slope = affine(rays.direction, rays.directionX, rays.directionY, sides[s]);
     const glm::dvec3 start = affine(rays.origin, rays.originX, rays.originY, sides[s]);
     result.slope[s] = slope;
-    // (start . p) (along . p) + (middlePlane - eye . p) (slope . p), p = (1, x, y): of the origin and the direction one
-    // does not change with the pixel, so that it is affine.
+    // (start . p) (along . p) + (middlePlane - eye . p) (slope . p), p = (1, x, y). For a perspective camera the
+    // origin is constant, for an orthographic one the direction, so that the product is affine.
     const glm::dvec3 toPlane = glm::dvec3(middlePlane, 0.0, 0.0) - eye;
     result.middle[s] = glm::dvec3(
         start.x * along.x + toPlane.x * slope.x,
@@ -104,9 +104,9 @@ bool readsLevel(const shader::GatherFrame& frame, const SeenRectangle& seen, int
 /// The slices of each level that are read by rays whose component along the axis has this sign. A level
 /// begins where its blocks are small on the image for all rays between the positions `seen`, or for an orthographic camera by
 /// DetailRule::coarsestShare, at a multiple of its blocks' edge, so that every voxel counts once.
-void setSlices(shader::GatherAxis& axis, int number, int sign, const HierarchyLayout& hierarchy,
+void setSlices(shader::GatherAxis& axis, int axisIndex, int sign, const HierarchyLayout& hierarchy,
                const DetailRule& detail, const SeenRectangle& seen, bool orthographic) {
-  const int voxels = hierarchy.levels.front().dimensions[number];
+  const int voxels = hierarchy.levels.front().dimensions[axisIndex];
   std::vector<int> begins(std::size_t(detail.coarsest) + 2);  // in voxels along the ray's direction
   double steepest = 0.0;
   for (const glm::dvec3& corner : cornersOf(seen))
@@ -182,7 +182,7 @@ std::optional<SampleRectangle> samplesThatSee(const DeviceVolume& volume, const 
 }
 
 shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& camera, const FrameSettings& settings,
-                                    const DetailRule& detail, double end) {
+                                    const DetailRule& detail, double endTransmittance) {
   const PixelRays pixels = pixelRays(camera, settings.size, volume.indexToWorld);
   const CentredRays rays(pixels, settings.size);
   const bool orthographic = pixels.orthographic;
@@ -204,7 +204,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
                             .coarsest = detail.coarsest,
                             .size = settings.size,
                             .pixelsPerVoxel = float(voxel),
-                            .end = float(end),
+                            .endTransmittance = float(endTransmittance),
                             .orthographic = orthographic ? 1 : 0,
                             .mainAxis = majorAxis(rays.direction)};
   const SeenRectangle seen = seenRectangle(rays, toPixel, dimensions, orthographic);

@@ -174,7 +174,7 @@ void GatherVolume::describeLights(shader::GatherFrame& frame) const {
     const Light& light = sampled_[i];
     const glm::dvec3 first = surroundings_ != nullptr ? glm::dvec3(surroundings_->first) : glm::dvec3(0.0);
     const glm::dvec3 place = light.atInfinity ? glm::normalize(light.place) : lightSource(light, volume.indexToWorld).place + first;
-    frame.lights[i] = {.place = place, .atInfinity = light.atInfinity ? 1 : 0, .color = light.intensity * light.color};
+    frame.lights[i] = {.positionOrDirection = place, .atInfinity = light.atInfinity ? 1 : 0, .color = light.intensity * light.color};
     if (light.atInfinity) {
       const glm::dvec3 way = lightSource(light, volume.indexToWorld).place, size = glm::abs(way);
       frame.lights[i].across = way / std::max({size.x, size.y, size.z});

@@ -44,7 +44,7 @@ void swapWeights(SteppedGather& gather) {
 }
 
 void endRaysTooEarly(SteppedGather& gather) {
-  gather.alterSamples = [](shader::GatherFrame& frame) { frame.end *= 1.2f; };
+  gather.alterSamples = [](shader::GatherFrame& frame) { frame.endTransmittance *= 1.2f; };
 }
 
 /// What the gather keeps of a voxel is made from another extinction.

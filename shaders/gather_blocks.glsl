@@ -1,0 +1,98 @@
+// Blocks that are classified: source term and extinction are interpolated.
+#ifndef GATHER_BLOCKS_GLSL
+#define GATHER_BLOCKS_GLSL
+#include "gather_parts.glsl"
+#include "gather_surfaces.glsl"
+#include "packed_light.glsl"
+
+// The sum of a quad's source terms.
+vec3 sourceAt(int quad, uvec4 packed, vec4 weights, vec3 toEye) {
+  if (kTowards) {
+    const uvec4 towards = towardsQuad(quad);
+    [[unroll]] for (int i = 0; i < 4; ++i) weights[i] *= 1.0 + dot(unpackSnorm4x8(towards[i]).xyz, toEye);
+  }
+  vec3 source = vec3(0.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) source += weights[i] * unpackLight(packed[i]);
+  return source;
+}
+
+// The fraction of a slice's tent that is in front of the eye, if the slice is `ahead` slices in front of it.
+float fractionInFront(float ahead) {
+  const float a = clamp(ahead, -1.0, 1.0);
+  return a >= 0.0 ? 0.5 + a - 0.5 * a * a : 0.5 * (1.0 + a) * (1.0 + a);
+}
+
+vec4 extinctionsOf(int quad) {
+  const uvec2 halves = mediumQuad(quad);
+  return vec4(unpackHalf2x16(halves.x), unpackHalf2x16(halves.y));
+}
+
+// The interpolated source term and extinction.
+vec4 mediumAt(int quad, vec4 weights, vec4 extinctions, vec3 toEye) {
+  const float extinction = dot(weights, extinctions);
+  return vec4(kColored ? sourceAt(quad, sourceQuad(quad), weights, toEye) : extinction * frame.color, extinction);
+}
+
+// For classified blocks: source term and extinction are constant in a slice's layer.
+void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
+  vec4 weights;
+  const int quad = quadAt(level, ray.origin + ray.slope * float(slice), slice, weights);
+  const float ahead = (float(slice) - ray.eye) * ray.direction;
+  const vec4 medium = mediumAt(quad, weights, extinctionsOf(quad), ray.toEye);
+  if (kParts || kRegion) {
+    if (ownBrick == 0 || medium == vec4(0.0)) return;
+    if (kParts) enterBrick(sums, ray, ownBrick, float(slice) - 0.5 * ray.direction);
+  }
+  SegmentLight lit;
+  addSegment(sums, medium, ray.layer * fractionInFront(ahead), ahead, lit, ray.toEye);
+}
+
+// For classified blocks that are lit at samples: the values on a slice.
+SliceValues blockValuesAt(Slices level, Ray ray, int slice, bool within) {
+  vec4 weights;
+  const int quad = quadAt(level, ray.origin + ray.slope * float(slice), slice, weights);
+  SliceValues found;
+  found.medium = within ? mediumAt(quad, weights, extinctionsOf(quad), ray.toEye) : vec4(0.0);
+  found.depths = depthsTowardsLights(quad, weights);
+  found.ambient = ambientAt(quad, weights);
+  found.coverage = found.medium.a > 0.0 ? 1.0 : 0.0;
+  found.gradient = vec3(0.0);
+  found.hasGradient = false;
+  return found;
+}
+
+// For classified blocks that are lit at samples: the stretch from the previous slice. The depth towards a
+// light changes along it as the depth towards the eye does, since both are integrals of the same extinction.
+void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
+  SliceValues found = blockValuesAt(level, ray, within ? slice : slice - int(ray.direction), within);
+  const int brick = ownBrick;
+  const vec4 medium = 0.5 * (last.medium + found.medium);
+  if (kParts || kRegion) {
+    if (brick == 0 || medium == vec4(0.0)) {
+      last = found;
+      return;
+    }
+    if (kParts) enterBrick(sums, ray, brick, float(slice) - ray.direction);
+  }
+  const float ahead = (float(slice) - ray.eye) * ray.direction;
+  SegmentLight lit;
+  lit.begin = last.depths.x < 0.0 ? max(found.depths - ray.layer * medium.a, vec4(0.0)) : last.depths;
+  lit.change = found.depths - lit.begin;
+  lit.ambientBegin = last.depths.x < 0.0 ? found.ambient : last.ambient;
+  lit.ambientChange = found.ambient - lit.ambientBegin;
+  lit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
+  if (kSurfaces) {
+    lit.surface = 0.0;
+    if (sums.transmittance * ray.layer * medium.a > kLeastShaded) {
+      findGradients(last, found, level, ray, slice);
+      const vec3 gradient = 0.5 * (last.gradient + found.gradient);
+      const float reach = length(gradient) / frame.extinctionUnit;
+      setSurface(lit, gradient, -min(2.0 * reach / max(medium.a + reach, 1e-20), 1.0));
+      lightFrom(lit, outsideOf(level, ray, float(slice) - 0.5 * ray.direction, -gradient));
+    }
+  }
+  addSegment(sums, medium, ray.layer * clamp(ahead, 0.0, 1.0), ahead - 0.5, lit, ray.toEye);
+  last = found;
+}
+
+#endif

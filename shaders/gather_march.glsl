@@ -1,0 +1,197 @@
+// What the parts of the gather's march share: the cases that it is compiled for, its buffers, a ray, the slices of blocks that it meets,
+// and the look-up of the four blocks around a position on a slice.
+#ifndef GATHER_MARCH_GLSL
+#define GATHER_MARCH_GLSL
+#include "gather_ray.glsl"
+
+// Compiled for each combination of these, because drivers take long to specialise code of this size:
+const bool kScalars = SCALARS;    // whether voxels are classified after interpolation
+const bool kSampled = SAMPLED;    // whether light is evaluated at samples
+const bool kSurfaces = SURFACES;  // whether they then may be surfaces
+const bool kParts = PARTS;        // whether only the bricks of a part are marched (GatherPart)
+const bool kRegion = REGION;      // whether only a cube of the volume is marched, behind those that were marched before (GatherRegion)
+
+layout(constant_id = 0) const int kAxis = 2;          // rays with another axis are marched by other dispatches
+layout(constant_id = 1) const bool kTowards = false;  // whether the light of blocks depends on the direction to the eye
+layout(constant_id = 2) const bool kColored = true;   // whether blocks have their own source terms
+layout(constant_id = 3) const bool kLit = false;      // whether scalars have light of voxels
+layout(constant_id = 4) const bool kPieces = false;   // whether quads are in more than one piece
+layout(constant_id = 5) const int kLights = 0;        // number of lights evaluated at samples
+layout(constant_id = 6) const int kAmbient = 0;       // channels of ambient light evaluated at samples
+layout(constant_id = 7) const int kOctaves = 1;       // orders of scattering
+layout(constant_id = 8) const bool kTinted = false;   // whether the extinction differs between the colours of light
+
+layout(binding = 1) uniform utextureBuffer brickNumbers;     // with kParts, bricks of the part have kOwnBrick
+// Each quad has two neighbours along the first side, at this position and at the next one along the second
+// side.
+layout(binding = 2) uniform utextureBuffer mediumQuads;      // extinctions, four halves; or four codes of scalars
+layout(binding = 3) uniform utextureBuffer sourceQuads;      // four packed source terms; only with kColored
+layout(binding = 4) uniform utextureBuffer towardsQuads;     // four times three bytes; only with kTowards
+layout(binding = 5, rgba32f) SUMS_ACCESS uniform imageBuffer colorEnergy;  // C, E
+layout(binding = 6, r32f) SUMS_ACCESS uniform imageBuffer distances;       // sum of e times distance
+
+// Codes of optical depths, 16 bits each: towards each light, then for each channel those that ambient light
+// has passed.
+layout(binding = 9) uniform utextureBuffer lightQuads0;
+layout(binding = 10) uniform utextureBuffer lightQuads1;
+layout(binding = 11) uniform utextureBuffer lightQuads2;
+layout(binding = 12) uniform utextureBuffer lightQuads3;
+layout(binding = 13) uniform utextureBuffer lightQuads4;
+layout(binding = 14) uniform utextureBuffer lightQuads5;
+layout(binding = 15) uniform utextureBuffer lightQuads6;
+layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer PartSums { uvec2 values[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Overflow { uint overflow; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MediumPiece { uvec2 values[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Gradients { uint values[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SourcePiece { uvec4 values[]; };
+layout(binding = 8) uniform utextureBuffer skipCells;
+
+const int kSideA = kAxis == 0 ? 1 : 0;
+const int kSideB = kAxis == 2 ? 1 : 2;
+const int kPieceLog2 = kPieceBricksLog2 + 3 * kBrickLevels;  // quads
+const int kPieceMask = (1 << kPieceLog2) - 1;
+
+struct Ray {
+  vec2 origin, slope;   // positions on the sides: origin + slope * slice, in blocks of the level
+  float direction;      // 1 for ascending slices, -1 for descending ones
+  int group;            // slices that are tested for emptiness together: at most a cell's edge on any axis
+  float eye;            // start of the ray, in slices of the level
+  float layer;          // world length of the ray in a slice of the level, times the unit of extinction
+  vec3 toEye;           // unit vector in world space
+  float edge;           // edge of a block in voxels
+  float perSlice;       // distance from the eye plane that the ray moves in a slice of the level, world units
+};
+
+// The geometry of a level, read once for each level.
+struct Slices {
+  ivec2 dimensions;     // of the sides, in blocks
+  int count;
+  int firstCell;
+  ivec3 cellStrides;    // of the sides and the axis
+  int firstSkip;
+  ivec3 skipStrides;    // of the sides and the axis
+  ivec3 lastSkip;       // of the sides and the axis
+  ivec3 first, begin, end;  // with kRegion: GatherRegion, of the sides and the axis
+};
+
+struct Sums {
+  vec3 color;
+  float distance;       // sum of e times slices from the eye
+  float transmittance;
+  // With kParts, the sums are those of one brick, and the optical depth is summed up too:
+  float depth;
+  float begin;          // transmittance in front of the brick
+  int brick;            // 0 if none was entered
+};
+
+// With kParts: sums of the bricks so far, in fixed point (SumChannel), and whether they were in range.
+uvec2 partSums[6];
+bool partFits = true;
+// The brick of the last quad if it belongs to the part, otherwise 0; with kRegion 1 if the quad is in the cube.
+int ownBrick = 0;
+
+// The values of a ray on a slice, for the stretch to the next slice. blockValuesAt() sets coverage, medium, depths, ambient and the gradient
+// only; scalarValuesAt() sets all of them.
+struct SliceValues {
+  float coverage;  // share of the weights that voxels with data have, 0..1; if it is 0 the other values are undefined
+  float scalar;    // in intervals of the transfer function's table
+  float ahead;     // the scalar half a slice further on, continued in its plane
+  float behind;    // the scalar half a slice before
+  vec4 integral;   // integrals of extinction times colour (rgb) and of extinction (a) over the scalar
+  vec4 medium;     // extinction times colour and extinction at the scalar
+  vec3 light;      // relative to that of a source term of 1
+  vec2 change;     // change of the scalar per voxel along the sides
+  vec3 gradient;   // gradient of the scalar, or of the extinction, per block in index space
+  bool hasGradient;
+  vec4 depths;     // optical depths towards the lights, for scalars from a layer further on; negative if unknown
+  vec4 arriving;   // for scalars, optical depths towards the lights; negative if not computed
+  vec3 ambient;    // optical depths that ambient light has passed, by channel
+};
+
+SliceValues emptySliceValues() {
+  SliceValues nothing;
+  nothing.coverage = nothing.scalar = nothing.ahead = nothing.behind = 0.0;
+  nothing.integral = nothing.medium = vec4(0.0);
+  nothing.light = nothing.gradient = nothing.ambient = vec3(0.0);
+  nothing.change = vec2(0.0);
+  nothing.hasGradient = false;
+  nothing.depths = nothing.arriving = vec4(-1.0);
+  return nothing;
+}
+
+// On lavapipe, texels are faster than addresses.
+uvec2 mediumQuad(int quad) {
+  if (!kPieces) return texelFetch(mediumQuads, quad).xy;
+  return MediumPiece(frame.axes[kAxis].mediumPieces[quad >> kPieceLog2]).values[quad & kPieceMask];
+}
+
+uvec4 sourceQuad(int quad) {
+  if (!kPieces) return texelFetch(sourceQuads, quad);
+  return SourcePiece(frame.axes[kAxis].sourcePieces[quad >> kPieceLog2]).values[quad & kPieceMask];
+}
+
+uvec4 towardsQuad(int quad) {
+  if (!kPieces) return texelFetch(towardsQuads, quad);
+  return SourcePiece(frame.axes[kAxis].towardsPieces[quad >> kPieceLog2]).values[quad & kPieceMask];
+}
+
+uvec2 lightQuad(int slot, int quad) {
+  if (kPieces) return MediumPiece(frame.axes[kAxis].lightPieces[slot][quad >> kPieceLog2]).values[quad & kPieceMask];
+  switch (slot) {
+    case 0: return texelFetch(lightQuads0, quad).xy;
+    case 1: return texelFetch(lightQuads1, quad).xy;
+    case 2: return texelFetch(lightQuads2, quad).xy;
+    case 3: return texelFetch(lightQuads3, quad).xy;
+    case 4: return texelFetch(lightQuads4, quad).xy;
+    case 5: return texelFetch(lightQuads5, quad).xy;
+    default: return texelFetch(lightQuads6, quad).xy;
+  }
+}
+
+// The weights of a quad's two neighbours along a side; sets `low` to the quad that has them.
+vec2 sideWeights(float position, int count, out int low) {
+  const float first = floor(position);
+  const float fraction = position - first;
+  low = int(first);
+  const vec2 weights = low < 0 ? vec2(low == -1 ? fraction : 0.0, 0.0) : vec2(low < count ? 1.0 - fraction : 0.0, fraction);
+  low = clamp(low, 0, count - 1);
+  return weights;
+}
+
+// The number of the brick that has the block at a position on the sides and the axis.
+int brickAt(Slices level, ivec3 block) {
+  if (kRegion) {
+    ownBrick = all(greaterThanEqual(block, level.begin)) && all(lessThan(block, level.end)) ? 1 : 0;
+    block -= level.first;
+  }
+  const ivec3 cell = block >> kBrickLevels;
+  const uint brick = texelFetch(brickNumbers, level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
+                                                  cell.z * level.cellStrides.z).x;
+  if (!kParts) return int(brick);
+  const int number = int(brick & ~kOwnBrick);
+  ownBrick = (brick & kOwnBrick) != 0 ? number : 0;
+  return number;
+}
+
+// The quad of four blocks around a position on a slice, and their weights.
+int quadAt(Slices level, vec2 position, int slice, out vec4 weights) {
+  ivec2 low;
+  const vec2 a = sideWeights(position.x, level.dimensions.x, low.x);
+  const vec2 b = sideWeights(position.y, level.dimensions.y, low.y);
+  weights = vec4(a * b.x, a * b.y);
+  const ivec3 block = ivec3(low, slice);
+  const int brick = brickAt(level, block);
+  const ivec3 inBrick = block & (kGatherBrickEdge - 1);
+  return ((brick << kBrickLevels | inBrick.y) << kBrickLevels | inBrick.x) << kBrickLevels | inBrick.z;
+}
+
+vec3 voxelPosition(Ray ray, float slice) {
+  const vec2 sides = ray.origin + ray.slope * slice;
+  vec3 position;
+  position[kAxis] = slice;
+  position[kSideA] = sides.x;
+  position[kSideB] = sides.y;
+  return (position + 0.5) * ray.edge - 0.5;
+}
+
+#endif

@@ -1,0 +1,75 @@
+// Surfaces: normals from gradients, and the light that reaches a surface from outside.
+#ifndef GATHER_SURFACES_GLSL
+#define GATHER_SURFACES_GLSL
+#include "gather_light.glsl"
+#include "packed_gradient.glsl"
+
+const float kLeastShaded = 1.0 / 512.0;  // least share of a pixel for which the normal of a surface is computed
+const float kOutside = 2.5;               // blocks from a surface at which the light that reaches it is looked up
+
+// The gradient at a position on a slice.
+vec3 gradientAt(Slices level, vec2 position, int slice) {
+  ivec2 low;
+  const vec2 a = sideWeights(position.x, level.dimensions.x, low.x);
+  const vec2 b = sideWeights(position.y, level.dimensions.y, low.y);
+  const vec4 weights = vec4(a * b.x, a * b.y);
+  vec3 gradient = vec3(0.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    const ivec3 neighbour = min(ivec3(low + ivec2(i & 1, i >> 1), slice), ivec3(level.dimensions, slice + 1) - 1);
+    const int brick = brickAt(level, neighbour);
+    const ivec3 inBrick = neighbour & (kGatherBrickEdge - 1);
+    ivec3 block;
+    block[kAxis] = inBrick.z;
+    block[kSideA] = inBrick.x;
+    block[kSideB] = inBrick.y;
+    const int index = ((brick << kBrickLevels | block.z) << kBrickLevels | block.y) << kBrickLevels | block.x;
+    gradient += weights[i] * unpackGradient(Gradients(frame.gradients).values[index]);
+  }
+  return gradient;
+}
+
+// The mean of both ends of a stretch.
+void findGradients(inout SliceValues last, inout SliceValues found, Slices level, Ray ray, int slice) {
+  for (int i = last.hasGradient ? 1 : 0; i < 2; ++i) {
+    const int at = clamp(i == 1 ? slice : slice - int(ray.direction), 0, level.count - 1);
+    const vec3 gradient = gradientAt(level, ray.origin + ray.slope * float(at), at);
+    if (i == 1) found.gradient = gradient; else last.gradient = gradient;
+  }
+  last.hasGradient = found.hasGradient = true;
+}
+
+vec3 normalOf(vec3 gradient) {
+  const vec3 normal = frame.gradientToWorld * gradient;
+  return normal * inversesqrt(max(dot(normal, normal), 1e-30));
+}
+
+// `decrease` is the decrease of the extinction along a gradient, from one block before to one block behind,
+// relative to the larger of the two.
+void setSurface(inout SegmentLight lit, vec3 gradient, float decrease) {
+  const vec3 normal = frame.gradientToWorld * (sign(decrease) * gradient);
+  lit.normal = normal * inversesqrt(max(dot(normal, normal), 1e-30));
+  lit.surface = frame.surface * min(2.0 * abs(decrease), 1.0);
+}
+
+// Optical depths at a point kOutside blocks outside of a surface. At the surface itself its own voxels would cast steps of shadow; whether
+// it faces the light follows from its normal.
+struct Outside {
+  vec4 depths;
+  vec3 ambient;
+};
+
+Outside outsideOf(Slices level, Ray ray, float slice, vec3 outwards) {
+  const vec3 offset = kOutside * outwards * inversesqrt(max(dot(outwards, outwards), 1e-30));
+  const vec2 position = ray.origin + ray.slope * slice + vec2(offset[kSideA], offset[kSideB]);
+  vec4 weights;
+  const int quad = quadAt(level, position, clamp(int(floor(slice + offset[kAxis] + 0.5)), 0, level.count - 1), weights);
+  return Outside(depthsTowardsLights(quad, weights), ambientAt(quad, weights));
+}
+
+void lightFrom(inout SegmentLight lit, Outside outside) {
+  lit.outside = outside.depths;
+  lit.ambientBegin = mix(lit.ambientBegin, outside.ambient, lit.surface);
+  lit.ambientChange *= 1.0 - lit.surface;
+}
+
+#endif
