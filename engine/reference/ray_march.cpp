@@ -28,7 +28,7 @@ constexpr std::array<double, 3> kWeights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
 constexpr double kNodeDistance = 0.3872983346207417;
 
 /// Largest optical depth of a quadrature interval. At 1/2 the three points have an error of 1e-8.
-constexpr double kLongestDepth = 0.5;
+constexpr double kMaxIntervalDepth = 0.5;
 /// Largest number of intervals in a cell. Reached only if its optical depth is above 2000, so that the ray
 /// ends at once.
 constexpr double kMostIntervals = 4096.0;
@@ -152,9 +152,8 @@ struct Depth {
   }
 };
 
-/// Calls visit(corner, light, cell, t0, t1) for the cells with extinction or light that the ray passes up to
-/// `leave`, in order, until it returns false. `corner` is the cell's first in its brick, `light` in that of
-/// the light or null.
+/// Calls visit(corner, emission, cell, t0, t1) for the cells with extinction or emission that the ray passes up to `leave`, in order, until
+/// it returns false. `corner` is the cell's first corner in its brick, `emission` that in the brick of emission, or null.
 template <typename Visit>
 void walkField(const ReferenceField& field, const MarchedRay& ray, double leave, Visit&& visit) {
   double enter = 0.0;
@@ -172,18 +171,18 @@ void walkField(const ReferenceField& field, const MarchedRay& ray, double leave,
   constexpr double edge = ReferenceField::kBrickCells;
   const auto crossBrick = [&](glm::ivec3 position, double t0, double t1) {
     static const ReferenceField::Brick kEmpty{};
-    const ReferenceField::Brick* const light = field.light(position);
+    const ReferenceField::Brick* const emission = field.emission(position);
     const ReferenceField::Brick* const brick =
-        field.brick(position) || !light ? field.brick(position) : &kEmpty;
+        field.brick(position) || !emission ? field.brick(position) : &kEmpty;
     if (!brick) return true;
     constexpr int n = ReferenceField::kBrickCorners;
     const glm::ivec3 first = position * ReferenceField::kBrickCells - 1;
     bool goOn = true;
     const auto crossCell = [&](glm::ivec3 cell, double from, double to) {
       const glm::ivec3 local = cell - first;
-      if (!light && !field.isFilled(*brick, local)) return true;
+      if (!emission && !field.isFilled(*brick, local)) return true;
       const int corner = local.x + n * (local.y + n * local.z);
-      goOn = visit(brick->data() + corner, light ? light->data() + corner : nullptr, cell, from, to);
+      goOn = visit(brick->data() + corner, emission ? emission->data() + corner : nullptr, cell, from, to);
       return goOn;
     };
     walkCubes(ray.origin, ray.direction, first, first + ReferenceField::kBrickCells - 1, t0, t1, crossCell);
@@ -210,12 +209,11 @@ class March {
   RaySum run();
 
  private:
-  bool crossCell(const glm::vec4* corner, const glm::vec4* light, glm::ivec3 cell, double enter,
-                 double leave);
+  bool crossCell(const glm::vec4* corner, const glm::vec4* emission, glm::ivec3 cell, double enter, double leave);
   bool crossClassified(const glm::vec4* corner, glm::ivec3 cell, double enter, double leave);
   double absorb(double thickness);
   void addEvenly(double thickness);
-  void addInterval(const Cubic& cubic, const Cubic* own, const Depth& depth, double begin, double end,
+  void addInterval(const Cubic& cubic, const Cubic* emission, const Depth& depth, double begin, double end,
                    double enter, double length);
 
   const ReferenceField& field_;
@@ -229,29 +227,29 @@ class March {
 
 RaySum March::run() {
   walkField(field_, ray_, std::numeric_limits<double>::infinity(),
-            [this](const glm::vec4* corner, const glm::vec4* light, glm::ivec3 cell, double enter,
-                   double leave) { return crossCell(corner, light, cell, enter, leave); });
+            [this](const glm::vec4* corner, const glm::vec4* emission, glm::ivec3 cell, double enter, double leave) {
+              return crossCell(corner, emission, cell, enter, leave);
+            });
   return sum_;
 }
 
-bool March::crossCell(const glm::vec4* corner, const glm::vec4* light, glm::ivec3 cell, double enter,
-                      double leave) {
+bool March::crossCell(const glm::vec4* corner, const glm::vec4* emission, glm::ivec3 cell, double enter, double leave) {
   if (field_.integral() != nullptr) return crossClassified(corner, cell, enter, leave);
   const Cubic cubic = cubicAlong(corner, localAt(ray_, cell, enter), localAt(ray_, cell, leave));
-  std::optional<Cubic> own;
-  if (light) own = cubicAlong(light, localAt(ray_, cell, enter), localAt(ray_, cell, leave));
+  std::optional<Cubic> emitted;
+  if (emission) emitted = cubicAlong(emission, localAt(ray_, cell, enter), localAt(ray_, cell, leave));
   const double length = (leave - enter) * ray_.worldLength;
   const Depth depth(cubic, length);
   const double total = depth.at(1.0);
-  if (!(total > 0.0) && !own) return true;
-  if (field_.evenColor() && !ray_.distance && !light_ && !own) {
+  if (!(total > 0.0) && !emitted) return true;
+  if (field_.evenColor() && !ray_.distance && !light_ && !emitted) {
     addEvenly(total);
     return transmittance_ >= kNegligibleTransmittance;
   }
-  const double wanted = std::max(total / kLongestDepth, (leave - enter) * intervals_);
+  const double wanted = std::max(total / kMaxIntervalDepth, (leave - enter) * intervals_);
   const int count = std::max(int(std::ceil(std::min(wanted, kMostIntervals))), 1);
   for (int i = 0; i < count && transmittance_ >= kNegligibleTransmittance; ++i)
-    addInterval(cubic, own ? &*own : nullptr, depth, double(i) / count, double(i + 1) / count, enter,
+    addInterval(cubic, emitted ? &*emitted : nullptr, depth, double(i) / count, double(i + 1) / count, enter,
                 leave - enter);
   return transmittance_ >= kNegligibleTransmittance;
 }
@@ -289,7 +287,7 @@ void March::addEvenly(double thickness) {
 
 /// The light of an interval: its opacity times its mean colour, weighted by e; and its emission, which where
 /// there is no opacity is multiplied by its length.
-void March::addInterval(const Cubic& cubic, const Cubic* own, const Depth& depth, double begin, double end,
+void March::addInterval(const Cubic& cubic, const Cubic* emission, const Depth& depth, double begin, double end,
                         double enter, double length) {
   glm::dvec4 mean(0.0);
   double distance = 0.0;
@@ -303,7 +301,7 @@ void March::addInterval(const Cubic& cubic, const Cubic* own, const Depth& depth
     glm::dvec4 emitted = kWeights[i] * seen * cubic.at(s);
     const double t = enter + s * length;
     if (light_) emitted *= glm::dvec4(light_->scattered(ray_.origin + t * ray_.direction, toEye_), 1.0);
-    if (own) emitted += kWeights[i] * seen * own->at(s);
+    if (emission) emitted += kWeights[i] * seen * emission->at(s);
     mean += emitted;
     distance += emitted.a * t;
   }

@@ -26,9 +26,8 @@ struct RaySum {
 /// Marches along a ray. `step` is the largest distance between neighbouring quadrature points, in voxels.
 ///
 /// The opacity is exact for any step: along a ray through a cell the field is a cubic, integrated as one. The
-/// colour is a Gauss quadrature, exact where the colour is constant; with `light` times what is scattered of
-/// that at each point. To it comes the field's own light j, the sum of T j ds. A ray ends where less than
-/// 1e-7 of the light passes.
+/// colour is a Gauss quadrature, exact where the colour is constant. With `light`, the colour at each point is multiplied by the light that
+/// it scatters to the eye. Emission j adds the integral of T j ds. A ray ends where less than 1e-7 of the light passes.
 RaySum marchRay(const ReferenceField& field, const MarchedRay& ray, double step,
                 const LightMarch* light = nullptr);
 

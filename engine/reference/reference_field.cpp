@@ -66,7 +66,7 @@ ReferenceField::ReferenceField(const Volume& volume, const Classification& class
       brickCount_((volume.dimensions + kBrickCells) / kBrickCells),  // for dimensions + 1 cells
       bricks_(std::size_t(brickCount_.x) * std::size_t(brickCount_.y) * std::size_t(brickCount_.z)) {
   if (!classification.transferFunction && !volume.albedo) evenColor_ = classification.albedo;
-  if (brightestLight(classification, volume) > 0.0) light_.resize(bricks_.size());
+  if (brightestLight(classification, volume) > 0.0) emission_.resize(bricks_.size());
   if (classification.isPost(volume))
     integral_.emplace(*classification.transferFunction, volume.minimum, volume.maximum);
   const VoxelClassifier classifier(classification, volume);
@@ -79,7 +79,7 @@ ReferenceField::ReferenceField(const Volume& volume, const Classification& class
     return material.extinction > 0.0 ? glm::vec4(material.extinction * material.color, material.extinction)
                                      : glm::vec4(0.0f);
   };
-  const auto light = [&](glm::ivec3 voxel) {
+  const auto emission = [&](glm::ivec3 voxel) {
     return glm::vec4(classifier.at(voxel).emission, 0.0);
   };
   const std::size_t layer = std::size_t(brickCount_.x) * std::size_t(brickCount_.y);
@@ -87,7 +87,7 @@ ReferenceField::ReferenceField(const Volume& volume, const Classification& class
     tbb::parallel_for(std::size_t(0), layer, [&](std::size_t i) {
       const glm::ivec3 position(int(i % std::size_t(brickCount_.x)), int(i / std::size_t(brickCount_.x)), z);
       bricks_[std::size_t(z) * layer + i] = makeBrick(dimensions_, position, medium);
-      if (!light_.empty()) light_[std::size_t(z) * layer + i] = makeBrick(dimensions_, position, light);
+      if (!emission_.empty()) emission_[std::size_t(z) * layer + i] = makeBrick(dimensions_, position, emission);
     });
     if (progress) progress("classifying", double(z + 1) / brickCount_.z);
   }

@@ -45,8 +45,8 @@ class ReferenceField {
   /// The colour, if all voxels have the same.
   const std::optional<glm::dvec3>& evenColor() const { return evenColor_; }
   /// The brick of emission per world unit (rgb; a is 0). Null where there is none.
-  const Brick* light(glm::ivec3 position) const {
-    return light_.empty() ? nullptr : light_[indexOf(position)].get();
+  const Brick* emission(glm::ivec3 position) const {
+    return emission_.empty() ? nullptr : emission_[indexOf(position)].get();
   }
   /// The brick at a position, or null if its extinction is 0 everywhere. Its cells start at 8 * position - 1.
   const Brick* brick(glm::ivec3 position) const { return bricks_[indexOf(position)].get(); }
@@ -61,7 +61,7 @@ class ReferenceField {
   glm::ivec3 dimensions_, brickCount_;
   std::optional<glm::dvec3> evenColor_;
   std::optional<TransferIntegral> integral_;
-  std::vector<std::unique_ptr<Brick>> bricks_, light_;  ///< `light_` is empty if no voxel emits light
+  std::vector<std::unique_ptr<Brick>> bricks_, emission_;  ///< `emission_` is empty if no voxel emits light
 };
 
 }  // namespace freevoxels
