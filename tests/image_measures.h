@@ -26,7 +26,7 @@ inline double psnr(const Image& a, const Image& b) {
   return -10.0 * std::log10(squares / (4.0 * double(a.pixels.size())));
 }
 
-/// Of the depths where something is seen: alpha above 1e-3 in `expected`.
+/// The largest relative error of the depths where something is seen: alpha above 1e-3 in `expected`.
 inline double worstRelativeDepth(const Image& picture, const Image& expected) {
   double worst = 0.0;
   for (std::size_t i = 0; i < expected.pixels.size(); ++i)

@@ -18,7 +18,7 @@ class BakeCommand {
 
  private:
   void run();
-  /// Of a volume that is held in memory, or of a procedural one that is too large for that, chunk by chunk.
+  /// Bakes a volume that is held in memory; bakeProcedural() one that is too large for that, chunk by chunk.
   void bake(ProgressLine& line) const;
   void bakeProcedural(const std::string& name, ProgressLine& line) const;
   /// Options of the file, for a volume with this classification.

@@ -39,7 +39,7 @@ bool ofChunks(const fvx::Section& section) {
   return section.kind == SectionKind::ChunkIndex || section.kind == SectionKind::Chunks;
 }
 
-/// Of the chunks of a level.
+/// Sums over the chunks of a level.
 struct LevelSums {
   std::size_t chunks = 0;
   std::uint64_t bricks = 0, activeVoxels = 0, storedBytes = 0, bytes = 0;
@@ -56,7 +56,7 @@ LevelSums sumsOf(std::span<const ChunkEntry> chunks) {
   return sums;
 }
 
-/// Of the scalars, coarse to fine, and of the other channels at the finest level: bytes of the file for each active voxel.
+/// Bytes of the file per active voxel of the finest level, for all channels and levels together.
 double bytesPerVoxel(const FvxFile& file) {
   const std::uint64_t voxels = sumsOf(file.chunks(Channel::Scalars, 0)).activeVoxels;
   return double(file.header().fileBytes) / double(std::max<std::uint64_t>(voxels, 1));

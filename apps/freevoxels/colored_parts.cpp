@@ -16,7 +16,7 @@ namespace {
 constexpr double kGoldenRatio = 0.6180339887498949;
 constexpr double kSaturation = 0.85;
 
-/// Of linear Rec.709.
+/// The luminance of linear Rec.709 red, green and blue.
 constexpr glm::dvec3 kLuminance{0.2126, 0.7152, 0.0722};
 
 void color(FixedSums& sums, glm::dvec3 color) {

@@ -40,7 +40,7 @@ class SweptLight {
              const Progress& progress = {});
 
   const RaySource& source() const { return source_; }
-  /// Of a brick of the level; 0 where no brick nearby has data.
+  /// Reads the codes of a brick of the level; 0 where no brick nearby has data.
   void read(glm::ivec3 brick, std::span<std::uint16_t> codes) const;
 
  private:

@@ -29,8 +29,8 @@ void forEachCell(glm::ivec3 size, const Visit& visit) {
       for (cell.x = 0; cell.x < size.x; ++cell.x) visit(cell);
 }
 
-/// Of each brick, the position of its chunk among the chunks along the Hilbert curve. A chunk has 4^3 bricks, or fewer where there would be
-/// less than kChunksPerShare for each share: rays through a part pass slices of its neighbours too, so that large chunks cost less.
+/// For each brick the number of its chunk in Hilbert order. A chunk has 4^3 bricks, or 2^3 or one where a level has fewer than
+/// kChunksPerShare chunks a share. Large chunks cost less, as rays through a part also pass slices of its neighbours.
 std::vector<std::pair<std::uint64_t, glm::ivec3>> chunkPositions(const std::vector<glm::ivec3>& bricks, glm::ivec3 size) {
   std::vector<std::pair<std::uint64_t, glm::ivec3>> positions;
   for (int levels = kMostChunkLevels; levels >= 0; --levels) {

@@ -51,7 +51,7 @@ struct GatherStages {
   Image image;
 };
 
-/// Of the last frame that was gathered, all but the image. Waits.
+/// Downloads the stages of the last gathered frame, without the image. Waits.
 GatherStages downloadGatherStages(const Device& device, const BuiltVolume& built, const GatherVolume& volume, const GatherPass& pass);
 
 }  // namespace freevoxels

@@ -38,7 +38,7 @@ struct FixedSums {
   std::string method;
   std::vector<std::int64_t> values;  ///< [channel][row of the rectangle, from the top][column]
 
-  /// Of what the rectangle is a part: pixels or samples.
+  /// The size of what the rectangle is a part of: the image in pixels, or the lattice in samples.
   glm::ivec2 fullSize() const { return lattice ? lattice->samples : size; }
   std::size_t pixelCount() const { return std::size_t(extent.x) * std::size_t(extent.y); }
   /// The value of pixel `i` of the rectangle.

@@ -19,7 +19,7 @@ struct Image {
   /// what is seen there (apps/manual/images.md); +infinity where nothing is seen.
   std::vector<float> depth;
   std::map<std::string, std::vector<float>> channels;  ///< more of them by name, "N.X": one value a pixel
-  /// Of an image that is a part of another one: the size of that one, and where the top left pixel of this one is in it.
+  /// If this image is a part of another one: the size of the whole, and the position of this one's top left pixel in it. Pixels.
   glm::ivec2 wholeSize{0}, offset{0};
 };
 

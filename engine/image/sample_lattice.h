@@ -15,7 +15,7 @@ struct SampleLattice {
   glm::ivec2 samples{0};
   double pitch = 1.0;      ///< pixels between neighbouring samples
   glm::dvec2 first{0.0};   ///< position of sample (0, 0)
-  /// Of each index axis of the volume: how a ray moves along it, and how a step along it looks on the image.
+  /// How a ray moves along an index axis of the volume, and how a step along that axis looks on the image.
   struct Axis {
     glm::dvec3 along{0.0};   ///< affine: component of the ray's direction, per world unit of distance from the eye plane
     glm::dvec2 tilt{0.0};    ///< pixels of a step at distance 1 in the image's middle; orthographic: anywhere

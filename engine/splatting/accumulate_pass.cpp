@@ -26,7 +26,7 @@ double largestComponent(glm::dvec3 color) {
   return std::max({color.r, color.g, color.b});
 }
 
-/// Of the phase function, or of a surface in its place; per steradian.
+/// The largest value of the phase function, or of a surface's reflection in its place; per steradian.
 double mostScattered(const Lighting& lighting) {
   const double g = std::abs(lighting.phaseG);
   const double phase = (1.0 + g) / (4.0 * std::numbers::pi * (1.0 - g) * (1.0 - g));

@@ -26,7 +26,7 @@ constexpr double kLeastDepth = 1e-6;
 constexpr double kPitchTolerance = 1e-6;
 constexpr double kSampleTolerance = 1e-4, kStencilTolerance = 2e-5;
 constexpr double kImageTolerance = 1e-5, kDistanceTolerance = 1e-4;
-/// Of scalars, which may round to the next interval of the transfer function's table, or to more or less than the least change
+/// The tolerance of scalars, which may round to the next interval of the transfer function's table, or to more or less than the least change
 /// whose mean is an integral.
 constexpr double kScalarTolerance = 3e-3;
 /// At which rays end where their early end is checked.
@@ -93,7 +93,7 @@ Check checkLattice(const GatherLattice& lattice, const GatherLattice& reference,
   return worst.atMost(kPitchTolerance, fmt::format("gather lattice: {}", frame), "relative");
 }
 
-/// Of all levels that the frame reads.
+/// Checks the blocks of all levels that the frame reads.
 void checkBlocks(const GatherStages& stages, const ValidationScene& scene, const char* frame, std::vector<Check>& checks) {
   MaxError extinction, source;
   const double least = kLeastDepth / scene.volume.voxelSize();

@@ -17,7 +17,7 @@ namespace freevoxels {
 class GatherOutputs {
  public:
   virtual ~GatherOutputs() = default;
-  /// Of a frame whose Draw is Gather.
+  /// Draws a frame whose Draw is Gather.
   virtual GatherStages frame(const Camera& camera, const FrameSettings& settings) = 0;
 };
 using GatherMaker = std::function<std::unique_ptr<GatherOutputs>(const Volume&, const Classification&)>;

@@ -53,7 +53,7 @@ TEST(Slabs, NoMoreBytesThanThereAreIfThatIsPossible) {
   }
 }
 
-/// Of 26 directions nine march either way, six of them with steps in x.
+/// Nine of the 26 directions march one way along z and nine the other; six of each nine have steps in x.
 TEST(Slabs, KeptDepthsAreThoseOfAllLinesThatMarchOneWay) {
   const GridLayout layout({64, 10, 400});
   const SweepStyle style{.voxelsPerThread = 4, .slabBytes = 4096, .mostSlabBytes = 1 << 20};

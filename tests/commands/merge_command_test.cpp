@@ -35,7 +35,7 @@ TEST_F(MergeCommandTest, PartsOfAnyNumberGiveTheBitsOfTheWhole) {
     EXPECT_EQ(merged.pixels, whole.pixels) << count;
     EXPECT_EQ(merged.depth, whole.depth) << count;
   }
-  // Of different numbers together: 1/2 is 1/4 and 3/4.
+  // Parts of different counts merge: 1/2 stands for 1/4 and 3/4.
   renderPart("quarter_0.exr", "0/4", "--aov depth");
   renderPart("quarter_2.exr", "2/4", "--aov depth");
   expectSuccess(run("merge @quarter_0.exr @part_2_1.exr @quarter_2.exr @mixed.png --quiet"));

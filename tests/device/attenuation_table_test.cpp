@@ -22,7 +22,7 @@ struct WorstByte {
   std::size_t voxel = 0;
 };
 
-/// Of the voxels that hold anything, which alone are stored.
+/// Compares occupied voxels only, which alone are stored.
 WorstByte worstByte(const Table& a, const Table& b, const std::vector<double>& extinction) {
   WorstByte worst;
   EXPECT_EQ(a.size(), b.size());

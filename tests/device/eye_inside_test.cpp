@@ -115,7 +115,7 @@ TEST_F(EyeInsideTest, MatchesTheReferenceInAllDirectionsAndMethods) {
   expectSamePicture(v, at(v, place, {1, 0.5, 0}, 150.0), {.size = {64, 48}, .gradient = false});
 }
 
-/// Of what is a hair in front of the eye plane nothing overflows, and what is beside the image stays there.
+/// Voxels just in front of the eye plane overflow nothing, and voxels beside the image stay beside it.
 TEST_F(EyeInsideTest, LargePicturesOfNearVoxelsMatchTheReference) {
   const Volume v = volume(false);
   expectSamePicture(v, at(v, {5.31, 6.63, 4.17}, {1.0, 0.2, 0.1}, 20.0), {.size = {200, 160}});

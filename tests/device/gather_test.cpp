@@ -111,7 +111,8 @@ TEST_F(GatherTest, AThinPeakBetweenVoxelsHasItsWholeArea) {
   classification.transferFunction = TransferFunction{.opacity = {{5.3f, 0.0f}, {5.5f, 0.6f}, {5.7f, 0.0f}},
                                                      .color = {{0.0f, {1.0f, 0.0f, 0.0f}}, {11.0f, {0.0f, 1.0f, 0.0f}}},
                                                      .unitDistance = 0.1 * voxel};
-  // Of -log(1 - 0.6 x) over x from 0 to 1, twice 0.2 voxels.
+  // Opacity rises to 0.6 and falls again, over 0.2 voxels each. Depth is the integral of -log(1 - opacity) over distance in units of
+  // unitDistance, 0.1 voxels.
   const double depth = 0.4 * 10.0 * (1.0 + 0.4 / 0.6 * std::log(0.4));
   const glm::ivec2 size(31, 31);
   Renderer renderer(device(), ramp, classification, {});
@@ -216,8 +217,8 @@ TEST_F(GatherTest, PhaseFunctionActsOnLightFromEverywhere) {
   EXPECT_GE(qualityOf(scene, camera, settings), 40.0);
 }
 
-/// Lit from the eye's side a column of optical depth D scatters (1 - exp(-(1 + tint) D)) / (1 + tint), from behind with a tint
-/// of 1 D exp(-D), of what a light is without shadow; an octave scales depth as a tint does.
+/// A column of optical depth D with tint t scatters (1 - exp(-(1 + t) D)) / (1 + t) of the unshadowed light if it is lit from the eye's
+/// side, and D exp(-D) if it is lit from behind with t = 1. An octave scales the depth as a tint does.
 TEST_F(GatherTest, LightThroughAHomogeneousBoxIsItsIntegral) {
   const Volume box = makeVolume({20, 20, 12}, cubeTransform({20, 20, 12}), [](int, int, int) { return 1.0; });
   const glm::ivec2 size(15, 15);
@@ -242,7 +243,7 @@ TEST_F(GatherTest, LightThroughAHomogeneousBoxIsItsIntegral) {
   }
 }
 
-/// On opaque skin light changes within a voxel by more than what reaches the voxel's middle says.
+/// On an opaque surface light falls off within one voxel, which one value per voxel, as splats have, cannot show.
 TEST_F(GatherTest, LightOnOpaqueSkinComesNearerToTheOracleThanThatOfSplats) {
   QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 32, makeProcedural("head", 32));
   const Scene scene{.volume = head.volume, .classification = head.classification};
@@ -345,7 +346,7 @@ TEST_F(GatherTest, LightFromEverywhereMatchesTheOracle) {
   EXPECT_GE(qualityOf({.volume = head.volume, .classification = head.classification}, framingCamera(head.volume, 35.0, 25.0, 1.0, {}), settings), 30.0);
 }
 
-/// What was found for one light from everywhere is not shown with another, and its colour alone changes nothing else.
+/// Ambient light is computed again if the tint changes, and kept if only its colour does.
 TEST_F(GatherTest, ChangedLightFromEverywhereIsFoundAgain) {
   const Scene scene = cloud(32);
   const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});

@@ -70,7 +70,7 @@ TEST_F(LightingTest, SurfacesMatchTheReference) {
   expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
 }
 
-/// Of every look-up, surfaces and an environment, scattered several times.
+/// For every look-up, with surfaces and an environment, and several orders of scattering.
 TEST_F(LightingTest, TintsMatchTheReference) {
   const Volume v = volume(true);
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});

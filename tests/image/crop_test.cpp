@@ -68,7 +68,7 @@ TEST(Crop, IsTheDataWindowOfAnExr) {
   EXPECT_EQ(back.depth, part.depth);
 }
 
-/// Of 268 million pixels, all but the first rows of which are missing.
+/// The file claims 268 million pixels and has the first rows only.
 TEST(ExrDeathTest, AShortFileThatClaimsToBeLargeTakesLittleMemory) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
 #if defined(__SANITIZE_ADDRESS__)

@@ -66,7 +66,7 @@ TEST(Png, EncodesLinearLightAsSrgb) {
             (Bytes{188, 118, 7, 255, 0, 255, 137, 255}));
 }
 
-/// Of every 61st value, in all buckets of the table and on both sides of its steps.
+/// Tries every 61st value, so that all buckets of the table and both sides of its steps are met.
 TEST(Png, LooksUpTheByteThatTheCurveGives) {
   const auto last = std::bit_cast<std::uint32_t>(1.0f);
   for (std::uint32_t bits = 0; bits <= last; bits += bits < 0x38000000u ? 99'991u : 61u) {

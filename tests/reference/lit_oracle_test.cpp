@@ -106,7 +106,7 @@ TEST(LitOracle, APhaseFunctionDoesNotChangeAmbientLightOfAThinBox) {
   EXPECT_NEAR(middle({.ambient = glm::dvec3(3.0), .phaseG = kPhaseG}, thin) / (3.0 * kAlbedo * thin), 1.0, 1e-2);
 }
 
-/// Of a sun alone.
+/// An environment that is black but for a sun.
 TEST(LitOracle, ASmallPartOfAnEnvironmentIsALight) {
   Environment sun = makeSky(256);
   glm::dvec3 irradiance(0.0), towards(0.0);

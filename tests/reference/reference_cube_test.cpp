@@ -23,7 +23,7 @@ double ramp(double x, int n) {
   return std::clamp(std::min(x + 1.0, n - x), 0.0, 1.0);
 }
 
-/// Of the trilinearly interpolated homogeneous cube along a ray, in world length: exact. Between the planes
+/// The optical depth of the trilinearly interpolated homogeneous cube along a ray, in world length: exact. Between the planes
 /// where a ramp begins or ends the field is a cubic of the ray's parameter, which Simpson's rule integrates
 /// exactly.
 double cubeDepth(const Volume& volume, glm::dvec3 origin, glm::dvec3 direction) {
@@ -59,7 +59,7 @@ double chord(const Volume& volume, glm::dvec3 origin, glm::dvec3 direction) {
   return std::max(0.0, leave - enter) * glm::length(glm::dmat3(volume.indexToWorld) * direction);
 }
 
-/// Of a white cube's picture against 1 - exp(-sigma * length(ray)), averaged over 3 x 3 rays a pixel.
+/// PSNR of a white cube's image against 1 - exp(-sigma * length(ray)), averaged over 3 x 3 rays per pixel.
 template <typename Length>
 double beerLambertPsnr(const Scene& scene, const Camera& camera, const Image& image, double sigma,
                        Length&& length) {

@@ -50,7 +50,7 @@ TEST(Lighting, SharesOfDirectionsAddUpToOneAndFollowTheVoxelsShape) {
     for (const glm::dmat4& transform : {glm::dmat4(1.0), stretched}) {
       const std::vector<double> shares = directionShares(set, transform);
       EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1.0, 1e-12);
-      // Of directions that are even in the world, by a spiral from pole to pole.
+      // Directions spread evenly over the sphere, by a spiral from pole to pole.
       constexpr int kCount = 40000;
       std::vector<double> found(shares.size(), 0.0);
       for (int i = 0; i < kCount; ++i) {

@@ -30,7 +30,7 @@ inline glm::dvec3 transformed(const glm::dmat4& matrix, glm::dvec3 point) {
   return glm::dvec3(h) / h.w;
 }
 
-/// Of the 8 corners of the voxels' extent in the image: the largest |x| or |y| of NDC.
+/// The largest |x| or |y| in NDC of the 8 corners of the voxels' extent.
 inline double largestNdc(const Volume& volume, const Camera& camera, double aspect) {
   double largest = 0.0;
   for (int corner = 0; corner < 8; ++corner) {

@@ -32,7 +32,7 @@ void countALevelsBorderTwice(SteppedGather& gather) {
   };
 }
 
-/// Of the two neighbours of a sample along the first side.
+/// Swaps the two neighbours of a sample along the first side.
 void swapWeights(SteppedGather& gather) {
   gather.alterQuads = [](const Device& device, const GatherVolume::Quads& quads) {
     const Buffer& buffer = quads.medium.pieces.front();

@@ -18,7 +18,7 @@ Classification thicker(Classification classification) {
   return classification;
 }
 
-/// Of a lattice step, whichever directions the table holds.
+/// The table's plane for a lattice step, whichever set of directions the table holds.
 int planeOf(const SteppedStages& stages, glm::ivec3 step) {
   const DirectionSet set = stages.steps.table.settings.directions;
   return directionIndex(set, int(set) * step);

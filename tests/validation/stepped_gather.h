@@ -26,7 +26,7 @@ struct SteppedGather : GatherOutputs {
   /// What the checks are told that blocks are made of is not altered.
   std::function<void(const Device&, BuiltVolume&)> alterMedium;
   std::function<void(const Device&, const GatherVolume::Quads&)> alterQuads;
-  /// Of the frame as one pass reads it.
+  /// Called with the frame before one pass reads it.
   std::function<void(shader::GatherFrame&)> alterSamples, alterStencil, alterUpsampling;
 
   SteppedGather(const Device& on, const Volume& of, const Classification& how)

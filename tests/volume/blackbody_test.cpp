@@ -48,7 +48,7 @@ TEST(Blackbody, ColoursHaveTheLuminanceAndNoNegativeParts) {
     EXPECT_NEAR(glm::dot(color, kLuminance) / blackbodyXyz(kelvin).y, 1.0, 2e-4) << kelvin;
     EXPECT_GE(std::min({color.r, color.g, color.b}), 0.0);
   }
-  // Of daylight's colour nothing is far from white, of embers red is all.
+  // Daylight at 6500 K is nearly white; embers are almost purely red.
   const glm::dvec3 white = blackbodyColor(6500.0) / blackbodyXyz(6500.0).y;
   EXPECT_NEAR(white.r, 1.0, 0.06);
   EXPECT_NEAR(white.g, 1.0, 0.06);

@@ -26,7 +26,7 @@ TEST(GatherCells, DensityMarksTheCellOfItsVoxelAlone) {
   EXPECT_EQ(cells.values, withOne(cells.dimensions, {2, 0, 3}).values);
 }
 
-/// Of a box that does not begin where its bricks do, with voxels without data.
+/// The box does not begin where its bricks do, and has voxels without data.
 TEST(GatherCells, InterpolatedScalarsThatHaveExtinctionAreInMarkedCells) {
   const glm::ivec3 size(21, 14, 18), corner(3, 5, 2);
   Volume volume = makeVolume(size, glm::dmat4(1.0), [](int, int, int) { return 0.0f; });
