@@ -22,6 +22,7 @@ ORDER = [
     "engine/lighting",     # light at voxels and in cells
     "engine/splatting",    # billboard splats, sums, resolve
     "engine/gathering",    # the compute gather
+    "engine/description",  # what an image shows, as data: JSON in and out, and what it comes to for a volume
     "engine",              # the renderer and its memory planner
     "engine/reference",    # CPU references and oracle
     "engine/validation",   # checks and their report

@@ -302,7 +302,7 @@ Result splats(const Device& device, double pixels, int runs) {
           .perSecond = double(volume.voxelCount()) / time * 1e3};
 }
 
-Result wholeRender(const Device& device, const InputOptions& input, bool lit, int runs) {
+Result wholeRender(const Device& device, const InputDescription& input, bool lit, int runs) {
   const Volume volume = input.open(maximumVoxels(device));
   const Classification classification{.densityScale = automaticDensityScale(volume, 2.0)};
   const glm::ivec3 box = volume.dimensions;

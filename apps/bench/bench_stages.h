@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/bench/measure.h"
-#include "apps/freevoxels/input_options.h"
+#include "engine/description/scene_description.h"
 #include "engine/scene/directions.h"
 #include "engine/validation/quality_scenes.h"
 #include "engine/vulkan/device.h"
@@ -50,7 +50,7 @@ Result compaction(const Device& device, int resolution, int runs);
 Result splats(const Device& device, double pixels, int runs);
 
 /// A whole render from a volume in memory to the image in memory, at 1024 x 1024 pixels.
-Result wholeRender(const Device& device, const InputOptions& input, bool lit, int runs);
+Result wholeRender(const Device& device, const InputDescription& input, bool lit, int runs);
 
 /// A whole render of a dense scan of N³ voxels: 8-bit scalars with a transfer function.
 Result wholeScan(const Device& device, int resolution, bool lit, int runs);

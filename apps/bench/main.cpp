@@ -102,14 +102,14 @@ Results whole(const Device& device, const Extent& extent) {
   Results results;
   if (!extent.quick) {  // a twentieth of more than 512³ voxels, and all of 512³
     results.push_back(
-        bench::wholeRender(device, {.input = "procedural:plume", .grid = {}, .resolution = glm::ivec3(640)}, false, 1));
+        bench::wholeRender(device, {.volume = "procedural:plume", .grid = {}, .resolution = glm::ivec3(640)}, false, 1));
     results.push_back(bench::wholeScan(device, 512, false, 1));
   }
   for (const bool lit : {false, true}) {
     results.push_back(bench::wholeScan(device, extent.quick ? 128 : 256, lit, extent.runs()));
     for (const std::string& input : extent.inputs)
       results.push_back(
-          bench::wholeRender(device, {.input = input, .grid = {}, .resolution = {}}, lit, extent.runs()));
+          bench::wholeRender(device, {.volume = input, .grid = {}, .resolution = {}}, lit, extent.runs()));
   }
   return results;
 }

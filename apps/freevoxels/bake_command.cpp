@@ -41,11 +41,9 @@ class BakeProgress {
 
 void BakeCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bake", "Classify a volume once and write a file that opens at once");
-  scene_.input.add(*command);
-  scene_.input.addGrid(*command);
+  scene_.addFields(*command, {"volume", "resolution", "grid"});
   command->add_option("OUT.fvx", file_, "File to write")->group("Output");
-  scene_.classification.add(*command);
-  scene_.emission.add(*command);
+  for (const char* section : {"classification", "emission"}) scene_.addSection(*command, section);
   command
       ->add_flag("--keep-scalars", keepScalars_,
                  "Store the values as 32-bit floats, so that the classification can still be changed [16 bits a value, for this "
@@ -63,15 +61,13 @@ void BakeCommand::add(CLI::App& app) {
 }
 
 BakeSettings BakeCommand::settings(const Volume& volume, const Classification& classification) const {
-  OptionList options;
-  scene_.input.describe(options);
-  scene_.classification.describe(options, volume, classification);
-  scene_.emission.describe(options, volume, classification.emission);
+  const Scene scene{.volume = std::shared_ptr<const Volume>(std::shared_ptr<const Volume>(), &volume), .classification = classification};
+  const OptionList options = scene_.ownOptions(scene_.description.resolved(scene));
   nlohmann::ordered_json json{{"program", "freevoxels " + programVersion()}, {"volume", volume.source}};
   for (const auto& [name, value] : optionMap(options)) json["options"][name] = value;
-  if (!proceduralName(scene_.input.input)) {
-    json["file_bytes"] = std::filesystem::file_size(scene_.input.input);
-    json["file_xxh3_64"] = fmt::format("{:016x}", fvx::hashOfFile(scene_.input.input));
+  if (!proceduralName(scene_.description.input.volume)) {
+    json["file_bytes"] = std::filesystem::file_size(scene_.description.input.volume);
+    json["file_xxh3_64"] = fmt::format("{:016x}", fvx::hashOfFile(scene_.description.input.volume));
   }
   return {.keepScalars = keepScalars_,
           .compress = compress_,
@@ -98,18 +94,18 @@ void BakeCommand::run() {
   messages_.apply();
   if (!leads()) spdlog::set_level(spdlog::level::err);
   if (group_ != nullptr) group_->begin();
-  scene_.input.checkGiven();
+  scene_.description.input.checkGiven();
   if (file_.empty()) fail(ErrorKind::Usage, "OUT.fvx is required: name a file to write");
   if (std::filesystem::path(file_).extension() != ".fvx")
     fail(ErrorKind::Usage, "'{}' is not named .fvx, and bake writes baked volumes; name it so", file_);
-  scene_.checkLook();
+  scene_.description.check();
   if (leads()) checkOutput(file_);
-  if (!proceduralName(scene_.input.input)) checkDistinct({scene_.input.input, file_});
+  if (!proceduralName(scene_.description.input.volume)) checkDistinct({scene_.description.input.volume, file_});
 
   ProgressLine line(!messages_.quiet && leads());
-  line.begin("reading " + scene_.input.input);
-  const std::optional<std::string> name = proceduralName(scene_.input.input);
-  const glm::u64vec3 size(scene_.input.resolution.value_or(glm::ivec3(kDefaultResolution)));
+  line.begin("reading " + scene_.description.input.volume);
+  const std::optional<std::string> name = proceduralName(scene_.description.input.volume);
+  const glm::u64vec3 size(scene_.description.input.resolution.value_or(glm::ivec3(kDefaultResolution)));
   if (name && size.x * size.y * size.z > kMostVoxelsInMemory)
     bakeProcedural(*name, line);
   else
@@ -119,13 +115,13 @@ void BakeCommand::run() {
 }
 
 void BakeCommand::bake(ProgressLine& line) const {
-  const auto volume = std::make_shared<const Volume>(scene_.readVolume(machineMemoryBytes() / sizeof(float)));
+  const auto volume = std::make_shared<const Volume>(scene_.description.readVolume(machineMemoryBytes() / sizeof(float)));
   if (volume->classificationIsFixed)
     fail(ErrorKind::Usage, "'{}' was baked for one classification: bake the volume that it was made of, or bake it with --keep-scalars",
-         scene_.input.input);
-  const Classification classification = scene_.resolveClassification(*volume);
+         scene_.description.input.volume);
+  const Classification classification = scene_.description.resolveClassification(*volume);
   line.erase();
-  scene_.warn({.volume = volume, .classification = classification});
+  logRemarks(scene_.description, {.volume = volume, .classification = classification});
   BakeProgress progress(line);
   const BakeSettings chosen = settings(*volume, classification);
   if (group_ != nullptr) agree(contentHash(*volume, classification, nullptr), chosen);
@@ -133,12 +129,12 @@ void BakeCommand::bake(ProgressLine& line) const {
 }
 
 void BakeCommand::bakeProcedural(const std::string& name, ProgressLine& line) const {
-  const ProceduralField field(name, *scene_.input.resolution);
+  const ProceduralField field(name, *scene_.description.input.resolution);
   const glm::ivec3 size = field.dimensions();
   const int factor = (std::max({size.x, size.y, size.z}) + kSampleEdge - 1) / kSampleEdge;
   Volume sample = makeProcedural(name, glm::max(size / factor, 1));
-  if (!scene_.emission.grid()) sample.temperature.reset();
-  const Classification classification = scene_.resolveClassification(sample);
+  if (!scene_.description.emission.grid()) sample.temperature.reset();
+  const Classification classification = scene_.description.resolveClassification(sample);
   const StreamedVolume stream = proceduralStream(field, sample, classification);
   BakeProgress progress(line);
   const BakeSettings chosen = settings(sample, classification);

@@ -6,9 +6,6 @@
 
 namespace freevoxels {
 
-/// Frames of a full turn.
-inline constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
-
 /// The pattern with a run of # in place of %d or %0Nd in its file name; any other text as it is.
 std::string withHashes(const std::string& pattern);
 

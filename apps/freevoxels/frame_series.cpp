@@ -114,8 +114,8 @@ void FrameSeries::drawFilm(std::span<const Frame> frames) {
   const std::vector<std::string> inputs = volumesOf(frames);
   VolumesAhead volumes(inputs, [this, turn = int(framesOfFirstVolume(frames)), count = inputs.size()](const std::string& input) {
     // Of a baked volume nothing finer is read than is needed, and nothing at all if it is drawn piece by piece.
-    const SceneOptions scene = sceneOf(input);
-    const int level = scene.finestLevelNeeded(double(options_.frameSettings().lod), turn);
+    const SceneDescription scene = sceneOf(input);
+    const int level = scene.finestLevelNeeded(turn);
     if (count == 1 && needsPieces(options_, device_, pieceDrawing(options_, scene, turn), level)) return std::shared_ptr<const Volume>();
     return std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level));
   });
@@ -152,7 +152,7 @@ void FrameSeries::drawFilm(std::span<const Frame> frames) {
 /// A baked volume that the device cannot hold is drawn piece by piece where that is possible, else from a coarser level. `volume` is
 /// null where it is known beforehand that pieces are drawn.
 void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<const Frame> frames) {
-  const SceneOptions scene = sceneOf(frames.front().input);
+  const SceneDescription scene = sceneOf(frames.front().input);
   // The frames of one volume alone: of a film's volumes, two are in memory anyway.
   PieceDrawing pieces{.file = scene.input.baked()};
   if (pieces.file && frames.size() == frames_) pieces = pieceDrawing(options_, scene, int(frames.size()));
@@ -161,7 +161,7 @@ void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<co
   const std::size_t drawn = drawn_;
   const std::optional<Scene> reference = reference_;
   bool inPieces = !volume, triedPieces = inPieces || pieces.way == PieceDrawing::Way::None;
-  for (int level = scene.finestLevelNeeded(double(options_.frameSettings().lod), int(frames.size()));;) {
+  for (int level = scene.finestLevelNeeded(int(frames.size()));;) {
     try {
       return inPieces ? drawPieces(pieces, level, frames) : drawVolume(std::move(volume), pieces, frames);
     } catch (const Error& error) {
@@ -185,22 +185,20 @@ void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<co
   }
 }
 
-SceneOptions FrameSeries::sceneOf(const std::string& input) const {
-  SceneOptions scene = options_.scene;
-  scene.input.input = input;
+SceneDescription FrameSeries::sceneOf(const std::string& input) const {
+  SceneDescription scene = options_.scene.description;
+  scene.input.volume = input;
   return scene;
 }
 
 Scene FrameSeries::resolve(std::shared_ptr<const Volume> volume, const std::string& input) const {
-  const SceneOptions scene = sceneOf(input);
+  const SceneDescription scene = sceneOf(input);
   if (options_.fixedView && reference_) return scene.resolveLike(*reference_, std::move(volume));
   return scene.resolve(std::move(volume));
 }
 
 OptionList FrameSeries::describe(const Scene& view, const std::string& input) const {
-  OptionList method;
-  options_.method.describe(method);
-  return sceneOf(input).describe(view, method);
+  return options_.scene.ownOptions(sceneOf(input).resolved(view));
 }
 
 /// What an .exr says of its making besides the options.
@@ -234,13 +232,11 @@ void FrameSeries::agree(const Scene& view, const fvx::FvxFile* file) {
 
 /// What is said about the first volume.
 void FrameSeries::begin(const Scene& view, std::size_t frames) {
-  report_.options = describe(view, options_.scene.input.input);
-  if (frames > 1) {
-    options_.scene.camera.describeTurn(report_.options);
-    report_.options.emplace_back("--frames", fmt::format("{}", frames));
-  }
+  const SceneDescription& scene = options_.scene.description;
+  report_.scene = frames > 1 ? scene.resolvedTurn(view, int(frames)) : scene.resolved(view);
+  report_.options = options_.scene.ownOptions(report_.scene);
   line_.erase();
-  options_.scene.warn(view);
+  logRemarks(scene, view);
   logOptions(report_.options);
   mentionCpu(device_);
 }
@@ -265,7 +261,8 @@ std::vector<Camera> FrameSeries::beginVolume(Scene& view, std::span<const Frame>
 void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, const PieceDrawing& pieces, std::span<const Frame> frames) {
   Scene view = resolve(std::move(volume), frames.front().input);
   const std::vector<Camera> cameras = beginVolume(view, frames);
-  Renderer renderer(device_, *view.volume, view.classification, options_.method.table(), prefixed(line_.progress(), prefix()));
+  Renderer renderer(device_, *view.volume, view.classification, options_.scene.description.method.table(),
+                    prefixed(line_.progress(), prefix()));
   const std::vector<StageTime> built = renderer.timings();
   addTimes(report_.stages, built);
   FrameSettings settings = options_.frameSettings();
@@ -285,7 +282,7 @@ void FrameSeries::drawPieces(const PieceDrawing& pieces, int level, std::span<co
   settings.lighting = view.lighting;
   if (cubes) {
     spdlog::debug("drawn by gathering, cube by cube: the volume does not fit into memory at once");
-    StreamedRenderer renderer(device_, pieces.file, level, view.classification, options_.method.table());
+    StreamedRenderer renderer(device_, pieces.file, level, view.classification, options_.scene.description.method.table());
     drawFrames(renderer, std::move(settings), std::move(view), cameras, frames, 0);
     for (std::size_t above = 0; above < renderer.cubesRead().size(); ++above)
       if (renderer.cubesRead()[above] > 0)
@@ -298,7 +295,7 @@ void FrameSeries::drawPieces(const PieceDrawing& pieces, int level, std::span<co
   else
     spdlog::debug("drawn by splats, region by region: the volume does not fit into memory at once, and gathering is not possible so: {}",
                   pieces.whyNotCubes);
-  RegionRenderer renderer(device_, pieces.file, view.classification, options_.method.table(), frames.size() > 1);
+  RegionRenderer renderer(device_, pieces.file, view.classification, options_.scene.description.method.table(), frames.size() > 1);
   drawFrames(renderer, std::move(settings), std::move(view), cameras, frames, 0);
   const RegionRenderer::Counts counts = renderer.counts();
   for (std::size_t i = 0; i < counts.drawn.size(); ++i)
@@ -359,7 +356,7 @@ void FrameSeries::drawShares(AnyRenderer& renderer, const Scene& view, const Fra
   } else if (options_.shares.sums) {
     const DeferredInterrupts wholeFile;
     const StageTimer timer(report_.stages, "write pictures");
-    writeSums(frame.files.front(), sums, options_.scene.withOutputs(frame.files).header(view, "render", describe(view, frame.input), facts()));
+    writeSums(frame.files.front(), sums, imageHeader(options_.scene.description, view, "render", describe(view, frame.input), facts()));
     printNames(frame);
   } else {
     complete(resolveSums(sums, settings.composite == Composite::Normalised), isTransparent(renderer), view, frame);
@@ -391,8 +388,9 @@ void FrameSeries::write(Image image, const Scene& view, const Frame& frame) {
   line_.begin(prefix() + "writing " + frame.files.front());
   finishWriting();
   // What a file says of its making is how `render` repeats this frame alone.
-  writer_.start([scene = options_.scene.withOutputs(frame.files), image = std::move(image), view,
-                 options = describe(view, frame.input), facts = facts()] { scene.write(image, view, "render", options, facts); });
+  writer_.start([&scene = options_.scene.description, files = frame.files, image = std::move(image), view,
+                 options = describe(view, frame.input),
+                 facts = facts()] { writeImages(image, scene, files, view, "render", options, facts); });
   written_ = &frame;
 }
 

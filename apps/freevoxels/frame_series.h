@@ -74,7 +74,7 @@ class FrameSeries {
   void writeEmpty(const Frame& frame);
   void finishWriting();
   void printNames(const Frame& frame);
-  SceneOptions sceneOf(const std::string& input) const;
+  SceneDescription sceneOf(const std::string& input) const;
   OptionList describe(const Scene& view, const std::string& input) const;
   std::map<std::string, std::string> facts() const;
   Scene resolve(std::shared_ptr<const Volume> volume, const std::string& input) const;

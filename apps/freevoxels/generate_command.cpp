@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <limits>
 
-#include "apps/freevoxels/input_options.h"
 #include "apps/freevoxels/text_table.h"
 #include "engine/core/error.h"
 #include "engine/volume/procedural.h"
@@ -28,7 +27,8 @@ void GenerateCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("generate", "Write a procedural volume to an OpenVDB file");
   command->add_option("NAME", name_, "One of --list");
   command->add_option("OUT.vdb", file_, "File to write");
-  addResolution(*command, resolution_);
+  scene_.addFields(*command, {"resolution"});
+  command->get_option("--resolution")->group("Options");
   command->add_flag("--list", list_, "List the procedural volumes");
   messages_.add(*command);
   command->footer(
@@ -49,7 +49,7 @@ void GenerateCommand::run() const {
   if (std::filesystem::path(file_).extension() != ".vdb")
     fail(ErrorKind::Usage, "'{}' is not named .vdb, and generate writes OpenVDB files; name it so", file_);
   checkOutput(file_);
-  const Volume volume = openProcedural(name_, resolution_, std::numeric_limits<std::uint64_t>::max());
+  const Volume volume = openProcedural(name_, scene_.description.input.resolution, std::numeric_limits<std::uint64_t>::max());
   {
     const DeferredInterrupts wholeFile;
     writeVdb(file_, volume, "density");

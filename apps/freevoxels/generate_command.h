@@ -1,8 +1,8 @@
 #pragma once
 // freevoxels generate NAME OUT.vdb
 
-#include "apps/freevoxels/option_values.h"
 #include "apps/freevoxels/program.h"
+#include "apps/freevoxels/scene_options.h"
 
 namespace freevoxels {
 
@@ -14,7 +14,7 @@ class GenerateCommand {
   void run() const;
 
   std::string name_, file_;
-  std::optional<glm::ivec3> resolution_;
+  SceneOptions scene_;  ///< the resolution
   bool list_ = false;
   MessageOptions messages_;
 };

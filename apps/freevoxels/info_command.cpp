@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/freevoxels/baked_info.h"
-#include "apps/freevoxels/input_options.h"
 #include "apps/freevoxels/text_table.h"
 #include "engine/core/error.h"
 #include "engine/renderer.h"
@@ -67,11 +66,11 @@ std::vector<std::string> usesOf(const GridInfo& grid) {
   return uses;
 }
 
-std::vector<GridInfo> describeInput(const InputOptions& input) {
+std::vector<GridInfo> describeInput(const InputDescription& input) {
   input.check();
-  if (proceduralName(input.input))
+  if (proceduralName(input.volume))
     return {describeVolume(input.open(std::numeric_limits<std::uint64_t>::max()))};
-  return describeVdb(input.input);
+  return describeVdb(input.volume);
 }
 
 void printTable(const std::vector<GridInfo>& grids) {
@@ -141,8 +140,8 @@ nlohmann::ordered_json toJson(const GridInfo& grid) {
 
 void InfoCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("info", "Show the grids of a file");
-  input_.add(*command);
-  scene_.add(*command);
+  scene_.addFields(*command, {"volume", "resolution"});
+  scene_.addFile(*command);
   command->add_flag("--json", json_, "Print JSON for programs");
   command->add_flag("--check", check_, "Read all of a baked volume (.fvx) and refuse it where anything is damaged");
   command->footer(
@@ -158,8 +157,9 @@ void InfoCommand::add(CLI::App& app) {
 }
 
 void InfoCommand::describeBaked() const {
-  input_.check();
-  const fvx::FvxFile file(input_.input);
+  const InputDescription& input = scene_.description.input;
+  input.check();
+  const fvx::FvxFile file(input.volume);
   if (check_) file.checkAll();
   if (json_)
     fmt::print("{}\n", bakedJson(file).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
@@ -168,18 +168,19 @@ void InfoCommand::describeBaked() const {
   if (check_ && !json_) fmt::print("\nall checksums are right\n");
 }
 
-void InfoCommand::run() const {
-  scene_.apply([](const std::string&) { return true; });
-  input_.checkGiven();
-  const bool isBaked = !proceduralName(input_.input) && fvx::isFvx(input_.input);
+void InfoCommand::run() {
+  scene_.applyScene();
+  const InputDescription& input = scene_.description.input;
+  input.checkGiven();
+  const bool isBaked = !proceduralName(input.volume) && fvx::isFvx(input.volume);
   if (isBaked) return describeBaked();
-  if (check_) fail(ErrorKind::Usage, "--check is for baked volumes (.fvx), and '{}' is none", input_.input);
-  const std::vector<GridInfo> grids = describeInput(input_);
+  if (check_) fail(ErrorKind::Usage, "--check is for baked volumes (.fvx), and '{}' is none", input.volume);
+  const std::vector<GridInfo> grids = describeInput(input);
   if (!json_) {
     printTable(grids);
     return;
   }
-  nlohmann::ordered_json json{{"input", input_.input}, {"grids", nlohmann::ordered_json::array()}};
+  nlohmann::ordered_json json{{"input", input.volume}, {"grids", nlohmann::ordered_json::array()}};
   for (const GridInfo& grid : grids) json["grids"].push_back(toJson(grid));
   fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }

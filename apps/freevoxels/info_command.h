@@ -1,8 +1,7 @@
 #pragma once
 // freevoxels info IN
 
-#include "apps/freevoxels/input_options.h"
-#include "apps/freevoxels/scene_file.h"
+#include "apps/freevoxels/scene_options.h"
 
 namespace freevoxels {
 
@@ -11,11 +10,10 @@ class InfoCommand {
   void add(CLI::App& app);
 
  private:
-  void run() const;
+  void run();
   void describeBaked() const;
 
-  InputOptions input_;
-  SceneFileOptions scene_;
+  SceneOptions scene_;  ///< the volume
   bool json_ = false, check_ = false;
 };
 

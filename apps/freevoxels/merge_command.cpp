@@ -106,7 +106,7 @@ void Merge::checkComplete() const {
         fail(ErrorKind::Input, "share {} is missing: render it with --share {} --sums", sharePartText(part), sharePartText(part));
 }
 
-ExrOptions pictureHeader(const Merge& merge, const OutputOptions& output) {
+ExrOptions imageHeaderOf(const Merge& merge, const OutputDescription& output) {
   ExrOptions header = merge.header();
   header.metadata["freevoxels:share"] = sharePartText({});
   for (const char* ofSums : {"freevoxels:method", "freevoxels:lattice"}) header.metadata.erase(ofSums);
@@ -120,7 +120,7 @@ void MergeCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("merge", "Add up the parts of a picture that were rendered share by share");
   command->add_option("PART... OUT", files_, "Files of sums, then pictures to write: .exr (linear, premultiplied) or .png (sRGB)")
       ->required();
-  output_.addForm(*command);
+  scene_.addSection(*command, "output");
   messages_.add(*command);
   command->footer(kExamples);
   command->callback([this] { run(); });
@@ -138,20 +138,21 @@ void MergeCommand::run() const {
     fail(ErrorKind::Usage, "'{}' is no file of sums: name the files that 'freevoxels render --share I/N --sums' wrote, then pictures",
          files_.front());
   if (firstOutput == files_.end()) fail(ErrorKind::Usage, "OUT is required: name a picture to write behind the parts, .exr or .png");
-  OutputOptions output = output_;
-  output.files.assign(firstOutput, files_.end());
-  for (const std::string& file : output.files)
+  const OutputDescription& output = scene_.description.output;
+  const std::span<const std::string> images = std::span(files_).subspan(std::size_t(firstOutput - files_.begin()));
+  for (const std::string& file : images)
     if (isPart(file)) fail(ErrorKind::Usage, "'{}' holds sums and would be replaced: name all parts before the pictures", file);
-  output.check();
+  checkOutputs(output, images);
 
   Merge merge;
   for (const std::string& file : std::span(files_).first(std::size_t(firstOutput - files_.begin()))) merge.add(file);
   merge.checkComplete();
-  if (output.wantsDepth() && merge.sums().channels < kSumChannels)
+  if (output.aovs.needDepth() && merge.sums().channels < kSumChannels)
     fail(ErrorKind::Input, "the parts have no distances, which --aov depth needs: render them with --aov depth too");
-  output.write(resolveSums(merge.sums(), valueOf(merge.header(), "freevoxels:composite") != "additive"), pictureHeader(merge, output));
+  writeImages(resolveSums(merge.sums(), valueOf(merge.header(), "freevoxels:composite") != "additive"), output, images,
+              imageHeaderOf(merge, output));
   if (messages_.quiet) return;
-  for (const std::string& file : output.files) fmt::print("{}\n", file);
+  for (const std::string& file : images) fmt::print("{}\n", file);
 }
 
 }  // namespace freevoxels

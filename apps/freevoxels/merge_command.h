@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/freevoxels/output_options.h"
 #include "apps/freevoxels/program.h"
+#include "apps/freevoxels/scene_options.h"
 
 namespace freevoxels {
 
@@ -16,8 +16,8 @@ class MergeCommand {
  private:
   void run() const;
 
-  std::vector<std::string> files_;  ///< parts, then pictures to write
-  OutputOptions output_;
+  std::vector<std::string> files_;  ///< parts, then images to write
+  SceneOptions scene_;  ///< the form of the images
   MessageOptions messages_;
 };
 

@@ -41,43 +41,47 @@ void OracleCommand::add(CLI::App& app) {
 void OracleCommand::run() {
   messages_.apply();
   scene_.takeScene("");
-  scene_.check();
+  scene_.description.lighting.shading = Shading::Scatter;  // the oracle has no surfaces
+  scene_.check(scene_.files);
   draw();
   if (messages_.quiet) return;
-  for (const std::string& file : scene_.output.files) fmt::print("{}\n", file);
-  if (scene_.file.saved) fmt::print("{}\n", *scene_.file.saved);
+  for (const std::string& file : scene_.files) fmt::print("{}\n", file);
+  if (scene_.saved) fmt::print("{}\n", *scene_.saved);
 }
 
 std::uint64_t OracleCommand::voxelsThatFit() const {
-  const glm::ivec2 size = scene_.camera.size;
+  const SceneDescription& description = scene_.description;
+  const glm::ivec2 size = description.camera.size;
   const std::uint64_t machine = machineMemoryBytes();
-  const std::uint64_t picture = std::uint64_t(size.x) * std::uint64_t(size.y) * kOracleBytesPerPixel;
-  if (picture >= machine)
+  const std::uint64_t image = std::uint64_t(size.x) * std::uint64_t(size.y) * kOracleBytesPerPixel;
+  if (image >= machine)
     fail(ErrorKind::OutOfMemory,
-         "a picture of {}x{} pixels needs {} bytes, and this machine has {}: lower --size", size.x, size.y,
-         picture, machine);
-  const LightingOptions& lighting = scene_.lighting;
+         "an image of {}x{} pixels needs {} bytes, and this machine has {}: lower --size", size.x, size.y,
+         image, machine);
+  const LightingDescription& lighting = description.lighting;
   const bool colored = lighting.environment || (lighting.ambient && lighting.tint);
   const std::uint64_t channels = colored ? 3 : lighting.ambient ? 1 : 0;
   const std::uint64_t ambient = channels * kOracleAmbientBytesPerVoxel;
-  const std::uint64_t light = scene_.emission.grid() ? kOracleLightBytesPerVoxel : 0;
-  const std::uint64_t albedo = scene_.classification.albedoGrid ? kOracleAlbedoBytesPerVoxel : 0;
-  return (machine - picture) / (kOracleBytesPerVoxel + ambient + light + albedo);
+  const std::uint64_t light = description.emission.grid() ? kOracleLightBytesPerVoxel : 0;
+  const std::uint64_t albedo = description.classification.albedoGrid ? kOracleAlbedoBytesPerVoxel : 0;
+  return (machine - image) / (kOracleBytesPerVoxel + ambient + light + albedo);
 }
 
 void OracleCommand::draw() const {
   const std::uint64_t maximum = voxelsThatFit();
   ProgressLine line(!messages_.quiet);
-  line.begin("reading " + scene_.input.input);
-  const Scene scene = scene_.open(maximum);
-  const OptionList options = scene_.describe(scene);
+  const SceneDescription& description = scene_.description;
+  line.begin("reading " + description.input.volume);
+  const Scene scene = description.resolve(std::make_shared<const Volume>(description.readVolume(maximum)));
+  const SceneDescription resolved = description.resolved(scene);
+  const OptionList options = scene_.ownOptions(resolved);
   line.erase();
-  scene_.warn(scene);
+  logRemarks(description, scene);
   logOptions(options);
 
   const auto start = std::chrono::steady_clock::now();
   const OracleSettings settings{
-      .size = scene_.camera.size, .depth = scene_.output.wantsDepth(), .lighting = scene.lighting};
+      .size = description.camera.size, .depth = description.output.aovs.needDepth(), .lighting = scene.lighting};
   const Oracle oracle =
       renderOracle(*scene.volume, scene.classification, scene.camera, settings, line.progress());
   line.erase();
@@ -87,11 +91,10 @@ void OracleCommand::draw() const {
                  oracle.largestChange, oracle.samples / 2, oracle.samples / 2, oracle.samples,
                  oracle.samples);
 
-  line.begin("writing pictures");
-  scene_.write(oracle.image, scene, "oracle", options,
-               {{"samples", fmt::format("{0}x{0}", oracle.samples)},
-                {"largest-change", numberText(oracle.largestChange)}});
-  scene_.save(options);
+  line.begin("writing images");
+  writeImages(oracle.image, description, scene_.files, scene, "oracle", options,
+              {{"samples", fmt::format("{0}x{0}", oracle.samples)}, {"largest-change", numberText(oracle.largestChange)}});
+  scene_.save(resolved);
 }
 
 }  // namespace freevoxels

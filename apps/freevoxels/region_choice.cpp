@@ -32,7 +32,7 @@ std::uint64_t leastGatherBytes(const PieceDrawing& pieces, int level) {
 
 }  // namespace
 
-PieceDrawing pieceDrawing(const RenderOptions& options, const SceneOptions& scene, int frames) {
+PieceDrawing pieceDrawing(const RenderOptions& options, const SceneDescription& scene, int frames) {
   PieceDrawing result{.file = scene.input.baked()};
   if (!result.file || options.shares.coloredParts) return result;
   const Scene view = scene.resolve(std::make_shared<const Volume>(bakedOutline(*result.file)));
@@ -51,7 +51,7 @@ PieceDrawing pieceDrawing(const RenderOptions& options, const SceneOptions& scen
     result.whyNotCubes = withOptions(*reason);
   }
   const std::optional<std::string> reason =
-      RegionRenderer::whyNot(*result.file, view.classification, options.method.table(), cameras, result.settings);
+      RegionRenderer::whyNot(*result.file, view.classification, scene.method.table(), cameras, result.settings);
   if (reason)
     result.whyNone = result.whyNotCubes.empty() || !drawsByGathering(result.settings) ? withOptions(*reason) : result.whyNotCubes;
   else

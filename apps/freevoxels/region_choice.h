@@ -18,7 +18,7 @@ struct PieceDrawing {
   FrameSettings settings = {};                         ///< of the frames, with lighting
   std::string whyNotCubes = {}, whyNone = {};          ///< clauses, with the names of options
 };
-PieceDrawing pieceDrawing(const RenderOptions& options, const SceneOptions& scene, int frames);
+PieceDrawing pieceDrawing(const RenderOptions& options, const SceneDescription& scene, int frames);
 
 /// Whether they are, where they can be: always where shares are drawn by splats, so that a process reads its own part of the file alone;
 /// otherwise where the device or this machine cannot hold what is drawn of `level` at once. The answer is certain only where it is yes.

@@ -23,8 +23,7 @@ double millisecondsSince(Clock::time_point start) {
 
 void RenderOptions::add(CLI::App& app) {
   scene.add(app);
-  scene.lighting.addMethod(app);
-  method.add(app);
+  scene.addMethod(app);
   if (group == nullptr) shares.add(app);
   device.add(app);
   messages.add(app);
@@ -33,8 +32,8 @@ void RenderOptions::add(CLI::App& app) {
 }
 
 FrameSettings RenderOptions::frameSettings() const {
-  FrameSettings settings{.size = scene.camera.size, .depth = scene.output.wantsDepth()};
-  method.apply(settings);
+  FrameSettings settings{.size = scene.description.camera.size, .depth = scene.description.output.aovs.needDepth()};
+  scene.description.method.apply(settings);
   return drawsShares() ? sharedSettings(settings) : settings;
 }
 
@@ -45,20 +44,20 @@ void RenderOptions::checkShares(std::span<const Frame> frames) const {
   for (const Frame& frame : frames)
     if (frame.files.size() != 1 || !isExr(frame.files.front()))
       fail(ErrorKind::Usage, "--sums writes a single file: name one .exr as OUT");
-  if (scene.output.fullFloat) fail(ErrorKind::Usage, "--float has no effect on --sums, which lose no bit: leave it out");
+  if (scene.description.output.fullFloat) fail(ErrorKind::Usage, "--float has no effect on --sums, which lose no bit: leave it out");
 }
 
 void RenderOptions::check(std::span<const Frame> frames) const {
   checkShares(frames);
-  if (!leads()) return scene.checkLook();  // other processes may run where the outputs' folders are not
+  if (!leads()) return scene.description.check();  // other processes may run where the outputs' folders are not
   std::vector<std::string> images, volumes;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     images.insert(images.end(), frames[i].files.begin(), frames[i].files.end());
     if (i > 0 && frames[i].input != frames[i - 1].input) volumes.push_back(frames[i].input);
   }
-  SceneOptions all = scene.withOutputs(std::move(images));
-  all.input.input = frames.front().input;
-  all.check(timings ? std::vector{*timings} : std::vector<std::string>{}, volumes);
+  SceneOptions first = scene;
+  first.description.input.volume = frames.front().input;
+  first.check(images, timings ? std::vector{*timings} : std::vector<std::string>{}, volumes);
 }
 
 void RenderOptions::run(std::span<const Frame> frames) const {
@@ -81,12 +80,12 @@ void RenderOptions::run(std::span<const Frame> frames) const {
     if (group != nullptr) group->logStages(report);  // when all processes have written their frames
     series.printDrawnElsewhere();
     if (!leads()) return;
-    scene.save(report.options);
+    scene.save(report.scene);
     if (timings) writeTimings(*timings, report);
   });
 
   if (messages.quiet || !leads()) return;
-  for (const std::optional<std::string>& file : {scene.file.saved, timings})
+  for (const std::optional<std::string>& file : {scene.saved, timings})
     if (file) fmt::print("{}\n", *file);
 }
 

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "apps/freevoxels/device_options.h"
-#include "apps/freevoxels/method_options.h"
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/scene_options.h"
 #include "apps/freevoxels/share_group.h"
@@ -24,7 +23,6 @@ struct Frame {
 
 struct RenderOptions {
   SceneOptions scene;
-  MethodOptions method;
   DeviceOptions device;
   MessageOptions messages;
   std::optional<std::string> timings;

@@ -2,213 +2,220 @@
 
 #include <spdlog/spdlog.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
 
+#include "apps/freevoxels/failure.h"
+#include "apps/freevoxels/option_help.h"
 #include "apps/freevoxels/program.h"
 #include "engine/core/error.h"
-#include "engine/storage/baked_volume.h"
-#include "engine/visibility/detail_rule.h"
-#include "engine/volume/emission_light.h"
-#include "engine/volume/subject.h"
+#include "engine/description/scene_json.h"
+#include "engine/volume/blackbody.h"
 
 namespace freevoxels {
 
 namespace {
 
-/// The light that the volume's own emission throws on it, where it is lit.
-void makeEmissionLight(Scene& scene) {
-  scene.classification.emissionLight = nullptr;
-  if (scene.classification.emission && scene.lighting)
-    scene.classification.emissionLight = std::make_shared<const EmissionLight>(*scene.volume, scene.classification);
+using Kind = SceneField::Kind;
+
+/// The group of --help that has the options of a section.
+std::string groupOf(const std::string& section) {
+  return char(std::toupper(section[0])) + section.substr(1);
 }
 
 }  // namespace
 
-void SceneOptions::add(CLI::App& app) {
-  input.add(app);
-  input.addGrid(app);
-  input.addClip(app);
-  output.add(app);
-  addLook(app);
-  file.addSave(app);
+OptionList optionsOf(const SceneDescription& description, const std::function<bool(const SceneField&)>& wanted) {
+  OptionList options;
+  for (const SceneField& field : sceneFields()) {
+    if (wanted && !wanted(field)) continue;
+    for (const std::string& text : field.texts(description)) {
+      const bool isFlag = field.kind == Kind::Flag || field.kind == Kind::Switch;
+      if (field.kind == Kind::Volume)
+        options.emplace_back("", text);
+      else
+        options.emplace_back((isFlag && text == "false" ? "--no-" : "--") + field.name, isFlag ? "" : text);
+    }
+  }
+  return options;
 }
 
-void SceneOptions::addLook(CLI::App& app) {
-  classification.add(app);
-  emission.add(app);
-  camera.add(app);
-  lighting.add(app);
-  file.add(app);
+void SceneOptions::add(CLI::App& app) {
+  addSection(app, "input");
+  addOut(app);
+  for (const char* section : {"output", "classification", "emission", "camera", "light"}) addSection(app, section);
+  addFile(app);
+  addText(app, "--save-scene", "FILE.json", saved, "Writes a scene of the options as they were resolved")->group("Scene");
+}
+
+void SceneOptions::addOut(CLI::App& app) {
+  app.add_option("OUT,-o,--output", files,
+                 "Images to write: .exr (linear, premultiplied), .png or .jpg (sRGB) [the volume's name .png, in the current folder]");
+}
+
+void SceneOptions::addFile(CLI::App& app) {
+  addText(app, "--scene", "FILE.json", file, "Read options that are not given from a scene file (see apps/scenes/README.md)")
+      ->group("Scene");
+}
+
+void SceneOptions::addSection(CLI::App& app, std::string_view section) {
+  for (const OptionHelp& help : optionHelp())
+    if (!help.ofMethod && sceneField(help.field).section == section) addField(app, help.field, help.text);
+}
+
+void SceneOptions::addMethod(CLI::App& app) {
+  for (const OptionHelp& help : optionHelp())
+    if (help.ofMethod) addField(app, help.field, help.text);
+}
+
+void SceneOptions::addFields(CLI::App& app, std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names) addField(app, name, std::ranges::find(optionHelp(), name, &OptionHelp::field)->text);
+}
+
+CLI::Option* SceneOptions::addField(CLI::App& app, std::string_view name, const std::string& help) {
+  const SceneField& field = sceneField(name);
+  const auto give = [this, &field](const std::vector<std::string>& texts) { field.read(description, texts); };
+  CLI::Option* option = nullptr;
+  if (field.kind == Kind::Flag || field.kind == Kind::Switch) {
+    const std::string names = field.kind == Kind::Flag ? "--" + field.name : fmt::format("--{0},!--no-{0}", field.name);
+    option = app.add_flag_function(names, [give](std::int64_t count) { give({count > 0 ? "true" : "false"}); }, help);
+  } else if (field.kind == Kind::Volume) {
+    option = app.add_option_function<std::string>("IN", [give](const std::string& text) { give({text}); }, help);
+  } else if (field.repeated) {
+    option = app.add_option_function<std::vector<std::string>>("--" + field.name, give, help)
+                 ->allow_extra_args(false)
+                 ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+                 ->type_name(field.form);
+  } else {
+    option = app.add_option_function<std::string>("--" + field.name, [give](const std::string& text) { give({text}); }, help)
+                 ->take_last()
+                 ->type_name(field.form);
+    if (field.standsAlone) option->expected(0, 1);
+  }
+  for (const auto& [other, added] : options_)
+    if (other != &field && field.isOrExcludes(*other)) option->excludes(added);
+  options_[&field] = option;
+  return option->group(groupOf(field.section));
+}
+
+bool SceneOptions::sceneHasVolume() const {
+  return file && SceneFile(*file).hasVolume();
+}
+
+void SceneOptions::applyScene() {
+  if (!file) return;
+  SceneFieldSet given;
+  for (const auto& [field, option] : options_)
+    if (option->count() > 0) given.insert(field);
+  SceneFile(*file).applyTo(description, [&](const SceneField& field) {
+    return options_.contains(&field) && !isReplaced(field, given) && honours(files, field.name);
+  });
 }
 
 void SceneOptions::takeScene(const std::string& defaultEnding) {
-  if (isImage(input.input) && file.hasVolume()) {
-    output.files.insert(output.files.begin(), input.input);
-    input.input.clear();
-    file.leaveOut("IN");
-  } else if (isImage(input.input)) {
-    fail(ErrorKind::Usage, "IN is required: '{}' is an image, which OUT is; name an OpenVDB file before it, or procedural:NAME",
-         input.input);
+  std::string& volume = description.input.volume;
+  if (isImage(volume) && sceneHasVolume()) {
+    files.insert(files.begin(), volume);
+    volume.clear();
+    options_.at(&sceneField("volume"))->clear();
+  } else if (isImage(volume)) {
+    fail(ErrorKind::Usage, "IN is required: '{}' is an image, which OUT is; name an OpenVDB file before it, or procedural:NAME", volume);
   }
-  if (output.files.empty() && !defaultEnding.empty()) {
-    const std::string& named = !input.input.empty() || !file.file ? input.input : *file.file;
-    output.files = {proceduralName(named).value_or(std::filesystem::path(named).stem().string()) + defaultEnding};
+  if (files.empty() && !defaultEnding.empty()) {
+    const std::string& named = !volume.empty() || !file ? volume : *file;
+    files = {proceduralName(named).value_or(std::filesystem::path(named).stem().string()) + defaultEnding};
   }
-  file.apply([this](const std::string& option) { return output.honours(option); });
-  input.checkGiven();
-  if (output.files.empty()) fail(ErrorKind::Usage, "OUT is required: name an image to write, .exr, .png or .jpg");
+  applyScene();
+  description.input.checkGiven();
+  if (files.empty()) fail(ErrorKind::Usage, "OUT is required: name an image to write, .exr, .png or .jpg");
 }
 
-void SceneOptions::checkLook() const {
-  input.check();
-  if (classification.albedoGrid && proceduralName(input.input))
-    fail(ErrorKind::Usage, "--albedo-grid chooses among the grids of a file, and {} has one", input.input);
-  emission.check(input);
-  camera.check();
-  lighting.check();
+void SceneOptions::check(std::span<const std::string> images, const std::vector<std::string>& moreOutputs,
+                         const std::vector<std::string>& moreInputs) const {
+  std::vector<std::string> outputs = moreOutputs, read = moreInputs;
+  if (saved) outputs.push_back(*saved);
+  if (file) read.push_back(*file);
+  checkScene(description, images, std::move(outputs), read);
 }
 
-void SceneOptions::check(const std::vector<std::string>& moreOutputs, const std::vector<std::string>& moreInputs) const {
-  checkLook();
-  output.check();
-  output.checkCrop(camera.size);
-  std::vector<std::string> files = moreOutputs;
-  if (file.saved) files.push_back(*file.saved);
-  for (const std::string& written : files) checkOutput(written);
-  files.insert(files.end(), output.files.begin(), output.files.end());
-  std::vector<std::string> volumes = moreInputs;
-  volumes.push_back(input.input);
-  for (const std::string& volume : volumes)
+OptionList SceneOptions::ownOptions(const SceneDescription& whole) const {
+  return optionsOf(whole, [this](const SceneField& field) { return options_.contains(&field); });
+}
+
+void SceneOptions::save(const SceneDescription& resolved) const {
+  if (!saved) return;
+  const DeferredInterrupts wholeFile;
+  writeScene(*saved, partOf(resolved, [this](const SceneField& field) { return options_.contains(&field); }));
+}
+
+void checkScene(const SceneDescription& description, std::span<const std::string> images, std::vector<std::string> moreOutputs,
+                const std::vector<std::string>& moreInputs) {
+  description.check();
+  checkOutputs(description.output, images);
+  description.output.checkCrop(description.camera.size);
+  for (const std::string& written : moreOutputs) checkOutput(written);
+  std::vector<std::string> files = std::move(moreOutputs);
+  files.insert(files.end(), images.begin(), images.end());
+  for (const std::string& volume : moreInputs)
     if (!proceduralName(volume)) files.push_back(volume);
-  for (const std::optional<std::string>& read : {file.file, lighting.environment})
-    if (read) files.push_back(*read);
+  if (!proceduralName(description.input.volume)) files.push_back(description.input.volume);
+  if (description.lighting.environment) files.push_back(*description.lighting.environment);
   checkDistinct(files);
 }
 
-SceneOptions SceneOptions::withOutputs(std::vector<std::string> files) const {
-  SceneOptions options = *this;
-  options.output.files = std::move(files);
-  return options;
+void logWarnings(const Volume& volume, bool scalarsAreDensities) {
+  for (const std::string& warning : warningsOf(volume, scalarsAreDensities)) spdlog::warn("{}", withOptions(warning));
 }
 
-Volume SceneOptions::readVolume(std::uint64_t maximumVoxels, int level) const {
-  return input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.albedoGrid}, level);
+namespace {
+
+/// Warns of temperatures that are not drawn as they are, and if nothing emits light.
+void warnOfTemperatures(const Volume& volume, const Classification& classification) {
+  if (!classification.emission) return;
+  const TemperatureGrid& grid = *volume.temperature;
+  if (grid.nanVoxels > 0) {
+    const bool one = grid.nanVoxels == 1;
+    spdlog::warn("{} temperature{} of {} that {} NaN or infinite count{} as 0", grid.nanVoxels, one ? "" : "s", volume.source,
+                 one ? "is" : "are", one ? "s" : "");
+  }
+  if (classification.emission->strength > 0.0 && brightestLight(classification, volume) == 0.0)
+    spdlog::warn(
+        "no temperature of {} is above {:g} K, so that nothing sends out light; --temperature-scale "
+        "and --temperature-grid change that",
+        volume.source, kColdestLight);
 }
 
-int SceneOptions::finestLevelNeeded(double lod, int frames) const {
-  const std::shared_ptr<const fvx::FvxFile> baked = input.baked();
-  if (!baked) return 0;
-  const Volume outline = bakedOutline(*baked);
-  const Classification classified = resolveClassification(outline);
-  if (classified.transferFunction) return 0;
-  const HierarchyLayout hierarchy(outline.dimensions);
-  int level = baked->levels() - 1;
-  for (const Camera& one : cameras(outline, classified, frames))
-    level = std::min(level, detailRule(hierarchy, pixelRays(one, camera.size, outline.indexToWorld), camera.size, lod).finest);
-  // One level finer than what is drawn, as the footprints of what is drawn are those of the opened level's voxels.
-  return std::max(level - 1, 0);
-}
+}  // namespace
 
-bool SceneOptions::isAsBaked(const Volume& volume, const Classification& classified) const {
-  // Another density scale leaves the content as it is; a transfer function does not.
-  return volume.classification &&
-         (volume.classificationIsFixed || (!classified.transferFunction && !volume.classification->transferFunction));
-}
-
-std::vector<Camera> SceneOptions::cameras(const Volume& volume, const Classification& classified, int frames) const {
-  const auto content = [&] {
-    if (!isAsBaked(volume, classified)) return contentOf(volume, classified);
-    const std::shared_ptr<const fvx::FvxFile> baked = input.baked();
-    return subjectOf(baked->content(), baked->description().volume);
-  };
-  return camera.resolve(volume.up, content, frames);
-}
-
-Scene SceneOptions::resolve(std::shared_ptr<const Volume> volume) const {
-  Scene scene{.volume = std::move(volume)};
-  scene.classification = resolveClassification(*scene.volume);
-  resolveView(scene);
-  return scene;
-}
-
-Classification SceneOptions::resolveClassification(const Volume& volume) const {
-  Classification result = classification.resolve(volume, emission.grid().has_value());
-  result.emission = emission.resolve(volume, result);
-  if (result.emission && !classification.albedo && !volume.classification) result.albedo = glm::vec3(kSmokeAlbedo);
-  return result;
-}
-
-void SceneOptions::resolveView(Scene& scene) const {
-  scene.camera = cameras(*scene.volume, scene.classification).front();
-  scene.lighting = lighting.resolve(*scene.volume, scene.classification, scene.camera);
-  makeEmissionLight(scene);
-}
-
-Scene SceneOptions::resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const {
-  SceneOptions fixed = *this;
-  if (!volume->classificationIsFixed) fixed.classification.take(other.classification);
-  if (other.classification.emission) fixed.emission.take(*other.classification.emission);
-  Scene scene{.volume = std::move(volume), .camera = other.camera, .lighting = other.lighting};
-  scene.classification = fixed.resolveClassification(*scene.volume);
-  makeEmissionLight(scene);
-  return scene;
-}
-
-Scene SceneOptions::open(std::uint64_t maximumVoxels, int level) const {
-  return resolve(std::make_shared<const Volume>(readVolume(maximumVoxels, level)));
-}
-
-std::string SceneOptions::rendererText(const Scene& scene, const TableSettings& table) const {
-  OptionList options;
-  classification.describe(options, *scene.volume, scene.classification);
-  emission.describe(options, *scene.volume, scene.classification.emission);
-  options.emplace_back("table", tableText(table));
-  // Blocks store the scattered light of the emission together with the emission.
-  options.emplace_back("emission light", scene.classification.emissionLight ? "yes" : "no");
-  return commandText(options);
-}
-
-void SceneOptions::warn(const Scene& scene) const {
-  logWarnings(*scene.volume, !scene.classification.transferFunction);
-  if (scene.classification.transferFunction && !classification.transferFunction && !scene.volume->classification)
+void logRemarks(const SceneDescription& description, const Scene& scene) {
+  const Volume& volume = *scene.volume;
+  logWarnings(volume, !scene.classification.transferFunction);
+  if (scene.classification.transferFunction && !description.classification.transferFunction && !volume.classification)
     spdlog::info("{} looks like a scan: the transfer function is made from its histogram; change it with --transfer-function, or "
                  "show densities with --density-scale",
-                 scene.volume->source);
-  if (!camera.up && !camera.position && !scene.volume->upReason.empty())
-    spdlog::info("up is {}, as {}; change it with --up", numberText(scene.volume->up), scene.volume->upReason);
+                 volume.source);
+  if (!description.camera.up && !description.camera.position && !volume.upReason.empty())
+    spdlog::info("up is {}, as {}; change it with --up", numberText(volume.up), volume.upReason);
   if (scene.lighting && scene.lighting->environment && scene.lighting->environment->negativeValues > 0)
-    spdlog::warn("values of '{}' below 0 count as 0: {} of them", *lighting.environment, scene.lighting->environment->negativeValues);
-  EmissionOptions::warn(*scene.volume, scene.classification);
+    spdlog::warn("values of '{}' below 0 count as 0: {} of them", *description.lighting.environment,
+                 scene.lighting->environment->negativeValues);
+  warnOfTemperatures(volume, scene.classification);
 }
 
-void SceneOptions::save(const OptionList& options) const {
-  if (file.saved) file.save(options);
-}
-
-OptionList SceneOptions::describe(const Scene& scene, const OptionList& method) const {
-  OptionList options;
-  input.describe(options);
-  classification.describe(options, *scene.volume, scene.classification);
-  emission.describe(options, *scene.volume, scene.classification.emission);
-  camera.describe(options, scene.camera);
-  lighting.describe(options, scene.lighting);
-  options.insert(options.end(), method.begin(), method.end());
-  output.describe(options);
-  return options;
-}
-
-ExrOptions SceneOptions::header(const Scene& scene, const std::string& command, const OptionList& options,
-                                std::map<std::string, std::string> facts) const {
+ExrOptions imageHeader(const SceneDescription& description, const Scene& scene, const std::string& command, const OptionList& options,
+                       std::map<std::string, std::string> facts) {
   facts.emplace("volume", scene.volume->source);
-  ExrOptions exr = exrMetadata(command, options, facts, scene.camera, double(camera.size.x) / double(camera.size.y));
-  exr.fullFloat = output.fullFloat;
+  const glm::dvec2 size(description.camera.size);
+  ExrOptions exr = exrMetadata(command, options, facts, scene.camera, size.x / size.y);
+  exr.fullFloat = description.output.fullFloat;
   return exr;
 }
 
-void SceneOptions::write(Image image, const Scene& scene, const std::string& command, const OptionList& options,
-                         std::map<std::string, std::string> facts) const {
-  addChannels(image, output.aovs, scene.camera);
-  output.write(image, header(scene, command, options, std::move(facts)));
+void writeImages(Image image, const SceneDescription& description, std::span<const std::string> files, const Scene& scene,
+                 const std::string& command, const OptionList& options, std::map<std::string, std::string> facts) {
+  addChannels(image, description.output.aovs, scene.camera);
+  writeImages(image, description.output, files, imageHeader(description, scene, command, options, std::move(facts)));
 }
 
 }  // namespace freevoxels

@@ -1,84 +1,78 @@
 #pragma once
-// The options of all commands that draw a volume: the volume, its classification, camera and light, and the
-// outputs.
+// The options of all commands that draw a volume: they give the fields of a scene description, in the order defaults, --scene,
+// options of the command line.
 
-#include <memory>
+#include <initializer_list>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
-#include "apps/freevoxels/camera_options.h"
-#include "apps/freevoxels/classification_options.h"
-#include "apps/freevoxels/emission_options.h"
-#include "apps/freevoxels/input_options.h"
-#include "apps/freevoxels/lighting_options.h"
-#include "apps/freevoxels/method_options.h"
+#include "apps/freevoxels/option_values.h"
 #include "apps/freevoxels/output_options.h"
-#include "apps/freevoxels/scene_file.h"
+#include "engine/description/scene_fields.h"
 
 namespace freevoxels {
 
-struct Scene {
-  std::shared_ptr<const Volume> volume;
-  Classification classification;
-  Camera camera;
-  std::optional<Lighting> lighting;
-};
+/// The fields that the description gives, and for which `wanted` is true, as options.
+OptionList optionsOf(const SceneDescription& description, const std::function<bool(const SceneField&)>& wanted = {});
 
 struct SceneOptions {
-  InputOptions input;
-  OutputOptions output;
-  ClassificationOptions classification;
-  EmissionOptions emission;
-  CameraOptions camera;
-  LightingOptions lighting;
-  SceneFileOptions file;
+  SceneDescription description;
+  std::vector<std::string> files;          ///< the images to write: OUT
+  std::optional<std::string> file, saved;  ///< --scene and --save-scene
 
+  /// Adds IN, OUT, --scene, --save-scene and the options of all sections but "method", without those that addMethod() adds.
   void add(CLI::App& app);
-  /// Adds the options that determine how a volume looks.
-  void addLook(CLI::App& app);
-  /// Applies --scene. A single image argument is then OUT, if the scene has the volume. Without OUT it is the
-  /// name of the volume, or else of the scene, with `defaultEnding` instead of the extension, in the current
-  /// folder; if `defaultEnding` is empty, OUT is required. Must be called before all functions below.
+  /// Adds the options of the drawing method, and those of light that the oracle does not have.
+  void addMethod(CLI::App& app);
+  /// Adds OUT.
+  void addOut(CLI::App& app);
+  /// Adds --scene.
+  void addFile(CLI::App& app);
+  /// Adds the options of a section of scene files, without those that only some commands have.
+  void addSection(CLI::App& app, std::string_view section);
+  /// Adds options by the names of their fields. Fields that were never added are ignored in scene files.
+  void addFields(CLI::App& app, std::initializer_list<std::string_view> names);
+  /// Adds the option of a field with a --help text of its own.
+  CLI::Option* addField(CLI::App& app, std::string_view name, const std::string& help);
+
+  /// Whether --scene names a volume.
+  bool sceneHasVolume() const;
+  /// Applies --scene to the fields that the command line leaves open. Fails with ErrorKind::Input for errors in the file.
+  void applyScene();
+  /// Applies --scene. A single image argument is then OUT, if the scene has the volume. Without OUT it is the name of the volume, or
+  /// else of the scene, with `defaultEnding` instead of the extension, in the current folder; if `defaultEnding` is empty, OUT is
+  /// required. Must be called before the functions below.
   void takeScene(const std::string& defaultEnding = ".png");
-  /// Fails with ErrorKind::Usage for options that are wrong for every volume and file.
-  void checkLook() const;
-  /// Checks all options before any work. `moreOutputs` are files that the command writes in addition to
+  /// Checks everything before any work. `images` are the files to write, `moreOutputs` those that the command writes in addition to
   /// images, `moreInputs` the volumes that it reads in addition to IN.
-  void check(const std::vector<std::string>& moreOutputs = {}, const std::vector<std::string>& moreInputs = {}) const;
-  /// A copy with other files to write.
-  SceneOptions withOutputs(std::vector<std::string> files) const;
-  /// Reads the volume, with the grids that the options need; of a baked one an octree level, which other volumes do not have.
-  Volume readVolume(std::uint64_t maximumVoxels, int level = 0) const;
-  /// The level of a baked volume that frames with this level of detail (FrameSettings::lod) need: one finer than the finest of which
-  /// anything is drawn. 0 of other volumes, and where the levels are of scalars that are classified by a transfer function.
-  int finestLevelNeeded(double lod, int frames) const;
-  /// Whether what is seen of a baked volume is what its file says, as its classification is the baked one or differs in density alone.
-  bool isAsBaked(const Volume& volume, const Classification& classification) const;
-  /// As CameraOptions::resolve; a baked volume's content is read from its file, so that it does not depend on the level.
-  std::vector<Camera> cameras(const Volume& volume, const Classification& classification, int frames = 1) const;
-  /// Reads the other files and resolves the scene.
-  Scene resolve(std::shared_ptr<const Volume> volume) const;
-  /// The two parts of resolve(): classification, and camera and light. `scene` must have the other part.
-  Classification resolveClassification(const Volume& volume) const;
-  void resolveView(Scene& scene) const;
-  /// Reads the volume and resolves the scene.
-  Scene open(std::uint64_t maximumVoxels, int level = 0) const;
-  /// As `resolve`, but with the camera, the lights and the scales of densities and temperatures or the transfer function of
-  /// another volume's scene, so that frames of one film fit together.
-  Scene resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const;
-  /// A text of everything that a Renderer of the scene depends on, except for its volume: scenes with equal
-  /// text can share one.
-  std::string rendererText(const Scene& scene, const TableSettings& table) const;
-  /// Warns of values of the volume that are not drawn as they are.
-  void warn(const Scene& scene) const;
-  /// Writes the file of --save-scene, if it is given.
-  void save(const OptionList& options) const;
-  /// All resolved options, with the command's own options between those of the camera and the outputs.
-  OptionList describe(const Scene& scene, const OptionList& method = {}) const;
-  /// The header of an .exr. `command` and `facts` as for exrMetadata, which the volume's source joins.
-  ExrOptions header(const Scene& scene, const std::string& command, const OptionList& options,
-                    std::map<std::string, std::string> facts) const;
-  /// Writes a whole image of the scene, with such a header.
-  void write(Image image, const Scene& scene, const std::string& command, const OptionList& options,
-             std::map<std::string, std::string> facts) const;
+  void check(std::span<const std::string> images, const std::vector<std::string>& moreOutputs = {},
+             const std::vector<std::string>& moreInputs = {}) const;
+  /// The fields of a description for which this command has options.
+  OptionList ownOptions(const SceneDescription& whole) const;
+  /// Writes these fields into the file of --save-scene, if it is given.
+  void save(const SceneDescription& resolved) const;
+
+ private:
+  std::map<const SceneField*, CLI::Option*> options_;
 };
+
+/// The same of a description that comes without options.
+void checkScene(const SceneDescription& description, std::span<const std::string> images, std::vector<std::string> moreOutputs = {},
+                const std::vector<std::string>& moreInputs = {});
+
+/// Logs what the user should know of a volume (warningsOf).
+void logWarnings(const Volume& volume, bool scalarsAreDensities);
+/// Logs values of the volume that are not drawn as they are, and what was chosen for it.
+void logRemarks(const SceneDescription& description, const Scene& scene);
+
+/// The header of an .exr. `command` and `facts` as for exrMetadata, which the volume's source joins.
+ExrOptions imageHeader(const SceneDescription& description, const Scene& scene, const std::string& command, const OptionList& options,
+                       std::map<std::string, std::string> facts);
+/// Writes a whole image of the scene, with such a header.
+void writeImages(Image image, const SceneDescription& description, std::span<const std::string> files, const Scene& scene,
+                 const std::string& command, const OptionList& options, std::map<std::string, std::string> facts);
 
 }  // namespace freevoxels

@@ -82,12 +82,12 @@ void SequenceOptions::add(CLI::App& app, bool& fixedView) {
 }
 
 std::vector<Frame> SequenceOptions::plan(SceneOptions& scene) const {
-  std::vector<std::string> inputs = takeVolumes(scene.output.files);
-  const bool namesAreOfVolumes = scene.output.files.empty() && !(isImage(scene.input.input) && scene.file.hasVolume());
+  std::vector<std::string> inputs = takeVolumes(scene.files);
+  const bool namesAreOfVolumes = scene.files.empty() && !(isImage(scene.description.input.volume) && scene.sceneHasVolume());
   if (formats && !namesAreOfVolumes) fail(ErrorKind::Usage, "--format is for images without a name: leave it or OUT out");
   const std::vector<std::string> extensions = extensionsOf(formats.value_or("png"));
   scene.takeScene(extensions.front());
-  inputs.insert(inputs.begin(), scene.input.input);
+  inputs.insert(inputs.begin(), scene.description.input.volume);
 
   std::vector<NumberedVolume> volumes;
   bool hasPattern = false;
@@ -112,7 +112,7 @@ std::vector<Frame> SequenceOptions::plan(SceneOptions& scene) const {
     if (namesAreOfVolumes)
       for (const std::string& extension : extensions) frame.files.push_back(placed(nameOf(volume.file) + extension));
     else
-      for (const std::string& file : scene.output.files)
+      for (const std::string& file : scene.files)
         frame.files.push_back(placed(hasPattern || volumes.size() > 1 ? frameName(file, volume.number) : file));
   }
   if (folder) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/freevoxels/option_values.h"
+#include "engine/description/scene_description.h"
 #include "engine/core/stages.h"
 #include "engine/renderer.h"
 #include "engine/visibility/cut_pass.h"
@@ -15,7 +16,8 @@
 namespace freevoxels {
 
 struct RunReport {
-  OptionList options;
+  SceneDescription scene;  ///< as it was resolved for the first volume
+  OptionList options;      ///< the same, as far as the command has them
   std::string contentHash;  ///< content_hash.h, of a run that draws shares
   DeviceDescription device;
   std::vector<StageTime> stages;

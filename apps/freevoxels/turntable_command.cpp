@@ -23,9 +23,7 @@ constexpr const char* kExamples =
 void TurntableCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("turntable", "Draw a full turn around a volume, an image for each frame");
   options_.add(*command);
-  addWholeNumber(*command, "--frames", "N", frames_, fmt::format("Frames of the turn [{}]", kDefaultFrames),
-                 {1.0, double(kMaximumFrames)})
-      ->group("Camera");
+  options_.scene.addField(*command, "frames", fmt::format("Frames of the turn [{}]", kDefaultFrames));
   if (options_.group != nullptr)
     addWholeNumber(*command, "--ranks-per-frame", "N", ranksPerFrame_,
                    "Ranks that draw a frame together; groups of so many draw frames side by side [all]", {1.0, double(kShares)})
@@ -34,9 +32,10 @@ void TurntableCommand::add(CLI::App& app) {
   command->callback([this] {
     if (ranksPerFrame_) options_.group->splitFrames(*ranksPerFrame_);
     options_.scene.takeScene("_####.png");
-    std::vector<Frame> frames(std::size_t(frames_.value_or(kDefaultFrames)), {.input = options_.scene.input.input, .files = {}});
+    const SceneDescription& scene = options_.scene.description;
+    std::vector<Frame> frames(std::size_t(scene.camera.frames.value_or(kDefaultFrames)), {.input = scene.input.volume, .files = {}});
     for (std::size_t i = 0; i < frames.size(); ++i)
-      for (const std::string& pattern : options_.scene.output.files) frames[i].files.push_back(frameName(pattern, int(i)));
+      for (const std::string& pattern : options_.scene.files) frames[i].files.push_back(frameName(pattern, int(i)));
     options_.run(frames);
   });
 }

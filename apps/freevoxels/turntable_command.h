@@ -13,7 +13,7 @@ class TurntableCommand {
 
  private:
   RenderOptions options_;
-  std::optional<int> frames_, ranksPerFrame_;
+  std::optional<int> ranksPerFrame_;
 };
 
 }  // namespace freevoxels

@@ -1,10 +1,12 @@
 #include "apps/library/keyword_options.h"
 
 #include <algorithm>
+#include <limits>
 
-#include "apps/freevoxels/scene_value.h"
 #include "engine/core/error.h"
 #include "engine/core/nearest_name.h"
+#include "engine/description/scene_json.h"
+#include "engine/description/text_values.h"
 
 namespace freevoxels {
 
@@ -12,111 +14,114 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::string groupOf(const CLI::Option& option) {
-  return CLI::detail::to_lower(option.get_group());
-}
+const std::vector<std::string> kDeviceKeys{"device", "memory-limit"};
 
-/// The name of the option that a keyword means: "density-scale" for "density_scale".
+/// The name of the field that a keyword means: "density-scale" for "density_scale".
 std::string nameOf(std::string keyword) {
   std::ranges::replace(keyword, '_', '-');
   return keyword;
 }
 
-std::string nameOf(const CLI::Option& option) {
-  return option.get_lnames().front();
+/// Whether a key and its value are a section of a scene, rather than a single light.
+bool isSection(const std::string& key, const Json& value) {
+  return value.is_object() && isSceneSection(key) && !value.contains("direction") && !value.contains("position");
 }
 
-/// Whether a value of the key "light" is a single light, rather than the section of that name.
-bool isLight(const Json& value) {
-  return value.contains("direction") || value.contains("position");
-}
+class Reader {
+ public:
+  Reader(KeywordOptions& options, const KeywordOptions::Sections& sections) : options_(options), sections_(sections) {}
 
-}  // namespace
+  void read(const Json& keywords);
+  void readSceneFile();
 
-KeywordOptions::KeywordOptions(const Json& keywords, std::vector<std::string> sections, const std::string& volume)
-    : sections_(std::move(sections)) {
-  scene.add(app_);
-  scene.lighting.addMethod(app_);
-  method.add(app_);
-  device.add(app_);
-  for (const auto& [key, value] : keywords.items()) {
-    if (!value.is_object() || !isSection(key) || isLight(value)) {
-      give("", nameOf(key), value);
-      continue;
-    }
-    for (const auto& [inner, one] : value.items()) give(key, nameOf(inner), one);
-  }
-  if (!volume.empty()) {
-    app_.get_option("IN")->add_result(volume);
-    app_.get_option("IN")->run_callback();
-  }
-  scene.file.apply([this](const std::string& option) { return scene.output.honours(option); });
-  for (const CLI::Option* option : app_.get_options())
-    if (groupOf(*option) == "classification" || groupOf(*option) == "emission")
-      for (const std::string& text : option->results()) classificationText_ += fmt::format("{}={} ", optionName(*option), text);
-}
+ private:
+  bool uses(const std::string& section) const { return std::ranges::find(sections_, section) != sections_.end(); }
+  const SceneField& find(const std::string& section, const std::string& name) const;
+  [[noreturn]] void refuse(const std::string& section, const std::string& name) const;
+  bool giveOther(const std::string& name, const Json& value);
+  void give(const SceneField& field, const Json& value, SceneFieldSet& given);
 
-bool KeywordOptions::isSection(const std::string& name) const {
-  return std::ranges::find(sections_, name) != sections_.end();
-}
+  KeywordOptions& options_;
+  const KeywordOptions::Sections& sections_;
+  SceneFieldSet stronger_;  ///< fields that are given
+  std::string sceneFile_;
+};
 
-CLI::Option* KeywordOptions::find(const std::string& section, const std::string& name) {
+void Reader::refuse(const std::string& section, const std::string& name) const {
   std::vector<std::string> known;
-  for (CLI::Option* option : app_.get_options([](const CLI::Option*) { return true; })) {
-    if (option->get_lnames().empty()) continue;
-    if (!isSection(groupOf(*option))) {
-      if (name == nameOf(*option)) fail(ErrorKind::Usage, "{} has no effect here: leave it out", Parameter(name));
-      continue;
-    }
-    known.push_back(nameOf(*option));
-    if (!section.empty() && groupOf(*option) != section) continue;
-    if (name == known.back() || name == sceneKey(*option)) return option;
+  for (const SceneField& field : sceneFields()) {
+    if (uses(field.section)) known.push_back(field.name);
+    if (section.empty() && field.name == name) fail(ErrorKind::Usage, "{} has no effect here: leave it out", Parameter(name));
   }
+  if (uses("device")) known.insert(known.end(), kDeviceKeys.begin(), kDeviceKeys.end());
   const std::string given = section.empty() ? name : section + "." + name;
   if (const std::string meant = nearestName(name, known); !meant.empty())
     fail(ErrorKind::Usage, "there is no option {}; did you mean {}?", Parameter(given), Parameter(meant));
   fail(ErrorKind::Usage, "there is no option {}; 'freevoxels render --help' lists them", Parameter(given));
 }
 
-void KeywordOptions::give(const std::string& section, const std::string& name, const Json& value) {
-  CLI::Option* const option = find(section, name);
-  const bool wantsList = isRepeated(*option) && !value.is_array();
-  const std::vector<std::string> texts = optionTexts(*option, wantsList ? Json::array({value}) : value, "", fmt::format("{}", Parameter(name)));
-  if (texts.empty()) return;
-  for (const CLI::Option* other : given_)
-    if (option->get_excludes().contains(const_cast<CLI::Option*>(other)))
-      fail(ErrorKind::Usage, "{} and {} exclude each other: keep one of them", Parameter(name), Parameter(nameOf(*other)));
-  for (const std::string& text : texts) option->add_result(text);
-  option->run_callback();
-  given_.push_back(option);
+const SceneField& Reader::find(const std::string& section, const std::string& name) const {
+  for (const SceneField& field : sceneFields())
+    if (uses(field.section) && (section.empty() || field.section == section) && (name == field.name || name == field.key())) return field;
+  refuse(section, name);
 }
 
-const KeywordOptions& KeywordOptions::all() {
-  static const KeywordOptions options(Json::object(), {});
-  return options;
-}
-
-std::string KeywordOptions::marked(std::string_view text) const {
-  constexpr std::string_view kOfNames = "abcdefghijklmnopqrstuvwxyz-";
-  std::string result;
-  while (!text.empty()) {
-    const std::size_t begin = std::min(text.find("--"), text.size());
-    result += text.substr(0, begin);
-    text.remove_prefix(begin);
-    const std::string name(text.substr(0, std::min(text.find_first_not_of(kOfNames), text.size())));
-    const CLI::Option* const option = name.size() > 2 ? app_.get_option_no_throw(name) : nullptr;
-    text.remove_prefix(name.size());
-    if (option == nullptr) {
-      result += name;
-      continue;
-    }
-    std::string_view value;
-    for (const std::string& word : CLI::detail::split(option->get_type_name(), '|'))
-      if (text.starts_with(" " + word) && text.find_first_of(kOfNames, word.size() + 1) != word.size() + 1) value = text.substr(1, word.size());
-    if (!value.empty()) text.remove_prefix(value.size() + 1);
-    result += fmt::format("{}", Parameter(std::string_view(name).substr(2), value));
+/// Gives a key that is no field of a scene; false where it is one. What a stronger object gives stays.
+bool Reader::giveOther(const std::string& name, const Json& value) {
+  const bool isDevice = std::ranges::find(kDeviceKeys, name) != kDeviceKeys.end();
+  if (!isDevice && name != "scene") return false;
+  if (!uses(isDevice ? "device" : "scene")) fail(ErrorKind::Usage, "{} has no effect here: leave it out", Parameter(name));
+  const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  if (name == "scene" && sceneFile_.empty()) sceneFile_ = text;
+  if (name == "device" && !options_.device.selector) options_.device.selector = text;
+  if (name == "memory-limit" && !options_.device.memoryLimit) {
+    const NumberForm form{.name = fmt::format("{}", Parameter(name)),
+                          .form = "MIB",
+                          .range = {1.0, double(std::numeric_limits<int>::max())},
+                          .whole = true};
+    options_.device.memoryLimit = int(readNumbers(form, text)[0]);
   }
-  return result;
+  return true;
+}
+
+void Reader::give(const SceneField& field, const Json& value, SceneFieldSet& given) {
+  const bool wantsList = field.repeated && !value.is_array();
+  const auto texts = fieldTexts(field, wantsList ? Json::array({value}) : value, "", fmt::format("{}", Parameter(field.name)));
+  if (texts.empty()) return;
+  for (const SceneField* other : given)
+    if (other != &field && field.isOrExcludes(*other))
+      fail(ErrorKind::Usage, "{} and {} exclude each other: keep one of them", Parameter(field.name), Parameter(other->name));
+  given.insert(&field);
+  SceneDescription checked;
+  field.read(isReplaced(field, stronger_) ? checked : options_.scene, texts);
+}
+
+void Reader::read(const Json& keywords) {
+  SceneFieldSet given;
+  for (const auto& [key, value] : keywords.items())
+    if (const std::string name = nameOf(key); !isSection(key, value) && !giveOther(name, value)) give(find("", name), value, given);
+  stronger_.merge(given);
+  given.clear();
+  for (const auto& [section, fields] : keywords.items()) {
+    if (!isSection(section, fields) || !uses(section)) continue;
+    for (const auto& [key, value] : fields.items()) give(find(section, nameOf(key)), value, given);
+  }
+  stronger_.merge(given);
+}
+
+void Reader::readSceneFile() {
+  if (sceneFile_.empty()) return;
+  SceneFile(sceneFile_).applyTo(options_.scene, [this](const SceneField& field) {
+    return uses(field.section) && !isReplaced(field, stronger_);
+  });
+}
+
+}  // namespace
+
+KeywordOptions::KeywordOptions(const std::vector<Json>& layers, const Sections& sections) {
+  Reader reader(*this, sections);
+  for (const Json& layer : layers) reader.read(layer);
+  reader.readSceneFile();
 }
 
 }  // namespace freevoxels

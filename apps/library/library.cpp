@@ -44,8 +44,7 @@ auto translated(const Work& work) {
   try {
     return work();
   } catch (const freevoxels::Error& error) {
-    const std::string text = KeywordOptions::all().marked(error.text());
-    throw Error(kindOf(error.kind()), withSceneKeys(text), parametersIn(text));
+    throw Error(kindOf(error.kind()), withSceneKeys(error.text()), error.parameters());
   } catch (const InternalError& error) {
     throw Error(ErrorKind::Internal, fmt::format("internal error, please report it: {}", error.what()));
   } catch (const FrameCancelled&) {

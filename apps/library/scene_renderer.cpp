@@ -1,6 +1,12 @@
 #include "apps/library/scene_renderer.h"
 
+#include <array>
+
+#include "apps/freevoxels/output_options.h"
+#include "apps/freevoxels/program.h"
 #include "engine/core/error.h"
+#include "engine/description/scene_fields.h"
+#include "engine/description/scene_json.h"
 #include "engine/octree/volume_limits.h"
 
 namespace freevoxels {
@@ -9,10 +15,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-const std::vector<std::string> kOutputSections{"output"};
-
 /// The sections of the options of a frame, or of a file as well; of the device only where they choose it.
-std::vector<std::string> sections(bool ofFile, bool choosesDevice) {
+KeywordOptions::Sections sections(bool ofFile, bool choosesDevice) {
   std::vector<std::string> names{"classification", "emission", "camera", "light", "method", "scene"};
   if (ofFile) names.emplace_back("input");
   if (choosesDevice) names.emplace_back("device");
@@ -22,23 +26,38 @@ std::vector<std::string> sections(bool ofFile, bool choosesDevice) {
 }  // namespace
 
 std::shared_ptr<const Volume> openVolume(const std::string& file, const Json& keywords, const std::shared_ptr<DeviceContext>& context) {
-  KeywordOptions options(keywords, sections(true, !context), file);
-  options.scene.checkLook();
+  Json named = keywords;
+  if (!file.empty()) named["volume"] = file;
+  const KeywordOptions options({named}, sections(true, !context));
+  if (options.scene.input.volume.empty())
+    fail(ErrorKind::Usage, "there is no volume to open: name a file or procedural:NAME, or give a scene with a {}", Parameter("volume"));
+  options.scene.check();
   const std::shared_ptr<DeviceContext> used = context ? context : sharedContext(options.device);
   return std::make_shared<const Volume>(options.scene.readVolume(maximumVoxels(*used->device)));
 }
 
 void saveImage(const std::string& file, const Image& image, const Json& keywords) {
-  KeywordOptions options(keywords, kOutputSections);
-  OutputOptions& output = options.scene.output;
-  output.files = {file};
+  OutputDescription output = KeywordOptions({keywords}, {"output"}).scene.output;
+  const std::span<const std::string> files(&file, 1);
   output.aovs.depth = !image.depth.empty() && isExr(file);
   if (output.aovs.position || output.aovs.normal)
     fail(ErrorKind::Usage, "an image does not know its camera, of which positions and normals are made: leave them out of {}", Parameter("aov"));
-  output.check();
+  checkOutputs(output, files);
   Image withChannels = image;
   addChannels(withChannels, output.aovs, Camera{});
-  output.write(withChannels, {.fullFloat = output.fullFloat});
+  writeImages(withChannels, output, files, {.fullFloat = output.fullFloat});
+}
+
+Json loadScene(const std::filesystem::path& file) {
+  // Absolute names of files, so that the scene means the same wherever it is used.
+  return sceneToJson(readScene(std::filesystem::absolute(file)), std::nullopt);
+}
+
+void saveScene(const std::filesystem::path& file, const Json& keywords) {
+  const KeywordOptions options({keywords}, {"input", "classification", "emission", "camera", "light", "method", "output", "scene"});
+  options.scene.check();
+  checkOutput(file);
+  writeScene(file, options.scene);
 }
 
 SceneRenderer::SceneRenderer(std::shared_ptr<const Volume> volume, Json keywords, std::shared_ptr<DeviceContext> context)
@@ -50,31 +69,29 @@ SceneRenderer::SceneRenderer(std::shared_ptr<const Volume> volume, Json keywords
 }
 
 std::unique_ptr<const KeywordOptions> SceneRenderer::read(const Json& more) const {
-  Json merged = keywords_;
-  merged.update(more);
-  auto options = std::make_unique<KeywordOptions>(merged, sections(false, choosesDevice_));
-  options->scene.input = {};  // the volume of a scene file is ignored
-  options->scene.checkLook();
+  auto options = std::make_unique<KeywordOptions>(std::vector{more, keywords_}, sections(false, choosesDevice_));
+  options->scene.check();
   return options;
 }
 
 /// Makes renderer_ anew if the options need another one. The context's mutex is held.
 FrameSettings SceneRenderer::prepare(const KeywordOptions& options, bool depth, const Progress& progress) {
   FrameSettings settings{.size = options.scene.camera.size, .depth = depth};
-  options.method.apply(settings);
+  options.scene.method.apply(settings);
   checkFrameFits(*context_->device, settings);
   scene_.volume = volume_;
-  const std::string& classification = options.classificationText();
+  constexpr std::array<std::string_view, 2> kClassification{"classification", "emission"};
+  const std::string classification = textOf(options.scene, kClassification);
   if (!renderer_ || classification != classification_) {
     scene_.classification = options.scene.resolveClassification(*volume_);
     classification_ = classification;
   }
   options.scene.resolveView(scene_);
   settings.lighting = scene_.lighting;
-  const std::string text = options.scene.rendererText(scene_, options.method.table());
+  const std::string text = rendererText(options.scene, scene_);
   if (renderer_ && text == rendererText_) return settings;
   renderer_ = nullptr;  // so that the device never holds two
-  renderer_ = std::make_unique<Renderer>(*context_->device, *volume_, scene_.classification, options.method.table(), progress);
+  renderer_ = std::make_unique<Renderer>(*context_->device, *volume_, scene_.classification, options.scene.method.table(), progress);
   rendererText_ = text;
   return settings;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Renders one volume by scenes in JSON: the common base of the C++ library and the Python module.
 
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -13,12 +14,18 @@ namespace freevoxels {
 
 /// Reads a file or makes "procedural:NAME", at most as large as the device of `context` can hold; if it is null, that of the
 /// keywords. `keywords` are the grid, the resolution and the scene of later frames, which decides what other grids are needed.
+/// Without a file it is the volume of the scene.
 /// Fails as readVdb does.
 std::shared_ptr<const Volume> openVolume(const std::string& file, const nlohmann::json& keywords,
                                          const std::shared_ptr<DeviceContext>& context = nullptr);
 
 /// Writes an image as `freevoxels render` does. `keywords` are options of the section "output".
 void saveImage(const std::string& file, const Image& image, const nlohmann::json& keywords);
+
+/// A scene file as keywords, with absolute names of files. Fails with ErrorKind::Input.
+nlohmann::json loadScene(const std::filesystem::path& file);
+/// Writes keywords as a scene file, with names of files relative to its folder.
+void saveScene(const std::filesystem::path& file, const nlohmann::json& keywords);
 
 /// Any thread may call the member functions; the frames of one device are drawn one after another.
 class SceneRenderer {
@@ -47,8 +54,8 @@ class SceneRenderer {
   const bool choosesDevice_;  ///< whether the keywords choose the device
   const std::shared_ptr<DeviceContext> context_;
   Scene scene_;                 ///< scene of the last frame
-  std::string classification_;  ///< KeywordOptions::classificationText of scene_.classification
-  std::string rendererText_;    ///< SceneOptions::rendererText for which renderer_ was made
+  std::string classification_;  ///< the fields of which scene_.classification was made
+  std::string rendererText_;    ///< rendererText for which renderer_ was made
   std::unique_ptr<Renderer> renderer_;
 };
 

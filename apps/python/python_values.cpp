@@ -7,8 +7,8 @@
 #include <array>
 #include <cstring>
 
-#include "apps/library/keyword_options.h"
 #include "engine/core/error.h"
+#include "engine/description/scene_description.h"
 
 namespace freevoxels {
 
@@ -65,11 +65,10 @@ std::string withKeywords(std::string_view text) {
 
 /// Sets Python's current exception.
 void raise(const Error& error) {
-  const std::string text = KeywordOptions::all().marked(error.text());
   py::list parameters;
-  for (const std::string& parameter : parametersIn(text)) parameters.append(keyword(parameter));
+  for (const std::string& parameter : error.parameters()) parameters.append(keyword(parameter));
   const py::handle type = exceptionClasses[std::size_t(error.kind())];
-  const py::object exception = type(withKeywords(text));
+  const py::object exception = type(withKeywords(error.text()));
   exception.attr("parameters") = py::tuple(parameters);
   PyErr_SetObject(type.ptr(), exception.ptr());
 }
@@ -96,6 +95,21 @@ Json jsonOf(py::handle value, const std::string& name) {
   }
   fail(ErrorKind::Input, "'{}' takes numbers, text, lists and dictionaries, not {}", name,
        py::str(py::type::of(value).attr("__name__")).cast<std::string>());
+}
+
+py::object pythonOf(const Json& value) {
+  if (value.is_boolean()) return py::bool_(value.get<bool>());
+  if (value.is_number_integer()) return py::int_(value.get<std::int64_t>());
+  if (value.is_number()) return py::float_(value.get<double>());
+  if (value.is_string()) return py::str(value.get<std::string>());
+  if (value.is_object()) {
+    py::dict object;
+    for (const auto& [key, one] : value.items()) object[py::str(key)] = pythonOf(one);
+    return object;
+  }
+  py::list list;
+  for (const Json& one : value) list.append(pythonOf(one));
+  return list;
 }
 
 Json jsonOf(const py::kwargs& keywords) {

@@ -14,6 +14,8 @@ namespace freevoxels {
 /// Converts bool, int, float, str, path, dict, list, tuple, and objects with tolist() such as NumPy's arrays
 /// and numbers. Fails with ErrorKind::Input for others; the sentence calls the value `name`.
 nlohmann::json jsonOf(pybind11::handle value, const std::string& name);
+/// The inverse, for JSON that was read from a file.
+pybind11::object pythonOf(const nlohmann::json& value);
 /// Converts keyword arguments; None is left out.
 nlohmann::json jsonOf(const pybind11::kwargs& keywords);
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "apps/freevoxels/device_options.h"
-#include "apps/freevoxels/input_options.h"
+#include "engine/description/scene_description.h"
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/progress_line.h"
 #include "apps/validate/check_lines.h"

@@ -6,7 +6,7 @@
 #include <memory>
 #include <span>
 
-#include "apps/freevoxels/input_options.h"
+#include "engine/description/scene_description.h"
 #include "engine/core/error.h"
 #include "engine/octree/volume_limits.h"
 #include "engine/renderer.h"
@@ -241,7 +241,7 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
   addCluster(jobs, device, extent);
   for (const std::string& file : extent.files) {
     const auto scene = std::make_shared<ValidationScene>(
-        makeValidationScene(InputOptions{.input = file}.open(maximumVoxels(device)), SceneColor::Density,
+        makeValidationScene(InputDescription{.volume = file}.open(maximumVoxels(device)), SceneColor::Density,
                             extent.quick ? kQuickFileEdge : kWholeFileEdge));
     addScene(jobs, device, file, picture, [scene] { return *scene; });
     const int edge = extent.quick ? kQuickQualityPicture : kWholeQualityPicture;

@@ -1,6 +1,5 @@
 #include "apps/view/export_files.h"
 
-#include <CLI/CLI.hpp>
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/wait.h>
@@ -16,8 +15,10 @@
 
 #include "apps/freevoxels/background_writer.h"
 #include "apps/freevoxels/frame_names.h"
-#include "apps/freevoxels/render_options.h"
+#include "apps/freevoxels/program.h"
+#include "apps/freevoxels/scene_options.h"
 #include "engine/core/error.h"
+#include "engine/description/scene_json.h"
 
 namespace freevoxels {
 
@@ -55,17 +56,11 @@ std::string inPieces(std::string_view word, std::size_t columns) {
   return pieces.append(word);
 }
 
-/// The options of the image that count where it is written to these files.
-SceneOptions sceneInto(const DrawnImage& drawn, std::vector<std::string> files) {
-  SceneOptions scene = drawn.request.scene.withOutputs(std::move(files));
-  scene.output.leaveOutUnhonoured();
+/// The scene of the image, with what counts where it is written to these files.
+SceneDescription sceneInto(const DrawnImage& drawn, std::span<const std::string> files) {
+  SceneDescription scene = drawn.request.scene;
+  scene.output = honoured(scene.output, files);
   return scene;
-}
-
-OptionList optionsOf(const SceneOptions& scene, const DrawnImage& drawn) {
-  OptionList method;
-  drawn.request.method.describe(method);
-  return scene.describe(drawn.scene, method);
 }
 
 std::vector<std::string> filesOfTurn(const std::string& pattern, int frames) {
@@ -125,21 +120,18 @@ std::string wrappedCommand(std::string_view command, std::size_t columns) {
 }
 
 std::string commandOf(const DrawnImage& drawn, const std::string& file) {
-  return commandInto("render", optionsOf(sceneInto(drawn, {file}), drawn), file);
+  return commandInto("render", optionsOf(sceneInto(drawn, {&file, 1}).resolved(drawn.scene)), file);
 }
 
 std::string turnCommandOf(const DrawnImage& drawn, const std::string& pattern, int frames) {
-  const SceneOptions scene = sceneInto(drawn, {pattern});
-  OptionList options = optionsOf(scene, drawn);
-  scene.camera.describeTurn(options);
-  options.emplace_back("--frames", fmt::format("{}", frames));
-  return commandInto("turntable", options, pattern);
+  return commandInto("turntable", optionsOf(sceneInto(drawn, {&pattern, 1}).resolvedTurn(drawn.scene, frames)), pattern);
 }
 
 void saveImage(const Device& device, const DrawnImage& drawn, const std::string& file) {
-  const SceneOptions scene = sceneInto(drawn, {file});
-  scene.check();
-  scene.write(downloadImage(device, *drawn.image), drawn.scene, "render", optionsOf(scene, drawn),
+  const std::span<const std::string> files(&file, 1);
+  const SceneDescription scene = sceneInto(drawn, files);
+  checkScene(scene, files);
+  writeImages(downloadImage(device, *drawn.image), scene, files, drawn.scene, "render", optionsOf(scene.resolved(drawn.scene)),
               {{"device", drawn.device.name}, {"driver", drawn.device.driver}});
 }
 
@@ -168,12 +160,9 @@ void copyImage(const Device& device, const DrawnImage& drawn) {
 }
 
 void saveScene(const DrawnImage& drawn, const std::string& file) {
-  sceneInto(drawn, {}).check({file});
-  CLI::App command;
-  RenderOptions render;
-  render.add(command);  // whose options are the keys
-  render.scene.file.saved = file;
-  render.scene.save(drawn.options);
+  checkScene(sceneInto(drawn, {}), {}, {file});
+  const DeferredInterrupts wholeFile;
+  writeScene(file, drawn.request.scene.resolved(drawn.scene));
 }
 
 void saveTurn(const Device& device, const DrawnImage& drawn, const std::string& pattern, int frames,
@@ -181,7 +170,7 @@ void saveTurn(const Device& device, const DrawnImage& drawn, const std::string& 
   const std::vector<std::string> files = filesOfTurn(pattern, frames);
   ImageRequest request = drawn.request;
   request.scene = sceneInto(drawn, files);
-  request.scene.check();
+  checkScene(request.scene, files);
   const std::vector<Camera> cameras =
       request.scene.cameras(*drawn.scene.volume, drawn.scene.classification, frames);
 

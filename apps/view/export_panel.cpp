@@ -91,7 +91,7 @@ void ExportPanel::draw(ViewState& state) {
   ImGui::SameLine();
   if (ImGui::Button("Copy command", {half, 0.0f})) copyCommand(state);
   hint("Copies the command line that renders this image (Ctrl+Shift+C)");
-  OutputOptions& output = state.scene.output;
+  OutputDescription& output = state.scene.output;
   if (ImGui::TreeNode("Turntable")) {
     ImGui::InputInt(beginRow("Frames"), &turnFrames_, 1, 10);
     hint("Of a full turn", "--frames");

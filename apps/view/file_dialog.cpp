@@ -11,7 +11,7 @@
 #include <ctime>
 #include <set>
 
-#include "apps/freevoxels/input_options.h"
+#include "engine/description/scene_description.h"
 #include "apps/freevoxels/sequence.h"
 #include "apps/view/ui_painter.h"
 #include "apps/view/widgets.h"

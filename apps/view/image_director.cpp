@@ -38,7 +38,6 @@ ImageDirector::ImageDirector(const Device& device, bool wholeOnly)
 
 ImageRequest ImageDirector::request(const ViewState& state, Purpose purpose, int voxels, double scale) const {
   ImageRequest request{.scene = state.scene,
-                       .method = state.method,
                        .diagnosis = state.diagnosis,
                        .compared = state.comparedMethod(),
                        .number = lastRequest_,

@@ -1,9 +1,12 @@
 #include "apps/view/image_maker.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <utility>
 
+#include "apps/freevoxels/scene_options.h"
+#include "engine/description/scene_fields.h"
 #include "engine/image/display_pass.h"
 #include "engine/volume/coarse_volume.h"
 
@@ -12,14 +15,13 @@ namespace freevoxels {
 namespace {
 
 /// Different for whatever is read differently.
-std::string nameOf(const SceneOptions& scene, bool clipped) {
-  OptionList options;
-  InputOptions input = scene.input;
-  if (!clipped) input.clipBox.reset();
-  input.describe(options);
-  options.emplace_back("temperature", scene.emission.grid().value_or("none"));
-  options.emplace_back("albedo", scene.classification.albedoGrid.value_or("none"));
-  return commandText(options);
+std::string nameOf(const SceneDescription& scene, bool clipped) {
+  SceneDescription read;
+  read.input = scene.input;
+  if (!clipped) read.input.clipBox.reset();
+  constexpr std::array<std::string_view, 1> kSections{"input"};
+  return fmt::format("{}temperature={} albedo={}", textOf(read, kSections), scene.emission.grid().value_or("none"),
+                     scene.classification.albedoGrid.value_or("none"));
 }
 
 int blockEdge(const Volume& volume, int voxelsAlongEdge) {
@@ -29,10 +31,10 @@ int blockEdge(const Volume& volume, int voxelsAlongEdge) {
 
 }  // namespace
 
-VolumeCache::VolumeCache(const SceneOptions& scene, std::shared_ptr<const Volume> volume)
+VolumeCache::VolumeCache(const SceneDescription& scene, std::shared_ptr<const Volume> volume)
     : maximumVoxels_(volume->voxelCount()), clippedName_(nameOf(scene, true)), clipped_(std::move(volume)) {}
 
-std::shared_ptr<const Volume> VolumeCache::read(const SceneOptions& scene) {
+std::shared_ptr<const Volume> VolumeCache::read(const SceneDescription& scene) {
   const std::lock_guard lock(mutex_);
   const std::string clippedName = nameOf(scene, true);
   if (clipped_ && clippedName == clippedName_) return clipped_;
@@ -40,7 +42,7 @@ std::shared_ptr<const Volume> VolumeCache::read(const SceneOptions& scene) {
   const std::string name = nameOf(scene, false);
   if (!whole_ || name != name_) {
     whole_ = nullptr;
-    SceneOptions unclipped = scene;
+    SceneDescription unclipped = scene;
     unclipped.input.clipBox.reset();
     whole_ = std::make_shared<const Volume>(unclipped.readVolume(maximumVoxels_));
     logWarnings(*whole_, false);
@@ -75,13 +77,13 @@ std::shared_ptr<const Volume> ImageMaker::coarse(const Scene& scene, int voxelsA
 
 void ImageMaker::makeRenderer(const Scene& scene, const ImageRequest& request, const Progress& progress) {
   const std::shared_ptr<const Volume> volume = coarse(scene, request.voxelsAlongEdge);
-  const std::string options = request.scene.rendererText(scene, request.method.table());
+  const std::string options = rendererText(request.scene, scene);
   if (renderer_ && options == rendererOptions_) return;
   renderer_ = nullptr;  // not both at once
   diagnoser_.reset();
   rendererOptions_.clear();
   renderer_ =
-      std::make_unique<Renderer>(device_, *volume, scene.classification, request.method.table(), progress);
+      std::make_unique<Renderer>(device_, *volume, scene.classification, request.scene.method.table(), progress);
   rendererOptions_ = options;
 }
 
@@ -98,25 +100,15 @@ Scene ImageMaker::resolve(const ImageRequest& request) {
   return *scene_;
 }
 
-bool sameOutput(const OutputOptions& a, const OutputOptions& b) {
-  OptionList first, second;
-  a.describe(first);
-  b.describe(second);
-  return first == second;
-}
-
-DrawnImage withOutput(const DrawnImage& drawn, const OutputOptions& output) {
+DrawnImage withOutput(const DrawnImage& drawn, const OutputDescription& output) {
   DrawnImage result = drawn;
   result.request.scene.output = output;
-  OptionList method;
-  result.request.method.describe(method);
-  result.options = result.request.scene.describe(result.scene, method);
   return result;
 }
 
 DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progress) {
-  request.scene.checkLook();
-  const std::string before = std::exchange(input_, request.scene.input.input);
+  request.scene.check();
+  const std::string before = std::exchange(input_, request.scene.input.volume);
   if (progress) progress(before == input_ ? "preparing" : "reading " + input_, 0.0);
   DrawnImage drawn{.request = request,
                    .scene = resolve(request),
@@ -126,21 +118,18 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
   makeRenderer(drawn.scene, request, progress);
 
   FrameSettings settings{.size = request.scene.camera.size,
-                         .depth = request.scene.output.wantsDepth(),
+                         .depth = request.scene.output.aovs.needDepth(),
                          .lighting = drawn.scene.lighting};
-  request.method.apply(settings);
+  request.scene.method.apply(settings);
   drawn.image = renderer_->renderOnDevice(drawn.scene.camera, settings, progress);
   drawn.shown = {drawn.image, &drawn.image->colorEnergy};
-  OptionList method;
-  request.method.describe(method);
-  drawn.options = request.scene.describe(drawn.scene, method);
   drawn.times = renderer_->timings();
   drawn.memory = renderer_->memory();
   drawn.cut = renderer_->cutCounts();
   drawn.visibleVoxels = renderer_->occupiedVoxelCount();
   if (request.diagnosis.shown != Shown::Image)
     drawn.shown = std::make_shared<const RenderTarget>(
-        uploadImage(device_, diagnoser_.make(request.diagnosis, *renderer_, *coarse_, request.method.table(),
+        uploadImage(device_, diagnoser_.make(request.diagnosis, *renderer_, *coarse_, request.scene.method.table(),
                                              drawn.scene.camera, settings)));
   drawn.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

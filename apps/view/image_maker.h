@@ -6,10 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "apps/freevoxels/method_options.h"
-#include "apps/freevoxels/scene_options.h"
 #include "apps/view/diagnosis.h"
 #include "apps/view/image_pace.h"
+#include "engine/description/scene_description.h"
 #include "engine/renderer.h"
 
 namespace freevoxels {
@@ -19,10 +18,10 @@ class VolumeCache {
   explicit VolumeCache(std::uint64_t maximumVoxels) : maximumVoxels_(maximumVoxels) {}
 
   /// The volume that the options name was read already, and clipped.
-  VolumeCache(const SceneOptions& scene, std::shared_ptr<const Volume> volume);
+  VolumeCache(const SceneDescription& scene, std::shared_ptr<const Volume> volume);
 
   /// The volume that the options name, read and clipped unless it is the last one; whoever comes meanwhile waits for it.
-  std::shared_ptr<const Volume> read(const SceneOptions& scene);
+  std::shared_ptr<const Volume> read(const SceneDescription& scene);
   /// The size of its box before it was clipped.
   glm::ivec3 wholeDimensions() const;
 
@@ -39,10 +38,9 @@ enum class Purpose { Move, Edit, Refine, Whole };
 
 /// The input of an image, to be copied to another thread.
 struct ImageRequest {
-  SceneOptions scene;
-  MethodOptions method;
+  SceneDescription scene;
   Diagnosis diagnosis;
-  std::optional<MethodOptions> compared;  ///< another method for comparison
+  std::optional<MethodDescription> compared;  ///< another method for comparison
   std::uint64_t number = 0;               ///< larger than that of all earlier requests
   /// The same for requests that differ in camera and size alone, so that the rest of the scene is not resolved again; 0 if that is
   /// not known.
@@ -56,7 +54,6 @@ struct DrawnImage {
   ImageRequest request;    ///< the request that it answers
   Scene scene;               ///< the resolved scene, with all voxels of the volume
   glm::ivec3 wholeDimensions{0};  ///< of the volume's box before it was clipped
-  OptionList options;        ///< options that make the same pixels
   DeviceDescription device;  ///< device that made it
   std::shared_ptr<const SplatTargets> image;     ///< on the device, which must outlive the image
   std::shared_ptr<const RenderTarget> shown;     ///< the same image, or the diagnosis in its place
@@ -68,10 +65,8 @@ struct DrawnImage {
   std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::occupiedVoxelCount
 };
 
-/// Whether images are shown and written alike.
-bool sameOutput(const OutputOptions& a, const OutputOptions& b);
 /// The same image with other options of how it is shown and written.
-DrawnImage withOutput(const DrawnImage& drawn, const OutputOptions& output);
+DrawnImage withOutput(const DrawnImage& drawn, const OutputDescription& output);
 
 /// Keeps a volume on a device, and updates only what a request changes.
 class ImageMaker {

@@ -24,35 +24,35 @@ struct Usual {
 
 /// What is not given comes to.
 Usual usualOf(bool paper) {
-  const MethodOptions none{.paper = paper};
+  const MethodDescription none{.paper = paper};
   Usual usual{.table = none.table()};
   none.apply(usual.frame);
   return usual;
 }
 
-bool drawPaper(MethodOptions& method) {
+bool drawPaper(MethodDescription& method) {
   bool paper = method.paper;
   if (!tick("As in the paper", paper)) {
     hint("Subr et al. 2007: additive, nearest, no gradient", "--paper");
     return false;
   }
-  method = {.paper = paper, .hierarchyFilter = method.hierarchyFilter, .cullThreshold = method.cullThreshold};
+  method = {.paper = paper, .cullThreshold = method.cullThreshold, .hierarchyFilter = method.hierarchyFilter};
   return true;
 }
 
-bool drawTable(MethodOptions& method, const TableSettings& usual) {
-  bool changed = choose("Directions", kDirectionWords, method.directions, int(usual.directions) - 1);
+bool drawTable(MethodDescription& method, const TableSettings& usual) {
+  bool changed = choose("Directions", kDirectionWords, method.directions, usual.directions);
   hint("Of the attenuation table; 98 are more exact, and take more memory and time", "--directions");
-  changed |= choose("Code", kCodeWords, method.code, int(usual.code));
+  changed |= choose("Code", kCodeWords, method.code, usual.code);
   hint("What a byte of the table holds: optical depth, or transmittance", "--code");
-  changed |= choose("Block mean", kHierarchyFilterWords, method.hierarchyFilter, int(usual.filter));
+  changed |= choose("Block mean", kHierarchyFilterWords, method.hierarchyFilter, usual.filter);
   hint("Mean of the transmittances of a block's voxels", "--hierarchy-filter");
   changed |= tick("Path length corr.", method.pathLengthCorrection, usual.pathLengthCorrection);
   hint("A diagonal step counts its full length", "--path-length-correction");
   return changed;
 }
 
-bool drawDetail(MethodOptions& method, const FrameSettings& usual) {
+bool drawDetail(MethodDescription& method, const FrameSettings& usual) {
   bool changed = tick("Gradient in splats", method.gradient, usual.gradient);
   hint("Transmittance varies across a splat", "--gradient");
   changed |= slideOptional("Level of detail", method.lod, double(usual.lod), 0.0, 8.0, "%.2g px");
@@ -163,7 +163,7 @@ void drawSphere(ViewState& state, DirectionSet set) {
 
 void drawTableControls(ViewState& state) {
   Diagnosis& diagnosis = state.diagnosis;
-  const DirectionSet set = state.method.table().directions;
+  const DirectionSet set = state.scene.method.table().directions;
   state.changed |= ImGui::SliderInt(beginRow("Direction"), &diagnosis.direction, 0, directionCount(set) - 1);
   diagnosis.direction = std::clamp(diagnosis.direction, 0, directionCount(set) - 1);
   if (diagnosis.shown != Shown::TableSlice) return;
@@ -243,18 +243,21 @@ void drawFigures(const DrawnImage& drawn) {
 /// The choice of the renderer's method, and of what it shows in its place.
 void drawMethod(ViewState& state) {
   if (!ImGui::TreeNode("Method")) return;
-  MethodOptions& method = state.method;
-  bool changed = choose("Draw", kDrawWords, method.draw, 0);
+  MethodDescription& method = state.scene.method;
+  bool changed = choose("Draw", kDrawWords, method.draw, Draw::Auto);
   hint("By gathering samples along rays, or by splats; auto: gathering where it is possible", "--draw");
-  const bool gathers = method.draw == int(Draw::Gather);
-  if (gathers) method.composite = method.attenuation = std::nullopt;
+  const bool gathers = method.draw == Draw::Gather;
+  if (gathers) {
+    method.composite.reset();
+    method.attenuation.reset();
+  }
   changed |= drawPaper(method);
   const Usual usual = usualOf(method.paper);
-  changed |= choose("Composite", kCompositeWords, method.composite, int(usual.frame.composite));
+  changed |= choose("Composite", kCompositeWords, method.composite, usual.frame.composite);
   hint("How splats become an image; sorted is classic splatting", "--composite");
-  const bool sorted = method.composite == int(Composite::Sorted);
+  const bool sorted = method.composite == Composite::Sorted;
   ImGui::BeginDisabled(sorted || gathers);
-  changed |= choose("Attenuation", kAttenuationWords, method.attenuation, int(usual.frame.attenuation));
+  changed |= choose("Attenuation", kAttenuationWords, method.attenuation, usual.frame.attenuation);
   hint("Transmittance to the eye: from the table, or exact by rays", "--attenuation");
   changed |= drawDetail(method, usual.frame);
   ImGui::EndDisabled();
@@ -286,7 +289,7 @@ void drawInspectPanel(ViewState& state) {
   if (diagnosis.shown == Shown::TableSlice || diagnosis.shown == Shown::TableImage)
     drawTableControls(state);
   heading("Directions of the attenuation table, from the eye");
-  drawSphere(state, state.method.table().directions);
+  drawSphere(state, state.scene.method.table().directions);
   drawMethod(state);
   drawFigures(*state.latest);
   ImGui::PopID();

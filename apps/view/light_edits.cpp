@@ -14,14 +14,14 @@ glm::dvec3 rounded(glm::dvec3 value, double steps) {
 
 }  // namespace
 
-void dropIdleOptions(LightingOptions& options) {
+void dropIdleOptions(LightingDescription& options) {
   if (options.lights.empty()) {
     options.attenuation.reset();
     options.phaseG.reset();
     options.shading.reset();
     options.surface.reset();
   }
-  if (options.shading == int(Shading::Scatter)) options.surface.reset();
+  if (options.shading == Shading::Scatter) options.surface.reset();
   if (!options.environment) {
     options.environmentRotation.reset();
     options.environmentIntensity.reset();
@@ -48,10 +48,10 @@ glm::dvec3 directionOnBall(glm::dvec2 place) {
   return {across, distance <= 1.0 ? depth : -depth};
 }
 
-LightingOptions::GivenLight newLight(const Camera& camera, const Volume& volume, bool atInfinity) {
+LightingDescription::GivenLight newLight(const Camera& camera, const Volume& volume, bool atInfinity) {
   const glm::dvec3 fromUpperLeft =
       glm::transpose(glm::dmat3(worldToCamera(camera))) * glm::normalize(glm::dvec3(-0.5, 0.7, 0.5));
-  LightingOptions::GivenLight given{.light = {.atInfinity = atInfinity}};
+  LightingDescription::GivenLight given{.light = {.atInfinity = atInfinity}};
   if (atInfinity) {
     constexpr double kSteps = 1e3;
     given.light.place = rounded(fromUpperLeft, kSteps);

@@ -3,13 +3,13 @@
 
 #include <glm/glm.hpp>
 
-#include "apps/freevoxels/lighting_options.h"
+#include "engine/description/scene_description.h"
 #include "engine/scene/camera.h"
 
 namespace freevoxels {
 
-/// Removes options that have no effect without others, as LightingOptions::check demands.
-void dropIdleOptions(LightingOptions& options);
+/// Removes options that have no effect without others, as LightingDescription::check demands.
+void dropIdleOptions(LightingDescription& options);
 
 /// Azimuth about +y from +z, and elevation, in degrees, as for --orbit, of a direction of any length but 0.
 glm::dvec2 anglesOf(glm::dvec3 direction);
@@ -21,7 +21,7 @@ glm::dvec3 directionOf(glm::dvec2 angles);
 glm::dvec3 directionOnBall(glm::dvec2 place);
 
 /// A light from the upper left of the camera: at infinity, or outside of the volume's box.
-LightingOptions::GivenLight newLight(const Camera& camera, const Volume& volume, bool atInfinity);
+LightingDescription::GivenLight newLight(const Camera& camera, const Volume& volume, bool atInfinity);
 
 /// Distance from the middle of the volume's box to its corners.
 double halfDiagonal(const Volume& volume);

@@ -77,7 +77,7 @@ bool drawPosition(Light& light, const Volume& volume) {
   return changed;
 }
 
-bool drawIntensity(LightingOptions::GivenLight& given, const Volume& volume) {
+bool drawIntensity(LightingDescription::GivenLight& given, const Volume& volume) {
   std::optional<double> intensity;
   if (given.hasIntensity) intensity = given.light.intensity;
   const bool changed =
@@ -89,7 +89,7 @@ bool drawIntensity(LightingOptions::GivenLight& given, const Volume& volume) {
 }
 
 /// False in `stays` where the light is to be taken out.
-bool drawLight(std::size_t number, LightingOptions::GivenLight& given, const Camera& camera,
+bool drawLight(std::size_t number, LightingDescription::GivenLight& given, const Camera& camera,
                const Volume& volume, bool& stays) {
   const std::string title =
       fmt::format("{} {}###light", given.light.atInfinity ? "Directional light" : "Point light", number + 1);
@@ -116,10 +116,10 @@ bool editRadiance(glm::dvec3& radiance) {
   return changed;
 }
 
-bool drawScattering(LightingOptions& options) {
-  bool changed = choose("Shading", kShadingWords, options.shading, int(Shading::Auto));
+bool drawScattering(LightingDescription& options) {
+  bool changed = choose("Shading", kShadingWords, options.shading, Shading::Auto);
   hint("As fog, or as surfaces across the gradient; auto: surfaces with a transfer function", "--shading");
-  if (options.shading != int(Shading::Scatter)) {
+  if (options.shading != Shading::Scatter) {
     changed |= slideOptional("Surface share", options.surface, 1.0, 0.0, 1.0);
     hint("Share of the light that surfaces reflect; the rest is scattered as in fog", "--surface-share");
   }
@@ -132,12 +132,12 @@ bool drawScattering(LightingOptions& options) {
   hint("Orders of scattering in fog; 1 is single scattering", "--scattering");
   changed |= slideOptional("Phase g", options.phaseG, 0.0, -kMostPhaseG, kMostPhaseG, "%.2f");
   hint("Henyey-Greenstein asymmetry: forwards above 0, backwards below", "--phase-g");
-  changed |= choose("Shadows", kLightAttenuationWords, options.attenuation, int(LightAttenuation::Auto));
+  changed |= choose("Shadows", kLightAttenuationWords, options.attenuation, LightAttenuation::Auto);
   hint("Transmittance to the lights: from the table, or exact along rays", "--light-attenuation");
   return changed;
 }
 
-bool drawTint(LightingOptions& options) {
+bool drawTint(LightingDescription& options) {
   glm::dvec3 tint = options.tint.value_or(glm::dvec3(1.0));
   const bool changed =
       ImGui::SliderScalarN(beginRow("Extinction tint"), ImGuiDataType_Double, &tint.x, 3, &kLeastTint, &kMostTint, "%.2f",
@@ -173,7 +173,7 @@ bool drawLightBall(const char* name, float size, glm::dvec3& direction, glm::dve
   return true;
 }
 
-bool drawLights(LightingOptions& options, const Camera& camera, const Volume& volume) {
+bool drawLights(LightingDescription& options, const Camera& camera, const Volume& volume) {
   bool changed = false;
   for (std::size_t i = 0; i < options.lights.size(); ++i) {
     ImGui::PushID(int(i));
@@ -195,7 +195,7 @@ bool drawLights(LightingOptions& options, const Camera& camera, const Volume& vo
 void LightPanel::draw(ViewState& state) {
   if (!ImGui::CollapsingHeader("Light") || !state.latest || !state.camera) return;
   ImGui::PushID("light");
-  LightingOptions& options = state.scene.lighting;
+  LightingDescription& options = state.scene.lighting;
   const bool lit = options.hasLight() && !options.unlit;
   if (!lit) ImGui::TextDisabled("No light: voxels show their own colour.");
   bool changed = drawLights(options, *state.camera, *state.latest->scene.volume);
@@ -213,7 +213,7 @@ void LightPanel::draw(ViewState& state) {
   state.changed = true;
 }
 
-bool LightPanel::drawAround(LightingOptions& options) {
+bool LightPanel::drawAround(LightingDescription& options) {
   bool ambient = options.ambient.has_value();
   bool changed = tick("Ambient light", ambient);
   if (changed) {
@@ -226,7 +226,7 @@ bool LightPanel::drawAround(LightingOptions& options) {
   return changed;
 }
 
-bool LightPanel::drawEnvironment(LightingOptions& options) {
+bool LightPanel::drawEnvironment(LightingDescription& options) {
   const std::string given = options.environment.value_or("");
   if (given != environment_) environment_ = environmentText_ = given;
   bool changed = false;

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <string>
 
-#include "apps/freevoxels/lighting_options.h"
+#include "engine/description/scene_description.h"
 #include "apps/view/view_state.h"
 #include "engine/scene/camera.h"
 
@@ -15,15 +15,15 @@ namespace freevoxels {
 bool drawLightBall(const char* name, float size, glm::dvec3& direction, glm::dvec3 color);
 
 /// `camera` is that of the image. Returns true if a light was changed.
-bool drawLights(LightingOptions& options, const Camera& camera, const Volume& volume);
+bool drawLights(LightingDescription& options, const Camera& camera, const Volume& volume);
 
 class LightPanel {
  public:
   void draw(ViewState& state);
 
  private:
-  bool drawAround(LightingOptions& options);
-  bool drawEnvironment(LightingOptions& options);
+  bool drawAround(LightingDescription& options);
+  bool drawEnvironment(LightingDescription& options);
 
   std::string environment_, environmentText_;  ///< of the option, and as typed
 };

@@ -10,6 +10,7 @@
 #include "apps/view/transfer_presets.h"
 #include "apps/view/ui_painter.h"
 #include "engine/core/atomic_file.h"
+#include "engine/description/text_values.h"
 #include "engine/image/image.h"
 
 namespace freevoxels {
@@ -38,7 +39,7 @@ std::vector<Image> PresetImages::draw(const DrawnImage& like) const {
   const Progress progress = [this](std::string_view, double) {
     if (ends_) throw Abandoned();
   };
-  ImageRequest request{.scene = like.request.scene, .method = like.request.method, .voxelsAlongEdge = kVoxels};
+  ImageRequest request{.scene = like.request.scene, .voxelsAlongEdge = kVoxels};
   request.scene.camera.size = 2 * kSize;
   VolumeCache volumes(request.scene, like.scene.volume);
   std::vector<Image> images(kTransferPresets.size());
@@ -107,7 +108,7 @@ void ClassificationPanel::deselect() {
 }
 
 void ClassificationPanel::drawKind(ViewState& state) {
-  ClassificationOptions& options = state.scene.classification;
+  ClassificationDescription& options = state.scene.classification;
   int kind = options.transferFunction ? 1 : 0;
   if (!choose("Classification", {"density", "transfer function"}, kind)) return;
   if (kind == 0) {
@@ -126,7 +127,7 @@ void ClassificationPanel::drawKind(ViewState& state) {
 }
 
 void ClassificationPanel::drawDensity(ViewState& state) {
-  ClassificationOptions& options = state.scene.classification;
+  ClassificationDescription& options = state.scene.classification;
   const Classification& resolved = state.latest->scene.classification;
   const bool automatic = !options.densityScale && !resolved.transferFunction;
   state.changed |=
@@ -237,10 +238,10 @@ void LookPanel::draw(ViewState& state, GridList& grids) {
 }
 
 void EmissionPanel::draw(ViewState& state, GridList& grids) {
-  const std::vector<GridChoice>* const all = grids.of(state.scene.input.input);
+  const std::vector<GridChoice>* const all = grids.of(state.scene.input.volume);
   if (!all) return;
   ImGui::PushID("emission");
-  EmissionOptions& options = state.scene.emission;
+  EmissionDescription& options = state.scene.emission;
   const bool mayShine = all->empty() || std::ranges::any_of(*all, &GridChoice::isReal);
   bool shines = options.grid().has_value();
   if (shines || mayShine) {
@@ -256,7 +257,7 @@ void EmissionPanel::draw(ViewState& state, GridList& grids) {
 }
 
 bool EmissionPanel::drawOptions(ViewState& state, const std::vector<GridChoice>& grids) {
-  EmissionOptions& options = state.scene.emission;
+  EmissionDescription& options = state.scene.emission;
   bool changed = false;
   if (grids.size() > 1) {
     changed |= chooseGrid("Temperature", grids, &GridChoice::isReal, "automatic", options.temperatureGrid);

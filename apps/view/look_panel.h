@@ -72,7 +72,7 @@ class ClassificationPanel {
   ColorStrip strip_;
 
   std::string volume_;             ///< source of the volume that the other members belong to
-  ClassificationOptions density_;  ///< options before there was a transfer function
+  ClassificationDescription density_;  ///< options before there was a transfer function
   TransferModel model_;
   std::string modelText_;  ///< text of the option that model_ was read from, or written to
   std::string file_, preset_;

@@ -1,12 +1,12 @@
 #include "apps/view/opened_file.h"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/view/view_options.h"
 #include "engine/core/error.h"
 #include "engine/core/json_file.h"
+#include "engine/description/scene_json.h"
 
 namespace freevoxels {
 
@@ -17,15 +17,10 @@ bool hasExtension(const std::string& file, const char* extension) {
 }
 
 void openScene(ViewState& state, const std::string& file) {
-  CLI::App command;
-  ViewOptions options;
-  options.add(command);  // whose options are the keys
-  options.scene.file.file = file;
-  options.takeScene();
-  options.scene.camera.size = state.scene.camera.size;
-  options.scene.file = state.scene.file;
-  state.show(options.scene, options.sequence);
-  state.method = options.method;
+  SceneDescription scene = readScene(file);
+  const std::optional<Sequence> sequence = takeVolume(scene);
+  scene.camera.size = state.scene.camera.size;
+  state.show(scene, sequence);
 }
 
 bool isTransferFunction(const std::string& file) {
@@ -34,15 +29,15 @@ bool isTransferFunction(const std::string& file) {
 }
 
 void openVolume(ViewState& state, const std::string& file) {
-  SceneOptions scene = state.scene;
-  scene.input = {.input = file};
+  SceneDescription scene = state.scene;
+  scene.input = {.volume = file};
   scene.classification = {};
   scene.emission = {};
   scene.camera = {.size = scene.camera.size};
   std::optional<Sequence> sequence;
   if (isPattern(file)) {
     sequence = findSequence(file);
-    scene.input.input = sequence->files.front();
+    scene.input.volume = sequence->files.front();
   }
   state.show(scene, sequence);
 }

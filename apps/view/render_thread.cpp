@@ -83,9 +83,13 @@ std::shared_ptr<const DrawnImage> RenderThread::makeImage(const ImageRequest& re
     return drawn;
   }
   ImageRequest other = request;
-  other.method = *request.compared;
+  other.scene.method = *request.compared;
   other.diagnosis = {};
-  const bool sameTable = tableText(other.method.table()) == tableText(request.method.table());
+  const auto tableOf = [](const ImageRequest& of) {
+    const TableSettings table = of.scene.method.table();
+    return std::tuple(table.code, table.pathLengthCorrection, table.directions, table.filter);
+  };
+  const bool sameTable = tableOf(other) == tableOf(request);
   DrawnImage compared = makerOf(sameTable ? maker_ : comparing_).make(other, progress);
   drawn->compared = std::move(compared.shown);
   drawn->milliseconds += compared.milliseconds;

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/freevoxels/failure.h"
-#include "apps/freevoxels/input_options.h"
+#include "engine/description/scene_description.h"
 #include "engine/core/atomic_file.h"
 #include "engine/core/json_file.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "apps/freevoxels/option_values.h"
+#include "engine/description/text_values.h"
 #include "engine/core/json_file.h"
 #include "engine/volume/classification.h"
 

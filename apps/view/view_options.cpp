@@ -16,19 +16,12 @@ constexpr int kMostFrames = 1'000'000;
 }  // namespace
 
 void ViewOptions::add(CLI::App& app) {
-  scene.input.add(app);
-  scene.input.addGrid(app);
-  scene.input.addClip(app);
-  scene.output.addForm(app);
-  scene.addLook(app);
-  scene.lighting.addMethod(app);
-  method.add(app);
+  for (const char* section : {"input", "output", "classification", "emission", "camera", "light"}) scene.addSection(app, section);
+  scene.addFile(app);
+  scene.addMethod(app);
   device.add(app);
   messages.add(app);
-  addWholeNumber(app, "--frames", "N", frames,
-                 fmt::format("Frames of a turntable that is saved [{}]", kDefaultFrames),
-                 {1.0, double(kMaximumFrames)})
-      ->group("Camera");
+  scene.addField(app, "frames", fmt::format("Frames of a turntable that is saved [{}]", kDefaultFrames));
   CLI::Option* const file =
       addText(app, "--screenshot", "FILE.png", screenshot, "Write what the window shows when the image is complete, and quit");
   file->group("Window");
@@ -39,22 +32,24 @@ void ViewOptions::add(CLI::App& app) {
       ->group("Window");
 }
 
-void ViewOptions::takeScene() {
-  scene.file.apply([](const std::string&) { return true; });
-  std::string& volume = scene.input.input;
+std::optional<Sequence> takeVolume(SceneDescription& scene) {
+  std::string& volume = scene.input.volume;
   if (volume.empty()) volume = kFirstVolume;
-  scene.checkLook();
+  scene.check();
+  std::optional<Sequence> sequence;
   if (isPattern(volume)) {
     sequence = findSequence(volume);
     volume = sequence->files.front();
   }
   if (!proceduralName(volume) && !std::filesystem::exists(volume))
     fail(ErrorKind::Input, "cannot read '{}': there is no such file; check its name", volume);
+  return sequence;
 }
 
 void ViewOptions::prepare() {
   messages.apply();
-  takeScene();
+  scene.applyScene();
+  sequence = takeVolume(scene.description);
   if (!screenshot) return;
   if (!isPng(*screenshot))
     fail(ErrorKind::Usage, "'{}' is no image of a window; name it .png", *screenshot);

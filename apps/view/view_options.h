@@ -5,7 +5,6 @@
 #include <string>
 
 #include "apps/freevoxels/device_options.h"
-#include "apps/freevoxels/method_options.h"
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/scene_options.h"
 #include "apps/freevoxels/sequence.h"
@@ -14,20 +13,19 @@ namespace freevoxels {
 
 struct ViewOptions {
   SceneOptions scene;
-  MethodOptions method;
   DeviceOptions device;
   MessageOptions messages;
   std::optional<Sequence> sequence;  ///< the sequence of which IN is a frame
   std::optional<std::string> screenshot;
   std::optional<int> after;
-  std::optional<int> frames;  ///< of a turntable that is saved
 
   void add(CLI::App& app);
   /// Checks the options before a window is opened.
   void prepare();
-  /// Applies a scene, if there is one, and the first frame of a sequence. Without a volume a procedural one
-  /// is used. Fails for options that are wrong for every volume.
-  void takeScene();
 };
+
+/// Names the volume to open, a procedural one if there is none, and the first frame of a sequence, which is returned. Fails for
+/// fields that are wrong for every volume, and where there is no such file.
+std::optional<Sequence> takeVolume(SceneDescription& scene);
 
 }  // namespace freevoxels

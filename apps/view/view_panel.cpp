@@ -57,7 +57,7 @@ void drawBookmarks(ViewState& state, SessionStore& store) {
   }
   if (removed) {
     state.bookmarks.erase(state.bookmarks.begin() + std::ptrdiff_t(*removed));
-    store.setBookmarks(state.scene.input.input, state.bookmarks);
+    store.setBookmarks(state.scene.input.volume, state.bookmarks);
   }
   if (ImGui::Button("Add bookmark", {-1.0f, 0.0f})) addBookmark(state, store);
   hint("Keeps this camera for this volume, in later sessions, too (Ctrl+B)");
@@ -65,7 +65,7 @@ void drawBookmarks(ViewState& state, SessionStore& store) {
 
 /// These only affect how an image is shown and written: it is not drawn again.
 void drawBackground(ViewState& state) {
-  OutputOptions& output = state.scene.output;
+  OutputDescription& output = state.scene.output;
   std::vector<std::string> words{"dark gradient", "transparent"};
   for (const NamedBackground& plain : kPlainBackgrounds) words.emplace_back(plain.name);
   words.emplace_back("own colour");
@@ -86,7 +86,7 @@ void drawBackground(ViewState& state) {
   if (output.background) state.retoned |= editColor("Colour", *output.background);
   state.retoned |= slideOptional("Exposure", output.exposure, 0.0, -8.0, 8.0, "%.1f EV");
   hint("Stops by which the image is brightened", "--exposure");
-  state.retoned |= choose("Tone map", kToneMapWords, output.toneMap, int(ToneMap::None));
+  state.retoned |= choose("Tone map", kToneMapWords, output.toneMap, ToneMap::None);
   hint("Curve that maps bright light into the range of the screen", "--tone-map");
 }
 
@@ -95,7 +95,7 @@ void drawBackground(ViewState& state) {
 void addBookmark(ViewState& state, SessionStore& store) {
   if (!state.camera) return;
   state.bookmarks.push_back(*state.camera);
-  store.setBookmarks(state.scene.input.input, state.bookmarks);
+  store.setBookmarks(state.scene.input.volume, state.bookmarks);
   state.notice = fmt::format("added the camera as View {}", state.bookmarks.size());
 }
 

@@ -4,17 +4,17 @@
 
 namespace freevoxels {
 
-std::optional<MethodOptions> ViewState::comparedMethod() const {
+std::optional<MethodDescription> ViewState::comparedMethod() const {
   if (diagnosis.shown != Shown::Image) return std::nullopt;
-  MethodOptions other = method;
+  MethodDescription other = scene.method;
   switch (comparison) {
     case 1:
-      other.composite = int(Composite::Sorted);
+      other.composite = Composite::Sorted;
       return other;
     case 2:
-      return MethodOptions{.paper = true};
+      return MethodDescription{.paper = true};
     case 3:
-      other.attenuation = int(AttenuationLookup::Exact);
+      other.attenuation = AttenuationLookup::Exact;
       return other;
     case 4:
       other.lod = 0.0;
@@ -41,13 +41,13 @@ void ViewState::begin(const Scene& first) {
   camera = first.camera;
   if (const auto& function = first.classification.transferFunction; function && !scene.classification.transferFunction)
     scene.classification.transferFunction = transferFunctionJson(*function);
-  LightingOptions& lighting = scene.lighting;
+  LightingDescription& lighting = scene.lighting;
   if (lighting.hasLight() || !first.lighting) return;
   for (const Light& light : first.lighting->lights) lighting.lights.push_back({.light = light, .hasIntensity = true});
   lighting.ambient = first.lighting->ambient;
 }
 
-void ViewState::show(const SceneOptions& other, const std::optional<Sequence>& frames) {
+void ViewState::show(const SceneDescription& other, const std::optional<Sequence>& frames) {
   scene = other;
   sequence = frames;
   camera.reset();
@@ -56,23 +56,21 @@ void ViewState::show(const SceneOptions& other, const std::optional<Sequence>& f
 }
 
 void ViewState::showFrame(const std::string& file) {
-  scene.input.input = file;
+  scene.input.volume = file;
   changed = true;
   if (!camera) return;  // the first image says what is not given
   scene.camera.look(*camera);
   const Classification& now = latest->scene.classification;
-  ClassificationOptions& classification = scene.classification;
+  ClassificationDescription& classification = scene.classification;
   if (!now.transferFunction && !classification.densityScale) classification.densityScale = now.densityScale;
   if (!now.emission) return;
-  scene.emission.strength = now.emission->strength;
-  scene.emission.temperatureScale = now.emission->temperatureScale;
-  scene.emission.temperatureOffset = now.emission->temperatureOffset;
+  scene.emission.take(*now.emission);
 }
 
 void ViewState::clip(const std::optional<VoxelBox>& box) {
   if (!latest) return;
   const Classification& now = latest->scene.classification;
-  ClassificationOptions& options = scene.classification;
+  ClassificationDescription& options = scene.classification;
   if (!now.transferFunction && !options.transferFunction && !options.densityScale && !latest->scene.volume->classificationIsFixed)
     options.densityScale = now.densityScale;
   scene.input.clipBox = box;

@@ -7,17 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "apps/freevoxels/method_options.h"
-#include "apps/freevoxels/scene_options.h"
 #include "apps/freevoxels/sequence.h"
 #include "apps/view/image_maker.h"
+#include "engine/description/scene_description.h"
 
 namespace freevoxels {
 
 /// What the user edits, and undoes.
 struct Edits {
-  SceneOptions scene;
-  MethodOptions method;
+  SceneDescription scene;
   Diagnosis diagnosis;
   int comparison = 0;  ///< 0 for none, or the argument of comparedMethod
   /// The sequence of which the volume is a frame.
@@ -52,14 +50,14 @@ struct ViewState : Edits {
   bool answered = false, complete = false, failed = false;
 
   /// The method that is shown for comparison.
-  std::optional<MethodOptions> comparedMethod() const;
+  std::optional<MethodDescription> comparedMethod() const;
   /// Takes camera, transfer function and lights that the options do not give from the first image, so that
   /// they stay as they are.
   void begin(const Scene& first);
   /// Uses this camera, unless it shows nothing: `problem` then gives the reason.
   void look(const Camera& from);
   /// Opens another volume, as in the scene; in a sequence if it is one of its frames.
-  void show(const SceneOptions& other, const std::optional<Sequence>& frames);
+  void show(const SceneDescription& other, const std::optional<Sequence>& frames);
   /// Opens another frame of the sequence with the same camera. Automatic settings stay those of the frame
   /// before, so that an animation does not flicker.
   void showFrame(const std::string& file);

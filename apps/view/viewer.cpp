@@ -39,11 +39,11 @@ constexpr double kIdleSeconds = 0.25;                // between frames in which 
 constexpr double kSoonSeconds = 0.01;                // in which something does
 
 std::string titleOf(const ViewState& state) {
-  return state.scene.input.input + " - FreeVoxels";
+  return state.scene.input.volume + " - FreeVoxels";
 }
 
 std::string openedName(const ViewState& state) {
-  return state.sequence ? state.sequence->pattern : state.scene.input.input;
+  return state.sequence ? state.sequence->pattern : state.scene.input.volume;
 }
 
 void makeTexture(const Device& device, std::unique_ptr<Texture>& texture, glm::ivec2 size) {
@@ -58,11 +58,11 @@ Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const View
       device_(options.device.open(instance, kDeviceExtensions)),
       swapchain_(instance, *device_, window_),
       display_(*device_),
-      state_{{.scene = options.scene, .method = options.method, .sequence = options.sequence}},
+      state_{{.scene = options.scene.description, .sequence = options.sequence}},
       store_(options.screenshot ? std::filesystem::path() : sessionFolder()),
       dialog_(*device_, store_),
       look_(*device_),
-      export_(*device_, dialog_, options.frames.value_or(kDefaultFrames), Window::wake),
+      export_(*device_, dialog_, options.scene.description.camera.frames.value_or(kDefaultFrames), Window::wake),
       slices_(*device_),
       director_(*device_, options.screenshot.has_value()),
       panelWidth_(kPanelWidth * window_.contentScale()) {
@@ -86,7 +86,7 @@ void Viewer::open(const std::string& file) {
 void Viewer::opened(const std::string& file) {
   if (isWorthRemembering(file)) store_.remember(file);
   thumbnailOf_ = proceduralName(file) ? file : std::filesystem::absolute(file).lexically_normal().string();
-  state_.bookmarks = store_.bookmarks(state_.scene.input.input);
+  state_.bookmarks = store_.bookmarks(state_.scene.input.volume);
 }
 
 void Viewer::takeImages() {
@@ -241,7 +241,7 @@ void Viewer::act() {
     perform(*action);
     restored |= *action == Action::Undo || *action == Action::Redo;
   }
-  if (restored) state_.bookmarks = store_.bookmarks(state_.scene.input.input);  // maybe another volume
+  if (restored) state_.bookmarks = store_.bookmarks(state_.scene.input.volume);  // maybe another volume
   if (area_.hasTurned()) store_.setKnowsHowToTurn();
   export_.follow(state_);
   if (export_.waits()) volume_.frames().pause();  // for the whole image of this frame
@@ -262,7 +262,7 @@ void Viewer::act() {
 /// A finished image is shown and saved with the output options of now, whatever they were when it was asked for.
 void Viewer::takeOutput() {
   const auto take = [this](std::shared_ptr<const DrawnImage>& drawn) {
-    if (drawn && !sameOutput(drawn->request.scene.output, state_.scene.output))
+    if (drawn && drawn->request.scene.output != state_.scene.output)
       drawn = std::make_shared<const DrawnImage>(withOutput(*drawn, state_.scene.output));
   };
   const bool both = state_.latest == state_.whole;

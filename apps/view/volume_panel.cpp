@@ -8,7 +8,7 @@
 #include <array>
 #include <filesystem>
 
-#include "apps/freevoxels/input_options.h"
+#include "engine/description/scene_description.h"
 #include "apps/view/actions.h"
 #include "apps/view/widgets.h"
 #include "engine/core/error.h"
@@ -21,7 +21,7 @@ constexpr float kMostFramesPerSecond = 120.0f;
 
 int frameOf(const ViewState& state) {
   const auto& files = state.sequence->files;
-  return int(std::ranges::find(files, state.scene.input.input) - files.begin());
+  return int(std::ranges::find(files, state.scene.input.volume) - files.begin());
 }
 
 }  // namespace
@@ -50,11 +50,11 @@ bool chooseGrid(const char* label, const std::vector<GridChoice>& grids, bool Gr
 }
 
 void VolumePanel::drawGrids(ViewState& state, GridList& grids) {
-  const std::vector<GridChoice>* const all = grids.of(state.scene.input.input);
+  const std::vector<GridChoice>* const all = grids.of(state.scene.input.volume);
   if (!all) return;
   const bool someDensities = std::ranges::count(*all, true, &GridChoice::isDensity) > 1;
   const bool someColors = std::ranges::count(*all, true, &GridChoice::isAlbedo) > 0;
-  ClassificationOptions& classification = state.scene.classification;
+  ClassificationDescription& classification = state.scene.classification;
   if (someDensities) {
     if (chooseGrid("Grid", *all, &GridChoice::isDensity, "automatic", state.scene.input.grid)) {
       classification.densityScale.reset();  // that of other values
@@ -69,10 +69,10 @@ void VolumePanel::drawGrids(ViewState& state, GridList& grids) {
 }
 
 void VolumePanel::drawFacts(const ViewState& state) {
-  const std::string& file = state.scene.input.input;
+  const std::string& file = state.scene.input.volume;
   ImGui::TextUnformatted(std::filesystem::path(file).filename().c_str());
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", file.c_str());
-  if (!state.latest || state.latest->request.scene.input.input != file) return;
+  if (!state.latest || state.latest->request.scene.input.volume != file) return;
   const Volume& volume = *state.latest->scene.volume;
   const glm::ivec3 size = volume.dimensions;
   const double millions = 1e-6 * double(volume.activeVoxels);
@@ -106,7 +106,7 @@ void VolumePanel::draw(ViewState& state, GridList& grids) {
   if (!ImGui::CollapsingHeader("Volume", ImGuiTreeNodeFlags_DefaultOpen)) return;
   ImGui::PushID("volume");
   drawFacts(state);
-  if (proceduralName(state.scene.input.input)) {
+  if (proceduralName(state.scene.input.volume)) {
     int resolution = state.scene.input.resolution ? state.scene.input.resolution->x : kDefaultResolution;
     ImGui::SliderInt(beginRow("Resolution"), &resolution, 16, 512, "%d voxels",
                      ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
@@ -125,7 +125,7 @@ void VolumePanel::draw(ViewState& state, GridList& grids) {
 
 /// A file may be one of several, found once it is opened.
 void SequencePanel::offer(ViewState& state) {
-  const std::string& file = state.scene.input.input;
+  const std::string& file = state.scene.input.volume;
   if (offeredFor_ != file) {
     offeredFor_ = file;
     offered_ = proceduralName(file) ? std::nullopt : sequenceAround(file);

@@ -140,14 +140,6 @@ bool choose(const char* label, const std::vector<std::string>& words, int& value
   return changed;
 }
 
-bool choose(const char* label, const std::vector<std::string>& words, std::optional<int>& value, int usual) {
-  int chosen = value.value_or(usual);
-  if (!choose(label, words, chosen)) return false;
-  value = chosen;
-  if (chosen == usual) value.reset();
-  return true;
-}
-
 bool tick(const char* label, bool& value) {
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + kLabelWidth * ImGui::GetFontSize());
   return ImGui::Checkbox(label, &value);

@@ -11,6 +11,7 @@
 #include "apps/freevoxels/failure.h"
 #include "apps/view/transfer_model.h"
 #include "apps/view/view_state.h"
+#include "engine/description/scene_fields.h"
 
 namespace freevoxels {
 
@@ -37,7 +38,14 @@ bool slideOptional(const char* label, std::optional<double>& value, double usual
 bool dragVector(const char* label, glm::dvec3& value, double step);
 bool choose(const char* label, const std::vector<std::string>& words, int& value);
 /// The value is not given if it is the usual one.
-bool choose(const char* label, const std::vector<std::string>& words, std::optional<int>& value, int usual);
+template <typename Enum>
+bool choose(const char* label, const Words<Enum>& words, std::optional<Enum>& value, Enum usual) {
+  int chosen = int(value.value_or(usual)) - words.first;
+  if (!choose(label, words.texts, chosen)) return false;
+  value = words.at(chosen);
+  if (value == usual) value.reset();
+  return true;
+}
 bool tick(const char* label, bool& value);
 bool tick(const char* label, std::optional<bool>& value, bool usual);
 /// Returns true when the text is complete: at Enter, or when the cursor leaves it.

@@ -18,6 +18,8 @@ Volume coarseVolume(const Volume& volume, int factor, WithoutData withoutData);
 /// Voxels from `first` to `last`, inclusive.
 struct VoxelBox {
   glm::ivec3 first{0}, last{0};
+
+  bool operator==(const VoxelBox&) const = default;
 };
 
 /// The part of a volume in a box, which is cut to the volume's box and must then have at least one voxel. Every voxel keeps its
@@ -28,6 +30,8 @@ Volume clippedVolume(const Volume& volume, const VoxelBox& box);
 /// A plane in the world. What lies on the side to which `normal` points is clipped; its length, which is not 0, means nothing.
 struct ClipPlane {
   glm::dvec3 point{0.0}, normal{1.0, 0.0, 0.0};
+
+  bool operator==(const ClipPlane&) const = default;
 };
 
 /// The volume without the voxels whose centres lie on the clipped side of a plane. The box and everything else stay as they are,

@@ -13,7 +13,7 @@ namespace {
 class ImageDirectorTest : public DeviceTest {
  protected:
   ImageDirectorTest() {
-    state.scene.input = {.input = "procedural:cube", .grid = std::nullopt, .resolution = glm::ivec3(150)};
+    state.scene.input = {.volume = "procedural:cube", .grid = std::nullopt, .resolution = glm::ivec3(150)};
     state.scene.lighting.unlit = true;
   }
   /// Asks and takes until the image is complete; returns what was shown on the way.

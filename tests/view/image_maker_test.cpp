@@ -11,7 +11,7 @@ class ImageMakerTest : public DeviceTest {
  protected:
   static ImageRequest litCloud() {
     ImageRequest request;
-    request.scene.input = {.input = "procedural:cloud", .grid = std::nullopt, .resolution = glm::ivec3(24)};
+    request.scene.input = {.volume = "procedural:cloud", .grid = std::nullopt, .resolution = glm::ivec3(24)};
     request.scene.camera.size = {48, 48};
     request.scene.lighting.lights.push_back({.light = {.place = {0.0, 1.0, 0.0}}});
     return request;
@@ -50,7 +50,7 @@ TEST_F(ImageMakerTest, AnotherClassificationMakesAnotherOccupancy) {
 
 TEST_F(ImageMakerTest, LightingAShiningVolumeMakesItsLightFallOnIt) {
   ImageRequest request = litCloud();
-  request.scene.input.input = "procedural:fire";
+  request.scene.input.volume = "procedural:fire";
   request.scene.emission.emission = true;
   request.scene.lighting.unlit = true;
   maker_.make(request, {});

@@ -12,16 +12,16 @@ void expectNear(glm::dvec3 a, glm::dvec3 b, double most = 1e-12) {
   EXPECT_LT(glm::distance(a, b), most) << a.x << "," << a.y << "," << a.z;
 }
 
-LightingOptions everything() {
-  LightingOptions options;
+LightingDescription everything() {
+  LightingDescription options;
   options.lights.resize(1);
   options.ambient = glm::dvec3(0.1);
   options.environment = "sky.exr";
   options.environmentRotation = options.environmentIntensity = 2.0;
   options.phaseG = 0.5;
   options.tint = glm::dvec3(2.0);
-  options.attenuation = int(LightAttenuation::Exact);
-  options.shading = int(Shading::Gradient);
+  options.attenuation = LightAttenuation::Exact;
+  options.shading = Shading::Gradient;
   options.surface = 0.5;
   return options;
 }
@@ -29,11 +29,11 @@ LightingOptions everything() {
 TEST(LightEdits, WhatIsTakenOutTakesAlongWhatSaysNothingWithoutIt) {
   // Every subset of what the others may need.
   for (int taken = 0; taken < 16; ++taken) {
-    LightingOptions options = everything();
+    LightingDescription options = everything();
     if (taken & 1) options.lights.clear();
     if (taken & 2) options.ambient.reset();
     if (taken & 4) options.environment.reset();
-    if (taken & 8) options.shading = int(Shading::Scatter);
+    if (taken & 8) options.shading = Shading::Scatter;
     dropIdleOptions(options);
     EXPECT_NO_THROW(options.check()) << taken;
     EXPECT_EQ(options.phaseG.has_value(), (taken & 1) == 0);
@@ -64,7 +64,7 @@ TEST(LightEdits, ANewLightComesFromTheUpperLeftOfTheCamera) {
   const Camera camera = framingCamera(cube, 140.0, 10.0, 1.0, {});
   const glm::dmat3 toCamera(worldToCamera(camera));
   for (const bool atInfinity : {true, false}) {
-    const LightingOptions::GivenLight given = newLight(camera, cube, atInfinity);
+    const LightingDescription::GivenLight given = newLight(camera, cube, atInfinity);
     EXPECT_EQ(given.light.atInfinity, atInfinity);
     EXPECT_FALSE(given.hasIntensity);
     const glm::dvec3 seen = toCamera * given.light.place;  // the cube is around the origin

@@ -11,7 +11,7 @@ using test::expectRefusal;
 class OpenedFile : public testing::Test {
  protected:
   OpenedFile() {
-    state.scene.input.input = "procedural:cloud";
+    state.scene.input.volume = "procedural:cloud";
     state.scene.classification.densityScale = 3.0;
     state.scene.lighting.ambient = glm::dvec3(0.5);
     state.scene.camera.size = {300, 200};
@@ -26,7 +26,7 @@ class OpenedFile : public testing::Test {
   /// Refused, with nothing changed.
   void expectRefused(const std::string& file, std::initializer_list<std::string> parts) {
     expectRefusal([&] { openFile(state, file); }, ErrorKind::Input, parts);
-    EXPECT_EQ(state.scene.input.input, "procedural:cloud");
+    EXPECT_EQ(state.scene.input.volume, "procedural:cloud");
     EXPECT_EQ(state.scene.classification.densityScale, 3.0);
     EXPECT_TRUE(state.camera);
     EXPECT_FALSE(state.changed);
@@ -39,7 +39,7 @@ class OpenedFile : public testing::Test {
 TEST_F(OpenedFile, AVolumeIsFramedAnewInTheSameLight) {
   const std::string file = made("smoke.vdb");
   openFile(state, file);
-  EXPECT_EQ(state.scene.input.input, file);
+  EXPECT_EQ(state.scene.input.volume, file);
   EXPECT_FALSE(state.camera);
   EXPECT_FALSE(state.scene.camera.position);
   EXPECT_EQ(state.scene.camera.size, glm::ivec2(300, 200));
@@ -48,14 +48,14 @@ TEST_F(OpenedFile, AVolumeIsFramedAnewInTheSameLight) {
   EXPECT_FALSE(state.sequence);
   EXPECT_TRUE(state.changed);
   openFile(state, "procedural:head");
-  EXPECT_EQ(state.scene.input.input, "procedural:head");
+  EXPECT_EQ(state.scene.input.volume, "procedural:head");
 }
 
 TEST_F(OpenedFile, APatternIsItsFirstFrame) {
   made("s_2.vdb");
   made("s_1.vdb");
   openFile(state, (folder / "s_#.vdb").string());
-  EXPECT_EQ(state.scene.input.input, (folder / "s_1.vdb").string());
+  EXPECT_EQ(state.scene.input.volume, (folder / "s_1.vdb").string());
   ASSERT_TRUE(state.sequence);
   EXPECT_EQ(state.sequence->files.size(), 2u);
   openFile(state, (folder / "s_2.vdb").string());
@@ -66,12 +66,12 @@ TEST_F(OpenedFile, ASceneBringsAllButTheSize) {
   made("smoke.vdb");
   openFile(state, made("scene.json", R"({"input": {"volume": "smoke.vdb"}, "output": {"float": true},
       "camera": {"orbit": [10, 20], "size": [64, 64], "frames": 5}, "method": {"attenuation": "exact"}})"));
-  EXPECT_EQ(state.scene.input.input, (folder / "smoke.vdb").string());
+  EXPECT_EQ(state.scene.input.volume, (folder / "smoke.vdb").string());
   EXPECT_EQ(state.scene.camera.orbit, glm::dvec2(10.0, 20.0));
   EXPECT_EQ(state.scene.camera.size, glm::ivec2(300, 200));
   EXPECT_FALSE(state.scene.lighting.ambient);
   EXPECT_TRUE(state.scene.output.fullFloat);
-  EXPECT_TRUE(state.method.attenuation);
+  EXPECT_TRUE(state.scene.method.attenuation);
   EXPECT_FALSE(state.camera);
   EXPECT_TRUE(state.changed);
 }
@@ -89,7 +89,7 @@ TEST_F(OpenedFile, AnImageIsTheLightAround) {
   const std::string file = made("sky.exr");
   openFile(state, file);
   EXPECT_EQ(state.scene.lighting.environment, file);
-  EXPECT_EQ(state.scene.input.input, "procedural:cloud");
+  EXPECT_EQ(state.scene.input.volume, "procedural:cloud");
   EXPECT_TRUE(state.changed);
 }
 

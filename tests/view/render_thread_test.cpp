@@ -12,7 +12,7 @@ class RenderThreadTest : public DeviceTest {
  protected:
   static ImageRequest request(std::uint64_t number, int size) {
     ImageRequest request;
-    request.scene.input = {.input = "procedural:cloud", .grid = std::nullopt, .resolution = glm::ivec3(48)};
+    request.scene.input = {.volume = "procedural:cloud", .grid = std::nullopt, .resolution = glm::ivec3(48)};
     request.scene.camera.size = {size, size};
     request.number = number;
     return request;

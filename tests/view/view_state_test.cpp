@@ -68,17 +68,17 @@ TEST_F(EditHistoryTest, AnEditAfterUndoForgetsWhatWasUndone) {
 }
 
 TEST_F(EditHistoryTest, AnotherVolumeIsAStepAndTheWindowKeepsItsSize) {
-  state.scene.input.input = "procedural:cloud";
+  state.scene.input.volume = "procedural:cloud";
   rest();
-  SceneOptions other = state.scene;
-  other.input.input = "procedural:head";
+  SceneDescription other = state.scene;
+  other.input.volume = "procedural:head";
   state.show(other, std::nullopt);
   history.follow(state, true, false);
   state.camera = Camera{};  // of the first image
   rest();
   state.scene.camera.size = {640, 480};
   history.undo(state);
-  EXPECT_EQ(state.scene.input.input, "procedural:cloud");
+  EXPECT_EQ(state.scene.input.volume, "procedural:cloud");
   EXPECT_TRUE(state.camera);
   EXPECT_EQ(state.scene.camera.size, glm::ivec2(640, 480));
 }

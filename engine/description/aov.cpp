@@ -1,4 +1,4 @@
-#include "apps/freevoxels/aov.h"
+#include "engine/description/aov.h"
 
 #include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
@@ -81,14 +81,14 @@ void addVectors(Image& image, const std::string& name, const SeenPoints& points,
 
 }  // namespace
 
-Aovs readAovs(const std::string& option, const std::string& text) {
+Aovs readAovs(const std::string& name, const std::string& text) {
   Aovs aovs;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string word = text.substr(begin, end - begin);
-    const auto named = std::ranges::find_if(kAovs, [&](const AovName& name) { return name.word == word; });
+    const auto named = std::ranges::find_if(kAovs, [&](const AovName& aov) { return aov.word == word; });
     if (named == kAovs.end())
-      fail(ErrorKind::Usage, "{} takes depth, position, normal and transmittance, with commas between them, not '{}'", option, word);
+      fail(ErrorKind::Usage, "{} takes depth, position, normal and transmittance, with commas between them, not '{}'", name, word);
     aovs.*named->member = true;
     begin = end + 1;
   }

@@ -1,4 +1,4 @@
-#include "apps/freevoxels/aov.h"
+#include "engine/description/aov.h"
 
 #include <limits>
 

@@ -16,10 +16,12 @@ struct Aovs {
 
   bool any() const { return depth || position || normal || transmittance; }
   bool needDepth() const { return depth || position || normal; }
+
+  bool operator==(const Aovs&) const = default;
 };
 
-/// Reads "depth,normal". ErrorKind::Usage where a word is none of the members; `option` is what the sentence calls it.
-Aovs readAovs(const std::string& option, const std::string& text);
+/// Reads "depth,normal". ErrorKind::Usage where a word is none of the members; `name` is what the sentence calls the text.
+Aovs readAovs(const std::string& name, const std::string& text);
 /// What readAovs reads.
 std::string aovText(const Aovs& aovs);
 

@@ -1,0 +1,66 @@
+#include "engine/core/error.h"
+#include "engine/description/scene_description.h"
+#include "engine/description/text_values.h"
+#include "engine/volume/scan.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// What a baked volume was baked with, changed by what is given.
+Classification bakedClassification(const ClassificationDescription& given, const Volume& volume) {
+  if (given.albedoGrid)
+    fail(ErrorKind::Usage, "{} chooses among the grids of an OpenVDB file, and {} is a baked volume: give it to 'freevoxels bake'",
+         Parameter("albedo-grid"), volume.source);
+  Classification classification = *volume.classification;
+  const bool isChanged = given.densityScale || given.albedo || given.transferFunction || given.order;
+  if (isChanged && volume.classificationIsFixed)
+    fail(ErrorKind::Usage,
+         "{} was baked for one classification, which {}, {}, {} and {} cannot change: leave them out, or bake it with {}",
+         volume.source, Parameter("density-scale"), Parameter("albedo"), Parameter("transfer-function"), Parameter("classification"),
+         Parameter("keep-scalars"));
+  if (given.densityScale || given.albedo) classification.transferFunction.reset();
+  if (given.densityScale) classification.densityScale = *given.densityScale;
+  if (given.albedo) classification.albedo = glm::vec3(*given.albedo);
+  if (given.order) classification.order = *given.order;
+  return classification;
+}
+
+}  // namespace
+
+Classification ClassificationDescription::resolve(const Volume& volume, bool shines) const {
+  Classification classification;
+  if (volume.classification) classification = bakedClassification(*this, volume);
+  if (transferFunction) {
+    classification.transferFunction = isInlineJson(*transferFunction)
+                                          ? parseTransferFunction(*transferFunction, volume)
+                                          : readTransferFunction(*transferFunction, volume);
+    classification.order = order.value_or(ClassificationOrder::Post);
+    return classification;
+  }
+  if (volume.classification) return classification;
+  if (!densityScale && !albedo && !albedoGrid && !shines && looksLikeScan(volume)) {
+    classification.transferFunction = scanTransferFunction(volume);
+    classification.order = order.value_or(ClassificationOrder::Post);
+    return classification;
+  }
+  if (densityScale)
+    classification.densityScale = *densityScale;
+  else if (volume.isLevelSet)
+    classification.densityScale = kLevelSetOpticalDepth / volume.voxelSize();
+  else
+    classification.densityScale = automaticDensityScale(volume, shines ? kShiningOpticalDepth : kAutomaticOpticalDepth);
+  if (albedo) classification.albedo = glm::vec3(*albedo);
+  return classification;
+}
+
+void ClassificationDescription::take(const Classification& resolved) {
+  if (!resolved.transferFunction) {
+    densityScale = resolved.densityScale;
+    return;
+  }
+  transferFunction = transferFunctionJson(*resolved.transferFunction);  // with its range, which a file may leave to the volume
+  order = resolved.order;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,128 @@
+#include <unistd.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "engine/core/error.h"
+#include "engine/description/scene_description.h"
+#include "engine/description/text_values.h"
+#include "engine/storage/baked_volume.h"
+#include "engine/volume/procedural.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr std::string_view kProceduralPrefix = "procedural:";
+
+Volume openBaked(const std::shared_ptr<const fvx::FvxFile>& file, std::uint64_t maximumVoxels, int level) {
+  const int fitting = finestLevel(*file, maximumVoxels);
+  Volume volume = readBaked(file, std::max(fitting, level));
+  if (fitting > level)
+    volume.warnings.push_back(fmt::format("{} is opened at 1/{} of its resolution: the {} voxels of its box are more than the {} that fit",
+                                          file->path().string(), 1 << fitting, resolutionText(file->dimensions(0)), maximumVoxels));
+  return volume;
+}
+
+std::string clipText(const VoxelBox& box) {
+  return fmt::format("{},{},{},{},{},{}", box.first.x, box.first.y, box.first.z, box.last.x, box.last.y, box.last.z);
+}
+
+std::string clipText(const ClipPlane& plane) {
+  return numberText(plane.point) + "," + numberText(plane.normal);
+}
+
+}  // namespace
+
+std::uint64_t machineMemoryBytes() {
+  return std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE));
+}
+
+std::string resolutionText(glm::ivec3 dimensions) {
+  const bool isCube = dimensions == glm::ivec3(dimensions.x);
+  return isCube ? fmt::format("{}", dimensions.x) : fmt::format("{}x{}x{}", dimensions.x, dimensions.y, dimensions.z);
+}
+
+std::optional<std::string> proceduralName(const std::string& input) {
+  if (!input.starts_with(kProceduralPrefix)) return std::nullopt;
+  return input.substr(kProceduralPrefix.size());
+}
+
+Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolution, std::uint64_t maximumVoxels) {
+  const glm::ivec3 dimensions = resolution.value_or(glm::ivec3(kDefaultResolution));
+  const std::uint64_t needed = std::uint64_t(dimensions.x) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z);
+  const std::uint64_t available =
+      std::min<std::uint64_t>(maximumVoxels, machineMemoryBytes() / sizeof(float));
+  if (needed > available)
+    fail(ErrorKind::OutOfMemory,
+         "procedural:{} has {} voxels at {}, and {} fit: lower {}", name, needed,
+         Parameter("resolution", resolutionText(dimensions)), available, Parameter("resolution"));
+  Volume volume = makeProcedural(name, dimensions);
+  cropToActive(volume);
+  return volume;
+}
+
+void InputDescription::checkGiven() const {
+  if (volume.empty()) fail(ErrorKind::Usage, "IN is required: name an OpenVDB file, or procedural:NAME");
+}
+
+void InputDescription::check() const {
+  const bool isProcedural = proceduralName(volume).has_value(), isBaked = !isProcedural && fvx::isFvx(volume);
+  if (grid && isBaked)
+    fail(ErrorKind::Usage, "{} chooses among the grids of an OpenVDB file, and '{}' is a baked volume", Parameter("grid"), volume);
+  if (clipBox && glm::any(glm::greaterThan(clipBox->first, clipBox->last)))
+    fail(ErrorKind::Usage, "{} is empty: give the smaller coordinates first", Parameter("clip-box", clipText(*clipBox)));
+  if (clipPlane && glm::length(clipPlane->normal) < 1e-30)
+    fail(ErrorKind::Usage, "{} has a normal of length 0: give one such as 1,0,0", Parameter("clip-plane", clipText(*clipPlane)));
+  if ((clipBox || clipPlane) && isBaked)
+    fail(ErrorKind::Usage, "{} does not apply to a baked volume such as '{}': clip the volume that it is baked of",
+         Parameter(clipBox ? "clip-box" : "clip-plane"), volume);
+  if (grid && isProcedural) fail(ErrorKind::Usage, "{} chooses among the grids of a file, and {} has one", Parameter("grid"), volume);
+  if (resolution && !isProcedural)
+    fail(ErrorKind::Usage, "{} is for procedural:NAME, and '{}' has the resolution of its grid", Parameter("resolution"), volume);
+}
+
+std::shared_ptr<const fvx::FvxFile> InputDescription::baked() const {
+  if (proceduralName(volume) || !fvx::isFvx(volume)) return nullptr;
+  return std::make_shared<const fvx::FvxFile>(volume);
+}
+
+Volume InputDescription::open(std::uint64_t maximumVoxels, const MoreGrids& more, int level) const {
+  const std::optional<std::string> name = proceduralName(volume);
+  if (const auto file = baked()) return openBaked(file, maximumVoxels, level);
+  if (!name) return clip(readVdb(volume, grid.value_or(""), maximumVoxels, more));
+  Volume made = openProcedural(*name, resolution, maximumVoxels);
+  if (!more.temperature) made.temperature.reset();
+  return clip(std::move(made));
+}
+
+Volume InputDescription::clip(Volume whole) const {
+  const glm::ivec3 size = whole.dimensions;
+  if (clipBox && glm::any(glm::greaterThanEqual(clipBox->first, size)))
+    fail(ErrorKind::Usage, "{} has no voxel of the volume's box, which has {} x {} x {}", Parameter("clip-box", clipText(*clipBox)), size.x,
+         size.y, size.z);
+  if (clipBox) whole = clippedVolume(whole, *clipBox);
+  if (!clipPlane) return whole;
+  const bool hadVoxels = whole.activeVoxels > 0;
+  whole = clippedVolume(whole, *clipPlane);
+  if (hadVoxels && whole.activeVoxels == 0)
+    fail(ErrorKind::Usage, "{} has no voxel behind it: move it, or turn its normal round", Parameter("clip-plane", clipText(*clipPlane)));
+  return whole;
+}
+
+std::vector<std::string> warningsOf(const Volume& volume, bool scalarsAreDensities) {
+  std::vector<std::string> warnings = volume.warnings;
+  const auto warn = [&](std::uint64_t voxels, const char* what) {
+    if (voxels == 0) return;
+    const bool one = voxels == 1;
+    warnings.push_back(fmt::format("{} voxel{} of {} with {} count{} as 0", voxels, one ? "" : "s", volume.source, what, one ? "s" : ""));
+  };
+  warn(volume.nanVoxels, "a value that is NaN or infinite");
+  if (volume.albedo && volume.albedo->clippedVoxels > 0)
+    warnings.push_back(fmt::format("{} voxels of grid '{}' have components outside of 0..1, which are clipped to it",
+                                   volume.albedo->clippedVoxels, volume.albedo->name));
+  if (scalarsAreDensities) warn(volume.negativeVoxels, "negative density");
+  return warnings;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,196 @@
+#include "engine/description/scene_description.h"
+
+#include <algorithm>
+#include <array>
+
+#include "engine/core/error.h"
+#include "engine/description/scene_fields.h"
+#include "engine/octree/hierarchy_layout.h"
+#include "engine/storage/baked_volume.h"
+#include "engine/visibility/detail_rule.h"
+#include "engine/volume/emission_light.h"
+#include "engine/volume/subject.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// The light that the volume's own emission throws on it, where it is lit.
+void makeEmissionLight(Scene& scene) {
+  scene.classification.emissionLight = nullptr;
+  if (scene.classification.emission && scene.lighting)
+    scene.classification.emissionLight = std::make_shared<const EmissionLight>(*scene.volume, scene.classification);
+}
+
+/// The double with the fewest digits that rounds to this float.
+double shortest(float value) {
+  return std::stod(fmt::format("{}", value));
+}
+
+ClassificationDescription resolvedClassification(const ClassificationDescription& given, const Scene& scene) {
+  const Classification& classification = scene.classification;
+  if (scene.volume->classificationIsFixed) return {};
+  if (classification.transferFunction)
+    return {.transferFunction = given.transferFunction.value_or(transferFunctionJson(*classification.transferFunction)),
+            .order = classification.order};
+  const glm::vec3 albedo = classification.albedo;
+  return {.densityScale = classification.densityScale,
+          .albedo = glm::dvec3(shortest(albedo.r), shortest(albedo.g), shortest(albedo.b)),
+          .albedoGrid = given.albedoGrid};
+}
+
+EmissionDescription resolvedEmission(const Scene& scene) {
+  EmissionDescription description;
+  if (!scene.classification.emission) return description;
+  description.emission = true;
+  description.take(*scene.classification.emission);
+  // A procedural volume's temperatures have no name.
+  if (!scene.volume->temperature->name.empty() && !scene.volume->classification)
+    description.temperatureGrid = scene.volume->temperature->name;
+  return description;
+}
+
+LightingDescription resolvedLighting(const LightingDescription& given, const std::optional<Lighting>& lighting) {
+  if (!lighting) return {.unlit = true};
+  LightingDescription description{.ambient = lighting->ambient,
+                                  .tint = lighting->tint,
+                                  .phaseG = lighting->phaseG,
+                                  .scattering = lighting->scattering,
+                                  .scatteringScale = lighting->scatteringScale,
+                                  .attenuation = given.attenuation};
+  for (const Light& light : lighting->lights) description.lights.push_back({.light = light, .hasIntensity = true});
+  if (!lighting->lights.empty()) description.shading = lighting->surface > 0.0 ? Shading::Gradient : Shading::Scatter;
+  if (lighting->surface > 0.0) description.surface = lighting->surface;
+  if (!lighting->environment) return description;
+  description.environment = given.environment;
+  description.environmentRotation = lighting->environment->rotation;
+  description.environmentIntensity = lighting->environment->intensity;
+  return description;
+}
+
+MethodDescription resolvedMethod(const MethodDescription& given) {
+  FrameSettings frame;
+  given.apply(frame);
+  const TableSettings table = given.table();
+  return {.draw = frame.draw,
+          .composite = frame.composite,
+          .attenuation = frame.attenuation,
+          .directions = table.directions,
+          .code = table.code,
+          .pathLengthCorrection = table.pathLengthCorrection,
+          .gradient = frame.gradient,
+          .lod = given.lod.value_or(double(frame.lod)),
+          .culling = frame.culling,
+          .cullThreshold = given.cullThreshold.value_or(double(frame.cullThreshold)),
+          .hierarchyFilter = table.filter};
+}
+
+}  // namespace
+
+void SceneDescription::check() const {
+  input.check();
+  if (classification.albedoGrid && proceduralName(input.volume))
+    fail(ErrorKind::Usage, "{} chooses among the grids of a file, and {} has one", Parameter("albedo-grid"), input.volume);
+  emission.check(input);
+  camera.check();
+  lighting.check();
+}
+
+Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level) const {
+  return input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.albedoGrid}, level);
+}
+
+int SceneDescription::finestLevelNeeded(int frameCount) const {
+  const std::shared_ptr<const fvx::FvxFile> baked = input.baked();
+  if (!baked) return 0;
+  const Volume outline = bakedOutline(*baked);
+  const Classification classified = resolveClassification(outline);
+  if (classified.transferFunction) return 0;
+  FrameSettings frame;
+  method.apply(frame);
+  const HierarchyLayout hierarchy(outline.dimensions);
+  int level = baked->levels() - 1;
+  for (const Camera& one : cameras(outline, classified, frameCount)) {
+    const PixelRays rays = pixelRays(one, camera.size, outline.indexToWorld);
+    level = std::min(level, detailRule(hierarchy, rays, camera.size, double(frame.lod)).finest);
+  }
+  // One level finer than what is drawn, as the footprints of what is drawn are those of the opened level's voxels.
+  return std::max(level - 1, 0);
+}
+
+bool SceneDescription::isAsBaked(const Volume& volume, const Classification& classified) const {
+  // Another density scale leaves the content as it is; a transfer function does not.
+  return volume.classification &&
+         (volume.classificationIsFixed || (!classified.transferFunction && !volume.classification->transferFunction));
+}
+
+std::vector<Camera> SceneDescription::cameras(const Volume& volume, const Classification& classified, int frameCount) const {
+  const auto content = [&] {
+    if (!isAsBaked(volume, classified)) return contentOf(volume, classified);
+    const std::shared_ptr<const fvx::FvxFile> baked = input.baked();
+    return subjectOf(baked->content(), baked->description().volume);
+  };
+  return camera.resolve(volume.up, content, frameCount);
+}
+
+Scene SceneDescription::resolve(std::shared_ptr<const Volume> volume) const {
+  Scene scene{.volume = std::move(volume)};
+  scene.classification = resolveClassification(*scene.volume);
+  resolveView(scene);
+  return scene;
+}
+
+Classification SceneDescription::resolveClassification(const Volume& volume) const {
+  Classification result = classification.resolve(volume, emission.grid().has_value());
+  result.emission = emission.resolve(volume, result);
+  if (result.emission && !classification.albedo && !volume.classification) result.albedo = glm::vec3(kSmokeAlbedo);
+  return result;
+}
+
+void SceneDescription::resolveView(Scene& scene) const {
+  scene.camera = cameras(*scene.volume, scene.classification).front();
+  scene.lighting = lighting.resolve(*scene.volume, scene.classification, scene.camera);
+  makeEmissionLight(scene);
+}
+
+Scene SceneDescription::resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const {
+  SceneDescription fixed = *this;
+  if (!volume->classificationIsFixed) fixed.classification.take(other.classification);
+  if (other.classification.emission) fixed.emission.take(*other.classification.emission);
+  Scene scene{.volume = std::move(volume), .camera = other.camera, .lighting = other.lighting};
+  scene.classification = fixed.resolveClassification(*scene.volume);
+  makeEmissionLight(scene);
+  return scene;
+}
+
+SceneDescription SceneDescription::resolved(const Scene& scene) const {
+  SceneDescription result = *this;
+  if (proceduralName(input.volume)) result.input.resolution = input.resolution.value_or(glm::ivec3(kDefaultResolution));
+  result.classification = resolvedClassification(classification, scene);
+  result.emission = resolvedEmission(scene);
+  result.camera.look(scene.camera);
+  result.camera.frames.reset();
+  result.lighting = resolvedLighting(lighting, scene.lighting);
+  result.method = resolvedMethod(method);
+  return result;
+}
+
+SceneDescription SceneDescription::resolvedTurn(const Scene& scene, int frameCount) const {
+  SceneDescription result = resolved(scene);
+  result.camera.frames = frameCount;
+  if (camera.position) return result;
+  result.camera.position.reset();
+  result.camera.lookAt = camera.lookAt;
+  result.camera.orbit = camera.angles();
+  return result;
+}
+
+std::string rendererText(const SceneDescription& description, const Scene& scene) {
+  constexpr std::array<std::string_view, 2> kSections{"classification", "emission"};
+  const TableSettings table = description.method.table();
+  // Blocks store the scattered light of the emission together with the emission.
+  return fmt::format("{}table={} {} {} {} emission-light={}", textOf(description.resolved(scene), kSections), int(table.directions),
+                     int(table.code), int(table.filter), table.pathLengthCorrection, scene.classification.emissionLight != nullptr);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,269 @@
+#pragma once
+// What an image shows, as plain data: the volume, how it looks, from where it is seen, how it is lit and drawn, and the form of the
+// image. Whatever is not given is chosen for the volume when the description is resolved (resolve functions below).
+//
+// A description is read from and written to JSON (scene_json.h); the command line, the viewer, the library and Python all edit one.
+// apps/scenes/README.md lists every field with unit, range and default; scene_fields.h is the same list as a table.
+//
+// Errors are of ErrorKind::Usage unless stated otherwise, and name Parameters.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/description/aov.h"
+#include "engine/image/image.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/lighting.h"
+#include "engine/scene/render_settings.h"
+#include "engine/scene/table_settings.h"
+#include "engine/storage/fvx_file.h"
+#include "engine/volume/classification.h"
+#include "engine/volume/coarse_volume.h"
+#include "engine/volume/vdb.h"
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+inline bool operator==(const PixelRectangle& a, const PixelRectangle& b) {
+  return a.corner == b.corner && a.size == b.size;
+}
+
+/// Largest number of pixels along an edge of an image, and of voxels along an edge of a procedural volume.
+inline constexpr int kMaximumImageEdge = 16384, kMostResolution = 2048;
+inline constexpr int kDefaultResolution = 128;
+/// Default number of orders of scattering.
+inline constexpr int kDefaultScattering = 3;
+/// Frames of a turn around the volume.
+inline constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
+
+/// The volume, before it is read.
+struct InputDescription {
+  std::string volume;              ///< an OpenVDB file, a baked volume (.fvx) or "procedural:NAME"
+  std::optional<std::string> grid;  ///< of an OpenVDB file, as readVdb has it; else `density`, or the only float grid
+  std::optional<glm::ivec3> resolution;  ///< voxels of a procedural volume, 1 to kMostResolution; else kDefaultResolution
+  std::optional<VoxelBox> clipBox;       ///< in the volume's box; the voxels outside of it are not drawn
+  std::optional<ClipPlane> clipPlane;    ///< the voxels in front of it are not drawn
+
+  /// Fails without a volume.
+  void checkGiven() const;
+  /// Fails for fields that do not apply to this volume.
+  void check() const;
+  /// The part of a volume in the clip box and behind the clip plane. Fails if there is none.
+  Volume clip(Volume whole) const;
+  /// Reads or makes the volume. A procedural volume has its temperatures if any are requested; a baked one always has its
+  /// temperatures and albedos. If the box of a baked volume is too large at `level` of its octree, the finest level that fits is
+  /// opened, with a warning.
+  Volume open(std::uint64_t maximumVoxels, const MoreGrids& more = {}, int level = 0) const;
+  /// Null where the volume is not a baked one.
+  std::shared_ptr<const fvx::FvxFile> baked() const;
+
+  bool operator==(const InputDescription&) const = default;
+};
+
+/// Positions and lengths in world units, angles in degrees.
+struct CameraDescription {
+  std::optional<glm::dvec3> position, lookAt, up;
+  std::optional<double> verticalFov;         ///< above 0 and below 180; else 35
+  std::optional<double> orthographicHeight;  ///< above 0; makes the projection orthographic
+  std::optional<glm::dvec2> orbit;  ///< azimuth and elevation of the eye around the content; else kDefaultAzimuth and -Elevation
+  glm::ivec2 size{1024, 1024};      ///< pixels, 1 to kMaximumImageEdge each
+  std::optional<int> frames;        ///< of a turn, 1 to kMaximumFrames; else kDefaultFrames
+
+  /// Gives everything but the size and the frames as this camera has it.
+  void look(const Camera& from);
+  /// Fails for a camera that is wrong for every volume.
+  void check() const;
+  /// The direction of the eye around the content.
+  glm::dvec2 angles() const;
+  /// The cameras of a full turn in equal steps about the axis through the look-at point along `up`. What is not given is chosen so
+  /// that the content fills the image, from one distance for all frames, upright as the volume says. `content` is asked for if it is
+  /// needed.
+  std::vector<Camera> resolve(glm::dvec3 upOfVolume, const std::function<Subject()>& content, int frameCount) const;
+
+  bool operator==(const CameraDescription&) const = default;
+};
+
+struct ClassificationDescription {
+  std::optional<double> densityScale;           ///< extinction per world unit at density 1, at least 0
+  std::optional<glm::dvec3> albedo;             ///< linear Rec.709, 0 to 1
+  std::optional<std::string> transferFunction;  ///< a file, or JSON that begins with {
+  std::optional<std::string> albedoGrid;        ///< a grid of vectors of an OpenVDB file: linear colours, 0 to 1
+  std::optional<ClassificationOrder> order;     ///< of a transfer function; else Post
+
+  /// Reads the transfer function. What is not given is as the volume's file says, if it does (Volume::classification); fields are
+  /// refused where that is fixed. Otherwise, without any field, scans have scanTransferFunction, level sets are opaque, and others
+  /// have the automatic density scale of volumes that shine, or do not.
+  Classification resolve(const Volume& volume, bool shines) const;
+  /// Gives what was resolved for another volume.
+  void take(const Classification& resolved);
+
+  bool operator==(const ClassificationDescription&) const = default;
+};
+
+/// Emission by temperature.
+struct EmissionDescription {
+  bool emission = false;         ///< whether hot voxels send out light
+  std::optional<double> strength;  ///< luminance per world unit at kReferenceTemperature, at least 0
+  std::optional<std::string> temperatureGrid;  ///< of an OpenVDB file; turns emission on by itself
+  std::optional<double> temperatureScale, temperatureOffset;  ///< kelvin = scale (at least 0) x value + offset
+
+  /// Fails for fields that do not apply to the volume.
+  void check(const InputDescription& input) const;
+  /// The name of the grid to read, empty for the usual names; nothing without emission.
+  std::optional<std::string> grid() const;
+  /// What is not given is automatic. `classification` is that without emission.
+  std::optional<Emission> resolve(const Volume& volume, const Classification& classification) const;
+  /// Gives what was resolved for another volume.
+  void take(const Emission& resolved);
+
+  bool operator==(const EmissionDescription&) const = default;
+};
+
+/// What a voxel does with light. Auto: Gradient with a transfer function and for level sets, else Scatter.
+enum class Shading : int { Auto = 0, Scatter = 1, Gradient = 2 };
+
+struct LightingDescription {
+  struct GivenLight {
+    Light light;
+    bool hasIntensity = false;  ///< else that of defaultIntensity
+
+    bool operator==(const GivenLight&) const = default;
+  };
+  /// Without lights, ambient light and environment, a key light and ambient light are chosen for the first view, dimmer for a volume
+  /// with emission.
+  std::vector<GivenLight> lights;
+  std::optional<glm::dvec3> ambient;                                ///< radiance from everywhere, linear Rec.709, at least 0
+  std::optional<std::string> environment;                           ///< an .exr (environment.h)
+  std::optional<double> environmentRotation, environmentIntensity;  ///< as in Environment
+  std::optional<glm::dvec3> tint;                ///< kLeastTint to kMostTint
+  std::optional<double> phaseG;                  ///< -kMostPhaseG to kMostPhaseG
+  std::optional<int> scattering;                 ///< orders, 1 to kMostOctaves; else kDefaultScattering
+  std::optional<double> scatteringScale;         ///< 0 to 1
+  std::optional<LightAttenuation> attenuation;   ///< else Auto
+  std::optional<Shading> shading;                ///< else Auto
+  std::optional<double> surface;                 ///< Lighting::surface where there are surfaces, 0 to 1; else 1
+  bool unlit = false;                            ///< no lighting, whatever the other fields say
+
+  bool hasLight() const { return !lights.empty() || ambient || environment; }
+  /// Fails for fields that have no effect without others.
+  void check() const;
+  /// The lighting, or nothing if unlit. Reads the environment: ErrorKind::Input.
+  std::optional<Lighting> resolve(const Volume& volume, const Classification& classification, const Camera& camera) const;
+
+  bool operator==(const LightingDescription&) const = default;
+};
+
+/// The intensity of a light that gives none: a position has kDefaultIrradiance in the middle of the volume's box, or at half its
+/// diagonal from the light, whichever is farther.
+double defaultIntensity(const Light& light, const Volume& volume);
+
+/// The method of drawing, in which the paper and FreeVoxels differ. What is not given is the default of FreeVoxels, or the paper's.
+struct MethodDescription {
+  bool paper = false;  ///< the paper's side of composite, attenuation, directions, code, path length, gradient, lod and culling
+  std::optional<Draw> draw;
+  std::optional<Composite> composite;
+  std::optional<AttenuationLookup> attenuation;
+  std::optional<DirectionSet> directions;
+  std::optional<AttenuationCode> code;
+  std::optional<bool> pathLengthCorrection, gradient;
+  std::optional<double> lod;  ///< pixels, 0 to 10^6
+  std::optional<bool> culling;
+  std::optional<double> cullThreshold;  ///< transmittance, 0 to 1
+  std::optional<HierarchyFilter> hierarchyFilter;
+
+  TableSettings table() const;
+  /// Fails where the gather is asked for and cannot draw so.
+  void apply(FrameSettings& frame) const;
+
+  bool operator==(const MethodDescription&) const = default;
+};
+
+enum class PngBits : int { Eight = 0, Sixteen = 1 };
+
+/// The form of the images.
+struct OutputDescription {
+  std::optional<glm::dvec3> background;  ///< of a .png or .jpg, linear, 0 to 1; else a dark gradient, unless `transparent`
+  bool transparent = false;
+  std::optional<double> exposure;  ///< stops by which a .png or .jpg is brightened, -20 to 20
+  std::optional<ToneMap> toneMap;  ///< of a .png or .jpg; else None
+  bool fullFloat = false;          ///< 32-bit floats in an .exr
+  std::optional<PngBits> pngBits;  ///< bits a channel
+  Aovs aovs;                       ///< of an .exr
+  std::optional<PixelRectangle> crop;
+
+  /// How a .png or a .jpg is made of an image.
+  DisplayLook look() const;
+  /// Fails where `crop` is not inside of an image of this size.
+  void checkCrop(glm::ivec2 imageSize) const;
+
+  bool operator==(const OutputDescription&) const = default;
+};
+
+/// A resolved description: what images are drawn of.
+struct Scene {
+  std::shared_ptr<const Volume> volume;
+  Classification classification;
+  Camera camera;
+  std::optional<Lighting> lighting;
+};
+
+struct SceneDescription {
+  InputDescription input;
+  ClassificationDescription classification;
+  EmissionDescription emission;
+  CameraDescription camera;
+  LightingDescription lighting;
+  MethodDescription method;
+  OutputDescription output;
+
+  /// Fails for fields that are wrong for every volume and file of their kinds.
+  void check() const;
+  /// Reads the volume, with the grids that other fields need; of a baked one an octree level, which other volumes do not have.
+  Volume readVolume(std::uint64_t maximumVoxels, int level = 0) const;
+  /// The level of a baked volume that frames need: one finer than the finest of which anything is drawn. 0 of other volumes, and
+  /// where the levels are of scalars that are classified by a transfer function.
+  int finestLevelNeeded(int frameCount) const;
+  /// Whether what is seen of a baked volume is what its file says, as its classification is the baked one or differs in density alone.
+  bool isAsBaked(const Volume& volume, const Classification& classification) const;
+  /// As CameraDescription::resolve; a baked volume's content is read from its file, so that it does not depend on the level.
+  std::vector<Camera> cameras(const Volume& volume, const Classification& classification, int frameCount = 1) const;
+  /// Reads the other files and resolves everything.
+  Scene resolve(std::shared_ptr<const Volume> volume) const;
+  /// The two parts of resolve(): classification, and camera and light. `scene` must have the other part.
+  Classification resolveClassification(const Volume& volume) const;
+  void resolveView(Scene& scene) const;
+  /// As resolve(), but with the camera, the lights and the scales of densities and temperatures or the transfer function of another
+  /// volume's scene, so that frames of one film fit together.
+  Scene resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const;
+  /// A description that gives everything as it was resolved, so that it does not depend on the volume's values or on defaults.
+  SceneDescription resolved(const Scene& scene) const;
+  /// The same for the turn of which `scene` has the first camera: the orbit stands in place of a position that was not given, since
+  /// a turn has another distance than its first frame alone.
+  SceneDescription resolvedTurn(const Scene& scene, int frameCount) const;
+
+  bool operator==(const SceneDescription&) const = default;
+};
+
+/// A text of everything that a Renderer of the scene depends on, except for its volume: scenes with equal text can share one.
+std::string rendererText(const SceneDescription& description, const Scene& scene);
+
+std::uint64_t machineMemoryBytes();
+
+/// "128", or "2048x2048x512" of one that is no cube.
+std::string resolutionText(glm::ivec3 dimensions);
+
+/// NAME of "procedural:NAME"; nothing for a file.
+std::optional<std::string> proceduralName(const std::string& input);
+
+/// Calls makeProcedural, but fails with ErrorKind::OutOfMemory before allocating if the volume exceeds `maximumVoxels` or this
+/// machine's memory.
+Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolution, std::uint64_t maximumVoxels);
+
+/// What the user should know of a volume: its own warnings, NaN values, and negative values if the scalars are densities.
+std::vector<std::string> warningsOf(const Volume& volume, bool scalarsAreDensities);
+
+}  // namespace freevoxels

@@ -1,0 +1,380 @@
+#include "engine/description/scene_fields.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+#include "engine/description/text_values.h"
+
+namespace freevoxels {
+
+namespace {
+
+using Kind = SceneField::Kind;
+using Texts = std::vector<std::string>;
+
+constexpr int kBeyondAnything = 1 << 20;  ///< larger than coordinates of voxels and pixels
+
+std::string marked(const std::string& name) {
+  return fmt::format("{}", Parameter(name));
+}
+
+/// How a value is read from text and written.
+template <typename Value>
+struct Codec {
+  Kind kind = Kind::Value;
+  std::string form;
+  std::function<Value(const std::string& name, const std::string& text)> read;
+  std::function<std::string(const Value&)> text;
+};
+
+std::string joined(const std::vector<double>& values, char separator) {
+  std::vector<std::string> texts;
+  for (const double value : values) texts.push_back(numberText(value));
+  return fmt::format("{}", fmt::join(texts, std::string(1, separator)));
+}
+
+/// Conversions of types to and from lists of numbers.
+std::vector<double> numbersOf(double v) { return {v}; }
+std::vector<double> numbersOf(int v) { return {double(v)}; }
+std::vector<double> numbersOf(glm::dvec2 v) { return {v.x, v.y}; }
+std::vector<double> numbersOf(glm::ivec2 v) { return {double(v.x), double(v.y)}; }
+std::vector<double> numbersOf(glm::dvec3 v) { return {v.x, v.y, v.z}; }
+std::vector<double> numbersOf(glm::ivec3 v) { return {double(v.x), double(v.y), double(v.z)}; }
+std::vector<double> numbersOf(const VoxelBox& box) {
+  return {double(box.first.x), double(box.first.y), double(box.first.z), double(box.last.x), double(box.last.y), double(box.last.z)};
+}
+std::vector<double> numbersOf(const ClipPlane& plane) {
+  return {plane.point.x, plane.point.y, plane.point.z, plane.normal.x, plane.normal.y, plane.normal.z};
+}
+std::vector<double> numbersOf(const PixelRectangle& part) {
+  return {double(part.corner.x), double(part.corner.y), double(part.size.x), double(part.size.y)};
+}
+void assign(double& v, const std::vector<double>& n) { v = n[0]; }
+void assign(int& v, const std::vector<double>& n) { v = int(n[0]); }
+void assign(glm::dvec2& v, const std::vector<double>& n) { v = {n[0], n[1]}; }
+void assign(glm::ivec2& v, const std::vector<double>& n) { v = {n[0], n[1]}; }
+void assign(glm::dvec3& v, const std::vector<double>& n) { v = {n[0], n[1], n[2]}; }
+void assign(glm::ivec3& v, const std::vector<double>& n) { v = {n[0], n[1], n[2]}; }
+void assign(VoxelBox& v, const std::vector<double>& n) { v = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}}; }
+void assign(ClipPlane& v, const std::vector<double>& n) { v = {{n[0], n[1], n[2]}, {n[3], n[4], n[5]}}; }
+void assign(PixelRectangle& v, const std::vector<double>& n) { v = {{n[0], n[1]}, {n[2], n[3]}}; }
+
+/// Numbers; whole ones for a type that holds these.
+template <typename Value>
+Codec<Value> numbers(NumberForm form) {
+  form.count = numbersOf(Value{}).size();
+  return {.form = form.form,
+          .read = [form](const std::string& name, const std::string& text) mutable {
+            form.name = name;
+            Value value;
+            assign(value, readNumbers(form, text));
+            return value;
+          },
+          .text = [separator = form.separator](const Value& value) { return joined(numbersOf(value), separator); }};
+}
+
+/// A size: one number for equal ones.
+template <typename Value>
+Codec<Value> extent(const std::string& form, int maximum) {
+  Codec<Value> codec =
+      numbers<Value>({.form = form, .range = {1.0, double(maximum)}, .whole = true, .mayBeOne = true, .separator = 'x'});
+  return codec;
+}
+
+template <typename Enum>
+Codec<Enum> words(const Words<Enum>& choice) {
+  return {.form = fmt::format("{}", fmt::join(choice.texts, "|")),
+          .read = [&choice](const std::string& name, const std::string& text) { return choice.at(readWord(name, choice.texts, text)); },
+          .text = [&choice](const Enum& value) { return choice.of(value); }};
+}
+
+Codec<std::string> text(Kind kind, const std::string& form) {
+  return {.kind = kind,
+          .form = form,
+          .read = [](const std::string&, const std::string& given) { return given; },
+          .text = [](const std::string& value) { return value; }};
+}
+
+Codec<bool> truth(Kind kind) {
+  return {.kind = kind,
+          .form = "",
+          .read = [](const std::string&, const std::string& given) { return given != "false"; },
+          .text = [](const bool& value) { return value ? "true" : "false"; }};
+}
+
+/// Adds the fields of a section, which are members of `Part`.
+template <typename Part>
+class Section {
+ public:
+  Section(std::vector<SceneField>& fields, std::string name, Part SceneDescription::*part)
+      : fields_(fields), name_(std::move(name)), part_(part) {}
+
+  /// A field with its own conversions from and to texts.
+  SceneField& add(const std::string& name, Kind kind, const std::string& form, std::function<void(Part&, const Texts&)> read,
+                  std::function<Texts(const Part&)> texts) {
+    return fields_.emplace_back(SceneField{
+        .section = name_,
+        .name = name,
+        .kind = kind,
+        .form = form,
+        .read = [part = part_, read](SceneDescription& description, const Texts& given) { read(description.*part, given); },
+        .texts = [part = part_, texts](const SceneDescription& description) { return texts(description.*part); }});
+  }
+  template <typename Value>
+  SceneField& add(const std::string& name, std::optional<Value> Part::*member, const Codec<Value>& codec) {
+    return add(
+        name, codec.kind, codec.form,
+        [=](Part& part, const Texts& given) { part.*member = codec.read(marked(name), given.back()); },
+        [=](const Part& part) { return part.*member ? Texts{codec.text(*(part.*member))} : Texts{}; });
+  }
+  /// A member that always has a value; a flag and a text count as given where they are not false or empty.
+  template <typename Value>
+  SceneField& add(const std::string& name, Value Part::*member, const Codec<Value>& codec) {
+    return add(
+        name, codec.kind, codec.form,
+        [=](Part& part, const Texts& given) { part.*member = codec.read(marked(name), given.back()); },
+        [=](const Part& part) {
+          const std::string one = codec.text(part.*member);
+          return one.empty() || (codec.kind == Kind::Flag && one == "false") ? Texts{} : Texts{one};
+        });
+  }
+
+ private:
+  std::vector<SceneField>& fields_;
+  const std::string name_;
+  Part SceneDescription::*const part_;
+};
+
+constexpr NumberRange kPositive{.minimum = 0.0}, kUnit{.minimum = 0.0, .maximum = 1.0};
+
+void addInput(std::vector<SceneField>& fields) {
+  using Input = InputDescription;
+  Section<Input> section(fields, "input", &SceneDescription::input);
+  section.add("volume", &Input::volume, text(Kind::Volume, "the name of a volume")).replaces = {"grid", "resolution", "clip-box",
+                                                                                                "clip-plane"};
+  section.add("grid", &Input::grid, text(Kind::Name, "NAME"));
+  Codec<glm::ivec3> resolution = extent<glm::ivec3>("WxHxD", kMostResolution);
+  resolution.text = [](const glm::ivec3& size) { return resolutionText(size); };
+  section.add("resolution", &Input::resolution, resolution);
+  section.add("clip-box", &Input::clipBox,
+              numbers<VoxelBox>({.form = "X0,Y0,Z0,X1,Y1,Z1", .range = {0.0, double(kBeyondAnything)}}));
+  section.add("clip-plane", &Input::clipPlane, numbers<ClipPlane>({.form = "X,Y,Z,NX,NY,NZ", .range = {-1e30, 1e30}}));
+}
+
+void addClassification(std::vector<SceneField>& fields) {
+  using Classified = ClassificationDescription;
+  Section<Classified> section(fields, "classification", &SceneDescription::classification);
+  section.add("density-scale", &Classified::densityScale, numbers<double>({.form = "S", .range = kPositive}));
+  section.add("albedo", &Classified::albedo, numbers<glm::dvec3>({.form = "R,G,B", .range = kUnit}));
+  section.add("albedo-grid", &Classified::albedoGrid, text(Kind::Name, "NAME"));
+  section.add("transfer-function", &Classified::transferFunction, text(Kind::File, "FILE.json")).excludes = {"density-scale", "albedo",
+                                                                                                             "albedo-grid"};
+  section.add("classification", &Classified::order, words(kOrderWords));
+}
+
+void addEmission(std::vector<SceneField>& fields) {
+  using Emitted = EmissionDescription;
+  Section<Emitted> section(fields, "emission", &SceneDescription::emission);
+  section.add("temperature-grid", &Emitted::temperatureGrid, text(Kind::Name, "NAME"));
+  SceneField& emission = section.add(
+      "emission", Kind::Value, "STRENGTH",
+      [](Emitted& emitted, const Texts& given) {
+        const auto values = readNumbers({.name = marked("emission"), .form = "STRENGTH", .count = 0, .range = kPositive}, given.back());
+        emitted.emission = true;
+        emitted.strength = values.empty() ? std::nullopt : std::optional(values[0]);
+      },
+      [](const Emitted& emitted) {
+        if (emitted.strength) return Texts{numberText(*emitted.strength)};
+        return emitted.emission ? Texts{""} : Texts{};
+      });
+  emission.standsAlone = true;
+  section.add("temperature-scale", &Emitted::temperatureScale, numbers<double>({.form = "K", .range = kPositive}));
+  section.add("temperature-offset", &Emitted::temperatureOffset, numbers<double>({.form = "K"}));
+}
+
+void addCamera(std::vector<SceneField>& fields) {
+  using View = CameraDescription;
+  Section<View> section(fields, "camera", &SceneDescription::camera);
+  section.add("camera-position", &View::position, numbers<glm::dvec3>({.form = "X,Y,Z"}));
+  section.add("orbit", &View::orbit, numbers<glm::dvec2>({.form = "AZIMUTH,ELEVATION"})).excludes = {"camera-position"};
+  section.add("look-at", &View::lookAt, numbers<glm::dvec3>({.form = "X,Y,Z"}));
+  section.add("up", &View::up, numbers<glm::dvec3>({.form = "X,Y,Z"}));
+  section.add("fov", &View::verticalFov, numbers<double>({.form = "DEG"}));
+  section.add("orthographic", &View::orthographicHeight, numbers<double>({.form = "HEIGHT"})).excludes = {"fov"};
+  section.add("size", &View::size, extent<glm::ivec2>("WxH", kMaximumImageEdge));
+  section.add("frames", &View::frames, numbers<int>({.form = "N", .range = {1.0, double(kMaximumFrames)}, .whole = true}));
+}
+
+constexpr const char* kLightForm = "direction=X,Y,Z[,color=R,G,B][,intensity=I] or position=X,Y,Z[,...]";
+
+glm::dvec3 lightTriple(const char* what, const char* form, const std::string& text, NumberRange range = {}) {
+  const auto n = readNumbers({.name = fmt::format("{} {}", Parameter("light"), what), .form = form, .count = 3, .range = range}, text);
+  return {n[0], n[1], n[2]};
+}
+
+LightingDescription::GivenLight readLight(const std::string& text) {
+  LightingDescription::GivenLight given;
+  const Parameter name("light");
+  bool placed = false;
+  for (const auto& [key, value] : readKeys(marked("light"), kLightForm, text)) {
+    if (key == "direction" || key == "position") {
+      if (placed) fail(ErrorKind::Usage, "{} '{}' has a direction and a position: give one of them", name, text);
+      placed = true;
+      given.light.atInfinity = key == "direction";
+      given.light.place = lightTriple(key.c_str(), "X,Y,Z", value);
+      if (given.light.atInfinity && given.light.place == glm::dvec3(0.0))
+        fail(ErrorKind::Usage, "{} '{}' has the direction 0,0,0, which points nowhere: give another", name, text);
+    } else if (key == "color") {
+      given.light.color = lightTriple("color", "R,G,B", value, kPositive);
+    } else if (key == "intensity") {
+      given.light.intensity = readNumbers({.name = marked("light") + " intensity", .form = "I", .range = kPositive}, value)[0];
+      given.hasIntensity = true;
+    } else {
+      fail(ErrorKind::Usage, "{} knows no '{}': it takes {}", name, key, kLightForm);
+    }
+  }
+  if (!placed) fail(ErrorKind::Usage, "{} '{}' has neither a direction nor a position: give one", name, text);
+  return given;
+}
+
+std::string lightText(const LightingDescription::GivenLight& given) {
+  const Light& light = given.light;
+  const std::string intensity = given.hasIntensity ? ",intensity=" + numberText(light.intensity) : "";
+  return fmt::format("{}={},color={}{}", light.atInfinity ? "direction" : "position", numberText(light.place), numberText(light.color),
+                     intensity);
+}
+
+void addLights(Section<LightingDescription>& section) {
+  SceneField& lights = section.add(
+      "light", Kind::Keys, "direction|position=X,Y,Z[,color=R,G,B][,intensity=I]",
+      [](LightingDescription& lighting, const Texts& given) {
+        lighting.lights.clear();
+        for (const std::string& one : given) lighting.lights.push_back(readLight(one));
+      },
+      [](const LightingDescription& lighting) {
+        Texts texts;
+        for (const auto& given : lighting.lights) texts.push_back(lightText(given));
+        return texts;
+      });
+  lights.repeated = true;
+}
+
+void addLighting(std::vector<SceneField>& fields) {
+  using Lit = LightingDescription;
+  Section<Lit> section(fields, "light", &SceneDescription::lighting);
+  section.add("unlit", &Lit::unlit, truth(Kind::Flag));
+  section.add("light-attenuation", &Lit::attenuation, words(kLightAttenuationWords));
+  section.add("shading", &Lit::shading, words(kShadingWords)).replaces = {"surface-share"};
+  section.add("surface-share", &Lit::surface, numbers<double>({.form = "S", .range = kUnit}));
+  section.add("scattering", &Lit::scattering, numbers<int>({.form = "N", .range = {1.0, double(kMostOctaves)}, .whole = true}));
+  section.add("scattering-scale", &Lit::scatteringScale, numbers<double>({.form = "S", .range = kUnit}));
+  addLights(section);
+  Codec<glm::dvec3> ambient = numbers<glm::dvec3>({.form = "R,G,B", .range = kPositive});
+  ambient.read = [](const std::string& name, const std::string& text) {
+    const bool one = text.find(',') == std::string::npos && !namedColor(text);
+    const auto n = readNumbers({.name = name, .form = one ? "L" : "R,G,B", .count = one ? 1u : 3u, .range = kPositive}, text);
+    return one ? glm::dvec3(n[0]) : glm::dvec3(n[0], n[1], n[2]);
+  };
+  section.add("ambient", &Lit::ambient, ambient);
+  section.add("environment", &Lit::environment, text(Kind::File, "FILE.exr"));
+  section.add("environment-rotation", &Lit::environmentRotation, numbers<double>({.form = "DEG"}));
+  section.add("environment-intensity", &Lit::environmentIntensity, numbers<double>({.form = "I", .range = kPositive}));
+  section.add("extinction-tint", &Lit::tint, numbers<glm::dvec3>({.form = "R,G,B", .range = {kLeastTint, kMostTint}}));
+  section.add("phase-g", &Lit::phaseG, numbers<double>({.form = "G", .range = {-kMostPhaseG, kMostPhaseG}}));
+}
+
+void addMethod(std::vector<SceneField>& fields) {
+  using Method = MethodDescription;
+  Section<Method> section(fields, "method", &SceneDescription::method);
+  section.add("composite", &Method::composite, words(kCompositeWords));
+  section.add("draw", &Method::draw, words(kDrawWords));
+  section.add("attenuation", &Method::attenuation, words(kAttenuationWords));
+  section.add("directions", &Method::directions, words(kDirectionWords));
+  section.add("code", &Method::code, words(kCodeWords));
+  section.add("path-length-correction", &Method::pathLengthCorrection, truth(Kind::Switch));
+  section.add("gradient", &Method::gradient, truth(Kind::Switch));
+  section.add("lod", &Method::lod, numbers<double>({.form = "PIXELS", .range = {0.0, 1e6}}));
+  section.add("culling", &Method::culling, truth(Kind::Switch));
+  section.add("cull-threshold", &Method::cullThreshold, numbers<double>({.form = "TRANSMITTANCE", .range = kUnit}));
+  section.add("hierarchy-filter", &Method::hierarchyFilter, words(kHierarchyFilterWords));
+  section.add("paper", &Method::paper, truth(Kind::Flag)).replaces = {"composite", "attenuation", "directions", "code",
+                                                                     "path-length-correction", "gradient", "lod", "culling"};
+}
+
+void addOutput(std::vector<SceneField>& fields) {
+  using Output = OutputDescription;
+  Section<Output> section(fields, "output", &SceneDescription::output);
+  section.add(
+      "background", Kind::Value, "R,G,B|transparent",
+      [](Output& output, const Texts& given) {
+        output.background.reset();
+        output.transparent = given.back() == "transparent";
+        if (output.transparent) return;
+        const NumberForm form{.name = marked("background"), .form = "R,G,B or transparent", .count = 3, .range = kUnit};
+        const auto n = readNumbers(form, given.back());
+        output.background = glm::dvec3(n[0], n[1], n[2]);
+      },
+      [](const Output& output) {
+        if (output.transparent) return Texts{"transparent"};
+        return output.background ? Texts{numberText(*output.background)} : Texts{};
+      });
+  section.add("exposure", &Output::exposure, numbers<double>({.form = "EV", .range = {-20.0, 20.0}}));
+  section.add("tone-map", &Output::toneMap, words(kToneMapWords));
+  section.add("float", &Output::fullFloat, truth(Kind::Flag));
+  section.add("png-bits", &Output::pngBits, words(kPngBitsWords));
+  section.add("aov", &Output::aovs,
+              Codec<Aovs>{.form = "LIST", .read = readAovs, .text = [](const Aovs& aovs) { return aovText(aovs); }});
+  section.add("crop", &Output::crop, numbers<PixelRectangle>({.form = "X,Y,W,H", .range = {0.0, double(kBeyondAnything)}}));
+}
+
+}  // namespace
+
+bool SceneField::isOrExcludes(const SceneField& other) const {
+  const auto has = [](const std::vector<std::string>& names, const std::string& one) { return std::ranges::find(names, one) != names.end(); };
+  return name == other.name || has(excludes, other.name) || has(other.excludes, name);
+}
+
+const std::vector<SceneField>& sceneFields() {
+  static const std::vector<SceneField> fields = [] {
+    std::vector<SceneField> all;
+    all.reserve(80);  // so that references to fields stay valid
+    for (const auto add : {addInput, addClassification, addEmission, addCamera, addLighting, addMethod, addOutput}) add(all);
+    return all;
+  }();
+  return fields;
+}
+
+const SceneField& sceneField(std::string_view name) {
+  const auto found = std::ranges::find(sceneFields(), name, &SceneField::name);
+  if (found == sceneFields().end()) throw InternalError(fmt::format("no scene has a field '{}'", name));
+  return *found;
+}
+
+bool isSceneSection(std::string_view name) {
+  return std::ranges::find(sceneFields(), name, &SceneField::section) != sceneFields().end();
+}
+
+bool isReplaced(const SceneField& field, const SceneFieldSet& stronger) {
+  return std::ranges::any_of(stronger, [&](const SceneField* other) {
+    return other->isOrExcludes(field) || std::ranges::find(other->replaces, field.name) != other->replaces.end();
+  });
+}
+
+SceneDescription partOf(const SceneDescription& description, const std::function<bool(const SceneField&)>& wanted) {
+  SceneDescription part;
+  for (const SceneField& field : sceneFields())
+    if (const Texts texts = field.texts(description); !texts.empty() && wanted(field)) field.read(part, texts);
+  return part;
+}
+
+std::string textOf(const SceneDescription& description, std::span<const std::string_view> sections) {
+  std::string text;
+  for (const SceneField& field : sceneFields())
+    if (std::ranges::find(sections, field.section) != sections.end())
+      for (const std::string& one : field.texts(description)) text += fmt::format("{}={} ", field.name, one);
+  return text;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,207 @@
+#include "engine/description/scene_json.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
+#include "engine/core/atomic_file.h"
+#include "engine/core/error.h"
+#include "engine/core/json_file.h"
+#include "engine/core/nearest_name.h"
+#include "engine/description/text_values.h"
+
+namespace freevoxels {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+using OrderedJson = nlohmann::ordered_json;
+using Kind = SceneField::Kind;
+
+std::string quoted(const std::string& section, const std::string& key) {
+  return inQuotes(section.empty() ? key : section + "." + key);
+}
+
+std::string quoted(const SceneField& field) {
+  return quoted(field.section, field.key());
+}
+
+char separatorOf(const SceneField& field) {
+  return field.form.starts_with("WxH") ? 'x' : ',';
+}
+
+/// Whether the text is not a file name: a procedural volume, or JSON.
+bool isNoPath(const std::string& text) {
+  return proceduralName(text) || isInlineJson(text);
+}
+
+std::string numbersText(const SceneField& field, const Json& list) {
+  std::vector<std::string> words;
+  for (const Json& value : list) words.push_back(value.is_number() ? value.dump() : "");
+  return fmt::format("{}", fmt::join(words, std::string(1, separatorOf(field))));
+}
+
+bool isNumbers(const Json& list) {
+  return list.is_array() && !list.empty() && std::ranges::all_of(list, [](const Json& v) { return v.is_number(); });
+}
+
+/// The text "direction=1,0,0,intensity=3" for an object; empty if a value is neither a number nor a list.
+std::string keysText(const SceneField& field, const Json& object) {
+  std::vector<std::string> words;
+  for (const auto& [key, value] : object.items()) {
+    if (!value.is_number() && !isNumbers(value)) return "";
+    words.push_back(key + "=" + (value.is_number() ? value.dump() : numbersText(field, value)));
+  }
+  return fmt::format("{}", fmt::join(words, ","));
+}
+
+std::string fieldText(const SceneField& field, const Json& value, const fs::path& folder, const std::string& name) {
+  if (field.kind == Kind::Flag || field.kind == Kind::Switch) {
+    if (value.is_boolean()) return value.dump();
+    fail(ErrorKind::Input, "{} takes true or false, not {}", name, inQuotes(value));
+  }
+  if (value.is_string()) {
+    const auto text = value.get<std::string>();
+    return field.isFile() && !isNoPath(text) ? (folder / text).lexically_normal().string() : text;
+  }
+  if (!field.isFile() && value.is_number()) return value.dump();
+  if (!field.isFile() && isNumbers(value)) return numbersText(field, value);
+  if (value.is_object() && field.kind == Kind::Keys)
+    if (const std::string text = keysText(field, value); !text.empty()) return text;
+  if (value.is_object() && field.kind == Kind::File) return value.dump();
+  fail(ErrorKind::Input, "{} takes {}, not {}", name, field.form, inQuotes(value));
+}
+
+/// A number, a list of numbers, or the text if it is neither.
+Json numbersOrText(const std::string& text, char separator) {
+  Json list = Json::array();
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(separator, begin), text.size());
+    list.push_back(Json::parse(text.substr(begin, end - begin), nullptr, false));
+    begin = end + 1;
+  }
+  if (!isNumbers(list)) return text;
+  return list.size() == 1 ? list.front() : list;
+}
+
+/// One text of a field as JSON.
+Json jsonOf(const SceneField& field, const std::string& text, const std::optional<fs::path>& folder) {
+  if (field.kind == Kind::Flag || field.kind == Kind::Switch) return text == "true";
+  if (text.empty()) return true;
+  if (field.isFile()) {
+    if (isInlineJson(text)) return Json::parse(text);
+    return folder && !isNoPath(text) ? fs::proximate(text, *folder).string() : text;
+  }
+  if (field.kind == Kind::Name) return text;
+  if (field.kind != Kind::Keys) return numbersOrText(text, separatorOf(field));
+  Json object = Json::object();
+  for (const auto& [key, value] : readKeys(field.name, field.form, text)) object[key] = numbersOrText(value, ',');
+  return object;
+}
+
+/// Formats objects of two levels and lists of objects over several lines, other values on one line.
+std::string layOut(const OrderedJson& value, int depth = 0) {
+  const bool list = value.is_array() && !value.empty() && value.front().is_object();
+  if (!list && (!value.is_object() || depth > 1)) return value.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+  const std::string indent(std::size_t(2 * depth + 2), ' ');
+  std::vector<std::string> lines;
+  for (const auto& [key, entry] : value.items())
+    lines.push_back(indent + (list ? "" : inQuotes(key) + ": ") + layOut(entry, depth + 1));
+  return fmt::format("{}\n{}\n{}{}", list ? "[" : "{", fmt::join(lines, ",\n"), indent.substr(2), list ? "]" : "}");
+}
+
+}  // namespace
+
+template <typename... Args>
+void SceneFile::failHere(const std::string& format, Args&&... args) const {
+  fail(ErrorKind::Input, "scene '{}': {}", file_.string(), fmt::format(fmt::runtime(format), std::forward<Args>(args)...));
+}
+
+SceneFile::SceneFile(const fs::path& file) : file_(file), root_(std::make_shared<const Json>(readJson("scene", file))) {
+  if (!root_->is_object()) failHere("must be an object {{\"camera\": ...}}");
+  for (const auto& [section, keys] : root_->items()) {
+    if (!isSceneSection(section)) failUnknown("", section);
+    if (!keys.is_object()) failHere("{} takes an object of keys, not {}", inQuotes(section), inQuotes(keys));
+  }
+}
+
+void SceneFile::failUnknown(const std::string& section, const std::string& key) const {
+  std::string nearest;
+  std::size_t least = kFarName;
+  const auto consider = [&](std::size_t distance, const std::string& name) {
+    if (distance < least) least = distance, nearest = name;
+  };
+  for (const SceneField& field : sceneFields()) {
+    if (section.empty()) consider(editDistance(key, field.section), inQuotes(field.section));
+    consider(editDistance(key, field.key()) + (section == field.section ? 0 : 1), quoted(field));
+  }
+  failHere("there is no key {}{}", quoted(section, key),
+           nearest.empty() ? "; apps/scenes/README.md has them all" : "; did you mean " + nearest + "?");
+}
+
+const SceneField& SceneFile::find(const std::string& section, const std::string& key) const {
+  const auto found = std::ranges::find_if(
+      sceneFields(), [&](const SceneField& field) { return field.section == section && field.key() == key; });
+  if (found == sceneFields().end()) failUnknown(section, key);
+  return *found;
+}
+
+bool SceneFile::hasVolume() const {
+  return root_->contains("input") && root_->at("input").contains("volume");
+}
+
+void SceneFile::applyTo(SceneDescription& description, const std::function<bool(const SceneField&)>& wanted) const {
+  std::vector<const SceneField*> given;
+  for (const auto& [section, keys] : root_->items())
+    for (const auto& [key, value] : keys.items()) {
+      const SceneField& field = find(section, key);
+      if (wanted && !wanted(field)) continue;
+      const auto texts = fieldTexts(field, value, file_.parent_path(), fmt::format("scene '{}': {}", file_.string(), quoted(field)));
+      if (!texts.empty()) try {
+          field.read(description, texts);
+        } catch (const Error& error) {
+          failHere("{}", error.text());
+        }
+      for (const SceneField* other : given)
+        if (field.isOrExcludes(*other)) failHere("{} and {} exclude each other: keep one of them", quoted(field), quoted(*other));
+      given.push_back(&field);
+    }
+}
+
+SceneDescription readScene(const fs::path& file) {
+  SceneDescription description;
+  SceneFile(file).applyTo(description);
+  return description;
+}
+
+OrderedJson sceneToJson(const SceneDescription& description, const std::optional<fs::path>& folder) {
+  OrderedJson scene = OrderedJson::object();
+  for (const SceneField& field : sceneFields())
+    for (const std::string& text : field.texts(description)) {
+      OrderedJson& place = scene[field.section][field.key()];
+      if (field.repeated)
+        place.push_back(OrderedJson(jsonOf(field, text, folder)));
+      else
+        place = jsonOf(field, text, folder);
+    }
+  return scene;
+}
+
+void writeScene(const fs::path& file, const SceneDescription& description) {
+  writeTextAtomically(file, layOut(sceneToJson(description, fs::absolute(file).parent_path())) + "\n");
+}
+
+std::vector<std::string> fieldTexts(const SceneField& field, const Json& value, const fs::path& folder, const std::string& name) {
+  if (field.standsAlone && value.is_boolean())
+    return value.get<bool>() ? std::vector<std::string>{""} : std::vector<std::string>{};
+  if (!field.repeated) return {fieldText(field, value, folder, name)};
+  if (!value.is_array()) fail(ErrorKind::Input, "{} takes a list, not {}", name, inQuotes(value));
+  std::vector<std::string> texts;
+  for (const Json& one : value) texts.push_back(fieldText(field, one, folder, name));
+  return texts;
+}
+
+}  // namespace freevoxels

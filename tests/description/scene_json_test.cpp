@@ -1,0 +1,202 @@
+// Scene descriptions as JSON and back, and what is refused.
+
+#include "engine/description/scene_json.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/refusal.h"
+#include "tests/temporary_folder.h"
+
+namespace freevoxels::test {
+
+namespace {
+
+/// Gives every field that is not in others() a value other than its default. A grid and a mean may have names that look like numbers.
+SceneDescription everything(const TemporaryFolder& folder) {
+  SceneDescription scene;
+  scene.input = {.volume = "procedural:cloud", .grid = "density[1]", .resolution = glm::ivec3(20, 30, 40), .clipBox = VoxelBox{{1, 2, 3}, {4, 5, 6}}, .clipPlane = ClipPlane{{0.5, -1.0, 2.0}, {0.0, 1e-3, 1.0}}};
+  scene.classification = {.densityScale = 1.0 / 3.0, .albedo = glm::dvec3(0.1, 0.2, 0.3), .albedoGrid = "26", .order = ClassificationOrder::Pre};
+  scene.emission = {.emission = true, .strength = 0.1, .temperatureGrid = "98", .temperatureScale = 1e-7, .temperatureOffset = -5.0};
+  scene.camera = {.position = glm::dvec3(1e9, -2.5, 1.0 / 7.0), .lookAt = glm::dvec3(0.0), .up = glm::dvec3(0.0, 0.0, 1.0), .verticalFov = 33.3, .size = {640, 480}, .frames = 7};
+  scene.lighting = {.lights = {{.light = {.place = {1.0, 2.0, 3.0}, .color = {0.1, 1.0, 2.0}, .intensity = 7.5}, .hasIntensity = true},
+                               {.light = {.place = {-1.0, 0.0, 0.1}, .atInfinity = false}}},
+                    .ambient = glm::dvec3(0.1, 0.2, 0.3),
+                    .environment = (folder / "sky.exr").string(),
+                    .environmentRotation = 12.5,
+                    .environmentIntensity = 0.5,
+                    .tint = glm::dvec3(0.2, 5.0, 1.0),
+                    .phaseG = -0.5,
+                    .scattering = 4,
+                    .scatteringScale = 0.25,
+                    .attenuation = LightAttenuation::Exact,
+                    .shading = Shading::Gradient,
+                    .surface = 0.75,
+                    .unlit = true};
+  scene.method = {.paper = true,
+                  .draw = Draw::Splats,
+                  .composite = Composite::Sorted,
+                  .attenuation = AttenuationLookup::Nearest,
+                  .directions = DirectionSet::Directions98,
+                  .code = AttenuationCode::Linear8,
+                  .pathLengthCorrection = false,
+                  .gradient = true,
+                  .lod = 0.0,
+                  .culling = false,
+                  .cullThreshold = 0.001,
+                  .hierarchyFilter = HierarchyFilter::Arithmetic};
+  scene.output = {.background = glm::dvec3(0.0, 0.5, 1.0),
+                  .exposure = -1.5,
+                  .toneMap = ToneMap::Filmic,
+                  .fullFloat = true,
+                  .pngBits = PngBits::Sixteen,
+                  .aovs = {.depth = true, .normal = true},
+                  .crop = PixelRectangle{{1, 2}, {3, 4}}};
+  return scene;
+}
+
+/// The fields that exclude some of everything().
+SceneDescription others(const TemporaryFolder& folder) {
+  SceneDescription scene;
+  scene.input.volume = (folder / "a.vdb").string();
+  scene.classification.transferFunction = R"({"opacity":[[0,0],[1,0.5]]})";
+  scene.emission.emission = true;
+  scene.camera.orbit = glm::dvec2(10.0, -20.0);
+  scene.camera.orthographicHeight = 2.5;
+  scene.output.transparent = true;
+  return scene;
+}
+
+nlohmann::json jsonIn(const std::filesystem::path& file) {
+  return nlohmann::json::parse(readBytes(file));
+}
+
+}  // namespace
+
+TEST(SceneJson, DescriptionsSurviveTheWayToAFileAndBack) {
+  const TemporaryFolder folder;
+  for (const SceneDescription& scene : {everything(folder), others(folder), SceneDescription{}}) {
+    writeScene(folder / "s.json", scene);
+    EXPECT_EQ(readScene(folder / "s.json"), scene) << readBytes(folder / "s.json");
+  }
+}
+
+TEST(SceneJson, TheTestsAboveHaveEveryField) {
+  const TemporaryFolder folder;
+  const SceneDescription a = everything(folder), b = others(folder);
+  for (const SceneField& field : sceneFields())
+    EXPECT_TRUE(!field.texts(a).empty() || !field.texts(b).empty()) << field.section << "." << field.name;
+}
+
+TEST(SceneJson, FileNamesAreRelativeToTheFile) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "scenes");
+  writeScene(folder / "scenes/s.json", everything(folder));
+  EXPECT_EQ(jsonIn(folder / "scenes/s.json").at("light").at("environment"), "../sky.exr");
+  EXPECT_EQ(jsonIn(folder / "scenes/s.json").at("input").at("volume"), "procedural:cloud");
+  EXPECT_EQ(readScene(folder / "scenes/s.json").lighting.environment, (folder / "sky.exr").string());
+  EXPECT_EQ(sceneToJson(everything(folder), std::nullopt).at("light").at("environment"), (folder / "sky.exr").string());
+}
+
+TEST(SceneJson, ValuesMayBeTextsAsOnTheCommandLine) {
+  const TemporaryFolder folder;
+  writeBytes(folder / "s.json", R"({"camera": {"size": "640x420", "up": "0,0,1"}, "classification": {"albedo": "white"},
+      "light": {"lights": ["direction=1,0,0,intensity=2"], "ambient": 0.5}, "emission": {"emission": false}})");
+  const SceneDescription scene = readScene(folder / "s.json");
+  EXPECT_EQ(scene.camera.size, glm::ivec2(640, 420));
+  EXPECT_EQ(scene.camera.up, glm::dvec3(0.0, 0.0, 1.0));
+  EXPECT_EQ(scene.classification.albedo, glm::dvec3(1.0));
+  ASSERT_EQ(scene.lighting.lights.size(), 1u);
+  EXPECT_EQ(scene.lighting.lights[0].light.intensity, 2.0);
+  EXPECT_EQ(scene.lighting.ambient, glm::dvec3(0.5));
+  EXPECT_FALSE(scene.emission.emission);
+}
+
+TEST(SceneJson, WrongFilesAreRefusedByFileAndKey) {
+  const TemporaryFolder folder;
+  const auto expect = [&](const std::string& json, const std::string& part) {
+    SCOPED_TRACE(json);
+    writeBytes(folder / "s.json", json);
+    expectRefusal([&] { readScene(folder / "s.json"); }, ErrorKind::Input, {(folder / "s.json").string(), part});
+  };
+  expect("[]", "must be an object");
+  expect(R"({"camera": 5})", R"("camera" takes an object of keys, not 5)");
+  expect(R"({"camra": {}})", R"(there is no key "camra"; did you mean "camera"?)");
+  expect(R"({"camera": {"fob": 3}})", R"(there is no key "camera.fob"; did you mean "camera.fov"?)");
+  expect(R"({"light": {"fov": 3}})", R"(there is no key "light.fov"; did you mean "camera.fov"?)");
+  expect(R"({"camera": {"fov": true}})", R"("camera.fov" takes DEG, not true)");
+  expect(R"({"camera": {"fov": "wide"}})", "fov takes DEG, a finite number, not 'wide'");
+  expect(R"({"camera": {"up": [0, null, 1]}})", R"("camera.up" takes X,Y,Z, not [0,null,1])");
+  expect(R"({"camera": {"orbit": [1, 2], "camera-position": [1, 2, 3]}})", R"("camera.orbit" and "camera.camera-position" exclude each other)");
+  expect(R"({"method": {"culling": "no"}})", R"("method.culling" takes true or false, not "no")");
+  expect(R"({"method": {"draw": "sketch"}})", "draw takes 'auto' or 'gather' or 'splats', not 'sketch'");
+  expect(R"({"light": {"lights": {"direction": [1, 0, 0]}}})", R"("light.lights" takes a list)");
+  expect(R"({"light": {"lights": [{"direction": [0, 0, 0]}]}})", "points nowhere");
+  expect(R"({"output": {"aov": "z"}})", "aov takes depth, position, normal and transmittance");
+}
+
+TEST(SceneJson, AFieldOfAStrongerSourceReplacesWhatItExcludesAndStandsFor) {
+  const auto replaces = [](const char* stronger, const char* field) {
+    return isReplaced(sceneField(field), {&sceneField(stronger)});
+  };
+  EXPECT_TRUE(replaces("fov", "fov"));
+  EXPECT_TRUE(replaces("fov", "orthographic"));
+  EXPECT_TRUE(replaces("orthographic", "fov"));
+  EXPECT_TRUE(replaces("volume", "clip-box"));
+  EXPECT_FALSE(replaces("clip-box", "volume"));
+  EXPECT_TRUE(replaces("paper", "lod"));
+  EXPECT_FALSE(replaces("lod", "paper"));
+  EXPECT_FALSE(replaces("up", "fov"));
+}
+
+TEST(SceneDescription, WhatWasResolvedComesToTheSameAgain) {
+  SceneDescription scene;
+  scene.input = {.volume = "procedural:cloud", .resolution = glm::ivec3(16)};
+  scene.lighting.lights = {{.light = {.place = {1.0, 2.0, 3.0}, .atInfinity = false}}};
+  const auto volume = std::make_shared<const Volume>(scene.readVolume(1u << 20));
+  const Scene first = scene.resolve(volume);
+  const SceneDescription resolved = scene.resolved(first);
+  const Scene again = resolved.resolve(volume);
+  EXPECT_EQ(again.camera.position, first.camera.position);
+  EXPECT_EQ(again.camera.lookAt, first.camera.lookAt);
+  EXPECT_EQ(again.lighting, first.lighting);
+  EXPECT_EQ(again.classification.densityScale, first.classification.densityScale);
+  EXPECT_EQ(again.classification.albedo, first.classification.albedo);
+  EXPECT_EQ(resolved.resolved(again), resolved);
+  EXPECT_EQ(rendererText(resolved, again), rendererText(scene, first));
+}
+
+TEST(SceneDescription, ATurnKeepsItsOrbitInPlaceOfTheFirstFramesPosition) {
+  SceneDescription scene;
+  scene.input = {.volume = "procedural:cloud", .resolution = glm::ivec3(16)};
+  const auto volume = std::make_shared<const Volume>(scene.readVolume(1u << 20));
+  const SceneDescription turn = scene.resolvedTurn(scene.resolve(volume), 5);
+  EXPECT_FALSE(turn.camera.position || turn.camera.lookAt);
+  EXPECT_EQ(turn.camera.orbit, glm::dvec2(kDefaultAzimuth, kDefaultElevation));
+  EXPECT_EQ(turn.camera.frames, 5);
+  scene.camera.position = glm::dvec3(1.0, 2.0, 3.0);
+  EXPECT_EQ(scene.resolvedTurn(scene.resolve(volume), 5).camera.position, scene.camera.position);
+}
+
+TEST(SceneDescription, FieldsThatSayNothingAreRefusedByTheirParameters) {
+  const auto expect = [](const std::vector<std::string>& parameters, const auto& change) {
+    SceneDescription scene;
+    scene.input.volume = "procedural:cloud";
+    change(scene);
+    const Error error = errorOf([&] { scene.check(); });
+    EXPECT_EQ(error.kind(), ErrorKind::Usage) << error.what();
+    EXPECT_EQ(error.parameters(), parameters) << error.what();
+  };
+  expect({"grid"}, [](SceneDescription& scene) { scene.input.grid = "a"; });
+  expect({"albedo-grid"}, [](SceneDescription& scene) { scene.classification.albedoGrid = "a"; });
+  expect({"clip-box"}, [](SceneDescription& scene) { scene.input.clipBox = VoxelBox{{2, 0, 0}, {1, 1, 1}}; });
+  expect({"temperature-scale", "emission", "temperature-grid"}, [](SceneDescription& scene) { scene.emission.temperatureScale = 2.0; });
+  expect({"environment-rotation", "environment"}, [](SceneDescription& scene) { scene.lighting.environmentRotation = 2.0; });
+  expect({"surface-share", "shading"}, [](SceneDescription& scene) {
+    scene.lighting.surface = 0.5;
+    scene.lighting.shading = Shading::Scatter;
+  });
+}
+
+}  // namespace freevoxels::test
