@@ -290,6 +290,14 @@ void save(const std::filesystem::path& file, const Image& image, std::string_vie
   });
 }
 
+std::string loadScene(const std::filesystem::path& file) {
+  return translated([&] { return freevoxels::loadScene(file).dump(2, ' ', false, Json::error_handler_t::replace); });
+}
+
+void saveScene(const std::filesystem::path& file, std::string_view scene) {
+  translated([&] { freevoxels::saveScene(file, parseScene(scene)); });
+}
+
 std::string version() {
   return programVersion();
 }

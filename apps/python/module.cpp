@@ -52,12 +52,12 @@ PythonVolume volumeFromArray(const py::array& array, const std::variant<double, 
   return {std::make_shared<const Volume>(std::move(volume))};
 }
 
-PythonVolume volumeFromFile(const std::filesystem::path& file, const py::kwargs& keywords) {
+PythonVolume volumeFromFile(const std::optional<std::filesystem::path>& file, const py::kwargs& keywords) {
   const Json options = jsonOf(keywords);
   PythonVolume opened;
   {
     const py::gil_scoped_release withoutGil;
-    opened.volume = openVolume(file.string(), options);
+    opened.volume = openVolume(file ? file->string() : "", options);
   }
   warnInPython(*opened.volume);
   return opened;
@@ -94,6 +94,14 @@ void save(const std::filesystem::path& file, const py::array& image, const std::
   saveImage(file.string(), pixels, options);
 }
 
+py::object loadSceneFile(const std::filesystem::path& file) {
+  return pythonOf(loadScene(file));
+}
+
+void saveSceneFile(const std::filesystem::path& file, const py::kwargs& keywords) {
+  saveScene(file, jsonOf(keywords));
+}
+
 constexpr const char* kModuleText =
     "Renders volumes with shadows, on a GPU or on the CPU.\n\n"
     "    import freevoxels\n"
@@ -101,7 +109,8 @@ constexpr const char* kModuleText =
     "    freevoxels.save('image.png', image)\n\n"
     "An array has axes (z, y, x); spacing, origin and every other position are (x, y, z). Options are those of\n"
     "'freevoxels render --help', with _ in place of -: density_scale=40, orbit=(35, 25), light='direction=1,1,1',\n"
-    "transfer_function={...} or 'file.json', camera={'orbit': (35, 25), 'fov': 30}. Errors are freevoxels.Error, whose\n"
+    "transfer_function={...} or 'file.json', camera={'orbit': (35, 25), 'fov': 30}. A scene file is such keywords, too:\n"
+    "render(**load_scene('scene.json'), size=(800, 600)); what is given beside it wins. Errors are freevoxels.Error, whose\n"
     "parameters are the keywords that the sentence names.\n"
     "Remarks and warnings go to the logger 'freevoxels' of the module logging.";
 
@@ -114,8 +123,8 @@ void addVolume(py::module_& module) {
            "(x, y, z). origin: where the centre of voxel [0, 0, 0] is. transform: instead of both, a 4x4 affine matrix from\n"
            "(x, y, z, 1) in voxels to the world. NaN, and values equal to no_data, hold no data. temperature: an array of\n"
            "the same shape, for emission.")
-      .def_static("open", &volumeFromFile, "file"_a,
-                  "Reads an OpenVDB file, or makes 'procedural:NAME'. Options: grid, resolution, and those of a frame, of which\n"
+      .def_static("open", &volumeFromFile, "file"_a = py::none(),
+                  "Reads an OpenVDB file, or makes 'procedural:NAME'; without a file the volume of a scene. Options: grid, resolution, and those of a frame, of which\n"
                   "emission=True, temperature_grid and albedo_grid add grids to read.")
       .def_property_readonly("shape", [](const PythonVolume& v) {
         const glm::ivec3 size = v.volume->dimensions;
@@ -149,13 +158,13 @@ void addRenderer(py::module_& module) {
 }
 
 /// render(): takes the keywords of the volume out of those of the frame. A file is read with all keywords,
-/// since the scene decides which of its grids are needed.
+/// since the scene decides which of its grids are needed. Without a source it is the file of the scene.
 py::object renderOnce(const py::object& source, const py::object& progress, bool depth, py::kwargs keywords) {
   const py::object type = py::type::of<PythonVolume>();
   py::object volume = source;
-  const bool isFile = py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__");
+  const bool isFile = source.is_none() || py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__");
   const std::vector<const char*> taken =
-      isFile ? std::vector{"grid", "resolution"} : std::vector{"spacing", "origin", "transform", "no_data", "temperature"};
+      isFile ? std::vector{"grid", "resolution", "clip_box"} : std::vector{"spacing", "origin", "transform", "no_data", "temperature"};
   if (!py::isinstance<PythonVolume>(source)) {
     py::dict given = isFile ? py::dict(keywords.attr("copy")()) : py::dict();
     for (const char* key : taken)
@@ -175,9 +184,14 @@ PYBIND11_MODULE(freevoxels, module) {
   addExceptions(module);
   addVolume(module);
   addRenderer(module);
-  module.def("render", &renderOnce, "volume"_a, py::kw_only(), "progress"_a = py::none(), "depth"_a = false,
+  module.def("render", &renderOnce, "volume"_a = py::none(), py::kw_only(), "progress"_a = py::none(), "depth"_a = false,
              "Renders an array, a file or a Volume once, as Renderer(...).render() does. Also takes the keywords of Volume for an\n"
-             "array, and those of Volume.open for a file.");
+             "array, and those of Volume.open for a file. Without a volume it is that of the scene: render(**load_scene('a.json')).");
+  module.def("load_scene", &loadSceneFile, "file"_a,
+             "Reads a scene file, which the command line, the viewer or save_scene wrote: a dictionary of sections, which are keywords\n"
+             "of render, Volume.open, Renderer and save. File names become absolute.");
+  module.def("save_scene", &saveSceneFile, "file"_a,
+             "Writes options, sections or a whole scene as a scene file for the command line and the viewer.");
   module.def("save", &save, "file"_a, "image"_a, py::kw_only(), "depth"_a = py::none(),
              "Writes an image to a .png, 8-bit sRGB over a background, or to an .exr, linear, which may have depth. Options:\n"
              "background, exposure, tone_map, float.");

@@ -88,6 +88,30 @@ TEST(Library, SavesWhatItDrew) {
   EXPECT_GT(std::filesystem::file_size(folder.path() / "a.exr"), 0u);
 }
 
+TEST(Library, ScenesAreWrittenToFilesAndReadBack) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "scene.json";
+  v1::saveScene(file, R"({"volume": "procedural:cloud", "resolution": 24, "camera": {"size": [48, 40], "fov": 20}, "fov": 30,
+                          "output": {"background": [0.1, 0.2, 0.3]}})");
+  const std::string scene = v1::loadScene(file);
+  EXPECT_NE(scene.find(R"("fov": 30)"), std::string::npos) << scene;
+  const v1::Image image = v1::Renderer(v1::Volume::open("", scene), scene).render();
+  const v1::Volume same = v1::Volume::open("procedural:cloud", R"({"resolution": 24})");
+  EXPECT_EQ(image.pixels, v1::Renderer(same, R"({"size": [48, 40], "fov": 30})").render().pixels);
+  v1::save(folder.path() / "a.png", image, scene);
+
+  test::writeBytes(file, R"({"camera": {"fob": 3}})");
+  expectError(v1::ErrorKind::Input, R"(no key "camera.fob"; did you mean "camera.fov"?)", [&] { v1::loadScene(file); });
+  expectError(v1::ErrorKind::Usage, "there is no volume to open", [] { v1::Volume::open(""); }, {"volume"});
+  expectError(v1::ErrorKind::Output, "there is no folder", [] { v1::saveScene("/none/s.json", "{}"); });
+}
+
+TEST(Library, AFramesKeysReplaceWhatTheyExcludeAndSectionsGiveWay) {
+  v1::Renderer renderer(cloud(), R"({"camera": {"camera-position": [2, 1, 3], "size": [48, 40]}, "density-scale": 20})");
+  v1::Renderer separate(cloud(), R"({"size": [48, 40], "density-scale": 20, "orbit": [90, 10]})");
+  EXPECT_EQ(renderer.render(R"({"orbit": [90, 10]})").pixels, separate.render().pixels);
+}
+
 TEST(Library, ErrorsNameWhatIsWrong) {
   using enum v1::ErrorKind;
   const auto render = [](const char* scene) { return [scene] { v1::Renderer(cloud(), scene).render(); }; };

@@ -169,6 +169,32 @@ class FilesTest(unittest.TestCase):
         expected = freevoxels.render("procedural:fire", resolution=24, emission=5, fov=30, size=(48, 40))
         np.testing.assert_array_equal(image, expected)
 
+    def test_scenes_are_exchanged_with_the_command_line(self):
+        file = self.folder / "scene.json"
+        scene = {"input": {"volume": "procedural:cloud", "resolution": 24}, "camera": {"orbit": (10, 20), "size": (48, 40), "fov": 20},
+                 "light": {"lights": [{"direction": (1, 1, 0), "intensity": 3}]}, "output": {"background": (0.1, 0.2, 0.3)}}
+        freevoxels.save_scene(file, fov=30, **scene)
+        loaded = freevoxels.load_scene(file)
+        self.assertEqual(loaded["camera"], {"orbit": [10, 20], "size": [48, 40], "fov": 30})
+        freevoxels.save(self.folder / "ours.png", freevoxels.render(**loaded), **loaded)
+        made = self.command("render", "--scene", file, self.folder / "theirs.png", "--save-scene", self.folder / "resolved.json")
+        self.assertEqual(made.returncode, 0, made.stderr)
+        self.assertEqual((self.folder / "ours.png").read_bytes(), (self.folder / "theirs.png").read_bytes())
+
+        resolved = freevoxels.load_scene(self.folder / "resolved.json")
+        renderer = freevoxels.Renderer(freevoxels.Volume.open(**resolved), **resolved)
+        np.testing.assert_array_equal(renderer.render(), freevoxels.render(**loaded))
+
+    def test_wrong_scenes_are_named(self):
+        file = self.folder / "scene.json"
+        file.write_text('{"camera": {"fob": 3}}')
+        with self.assertRaisesRegex(freevoxels.InputError, 'no key "camera.fob"; did you mean "camera.fov"'):
+            freevoxels.load_scene(file)
+        with self.assertRaisesRegex(freevoxels.UsageError, "did you mean 'fov'"):
+            freevoxels.save_scene(file, fob=3)
+        with self.assertRaisesRegex(freevoxels.UsageError, "there is no volume to open"):
+            freevoxels.render(camera={"fov": 30})
+
     def test_png_is_that_of_the_command(self):
         options = dict(resolution=24, size=(48, 40))
         freevoxels.save(self.folder / "ours.png", freevoxels.render("procedural:fire", emission=True, **options), background=(0.1, 0.2, 0.3), exposure=-1)

@@ -4,7 +4,9 @@
 // A scene is JSON text with the keys of a scene file, or the options of `freevoxels render` by name (with -
 // or _), in any mixture:
 //   {"camera": {"orbit": [35, 25], "fov": 30}, "density-scale": 40, "light": {"direction": [1, 1, 1]}, "size": [800, 600]}
-// Keys that are left out have the command line's defaults. The images equal the command line's bit for bit.
+// Keys outside of sections override those inside. Keys that are left out have the command line's defaults. The images equal the
+// command line's bit for bit. A whole scene file (loadScene) may be given everywhere: a function ignores sections that it cannot use,
+// such as "output" where an image is drawn. Keys outside of sections that it cannot use are errors.
 //
 // Threads: any thread may call any function, with these exceptions. An object must not be assigned to, moved from or destroyed
 // while another thread uses it; frames of one device are drawn one after another.
@@ -100,7 +102,7 @@ struct Placement {
 /// A volume in memory. Copies share its data.
 class FREEVOXELS_API Volume {
  public:
-  /// Reads an OpenVDB file, or makes "procedural:NAME". `scene` has the grid, the resolution, and the scene
+  /// Reads an OpenVDB file, or makes "procedural:NAME"; if `file` is empty, that of the scene's key "volume". `scene` has the grid, the resolution, and the scene
   /// of later frames, of which emission, temperature-grid and albedo-grid decide what other grids are read.
   /// A volume larger than the device can hold is refused; a baked volume is opened at a lower resolution then.
   static Volume open(const Context& context, const std::filesystem::path& file, std::string_view scene = "{}");
@@ -191,6 +193,12 @@ class FREEVOXELS_API Renderer {
 /// Writes a .png (8-bit sRGB over a background) or an .exr (linear, with depth if the image has it),
 /// atomically. `scene` has background, exposure, tone-map and float.
 FREEVOXELS_API void save(const std::filesystem::path& file, const Image& image, std::string_view scene = "{}");
+
+/// Reads a scene file, which the command line, the viewer or saveScene() wrote, or a person: the text of a scene, with absolute
+/// names of files. Fails with ErrorKind::Input and a sentence that names the file and the key.
+FREEVOXELS_API std::string loadScene(const std::filesystem::path& file);
+/// Writes a scene as a file for the command line and the viewer, with names of files relative to its folder, atomically.
+FREEVOXELS_API void saveScene(const std::filesystem::path& file, std::string_view scene);
 
 /// The version, such as "0.1.0".
 FREEVOXELS_API std::string version();
