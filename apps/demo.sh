@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From nothing to a picture: sets up, builds, and draws a volume into out/.
+# From nothing to an image: sets up, builds, and draws a volume into out/.
 #   bash apps/demo.sh                                   a procedural cloud, written to out/cloud.vdb first
 #   bash apps/demo.sh FILE.vdb [RENDER OPTIONS...]      your volume; options as in `freevoxels render --help`
 set -euo pipefail
@@ -24,4 +24,4 @@ name="$(basename "${input#procedural:}")"
 name="${name%.*}"
 echo "demo: drawing $input"
 "$freevoxels" render "$input" "$out/$name.exr" "$out/$name.png" "$@"
-echo "demo: the pictures are the files above"
+echo "demo: the images are the files above"

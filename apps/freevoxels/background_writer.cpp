@@ -9,7 +9,7 @@ void BackgroundWriter::start(std::function<void()> write) {
   running_ = std::async([write = std::move(write)] {
     std::vector<StageTime> times;
     {
-      const StageTimer timer(times, "write pictures");
+      const StageTimer timer(times, "write images");
       write();
     }
     return times;

@@ -17,7 +17,7 @@ class BackgroundWriter {
   void start(std::function<void()> write);
   /// Waits for the last task. Rethrows its exception.
   void finish();
-  /// The total time of the complete tasks, as the stage "write pictures".
+  /// The total time of the complete tasks, as the stage "write images".
   const std::vector<StageTime>& times() const { return times_; }
 
  private:

@@ -98,7 +98,7 @@ void printTable(const Comparison& comparison) {
                 comparison.metrics.maximum > 0.0
                     ? fmt::format("pixel ({}, {}), channel {}", where.pixel.x, where.pixel.y,
                                   kChannels[std::size_t(where.channel)])
-                    : "the pictures are equal"},
+                    : "the images are equal"},
                {"LDR-FLIP", fmt::format("{:.6f}", comparison.ldrFlip), "mean"},
                {"HDR-FLIP", fmt::format("{:.6f}", comparison.hdrFlip),
                 fmt::format("mean, {} exposures from {:+.2f} to {:+.2f} stops", exposures.count,
@@ -195,14 +195,14 @@ void CompareCommand::run() const {
     fail(ErrorKind::Usage, "--exposures START,STOP must not end before it starts");
   if (difference_) {
     if (!isExr(*difference_) && !isPng(*difference_))
-      fail(ErrorKind::Usage, "'{}' has no known picture extension; name it .exr or .png", *difference_);
+      fail(ErrorKind::Usage, "'{}' has no known image extension; name it .exr or .png", *difference_);
     checkDistinct({test_, *difference_});
     checkDistinct({reference_, *difference_});
     checkOutput(*difference_);
   }
   const Image test = readFinite(test_), reference = readFinite(reference_);
   if (test.size != reference.size)
-    fail(ErrorKind::Input, "'{}' has {}x{} pixels, '{}' {}x{}: only pictures of the same size compare", test_,
+    fail(ErrorKind::Input, "'{}' has {}x{} pixels, '{}' {}x{}: only images of the same size compare", test_,
          test.size.x, test.size.y, reference_, reference.size.x, reference.size.y);
   const Comparison comparison = compare(test, reference, background_.value_or(glm::dvec3(0.0)),
                                         pixelsPerDegree_.value_or(kDefaultPixelsPerDegree), exposures_);

@@ -212,7 +212,7 @@ std::map<std::string, std::string> FrameSeries::facts() const {
   return facts;
 }
 
-/// Fails where the processes of the group would not draw parts of one picture.
+/// Fails where the processes of the group would not draw parts of one image.
 void FrameSeries::agree(const Scene& view, const fvx::FvxFile* file) {
   if (options_.drawsShares()) {
     const bool hasEnvironment = view.lighting && view.lighting->environment;
@@ -355,7 +355,7 @@ void FrameSeries::drawShares(AnyRenderer& renderer, const Scene& view, const Fra
                  })};
   } else if (options_.shares.sums) {
     const DeferredInterrupts wholeFile;
-    const StageTimer timer(report_.stages, "write pictures");
+    const StageTimer timer(report_.stages, "write images");
     writeSums(frame.files.front(), sums, imageHeader(options_.scene.description, view, "render", describe(view, frame.input), facts()));
     printNames(frame);
   } else {

@@ -16,14 +16,14 @@ namespace freevoxels {
 namespace {
 
 constexpr const char* kExamples =
-    "PARTs are written by 'freevoxels render --share I/N --sums'; the first name that is no such file, and all behind it, are pictures "
+    "PARTs are written by 'freevoxels render --share I/N --sums'; the first name that is no such file, and all behind it, are images "
     "to\nwrite. Parts of different N can be mixed, as long as they have each share once.\n"
     "Examples:\n"
     "  freevoxels render cloud.vdb part_0.exr --share 0/2 --sums\n"
     "  freevoxels render cloud.vdb part_1.exr --share 1/2 --sums\n"
     "  freevoxels merge part_0.exr part_1.exr cloud.png cloud.exr\n";
 
-/// Header entries in which parts of one picture may differ: where they were drawn, from which copy of the volume, and their shares.
+/// Header entries in which parts of one image may differ: where they were drawn, from which copy of the volume, and their shares.
 const std::set<std::string> kMayDiffer{"freevoxels:share", "freevoxels:command", "freevoxels:device", "freevoxels:driver",
                                        "freevoxels:input", "freevoxels:volume"};
 
@@ -42,7 +42,7 @@ class Merge {
   const ExrOptions& header() const { return total_.header; }
 
  private:
-  void checkSamePicture(const std::string& file, const SumsFile& part) const;
+  void checkSameImage(const std::string& file, const SumsFile& part) const;
 
   std::string firstFile_;
   SumsFile total_;
@@ -50,9 +50,9 @@ class Merge {
   int leastCount_ = kShares;  ///< of the N of the parts
 };
 
-void Merge::checkSamePicture(const std::string& file, const SumsFile& part) const {
+void Merge::checkSameImage(const std::string& file, const SumsFile& part) const {
   const auto refuse = [&](const std::string& what) {
-    fail(ErrorKind::Input, "'{}' and '{}' are parts of different pictures: {}; render one of them again", firstFile_, file, what);
+    fail(ErrorKind::Input, "'{}' and '{}' are parts of different images: {}; render one of them again", firstFile_, file, what);
   };
   const auto compare = [&](const std::string& name, const std::string& what) {
     const std::string mine = valueOf(total_.header, name), other = valueOf(part.header, name);
@@ -77,7 +77,7 @@ void Merge::add(const std::string& file) {
   if (firstFile_.empty())
     firstFile_ = file;
   else
-    checkSamePicture(file, part);
+    checkSameImage(file, part);
   leastCount_ = std::min(leastCount_, shares.count);
   for (int share = 0; share < kShares; ++share) {
     if (!shares.holds(share)) continue;
@@ -117,8 +117,8 @@ ExrOptions imageHeaderOf(const Merge& merge, const OutputDescription& output) {
 }  // namespace
 
 void MergeCommand::add(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("merge", "Add up the parts of a picture that were rendered share by share");
-  command->add_option("PART... OUT", files_, "Files of sums, then pictures to write: .exr (linear, premultiplied) or .png (sRGB)")
+  CLI::App* command = app.add_subcommand("merge", "Add up the parts of an image that were rendered share by share");
+  command->add_option("PART... OUT", files_, "Files of sums, then images to write: .exr (linear, premultiplied) or .png (sRGB)")
       ->required();
   scene_.addSection(*command, "output");
   messages_.add(*command);
@@ -135,13 +135,13 @@ void MergeCommand::run() const {
   };
   const auto firstOutput = std::ranges::find_if_not(files_, isPart);
   if (firstOutput == files_.begin())
-    fail(ErrorKind::Usage, "'{}' is no file of sums: name the files that 'freevoxels render --share I/N --sums' wrote, then pictures",
+    fail(ErrorKind::Usage, "'{}' is no file of sums: name the files that 'freevoxels render --share I/N --sums' wrote, then images",
          files_.front());
-  if (firstOutput == files_.end()) fail(ErrorKind::Usage, "OUT is required: name a picture to write behind the parts, .exr or .png");
+  if (firstOutput == files_.end()) fail(ErrorKind::Usage, "OUT is required: name an image to write behind the parts, .exr or .png");
   const OutputDescription& output = scene_.description.output;
   const std::span<const std::string> images = std::span(files_).subspan(std::size_t(firstOutput - files_.begin()));
   for (const std::string& file : images)
-    if (isPart(file)) fail(ErrorKind::Usage, "'{}' holds sums and would be replaced: name all parts before the pictures", file);
+    if (isPart(file)) fail(ErrorKind::Usage, "'{}' holds sums and would be replaced: name all parts before the images", file);
   checkOutputs(output, images);
 
   Merge merge;

@@ -47,7 +47,7 @@ Environment readEnvironment(const std::filesystem::path& file) {
   const Image image = readExr(file, kMaximumPixels);
   if (image.size.x != 2 * image.size.y)
     fail(ErrorKind::Input,
-         "environment '{}' has {}x{} pixels, and a lat-long picture is twice as wide as high: choose one",
+         "environment '{}' has {}x{} pixels, and a latitude-longitude image is twice as wide as high: choose one",
          file.string(), image.size.x, image.size.y);
   Environment environment{.size = image.size, .radiance = {}};
   environment.radiance.reserve(image.pixels.size());

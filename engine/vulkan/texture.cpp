@@ -17,7 +17,7 @@ constexpr std::uint64_t kTexelBytes = 4;
 Texture::Texture(const Device& device, glm::ivec2 size, const char* name) : size_(size) {
   const std::uint32_t most = device.limits().maxImageDimension2D;
   if (std::uint32_t(size.x) > most || std::uint32_t(size.y) > most)
-    fail(ErrorKind::OutOfMemory, "{} takes no picture of {}x{} pixels, only up to {} along an edge",
+    fail(ErrorKind::OutOfMemory, "{} takes no image of {}x{} pixels, only up to {} along an edge",
          device.description().name, size.x, size.y, most);
   ImageParts parts = makeImageParts(device, size, VK_FORMAT_R8G8B8A8_UNORM,
                                     VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |

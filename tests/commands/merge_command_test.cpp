@@ -75,7 +75,7 @@ TEST_F(MergeCommandTest, NamesThatAreNoPartsOrNoPicturesAreRefused) {
   expectSuccess(run("render " + std::string(kScene) + "@picture.exr"));
   expectCleanRefusal("merge @p0.exr @p1.exr", ExitCode::Usage, "OUT is required");
   expectCleanRefusal("merge @picture.exr @p1.exr @a.png", ExitCode::Usage, "picture.exr");
-  expectCleanRefusal("merge @p0.exr @a.png @p1.exr", ExitCode::Usage, "name all parts before the pictures");
+  expectCleanRefusal("merge @p0.exr @a.png @p1.exr", ExitCode::Usage, "name all parts before the images");
   expectCleanRefusal("merge @p0.exr @p1.exr @a.tif", ExitCode::Usage, "a.tif");
   const std::string bytes = readBytes(folder / "p1.exr");
   writeBytes(folder / "p1.exr", bytes.substr(0, bytes.size() - 100));

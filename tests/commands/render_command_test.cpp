@@ -301,7 +301,7 @@ TEST_F(RenderCommand, VerboseShowsOptionsAndStages) {
   const ProgramResult result = run(std::string("render procedural:cloud @a.png --verbose") + kSmall);
   expectSuccess(result);
   for (const char* word : {"--density-scale", "--camera-position", "--size", "64x48", "read volume",
-                           "write pictures", "device ms", "total"})
+                           "write images", "device ms", "total"})
     EXPECT_NE(result.err.find(word), std::string::npos) << word << " should be in\n" << result.err;
 }
 

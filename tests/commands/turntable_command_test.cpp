@@ -100,7 +100,7 @@ TEST_F(TurntableCommand, TimingsSumTheFrames) {
   EXPECT_EQ(json.at("options").at("frames"), "3");
   std::vector<std::string> names;
   for (const auto& stage : json.at("stages")) names.push_back(stage.at("name"));
-  for (const char* once : {"bricks", "gather", "write pictures"})
+  for (const char* once : {"bricks", "gather", "write images"})
     EXPECT_EQ(std::ranges::count(names, once), 1) << once;
 }
 
