@@ -66,36 +66,7 @@ Progress prefixed(const Progress& progress, const std::string& prefix) {
   };
 }
 
-/// How many frames at the beginning are of one volume.
-std::size_t framesOfFirstVolume(std::span<const Frame> frames) {
-  const auto other = std::ranges::find_if(frames, [&](const Frame& frame) { return frame.input != frames.front().input; });
-  return std::size_t(other - frames.begin());
-}
-
-std::vector<std::string> volumesOf(std::span<const Frame> frames) {
-  std::vector<std::string> volumes;
-  for (; !frames.empty(); frames = frames.subspan(framesOfFirstVolume(frames))) volumes.push_back(frames.front().input);
-  return volumes;
-}
-
 }  // namespace
-
-VolumesAhead::VolumesAhead(std::vector<std::string> inputs, Read read) : inputs_(std::move(inputs)), read_(std::move(read)) {
-  readNext();
-}
-
-void VolumesAhead::readNext() {
-  if (begun_ == inputs_.size()) return;
-  pending_ = std::async(std::launch::async, read_, inputs_[begun_]);
-  ++begun_;
-}
-
-std::shared_ptr<const Volume> VolumesAhead::next() {
-  pending_.wait();
-  std::future<std::shared_ptr<const Volume>> read = std::move(pending_);
-  readNext();
-  return read.get();
-}
 
 FrameSeries::FrameSeries(const RenderOptions& options, const Device& device, RunReport& report)
     : options_(options), device_(device), report_(report), line_(!options.messages.quiet && options.leads()) {}

@@ -1,7 +1,6 @@
 #pragma once
 // Draws the frames of a command on one device: one volume seen by one camera or by those of a turn, or the volumes of a film.
 
-#include <functional>
 #include <future>
 #include <map>
 #include <memory>
@@ -14,29 +13,11 @@
 #include "apps/freevoxels/progress_line.h"
 #include "apps/freevoxels/region_choice.h"
 #include "apps/freevoxels/render_options.h"
+#include "apps/freevoxels/volumes_ahead.h"
 #include "engine/image/fixed_sums.h"
 #include "engine/renderer.h"
 
 namespace freevoxels {
-
-/// Reads the volumes of frames in their order, each one while the one before it is drawn: two of them are in memory.
-class VolumesAhead {
- public:
-  using Read = std::function<std::shared_ptr<const Volume>(const std::string& input)>;
-  /// `read` reads a volume, in a thread of its own.
-  VolumesAhead(std::vector<std::string> inputs, Read read);
-
-  /// The next volume. Throws what reading it threw, and can be called again for the one after it.
-  std::shared_ptr<const Volume> next();
-
- private:
-  void readNext();
-
-  const std::vector<std::string> inputs_;
-  const Read read_;
-  std::size_t begun_ = 0;  ///< how many volumes are read or being read
-  std::future<std::shared_ptr<const Volume>> pending_;
-};
 
 class FrameSeries {
  public:
