@@ -352,9 +352,9 @@ VolumeMemory RegionRenderer::memory() const {
   return state_->memoryOfLargest();
 }
 
-std::vector<std::vector<std::uint8_t>> RegionRenderer::downloadTable(const RegionEntry& region) {
-  const DeviceRegion& loaded = state_->onDevice(region);
-  return freevoxels::downloadTable(state_->device, loaded.built.volume, loaded.table);
+std::vector<std::vector<std::uint8_t>> downloadTable(RegionRenderer& renderer, const RegionEntry& region) {
+  const DeviceRegion& loaded = renderer.state_->onDevice(region);
+  return downloadTable(renderer.state_->device, loaded.built.volume, loaded.table);
 }
 
 }  // namespace freevoxels

@@ -58,10 +58,9 @@ class RegionRenderer {
   std::optional<std::uint64_t> occupiedVoxelCount() const { return {}; }
   CutCounts cutCounts() const { return {}; }
   bool lackedRoomForRays() const { return false; }
-  /// The table of a region, bytes [direction][voxel of the region with its halo]. For tests.
-  std::vector<std::vector<std::uint8_t>> downloadTable(const fvx::RegionEntry& region);
 
  private:
+  friend std::vector<std::vector<std::uint8_t>> downloadTable(RegionRenderer& renderer, const fvx::RegionEntry& region);
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -56,30 +56,6 @@ Image downloadImage(const Device& device, const SplatTargets& targets) {
           .depth = targets.distance.exists() ? distance.read<float>() : std::vector<float>()};
 }
 
-std::vector<SplatSums> Renderer::renderSums(const Camera& camera, const FrameSettings& settings) {
-  FV_CHECK_EQ(settings.composite == Composite::Sorted, false);
-  checkCamera(camera);
-  checkFrameFits(state_->device, settings);
-  State& state = *state_;
-  Commands commands(state.device);
-  FrameSettings whole = settings;
-  whole.cullThreshold = 0.0f;
-  const State::Frame frame = state.recordSplats(commands, camera, whole);
-  commands.beginPass("read back");
-  const SumsReadback sums(state.device, commands, *frame.targets);
-  commands.submitAndWait();
-  addTimes(state.frameTimes, commands.times());
-  return sums.read(frame.constants);
-}
-
-GatherStages Renderer::renderGatherStages(const Camera& camera, const FrameSettings& settings) {
-  FV_CHECK_EQ(int(settings.draw), int(Draw::Gather));
-  Image image = render(camera, settings);
-  GatherStages stages = downloadGatherStages(state_->device, state_->built, *state_->gatherVolume, *state_->gather);
-  stages.image = std::move(image);
-  return stages;
-}
-
 FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& wanted, const SharePart& part, const Progress& progress) {
   FV_CHECK_EQ(wanted.composite == Composite::Sorted, false);
   FV_CHECK_LT(part.index, part.count);
@@ -112,24 +88,6 @@ bool Renderer::lackedRoomForRays() const {
   return state_->lastLackedRays;
 }
 
-std::vector<float> Renderer::downloadExtinction() const {
-  const LevelData voxels = downloadMedium(state_->device, state_->builtWithBlocks().volume, 0);
-  return {voxels.extinction.begin(), voxels.extinction.end()};
-}
-
-std::vector<glm::dvec3> Renderer::downloadEmission() const {
-  return downloadMedium(state_->device, state_->builtWithBlocks().volume, 0).emission;
-}
-
-std::vector<std::vector<std::uint8_t>> Renderer::downloadTable() const {
-  return freevoxels::downloadTable(state_->device, state_->builtWithBlocks().volume, state_->sweptTable());
-}
-
-RayCodes Renderer::downloadRays(const Camera& camera) const {
-  RaySweep sweep(state_->device);
-  return sweep.sweep(state_->builtWithBlocks().volume, eyeSource(camera, state_->built.volume.indexToWorld));
-}
-
 CutCounts Renderer::cutCounts() const {
   if (state_->lastDrawn == nullptr) return {};
   if (state_->lastWasCut) return state_->cutter->counts();
@@ -137,33 +95,6 @@ CutCounts Renderer::cutCounts() const {
   counts.drawn.push_back(downloadBlockCount(state_->device, *state_->lastDrawn));
   counts.considered = counts.drawn.back();
   return counts;
-}
-
-std::vector<Block> Renderer::downloadDrawnBlocks() const {
-  std::vector<Block> blocks;
-  if (state_->lastDrawn == nullptr) return blocks;
-  for (const std::uint32_t index : freevoxels::downloadBlockList(state_->device, *state_->lastDrawn))
-    blocks.push_back(state_->built.volume.hierarchy.blockAt(index));
-  return blocks;
-}
-
-std::vector<LevelData> Renderer::downloadLevels() const {
-  const AttenuationTable& table = state_->tableWithLevels();
-  std::vector<LevelData> levels;
-  for (int level = 1; level <= state_->built.volume.hierarchy.top(); ++level) {
-    LevelData data = downloadMedium(state_->device, state_->built.volume, level);
-    data.table = freevoxels::downloadTable(state_->device, state_->built.volume, table, level);
-    data.bounds = downloadBounds(state_->device, state_->built.volume, table, level);
-    levels.push_back(std::move(data));
-  }
-  return levels;
-}
-
-std::vector<std::uint32_t> Renderer::downloadBlockList() const {
-  std::vector<std::uint32_t> voxels =
-      freevoxels::downloadBlockList(state_->device, state_->builtWithBlocks().visible);
-  for (std::uint32_t& voxel : voxels) voxel = state_->built.volume.layout.unpaddedIndex(voxel);
-  return voxels;
 }
 
 }  // namespace freevoxels

@@ -9,16 +9,12 @@
 #include "engine/core/stages.h"
 #include "engine/image/fixed_sums.h"
 #include "engine/image/image.h"
-#include "engine/gathering/gather_stages.h"
 #include "engine/memory_planner.h"
 #include "engine/octree/hierarchy_layout.h"
-#include "engine/octree/level_data.h"
 #include "engine/splatting/shares.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/render_settings.h"
-#include "engine/scene/source_rays.h"
 #include "engine/splatting/frame_targets.h"
-#include "engine/splatting/splat_sums.h"
 #include "engine/visibility/cut_pass.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
@@ -52,15 +48,6 @@ class Renderer {
   std::shared_ptr<const SplatTargets> renderOnDevice(const Camera& camera, const FrameSettings& settings,
                                                      const Progress& progress = {});
 
-  /// The sums of every pixel, top row first, which render() resolves. `settings.composite` must not be
-  /// Sorted. Sums of the parts of a volume add up to those of the whole; therefore no hidden blocks are left
-  /// out.
-  std::vector<SplatSums> renderSums(const Camera& camera, const FrameSettings& settings);
-
-  /// What render() makes by gathering, with the stages before the image: for tests and validation. `settings` must be drawn by
-  /// gathering.
-  GatherStages renderGatherStages(const Camera& camera, const FrameSettings& settings);
-
   /// The sums of the shares of a part in fixed point: those of all parts add up to the same bits, however many parts there are, on
   /// devices of one kind. resolveSums makes the image. Drawn as render() would, by gathering or by splats, with nothing left out as
   /// hidden. `settings.composite` must not be Sorted. Fails with ErrorKind::OutOfMemory.
@@ -77,23 +64,9 @@ class Renderer {
   /// Whether the last frame used Bilinear for Auto only because the device lacks memory for rays from the
   /// eye.
   bool lackedRoomForRays() const;
-  /// Extinction per world unit, voxels x fastest without padding. For tests and validation, like all
-  /// functions below.
-  std::vector<float> downloadExtinction() const;
-  /// Emission of the voxels, in the same order; empty if there is none.
-  std::vector<glm::dvec3> downloadEmission() const;
-  /// The attenuation table: bytes [direction][voxel], voxels x fastest without padding.
-  std::vector<std::vector<std::uint8_t>> downloadTable() const;
-  /// Depths along rays from the camera's eye. Fails with ErrorKind::OutOfMemory.
-  RayCodes downloadRays(const Camera& camera) const;
-  /// Indices (Volume::at) of the occupied voxels, in the order in which they are drawn.
-  std::vector<std::uint32_t> downloadBlockList() const;
-  /// The blocks that the last frame drew, in that order, if it was not sorted.
-  std::vector<Block> downloadDrawnBlocks() const;
-  /// The levels above the voxels; the first has blocks of 2³ voxels.
-  std::vector<LevelData> downloadLevels() const;
 
  private:
+  friend class RendererStages;  // renderer_stages.h
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -1,5 +1,5 @@
 #pragma once
-// What a Renderer keeps between frames, and the stages of a frame. Only renderer.cpp and renderer_frames.cpp include it.
+// What a Renderer keeps between frames, and the stages of a frame. Only renderer*.cpp include it.
 
 #include <memory>
 #include <optional>

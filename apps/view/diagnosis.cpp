@@ -7,6 +7,7 @@
 #include <unordered_set>
 
 #include "engine/core/error.h"
+#include "engine/renderer_stages.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels {
@@ -59,7 +60,7 @@ Image greyImage(const std::vector<SplatSums>& sums, glm::ivec2 size, double (*br
 Image sumsImage(Shown shown, Renderer& renderer, const Camera& camera, const FrameSettings& settings) {
   FrameSettings ordered = settings;
   if (ordered.composite == Composite::Sorted) ordered.composite = Composite::Normalised;  // which has no sums
-  const std::vector<SplatSums> sums = renderer.renderSums(camera, ordered);
+  const std::vector<SplatSums> sums = RendererStages(renderer).renderSums(camera, ordered);
   if (shown == Shown::Transmittance)
     return greyImage(
         sums, settings.size, [](const SplatSums& pixel) { return std::exp(-pixel.depth); }, 1.0);
@@ -74,13 +75,13 @@ Image blocksImage(const std::optional<Camera>& chosenFor, Renderer& renderer, co
   FrameSettings splats = settings;
   splats.draw = Draw::Splats;  // the gather chooses no blocks
   renderer.render(chosenFor.value_or(camera), splats);
-  const std::vector<Block> drawn = renderer.downloadDrawnBlocks();
+  const std::vector<Block> drawn = RendererStages(renderer).downloadDrawnBlocks();
   std::vector<PaintedBlock> painted;
   for (const Block& block : drawn) painted.push_back({block, levelColor(block.level)});
   if (chosenFor) {
     std::vector<Block> voxels;
     const glm::ivec3 size = volume.dimensions;
-    for (const std::uint32_t index : renderer.downloadBlockList()) {
+    for (const std::uint32_t index : RendererStages(renderer).downloadBlockList()) {
       const int row = int(index / std::uint32_t(size.x));
       voxels.push_back({0, {int(index % std::uint32_t(size.x)), row % size.y, row / size.y}});
     }
@@ -191,7 +192,7 @@ void Diagnoser::reset() {
 }
 
 const std::vector<std::vector<std::uint8_t>>& Diagnoser::codes(Renderer& renderer) {
-  if (codes_.empty()) codes_ = renderer.downloadTable();
+  if (codes_.empty()) codes_ = RendererStages(renderer).downloadTable();
   return codes_;
 }
 

@@ -10,7 +10,7 @@
 #include "engine/image/metrics.h"
 #include "engine/reference/reference_gather.h"
 #include "engine/reference/reference_hierarchy.h"
-#include "engine/renderer.h"
+#include "engine/renderer_stages.h"
 #include "engine/validation/max_error.h"
 #include "engine/validation/stage_frames.h"
 #include "engine/volume/subject.h"
@@ -208,7 +208,7 @@ class RendererGather : public GatherOutputs {
   RendererGather(const Device& device, const Volume& volume, const Classification& classification)
       : renderer_(device, volume, classification, {}) {}
   GatherStages frame(const Camera& camera, const FrameSettings& settings) override {
-    return renderer_.renderGatherStages(camera, settings);
+    return RendererStages(renderer_).renderGatherStages(camera, settings);
   }
 
  private:

@@ -9,7 +9,7 @@
 #include "engine/core/error.h"
 #include "engine/reference/reference_hierarchy.h"
 #include "engine/reference/reference_splats.h"
-#include "engine/renderer.h"
+#include "engine/renderer_stages.h"
 #include "engine/validation/max_error.h"
 #include "engine/volume/subject.h"
 
@@ -106,7 +106,7 @@ Check checkCoverage(Renderer& renderer, const Volume& volume, const LevelData& v
     settings.lod = float(std::uniform_real_distribution<double>(0.5, 40.0)(generator));
     renderer.render(camera, settings);
     worst.take(
-        double(coverageErrors(volume, voxels.extinction, renderer.downloadDrawnBlocks(), voxels.emission)),
+        double(coverageErrors(volume, voxels.extinction, RendererStages(renderer).downloadDrawnBlocks(), voxels.emission)),
         [&] { return fmt::format("camera {}", i); });
   }
   return worst.atMost(0.0, "cut: voxels that are not covered once, from random places", "voxels");
@@ -126,7 +126,7 @@ Check checkCutPicture(Renderer& renderer, const ValidationScene& scene, const Le
                            .coarser = levels,
                            .emission = voxels.emission};
   const auto sums = referenceBlockSums(scene.volume, scene.classification, inputs, camera, settings,
-                                       renderer.downloadDrawnBlocks());
+                                       RendererStages(renderer).downloadDrawnBlocks());
   return largestDifference(picture, referenceResolve(sums, settings))
       .atMost(kPictureTolerance, "cut: picture of several levels");
 }
@@ -220,11 +220,11 @@ ReportSection levelChecks(const Device& device, const ValidationScene& scene, gl
           "is in one block; and a cut of several levels drawn by both."};
   for (const Variant& variant : kVariants) {
     Renderer renderer(device, scene.volume, scene.classification, variant.settings);
-    const std::vector<float> extinction = renderer.downloadExtinction();
+    const std::vector<float> extinction = RendererStages(renderer).downloadExtinction();
     const LevelData voxels =
         referenceVoxelLevel(scene.volume, scene.classification, {extinction.begin(), extinction.end()},
-                            renderer.downloadTable(), renderer.downloadEmission());
-    const std::vector<LevelData> levels = renderer.downloadLevels();
+                            RendererStages(renderer).downloadTable(), RendererStages(renderer).downloadEmission());
+    const std::vector<LevelData> levels = RendererStages(renderer).downloadLevels();
     for (Check& check : compareLevels(scene.volume, voxels, levels, variant.settings, variant.name))
       section.checks.push_back(std::move(check));
     if (&variant != &kVariants.front()) continue;

@@ -1,6 +1,6 @@
 #include "engine/validation/stage_outputs.h"
 
-#include "engine/renderer.h"
+#include "engine/renderer_stages.h"
 
 namespace freevoxels {
 
@@ -12,13 +12,13 @@ class RendererOutputs : public StageOutputs {
                   const TableSettings& table)
       : renderer_(device, volume, classification, table) {}
 
-  std::vector<float> extinction() override { return renderer_.downloadExtinction(); }
-  std::vector<glm::dvec3> emission() override { return renderer_.downloadEmission(); }
-  TableBytes table() override { return renderer_.downloadTable(); }
-  std::vector<std::uint32_t> visibleVoxels() override { return renderer_.downloadBlockList(); }
-  RayCodes rays(const Camera& camera) override { return renderer_.downloadRays(camera); }
+  std::vector<float> extinction() override { return RendererStages(renderer_).downloadExtinction(); }
+  std::vector<glm::dvec3> emission() override { return RendererStages(renderer_).downloadEmission(); }
+  TableBytes table() override { return RendererStages(renderer_).downloadTable(); }
+  std::vector<std::uint32_t> visibleVoxels() override { return RendererStages(renderer_).downloadBlockList(); }
+  RayCodes rays(const Camera& camera) override { return RendererStages(renderer_).downloadRays(camera); }
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
-    return renderer_.renderSums(camera, settings);
+    return RendererStages(renderer_).renderSums(camera, settings);
   }
   Image picture(const Camera& camera, const FrameSettings& settings) override {
     return renderer_.render(camera, settings);

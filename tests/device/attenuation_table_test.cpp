@@ -7,7 +7,7 @@
 #include "engine/octree/volume_builder.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/reference/reference_table.h"
-#include "engine/renderer.h"
+#include "engine/renderer_stages.h"
 #include "tests/device/device_fixture.h"
 #include "tests/device/test_volumes.h"
 
@@ -112,7 +112,7 @@ TEST_F(AttenuationTableTest, TransferFunctionVolumesMatchTheReference) {
       TransferFunction{.opacity = {{0.1f, 0.0f}, {0.4f, 0.0001f}, {0.5f, 0.3f}, {0.9f, 1.0f}},
                        .color = {{0.0f, glm::vec3(1.0f)}},
                        .unitDistance = volume.voxelSize() * 0.7};
-  const Table table = Renderer(device(), volume, classification, {}).downloadTable();
+  const Table table = RendererStages(Renderer(device(), volume, classification, {})).downloadTable();
   const std::vector<double> extinction = referenceExtinction(volume, classification);
   const Table reference = referenceTable(volume, extinction, TableSettings{});
   EXPECT_LE(worstByte(table, reference, extinction).difference, 1);
@@ -126,7 +126,7 @@ TEST_F(AttenuationTableTest, HomogeneousBoxIsBeerLambertInAllDirections) {
   const Volume volume = makeVolume(size, shearedTransform(size), [&](int, int, int) { return sigma; });
   for (const DirectionSet set : {DirectionSet::Directions26, DirectionSet::Directions98}) {
     const Table table =
-        Renderer(device(), volume, {.densityScale = 1.0}, {.directions = set}).downloadTable();
+        RendererStages(Renderer(device(), volume, {.densityScale = 1.0}, {.directions = set})).downloadTable();
     int checked = 0;
     for (int d = 0; d < directionCount(set); ++d) {
       const glm::dvec3 direction = directionAt(set, d);
@@ -154,7 +154,7 @@ TEST_F(AttenuationTableTest, VisibleVoxelsAreThoseWithExtinctionInAscendingOrder
     const Volume volume = randomVolume(size, cubeTransform(size), 0.3, 1.0);
     const Classification classification{.densityScale = 1.0};
     const Renderer renderer(device(), volume, classification, {});
-    EXPECT_EQ(renderer.downloadBlockList(),
+    EXPECT_EQ(RendererStages(renderer).downloadBlockList(),
               referenceVisibleVoxels(referenceExtinction(volume, classification)));
   }
 }

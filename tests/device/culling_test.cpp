@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-#include "engine/renderer.h"
+#include "engine/renderer_stages.h"
 #include "engine/validation/culling_checks.h"
 #include "engine/validation/level_checks.h"
 #include "engine/volume/subject.h"
@@ -124,7 +124,7 @@ TEST_F(CullingTest, AHoleThatNoDirectionOfTheTableSeesShows) {
   EXPECT_GT(outcome.counts.hidden, 100u);
   const glm::vec4 middle = renderer.render(camera, settings).pixels[80 * 161 + 80];
   EXPECT_GT(middle.r, 0.03f);  // the bottom's voxels have some of the walls' blue
-  EXPECT_LT(renderer.renderSums(camera, settings)[80 * 161 + 80].energy, settings.cullThreshold);
+  EXPECT_LT(RendererStages(renderer).renderSums(camera, settings)[80 * 161 + 80].energy, settings.cullThreshold);
 }
 
 TEST_F(CullingTest, WhatIsOutsideOfTheImageIsNotDrawn) {
@@ -161,7 +161,7 @@ TEST_F(CullingTest, CountsAddUp) {
   EXPECT_GT(drawnBlocks(counts), 0u);
   EXPECT_EQ(counts.considered,
             counts.empty + counts.outside + counts.hidden + counts.opened + drawnBlocks(counts));
-  const std::vector<Block> drawn = renderer.downloadDrawnBlocks();
+  const std::vector<Block> drawn = RendererStages(renderer).downloadDrawnBlocks();
   EXPECT_EQ(drawn.size(), drawnBlocks(counts));
   std::set<std::array<int, 3>> once;
   for (const Block& block : drawn) once.insert({block.cell.x, block.cell.y, block.cell.z});
@@ -211,8 +211,8 @@ TEST_F(CullingTest, SumsAreOfEverything) {
   const QualityScene scene = qualityScene("head", QualityColor::Skin, 32);
   const Camera camera = viewCamera(scene.volume, {});
   Renderer renderer(device(), scene.volume, scene.classification, {});
-  const auto sums = renderer.renderSums(camera, {.size = {60, 60}, .lod = 0.0f});
-  const auto whole = renderer.renderSums(camera, {.size = {60, 60}, .lod = 0.0f, .culling = false});
+  const auto sums = RendererStages(renderer).renderSums(camera, {.size = {60, 60}, .lod = 0.0f});
+  const auto whole = RendererStages(renderer).renderSums(camera, {.size = {60, 60}, .lod = 0.0f, .culling = false});
   for (std::size_t i = 0; i < sums.size(); ++i) ASSERT_EQ(sums[i].depth, whole[i].depth);
 }
 

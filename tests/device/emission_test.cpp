@@ -5,6 +5,7 @@
 
 #include "engine/reference/reference_hierarchy.h"
 #include "engine/reference/reference_sorted.h"
+#include "engine/renderer_stages.h"
 #include "engine/validation/emission_checks.h"
 #include "engine/validation/level_checks.h"
 #include "engine/validation/stage_checks.h"
@@ -41,7 +42,7 @@ Classification hot(const Volume& volume, float opacity = 0.4f) {
 class EmissionTest : public SplatTest {
  protected:
   static std::vector<double> extinctionOf(const Renderer& renderer) {
-    const std::vector<float> device = renderer.downloadExtinction();
+    const std::vector<float> device = RendererStages(renderer).downloadExtinction();
     return {device.begin(), device.end()};
   }
   struct Frame {
@@ -53,9 +54,9 @@ class EmissionTest : public SplatTest {
                                  const std::vector<Frame>& frames) {
     Renderer renderer(device(), volume, classification, {});
     const auto extinction = extinctionOf(renderer);
-    const auto table = renderer.downloadTable();
-    const auto levels = renderer.downloadLevels();
-    const auto emission = renderer.downloadEmission();
+    const auto table = RendererStages(renderer).downloadTable();
+    const auto levels = RendererStages(renderer).downloadLevels();
+    const auto emission = RendererStages(renderer).downloadEmission();
     for (std::size_t i = 0; i < frames.size(); ++i) {
       SCOPED_TRACE(i);
       const auto& [camera, settings] = frames[i];
@@ -66,7 +67,7 @@ class EmissionTest : public SplatTest {
                                             .tableSettings = {},
                                             .coarser = levels,
                                             .emission = emission},
-                                           camera, settings, renderer.downloadDrawnBlocks());
+                                           camera, settings, RendererStages(renderer).downloadDrawnBlocks());
       const Image expected = referenceResolve(sums, settings);
       EXPECT_LE(largestDifference(picture, expected), 2e-3);
       EXPECT_GE(psnr(picture, expected), 70.0);
@@ -81,7 +82,7 @@ TEST_F(EmissionTest, EveryVoxelWithExtinctionOrLightIsKept) {
   const Volume volume = hotVolume(true, {11, 14, 9}, 0.1);
   const Classification classification = hot(volume);
   Renderer renderer(device(), volume, classification, {});
-  const auto emission = renderer.downloadEmission();
+  const auto emission = RendererStages(renderer).downloadEmission();
   ASSERT_EQ(emission.size(), volume.voxelCount());
   const double faintest = brightestLight(classification, volume) * kFaintest / kBrightest;
   const VoxelClassifier classifier(classification, volume);
@@ -99,7 +100,7 @@ TEST_F(EmissionTest, EveryVoxelWithExtinctionOrLightIsKept) {
         if (expected.extinction == 0.0) ++alone;
       }
   EXPECT_GT(alone, 100u);
-  EXPECT_EQ(renderer.downloadBlockList(), referenceVisibleVoxels(extinctionOf(renderer), emission));
+  EXPECT_EQ(RendererStages(renderer).downloadBlockList(), referenceVisibleVoxels(extinctionOf(renderer), emission));
   EXPECT_EQ(renderer.memory().emission % sizeof(std::uint32_t), 0u);
   EXPECT_GT(renderer.memory().emission, 0u);
 }
@@ -139,8 +140,8 @@ TEST_F(EmissionTest, LevelsAndTheirPicturesMatchTheReference) {
   const Classification classification = hot(volume);
   Renderer renderer(device(), volume, classification, {});
   const LevelData voxels = referenceVoxelLevel(volume, classification, extinctionOf(renderer),
-                                               renderer.downloadTable(), renderer.downloadEmission());
-  for (const Check& check : compareLevels(volume, voxels, renderer.downloadLevels(), {}, "depth8"))
+                                               RendererStages(renderer).downloadTable(), RendererStages(renderer).downloadEmission());
+  for (const Check& check : compareLevels(volume, voxels, RendererStages(renderer).downloadLevels(), {}, "depth8"))
     EXPECT_TRUE(check.passed()) << check.name << ": " << check.figure << " " << check.where;
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
   expectSamePictures(volume, classification,
@@ -156,7 +157,7 @@ TEST_F(EmissionTest, SortedPicturesMatchTheReference) {
   Renderer renderer(device(), volume, classification, {});
   const Image picture = renderer.render(camera, settings);
   const Image expected =
-      referenceSortedPicture(volume, classification, camera, settings, renderer.downloadBlockList());
+      referenceSortedPicture(volume, classification, camera, settings, RendererStages(renderer).downloadBlockList());
   EXPECT_GE(psnr(picture, expected), 60.0);
 }
 
@@ -204,15 +205,15 @@ TEST_F(EmissionTest, AlbedoGridsMatchTheReference) {
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
   Renderer renderer(device(), volume, classification, {});
   const auto extinction = extinctionOf(renderer);
-  const auto table = renderer.downloadTable();
-  const auto levels = renderer.downloadLevels();
+  const auto table = RendererStages(renderer).downloadTable();
+  const auto levels = RendererStages(renderer).downloadLevels();
   for (const float lod : {0.0f, 9.0f}) {
     const FrameSettings settings{.size = {40, 40}, .lod = lod, .culling = false};
     const Image picture = renderer.render(camera, settings);
     const auto sums =
         referenceBlockSums(volume, classification,
                            {.extinction = extinction, .table = table, .tableSettings = {}, .coarser = levels},
-                           camera, settings, renderer.downloadDrawnBlocks());
+                           camera, settings, RendererStages(renderer).downloadDrawnBlocks());
     EXPECT_GE(psnr(picture, referenceResolve(sums, settings)), 70.0);
   }
   const LevelData voxels = referenceVoxelLevel(volume, classification, extinction, table);

@@ -10,7 +10,7 @@
 #include "engine/octree/volume_builder.h"
 #include "engine/reference/reference_hierarchy.h"
 #include "engine/reference/reference_splats.h"
-#include "engine/renderer.h"
+#include "engine/renderer_stages.h"
 #include "engine/validation/detail_quality.h"
 #include "engine/validation/level_checks.h"
 #include "engine/visibility/detail_rule.h"
@@ -24,9 +24,9 @@ namespace {
 constexpr glm::ivec3 kOdd{37, 22, 51};
 
 LevelData voxelLevel(Renderer& renderer, const Volume& volume, const Classification& classification) {
-  const std::vector<float> extinction = renderer.downloadExtinction();
+  const std::vector<float> extinction = RendererStages(renderer).downloadExtinction();
   return referenceVoxelLevel(volume, classification, {extinction.begin(), extinction.end()},
-                             renderer.downloadTable());
+                             RendererStages(renderer).downloadTable());
 }
 
 void expectPassed(const Check& check) {
@@ -39,7 +39,7 @@ class HierarchyTest : public DeviceTest {
                              const TableSettings& settings) {
     Renderer renderer(device(), volume, classification, settings);
     const LevelData voxels = voxelLevel(renderer, volume, classification);
-    for (const Check& check : compareLevels(volume, voxels, renderer.downloadLevels(), settings, "test"))
+    for (const Check& check : compareLevels(volume, voxels, RendererStages(renderer).downloadLevels(), settings, "test"))
       expectPassed(check);
   }
 
@@ -50,10 +50,10 @@ class HierarchyTest : public DeviceTest {
     settings.culling = false;
     Renderer renderer(device(), volume, classification, table);
     const Image picture = renderer.render(camera, settings);
-    const std::vector<Block> drawn = renderer.downloadDrawnBlocks();
+    const std::vector<Block> drawn = RendererStages(renderer).downloadDrawnBlocks();
     EXPECT_GT(drawn.back().level, 0);
     const LevelData voxels = voxelLevel(renderer, volume, classification);
-    const std::vector<LevelData> levels = renderer.downloadLevels();
+    const std::vector<LevelData> levels = RendererStages(renderer).downloadLevels();
     const auto sums = referenceBlockSums(
         volume, classification,
         {.extinction = voxels.extinction, .table = voxels.table, .tableSettings = table, .coarser = levels},
@@ -76,7 +76,7 @@ TEST_F(HierarchyTest, LevelsMatchTheReferenceAtOddDimensions) {
 TEST_F(HierarchyTest, AVolumeOfOneVoxelHasNoLevels) {
   const Volume volume = makeVolume({1, 1, 1}, glm::dmat4(1.0), [](int, int, int) { return 1.0; });
   Renderer renderer(device(), volume, {}, {});
-  EXPECT_TRUE(renderer.downloadLevels().empty());
+  EXPECT_TRUE(RendererStages(renderer).downloadLevels().empty());
   renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {1, 1}, .lod = 100.0f});
   EXPECT_EQ(renderer.cutCounts().drawn, std::vector<std::uint64_t>{1});
 }
@@ -86,7 +86,7 @@ TEST_F(HierarchyTest, AHomogeneousBoxHasMeanDepths) {
   const double sigma = 2.0;
   const Volume volume = makeVolume(kOdd, shearedTransform(kOdd), [](int, int, int) { return 1.0; });
   Renderer renderer(device(), volume, {.densityScale = sigma}, {});
-  const std::vector<LevelData> levels = renderer.downloadLevels();
+  const std::vector<LevelData> levels = RendererStages(renderer).downloadLevels();
   for (std::size_t i = 0; i < levels.size(); ++i)
     for (const int direction : {0, 4, 9, 13, 16, 22}) {
       const glm::ivec3 step = directionCell(DirectionSet::Directions26, direction);
@@ -129,7 +129,7 @@ TEST_F(HierarchyTest, BlocksSendWhatTheirVoxelsDo) {
                                      .gradient = false,  // which only the outermost see here
                                      .lod = float(1.6 * pixelsPerVoxel * (1 << level))};
         glm::dvec2 sums(0.0);  // optical depth and energy
-        for (const SplatSums& pixel : renderer.renderSums(camera, settings))
+        for (const SplatSums& pixel : RendererStages(renderer).renderSums(camera, settings))
           sums += glm::dvec2(pixel.depth, pixel.energy);
         if (level == 0) finest = sums;
         EXPECT_EQ(renderer.cutCounts().drawn.size(), std::size_t(level) + 1);
@@ -158,7 +158,7 @@ TEST_F(HierarchyTest, EveryVoxelIsDrawnOnceFromAnywhere) {
     const FrameSettings settings{
         .size = {24, 16}, .lod = float(std::exp(3.0 * uniform(generator))), .culling = false};
     renderer.render(camera, settings);
-    const std::vector<Block> drawn = renderer.downloadDrawnBlocks();
+    const std::vector<Block> drawn = RendererStages(renderer).downloadDrawnBlocks();
     ASSERT_EQ(coverageErrors(volume, extinction, drawn), 0u) << "camera " << i;
     if (drawn.front().level != drawn.back().level) ++severalLevels;
 
@@ -227,7 +227,7 @@ TEST_F(HierarchyTest, TheChecksNoticeWhatIsWrong) {
   const Classification classification = coloured(volume);
   Renderer renderer(device(), volume, classification, {});
   const LevelData voxels = voxelLevel(renderer, volume, classification);
-  const std::vector<LevelData> levels = renderer.downloadLevels();
+  const std::vector<LevelData> levels = RendererStages(renderer).downloadLevels();
   const auto failures = [&](auto spoil) {
     std::vector<LevelData> spoilt = levels;
     spoil(spoilt);

@@ -7,6 +7,7 @@
 #include "engine/attenuation/ray_sweep.h"
 #include "engine/reference/reference_light.h"
 #include "engine/reference/reference_sorted.h"
+#include "engine/renderer_stages.h"
 #include "engine/validation/sky_environment.h"
 #include "engine/volume/subject.h"
 #include "tests/device/splat_fixture.h"
@@ -30,7 +31,7 @@ class LightingTest : public SplatTest {
                                          const Lighting& lighting) {
     settings.lighting = lighting;
     std::vector<glm::dvec3> result;
-    for (const SplatSums& sums : renderer.renderSums(camera, settings)) result.push_back(sums.color);
+    for (const SplatSums& sums : RendererStages(renderer).renderSums(camera, settings)) result.push_back(sums.color);
     return result;
   }
   static double largest(const std::vector<glm::dvec3>& colours) {
@@ -241,14 +242,14 @@ TEST_F(LightingTest, BlocksMatchTheReference) {
   const FrameSettings settings{.size = {30, 30}, .lod = 9.0f, .culling = false, .lighting = everything()};
   Renderer renderer(device(), v, classification, {});
   const Image picture = renderer.render(camera, settings);
-  const std::vector<Block> blocks = renderer.downloadDrawnBlocks();
+  const std::vector<Block> blocks = RendererStages(renderer).downloadDrawnBlocks();
   ASSERT_GT(blocks.front().level, 0);
-  const std::vector<LevelData> levels = renderer.downloadLevels();
-  const std::vector<float> device = renderer.downloadExtinction();
+  const std::vector<LevelData> levels = RendererStages(renderer).downloadLevels();
+  const std::vector<float> device = RendererStages(renderer).downloadExtinction();
   const std::vector<double> extinction(device.begin(), device.end());
   const auto sums = referenceBlockSums(
       v, classification,
-      {.extinction = extinction, .table = renderer.downloadTable(), .tableSettings = {}, .coarser = levels},
+      {.extinction = extinction, .table = RendererStages(renderer).downloadTable(), .tableSettings = {}, .coarser = levels},
       camera, settings, blocks);
   EXPECT_GE(psnr(picture, referenceResolve(sums, settings)), 90.0);
 }

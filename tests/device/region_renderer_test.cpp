@@ -7,7 +7,7 @@
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/octree/volume_builder.h"
-#include "engine/renderer.h"
+#include "engine/renderer_stages.h"
 #include "engine/volume/subject.h"
 #include "tests/device/device_fixture.h"
 #include "tests/device/test_volumes.h"
@@ -60,12 +60,12 @@ class RegionRendererTest : public DeviceTest {
 TEST_F(RegionRendererTest, ARegionsTableIsThatOfTheWholeVolumeToACode) {
   const Volume volume = noise();
   const auto file = bake(volume, kThin);
-  const Table whole = Renderer(device(), volume, kThin, {}).downloadTable();
+  const Table whole = RendererStages(Renderer(device(), volume, kThin, {})).downloadTable();
   RegionRenderer renderer(device(), file, kThin, {}, false);
   std::size_t compared = 0, unequal = 0;
   double squares = 0.0;
   for (const RegionEntry& region : file->regions(0)) {
-    const Table table = renderer.downloadTable(region);
+    const Table table = downloadTable(renderer, region);
     const fvx::VoxelBox box = fvx::regionWithHalo(region.cell, volume.dimensions);
     const glm::ivec3 extent = box.extent();
     for (std::size_t d = 0; d < table.size(); ++d)

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/image/metrics.h"
-#include "engine/renderer.h"
+#include "engine/renderer_stages.h"
 #include "engine/volume/scan.h"
 #include "engine/volume/subject.h"
 #include "tests/device/device_fixture.h"
@@ -165,7 +165,7 @@ TEST_F(SharesTest, HostResolvesALatticeAsTheDeviceDoes) {
     Renderer renderer(device(), scene.volume, scene.classification, {});
     FrameSettings settings = scene.settings;
     settings.size *= 4;
-    const GatherStages stages = renderer.renderGatherStages(scene.camera, settings);
+    const GatherStages stages = RendererStages(renderer).renderGatherStages(scene.camera, settings);
     const SampleLattice lattice = *renderer.renderShares(scene.camera, settings, {0, kShares}).lattice;
     EXPECT_FALSE(lattice.isPixels(settings.size));
     std::vector<LatticeSample> samples;
