@@ -109,7 +109,7 @@ void SceneOptions::applyScene() {
   for (const auto& [field, option] : options_)
     if (option->count() > 0) given.insert(field);
   SceneFile(*file).applyTo(description, [&](const SceneField& field) {
-    return options_.contains(&field) && !isReplaced(field, given) && honours(files, field.name);
+    return options_.contains(&field) && !isReplaced(field, given) && (files.empty() || honours(files, field.name));
   });
 }
 

@@ -1,7 +1,5 @@
 #include "apps/library/scene_renderer.h"
 
-#include <array>
-
 #include "apps/freevoxels/output_options.h"
 #include "apps/freevoxels/program.h"
 #include "engine/core/error.h"
@@ -80,8 +78,7 @@ FrameSettings SceneRenderer::prepare(const KeywordOptions& options, bool depth, 
   options.scene.method.apply(settings);
   checkFrameFits(*context_->device, settings);
   scene_.volume = volume_;
-  constexpr std::array<std::string_view, 2> kClassification{"classification", "emission"};
-  const std::string classification = textOf(options.scene, kClassification);
+  const std::string classification = textOf(options.scene, {"classification", "emission"});
   if (!renderer_ || classification != classification_) {
     scene_.classification = options.scene.resolveClassification(*volume_);
     classification_ = classification;

@@ -1,7 +1,6 @@
 #include "apps/view/image_maker.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <utility>
 
@@ -19,8 +18,7 @@ std::string nameOf(const SceneDescription& scene, bool clipped) {
   SceneDescription read;
   read.input = scene.input;
   if (!clipped) read.input.clipBox.reset();
-  constexpr std::array<std::string_view, 1> kSections{"input"};
-  return fmt::format("{}temperature={} albedo={}", textOf(read, kSections), scene.emission.grid().value_or("none"),
+  return fmt::format("{}temperature={} albedo={}", textOf(read, {"input"}), scene.emission.grid().value_or("none"),
                      scene.classification.albedoGrid.value_or("none"));
 }
 

@@ -10,7 +10,8 @@ void EmissionDescription::check(const InputDescription& input) const {
   if (grid()) return;
   for (const auto& [name, given] : {std::pair("temperature-scale", temperatureScale), {"temperature-offset", temperatureOffset}})
     if (given)
-      fail(ErrorKind::Usage, "{} is of emission: add {} or {}", Parameter(name), Parameter("emission"), Parameter("temperature-grid", "NAME"));
+      fail(ErrorKind::Usage, "{} is of emission: add {} or {}", Parameter(name), Parameter("emission"),
+           Parameter("temperature-grid", "NAME"));
 }
 
 std::optional<std::string> EmissionDescription::grid() const {

@@ -15,7 +15,8 @@ constexpr double kBesideFlames = 0.4;
 Lighting defaultLights(const Camera& camera, double part) {
   constexpr double kKeyIrradiance = 2.2, kAmbientRadiance = 0.12;
   const glm::dvec3 towardsKey = glm::transpose(glm::dmat3(worldToCamera(camera))) * glm::normalize(glm::dvec3(-0.5, 0.7, 0.5));
-  return {.lights = {{.place = towardsKey, .intensity = part * kKeyIrradiance * std::numbers::pi}}, .ambient = glm::dvec3(part * kAmbientRadiance)};
+  return {.lights = {{.place = towardsKey, .intensity = part * kKeyIrradiance * std::numbers::pi}},
+          .ambient = glm::dvec3(part * kAmbientRadiance)};
 }
 
 }  // namespace
@@ -31,7 +32,8 @@ double defaultIntensity(const Light& light, const Volume& volume) {
 void LightingDescription::check() const {
   const bool withoutLights = lights.empty() && hasLight();
   if (attenuation && withoutLights)
-    fail(ErrorKind::Usage, "{} is how lights are shadowed, and there is none: give a {}", Parameter("light-attenuation"), Parameter("light"));
+    fail(ErrorKind::Usage, "{} is how lights are shadowed, and there is none: give a {}", Parameter("light-attenuation"),
+         Parameter("light"));
   if (shading == Shading::Gradient && withoutLights)
     fail(ErrorKind::Usage, "{} is how lights are scattered, and there is none: give a {}", Parameter("shading", "gradient"),
          Parameter("light"));

@@ -1,7 +1,6 @@
 #include "engine/description/scene_description.h"
 
 #include <algorithm>
-#include <array>
 
 #include "engine/core/error.h"
 #include "engine/description/scene_fields.h"
@@ -186,10 +185,9 @@ SceneDescription SceneDescription::resolvedTurn(const Scene& scene, int frameCou
 }
 
 std::string rendererText(const SceneDescription& description, const Scene& scene) {
-  constexpr std::array<std::string_view, 2> kSections{"classification", "emission"};
   const TableSettings table = description.method.table();
   // Blocks store the scattered light of the emission together with the emission.
-  return fmt::format("{}table={} {} {} {} emission-light={}", textOf(description.resolved(scene), kSections), int(table.directions),
+  return fmt::format("{}table={} {} {} {} emission-light={}", textOf(description.resolved(scene), {"classification", "emission"}), int(table.directions),
                      int(table.code), int(table.filter), table.pathLengthCorrection, scene.classification.emissionLight != nullptr);
 }
 

@@ -332,7 +332,9 @@ void addOutput(std::vector<SceneField>& fields) {
 }  // namespace
 
 bool SceneField::isOrExcludes(const SceneField& other) const {
-  const auto has = [](const std::vector<std::string>& names, const std::string& one) { return std::ranges::find(names, one) != names.end(); };
+  const auto has = [](const std::vector<std::string>& names, const std::string& one) {
+    return std::ranges::find(names, one) != names.end();
+  };
   return name == other.name || has(excludes, other.name) || has(other.excludes, name);
 }
 
@@ -369,7 +371,7 @@ SceneDescription partOf(const SceneDescription& description, const std::function
   return part;
 }
 
-std::string textOf(const SceneDescription& description, std::span<const std::string_view> sections) {
+std::string textOf(const SceneDescription& description, std::initializer_list<std::string_view> sections) {
   std::string text;
   for (const SceneField& field : sceneFields())
     if (std::ranges::find(sections, field.section) != sections.end())

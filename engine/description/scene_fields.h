@@ -3,8 +3,8 @@
 // the command line and the keywords of library and Python are made.
 
 #include <functional>
+#include <initializer_list>
 #include <set>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -75,6 +75,6 @@ bool isReplaced(const SceneField& field, const SceneFieldSet& stronger);
 /// What a description gives of the fields for which `wanted` is true.
 SceneDescription partOf(const SceneDescription& description, const std::function<bool(const SceneField&)>& wanted);
 /// A text that is equal for descriptions with equal fields in these sections.
-std::string textOf(const SceneDescription& description, std::span<const std::string_view> sections);
+std::string textOf(const SceneDescription& description, std::initializer_list<std::string_view> sections);
 
 }  // namespace freevoxels

@@ -13,13 +13,25 @@ namespace freevoxels::test {
 
 namespace {
 
-/// Gives every field that is not in others() a value other than its default. A grid and a mean may have names that look like numbers.
+/// Gives every field that is not in others() a value other than its default. Names of grids may look like numbers.
 SceneDescription everything(const TemporaryFolder& folder) {
   SceneDescription scene;
-  scene.input = {.volume = "procedural:cloud", .grid = "density[1]", .resolution = glm::ivec3(20, 30, 40), .clipBox = VoxelBox{{1, 2, 3}, {4, 5, 6}}, .clipPlane = ClipPlane{{0.5, -1.0, 2.0}, {0.0, 1e-3, 1.0}}};
-  scene.classification = {.densityScale = 1.0 / 3.0, .albedo = glm::dvec3(0.1, 0.2, 0.3), .albedoGrid = "26", .order = ClassificationOrder::Pre};
+  scene.input = {.volume = "procedural:cloud",
+                 .grid = "density[1]",
+                 .resolution = glm::ivec3(20, 30, 40),
+                 .clipBox = VoxelBox{{1, 2, 3}, {4, 5, 6}},
+                 .clipPlane = ClipPlane{{0.5, -1.0, 2.0}, {0.0, 1e-3, 1.0}}};
+  scene.classification = {.densityScale = 1.0 / 3.0,
+                          .albedo = glm::dvec3(0.1, 0.2, 0.3),
+                          .albedoGrid = "26",
+                          .order = ClassificationOrder::Pre};
   scene.emission = {.emission = true, .strength = 0.1, .temperatureGrid = "98", .temperatureScale = 1e-7, .temperatureOffset = -5.0};
-  scene.camera = {.position = glm::dvec3(1e9, -2.5, 1.0 / 7.0), .lookAt = glm::dvec3(0.0), .up = glm::dvec3(0.0, 0.0, 1.0), .verticalFov = 33.3, .size = {640, 480}, .frames = 7};
+  scene.camera = {.position = glm::dvec3(1e9, -2.5, 1.0 / 7.0),
+                  .lookAt = glm::dvec3(0.0),
+                  .up = glm::dvec3(0.0, 0.0, 1.0),
+                  .verticalFov = 33.3,
+                  .size = {640, 480},
+                  .frames = 7};
   scene.lighting = {.lights = {{.light = {.place = {1.0, 2.0, 3.0}, .color = {0.1, 1.0, 2.0}, .intensity = 7.5}, .hasIntensity = true},
                                {.light = {.place = {-1.0, 0.0, 0.1}, .atInfinity = false}}},
                     .ambient = glm::dvec3(0.1, 0.2, 0.3),

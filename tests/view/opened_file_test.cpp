@@ -1,5 +1,8 @@
 #include "apps/view/opened_file.h"
 
+#include <CLI/CLI.hpp>
+
+#include "apps/view/view_options.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
@@ -35,6 +38,22 @@ class OpenedFile : public testing::Test {
   const test::TemporaryFolder folder;
   ViewState state;
 };
+
+TEST_F(OpenedFile, ASceneAtTheStartGivesAllThatOptionsLeaveOpen) {
+  const std::string file = made("s.json", R"({"input": {"volume": "procedural:head", "resolution": 32},
+      "camera": {"fov": 20, "frames": 5}, "output": {"background": [0.1, 0.2, 0.3], "exposure": 2}})");
+  CLI::App program;
+  ViewOptions options;
+  options.add(program);
+  program.parse(fmt::format("--scene '{}' --fov 30", file));
+  options.prepare();
+  const SceneDescription& scene = options.scene.description;
+  EXPECT_EQ(scene.input.volume, "procedural:head");
+  EXPECT_EQ(scene.camera.verticalFov, 30.0);
+  EXPECT_EQ(scene.camera.frames, 5);
+  EXPECT_EQ(scene.output.background, glm::dvec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(scene.output.exposure, 2.0);
+}
 
 TEST_F(OpenedFile, AVolumeIsFramedAnewInTheSameLight) {
   const std::string file = made("smoke.vdb");
