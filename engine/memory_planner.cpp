@@ -58,6 +58,25 @@ std::uint64_t planEyeRayBytes(const Device& device, const DeviceVolume& volume, 
   return std::min(settings.mostRayBytes, device.memoryBytes() - std::min(device.memoryBytes(), others));
 }
 
+std::uint64_t maximumVoxels(const Device& device) {
+  const HierarchyLayout cube(glm::ivec3(1024));
+  const auto voxels = double(cube.levels.front().voxels());
+  const auto bytes = double(occupancyBytes(cube));
+  const double most = double(std::min(device.largestBinding(sizeof(shader::OccupancyWord)), device.memoryBytes()));
+  return std::uint64_t(std::min(most * (voxels / bytes), double(kMostNumberedVoxels)));
+}
+
+bool exceedsDevice(const Device& device, glm::ivec3 box, std::uint64_t activeVoxels) {
+  // The least that a voxel with data takes: its extinction and its place in the lists of what is drawn.
+  constexpr std::uint64_t kLeastBytes = 12;
+  const glm::u64vec3 size(box);
+  return size.x * size.y * size.z > maximumVoxels(device) || activeVoxels > device.memoryBytes() / kLeastBytes;
+}
+
+bool tableReplacesEyeRays(const FrameSettings& settings, const Error& reason) {
+  return settings.attenuation == AttenuationLookup::Auto && reason.kind() == ErrorKind::OutOfMemory;
+}
+
 void checkSplatsFit(const Device& device, const DeviceVolume& volume) {
   checkBinds(device, volume.layout.dimensions, volume.stored.front() * sizeof(std::uint32_t), sizeof(std::uint32_t));
 }

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "engine/attenuation/slabs.h"
+#include "engine/core/error.h"
 #include "engine/octree/device_volume.h"
 #include "engine/scene/directions.h"
 #include "engine/scene/render_settings.h"
@@ -48,6 +49,13 @@ VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std:
 void checkSplatsFit(const Device& device, const DeviceVolume& volume);
 void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions);
 
+/// The largest number of voxels that an empty volume's box may have on this device.
+std::uint64_t maximumVoxels(const Device& device);
+
+/// Whether a volume is certainly larger than the device's memory, whatever is drawn of it: it is drawn in pieces or not at all.
+/// `activeVoxels` are those of its box with data.
+bool exceedsDevice(const Device& device, glm::ivec3 box, std::uint64_t activeVoxels);
+
 // What the following functions decide depends on all of the device's memory, and not on what is allocated at present, so that it
 // is the same for every frame.
 
@@ -61,5 +69,9 @@ LightAttenuation planLightAttenuation(const Device& device, const DeviceVolume& 
 /// attenuation of its lights must be resolved.
 std::uint64_t planEyeRayBytes(const Device& device, const DeviceVolume& volume, VolumeMemory memory, const FrameSettings& settings,
                               bool readsTable);
+
+/// Whether a frame that has no room for rays from the eye, for this reason, is drawn by the table alone: AttenuationLookup::Auto, if
+/// memory was lacking.
+bool tableReplacesEyeRays(const FrameSettings& settings, const Error& reason);
 
 }  // namespace freevoxels

@@ -126,7 +126,7 @@ FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSet
                             planEyeRayBytes(device, built.volume, memoryOfVolume(), settings, constants.readsTable()));
     return constants;
   } catch (const Error& error) {
-    if (settings.attenuation != AttenuationLookup::Auto || error.kind() != ErrorKind::OutOfMemory) throw;
+    if (!tableReplacesEyeRays(settings, error)) throw;
   }
   lastLackedRays = true;
   FrameSettings tableAlone = settings;

@@ -10,7 +10,7 @@
 
 #include "engine/attenuation/table_levels.h"
 #include "engine/octree/volume_builder.h"
-#include "engine/octree/volume_limits.h"
+#include "engine/memory_planner.h"
 #include "engine/renderer.h"
 #include "engine/splatting/splat_pass.h"
 #include "engine/validation/fly_through.h"

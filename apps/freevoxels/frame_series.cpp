@@ -10,7 +10,7 @@
 #include "apps/freevoxels/failure.h"
 #include "apps/freevoxels/colored_parts.h"
 #include "apps/freevoxels/share_group.h"
-#include "engine/octree/volume_limits.h"
+#include "engine/memory_planner.h"
 #include "engine/region_renderer.h"
 #include "engine/streamed_renderer.h"
 #include "engine/storage/baked_volume.h"

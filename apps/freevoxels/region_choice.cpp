@@ -2,7 +2,7 @@
 
 #include "apps/freevoxels/failure.h"
 #include "engine/attenuation/ray_sweep.h"
-#include "engine/octree/volume_limits.h"
+#include "engine/memory_planner.h"
 #include "engine/region_renderer.h"
 #include "engine/streamed_renderer.h"
 
@@ -10,8 +10,6 @@ namespace freevoxels {
 
 namespace {
 
-/// The least that a voxel with data takes on the device: its extinction and its place in the lists of what is drawn.
-constexpr std::uint64_t kLeastDeviceBytes = 12;
 /// What a quad of the gather takes: extinctions; and for each light codes and quads of them.
 constexpr std::uint64_t kMediumQuadBytes = 8, kLightBytes = 8 + 2;
 
@@ -63,11 +61,9 @@ bool needsPieces(const RenderOptions& options, const Device& device, const Piece
   if (pieces.way == PieceDrawing::Way::None) return false;
   if (options.drawsShares() && !drawsByGathering(pieces.settings)) return true;
   const fvx::FvxFile& file = *pieces.file;
-  const glm::u64vec3 box(file.dimensions(level));
-  if (box.x * box.y * box.z > maximumVoxels(device)) return true;
   std::uint64_t active = 0;
   for (const fvx::ChunkEntry& chunk : file.chunks(fvx::Channel::Scalars, level)) active += chunk.activeVoxels;
-  if (active > device.memoryBytes() / kLeastDeviceBytes || active > machineMemoryBytes() / 2 / sizeof(float)) return true;
+  if (exceedsDevice(device, file.dimensions(level), active) || active > machineMemoryBytes() / 2 / sizeof(float)) return true;
   return pieces.way == PieceDrawing::Way::Cubes && leastGatherBytes(pieces, level) > device.memoryBytes();
 }
 

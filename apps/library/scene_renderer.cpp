@@ -5,7 +5,7 @@
 #include "engine/core/error.h"
 #include "engine/description/scene_fields.h"
 #include "engine/description/scene_json.h"
-#include "engine/octree/volume_limits.h"
+#include "engine/memory_planner.h"
 
 namespace freevoxels {
 

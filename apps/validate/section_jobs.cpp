@@ -8,7 +8,7 @@
 
 #include "engine/description/scene_description.h"
 #include "engine/core/error.h"
-#include "engine/octree/volume_limits.h"
+#include "engine/memory_planner.h"
 #include "engine/renderer.h"
 #include "engine/validation/closed_forms.h"
 #include "engine/validation/cluster_scaling.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "apps/view/window.h"
-#include "engine/octree/volume_limits.h"
+#include "engine/memory_planner.h"
 
 namespace freevoxels {
 

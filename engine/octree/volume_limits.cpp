@@ -1,19 +1,11 @@
 #include "engine/octree/volume_limits.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "engine/core/error.h"
 #include "engine/octree/device_bricks.h"
 
 namespace freevoxels {
-
-namespace {
-
-/// Shaders index voxels with signed 32-bit integers, including the padding of rows.
-constexpr std::uint64_t kMostNumbered = std::numeric_limits<std::int32_t>::max();
-
-}  // namespace
 
 std::uint64_t occupancyBytes(const HierarchyLayout& hierarchy) {
   return hierarchy.paddedBlocks() / shader::kBlocksPerWord * sizeof(shader::OccupancyWord);
@@ -22,14 +14,6 @@ std::uint64_t occupancyBytes(const HierarchyLayout& hierarchy) {
 std::uint64_t brickBytes(glm::ivec3 box) {
   const glm::u64vec3 cells((box + 2 * (ScalarBricks::kEdge - 1)) / ScalarBricks::kEdge);
   return std::min<std::uint64_t>(cells.x * cells.y * cells.z * sizeof(ScalarBricks::Brick), kBatchBytes);
-}
-
-std::uint64_t maximumVoxels(const Device& device) {
-  const HierarchyLayout cube(glm::ivec3(1024));
-  const auto voxels = double(cube.levels.front().voxels());
-  const auto bytes = double(occupancyBytes(cube));
-  const double most = double(std::min(device.largestBinding(sizeof(shader::OccupancyWord)), device.memoryBytes()));
-  return std::uint64_t(std::min(most * (voxels / bytes), double(kMostNumbered)));
 }
 
 void checkBinds(const Device& device, glm::ivec3 box, std::uint64_t bytes, std::uint64_t texelBytes) {
@@ -52,9 +36,9 @@ void checkHolds(const Device& device, glm::ivec3 box, std::uint64_t bytes, std::
 void checkBoxFits(const Device& device, const HierarchyLayout& hierarchy) {
   const glm::ivec3 box = hierarchy.levels.front().dimensions;
   checkBinds(device, box, occupancyBytes(hierarchy), sizeof(shader::OccupancyWord));
-  if (hierarchy.levels.front().paddedVoxels() > kMostNumbered)
+  if (hierarchy.levels.front().paddedVoxels() > kMostNumberedVoxels)
     fail(ErrorKind::OutOfMemory, "a volume of {}x{}x{} voxels has more than the {} that can be numbered: crop or resample it", box.x,
-         box.y, box.z, kMostNumbered);
+         box.y, box.z, kMostNumberedVoxels);
   checkHolds(device, box, occupancyBytes(hierarchy) + brickBytes(box));
 }
 

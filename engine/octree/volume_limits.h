@@ -3,6 +3,7 @@
 // the volume's size, what it needs and what the device has.
 
 #include <cstdint>
+#include <limits>
 #include <string_view>
 
 #include "engine/octree/device_volume.h"
@@ -15,8 +16,8 @@ std::uint64_t occupancyBytes(const HierarchyLayout& hierarchy);
 /// Bytes of the largest batch of bricks that is on the device while a volume of `box` voxels is built, for each channel.
 std::uint64_t brickBytes(glm::ivec3 box);
 
-/// The largest number of voxels that an empty volume's box may have on this device.
-std::uint64_t maximumVoxels(const Device& device);
+/// Shaders index voxels with signed 32-bit integers, including the padding of rows.
+inline constexpr std::uint64_t kMostNumberedVoxels = std::numeric_limits<std::int32_t>::max();
 
 /// Fails if the device cannot bind `bytes` in one buffer whose texels have `texelBytes`.
 void checkBinds(const Device& device, glm::ivec3 box, std::uint64_t bytes, std::uint64_t texelBytes);
