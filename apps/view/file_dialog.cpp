@@ -176,10 +176,14 @@ void FileDialog::drawList() {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     constexpr ImGuiSelectableFlags kRow = ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick;
-    if (ImGui::Selectable(entry.shown.c_str(), entry.name == name_, kRow)) {
+    ImGui::PushID(entry.name.c_str());
+    if (ImGui::Selectable("##row", entry.name == name_, kRow)) {
       if (!entry.isFolder()) name_ = entry.name;
       if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) chosen = entry.name;
     }
+    ImGui::PopID();
+    ImGui::SameLine(0.0f, 0.0f);
+    ImGui::TextUnformatted(entry.shown.c_str());  // of a label, what follows the ## of a sequence's name would not be seen
     ImGui::TableNextColumn();
     if (!entry.isFolder() && entry.bytes > 0) ImGui::TextDisabled("%s", sizeText(entry.bytes).c_str());
     ImGui::TableNextColumn();

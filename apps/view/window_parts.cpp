@@ -71,7 +71,7 @@ void drawStatusBar(const ViewState& state, const Activity& activity, bool writes
 void drawTurnHint() {
   const char* const text = "Drag to turn, Shift + drag to pan, wheel to zoom.  F1 lists all keys.";
   const ImVec2 size = ImGui::CalcTextSize(text), low = ImGui::GetWindowPos(), room = ImGui::GetWindowSize();
-  const ImVec2 place(low.x + 0.5f * (room.x - size.x), low.y + room.y - 3.2f * size.y);
+  const ImVec2 place(low.x + 0.5f * (room.x - size.x), low.y + room.y - 5.5f * size.y);  // above axes and scale bar
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled({place.x - size.y, place.y - 0.5f * size.y}, {place.x + size.x + size.y, place.y + 1.5f * size.y},
                      IM_COL32(20, 22, 26, 215), size.y);
