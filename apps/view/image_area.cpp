@@ -104,7 +104,8 @@ void ImageArea::press(ViewState& state, const ShownTextures& textures, const Ima
   held_ = Held::Camera;
   if (clip != nullptr) {
     held_ = Held::Clip;
-    clip_ = {clip->side, clip->step, {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y}, *state.scene.input.clipBox};
+    const InputOptions& input = state.scene.input;
+    clip_ = {clip->side, clip->step, {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y}, input.clipBox, input.clipPlane};
   } else if (axis) {
     held_ = Held::Axes;
     state.look(alongAxis(*state.camera, *axis));
@@ -113,15 +114,22 @@ void ImageArea::press(ViewState& state, const ShownTextures& textures, const Ima
   }
 }
 
-/// The side follows the mouse along its axis.
+/// The side follows the mouse along its axis, and the plane along its normal.
 void ImageArea::dragClip(ViewState& state) const {
   const glm::vec2 way = glm::vec2(ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y) - clip_.mouse;
   const float length = glm::dot(clip_.step, clip_.step);
-  if (length <= 0.0f || !state.scene.input.clipBox) return;
-  const int voxels = int(std::lround(glm::dot(way, clip_.step) / length));
-  const VoxelBox box = withSideMoved(clip_.box, clip_.side, voxels, state.latest->wholeDimensions);
-  const VoxelBox& now = *state.scene.input.clipBox;
-  if (box.first != now.first || box.last != now.last) state.clip(box);
+  if (length <= 0.0f) return;
+  const double voxels = double(glm::dot(way, clip_.step) / length);
+  const InputOptions& now = state.scene.input;
+  if (clip_.side == ClipHandles::kPlane) {
+    if (!now.clipPlane) return;
+    ClipPlane plane = *clip_.plane;
+    plane.point += voxels * state.latest->scene.volume->voxelSize() * glm::normalize(plane.normal);
+    if (plane.point != now.clipPlane->point) state.clip(now.clipBox, plane);
+  } else if (now.clipBox) {
+    const VoxelBox box = withSideMoved(*clip_.box, clip_.side, int(std::lround(voxels)), state.latest->wholeDimensions);
+    if (box.first != now.clipBox->first || box.last != now.clipBox->last) state.clip(box, now.clipPlane);
+  }
 }
 
 void ImageArea::drag(ViewState& state, const ImageFrame& frame) {

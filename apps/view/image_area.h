@@ -41,7 +41,8 @@ class ImageArea {
   struct {
     int side = 0;
     glm::vec2 step{0.0f}, mouse{0.0f};
-    VoxelBox box;
+    std::optional<VoxelBox> box;
+    std::optional<ClipPlane> plane;
   } clip_;  ///< the handle that is held, as it was when it was taken
   bool moves_ = false, turned_ = false;
 };

@@ -17,7 +17,10 @@ namespace {
 std::string nameOf(const SceneDescription& scene, bool clipped) {
   SceneDescription read;
   read.input = scene.input;
-  if (!clipped) read.input.clipBox.reset();
+  if (!clipped) {
+    read.input.clipBox.reset();
+    read.input.clipPlane.reset();
+  }
   return fmt::format("{}temperature={} albedo={}", textOf(read, {"input"}), scene.emission.grid().value_or("none"),
                      scene.classification.albedoGrid.value_or("none"));
 }
@@ -42,11 +45,12 @@ std::shared_ptr<const Volume> VolumeCache::read(const SceneDescription& scene) {
     whole_ = nullptr;
     SceneDescription unclipped = scene;
     unclipped.input.clipBox.reset();
+    unclipped.input.clipPlane.reset();
     whole_ = std::make_shared<const Volume>(unclipped.readVolume(maximumVoxels_));
     logWarnings(*whole_, false);
     name_ = name;
   }
-  clipped_ = scene.input.clipBox ? std::make_shared<const Volume>(scene.input.clip(*whole_)) : whole_;
+  clipped_ = scene.input.clipBox || scene.input.clipPlane ? std::make_shared<const Volume>(scene.input.clip(*whole_)) : whole_;
   clippedName_ = clippedName;
   return clipped_;
 }

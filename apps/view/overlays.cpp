@@ -15,6 +15,8 @@ namespace {
 
 constexpr std::array kAxisColors{IM_COL32(224, 96, 88, 255), IM_COL32(124, 196, 96, 255), IM_COL32(92, 148, 240, 255)};
 constexpr ImU32 kInk = IM_COL32(235, 235, 240, 255), kShade = IM_COL32(0, 0, 0, 150), kBox = IM_COL32(200, 205, 215, 110);
+constexpr ImU32 kPlaneColor = IM_COL32(240, 200, 80, 255);
+constexpr float kLeastSlope = 0.15f;  // sine of the angle between a plane's normal and the view from which its handle follows the normal
 
 float unit() {
   return ImGui::GetFontSize() / 15.0f;
@@ -67,13 +69,23 @@ void drawAxes(const Camera& camera, const ImageFrame& frame) {
   }
 }
 
+/// A corner of the volume's box in the world; bits 0 to 2 of `i` say whether it is the last one along x, y and z.
+glm::dvec3 boxCorner(const Volume& volume, int i) {
+  const glm::dvec3 index = glm::dvec3(i & 1, i >> 1 & 1, i >> 2 & 1) * glm::dvec3(volume.dimensions) - 0.5;
+  return glm::dvec3(volume.indexToWorld * glm::dvec4(index, 1.0));
+}
+
+void drawPlane(const Volume& volume, const ClipPlane& plane, const Camera& camera, const ImageFrame& frame) {
+  std::vector<ImVec2> places;
+  for (const glm::dvec3 corner : planeInBox(volume, plane))
+    if (const auto place = frame.place(camera, corner)) places.push_back(*place);
+  ImGui::GetWindowDrawList()->AddPolyline(places.data(), int(places.size()), kPlaneColor, ImDrawFlags_Closed, 1.5f * unit());
+}
+
 /// The volume's box with the world coordinates of two opposite corners.
 void drawBox(const Volume& volume, const Camera& camera, const ImageFrame& frame) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  const auto corner = [&](int i) {
-    const glm::dvec3 index = glm::dvec3(i & 1, i >> 1 & 1, i >> 2 & 1) * glm::dvec3(volume.dimensions) - 0.5;
-    return glm::dvec3(volume.indexToWorld * glm::dvec4(index, 1.0));
-  };
+  const auto corner = [&](int i) { return boxCorner(volume, i); };
   for (int i = 0; i < 8; ++i)
     for (int axis = 0; axis < 3; ++axis) {
       if ((i >> axis & 1) != 0) continue;
@@ -159,8 +171,39 @@ std::optional<int> axisUnderMouse(const Camera& camera, const ImageFrame& frame)
   return found;
 }
 
+std::vector<glm::dvec3> planeInBox(const Volume& volume, const ClipPlane& plane) {
+  const glm::dvec3 normal = glm::normalize(plane.normal);
+  std::array<glm::dvec3, 8> corners;
+  for (int i = 0; i < 8; ++i) corners[std::size_t(i)] = boxCorner(volume, i);
+  std::vector<glm::dvec3> points;
+  glm::dvec3 middle(0.0);
+  for (int i = 0; i < 8; ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((i >> axis & 1) != 0) continue;
+      const glm::dvec3 from = corners[std::size_t(i)], to = corners[std::size_t(i | 1 << axis)];
+      const double before = glm::dot(normal, from - plane.point), behind = glm::dot(normal, to - plane.point);
+      if ((before > 0.0) == (behind > 0.0)) continue;
+      points.push_back(glm::mix(from, to, before / (before - behind)));
+      middle += points.back();
+    }
+  if (points.empty()) return points;
+  middle /= double(points.size());
+  const glm::dvec3 right = glm::normalize(glm::cross(normal, std::abs(normal.x) < 0.8 ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0)));
+  const auto angle = [&](glm::dvec3 point) {
+    return std::atan2(glm::dot(glm::cross(normal, right), point - middle), glm::dot(right, point - middle));
+  };
+  std::ranges::sort(points, {}, angle);
+  return points;
+}
+
 ClipHandles::ClipHandles(const ViewState& state, const ImageFrame& frame) {
-  if (!state.scene.input.clipBox || !state.latest || !state.latest->request.scene.input.clipBox) return;
+  if (!state.latest) return;
+  addBox(state, frame);
+  addPlane(state, frame);
+}
+
+void ClipHandles::addBox(const ViewState& state, const ImageFrame& frame) {
+  if (!state.scene.input.clipBox || !state.latest->request.scene.input.clipBox) return;
   const VoxelBox& box = *state.scene.input.clipBox;
   const glm::dvec3 first(box.first), last(glm::min(box.last, state.latest->wholeDimensions - 1));
   // The drawn volume begins at the first voxel of the box that it was drawn with.
@@ -177,6 +220,26 @@ ClipHandles::ClipHandles(const ViewState& state, const ImageFrame& frame) {
     const auto from = place(middle), to = place(next);
     if (from && to) handles.push_back({side, *from, {to->x - from->x, to->y - from->y}});
   }
+}
+
+void ClipHandles::addPlane(const ViewState& state, const ImageFrame& frame) {
+  if (!state.scene.input.clipPlane) return;
+  const ClipPlane& plane = *state.scene.input.clipPlane;
+  const Volume& volume = *state.latest->scene.volume;
+  glm::dvec3 middle(0.0);
+  const std::vector<glm::dvec3> corners = planeInBox(volume, plane);
+  for (const glm::dvec3 corner : corners) middle += corner / double(corners.size());
+  if (corners.empty()) middle = plane.point;
+  const double voxel = volume.voxelSize();
+  const auto from = frame.place(*state.camera, middle), to = frame.place(*state.camera, middle + voxel * glm::normalize(plane.normal));
+  const glm::dvec3 cameraUp = glm::transpose(glm::dmat3(worldToCamera(*state.camera)))[1];
+  const auto beside = frame.place(*state.camera, middle + voxel * cameraUp);
+  if (!from || !to || !beside) return;
+  glm::vec2 step(to->x - from->x, to->y - from->y);
+  // Seen along its normal, the plane follows the mouse up and down.
+  const glm::vec2 upwards(beside->x - from->x, beside->y - from->y);
+  if (glm::length(step) < kLeastSlope * glm::length(upwards)) step = upwards;
+  handles.push_back({kPlane, *from, step});
 }
 
 const ClipHandles::Handle* ClipHandles::hovered() const {
@@ -202,13 +265,15 @@ void drawOverlays(const ViewState& state, const ImageFrame& frame) {
   list.PushClipRect(frame.low, frame.high, true);
   const bool isVolume = state.latest && state.diagnosis.shown == Shown::Image;
   const ClipHandles clip(state, frame);
-  if ((state.overlays.box || !clip.handles.empty()) && state.latest) drawBox(*state.latest->scene.volume, camera, frame);
+  if (state.latest && (state.overlays.box || state.scene.input.clipBox)) drawBox(*state.latest->scene.volume, camera, frame);
+  if (state.latest && state.scene.input.clipPlane) drawPlane(*state.latest->scene.volume, *state.scene.input.clipPlane, camera, frame);
   if (state.overlays.colorBar && isVolume) drawColorBar(state, frame);
   if (state.overlays.scaleBar) drawScaleBar(camera, frame);
   if (state.overlays.axes) drawAxes(camera, frame);
   const ClipHandles::Handle* const hovered = clip.hovered();
   for (const ClipHandles::Handle& handle : clip.handles) {
-    list.AddCircleFilled(handle.place, 7.0f * unit(), kAxisColors[std::size_t(handle.side / 2)]);
+    const ImU32 color = handle.side == ClipHandles::kPlane ? kPlaneColor : kAxisColors[std::size_t(handle.side / 2)];
+    list.AddCircleFilled(handle.place, 7.0f * unit(), color);
     list.AddCircle(handle.place, 7.0f * unit(), &handle == hovered ? kInk : kShade, 0, 2.0f);
   }
   list.PopClipRect();

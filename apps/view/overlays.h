@@ -31,12 +31,13 @@ double pixelLength(const Camera& camera, double height);
 /// The axis in the corner whose end is under the mouse: 0 to 5 for +x, -x, +y, -y, +z, -z.
 std::optional<int> axisUnderMouse(const Camera& camera, const ImageFrame& frame);
 
-/// The box that clips the volume, with a handle in the middle of each side.
+/// The box that clips the volume, with a handle in the middle of each side; and the plane, with one in its middle.
 struct ClipHandles {
+  static constexpr int kPlane = 6;
   struct Handle {
-    int side = 0;        ///< 0 to 5: the first and last voxel along x, y and z
+    int side = 0;        ///< 0 to 5: the first and last voxel along x, y and z; or kPlane
     ImVec2 place;        ///< in the window
-    glm::vec2 step{0.0f};  ///< by which it moves for each voxel
+    glm::vec2 step{0.0f};  ///< by which it moves for each voxel, of the plane along its normal
   };
   std::vector<Handle> handles;  ///< those that are before the eye
 
@@ -44,7 +45,14 @@ struct ClipHandles {
   ClipHandles(const ViewState& state, const ImageFrame& frame);
   /// The one under the mouse.
   const Handle* hovered() const;
+
+ private:
+  void addBox(const ViewState& state, const ImageFrame& frame);
+  void addPlane(const ViewState& state, const ImageFrame& frame);
 };
+
+/// Where a plane cuts the volume's box: the corners of a convex polygon in the world, in order. None where it misses the box.
+std::vector<glm::dvec3> planeInBox(const Volume& volume, const ClipPlane& plane);
 
 /// The box with one side moved by a number of voxels, at least one voxel thick and inside of a volume of `dimensions`.
 VoxelBox withSideMoved(const VoxelBox& box, int side, int voxels, glm::ivec3 dimensions);

@@ -67,13 +67,14 @@ void ViewState::showFrame(const std::string& file) {
   scene.emission.take(*now.emission);
 }
 
-void ViewState::clip(const std::optional<VoxelBox>& box) {
+void ViewState::clip(const std::optional<VoxelBox>& box, const std::optional<ClipPlane>& plane) {
   if (!latest) return;
   const Classification& now = latest->scene.classification;
   ClassificationDescription& options = scene.classification;
   if (!now.transferFunction && !options.transferFunction && !options.densityScale && !latest->scene.volume->classificationIsFixed)
     options.densityScale = now.densityScale;
   scene.input.clipBox = box;
+  scene.input.clipPlane = plane;
   changed = true;
 }
 

@@ -61,8 +61,9 @@ struct ViewState : Edits {
   /// Opens another frame of the sequence with the same camera. Automatic settings stay those of the frame
   /// before, so that an animation does not flicker.
   void showFrame(const std::string& file);
-  /// Draws these voxels only; all without a box. The density scale stays what it is, although less of the volume is there.
-  void clip(const std::optional<VoxelBox>& box);
+  /// Draws only the voxels in the box and behind the plane, as far as they are given. The density scale stays what it is, although less
+  /// of the volume is there.
+  void clip(const std::optional<VoxelBox>& box, const std::optional<ClipPlane>& plane);
 };
 
 /// Earlier states of the edits. All changes between two moments in which the user does nothing are one step.

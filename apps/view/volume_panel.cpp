@@ -10,6 +10,7 @@
 
 #include "engine/description/scene_description.h"
 #include "apps/view/actions.h"
+#include "apps/view/clip_panel.h"
 #include "apps/view/widgets.h"
 #include "engine/core/error.h"
 
@@ -81,27 +82,6 @@ void VolumePanel::drawFacts(const ViewState& state) {
   ImGui::TextDisabled("values %.4g to %.4g, voxel size %.3g", double(volume.minimum), double(volume.maximum), volume.voxelSize());
 }
 
-void VolumePanel::drawClip(ViewState& state) {
-  if (!state.latest || state.latest->wholeDimensions == glm::ivec3(0) || state.latest->scene.volume->classification) return;
-  const glm::ivec3 last = state.latest->wholeDimensions - 1;
-  std::optional<VoxelBox> box = state.scene.input.clipBox;
-  bool clips = box.has_value();
-  if (tick("Clip box", clips)) return state.clip(clips ? std::optional(VoxelBox{glm::ivec3(0), last}) : std::nullopt);
-  hint("Draws only the voxels in a box, whose sides can be dragged in the image", "--clip-box");
-  if (!box) return;
-  bool changed = false;
-  for (int axis = 0; axis < 3; ++axis) {
-    constexpr std::array kLabels{"Voxels in x", "Voxels in y", "Voxels in z"};
-    int first = box->first[axis], end = std::min(box->last[axis], last[axis]);
-    changed |= ImGui::DragIntRange2(beginRow(kLabels[std::size_t(axis)]), &first, &end, 0.3f, 0, last[axis], "%d", "%d",
-                                    ImGuiSliderFlags_AlwaysClamp);
-    hint("First and last voxel that is drawn; drag a number", "--clip-box");
-    box->first[axis] = first;
-    box->last[axis] = std::max(first, end);
-  }
-  if (changed) state.clip(box);
-}
-
 void VolumePanel::draw(ViewState& state, GridList& grids) {
   if (!ImGui::CollapsingHeader("Volume", ImGuiTreeNodeFlags_DefaultOpen)) return;
   ImGui::PushID("volume");
@@ -118,7 +98,7 @@ void VolumePanel::draw(ViewState& state, GridList& grids) {
     }
   }
   drawGrids(state, grids);
-  drawClip(state);
+  drawClipping(state);
   frames_.draw(state);
   ImGui::PopID();
 }

@@ -65,7 +65,6 @@ class VolumePanel {
  private:
   static void drawFacts(const ViewState& state);
   static void drawGrids(ViewState& state, GridList& grids);
-  static void drawClip(ViewState& state);
 
   SequencePanel frames_;
   std::optional<int> resolution_;  ///< while it is dragged

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace freevoxels {
 namespace {
@@ -35,6 +36,22 @@ TEST(Overlays, WorldPositionsHaveThePlacesThatTheyHaveInTheImage) {
   EXPECT_NEAR(corner->x, 400.0f, 1e-3f) << "half the height to the right";
   EXPECT_NEAR(corner->y, 50.0f, 1e-3f) << "the upper edge";
   EXPECT_FALSE(frame.place(camera, {0.0, 0.0, 11.0})) << "behind the eye";
+}
+
+TEST(Overlays, APlaneCutsTheBoxInAPolygonWhoseCornersAreInOrder) {
+  Volume volume{.dimensions = glm::ivec3(4)};
+  volume.indexToWorld = glm::translate(glm::dmat4(1.0), glm::dvec3(-1.5));  // the box is -2 to 2
+  const std::vector<glm::dvec3> square = planeInBox(volume, {.point = {0.5, 9.0, 9.0}, .normal = {3.0, 0.0, 0.0}});
+  ASSERT_EQ(square.size(), 4u);
+  const std::vector<glm::dvec3> hexagon = planeInBox(volume, {.point = glm::dvec3(0.0), .normal = glm::dvec3(1.0)});
+  ASSERT_EQ(hexagon.size(), 6u);
+  for (const auto* polygon : {&square, &hexagon})
+    for (std::size_t i = 0; i < polygon->size(); ++i) {
+      const glm::dvec3 from = (*polygon)[i], to = (*polygon)[(i + 1) % polygon->size()];
+      EXPECT_NEAR(glm::distance(from, to), polygon == &square ? 4.0 : std::sqrt(8.0), 1e-12) << "not across the polygon";
+    }
+  for (const glm::dvec3 corner : square) EXPECT_NEAR(corner.x, 0.5, 1e-12);
+  EXPECT_TRUE(planeInBox(volume, {.point = {2.1, 0.0, 0.0}, .normal = {1.0, 0.0, 0.0}}).empty());
 }
 
 TEST(Overlays, ASideOfTheClipBoxStaysInsideAndDoesNotPassTheOther) {
