@@ -12,6 +12,8 @@
 #include <sstream>
 #include <thread>
 
+#include "engine/image/srgb.h"
+
 namespace freevoxels::test {
 
 namespace {
@@ -48,7 +50,8 @@ std::optional<std::string> installedProgram(const std::string& name) {
   return std::nullopt;
 }
 
-Display::Display() {
+Display::Display() : memory_(fs::temp_directory_path() / fmt::format("freevoxels-display-{}", getpid())) {
+  fs::create_directories(memory_);
   int ends[2];
   if (pipe(ends) != 0) throw std::runtime_error("no pipe");
   server_ = fork();
@@ -57,7 +60,7 @@ Display::Display() {
     dup2(silent, STDERR_FILENO);
     close(ends[0]);
     become(installedProgram("Xvfb").value(), {"-displayfd", std::to_string(ends[1]), "-screen", "0",
-                                              "1400x900x24", "-nolisten", "tcp", "-noreset"});
+                                              "1400x900x24", "-nolisten", "tcp", "-noreset", "-fbdir", memory_.string()});
   }
   close(ends[1]);
   std::string number;
@@ -72,6 +75,27 @@ Display::~Display() {
   unsetenv("DISPLAY");
   kill(server_, SIGTERM);
   waitpid(server_, nullptr, 0);
+  std::error_code ignored;
+  fs::remove_all(memory_, ignored);
+}
+
+Image Display::screen() const {
+  // An X window dump: a header of big-endian words, a table of colours, and rows of blue, green, red and padding.
+  const std::string dump = readBytes(memory_ / "Xvfb_screen0");
+  const auto word = [&](std::size_t i) {
+    std::size_t value = 0;
+    for (std::size_t byte = 4 * i; byte < 4 * i + 4; ++byte) value = value << 8 | std::uint8_t(dump.at(byte));
+    return value;
+  };
+  const std::size_t headerBytes = word(0), rowBytes = word(12), colors = word(19), bytesPerColor = 12;
+  Image image{.size = glm::ivec2(int(word(4)), int(word(5)))};
+  for (int y = 0; y < image.size.y; ++y)
+    for (int x = 0; x < image.size.x; ++x) {
+      const std::size_t at = headerBytes + colors * bytesPerColor + std::size_t(y) * rowBytes + 4 * std::size_t(x);
+      const auto linear = [&](std::size_t byte) { return linearFromSrgb(float(std::uint8_t(dump.at(at + byte))) / 255.0f); };
+      image.pixels.emplace_back(linear(2), linear(1), linear(0), 1.0f);
+    }
+  return image;
 }
 
 ViewerSession::ViewerSession(const fs::path& folder, const Arguments& arguments) : folder_(folder) {
@@ -82,7 +106,7 @@ ViewerSession::ViewerSession(const fs::path& folder, const Arguments& arguments)
     setenv("XDG_STATE_HOME", folder.c_str(), 1);
     become(FREEVOXELS_VIEW_PROGRAM, arguments);
   }
-  const Arguments search{"search", "--onlyvisible", "--name", "FreeVoxels"};
+  const Arguments search{"search", "--all", "--onlyvisible", "--pid", std::to_string(child_), "--name", "FreeVoxels"};
   EXPECT_TRUE(waitUntil([&] {
     std::istringstream(runProgramFile(installedProgram("xdotool")->c_str(), search).out) >> window_;
     return !window_.empty() || waitpid(child_, nullptr, WNOHANG) == child_;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "engine/image/image.h"
 #include "tests/commands/program_runner.h"
 
 namespace freevoxels::test {
@@ -20,7 +21,11 @@ class Display {
   Display(const Display&) = delete;
   Display& operator=(const Display&) = delete;
 
+  /// What the screen shows, as linear colours.
+  Image screen() const;
+
  private:
+  const std::filesystem::path memory_;  ///< folder of the file in which the server keeps the screen's pixels
   pid_t server_ = -1;
 };
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "engine/image/image.h"
+#include "engine/image/srgb.h"
 #include "tests/commands/viewer_runner.h"
 
 namespace freevoxels::test {
@@ -330,14 +331,125 @@ TEST_F(Viewer, ThePanelsValuesAreDraggedAndAFinishedImageIsShownBrighterWithoutD
   EXPECT_EQ(session->quit().exitCode, 0);
 }
 
+/// A spot of one colour (sRGB), wider than lines and letters; not that of the axes in the corner.
+std::optional<glm::ivec2> findSpot(const Image& screen, glm::ivec3 color) {
+  const auto isColor = [&](int x, int y) {
+    const glm::vec4 pixel = screen.pixels[std::size_t(y * screen.size.x + x)];
+    for (int c = 0; c < 3; ++c)
+      if (std::abs(pixel[c] - linearFromSrgb(float(color[c]) / 255.0f)) > 0.01f) return false;
+    return true;
+  };
+  for (int y = kBar + 3; y < kWindow.y - kBar - 3; ++y)
+    for (int x = kPanel + 3; x < kWindow.x - 3; ++x) {
+      if (isCovered({x - kPanel, y - kBar}, {kWindow.x - kPanel, kWindow.y - 2 * kBar})) continue;
+      bool all = true;
+      for (int i = 0; i < 25 && all; ++i) all = isColor(x + i % 5 - 2, y + i / 5 - 2);
+      if (all) return glm::ivec2(x, y);
+    }
+  return {};
+}
+
+TEST_F(Viewer, HandlesMoveTheBoxAndThePlaneThatClip) {
+  constexpr glm::ivec3 kRed{224, 96, 88}, kYellow{240, 200, 80};  // of the sides across x, and of the plane
+  const auto session = use("procedural:cube --resolution 16 --orbit 40,20");
+  const auto drag = [&](glm::ivec3 color, glm::ivec2 way) {
+    // The window may still show the dialog in which the scene was saved, or the volume as it was clipped before.
+    std::optional<glm::ivec2> spot, before;
+    for (int i = 0; i < 100 && (!spot || spot != before); ++i) {
+      session->hands("sleep 0.4");
+      before = std::exchange(spot, findSpot(display->screen(), color));
+    }
+    ASSERT_TRUE(spot);
+    const glm::ivec2 half = *spot + way / 2, end = *spot + way;
+    session->hands(fmt::format("mousemove {} {} mousedown 1 mousemove {} {} mousemove {} {} mouseup 1 mousemove 700 60", spot->x, spot->y,
+                               half.x, half.y, end.x, end.y));
+  };
+  session->save('s', "image.png");  // without one there is nothing to clip
+  session->hands("mousemove 143 151 click 1 mousemove 700 60");
+  const auto whole = sceneOf(*session, "whole.json").at("input").at("clip-box");
+  drag(kRed, {60, 0});
+  const auto cut = sceneOf(*session, "cut.json").at("input").at("clip-box");
+  EXPECT_TRUE(cut.at(0) > whole.at(0) || cut.at(3) < whole.at(3) || cut.at(0) > 0) << cut.dump();
+  for (const int i : {1, 2, 4, 5}) EXPECT_EQ(cut.at(i), whole.at(i)) << "along y and z it stays";
+  session->hands("mousemove 143 151 click 1 mousemove 205 151 click 1 mousemove 700 60");
+  const nlohmann::json plane = sceneOf(*session, "plane.json").at("input");
+  EXPECT_FALSE(plane.contains("clip-box"));
+  drag(kYellow, {0, -70});
+  const nlohmann::json moved = sceneOf(*session, "moved.json").at("input");
+  EXPECT_NE(plane.at("clip-plane"), moved.at("clip-plane"));
+  for (const int i : {3, 4, 5}) EXPECT_EQ(plane.at("clip-plane").at(i), moved.at("clip-plane").at(i)) << "its normal stays";
+  session->hands("key ctrl+z");
+  EXPECT_EQ(sceneOf(*session, "undone.json").at("input"), plane);
+  expectQuietEnd(*session);
+}
+
+TEST_F(Viewer, SlicesShowTheValuesAndGoToWhereTheyAreClicked) {
+  const auto session = use("procedural:cloud --resolution 32");
+  const auto save = [&](const char* name) {
+    session->save('s', name);
+    return readPng(folder / name).size;
+  };
+  const glm::ivec2 all = save("all.png");
+  session->hands("mousemove 700 300 key l");
+  const glm::ivec2 beside = save("beside.png");
+  EXPECT_EQ(beside.y, all.y);
+  EXPECT_LT(beside.x, all.x) << "the slices are beside the image";
+  const int left = kPanel + beside.x;
+  const auto greys = [&] {  // of the slices alone
+    const Image screen = cropped(display->screen(), {{left, kBar}, {kWindow.x - left, kWindow.y - 2 * kBar}});
+    std::vector<float> values;
+    for (const glm::vec4& pixel : screen.pixels) values.push_back(pixel.r + pixel.g + pixel.b);
+    return values;
+  };
+  session->hands("sleep 0.5");  // the window may still show the dialog
+  const std::vector<float> before = greys();
+  EXPECT_GT(std::set<float>(before.begin(), before.end()).size(), 30u) << "values of a cloud";
+  session->hands(fmt::format("mousemove {} 160 click 1 sleep 0.3 mousemove 700 300 sleep 0.3", left + 100));
+  EXPECT_NE(greys(), before) << "the other two slices go through the voxel that was clicked";
+  session->hands("key l");
+  EXPECT_EQ(save("again.png"), all);
+  expectQuietEnd(*session);
+}
+
+TEST_F(Viewer, TwoWindowsAreUsedSideBySide) {
+  const auto cloud = use("procedural:cloud --resolution 16"), cube = use("procedural:cube --resolution 16");
+  cloud->hands("windowsize --sync @ 700 400");
+  cube->hands("windowsize --sync @ 700 400 windowmove --sync @ 0 450");
+  const auto volume = [&](const ViewerSession& session, const char* mouse, const char* name) {
+    session.hands(std::string("windowfocus --sync @ mousemove ") + mouse);
+    return sceneOf(session, name).at("input").at("volume").get<std::string>();
+  };
+  EXPECT_EQ(volume(*cloud, "500 100", "1.json"), "procedural:cloud");
+  EXPECT_EQ(volume(*cube, "500 550", "2.json"), "procedural:cube");
+  EXPECT_EQ(volume(*cloud, "500 100", "3.json"), "procedural:cloud");
+  cube->hands("windowfocus --sync @ mousemove 500 550");
+  expectQuietEnd(*cube);
+  EXPECT_EQ(volume(*cloud, "500 100", "4.json"), "procedural:cloud") << "the other one goes on";
+  expectQuietEnd(*cloud);
+}
+
+/// How long the window takes to close: 0.3 s where nothing else runs.
+double secondsToQuit(ViewerSession& session) {
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(session.quit().exitCode, 0);
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
 TEST_F(Viewer, ItEndsAtOnceWhileItDraws) {
   const auto session = use("procedural:cloud --resolution 256");  // takes seconds to compute, which nothing interrupts
   session->hands("sleep 0.5 mousemove 700 300 mousedown 1 mousemove 760 330");
-  const auto start = std::chrono::steady_clock::now();
-  const ProgramResult result = session->quit();
-  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-  EXPECT_EQ(result.exitCode, 0);
-  EXPECT_LT(time.count(), 3.0) << "0.3 s where nothing else runs";
+  EXPECT_LT(secondsToQuit(*session), 3.0);
+}
+
+TEST_F(Viewer, ItEndsAtOnceWhileItExports) {
+  const auto session = use("procedural:cloud --resolution 64 --frames 99");
+  session->saveAll('t', "turn_##.png", "turn_01.png");
+  EXPECT_LT(secondsToQuit(*session), 3.0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "turn_98.png"));
+  for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    if (entry.path().extension() != ".png") continue;
+    EXPECT_EQ(readPng(entry.path()).size.y, kWindow.y - 2 * kBar) << "a whole image";
+  }
 }
 
 TEST_F(Viewer, WithoutADisplayItSaysSo) {
