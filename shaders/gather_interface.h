@@ -100,7 +100,7 @@ struct GatherPart {
   int colorDigits, energyDigits, depthDigits, distanceDigits;  // behind the binary point
 };
 
-// A cube of a volume whose voxels alone are on the device (engine/gathering/gather_region.h): rays march what is in it, behind the cubes that
+// A cube of a volume whose voxels alone are on the device (engine/streamed_renderer.h): rays march what is in it, behind the cubes that
 // were marched before, of which the sums of the lattice hold the results. Positions on rays are those in the whole volume.
 struct GatherRegion {
   ivec3 first;            // first voxel of the box around the cube, whose bricks and cells the levels number; a multiple of a brick's edge
