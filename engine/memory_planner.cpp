@@ -66,11 +66,11 @@ std::uint64_t maximumVoxels(const Device& device) {
   return std::uint64_t(std::min(most * (voxels / bytes), double(kMostNumberedVoxels)));
 }
 
-bool exceedsDevice(const Device& device, glm::ivec3 box, std::uint64_t activeVoxels) {
+bool exceedsDevice(std::uint64_t deviceBytes, std::uint64_t mostVoxels, glm::ivec3 box, std::uint64_t activeVoxels) {
   // The least that a voxel with data takes: its extinction and its place in the lists of what is drawn.
   constexpr std::uint64_t kLeastBytes = 12;
   const glm::u64vec3 size(box);
-  return size.x * size.y * size.z > maximumVoxels(device) || activeVoxels > device.memoryBytes() / kLeastBytes;
+  return size.x * size.y * size.z > mostVoxels || activeVoxels > deviceBytes / kLeastBytes;
 }
 
 bool tableReplacesEyeRays(const FrameSettings& settings, const Error& reason) {

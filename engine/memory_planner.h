@@ -52,9 +52,9 @@ void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionS
 /// The largest number of voxels that an empty volume's box may have on this device.
 std::uint64_t maximumVoxels(const Device& device);
 
-/// Whether a volume is certainly larger than the device's memory, whatever is drawn of it: it is drawn in pieces or not at all.
-/// `activeVoxels` are those of its box with data.
-bool exceedsDevice(const Device& device, glm::ivec3 box, std::uint64_t activeVoxels);
+/// Whether a volume is certainly larger than a device with these limits (Device::memoryBytes, maximumVoxels) can hold, whatever is drawn of
+/// it: it is drawn in pieces or not at all. `activeVoxels` are those of its box with data.
+bool exceedsDevice(std::uint64_t deviceBytes, std::uint64_t mostVoxels, glm::ivec3 box, std::uint64_t activeVoxels);
 
 // What the following functions decide depends on all of the device's memory, and not on what is allocated at present, so that it
 // is the same for every frame.

@@ -83,11 +83,12 @@ void FrameSeries::draw(std::span<const Frame> frames) {
 
 void FrameSeries::drawFilm(std::span<const Frame> frames) {
   const std::vector<std::string> inputs = volumesOf(frames);
-  VolumesAhead volumes(inputs, [this, turn = int(framesOfFirstVolume(frames)), count = inputs.size()](const std::string& input) {
+  const MemoryLimits limits = memoryLimits(options_, device_);
+  VolumesAhead volumes(inputs, [this, limits, turn = int(framesOfFirstVolume(frames)), count = inputs.size()](const std::string& input) {
     // Of a baked volume nothing finer is read than is needed, and nothing at all if it is drawn piece by piece.
     const SceneDescription scene = sceneOf(input);
     const int level = scene.finestLevelNeeded(turn);
-    if (count == 1 && needsPieces(options_, device_, pieceDrawing(options_, scene, turn), level)) return std::shared_ptr<const Volume>();
+    if (count == 1 && needsPieces(options_, limits, pieceDrawing(options_, scene, turn), level)) return std::shared_ptr<const Volume>();
     return std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level));
   });
   std::size_t failed = 0;

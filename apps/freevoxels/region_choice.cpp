@@ -57,14 +57,19 @@ PieceDrawing pieceDrawing(const RenderOptions& options, const SceneDescription& 
   return result;
 }
 
-bool needsPieces(const RenderOptions& options, const Device& device, const PieceDrawing& pieces, int level) {
+MemoryLimits memoryLimits(const RenderOptions& options, const Device& device) {
+  const auto least = [&](std::uint64_t value) { return options.group != nullptr ? options.group->least(value) : value; };
+  return {.deviceBytes = least(device.memoryBytes()), .hostBytes = least(machineMemoryBytes() / 2), .voxels = least(maximumVoxels(device))};
+}
+
+bool needsPieces(const RenderOptions& options, const MemoryLimits& limits, const PieceDrawing& pieces, int level) {
   if (pieces.way == PieceDrawing::Way::None) return false;
   if (options.drawsShares() && !drawsByGathering(pieces.settings)) return true;
   const fvx::FvxFile& file = *pieces.file;
   std::uint64_t active = 0;
   for (const fvx::ChunkEntry& chunk : file.chunks(fvx::Channel::Scalars, level)) active += chunk.activeVoxels;
-  if (exceedsDevice(device, file.dimensions(level), active) || active > machineMemoryBytes() / 2 / sizeof(float)) return true;
-  return pieces.way == PieceDrawing::Way::Cubes && leastGatherBytes(pieces, level) > device.memoryBytes();
+  if (exceedsDevice(limits.deviceBytes, limits.voxels, file.dimensions(level), active) || active > limits.hostBytes / sizeof(float)) return true;
+  return pieces.way == PieceDrawing::Way::Cubes && leastGatherBytes(pieces, level) > limits.deviceBytes;
 }
 
 }  // namespace freevoxels

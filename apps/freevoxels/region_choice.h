@@ -20,8 +20,15 @@ struct PieceDrawing {
 };
 PieceDrawing pieceDrawing(const RenderOptions& options, const SceneDescription& scene, int frames);
 
+/// What a volume has to fit into to be drawn at once, on every process of a group, so that all of them decide alike.
+struct MemoryLimits {
+  std::uint64_t deviceBytes = 0, hostBytes = 0, voxels = 0;
+};
+/// All processes of the group must call it.
+MemoryLimits memoryLimits(const RenderOptions& options, const Device& device);
+
 /// Whether they are, where they can be: always where shares are drawn by splats, so that a process reads its own part of the file alone;
-/// otherwise where the device or this machine cannot hold what is drawn of `level` at once. The answer is certain only where it is yes.
-bool needsPieces(const RenderOptions& options, const Device& device, const PieceDrawing& pieces, int level);
+/// otherwise where a device or a machine cannot hold what is drawn of `level` at once. The answer is certain only where it is yes.
+bool needsPieces(const RenderOptions& options, const MemoryLimits& limits, const PieceDrawing& pieces, int level);
 
 }  // namespace freevoxels

@@ -26,6 +26,8 @@ class ShareGroup {
   virtual std::string deviceSelector() const = 0;
   /// Fails (ErrorKind::Input) on a process whose `text` differs from that of the leading process; `what` completes "rank 2 has ...".
   virtual void agree(const std::string& what, const std::string& text) = 0;
+  /// The least of the values of all processes, on all of them.
+  virtual std::uint64_t least(std::uint64_t value) = 0;
   /// Whether this process draws a part of the frame.
   virtual bool draws(std::size_t frame) const = 0;
   /// The shares that this process draws of such a frame.

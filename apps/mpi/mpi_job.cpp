@@ -124,6 +124,11 @@ void MpiJob::abort(int exitCode) const {
   std::abort();
 }
 
+std::uint64_t MpiJob::least(std::uint64_t value) {
+  MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_UINT64_T, MPI_MIN, MPI_COMM_WORLD);
+  return value;
+}
+
 std::string MpiJob::name() const {
   std::array<char, 256> host{};
   gethostname(host.data(), host.size() - 1);

@@ -33,6 +33,7 @@ class MpiJob : public ShareGroup {
   bool leads() const override { return rank_ == 0; }
   std::string deviceSelector() const override;
   void agree(const std::string& what, const std::string& text) override { agreeWithin(MPI_COMM_WORLD, what, text); }
+  std::uint64_t least(std::uint64_t value) override;
   bool draws(std::size_t frame) const override { return int(frame % std::size_t(groupCount_)) == group_; }
   SharePart part() const override { return {rankInGroup_, sizeOfGroup_}; }
   bool addUp(FixedSums& sums) override;

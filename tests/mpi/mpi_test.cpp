@@ -94,6 +94,26 @@ TEST_F(MpiTest, AnyNumberOfRanksBakesTheBytesOfOneProcess) {
   }
 }
 
+TEST_F(MpiTest, RanksWithLittleAndWithMuchMemoryDrawABakedVolumeInTheSameWay) {
+  expectSuccess(run("bake procedural:cloud @a.fvx --resolution 96 --quiet"));
+  const std::string render = "render @a.fvx --size 32 --float --quiet ";
+  for (const std::string way : {"gather", "splats"}) {
+    SCOPED_TRACE(way);
+    expectSuccess(run(render + "@one.exr --share 0/1 --draw " + way));
+    std::string line = "exec " FREEVOXELS_MPI_PROGRAM;
+    for (const std::string& word : words(render + "@all.exr --draw " + way)) line += " " + word;
+    const ProgramResult result = runScript(2, line + " --memory-limit $((OMPI_COMM_WORLD_RANK == 0 ? 64 : 1024))");
+    expectSuccess(result);
+    EXPECT_EQ(readExr(folder / "all.exr").pixels, readExr(folder / "one.exr").pixels);
+  }
+  // Not even its box fits the first rank.
+  std::string line = "exec " FREEVOXELS_MPI_PROGRAM;
+  for (const std::string& word : words(render + "@none.exr --draw gather")) line += " " + word;
+  const ProgramResult result = runScript(2, line + " --memory-limit $((OMPI_COMM_WORLD_RANK == 0 ? 1 : 1024))");
+  EXPECT_EQ(result.exitCode, int(ExitCode::OutOfMemory)) << result.err;
+  EXPECT_EQ(sentences(result.err), 1) << result.err;
+}
+
 TEST_F(MpiTest, FramesAreSplitOverGroupsOfRanks) {
   const std::string turn = "turntable procedural:cloud --resolution 24 --size 48x36 --frames 3 ";
   expectSuccess(run(turn + "@one_#.png --share 0/1 --quiet"));
