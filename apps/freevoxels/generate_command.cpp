@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
-#include <limits>
 
 #include "apps/freevoxels/text_table.h"
 #include "engine/core/error.h"
@@ -49,10 +48,10 @@ void GenerateCommand::run() const {
   if (std::filesystem::path(file_).extension() != ".vdb")
     fail(ErrorKind::Usage, "'{}' is not named .vdb, and generate writes OpenVDB files; name it so", file_);
   checkOutput(file_);
-  const Volume volume = openProcedural(name_, scene_.description.input.resolution, std::numeric_limits<std::uint64_t>::max());
+  const ProceduralField field(name_, scene_.description.input.resolution.value_or(glm::ivec3(kDefaultResolution)));
   {
     const DeferredInterrupts wholeFile;
-    writeVdb(file_, volume, "density");
+    writeVdb(file_, field, "density");
   }
   if (!messages_.quiet) fmt::print("{}\n", file_);
 }

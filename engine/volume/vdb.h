@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/volume/procedural.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -74,5 +75,7 @@ Volume readVdb(const std::filesystem::path& file, const std::string& gridName, s
 /// Writes the active voxels as a float fog volume, and temperatures as a second grid. Atomic
 /// (core/atomic_file.h).
 void writeVdb(const std::filesystem::path& file, const Volume& volume, const std::string& gridName);
+/// The same of a field, of which no volume is made: leaves of 8^3 voxels that hold something are in memory, 2 KiB each, and nothing else.
+void writeVdb(const std::filesystem::path& file, const ProceduralField& field, const std::string& gridName);
 
 }  // namespace freevoxels

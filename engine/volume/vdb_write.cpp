@@ -1,7 +1,10 @@
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <memory>
 #include <set>
 #include <stdexcept>
+#include <vector>
 
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
@@ -73,14 +76,50 @@ void checkComplete(const std::filesystem::path& file) {
   }
 }
 
-FloatGrid::Ptr makeGrid(const Volume& volume, const ScalarBricks& scalars, const std::string& name) {
+/// Of a field, layer by layer. The field's bricks are the leaves of the tree.
+template <typename ValueAt>
+void fillTree(openvdb::FloatTree& tree, const ProceduralField& field, const ValueAt& valueAt) {
+  static_assert(Leaf::DIM == ScalarBricks::kEdge);
+  const glm::ivec3 n = field.dimensions(), leaves = (n + int(Leaf::DIM) - 1) / int(Leaf::DIM);
+  std::vector<std::unique_ptr<Leaf>> layer(std::size_t(leaves.x) * std::size_t(leaves.y));
+  for (int z = 0; z < leaves.z; ++z) {
+    tbb::parallel_for(std::size_t(0), layer.size(), [&](std::size_t i) {
+      const glm::ivec3 first = int(Leaf::DIM) * glm::ivec3(int(i) % leaves.x, int(i) / leaves.x, z), end = glm::min(first + int(Leaf::DIM), n);
+      if (!field.mayHoldData(first)) return;
+      auto leaf = std::make_unique<Leaf>(Coord(first.x, first.y, first.z), 0.0f);
+      for (glm::ivec3 v = first; v.z < end.z; ++v.z)
+        for (v.y = first.y; v.y < end.y; ++v.y)
+          for (v.x = first.x; v.x < end.x; ++v.x)
+            if (const float value = valueAt(v); value != kInactiveVoxel) leaf->setValueOn(Coord(v.x, v.y, v.z), value);
+      if (!leaf->isEmpty()) layer[i] = std::move(leaf);
+    });
+    for (std::unique_ptr<Leaf>& leaf : layer)
+      if (leaf) tree.addLeaf(leaf.release());
+  }
+  tree.prune();
+}
+
+/// Without voxels.
+FloatGrid::Ptr makeGrid(const Volume& volume, const std::string& name) {
   const FloatGrid::Ptr grid = FloatGrid::create(0.0f);
   grid->setName(name);
   grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   grid->setCreator("FreeVoxels");
   grid->setTransform(transformOf(volume));
+  return grid;
+}
+
+FloatGrid::Ptr makeGrid(const Volume& volume, const ScalarBricks& scalars, const std::string& name) {
+  const FloatGrid::Ptr grid = makeGrid(volume, name);
   fillTree(grid->tree(), volume, scalars);
   return grid;
+}
+
+void writeGrids(const std::filesystem::path& file, const openvdb::GridCPtrVec& grids) {
+  writeAtomically(file, [&](const std::filesystem::path& temporary) {
+    openvdb::io::File(temporary.string()).write(grids);
+    checkComplete(temporary);
+  });
 }
 
 }  // namespace
@@ -89,10 +128,21 @@ void writeVdb(const std::filesystem::path& file, const Volume& volume, const std
   initialiseOpenVdb();
   openvdb::GridCPtrVec grids{makeGrid(volume, volume.scalars, gridName)};
   if (volume.temperature) grids.push_back(makeGrid(volume, volume.temperature->values, "temperature"));
-  writeAtomically(file, [&](const std::filesystem::path& temporary) {
-    openvdb::io::File(temporary.string()).write(grids);
-    checkComplete(temporary);
-  });
+  writeGrids(file, grids);
+}
+
+void writeVdb(const std::filesystem::path& file, const ProceduralField& field, const std::string& gridName) {
+  initialiseOpenVdb();
+  const Volume outline{.dimensions = field.dimensions(), .indexToWorld = field.indexToWorld()};
+  const FloatGrid::Ptr densities = makeGrid(outline, gridName);
+  fillTree(densities->tree(), field, [&](glm::ivec3 voxel) { return field.density(voxel); });
+  openvdb::GridCPtrVec grids{densities};
+  if (field.hasTemperatures()) {
+    const FloatGrid::Ptr temperatures = makeGrid(outline, "temperature");
+    fillTree(temperatures->tree(), field, [&](glm::ivec3 voxel) { return field.temperature(voxel); });
+    grids.push_back(temperatures);
+  }
+  writeGrids(file, grids);
 }
 
 }  // namespace freevoxels

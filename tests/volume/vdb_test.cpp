@@ -71,6 +71,24 @@ TEST_F(Vdb, AUniformCubeIsWrittenAsTiles) {
   EXPECT_EQ(denseScalars(read()), denseScalars(cube));
 }
 
+TEST_F(Vdb, AFieldIsWrittenLeafByLeafAsItsVolumeIs) {
+  const glm::ivec3 size(37, 24, 20);
+  const auto readBack = [&] { return readVdb(file, "density", kPlenty, {.temperature = "temperature"}); };
+  writeVdb(file, makeProcedural("fire", size), "density");
+  const Volume expected = readBack();
+  writeVdb(file, ProceduralField("fire", size), "density");
+  const Volume back = readBack();
+  EXPECT_EQ(back.dimensions, expected.dimensions);
+  EXPECT_EQ(back.indexOrigin, expected.indexOrigin);
+  EXPECT_EQ(back.indexToWorld, expected.indexToWorld);
+  EXPECT_GT(back.activeVoxels, 0u);
+  EXPECT_EQ(denseScalars(back), denseScalars(expected));
+  ASSERT_TRUE(back.temperature && expected.temperature);
+  for (glm::ivec3 v(0); v.z < back.dimensions.z; ++v.z)
+    for (v.y = 0; v.y < back.dimensions.y; ++v.y)
+      for (v.x = 0; v.x < back.dimensions.x; ++v.x) ASSERT_EQ(back.temperature->values.at(v), expected.temperature->values.at(v));
+}
+
 TEST_F(Vdb, VoxelsStandWhereOpenVdbSays) {
   const FloatGrid::Ptr grid = makeGrid("density", CoordBBox(Coord(-5, 3, 9), Coord(2, 30, 12)), 1.0f);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(0.12));
