@@ -6,6 +6,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "apps/bench/baked_stages.h"
 #include "apps/bench/bench_stages.h"
 #include "apps/bench/real_ranks.h"
 #include "apps/freevoxels/device_options.h"
@@ -114,6 +115,15 @@ Results whole(const Device& device, const Extent& extent) {
   return results;
 }
 
+Results baked(const Device& device, const Extent& extent) {
+  std::vector<std::string> inputs = extent.inputs;
+  if (std::ranges::count(inputs, "procedural:head") == 0) inputs.emplace_back("procedural:head");
+  Results results;
+  for (const std::string& input : inputs) std::ranges::move(bench::baked(device, input, extent.quick ? 96 : 256, extent.runs()), std::back_inserter(results));
+  results.push_back(bench::coldPreview(device, extent.quick ? glm::ivec3(256) : glm::ivec3(1024, 1024, 256), extent.runs()));
+  return results;
+}
+
 struct Stage {
   std::string name;
   Results (*measure)(const Device& device, const Extent& extent);
@@ -121,7 +131,7 @@ struct Stage {
 const std::vector<Stage> kStages{{"sweeps", sweeps},   {"octree", octree}, {"zoom", zoom},
                                  {"culling", culling}, {"frames", frames}, {"turntable", turntable},
                                  {"lights", lights},   {"list", list},     {"splats", splats},
-                                 {"flight", flight},   {"whole", whole}};
+                                 {"flight", flight},   {"whole", whole},   {"baked", baked}};
 
 std::vector<std::string> stageNames() {
   std::vector<std::string> names;
