@@ -120,7 +120,7 @@ Results baked(const Device& device, const Extent& extent) {
   if (std::ranges::count(inputs, "procedural:head") == 0) inputs.emplace_back("procedural:head");
   Results results;
   for (const std::string& input : inputs) std::ranges::move(bench::baked(device, input, extent.quick ? 96 : 256, extent.runs()), std::back_inserter(results));
-  results.push_back(bench::coldPreview(device, extent.quick ? glm::ivec3(256) : glm::ivec3(1024, 1024, 256), extent.runs()));
+  results.push_back(bench::coldPreview(device, extent.quick ? glm::ivec3(256) : glm::ivec3(512, 512, 256), extent.runs()));
   return results;
 }
 
