@@ -7,6 +7,8 @@
 #include "engine/lighting/light_pass.h"
 #include "engine/octree/volume_limits.h"
 #include "engine/splatting/frame_targets.h"
+#include "engine/volume/occupied_count.h"
+#include "engine/volume/voxel_classifier.h"
 #include "shaders/frame_interface.h"
 
 namespace freevoxels {
@@ -56,6 +58,43 @@ std::uint64_t planEyeRayBytes(const Device& device, const DeviceVolume& volume, 
   if (settings.lighting && settings.lighting->attenuation == LightAttenuation::Exact)
     others += lightRayMemory(volume, *settings.lighting).bytes;
   return std::min(settings.mostRayBytes, device.memoryBytes() - std::min(device.memoryBytes(), others));
+}
+
+std::uint64_t leastMemory(const Device& device, const Volume& volume, const Classification& classification, DirectionSet directions,
+                          const FrameSettings& settings) {
+  std::vector<bool> occupied(volume.voxelCount());
+  const VoxelClassifier classifier(classification, volume);
+  constexpr int n = ScalarBricks::kEdge;
+  for (std::size_t brick = 0; brick < volume.scalars.bricks().size(); ++brick) {
+    const glm::ivec3 first = volume.scalars.firstVoxel(brick);
+    const glm::ivec3 begin = glm::max(first, 0), end = glm::min(first + n, volume.dimensions);
+    for (glm::ivec3 v = begin; v.z < end.z; ++v.z)
+      for (v.y = begin.y; v.y < end.y; ++v.y)
+        for (v.x = begin.x; v.x < end.x; ++v.x) {
+          const ClassifiedVoxel voxel = classifier.at(v);
+          occupied[volume.at(v.x, v.y, v.z)] = voxel.extinction > 0.0 || voxel.emission != glm::dvec3(0.0);
+        }
+  }
+  const HierarchyLayout hierarchy(volume.dimensions);
+  const std::vector<std::uint64_t> stored = countOccupiedBlocks(volume.dimensions, std::move(occupied));
+  const StoredKinds kinds{.colors = classification.transferFunction || volume.albedo, .emission = classification.emission.has_value()};
+  const std::uint64_t bytes = volumeMemory(hierarchy, stored, directions, kinds, sweepStyle(device)).peak() + 2 * targetBytes(settings);
+  // Constants, counters, lists that are rounded up.
+  return bytes + bytes / 8 + (std::uint64_t(2) << 20);
+}
+
+Error withWholeNeed(const Error& error, const Device& device, const Volume& volume, const Classification& classification,
+                    DirectionSet directions, const FrameSettings& settings) {
+  const std::uint64_t limit = device.memoryBytes();
+  if (error.kind() != ErrorKind::OutOfMemory || limit >= device.description().memoryBytes) return error;
+  const std::uint64_t bytes = leastMemory(device, volume, classification, directions, settings);
+  if (bytes <= limit) return error;
+  const glm::ivec3 box = volume.dimensions;
+  return Error(ErrorKind::OutOfMemory,
+               fmt::format("a volume of {}x{}x{} voxels and an image of {}x{} pixels need {} MiB of device memory and {} is {} MiB: raise "
+                           "that, or crop or resample the volume",
+                           box.x, box.y, box.z, settings.size.x, settings.size.y, (bytes + 0xfffff) >> 20, Parameter("memory-limit"),
+                           limit >> 20));
 }
 
 std::uint64_t maximumVoxels(const Device& device) {

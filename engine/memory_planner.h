@@ -49,6 +49,16 @@ VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std:
 void checkSplatsFit(const Device& device, const DeviceVolume& volume);
 void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions);
 
+/// Bytes of device memory that frames of a volume take at least, images included: those of splats with the table. Counts the occupied
+/// voxels on the host, and may be up to a quarter too large.
+std::uint64_t leastMemory(const Device& device, const Volume& volume, const Classification& classification, DirectionSet directions,
+                          const FrameSettings& settings);
+
+/// To be thrown instead of `error`, which a volume or a frame failed with: where the device's memory is limited and is less than
+/// leastMemory, a sentence with that, so that a limit has to be raised once only; otherwise `error`.
+Error withWholeNeed(const Error& error, const Device& device, const Volume& volume, const Classification& classification,
+                    DirectionSet directions, const FrameSettings& settings);
+
 /// The largest number of voxels that an empty volume's box may have on this device.
 std::uint64_t maximumVoxels(const Device& device);
 

@@ -58,6 +58,7 @@ class RegionRenderer {
   std::optional<std::uint64_t> occupiedVoxelCount() const { return {}; }
   CutCounts cutCounts() const { return {}; }
   bool lackedRoomForRays() const { return false; }
+  bool lackedRoomForGather() const { return false; }
 
  private:
   friend std::vector<std::vector<std::uint8_t>> downloadTable(RegionRenderer& renderer, const fvx::RegionEntry& region);

@@ -20,13 +20,15 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   checkCamera(camera);
   checkFrameFits(state_->device, settings);
   State& state = *state_;
-  Commands commands(state.device);
-  const std::shared_ptr<const SplatTargets> targets = state.recordImage(commands, camera, settings, progress);
-  commands.beginPass("read back");
-  state.colorReadback.record(state.device, commands, targets->colorEnergy);
-  if (settings.depth) state.distanceReadback.record(state.device, commands, targets->distance);
-  commands.submitAndWait(progress);
-  addTimes(state.frameTimes, commands.times());
+  state.drawFitting(settings, [&](const FrameSettings& fitting) {
+    Commands commands(state.device);
+    const std::shared_ptr<const SplatTargets> targets = state.recordImage(commands, camera, fitting, progress);
+    commands.beginPass("read back");
+    state.colorReadback.record(state.device, commands, targets->colorEnergy);
+    if (settings.depth) state.distanceReadback.record(state.device, commands, targets->distance);
+    commands.submitAndWait(progress);
+    addTimes(state.frameTimes, commands.times());
+  });
 
   const StageTimer timer(state.frameTimes, "copy to host");
   return {.size = settings.size,
@@ -38,11 +40,13 @@ std::shared_ptr<const SplatTargets> Renderer::renderOnDevice(const Camera& camer
                                                              const Progress& progress) {
   checkCamera(camera);
   checkFrameFits(state_->device, settings);
-  Commands commands(state_->device);
-  std::shared_ptr<const SplatTargets> targets = state_->recordImage(commands, camera, settings, progress);
-  commands.submitAndWait(progress);
-  addTimes(state_->frameTimes, commands.times());
-  return targets;
+  return state_->drawFitting(settings, [&](const FrameSettings& fitting) {
+    Commands commands(state_->device);
+    std::shared_ptr<const SplatTargets> targets = state_->recordImage(commands, camera, fitting, progress);
+    commands.submitAndWait(progress);
+    addTimes(state_->frameTimes, commands.times());
+    return targets;
+  });
 }
 
 Image downloadImage(const Device& device, const SplatTargets& targets) {
@@ -65,8 +69,9 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
   State& state = *state_;
   FrameSettings settings = wanted;
   settings.cullThreshold = 0.0f;
-  return drawsByGathering(settings) ? state.gatherShares(camera, settings, part, progress)
-                                    : state.splatShares(camera, settings, part, progress);
+  return state.drawFitting(settings, [&](const FrameSettings& fitting) {
+    return drawsByGathering(fitting) ? state.gatherShares(camera, fitting, part, progress) : state.splatShares(camera, fitting, part, progress);
+  });
 }
 
 VolumeMemory Renderer::memory() const {
@@ -86,6 +91,10 @@ std::optional<std::uint64_t> Renderer::occupiedVoxelCount() const {
 
 bool Renderer::lackedRoomForRays() const {
   return state_->lastLackedRays;
+}
+
+bool Renderer::lackedRoomForGather() const {
+  return state_->lastLackedGather;
 }
 
 CutCounts Renderer::cutCounts() const {

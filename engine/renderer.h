@@ -64,6 +64,8 @@ class Renderer {
   /// Whether the last frame used Bilinear for Auto only because the device lacks memory for rays from the
   /// eye.
   bool lackedRoomForRays() const;
+  /// Whether the last frame used Splats for Draw::Auto only because the device lacks memory for the gather.
+  bool lackedRoomForGather() const;
 
  private:
   friend class RendererStages;  // renderer_stages.h

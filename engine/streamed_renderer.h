@@ -47,6 +47,7 @@ class StreamedRenderer {
   std::optional<std::uint64_t> occupiedVoxelCount() const { return {}; }
   CutCounts cutCounts() const { return {}; }
   bool lackedRoomForRays() const { return false; }
+  bool lackedRoomForGather() const { return false; }
 
  private:
   struct State;

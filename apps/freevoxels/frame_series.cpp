@@ -233,17 +233,21 @@ std::vector<Camera> FrameSeries::beginVolume(Scene& view, std::span<const Frame>
 void FrameSeries::drawVolume(std::shared_ptr<const Volume> volume, const PieceDrawing& pieces, std::span<const Frame> frames) {
   Scene view = resolve(std::move(volume), frames.front().input);
   const std::vector<Camera> cameras = beginVolume(view, frames);
-  Renderer renderer(device_, *view.volume, view.classification, options_.scene.description.method.table(),
-                    prefixed(line_.progress(), prefix()));
-  const std::vector<StageTime> built = renderer.timings();
-  addTimes(report_.stages, built);
+  const TableSettings table = options_.scene.description.method.table();
   FrameSettings settings = options_.frameSettings();
   settings.lighting = view.lighting;
   if (pieces.way == PieceDrawing::Way::Cubes) {
     settings.draw = Draw::Gather;
     if (settings.lighting) settings.lighting->attenuation = lightAttenuationFor(settings);
   }
-  drawFrames(renderer, std::move(settings), std::move(view), cameras, frames, built.size());
+  try {
+    Renderer renderer(device_, *view.volume, view.classification, table, prefixed(line_.progress(), prefix()));
+    const std::vector<StageTime> built = renderer.timings();
+    addTimes(report_.stages, built);
+    drawFrames(renderer, settings, view, cameras, frames, built.size());
+  } catch (const Error& error) {
+    throw withWholeNeed(error, device_, *view.volume, view.classification, table.directions, settings);
+  }
 }
 
 void FrameSeries::drawPieces(const PieceDrawing& pieces, int level, std::span<const Frame> frames) {
@@ -406,6 +410,7 @@ void FrameSeries::writeEmpty(const Frame& frame) {
 template <typename AnyRenderer>
 void FrameSeries::addToReport(const AnyRenderer& renderer, const Volume& volume) {
   report_.lackedRoomForRays |= renderer.lackedRoomForRays();
+  report_.lackedRoomForGather |= renderer.lackedRoomForGather();
   report_.visibleVoxels = renderer.occupiedVoxelCount();
   report_.voxels = volume.voxelCount();
   report_.memory = renderer.memory();

@@ -43,6 +43,25 @@ TEST_F(MemoryLimit, IsKeptOrTheRunSaysWhatItNeeds) {
   EXPECT_GE(drawn, 2);
 }
 
+/// The MiB that a refusal says are needed.
+int neededMiB(const ProgramResult& result) {
+  const std::size_t at = result.err.find(" MiB of device memory");
+  EXPECT_NE(at, std::string::npos) << result.err;
+  return at == std::string::npos ? 0 : std::stoi(result.err.substr(result.err.rfind(' ', at - 1)));
+}
+
+TEST_F(MemoryLimit, IsRaisedOnceOnlyWhateverItIs) {
+  for (const char* scene : {"procedural:cloud --resolution 72 --size 200x150 ", "procedural:head --resolution 48 --size 320x200 "}) {
+    SCOPED_TRACE(scene);
+    const std::string command = std::string("render ") + scene + "--quiet @a.png --memory-limit ";
+    const int needed = neededMiB(run(command + "1"));
+    ASSERT_GT(needed, 1);
+    // More is never too little, although more and more of it lets the gather draw.
+    for (const double part : {1.0, 1.4, 1.8, 2.2, 2.6, 4.0}) expectSuccess(run(command + std::to_string(int(part * needed))));
+    EXPECT_EQ(neededMiB(run(command + std::to_string(needed / 2))), needed) << "what was said at first";
+  }
+}
+
 TEST_F(MemoryLimit, BadValuesAreRefused) {
   for (const char* value : {"0", "-1", "1.5", "much", "99999999999"})
     expectCleanRefusal(std::string("render procedural:cube @a.png --memory-limit ") + value, ExitCode::Usage,
