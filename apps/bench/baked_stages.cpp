@@ -7,11 +7,11 @@
 #include <filesystem>
 #include <functional>
 
-#include "apps/freevoxels/scene_options.h"
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/core/error.h"
+#include "engine/description/scene_description.h"
+#include "engine/memory_planner.h"
 #include "engine/octree/volume_builder.h"
-#include "engine/octree/volume_limits.h"
 #include "engine/renderer.h"
 #include "engine/storage/procedural_stream.h"
 #include "engine/volume/vdb.h"
@@ -47,11 +47,12 @@ double millisecondsOf(const std::function<void()>& work) {
 }
 
 Image firstImage(const Device& device, const std::filesystem::path& file, glm::ivec2 size, std::optional<int> level = {}) {
-  SceneOptions scene;
-  scene.input.input = file.string();
+  SceneDescription scene;
+  scene.input.volume = file.string();
   scene.camera.size = size;
   FrameSettings settings{.size = size, .draw = Draw::Auto};
-  const Scene view = scene.open(maximumVoxels(device), level.value_or(scene.finestLevelNeeded(double(settings.lod), 1)));
+  const int opened = level.value_or(scene.finestLevelNeeded(1));
+  const Scene view = scene.resolve(std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device), opened)));
   settings.lighting = view.lighting;
   return Renderer(device, *view.volume, view.classification, {}).render(view.camera, settings);
 }
@@ -80,23 +81,23 @@ void forget(const std::filesystem::path& file) {
 
 std::vector<Result> baked(const Device& device, const std::string& input, int resolution, int runs) {
   const Folder folder;
-  SceneOptions scene;
-  scene.input.input = input;
+  SceneDescription scene;
+  scene.input.volume = input;
   std::string name = std::filesystem::path(input).stem().string();
   if (const auto procedural = proceduralName(input)) {
     name = fmt::format("{} {}^3", *procedural, resolution);
     const std::filesystem::path file = folder / "volume.vdb";
     writeVdb(file, ProceduralField(*procedural, glm::ivec3(resolution)), "density");
-    scene.input.input = file.string();
+    scene.input.volume = file.string();
   }
-  const Scene view = scene.open(maximumVoxels(device));
+  const Scene view = scene.resolve(std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device))));
   const std::filesystem::path bakedFile = folder / "volume.fvx";
   const double bake = least(runs, [&] { return millisecondsOf([&] { bakeVolume(bakedFile, *view.volume, view.classification, {}); }); });
   const double table = least(runs, [&] { return millisecondsOf([&] { makeTableOf(device, *view.volume, view.classification); }); });
   const auto first = [&](const std::filesystem::path& file) {
     return least(runs, [&] { return millisecondsOf([&] { firstImage(device, file, glm::ivec2(1024)); }); });
   };
-  const double vdb = first(scene.input.input), fvx = first(bakedFile);
+  const double vdb = first(scene.input.volume), fvx = first(bakedFile);
   return {{.name = fmt::format("{}, .vdb to first image", name), .milliseconds = vdb},
           {.name = fmt::format("{}, .fvx to first image: {:.2f} of .vdb", name, fvx / vdb), .milliseconds = fvx},
           {.name = fmt::format("{}, bake: {:.2f} of a render up to the table", name, bake / table), .milliseconds = bake}};

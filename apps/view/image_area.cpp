@@ -104,7 +104,7 @@ void ImageArea::press(ViewState& state, const ShownTextures& textures, const Ima
   held_ = Held::Camera;
   if (clip != nullptr) {
     held_ = Held::Clip;
-    const InputOptions& input = state.scene.input;
+    const InputDescription& input = state.scene.input;
     clip_ = {clip->side, clip->step, {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y}, input.clipBox, input.clipPlane};
   } else if (axis) {
     held_ = Held::Axes;
@@ -120,7 +120,7 @@ void ImageArea::dragClip(ViewState& state) const {
   const float length = glm::dot(clip_.step, clip_.step);
   if (length <= 0.0f) return;
   const double voxels = double(glm::dot(way, clip_.step) / length);
-  const InputOptions& now = state.scene.input;
+  const InputDescription& now = state.scene.input;
   if (clip_.side == ClipHandles::kPlane) {
     if (!now.clipPlane) return;
     ClipPlane plane = *clip_.plane;
