@@ -153,7 +153,7 @@ void addRenderer(py::module_& module) {
            "With depth=True returns (image, depth), the latter float32 (height, width): mean distance along the viewing axis\n"
            "of what is seen, infinite where there is nothing. progress(stage, fraction) is called about every 50 ms of work;\n"
            "an exception that it raises abandons the frame. Options given here hold for this frame.")
-      .def_property_readonly("timings", &timingsOf, "(stage, milliseconds) of what was made and of the last frame.")
+      .def_property_readonly("timings", &timingsOf, "List of (stage, milliseconds) of the last frame and of the data from which it was drawn.")
       .def_property_readonly("device", [](const SceneRenderer& r) { return r.context()->device->description().name; }, "Name of the Vulkan device.");
 }
 

@@ -6,7 +6,8 @@
 //   {"camera": {"orbit": [35, 25], "fov": 30}, "density-scale": 40, "light": {"direction": [1, 1, 1]}, "size": [800, 600]}
 // Keys outside of sections override those inside. Keys that are left out have the command line's defaults. The images equal the
 // command line's bit for bit. A whole scene file (loadScene) may be given everywhere: a function ignores sections that it cannot use,
-// such as "output" where an image is drawn. Keys outside of sections that it cannot use are errors.
+// such as "output" where an image is drawn. Keys outside of sections that it cannot use are errors. All keys, their values and
+// defaults are in share/doc/freevoxels/scene_keys.md.
 //
 // Threads: any thread may call any function, with these exceptions. An object must not be assigned to, moved from or destroyed
 // while another thread uses it; frames of one device are drawn one after another.
@@ -102,9 +103,9 @@ struct Placement {
 /// A volume in memory. Copies share its data.
 class FREEVOXELS_API Volume {
  public:
-  /// Reads an OpenVDB file, or makes "procedural:NAME"; if `file` is empty, that of the scene's key "volume". `scene` has the grid, the resolution, and the scene
-  /// of later frames, of which emission, temperature-grid and albedo-grid decide what other grids are read.
-  /// A volume larger than the device can hold is refused; a baked volume is opened at a lower resolution then.
+  /// Reads an OpenVDB file, or makes "procedural:NAME"; if `file` is empty, that of the scene's key "volume". `scene` names the grid and
+  /// the resolution, and has the keys of later frames: emission, temperature-grid and albedo-grid decide which further grids are
+  /// read. Throws if the device cannot hold the volume, except that a baked volume is opened at a lower resolution instead.
   static Volume open(const Context& context, const std::filesystem::path& file, std::string_view scene = "{}");
   /// For the device of the keys "device" and "memory-limit", which is opened.
   static Volume open(const std::filesystem::path& file, std::string_view scene = "{}");
@@ -136,7 +137,7 @@ struct Image {
 
 struct DeviceFrame;
 
-/// A frame that was submitted. Its renderer draws it meanwhile.
+/// A frame begun by Renderer::submit(), which a thread of the renderer draws. A moved-from Frame may only be assigned to or destroyed.
 class FREEVOXELS_API Frame {
  public:
   Frame(Frame&&) noexcept;
@@ -167,7 +168,7 @@ class FREEVOXELS_API Renderer {
  public:
   /// `scene` holds for every frame.
   Renderer(const Context& context, Volume volume, std::string_view scene = "{}");
-  /// On the device of the keys "device" and "memory-limit", which is opened by the first call that needs it.
+  /// On the device of the keys "device" and "memory-limit", which this constructor opens unless it is open already.
   explicit Renderer(Volume volume, std::string_view scene = "{}");
   /// Cancels the submitted frames that are not complete.
   ~Renderer();
@@ -180,7 +181,7 @@ class FREEVOXELS_API Renderer {
   /// for errors of `scene`; Frame::wait() throws those of drawing.
   Frame submit(std::string_view scene = "{}", bool withDepth = false, Progress progress = {});
 
-  /// Stages and milliseconds of the last frame and of the data from which it was drawn.
+  /// Stages and milliseconds of the last frame and of the data from which it was drawn. Waits for a frame that is being drawn.
   std::vector<std::pair<std::string, double>> timings() const;
   /// The name of the Vulkan device.
   std::string device() const;
