@@ -25,9 +25,9 @@ using fvx::RegionEntry;
 constexpr int kRegionLevels = 6;  // a region covers a block of this many levels above its voxels
 static_assert(fvx::kRegionEdge == 1 << kRegionLevels);
 
-/// A level is drawn where its voxels are at most this part of FrameSettings::lod: a voxel of a coarse level stands for less than a
-/// block of the same size, which is drawn at its centre of mass.
-constexpr double kFiner = 2.0;
+/// A level is drawn where the edge of its voxels is at most lod / kLodDivisor pixels: a voxel of a coarse level stands for less than a
+/// splatted block of the same size, which is drawn at its centre of mass.
+constexpr double kLodDivisor = 2.0;
 
 /// A region that is on the device.
 struct DeviceRegion {
@@ -66,7 +66,7 @@ class RegionChoice {
       : file_(file), middle_(0.5 * glm::dvec3(outline.layout.dimensions - 1)), levels_(std::size_t(file.levels())) {
     const PixelRays rays = pixelRays(camera, settings.size, outline.indexToWorld);
     orthographic_ = rays.orthographic;
-    rule_ = detailRule(outline.hierarchy, rays, settings.size, double(settings.lod) / kFiner);
+    rule_ = detailRule(outline.hierarchy, rays, settings.size, double(settings.lod) / kLodDivisor);
     cull_ = cullRule(outline.layout.dimensions, rays, settings);
     for (int level = 0; level < file.levels(); ++level)
       for (const RegionEntry& region : file.regions(level)) known_[key(level, region.cell)] = &region;

@@ -40,7 +40,7 @@ class Renderer {
   Renderer(const Device&, Volume&&, const Classification&, const TableSettings&, const Progress& = {}) = delete;
   ~Renderer();
 
-  /// Draws a frame and waits for it. `progress` is called every few 10 ms, and may abandon the frame by an exception, which
+  /// Draws a frame and waits for it. `progress` is called about every 50 ms, and may abandon the frame by an exception, which
   /// is passed on; the next frame makes again what was not complete.
   Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
   /// The same frame, which stays on the device, complete, in layout GENERAL. The renderer draws into these targets again

@@ -32,7 +32,8 @@ struct RegionSettings {
 /// Uses all threads.
 std::vector<std::byte> encodeChunks(const WriteSettings& settings, std::span<const ChunkValues> chunks);
 
-/// Throws std::system_error if it cannot write: to be used within writeAtomically (core/atomic_file.h).
+/// Throws std::system_error if it cannot write: to be used within writeAtomically (core/atomic_file.h). Calls: add() any number of times, then
+/// summary(), then sweepRegions() if the file has regions, then finish() once.
 class FvxWriter {
  public:
   /// Chunks are spooled to unnamed temporary files in `folder`, one for each level and channel, because their
@@ -51,7 +52,7 @@ class FvxWriter {
   Summary summary(Channel channel) const;
   /// Sweeps densities for the regions of all levels (regions.h). To be called after the last chunk.
   void sweepRegions(const RegionSettings& settings, const Progress& progress);
-  /// Writes the file. `provenance` is JSON for readers of the file.
+  /// Writes the file. `provenance` is JSON for readers of the file; `description.volume.classification` must not be null.
   void finish(const std::filesystem::path& file, const Description& description, const ContentCells& content,
               const std::string& provenance);
 
