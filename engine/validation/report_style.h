@@ -40,12 +40,7 @@ figcaption { margin-top: .5rem; color: var(--quiet); font-size: .85rem; }
 .pictures figcaption { color: var(--ink); }
 img { display: block; max-width: 100%; height: auto; }
 .small { image-rendering: pixelated; }
-.plot { display: block; width: 100%; max-width: 720px; font-size: 12px; }
-.plot text { fill: var(--ink); }
-.plot .label { font-size: 13px; }
-.plot .grid { fill: none; stroke: #e6eaed; stroke-width: 1; }
-.plot .axis { fill: none; stroke: #1c2126; stroke-width: 1; }
-.plot .line { fill: none; stroke-width: 1.8; stroke-linejoin: round; }
+.plot { display: block; width: 100%; max-width: 720px; }
 @media print { main { max-width: none; padding: 0; } body { font-size: 10.5pt; } tr, h2 { break-inside: avoid; break-after: auto; } }
 )css";
 

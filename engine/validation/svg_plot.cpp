@@ -31,6 +31,13 @@ constexpr std::array<const char*, 7> kColors = {"#0072B2", "#D55E00", "#009E73",
 constexpr std::array<const char*, 4> kMarks = {"M-3.5,0a3.5,3.5 0 1,0 7,0a3.5,3.5 0 1,0 -7,0z",
                                                "M-3.2,-3.2h6.4v6.4h-6.4z", "M0,-4.4L4.2,3.2H-4.2z",
                                                "M0,-4.6L4.2,0L0,4.6L-4.2,0z"};
+/// In the element itself, so that it looks the same as a file of its own.
+constexpr const char* kStyle =
+    R"css(.plot text { fill: #1c2126; font: 12px "Helvetica Neue", Helvetica, Arial, "Liberation Sans", sans-serif; }
+.plot .label { font-size: 13px; }
+.plot .grid { fill: none; stroke: #e6eaed; stroke-width: 1; }
+.plot .axis { fill: none; stroke: #1c2126; stroke-width: 1; }
+.plot .line { fill: none; stroke-width: 1.8; stroke-linejoin: round; })css";
 /// Marks change with every seven series, when the colours repeat.
 constexpr std::array<const char*, 3> kDashes = {"", "7 4", "2 3"};
 
@@ -75,8 +82,9 @@ class PlotWriter {
 
   std::string write() {
     layLegend();
-    add(R"(<svg class="plot" viewBox="0 0 {} {:.0f}" role="img" aria-label="{}">)", kWidth, height_,
-        escapeHtml(plot_.caption));
+    add(R"(<svg class="plot" viewBox="0 0 {0} {1:.0f}" role="img" aria-label="{2}"><style>{3}</style>)"
+        R"(<rect width="{0}" height="{1:.0f}" fill="#fff"/>)",
+        kWidth, height_, escapeHtml(plot_.caption), kStyle);
     axes();
     for (std::size_t i = 0; i < plot_.series.size(); ++i) line(i);
     legend();

@@ -1,5 +1,5 @@
 #pragma once
-// A line plot as an SVG element to put into an HTML page.
+// A line plot as an SVG element, to put into an HTML page or, with the attribute xmlns, to write as a file of its own.
 
 #include <string>
 
