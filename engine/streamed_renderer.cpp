@@ -274,6 +274,7 @@ void StreamedRenderer::State::drawCube(const Frame& frame, const StreamedLevel& 
   }
   const BuiltVolume built = buildVolume(device, volume, classification, times);
   const SurroundingLight light{
+      .dimensions = streamed.outline.dimensions,
       .first = box.first,
       .ambient = streamed.ambient ? &*streamed.ambient : nullptr,
       .codes = [&](int number, const GatherVolume& inBox) { return codesOf(*streamed.lights[std::size_t(number)], inBox, box.first / kBrick); }};

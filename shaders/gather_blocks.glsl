@@ -50,11 +50,13 @@ void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
 // For classified blocks that are lit at samples: the values on a slice.
 SliceValues blockValuesAt(Slices level, Ray ray, int slice, bool within) {
   vec4 weights;
-  const int quad = quadAt(level, ray.origin + ray.slope * float(slice), slice, weights);
+  const vec2 position = ray.origin + ray.slope * float(slice);
+  const int quad = quadAt(level, position, slice, weights);
   SliceValues found;
   found.medium = within ? mediumAt(quad, weights, extinctionsOf(quad), ray.toEye) : vec4(0.0);
   found.depths = depthsTowardsLights(quad, weights);
   found.ambient = ambientAt(quad, weights);
+  continueDepths(found.depths, found.ambient, level, position);
   found.coverage = found.medium.a > 0.0 ? 1.0 : 0.0;
   found.gradient = vec3(0.0);
   found.hasGradient = false;
@@ -76,9 +78,16 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray 
   }
   const float ahead = (float(slice) - ray.eye) * ray.direction;
   SegmentLight lit;
-  lit.begin = last.depths.x < 0.0 ? max(found.depths - ray.layer * medium.a, vec4(0.0)) : last.depths;
+  const int before = slice - int(ray.direction);
+  if (last.depths.x < 0.0) {  // as slices without blocks were skipped
+    last.depths = max(found.depths - ray.layer * medium.a, vec4(0.0));
+    last.ambient = found.ambient;
+  }
+  if (before < 0 || before >= level.count) last.depths = depthsBeyond(before, found.depths);
+  if (!within) found.depths = depthsBeyond(slice, last.depths);
+  lit.begin = last.depths;
   lit.change = found.depths - lit.begin;
-  lit.ambientBegin = last.depths.x < 0.0 ? found.ambient : last.ambient;
+  lit.ambientBegin = last.ambient;
   lit.ambientChange = found.ambient - lit.ambientBegin;
   lit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
   if (kSurfaces) {

@@ -88,6 +88,8 @@ struct SampleLight {
   int atInfinity;
   vec3 color;          // colour times irradiance, for a position at distance 1
   vec3 across;         // at infinity the direction towards it in index space, of the length of a layer
+  // By axis: 1 if its light arrives at the volume's first or last border from beyond that border, else 0.
+  vec3 lightsFirst, lightsLast;
 };
 
 // A frame of which only some bricks are marched (engine/gathering/gather_part.h). Each of their sums is computed with the

@@ -89,6 +89,7 @@ float lightDepth(int slot, int quad, vec4 weights) {
   return root * root * kOpaqueDepth;
 }
 
+// The optical depths towards the lights that a quad has. Blocks beyond the volume have none.
 vec4 depthsTowardsLights(int quad, vec4 weights) {
   vec4 depths = vec4(0.0);
   [[unroll]] for (int i = 0; i < kMostSampleLights; ++i)
@@ -100,6 +101,29 @@ vec3 ambientAt(int quad, vec4 weights) {
   vec3 depths = vec3(0.0);
   [[unroll]] for (int c = 0; c < 3; ++c)
     if (c < kAmbient) depths[c] = lightDepth(kLights + c, quad, weights);
+  return depths;
+}
+
+// Beyond the volume extinction falls to 0 within a block. So does the depth towards a light on that side, as the weights do; behind the
+// volume it stays as it is at the border. About as much ambient light arrives around the volume as at its border.
+void continueDepths(inout vec4 depths, inout vec3 ambient, Slices level, vec2 position) {
+  const vec2 first = clamp(position + 1.0, 1e-6, 1.0), last = clamp(vec2(level.dimensions) - position, 1e-6, 1.0);
+  [[unroll]] for (int i = 0; i < kMostSampleLights; ++i) {
+    if (i >= kLights) continue;
+    const SampleLight light = frame.lights[i];
+    const vec2 shares = max(first, vec2(light.lightsFirst[kSideA], light.lightsFirst[kSideB])) *
+                        max(last, vec2(light.lightsLast[kSideA], light.lightsLast[kSideB]));
+    const float share = shares.x * shares.y;
+    depths[i] /= share * share;
+  }
+  const float share = first.x * first.y * last.x * last.y;
+  if (kAmbient > 0) ambient /= share * share;
+}
+
+// The depths towards the lights on a slice beyond the volume, from those at the other end of the stretch to it.
+vec4 depthsBeyond(int slice, vec4 depths) {
+  [[unroll]] for (int i = 0; i < kMostSampleLights; ++i)
+    if (i < kLights) depths[i] *= 1.0 - (slice < 0 ? frame.lights[i].lightsFirst[kAxis] : frame.lights[i].lightsLast[kAxis]);
   return depths;
 }
 

@@ -16,6 +16,7 @@ SliceValues scalarValuesAt(Slices level, vec2 position, int slice, vec2 halfStep
   if (kSampled) {
     found.depths = depthsTowardsLights(quad, weights);
     found.ambient = ambientAt(quad, weights);
+    continueDepths(found.depths, found.ambient, level, position);
   }
   [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = codes[i] != 0 ? weights[i] : 0.0;
   found.coverage = weights.x + weights.y + weights.z + weights.w;
@@ -126,15 +127,17 @@ void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout Slice
   // Along a stretch the depth towards a light changes as the depth towards the eye does, since both are
   // integrals of the same extinction.
   if (kLights > 0 && nearExtinction + farExtinction > 0.0) {
-    if (last.depths.x < 0.0) {
+    const int before = slice - int(ray.direction);
+    const bool enters = before < 0 || before >= level.count, leaves = slice < 0 || slice >= level.count;
+    if (last.depths.x < 0.0 && !enters) {
       vec4 weights;
-      const int before = slice - int(ray.direction);
-      last.depths = depthsTowardsLights(quadAt(level, ray.origin + ray.slope * float(before), clamp(before, 0, level.count - 1), weights), weights);
+      last.depths = depthsTowardsLights(quadAt(level, ray.origin + ray.slope * float(before), before, weights), weights);
     }
     bool shows = shown > kLeastShaded;
     if (kSurfaces) shows = shows && min(nearLit.surface, farLit.surface) < kMostlySurface;
-    if (last.arriving.x < 0.0) last.arriving = depthsAt(level, last, voxelPosition(ray, float(slice) - ray.direction), shows);
-    found.arriving = depthsAt(level, found, voxelPosition(ray, float(slice)), shows);
+    if (last.arriving.x < 0.0 && !enters) last.arriving = depthsAt(level, last, voxelPosition(ray, float(before)), shows);
+    found.arriving = leaves ? depthsBeyond(slice, last.arriving) : depthsAt(level, found, voxelPosition(ray, float(slice)), shows);
+    if (enters) last.arriving = depthsBeyond(before, found.arriving);
     nearLit.begin = last.arriving;
     nearLit.change = (found.arriving - last.arriving) * nearExtinction / (nearExtinction + farExtinction);
     farLit.begin = nearLit.begin + nearLit.change;

@@ -170,15 +170,20 @@ void GatherVolume::describeLights(shader::GatherFrame& frame) const {
   if (lightSlots() == 0) return;
   const DeviceVolume& volume = built_.volume;
   const glm::dmat3 linear(volume.indexToWorld);
+  const glm::ivec3 dimensions = surroundings_ != nullptr ? surroundings_->dimensions : volume.layout.dimensions;
   for (std::size_t i = 0; i < sampled_.size(); ++i) {
     const Light& light = sampled_[i];
     const glm::dvec3 first = surroundings_ != nullptr ? glm::dvec3(surroundings_->first) : glm::dvec3(0.0);
     const glm::dvec3 place = light.atInfinity ? glm::normalize(light.place) : lightSource(light, volume.indexToWorld).place + first;
     frame.lights[i] = {.positionOrDirection = place, .atInfinity = light.atInfinity ? 1 : 0, .color = light.intensity * light.color};
+    glm::dvec3 fromFirst = place, fromLast = place - glm::dvec3(dimensions - 1);
     if (light.atInfinity) {
       const glm::dvec3 way = lightSource(light, volume.indexToWorld).place, size = glm::abs(way);
       frame.lights[i].across = way / std::max({size.x, size.y, size.z});
+      fromFirst = fromLast = way;
     }
+    frame.lights[i].lightsFirst = glm::vec3(glm::lessThan(fromFirst, glm::dvec3(0.0)));
+    frame.lights[i].lightsLast = glm::vec3(glm::greaterThan(fromLast, glm::dvec3(0.0)));
   }
   if (ambientChannels_ > 0) frame.ambient = ambient().unshadowed();
   frame.tint = lighting_->tint;

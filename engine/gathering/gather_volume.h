@@ -23,6 +23,7 @@ class GatherVolume;
 
 /// What reaches a box from the lights of the volume of which it is a part.
 struct SurroundingLight {
+  glm::ivec3 dimensions{0};      ///< of the volume
   glm::ivec3 first{0};           ///< the box's first voxel in the volume
   const AmbientPass* ambient = nullptr;  ///< of the volume, up to date; null without ambient light
   /// Codes of depths towards a light, 16 bits a block, in the order of the box's bricks; those of brick 0 are 0.

@@ -243,6 +243,23 @@ TEST_F(GatherTest, LightThroughAHomogeneousBoxIsItsIntegral) {
   }
 }
 
+/// Fog that ends only where the volume does, seen from its lit and from its shadowed sides.
+TEST_F(GatherTest, LightThatReachesTheBordersOfAFullVolumeMatchesTheOracle) {
+  const glm::ivec3 n(12);
+  const Scene fog{.volume = makeVolume(n, cubeTransform(n), [](int, int, int) { return 1.0; }), .classification = {.densityScale = 3.0}};
+  Scene scan = fog;
+  scan.classification = {.transferFunction = TransferFunction{.opacity = {{0.0f, 0.1f}, {2.0f, 0.1f}},
+                                                              .color = {{0.0f, glm::vec3(1.0f)}},
+                                                              .unitDistance = 0.035}};
+  const Camera camera = framingCamera(fog.volume, 35.0, 25.0, 1.0, {});
+  for (const Scene* scene : std::array<const Scene*, 2>{&fog, &scan})
+    for (const glm::dvec3 toLight : {glm::dvec3(-1.0, -0.2, -1.0), glm::dvec3(1.0, 0.3, 1.0)}) {
+      FrameSettings settings = gathering({32, 32});
+      settings.lighting = Lighting{.lights = {{.place = toLight}}};
+      EXPECT_GE(qualityOf(*scene, camera, settings), 36.0) << toLight.x;
+    }
+}
+
 /// On an opaque surface light falls off within one voxel, which one value per voxel, as splats have, cannot show.
 TEST_F(GatherTest, LightOnOpaqueSkinComesNearerToTheOracleThanThatOfSplats) {
   QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 32, makeProcedural("head", 32));
