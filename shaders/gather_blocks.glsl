@@ -84,7 +84,7 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray 
     last.ambient = found.ambient;
   }
   if (before < 0 || before >= level.count) last.depths = depthsBeyond(before, found.depths);
-  if (!within) found.depths = depthsBeyond(slice, last.depths);
+  if (slice < 0 || slice >= level.count) found.depths = depthsBeyond(slice, last.depths);
   lit.begin = last.depths;
   lit.change = found.depths - lit.begin;
   lit.ambientBegin = last.ambient;

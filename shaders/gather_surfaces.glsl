@@ -7,8 +7,9 @@
 const float kLeastShaded = 1.0 / 512.0;  // least share of a pixel for which the normal of a surface is computed
 const float kOutside = 2.5;               // blocks from a surface at which the light that reaches it is looked up
 
-// The gradient at a position on a slice.
+// The gradient at a position on a slice; beyond the volume that of its border.
 vec3 gradientAt(Slices level, vec2 position, int slice) {
+  position = clamp(position, vec2(0.0), vec2(level.dimensions - 1));
   ivec2 low;
   const vec2 a = sideWeights(position.x, level.dimensions.x, low.x);
   const vec2 b = sideWeights(position.y, level.dimensions.y, low.y);
