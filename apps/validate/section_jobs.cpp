@@ -39,6 +39,7 @@ constexpr int kQuickQualityPicture = 96, kWholeQualityPicture = 160, kLargeQuali
 /// Least resolution with goals: in coarser volumes structures have the size of a voxel.
 constexpr int kLeastResolutionWithGoals = kLarge;
 constexpr int kQuickLightPicture = 64;
+constexpr glm::ivec2 kGatherLightPicture{40, 32};
 constexpr int kQuickSky = 24;  ///< voxels along an edge for skies, for which the oracle is slow
 constexpr int kDetailResolution = kMedium;
 constexpr int kTurntableResolution = kMedium, kTurntableFrames = 36, kTurntablePicture = 128;
@@ -186,6 +187,7 @@ void addLight(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
                     return emissionChecks(device, resolution,
                                           quick ? kQuickLightPicture : kQuickQualityPicture);
                   }});
+  jobs.push_back({"gather with lights", [&device] { return gatherLightChecks(deviceGather(device), kGatherLightPicture); }});
   jobs.push_back({"shadows", [=, &device] { return shadowChecks(device, resolution); }});
 }
 

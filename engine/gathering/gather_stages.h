@@ -41,11 +41,19 @@ struct GatherBlocks {
   bool exists() const { return !extinction.empty(); }
 };
 
+/// The light at the blocks of one level, x fastest, where lights are evaluated at samples. Blocks without bricks have 0.
+struct GatherLight {
+  std::vector<std::vector<double>> depths;   ///< by light: optical depth towards it, for scalars from the next layer on that way
+  std::vector<std::vector<double>> ambient;  ///< by channel: optical depth that ambient light has passed
+  std::vector<glm::dvec3> gradients;         ///< of scalars, in intervals of the transfer function, or of extinction, per block; empty without surfaces
+};
+
 /// In the order in which they are made.
 struct GatherStages {
   GatherLattice lattice;
   std::vector<LevelData> medium;        ///< by level: what the blocks are made of; empty where the frame reads no blocks
   std::vector<GatherBlocks> blocks;     ///< by level, for the same levels
+  std::vector<GatherLight> light;       ///< by level; empty where the frame reads none
   std::vector<GatherSums> gathered;     ///< at the samples, x fastest
   std::vector<GatherSums> smoothed;     ///< after the stencil; empty where the lattice is that of the pixels
   Image image;

@@ -74,6 +74,8 @@ class GatherVolume {
   };
   /// By level, of the levels that the last frame read as blocks; others are empty. For validation and tests. Waits.
   std::vector<GatherBlocks> downloadBlocks() const;
+  /// By level, of the levels whose light the last frame read; others are empty. For validation and tests. Waits.
+  std::vector<GatherLight> downloadLight() const;
 
   /// The bricks and the cells that rays skip, on the host, where parts of the volume are chosen.
   struct BrickCells {

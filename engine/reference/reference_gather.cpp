@@ -1,4 +1,4 @@
-#include "engine/reference/reference_gather.h"
+#include "engine/reference/reference_gather_ray.h"
 
 #include <tbb/parallel_for.h>
 
@@ -22,20 +22,6 @@ constexpr double kNearReference = 0.75;
 constexpr double kLeastAlongMain = 0.5;
 /// The mean of a transfer function is that of both ends if they are fewer intervals apart than this.
 constexpr double kLeastChange = 16.0;
-
-std::array<int, 2> sidesOf(int axis) {
-  return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
-}
-
-glm::dvec2 onSides(glm::dvec3 v, int axis) {
-  const std::array<int, 2> sides = sidesOf(axis);
-  return {v[sides[0]], v[sides[1]]};
-}
-
-/// (1 - exp(-x)) / x
-double meanTransmittance(double x) {
-  return x < 1e-6 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
-}
 
 /// The part in front of the eye of a tent with a half width of 1, whose middle is `ahead` in front of the
 /// eye.
@@ -61,34 +47,6 @@ void addPart(GatherSums& sums, double& transmittance, glm::dvec4 medium, double 
 
 }  // namespace
 
-/// The slices of a level that a ray's march reads: `first` to `end` - 1 in the order of the march.
-struct ReferenceGather::Slab {
-  int axis = 0, sign = 1;
-  double edge = 1.0;  ///< edge of a block in voxels
-  int first = 0, count = 0;
-
-  int slice(int number) const { return first + sign * number; }
-  /// The distance of the ray's intersection with the middle of a slice.
-  double distance(const Ray& ray, double slice) const {
-    return ((slice + 0.5) * edge - 0.5 - ray.origin[axis]) / ray.direction[axis];
-  }
-  /// The position of that intersection on the sides, in blocks.
-  glm::dvec2 position(const Ray& ray, double slice) const {
-    return (onSides(ray.origin + distance(ray, slice) * ray.direction, axis) + 0.5) / edge - 0.5;
-  }
-  /// World length of the ray between two slices.
-  double layer(const Ray& ray) const { return edge * ray.worldLength / std::abs(ray.direction[axis]); }
-  /// Distance from the eye plane in slices, negative behind it.
-  double ahead(const Ray& ray, double slice) const { return distance(ray, slice) * std::abs(ray.direction[axis]) / edge; }
-};
-
-/// The values of a ray on a slice of scalars, in intervals of the transfer function's table.
-struct ReferenceGather::Scalar {
-  double coverage = 0.0;  ///< by voxels with data
-  /// The scalar there, and half a slice further on and before, continued in the slice's plane.
-  double value = 0.0, ahead = 0.0, behind = 0.0;
-};
-
 GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec3 voxels, glm::dvec3 albedo) {
   GatherBlocks blocks{.dimensions = medium.dimensions, .extinction = {}, .source = {}};
   glm::ivec3 cell;
@@ -109,12 +67,16 @@ GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec
 ReferenceGather::ReferenceGather(const Volume& volume, const Classification& classification, const Camera& camera,
                                  const FrameSettings& settings)
     : volume_(volume),
+      lighting_(settings.lighting),
       size_(settings.size),
       middle_(0.5 * glm::dvec2(settings.size)),
       rays_(pixelRays(camera, settings.size, volume.indexToWorld)),
       linear_(volume.indexToWorld),
       detail_(detailRule(HierarchyLayout(volume.dimensions), rays_, settings.size, double(settings.lod))) {
-  FV_CHECK_EQ(settings.lighting.has_value(), false);
+  if (lighting_) {
+    FV_CHECK_EQ(lighting_->environment == nullptr, true);
+    for (const Light& light : lighting_->lights) lights_.push_back(lightSource(light, volume.indexToWorld));
+  }
   // Levels come in slice by slice, which may be complete only after all blocks are small.
   if (!rays_.orthographic || detail_.coarsestShare < 1.0) detail_.finest = std::max(detail_.finest - 1, 0);
   const Ray middle = rayThrough(glm::dvec2(0.0));
@@ -198,27 +160,33 @@ ReferenceGather::Slab ReferenceGather::slabOf(const Ray& ray, int axis, int leve
   return slab;
 }
 
+/// The bilinear source term and extinction on a slice.
+glm::dvec4 ReferenceGather::blockAt(const Ray& ray, const Slab& slab, int slice, const GatherBlocks& blocks) const {
+  const std::array<int, 2> sides = sidesOf(slab.axis);
+  const glm::dvec2 position = slab.position(ray, slice), low = glm::floor(position);
+  glm::dvec4 medium(0.0);
+  for (int corner = 0; corner < 4; ++corner) {
+    glm::ivec3 cell;
+    cell[slab.axis] = slice;
+    cell[sides[0]] = int(low.x) + (corner & 1);
+    cell[sides[1]] = int(low.y) + (corner >> 1);
+    if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(cell, blocks.dimensions))) continue;
+    const glm::dvec2 away = glm::abs(position - glm::dvec2(cell[sides[0]], cell[sides[1]]));
+    const std::size_t block =
+        std::size_t(cell.x) + std::size_t(blocks.dimensions.x) *
+                                  (std::size_t(cell.y) + std::size_t(blocks.dimensions.y) * std::size_t(cell.z));
+    medium += (1.0 - away.x) * (1.0 - away.y) * glm::dvec4(blocks.source[block], blocks.extinction[block]);
+  }
+  return medium;
+}
+
 void ReferenceGather::marchBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab,
                                   const GatherBlocks& blocks) const {
-  const std::array<int, 2> sides = sidesOf(slab.axis);
   for (int number = 0; number < slab.count; ++number) {
     const int slice = slab.slice(number);
     const double part = partOfTent(slab.ahead(ray, slice));
     if (part <= 0.0 || slice >= blocks.dimensions[slab.axis]) continue;
-    const glm::dvec2 position = slab.position(ray, slice), low = glm::floor(position);
-    glm::dvec4 medium(0.0);
-    for (int corner = 0; corner < 4; ++corner) {
-      glm::ivec3 cell;
-      cell[slab.axis] = slice;
-      cell[sides[0]] = int(low.x) + (corner & 1);
-      cell[sides[1]] = int(low.y) + (corner >> 1);
-      if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(cell, blocks.dimensions))) continue;
-      const glm::dvec2 away = glm::abs(position - glm::dvec2(cell[sides[0]], cell[sides[1]]));
-      const std::size_t block =
-          std::size_t(cell.x) + std::size_t(blocks.dimensions.x) *
-                                    (std::size_t(cell.y) + std::size_t(blocks.dimensions.y) * std::size_t(cell.z));
-      medium += (1.0 - away.x) * (1.0 - away.y) * glm::dvec4(blocks.source[block], blocks.extinction[block]);
-    }
+    const glm::dvec4 medium = blockAt(ray, slab, slice, blocks);
     addPart(sums, transmittance, medium, part * slab.layer(ray), slab.distance(ray, slice));
   }
 }
@@ -277,8 +245,10 @@ glm::dvec4 ReferenceGather::meanBetween(double from, double to) const {
 /// Marches from slice to slice in two halves: the scalar is linear up to the middle, where both slices'
 /// functions count half, and from there on. Extinction falls with the share of voxels with data, which is
 /// linear all the way.
-void ReferenceGather::marchScalars(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab) const {
+void ReferenceGather::marchScalars(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab,
+                                   const GatherLight* light) const {
   Scalar last;
+  std::optional<Arriving> lastArriving;
   for (int number = 0; number <= slab.count; ++number) {
     const int slice = slab.slice(number);
     const Scalar found = number < slab.count ? scalarAt(ray, slab, slice) : Scalar();
@@ -287,17 +257,28 @@ void ReferenceGather::marchScalars(GatherSums& sums, double& transmittance, cons
     const bool both = last.coverage > 0.0 && found.coverage > 0.0;
     const double middle =
         both ? std::clamp(0.5 * (last.ahead + found.behind), 0.0, double(shader::kTransferIntervals)) : first.value;
-    for (const double part : {0.25, 0.75}) {
-      const glm::dvec4 mean = part < 0.5 ? meanBetween(first.value, middle) : meanBetween(middle, second.value);
+    const std::array<glm::dvec4, 2> means{meanBetween(first.value, middle), meanBetween(middle, second.value)};
+    std::array<double, 2> lengths;
+    for (std::size_t half = 0; half < 2; ++half) {
+      const double part = half == 0 ? 0.25 : 0.75;
       const double from = slab.ahead(ray, slice) - 1.25 + part;  // in slices in front of the eye, at the beginning of the half
-      const double length = std::clamp(from + 0.5, 0.0, 0.5) * slab.layer(ray) * glm::mix(last.coverage, found.coverage, part);
-      addPart(sums, transmittance, mean, length, slab.distance(ray, slice + slab.sign * (part - 1.0)));
+      lengths[half] = std::clamp(from + 0.5, 0.0, 0.5) * slab.layer(ray) * glm::mix(last.coverage, found.coverage, part);
+    }
+    std::array<Stretch, 2> stretches;
+    if (light != nullptr)
+      stretches = lightStretch(*light, ray, slab, slice, last, found, means, transmittance, lastArriving);
+    for (std::size_t half = 0; half < 2; ++half) {
+      const double distance = slab.distance(ray, slice + slab.sign * (half == 0 ? -0.75 : -0.25));
+      if (light != nullptr)
+        addLit(sums, transmittance, means[half], lengths[half], distance, stretches[half], ray);
+      else
+        addPart(sums, transmittance, means[half], lengths[half], distance);
     }
     last = found;
   }
 }
 
-std::vector<GatherSums> ReferenceGather::samples(std::span<const GatherBlocks> blocks) const {
+std::vector<GatherSums> ReferenceGather::samples(std::span<const GatherBlocks> blocks, std::span<const GatherLight> light) const {
   std::vector<GatherSums> result(std::size_t(lattice_.samples.x) * std::size_t(lattice_.samples.y));
   tbb::parallel_for(0, lattice_.samples.y, [&](int y) {
     for (int x = 0; x < lattice_.samples.x; ++x) {
@@ -308,8 +289,11 @@ std::vector<GatherSums> ReferenceGather::samples(std::span<const GatherBlocks> b
       double transmittance = 1.0;
       for (int level = detail_.finest; level <= detail_.coarsest; ++level) {
         const Slab slab = slabOf(ray, axis, level);
+        const GatherLight* lit = lighting_ ? &light[std::size_t(level)] : nullptr;
         if (level == 0 && hasScalars())
-          marchScalars(sums, transmittance, ray, slab);
+          marchScalars(sums, transmittance, ray, slab, lit);
+        else if (lit != nullptr)
+          marchLitBlocks(sums, transmittance, ray, slab, blocks[std::size_t(level)], *lit);
         else
           marchBlocks(sums, transmittance, ray, slab, blocks[std::size_t(level)]);
       }

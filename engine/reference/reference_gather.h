@@ -1,15 +1,19 @@
 #pragma once
 // A gathered frame, stage by stage, on the CPU in double precision. It follows the method's description and
 // shares no code with the shaders: every sample's ray is intersected with every slice of voxels, nothing is
-// skipped and no ray ends early, so that it equals the device's frame for a cull threshold of 0. Only for
-// frames without lights.
+// skipped and no ray ends early, so that it equals the device's frame for a cull threshold of 0. Lights are those that are
+// evaluated at samples: up to four with exact shadows, and ambient light without an environment. The device takes another depth towards
+// a light where a ray has skipped empty blocks, so that lit frames are equal for volumes without such only.
 
+#include <array>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/gathering/gather_stages.h"
 #include "engine/scene/camera.h"
+#include "engine/scene/lighting.h"
 #include "engine/scene/render_settings.h"
 #include "engine/visibility/detail_rule.h"
 #include "engine/volume/classification.h"
@@ -23,6 +27,12 @@ namespace freevoxels {
 /// colour of levels without their own.
 GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec3 voxels, glm::dvec3 albedo);
 
+/// The depths towards a light of all blocks of a level, of which `extinction` has those of the voxels. Not for scalars.
+std::vector<double> referenceLightDepths(const Volume& volume, std::span<const double> extinction, const LevelData& medium, int level,
+                                         const Light& light);
+/// Sobel's gradients, per block, of values outside of which there is nothing: 0, or if `continued` the value of the block itself.
+std::vector<glm::dvec3> referenceGradients(std::span<const double> values, glm::ivec3 dimensions, bool continued);
+
 class ReferenceGather {
  public:
   /// Keeps a reference to the volume.
@@ -35,8 +45,10 @@ class ReferenceGather {
   /// Whether voxels are classified after interpolation; the blocks of level 0 are then not read.
   bool hasScalars() const { return table_.has_value(); }
 
-  /// Marches the ray of every sample. `blocks` is indexed by level.
-  std::vector<GatherSums> samples(std::span<const GatherBlocks> blocks) const;
+  /// Marches the ray of every sample. `blocks` and `light` are indexed by level; without lighting `light` is not read.
+  std::vector<GatherSums> samples(std::span<const GatherBlocks> blocks, std::span<const GatherLight> light) const;
+  /// The scalars of all voxels, in intervals of the transfer function's table.
+  std::vector<double> scalars() const;
   /// Restores the round footprint.
   std::vector<GatherSums> smoothed(const std::vector<GatherSums>& samples) const;
   /// Interpolates smoothed samples at the pixels and resolves. Image::depth is always computed.
@@ -50,13 +62,37 @@ class ReferenceGather {
   };
   struct Slab;
   struct Scalar;
+  struct Arriving;
+  struct Stretch;
   Ray rayThrough(glm::dvec2 position) const;
   int axisOf(glm::dvec2 position, const Ray& ray) const;
   Slab slabOf(const Ray& ray, int axis, int level) const;
   int firstVoxel(const Ray& ray, int axis, int level) const;
   void marchBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab, const GatherBlocks& blocks) const;
-  void marchScalars(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab) const;
+  /// With `light`, what reaches the samples; null without lighting.
+  void marchScalars(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab, const GatherLight* light) const;
   Scalar scalarAt(const Ray& ray, const Slab& slab, int slice) const;
+  glm::dvec4 blockAt(const Ray& ray, const Slab& slab, int slice, const GatherBlocks& blocks) const;
+  // With lighting, in reference_gather_light.cpp:
+  void marchLitBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab, const GatherBlocks& blocks,
+                      const GatherLight& light) const;
+  std::array<Stretch, 2> lightStretch(const GatherLight& light, const Ray& ray, const Slab& slab, int slice, const Scalar& last,
+                                      const Scalar& found, const std::array<glm::dvec4, 2>& means, double transmittance,
+                                      std::optional<Arriving>& lastArriving) const;
+  void addLit(GatherSums& sums, double& transmittance, glm::dvec4 medium, double length, double distance, const Stretch& stretch,
+              const Ray& ray) const;
+  glm::dvec3 leaving(const Stretch& stretch, double depth, glm::dvec3 toEye) const;
+  Arriving storedAt(const GatherLight& light, const Slab& slab, glm::dvec2 position, int slice) const;
+  Arriving arrivingAt(const GatherLight& light, const Ray& ray, const Slab& slab, int slice) const;
+  void setBeyond(Arriving& beyond, const Arriving& within, const Slab& slab, int slice) const;
+  void addLayerTowards(Arriving& arriving, const Scalar& scalar, glm::dvec3 position, bool shows) const;
+  std::pair<double, double> scalarNear(glm::dvec3 position) const;
+  glm::dvec3 gradientAt(const GatherLight& light, const Ray& ray, const Slab& slab, int slice) const;
+  void setSurface(Stretch& stretch, glm::dvec3 gradient, double decrease) const;
+  void lightFromOutside(std::span<Stretch> stretches, const GatherLight& light, const Ray& ray, const Slab& slab, double slice,
+                        glm::dvec3 outwards) const;
+  bool isLitBorder(std::size_t light, int axis, bool first) const;
+  glm::ivec3 dimensionsOf(const Slab& slab) const;
   glm::dvec4 mediumAt(double scalar) const;
   glm::dvec4 integralUpTo(double scalar) const;
   glm::dvec4 meanBetween(double from, double to) const;
@@ -66,6 +102,8 @@ class ReferenceGather {
   std::vector<GatherSums> interpolated(const std::vector<GatherSums>& from, glm::ivec2 fromSize, int side) const;
 
   const Volume& volume_;
+  std::optional<Lighting> lighting_;
+  std::vector<RaySource> lights_;  ///< the lights' places in index space
   glm::ivec2 size_;
   glm::dvec2 middle_;  ///< of the image, pixels
   PixelRays rays_;

@@ -11,8 +11,10 @@
 #include "engine/reference/reference_gather.h"
 #include "engine/reference/reference_hierarchy.h"
 #include "engine/renderer_stages.h"
+#include "engine/validation/homogeneous_box.h"
 #include "engine/validation/max_error.h"
 #include "engine/validation/stage_frames.h"
+#include "engine/volume/procedural.h"
 #include "engine/volume/subject.h"
 
 namespace freevoxels {
@@ -24,6 +26,10 @@ constexpr double kExtinctionTolerance = 5e-4, kSourceTolerance = 2e-3;
 /// Optical depths of a voxel that halves hold with fewer bits.
 constexpr double kLeastDepth = 1e-6;
 constexpr double kPitchTolerance = 1e-6;
+/// Steps of the codes of 16 bits, of the rays and of the blocks.
+constexpr double kLightCodeTolerance = 3.0 / 65535.0;
+/// Half a step of 8 bits and a sign, which may be of up to twice the largest component.
+constexpr double kGradientTolerance = 1.0 / 255.0;
 constexpr double kSampleTolerance = 1e-4, kStencilTolerance = 2e-5;
 constexpr double kImageTolerance = 1e-5, kDistanceTolerance = 1e-4;
 /// The tolerance of scalars, which may round to the next interval of the transfer function's table, or to more or less than the least change
@@ -36,6 +42,7 @@ constexpr double kFloor = 5e-2;
 constexpr double kLeastEnergy = 1e-3;  ///< of samples and pixels whose distance is compared
 
 enum class View { Framed, Orthographic, Inside, Wide, Near };
+enum class Light { None, FromBehind, AllKinds, Surfaces };
 
 struct Frame {
   const char* name;
@@ -43,6 +50,7 @@ struct Frame {
   View view = View::Framed;
   float lod = 0.0f;
   Composite composite = Composite::Normalised;
+  Light light = Light::None;
 };
 constexpr std::array<Frame, 8> kFrames{{{"perspective"},
                                         {.name = "orthographic, additive", .view = View::Orthographic, .composite = Composite::Additive},
@@ -55,6 +63,43 @@ constexpr std::array<Frame, 8> kFrames{{{"perspective"},
                                          .order = ClassificationOrder::Post,
                                          .view = View::Near,
                                          .lod = 8.0f}}};
+
+constexpr std::array<Frame, 9> kLitFrames{
+    {{.name = "lit from behind", .light = Light::FromBehind},
+     {.name = "lights of all kinds", .light = Light::AllKinds},
+     {.name = "lights of all kinds, eye inside", .view = View::Inside, .light = Light::AllKinds},
+     {.name = "lights of all kinds, levels of detail", .view = View::Near, .lod = 8.0f, .light = Light::AllKinds},
+     {.name = "lit surfaces", .light = Light::Surfaces},
+     {.name = "classified after, lit from behind", .order = ClassificationOrder::Post, .light = Light::FromBehind},
+     {.name = "classified after, lights of all kinds", .order = ClassificationOrder::Post, .light = Light::AllKinds},
+     {.name = "classified after, lights of all kinds, eye inside",
+      .order = ClassificationOrder::Post,
+      .view = View::Inside,
+      .light = Light::AllKinds},
+     {.name = "classified after, lit surfaces", .order = ClassificationOrder::Post, .light = Light::Surfaces}}};
+
+std::optional<Lighting> lightingOf(const Volume& volume, Light light) {
+  if (light == Light::None) return {};
+  Lighting lighting{.attenuation = LightAttenuation::Exact};
+  if (light == Light::FromBehind) lighting.lights = {{.place = {-1.0, -0.3, -1.0}}};
+  if (light == Light::FromBehind) return lighting;
+  const auto placed = [&](glm::dvec3 part) {
+    return glm::dvec3(volume.indexToWorld * glm::dvec4(part * glm::dvec3(volume.dimensions), 1.0));
+  };
+  lighting.ambient = {0.3, 0.4, 0.5};
+  lighting.lights = {{.place = {1.0, 0.4, 0.2}, .color = {1.0, 0.8, 0.6}, .intensity = 3.0},
+                     {.place = placed({1.6, -0.7, 0.4}), .atInfinity = false, .color = {0.4, 0.7, 1.0}, .intensity = 4.0}};
+  if (light == Light::AllKinds) {
+    lighting.lights.push_back({.place = placed({0.46, 0.57, 0.53}), .atInfinity = false, .intensity = 0.1});
+    lighting.tint = {0.7, 1.0, 1.6};
+    lighting.phaseG = 0.4;
+    lighting.ambient = glm::dvec3(0.0);  // which the phase function makes depend on the direction to the eye
+    lighting.scattering = 3;
+  } else {
+    lighting.surface = 0.8;
+  }
+  return lighting;
+}
 
 /// Near: perspective makes near voxels several times as large on the image as far ones. Wide: no ray's largest component is
 /// that of all others.
@@ -119,6 +164,38 @@ void checkBlocks(const GatherStages& stages, const ValidationScene& scene, const
   checks.push_back(source.atMost(kSourceTolerance, fmt::format("gather blocks: source, {}", frame), "relative"));
 }
 
+/// Checks what the frame's samples read of the light, of all levels that it reads. The depths of scalars come from a sweep that is checked
+/// elsewhere, and so does ambient light.
+void checkLight(const GatherStages& stages, const ValidationScene& scene, const ReferenceGather& reference, const Lighting& lighting,
+                const char* frame, std::vector<Check>& checks) {
+  MaxError depth, gradient;
+  for (std::size_t level = 0; level < stages.light.size(); ++level) {
+    const GatherLight& light = stages.light[level];
+    const bool scalars = level == 0 && reference.hasScalars();
+    const glm::ivec3 n = (scene.volume.dimensions + (1 << level) - 1) >> int(level);
+    const auto where = [&](std::size_t i) {
+      return fmt::format("block ({}, {}, {}) of level {}", int(i) % n.x, int(i) / n.x % n.y, int(i) / n.x / n.y, level);
+    };
+    for (std::size_t l = 0; l < light.depths.size() && !scalars; ++l) {
+      const std::vector<double> expected =
+          referenceLightDepths(scene.volume, stages.medium.front().extinction, stages.medium[level], int(level), lighting.lights[l]);
+      FV_CHECK_EQ(light.depths[l].size(), expected.size());
+      for (std::size_t i = 0; i < expected.size(); ++i)
+        depth.take(std::abs(std::sqrt(light.depths[l][i]) - std::sqrt(expected[i])) / std::sqrt(kOpaqueDepth), [&] { return where(i); });
+    }
+    const std::vector<glm::dvec3> expected =
+        light.gradients.empty() ? std::vector<glm::dvec3>()
+                                : referenceGradients(scalars ? reference.scalars() : stages.medium[level].extinction, n, scalars);
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      gradient.take(largestComponent(glm::abs(light.gradients[i] - expected[i])) / std::max(largestComponent(glm::abs(expected[i])), 1e-3),
+                    [&] { return where(i); });
+  }
+  if (!reference.hasScalars())
+    checks.push_back(depth.atMost(kLightCodeTolerance, fmt::format("gather light: depths, {}", frame), "of the largest, as roots"));
+  if (lighting.surface > 0.0)
+    checks.push_back(gradient.atMost(kGradientTolerance, fmt::format("gather light: gradients, {}", frame), "relative"));
+}
+
 std::string sampleText(glm::ivec2 samples, std::size_t i) {
   return fmt::format("sample ({}, {})", int(i) % samples.x, int(i) / samples.x);
 }
@@ -170,15 +247,21 @@ Check checkEnd(GatherOutputs& device, const Camera& camera, const FrameSettings&
 
 void checkFrame(GatherOutputs& device, const ValidationScene& scene, const Classification& classification, const Frame& frame,
                 glm::ivec2 size, ReportSection& section) {
-  const FrameSettings settings{
-      .size = size, .draw = Draw::Gather, .composite = frame.composite, .lod = frame.lod, .cullThreshold = 0.0f, .depth = true};
+  const FrameSettings settings{.size = size,
+                               .draw = Draw::Gather,
+                               .composite = frame.composite,
+                               .lod = frame.lod,
+                               .cullThreshold = 0.0f,
+                               .depth = true,
+                               .lighting = lightingOf(scene.volume, frame.light)};
   const Camera camera = cameraOf(scene.volume, frame.view, double(size.x) / size.y);
   const GatherStages stages = device.frame(camera, settings);
   const ReferenceGather reference(scene.volume, classification, camera, settings);
   section.checks.push_back(checkLattice(stages.lattice, reference.lattice(), frame.name));
   if (stages.lattice.samples != reference.lattice().samples) return;
   if (std::ranges::any_of(stages.blocks, &GatherBlocks::exists)) checkBlocks(stages, scene, frame.name, section.checks);
-  const std::vector<GatherSums> samples = reference.samples(stages.blocks);
+  if (settings.lighting) checkLight(stages, scene, reference, *settings.lighting, frame.name, section.checks);
+  const std::vector<GatherSums> samples = reference.samples(stages.blocks, stages.light);
   const double tolerance = reference.hasScalars() ? kScalarTolerance : kSampleTolerance;
   for (const Channel& channel : kChannels)
     section.checks.push_back(checkSums(stages.gathered, samples, channel, stages.lattice.samples, tolerance,
@@ -203,6 +286,11 @@ constexpr const char* kExplanation =
     "image. Sums are relative to the sample's own, or to 5 % of the largest where that is more. Rays go on to the end of the "
     "volume, but for the check of their early end, where they are to end at a transmittance of a half.";
 
+constexpr const char* kLightExplanation =
+    "As above, with lights whose depths are interpolated at the samples, in a volume without empty voxels: where rays skip empty blocks "
+    "the device takes another depth at the block after them, which the reference does not. Depths towards lights and gradients of "
+    "surfaces, as they are stored, are compared too.";
+
 class RendererGather : public GatherOutputs {
  public:
   RendererGather(const Device& device, const Volume& volume, const Classification& classification)
@@ -223,16 +311,42 @@ GatherMaker deviceGather(const Device& device) {
   };
 }
 
-ReportSection gatherChecks(const GatherMaker& make, const ValidationScene& scene, glm::ivec2 size) {
-  ReportSection section{.title = fmt::format("Gather: {}", scene.name), .text = kExplanation};
+namespace {
+
+/// Draws those of the frames that the scene allows.
+template <std::size_t Count>
+void checkFrames(const GatherMaker& make, const ValidationScene& scene, const std::array<Frame, Count>& frames, glm::ivec2 size,
+                 ReportSection& section) {
   for (const ClassificationOrder order : {ClassificationOrder::Pre, ClassificationOrder::Post}) {
     Classification classification = scene.classification;
     classification.order = order;
     if (order == ClassificationOrder::Post && !classification.isPost(scene.volume)) continue;
     const auto device = make(scene.volume, classification);
-    for (const Frame& frame : kFrames)
+    for (const Frame& frame : frames)
       if (frame.order == order) checkFrame(*device, scene, classification, frame, size, section);
   }
+}
+
+}  // namespace
+
+ReportSection gatherChecks(const GatherMaker& make, const ValidationScene& scene, glm::ivec2 size) {
+  ReportSection section{.title = fmt::format("Gather: {}", scene.name), .text = kExplanation};
+  checkFrames(make, scene, kFrames, size, section);
+  return section;
+}
+
+ReportSection gatherLightChecks(const GatherMaker& make, glm::ivec2 size) {
+  const glm::ivec3 n(17, 14, 12);
+  const Volume waves = makeVolume(n, shearedTransform(n), [](int x, int y, int z) {
+    return 0.5 + 0.2 * std::sin(0.9 * x + 0.4 * z) + 0.15 * std::cos(0.7 * y - 0.5 * x) + 0.1 * std::sin(1.1 * z + 0.3 * y);
+  });
+  ValidationScene scene{.name = "waves that fill the volume", .volume = waves, .classification = {}};
+  scene.classification.transferFunction =
+      TransferFunction{.opacity = {{0.0f, 0.02f}, {0.45f, 0.1f}, {0.7f, 0.6f}, {1.0f, 0.7f}},
+                       .color = {{0.0f, glm::vec3(0.9f, 0.3f, 0.2f)}, {0.5f, glm::vec3(0.3f, 0.8f, 0.4f)}, {1.0f, glm::vec3(0.5f, 0.5f, 1.0f)}},
+                       .unitDistance = waves.voxelSize()};
+  ReportSection section{.title = "Gather: lights at samples", .text = kLightExplanation};
+  checkFrames(make, scene, kLitFrames, size, section);
   return section;
 }
 

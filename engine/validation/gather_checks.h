@@ -30,4 +30,7 @@ GatherMaker deviceGather(const Device& device);
 /// both classified before and after interpolation.
 ReportSection gatherChecks(const GatherMaker& make, const ValidationScene& scene, glm::ivec2 size);
 
+/// Frames with lights at the samples, of a procedural volume that has no empty voxels: the light as it is stored, and the stages as above.
+ReportSection gatherLightChecks(const GatherMaker& make, glm::ivec2 size);
+
 }  // namespace freevoxels

@@ -129,5 +129,59 @@ TEST_F(GatherMutationTest, WithoutOneEverythingPasses) {
         EXPECT_TRUE(check.passed()) << check.name << ": " << check.figure << " at " << check.where;
 }
 
+/// Draws frames with other lights than it is told.
+class OtherLight : public GatherOutputs {
+ public:
+  OtherLight(std::unique_ptr<GatherOutputs> made, void (*alter)(Lighting&)) : made_(std::move(made)), alter_(alter) {}
+  GatherStages frame(const Camera& camera, const FrameSettings& wanted) override {
+    FrameSettings settings = wanted;
+    if (alter_ != nullptr) alter_(*settings.lighting);
+    return made_->frame(camera, settings);
+  }
+
+ private:
+  std::unique_ptr<GatherOutputs> made_;
+  void (*alter_)(Lighting&);
+};
+
+struct LightDefect {
+  const char* name;
+  const char* stage;  ///< with which the names of the checks begin that must notice
+  void (*apply)(Lighting&);
+};
+
+void PrintTo(const LightDefect& defect, std::ostream* stream) {
+  *stream << defect.name;
+}
+
+constexpr LightDefect kLightDefects[] = {
+    {"None", "", nullptr},
+    {"LightElsewhere", "gather ", [](Lighting& l) { l.lights[0].place.x += 0.1; }},
+    {"LightBrighter", "gather samples", [](Lighting& l) { l.lights[0].intensity *= 1.02; }},
+    {"TintStronger", "gather samples", [](Lighting& l) { l.tint.r *= 1.05; }},
+    {"SurfaceWeaker", "gather samples", [](Lighting& l) { l.surface *= 0.9; }},
+    {"PhaseNarrower", "gather samples", [](Lighting& l) { l.phaseG *= 1.1; }},
+    {"AmbientBrighter", "gather samples", [](Lighting& l) { l.ambient *= 1.02; }},
+};
+
+class GatherLightMutation : public DeviceTest, public testing::WithParamInterface<LightDefect> {};
+
+TEST_P(GatherLightMutation, IsNoticedByTheChecksOfItsStageAndNoOthers) {
+  const GatherMaker make = [](const Volume& volume, const Classification& classification) {
+    return std::make_unique<OtherLight>(deviceGather(device())(volume, classification), GetParam().apply);
+  };
+  int noticed = 0;
+  for (const Check& check : gatherLightChecks(make, {40, 32}).checks) {
+    if (check.passed()) continue;
+    ++noticed;
+    EXPECT_TRUE(GetParam().apply != nullptr && check.name.starts_with(GetParam().stage))
+        << check.name << ": " << check.figure << " at " << check.where;
+  }
+  EXPECT_EQ(noticed > 0, GetParam().apply != nullptr);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, GatherLightMutation, testing::ValuesIn(kLightDefects),
+                         [](const auto& defect) { return std::string(defect.param.name); });
+
 }  // namespace
 }  // namespace freevoxels::test

@@ -1,0 +1,68 @@
+#pragma once
+// What the parts of ReferenceGather share: a ray's way through the slices of a level, and the values on a slice.
+
+#include <array>
+#include <cmath>
+
+#include "engine/reference/reference_gather.h"
+
+namespace freevoxels {
+
+inline std::array<int, 2> sidesOf(int axis) {
+  return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
+}
+
+inline glm::dvec2 onSides(glm::dvec3 v, int axis) {
+  const std::array<int, 2> sides = sidesOf(axis);
+  return {v[sides[0]], v[sides[1]]};
+}
+
+/// (1 - exp(-x)) / x for x of either sign.
+inline double meanTransmittance(double x) {
+  return std::abs(x) < 1e-6 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
+}
+
+/// The slices of a level that a ray's march reads: `first` to `end` - 1 in the order of the march.
+struct ReferenceGather::Slab {
+  int axis = 0, sign = 1;
+  double edge = 1.0;  ///< edge of a block in voxels
+  int first = 0, count = 0;
+
+  int slice(int number) const { return first + sign * number; }
+  /// The distance of the ray's intersection with the middle of a slice.
+  double distance(const Ray& ray, double slice) const {
+    return ((slice + 0.5) * edge - 0.5 - ray.origin[axis]) / ray.direction[axis];
+  }
+  /// The position of that intersection on the sides, in blocks.
+  glm::dvec2 position(const Ray& ray, double slice) const {
+    return (onSides(ray.origin + distance(ray, slice) * ray.direction, axis) + 0.5) / edge - 0.5;
+  }
+  /// World length of the ray between two slices.
+  double layer(const Ray& ray) const { return edge * ray.worldLength / std::abs(ray.direction[axis]); }
+  /// Distance from the eye plane in slices, negative behind it.
+  double ahead(const Ray& ray, double slice) const { return distance(ray, slice) * std::abs(ray.direction[axis]) / edge; }
+};
+
+/// The values of a ray on a slice of scalars, in intervals of the transfer function's table.
+struct ReferenceGather::Scalar {
+  double coverage = 0.0;  ///< by voxels with data
+  /// The scalar there, and half a slice further on and before, continued in the slice's plane.
+  double value = 0.0, ahead = 0.0, behind = 0.0;
+};
+
+/// What reaches a point of a ray.
+struct ReferenceGather::Arriving {
+  std::array<double, 4> depths{};  ///< optical depths towards the lights
+  glm::dvec3 ambient{0.0};         ///< optical depths that ambient light has passed, by colour
+};
+
+/// A segment of a ray that is lit.
+struct ReferenceGather::Stretch {
+  Arriving begin, end;
+  glm::dvec3 position{0.0};        ///< of its middle, in index space
+  double surface = 0.0;            ///< share of light that is reflected as by a surface
+  glm::dvec3 normal{0.0};          ///< of the surface, outwards, in world space
+  std::array<double, 4> outside{};  ///< depths towards the lights from outside of the surface
+};
+
+}  // namespace freevoxels
