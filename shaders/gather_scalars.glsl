@@ -101,8 +101,8 @@ float changeAcross(float scalar, float reach) {
 
 // Lights the two halves of a stretch. `first` and `second` are the values at its ends; where an end has no data, those of the other end.
 // `shown` is the stretch's share of the pixel's alpha.
-void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout SliceValues last, inout SliceValues found, SliceValues first, SliceValues second, float nearExtinction,
-                  float farExtinction, float shown, Slices level, Ray ray, int slice) {
+void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout SliceValues last, inout SliceValues found, SliceValues first,
+                  SliceValues second, float nearExtinction, float farExtinction, float shown, Slices level, Ray ray, int slice) {
   const float nearPart = nearExtinction + farExtinction > 0.0 ? nearExtinction / (nearExtinction + farExtinction) : 0.5;
   nearLit.ambientChange = (second.ambient - first.ambient) * nearPart;
   nearLit.ambientBegin = first.ambient;

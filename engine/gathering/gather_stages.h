@@ -45,7 +45,8 @@ struct GatherBlocks {
 struct GatherLight {
   std::vector<std::vector<double>> depths;   ///< by light: optical depth towards it, for scalars from the next layer on that way
   std::vector<std::vector<double>> ambient;  ///< by channel: optical depth that ambient light has passed
-  std::vector<glm::dvec3> gradients;         ///< of scalars, in intervals of the transfer function, or of extinction, per block; empty without surfaces
+  /// Per block, of scalars in intervals of the transfer function's table, or of extinction; empty without surfaces.
+  std::vector<glm::dvec3> gradients;
 };
 
 /// In the order in which they are made.

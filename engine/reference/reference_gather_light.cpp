@@ -2,13 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
-#include "engine/core/error.h"
+#include "engine/reference/reference_depth.h"
 #include "engine/reference/reference_gather_ray.h"
 #include "engine/reference/reference_rays.h"
-#include "engine/reference/reference_depth.h"
 #include "shaders/gather_interface.h"
 
 namespace freevoxels {
@@ -195,7 +193,8 @@ glm::dvec3 ReferenceGather::gradientAt(const GatherLight& light, const Ray& ray,
 
 /// `decrease` is the relative decrease of the extinction along the gradient.
 void ReferenceGather::setSurface(Stretch& stretch, glm::dvec3 gradient, double decrease) const {
-  const glm::dvec3 normal = glm::transpose(glm::inverse(linear_)) * (decrease < 0.0 ? -gradient : decrease > 0.0 ? gradient : glm::dvec3(0.0));
+  const glm::dvec3 downwards = decrease < 0.0 ? -gradient : decrease > 0.0 ? gradient : glm::dvec3(0.0);
+  const glm::dvec3 normal = glm::transpose(glm::inverse(linear_)) * downwards;
   stretch.normal = glm::length(normal) > 1e-15 ? glm::normalize(normal) : glm::dvec3(0.0);
   stretch.surface = lighting_->surface * std::min(2.0 * std::abs(decrease), 1.0);
 }
@@ -305,9 +304,8 @@ std::array<ReferenceGather::Stretch, 2> ReferenceGather::lightStretch(const Gath
   const glm::dvec3 ambientBegin = last.coverage > 0.0 ? atLast.ambient : atFound.ambient;
   const glm::dvec3 ambientEnd = found.coverage > 0.0 ? atFound.ambient : ambientBegin;
   const double sum = means[0].a + means[1].a, share = sum > 0.0 ? means[0].a / sum : 0.5;
-  const double layer = slab.layer(ray);
-  const double shown = transmittance * layer *
-                       (glm::mix(last.coverage, found.coverage, 0.25) * means[0].a + glm::mix(last.coverage, found.coverage, 0.75) * means[1].a);
+  const double nearCoverage = glm::mix(last.coverage, found.coverage, 0.25), farCoverage = glm::mix(last.coverage, found.coverage, 0.75);
+  const double shown = transmittance * slab.layer(ray) * (nearCoverage * means[0].a + farCoverage * means[1].a);
 
   std::array<Stretch, 2> halves;
   halves[0].begin.ambient = ambientBegin;
@@ -322,19 +320,21 @@ std::array<ReferenceGather::Stretch, 2> ReferenceGather::lightStretch(const Gath
       const double part = i == 0 ? 0.25 : 0.75;
       const glm::dvec3 gradient = glm::mix(a, b, part);
       const double scalar = glm::mix(first.value, second.value, part), reach = glm::length(gradient);
-      const double above = mediumAt(std::min(scalar + reach, double(shader::kTransferIntervals))).a, below = mediumAt(std::max(scalar - reach, 0.0)).a;
+      const double above = mediumAt(std::min(scalar + reach, double(shader::kTransferIntervals))).a;
+      const double below = mediumAt(std::max(scalar - reach, 0.0)).a;
       const double change = (above - below) / std::max({above, below, 1e-20});
       setSurface(halves[i], gradient, -change);
       gradients += gradient;
       changes += change;
     }
-    lightFromOutside(halves, light, ray, slab, slice - 0.5 * slab.sign, changes > 0.0 ? -gradients : changes < 0.0 ? gradients : glm::dvec3(0.0));
+    const glm::dvec3 outwards = changes > 0.0 ? -gradients : changes < 0.0 ? gradients : glm::dvec3(0.0);
+    lightFromOutside(halves, light, ray, slab, slice - 0.5 * slab.sign, outwards);
   }
   if (sum <= 0.0) {
     lastArriving.reset();
     return halves;
   }
-  const bool shows = shown > kLeastShown && !(lighting_->surface > 0.0 && std::min(halves[0].surface, halves[1].surface) >= kMostlySurface);
+  const bool shows = shown > kLeastShown && std::min(halves[0].surface, halves[1].surface) < kMostlySurface;
   const auto upTo = [&](const Arriving& stored, const Scalar& scalar, int at) {
     Arriving arriving = stored;
     addLayerTowards(arriving, scalar, place(at), shows);

@@ -343,7 +343,7 @@ ReportSection gatherLightChecks(const GatherMaker& make, glm::ivec2 size) {
   ValidationScene scene{.name = "waves that fill the volume", .volume = waves, .classification = {}};
   scene.classification.transferFunction =
       TransferFunction{.opacity = {{0.0f, 0.02f}, {0.45f, 0.1f}, {0.7f, 0.6f}, {1.0f, 0.7f}},
-                       .color = {{0.0f, glm::vec3(0.9f, 0.3f, 0.2f)}, {0.5f, glm::vec3(0.3f, 0.8f, 0.4f)}, {1.0f, glm::vec3(0.5f, 0.5f, 1.0f)}},
+                       .color = {{0.0f, {0.9f, 0.3f, 0.2f}}, {0.5f, {0.3f, 0.8f, 0.4f}}, {1.0f, {0.5f, 0.5f, 1.0f}}},
                        .unitDistance = waves.voxelSize()};
   ReportSection section{.title = "Gather: lights at samples", .text = kLightExplanation};
   checkFrames(make, scene, kLitFrames, size, section);
