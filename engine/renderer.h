@@ -6,16 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "engine/core/stages.h"
-#include "engine/image/fixed_sums.h"
-#include "engine/image/image.h"
-#include "engine/memory_planner.h"
+#include "engine/frame_renderer.h"
 #include "engine/octree/hierarchy_layout.h"
-#include "engine/splatting/shares.h"
-#include "engine/scene/camera.h"
-#include "engine/scene/render_settings.h"
 #include "engine/splatting/frame_targets.h"
-#include "engine/visibility/cut_pass.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 #include "engine/vulkan/device.h"
@@ -28,7 +21,7 @@ Image downloadImage(const Device& device, const SplatTargets& targets);
 /// A stage of renderShares, once for a part: the list of the blocks that it has to look at.
 inline constexpr const char* kChoosingShares = "choose blocks of shares";
 
-class Renderer {
+class Renderer : public ShareRenderer {
  public:
   /// Uploads the volume, which must outlive the renderer, and makes what every frame needs: classified blocks
   /// and their lists, or for a volume that is classified after interpolation its scalars; the blocks are then
@@ -38,34 +31,28 @@ class Renderer {
   Renderer(const Device& device, const Volume& volume, const Classification& classification,
            const TableSettings& table, const Progress& progress = {});
   Renderer(const Device&, Volume&&, const Classification&, const TableSettings&, const Progress& = {}) = delete;
-  ~Renderer();
+  ~Renderer() override;
 
   /// Draws a frame and waits for it. `progress` is called about every 50 ms, and may abandon the frame by an exception, which
   /// is passed on; the next frame makes again what was not complete.
-  Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
+  Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {}) override;
   /// The same frame, which stays on the device, complete, in layout GENERAL. The renderer draws into these targets again
   /// when nobody else holds them.
   std::shared_ptr<const SplatTargets> renderOnDevice(const Camera& camera, const FrameSettings& settings,
                                                      const Progress& progress = {});
 
-  /// The sums of the shares of a part in fixed point: those of all parts add up to the same bits, however many parts there are, on
-  /// devices of one kind. resolveSums makes the image. Drawn as render() would, by gathering or by splats, with nothing left out as
-  /// hidden. `settings.composite` must not be Sorted. Fails with ErrorKind::OutOfMemory.
-  FixedSums renderShares(const Camera& camera, const FrameSettings& settings, const SharePart& part, const Progress& progress = {});
+  /// Drawn as render() would, by gathering or by splats, with nothing left out as hidden. `settings.composite` must not be Sorted.
+  FixedSums renderShares(const Camera& camera, const FrameSettings& settings, const SharePart& part,
+                         const Progress& progress = {}) override;
 
-  /// Memory of the volume, including the table even if no frame has read it.
-  VolumeMemory memory() const;
-  /// Stage times of the constructor and of the last frame, in order.
-  std::vector<StageTime> timings() const;
-  /// The number of occupied voxels; unknown until a frame needs their blocks.
-  std::optional<std::uint64_t> occupiedVoxelCount() const;
-  /// The counts of the last frame's cut.
-  CutCounts cutCounts() const;
-  /// Whether the last frame used Bilinear for Auto only because the device lacks memory for rays from the
-  /// eye.
-  bool lackedRoomForRays() const;
-  /// Whether the last frame used Splats for Draw::Auto only because the device lacks memory for the gather.
-  bool lackedRoomForGather() const;
+  /// Including the table even if no frame has read it.
+  VolumeMemory memory() const override;
+  std::vector<StageTime> timings() const override;
+  /// Unknown until a frame needs the blocks of occupied voxels.
+  std::optional<std::uint64_t> occupiedVoxelCount() const override;
+  CutCounts cutCounts() const override;
+  bool lackedRoomForRays() const override;
+  bool lackedRoomForGather() const override;
 
  private:
   friend class RendererStages;  // renderer_stages.h

@@ -9,18 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "engine/core/stages.h"
-#include "engine/image/image.h"
-#include "engine/memory_planner.h"
-#include "engine/scene/camera.h"
-#include "engine/scene/render_settings.h"
+#include "engine/frame_renderer.h"
 #include "engine/storage/baked_volume.h"
-#include "engine/visibility/cut_pass.h"
 #include "engine/volume/classification.h"
 
 namespace freevoxels {
 
-class StreamedRenderer {
+class StreamedRenderer : public FrameRenderer {
  public:
   /// Cubes have this number of voxels along an edge, and are read with this number of voxels around them: enough for the light of surfaces,
   /// and whole bricks.
@@ -32,22 +27,15 @@ class StreamedRenderer {
   /// `level` of the file takes the place of the volume. Frames must be such that whyNot() has no reason.
   StreamedRenderer(const Device& device, std::shared_ptr<const fvx::FvxFile> file, int level, const Classification& classification,
                    const TableSettings& table);
-  ~StreamedRenderer();
+  ~StreamedRenderer() override;
 
   /// Light that reaches voxels is kept for further frames. Fails with ErrorKind::OutOfMemory where one cube does not fit.
-  Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
+  Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {}) override;
 
-  /// Stage times of the last frame, in order.
-  std::vector<StageTime> timings() const;
+  std::vector<StageTime> timings() const override;
+  VolumeMemory memory() const override;
   /// How many cubes the last frame read, by level above the one that takes the place of the volume.
   const std::vector<std::size_t>& cubesRead() const;
-
-  // As of Renderer: what is known without the whole volume.
-  VolumeMemory memory() const;  ///< of the largest cube
-  std::optional<std::uint64_t> occupiedVoxelCount() const { return {}; }
-  CutCounts cutCounts() const { return {}; }
-  bool lackedRoomForRays() const { return false; }
-  bool lackedRoomForGather() const { return false; }
 
  private:
   struct State;

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "engine/image/srgb.h"
-#include "engine/renderer.h"
+#include "engine/frame_renderer.h"
 
 namespace freevoxels {
 
@@ -41,7 +41,8 @@ glm::dvec3 partColor(int part) {
   return result;
 }
 
-FixedSums drawColoredParts(Renderer& renderer, const Camera& camera, const FrameSettings& settings, int parts, const Progress& progress) {
+FixedSums drawColoredParts(ShareRenderer& renderer, const Camera& camera, const FrameSettings& settings, int parts,
+                           const Progress& progress) {
   FixedSums all;
   for (int part = 0; part < parts; ++part) {
     Progress ofPart;

@@ -37,17 +37,23 @@ FrameSettings RenderOptions::frameSettings() const {
   return drawsShares() ? sharedSettings(settings) : settings;
 }
 
-void RenderOptions::checkShares(std::span<const Frame> frames) const {
+SceneDescription RenderOptions::sceneOf(const std::string& volume) const {
+  SceneDescription result = scene.description;
+  result.input.volume = volume;
+  return result;
+}
+
+void RenderOptions::checkShares(std::span<const FrameJob> frames) const {
   frameSettings();
   shares.check();
   if (!shares.sums) return;
-  for (const Frame& frame : frames)
+  for (const FrameJob& frame : frames)
     if (frame.files.size() != 1 || !isExr(frame.files.front()))
       fail(ErrorKind::Usage, "--sums writes a single file: name one .exr as OUT");
   if (scene.description.output.fullFloat) fail(ErrorKind::Usage, "--float has no effect on --sums, which lose no bit: leave it out");
 }
 
-void RenderOptions::check(std::span<const Frame> frames) const {
+void RenderOptions::check(std::span<const FrameJob> frames) const {
   checkShares(frames);
   if (!leads()) return scene.description.check();  // other processes may run where the outputs' folders are not
   std::vector<std::string> images, volumes;
@@ -60,7 +66,7 @@ void RenderOptions::check(std::span<const Frame> frames) const {
   first.check(images, timings ? std::vector{*timings} : std::vector<std::string>{}, volumes);
 }
 
-void RenderOptions::run(std::span<const Frame> frames) const {
+void RenderOptions::run(std::span<const FrameJob> frames) const {
   const Clock::time_point start = Clock::now();
   messages.apply();
   if (!leads()) spdlog::set_level(spdlog::level::err);

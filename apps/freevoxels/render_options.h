@@ -16,7 +16,7 @@
 namespace freevoxels {
 
 /// A volume, and the images of it to write: one view in several forms.
-struct Frame {
+struct FrameJob {
   std::string input;
   std::vector<std::string> files;
 };
@@ -33,17 +33,19 @@ struct RenderOptions {
 
   void add(CLI::App& app);
   /// Draws the frames; those of one volume are the steps of a full turn. Refuses whatever can be refused before any work.
-  void run(std::span<const Frame> frames) const;
+  void run(std::span<const FrameJob> frames) const;
   /// Without lighting.
   FrameSettings frameSettings() const;
+  /// The scene of this volume.
+  SceneDescription sceneOf(const std::string& volume) const;
   /// Whether this process prints and writes: alone, or the first of its group.
   bool leads() const { return group == nullptr || group->leads(); }
   /// Whether frames are drawn as sums of shares.
   bool drawsShares() const { return group != nullptr || shares.isGiven(); }
 
  private:
-  void check(std::span<const Frame> frames) const;
-  void checkShares(std::span<const Frame> frames) const;
+  void check(std::span<const FrameJob> frames) const;
+  void checkShares(std::span<const FrameJob> frames) const;
 };
 
 }  // namespace freevoxels

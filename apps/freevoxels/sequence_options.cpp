@@ -81,7 +81,7 @@ void SequenceOptions::add(CLI::App& app, bool& fixedView) {
       ->group(kGroup);
 }
 
-std::vector<Frame> SequenceOptions::plan(SceneOptions& scene) const {
+std::vector<FrameJob> SequenceOptions::plan(SceneOptions& scene) const {
   std::vector<std::string> inputs = takeVolumes(scene.files);
   const bool namesAreOfVolumes = scene.files.empty() && !(isImage(scene.description.input.volume) && scene.sceneHasVolume());
   if (formats && !namesAreOfVolumes) fail(ErrorKind::Usage, "--format is for images without a name: leave it or OUT out");
@@ -106,9 +106,9 @@ std::vector<Frame> SequenceOptions::plan(SceneOptions& scene) const {
   const auto placed = [&](const std::string& file) {
     return folder && !fs::path(file).has_parent_path() ? (fs::path(*folder) / file).string() : file;
   };
-  std::vector<Frame> plan;
+  std::vector<FrameJob> plan;
   for (const NumberedVolume& volume : volumes) {
-    Frame& frame = plan.emplace_back(Frame{.input = volume.file, .files = {}});
+    FrameJob& frame = plan.emplace_back(FrameJob{.input = volume.file, .files = {}});
     if (namesAreOfVolumes)
       for (const std::string& extension : extensions) frame.files.push_back(placed(nameOf(volume.file) + extension));
     else

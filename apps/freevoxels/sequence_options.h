@@ -18,7 +18,7 @@ struct SequenceOptions {
   void add(CLI::App& app, bool& fixedView);
   /// The frames of the words IN and OUT, before `scene.takeScene()`: volumes among OUT are inputs, too. Without OUT an image has
   /// the name of its volume. Takes the scene; makes the folder; warns of gaps. ErrorKind::Usage for options that say nothing.
-  std::vector<Frame> plan(SceneOptions& scene) const;
+  std::vector<FrameJob> plan(SceneOptions& scene) const;
 };
 
 }  // namespace freevoxels

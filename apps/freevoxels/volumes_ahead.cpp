@@ -4,12 +4,12 @@
 
 namespace freevoxels {
 
-std::size_t framesOfFirstVolume(std::span<const Frame> frames) {
-  const auto other = std::ranges::find_if(frames, [&](const Frame& frame) { return frame.input != frames.front().input; });
+std::size_t framesOfFirstVolume(std::span<const FrameJob> frames) {
+  const auto other = std::ranges::find_if(frames, [&](const FrameJob& frame) { return frame.input != frames.front().input; });
   return std::size_t(other - frames.begin());
 }
 
-std::vector<std::string> volumesOf(std::span<const Frame> frames) {
+std::vector<std::string> volumesOf(std::span<const FrameJob> frames) {
   std::vector<std::string> volumes;
   for (; !frames.empty(); frames = frames.subspan(framesOfFirstVolume(frames))) volumes.push_back(frames.front().input);
   return volumes;

@@ -13,9 +13,9 @@
 namespace freevoxels {
 
 /// How many frames at the beginning are of one volume.
-std::size_t framesOfFirstVolume(std::span<const Frame> frames);
+std::size_t framesOfFirstVolume(std::span<const FrameJob> frames);
 /// The volumes of the frames in their order, neighbours that are equal once.
-std::vector<std::string> volumesOf(std::span<const Frame> frames);
+std::vector<std::string> volumesOf(std::span<const FrameJob> frames);
 
 /// Reads the volumes of frames in their order, each one while the one before it is drawn: two of them are in memory.
 class VolumesAhead {
