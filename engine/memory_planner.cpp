@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "engine/attenuation/attenuation_table.h"
+#include "engine/attenuation/ray_sweep.h"
 #include "engine/lighting/light_pass.h"
 #include "engine/octree/volume_limits.h"
 #include "engine/splatting/frame_targets.h"
@@ -12,6 +13,19 @@
 #include "shaders/frame_interface.h"
 
 namespace freevoxels {
+
+namespace {
+
+/// What a frame could do without may take one part in this many of the device's memory: exact rays towards lights, for which the table
+/// is a substitute; and quads that only a later frame reads again. The larger part remains for what a frame needs.
+constexpr std::uint64_t kOptionalDivisor = 4;
+
+/// The images of a frame, and the buffers through which they are read back.
+std::uint64_t frameBytes(const FrameSettings& settings) {
+  return 2 * targetBytes(settings);
+}
+
+}  // namespace
 
 StoredKinds storedKinds(const DeviceVolume& volume) {
   return {.colors = volume.hasColors, .emission = volume.hasEmission()};
@@ -40,12 +54,11 @@ VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std:
 
 LightAttenuation planLightAttenuation(const Device& device, const DeviceVolume& volume, const VolumeMemory& memory,
                                       const FrameSettings& settings) {
-  constexpr std::uint64_t kMostShare = 4;  // rays may take one part in this many of the memory
   const LightAttenuation wanted = lightAttenuationFor(settings);
   if (settings.lighting->attenuation != LightAttenuation::Auto || wanted == LightAttenuation::Table) return wanted;
   const RayMemory rays = lightRayMemory(volume, *settings.lighting);
-  const std::uint64_t others = memory.peak() + 2 * targetBytes(settings);
-  const bool fits = rays.bytes <= device.memoryBytes() / kMostShare && rays.bytes + others <= device.memoryBytes() &&
+  const std::uint64_t others = memory.peak() + frameBytes(settings);
+  const bool fits = rays.bytes <= device.memoryBytes() / kOptionalDivisor && rays.bytes + others <= device.memoryBytes() &&
                     rays.largest <= device.maximumAllocation();
   return fits ? LightAttenuation::Exact : LightAttenuation::Table;
 }
@@ -54,10 +67,25 @@ std::uint64_t planEyeRayBytes(const Device& device, const DeviceVolume& volume, 
                               bool readsTable) {
   if (settings.attenuation != AttenuationLookup::Auto) return settings.mostRayBytes;
   if (!readsTable) memory.table = memory.sweep = 0;
-  std::uint64_t others = memory.peak() + 2 * targetBytes(settings);
+  std::uint64_t others = memory.peak() + frameBytes(settings);
   if (settings.lighting && settings.lighting->attenuation == LightAttenuation::Exact)
     others += lightRayMemory(volume, *settings.lighting).bytes;
   return std::min(settings.mostRayBytes, device.memoryBytes() - std::min(device.memoryBytes(), others));
+}
+
+std::uint64_t planKeptQuadBytes(const Device& device) {
+  return device.memoryBytes() / kOptionalDivisor;
+}
+
+std::uint64_t leastGatherBytes(std::uint64_t brickVoxels, glm::ivec3 dimensions, const glm::dmat4& indexToWorld, const Lighting* lighting) {
+  std::uint64_t quadBytes = sizeof(glm::uvec2), rays = 0;  // quads of extinctions
+  if (lighting != nullptr) {
+    for (const Light& light : lighting->lights) {
+      quadBytes += sizeof(std::uint16_t) + sizeof(glm::uvec2);  // the code of the light, and quads of codes
+      rays += rayBytes(dimensions, lightSource(light, indexToWorld));
+    }
+  }
+  return brickVoxels * quadBytes + rays;
 }
 
 std::uint64_t leastMemory(const Device& device, const Volume& volume, const Classification& classification, DirectionSet directions,
@@ -78,8 +106,8 @@ std::uint64_t leastMemory(const Device& device, const Volume& volume, const Clas
   const HierarchyLayout hierarchy(volume.dimensions);
   const std::vector<std::uint64_t> stored = countOccupiedBlocks(volume.dimensions, std::move(occupied));
   const StoredKinds kinds{.colors = classification.transferFunction || volume.albedo, .emission = classification.emission.has_value()};
-  const std::uint64_t bytes = volumeMemory(hierarchy, stored, directions, kinds, sweepStyle(device)).peak() + 2 * targetBytes(settings);
-  // Constants, counters, lists that are rounded up.
+  const std::uint64_t bytes = volumeMemory(hierarchy, stored, directions, kinds, sweepStyle(device)).peak() + frameBytes(settings);
+  // A margin for what volumeMemory does not count: an eighth for lists that are rounded up, 2 MiB for constants and counters.
   return bytes + bytes / 8 + (std::uint64_t(2) << 20);
 }
 
@@ -98,7 +126,7 @@ Error withWholeNeed(const Error& error, const Device& device, const Volume& volu
 }
 
 std::uint64_t maximumVoxels(const Device& device) {
-  const HierarchyLayout cube(glm::ivec3(1024));
+  const HierarchyLayout cube(glm::ivec3(1024));  // bytes per voxel hardly depend on the size
   const auto voxels = double(cube.levels.front().voxels());
   const auto bytes = double(occupancyBytes(cube));
   const double most = double(std::min(device.largestBinding(sizeof(shader::OccupancyWord)), device.memoryBytes()));
@@ -106,8 +134,8 @@ std::uint64_t maximumVoxels(const Device& device) {
 }
 
 bool exceedsDevice(std::uint64_t deviceBytes, std::uint64_t mostVoxels, glm::ivec3 box, std::uint64_t activeVoxels) {
-  // The least that a voxel with data takes: its extinction and its place in the lists of what is drawn.
-  constexpr std::uint64_t kLeastBytes = 12;
+  // The least that a voxel with data takes: its extinction, and its indices in the list of occupied voxels and in that of drawn ones.
+  constexpr std::uint64_t kLeastBytes = sizeof(float) + 2 * sizeof(std::uint32_t);
   const glm::u64vec3 size(box);
   return size.x * size.y * size.z > mostVoxels || activeVoxels > deviceBytes / kLeastBytes;
 }

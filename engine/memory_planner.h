@@ -54,6 +54,10 @@ void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionS
 std::uint64_t leastMemory(const Device& device, const Volume& volume, const Classification& classification, DirectionSet directions,
                           const FrameSettings& settings);
 
+/// Bytes of device memory that the gather of voxels takes at least. `brickVoxels` are the voxels of all bricks that are not empty;
+/// `lighting` is null without lights.
+std::uint64_t leastGatherBytes(std::uint64_t brickVoxels, glm::ivec3 dimensions, const glm::dmat4& indexToWorld, const Lighting* lighting);
+
 /// To be thrown instead of `error`, which a volume or a frame failed with: where the device's memory is limited and is less than
 /// leastMemory, a sentence with that, so that a limit has to be raised once only; otherwise `error`.
 Error withWholeNeed(const Error& error, const Device& device, const Volume& volume, const Classification& classification,
@@ -79,6 +83,9 @@ LightAttenuation planLightAttenuation(const Device& device, const DeviceVolume& 
 /// attenuation of its lights must be resolved.
 std::uint64_t planEyeRayBytes(const Device& device, const DeviceVolume& volume, VolumeMemory memory, const FrameSettings& settings,
                               bool readsTable);
+
+/// How many bytes the gather's quads may take that a frame does not read, because a turntable returns to them.
+std::uint64_t planKeptQuadBytes(const Device& device);
 
 /// Whether a frame that has no room for rays from the eye, for this reason, is drawn by the table alone: AttenuationLookup::Auto, if
 /// memory was lacking.

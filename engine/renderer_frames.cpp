@@ -217,7 +217,8 @@ Renderer::State::Gathering Renderer::State::prepareGather(const Camera& camera, 
                  .table = read,
                  .lighting = settings.lighting ? &*settings.lighting : nullptr,
                  .lights = settings.lighting ? &lights->lights() : nullptr,
-                 .axes = {someRayHasAxis(frame.lattice, 0), someRayHasAxis(frame.lattice, 1), someRayHasAxis(frame.lattice, 2)}},
+                 .axes = {someRayHasAxis(frame.lattice, 0), someRayHasAxis(frame.lattice, 1), someRayHasAxis(frame.lattice, 2)},
+                 .keptQuadBytes = planKeptQuadBytes(device)},
                 progress);
   if (!gather) gather.emplace(device);
   gatherVolume->describe(frame.lattice);

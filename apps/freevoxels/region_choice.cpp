@@ -1,7 +1,6 @@
 #include "apps/freevoxels/region_choice.h"
 
 #include "apps/freevoxels/failure.h"
-#include "engine/attenuation/ray_sweep.h"
 #include "engine/memory_planner.h"
 #include "engine/region_renderer.h"
 #include "engine/streamed_renderer.h"
@@ -10,22 +9,13 @@ namespace freevoxels {
 
 namespace {
 
-/// What a quad of the gather takes: extinctions; and for each light codes and quads of them.
-constexpr std::uint64_t kMediumQuadBytes = 8, kLightBytes = 8 + 2;
-
 /// The least that the gather needs of the device for a level.
-std::uint64_t leastGatherBytes(const PieceDrawing& pieces, int level) {
+std::uint64_t leastBytes(const PieceDrawing& pieces, int level) {
   std::uint64_t bricks = 0;
   for (const fvx::ChunkEntry& chunk : pieces.file->chunks(fvx::Channel::Scalars, level)) bricks += std::uint64_t(chunk.bricks());
-  std::uint64_t quadBytes = kMediumQuadBytes, rays = 0;
-  if (pieces.settings.lighting) {
-    const glm::dmat4 indexToWorld = fvx::levelToWorld(pieces.file->description().volume.indexToWorld, level);
-    for (const Light& light : pieces.settings.lighting->lights) {
-      rays += rayBytes(pieces.file->dimensions(level), lightSource(light, indexToWorld));
-      quadBytes += kLightBytes;
-    }
-  }
-  return bricks * fvx::kBrickVoxels * quadBytes + rays;
+  return leastGatherBytes(bricks * fvx::kBrickVoxels, pieces.file->dimensions(level),
+                          fvx::levelToWorld(pieces.file->description().volume.indexToWorld, level),
+                          pieces.settings.lighting ? &*pieces.settings.lighting : nullptr);
 }
 
 }  // namespace
@@ -69,7 +59,7 @@ bool needsPieces(const RenderOptions& options, const MemoryLimits& limits, const
   std::uint64_t active = 0;
   for (const fvx::ChunkEntry& chunk : file.chunks(fvx::Channel::Scalars, level)) active += chunk.activeVoxels;
   if (exceedsDevice(limits.deviceBytes, limits.voxels, file.dimensions(level), active) || active > limits.hostBytes / sizeof(float)) return true;
-  return pieces.way == PieceDrawing::Way::Cubes && leastGatherBytes(pieces, level) > limits.deviceBytes;
+  return pieces.way == PieceDrawing::Way::Cubes && leastBytes(pieces, level) > limits.deviceBytes;
 }
 
 }  // namespace freevoxels

@@ -32,9 +32,6 @@ double sourceUnit(const DeviceVolume& volume, const Lighting* lighting) {
   return std::max(brightest * kStoredDepth / kBrightest, 1.0);
 }
 
-/// Quads that the current frame does not read may take one part in this many of the device's memory.
-constexpr std::uint64_t kKeptShare = 4;
-
 bool dependsOnView(const Lighting& lighting) {
   return lighting.phaseG != 0.0 || lighting.surface > 0.0;
 }
@@ -205,8 +202,7 @@ void GatherVolume::prepare(const Shading& shading, std::vector<StageTime>& times
     dropOtherAxes(shading.axes, 0);
     makeRoomForAll();
   }
-  // Kept, because a turntable returns to the other axes.
-  dropOtherAxes(shading.axes, device_.memoryBytes() / kKeptShare);
+  dropOtherAxes(shading.axes, shading.keptQuadBytes);
 }
 
 std::uint64_t GatherVolume::Quads::bytes() const {

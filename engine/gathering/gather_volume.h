@@ -46,6 +46,7 @@ class GatherVolume {
     const Lighting* lighting;
     const Buffer* lights;  ///< shader::Light
     std::array<bool, 3> axes;  ///< axes along which rays march
+    std::uint64_t keptQuadBytes = 0;  ///< quads of other axes are kept for later frames up to so many bytes
   };
   /// Whether the transmittance of all lights is evaluated at the samples: for few lights from their rays, and
   /// for ambient light. With more lights, and for lit volumes with emission, shading is per voxel.
