@@ -171,13 +171,13 @@ struct RegionRenderer::State {
   void makeRoom();
   VolumeMemory memoryOfLargest() const;
 
-  struct Frame {
+  struct FrameInProgress {
     const Camera& camera;
     const FrameSettings& settings;
-    const SplatTargets& targets;
+    const FrameTargets& targets;
     bool drawn = false;  ///< whether the targets have been drawn to, and therefore cleared
   };
-  void draw(Frame& frame, const RegionEntry& region, bool addToSums);
+  void draw(FrameInProgress& frame, const RegionEntry& region, bool addToSums);
 };
 
 /// Reads a region and sweeps its table.
@@ -241,7 +241,7 @@ DeviceRegion& RegionRenderer::State::onDevice(const RegionEntry& region) {
   return *(kept[&region] = load(region));
 }
 
-void RegionRenderer::State::draw(Frame& frame, const RegionEntry& entry, bool addToSums) {
+void RegionRenderer::State::draw(FrameInProgress& frame, const RegionEntry& entry, bool addToSums) {
   DeviceRegion& region = onDevice(entry);
   FrameConstants constants = makeFrameConstants(device, region.built.volume, tableSettings, frame.camera, frame.settings);
   if (frame.settings.lighting)
@@ -313,7 +313,7 @@ FixedSums RegionRenderer::renderShares(const Camera& camera, const FrameSettings
     state.splats = std::make_unique<SplatPass>(state.device, settings.depth);
     state.accumulate = std::make_unique<AccumulatePass>(state.device, settings.depth);
   }
-  const std::shared_ptr<const SplatTargets> targets = state.targetPool.take(state.device, settings, TargetKind::Sums);
+  const std::shared_ptr<const FrameTargets> targets = state.targetPool.take(state.device, settings, TargetKind::Sums);
   {
     Commands commands(state.device);
     state.accumulate->recordClear(commands, std::move(layout));
@@ -324,7 +324,7 @@ FixedSums RegionRenderer::renderShares(const Camera& camera, const FrameSettings
   std::erase_if(state.kept, [&](const auto& kept) {
     return !std::ranges::binary_search(choice.levels()[kept.first->level], kept.first);
   });
-  State::Frame frame{.camera = camera, .settings = settings, .targets = *targets};
+  State::FrameInProgress frame{.camera = camera, .settings = settings, .targets = *targets};
   std::size_t drawn = 0;
   const std::size_t count = std::accumulate(state.counts.drawn.begin(), state.counts.drawn.end(), std::size_t(0));
   for (const auto& [shareAndLevel, regions] : batches)

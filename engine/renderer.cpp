@@ -22,7 +22,7 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   State& state = *state_;
   state.drawFitting(settings, [&](const FrameSettings& fitting) {
     Commands commands(state.device);
-    const std::shared_ptr<const SplatTargets> targets = state.recordImage(commands, camera, fitting, progress);
+    const std::shared_ptr<const FrameTargets> targets = state.recordImage(commands, camera, fitting, progress);
     commands.beginPass("read back");
     state.colorReadback.record(state.device, commands, targets->colorEnergy);
     if (settings.depth) state.distanceReadback.record(state.device, commands, targets->distance);
@@ -36,20 +36,20 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
           .depth = settings.depth ? state.distanceReadback.read<float>() : std::vector<float>()};
 }
 
-std::shared_ptr<const SplatTargets> Renderer::renderOnDevice(const Camera& camera, const FrameSettings& settings,
+std::shared_ptr<const FrameTargets> Renderer::renderOnDevice(const Camera& camera, const FrameSettings& settings,
                                                              const Progress& progress) {
   checkCamera(camera);
   checkFrameFits(state_->device, settings);
   return state_->drawFitting(settings, [&](const FrameSettings& fitting) {
     Commands commands(state_->device);
-    std::shared_ptr<const SplatTargets> targets = state_->recordImage(commands, camera, fitting, progress);
+    std::shared_ptr<const FrameTargets> targets = state_->recordImage(commands, camera, fitting, progress);
     commands.submitAndWait(progress);
     addTimes(state_->frameTimes, commands.times());
     return targets;
   });
 }
 
-Image downloadImage(const Device& device, const SplatTargets& targets) {
+Image downloadImage(const Device& device, const FrameTargets& targets) {
   Commands commands(device);
   TargetReadback color, distance;
   color.record(device, commands, targets.colorEnergy);

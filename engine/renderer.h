@@ -16,7 +16,7 @@
 namespace freevoxels {
 
 /// The image of a frame that was left on the device. Waits.
-Image downloadImage(const Device& device, const SplatTargets& targets);
+Image downloadImage(const Device& device, const FrameTargets& targets);
 
 /// A stage of renderShares, once for a part: the list of the blocks that it has to look at.
 inline constexpr const char* kChoosingShares = "choose blocks of shares";
@@ -38,8 +38,7 @@ class Renderer : public ShareRenderer {
   Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {}) override;
   /// The same frame, which stays on the device, complete, in layout GENERAL. The renderer draws into these targets again
   /// when nobody else holds them.
-  std::shared_ptr<const SplatTargets> renderOnDevice(const Camera& camera, const FrameSettings& settings,
-                                                     const Progress& progress = {});
+  std::shared_ptr<const FrameTargets> renderOnDevice(const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
 
   /// Drawn as render() would, by gathering or by splats, with nothing left out as hidden. `settings.composite` must not be Sorted.
   FixedSums renderShares(const Camera& camera, const FrameSettings& settings, const SharePart& part,

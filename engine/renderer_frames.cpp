@@ -62,7 +62,7 @@ const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progres
   return *table;
 }
 
-CutInputs Renderer::State::cutInputs(const Frame& frame) const {
+CutInputs Renderer::State::cutInputs(const Splatting& frame) const {
   return {.volume = built.volume,
           .voxels = built.visible,
           .lists = built.lists,
@@ -75,7 +75,7 @@ CutInputs Renderer::State::cutInputs(const Frame& frame) const {
 }
 
 /// The blocks to draw, without those that the table calls hidden.
-SplatPass::Inputs Renderer::State::recordList(Commands& commands, const Frame& frame) {
+SplatPass::Inputs Renderer::State::recordList(Commands& commands, const Splatting& frame) {
   const FrameConstants& constants = frame.constants;
   lastWasCut = frame.isCut();
   lastLevel = constants.detail.finest;
@@ -95,7 +95,7 @@ SplatPass::Inputs Renderer::State::recordList(Commands& commands, const Frame& f
 
 /// Records the splats of a frame. Blocks that the table calls hidden follow after the others, where pixels
 /// are not covered.
-void Renderer::State::recordDrawing(Commands& commands, const Frame& frame) {
+void Renderer::State::recordDrawing(Commands& commands, const Splatting& frame) {
   SplatPass::Inputs drawing = recordList(commands, frame);
   splats->record(commands, drawing, frame.constants, *frame.targets);
   if (frame.constants.cull.hiddenDepth == 0.0) return;
@@ -135,8 +135,8 @@ FrameConstants Renderer::State::constantsOf(const Camera& camera, const FrameSet
 }
 
 /// All that a frame of splats needs before its blocks are listed and drawn.
-Renderer::State::Frame Renderer::State::prepareSplats(Commands& commands, const Camera& camera, const FrameSettings& wanted,
-                                                      const Progress& progress) {
+Renderer::State::Splatting Renderer::State::prepareSplats(Commands& commands, const Camera& camera, const FrameSettings& wanted,
+                                                          const Progress& progress) {
   frameTimes.clear();
   builtWithBlocks(progress);
   checkSplatsFit(device, built.volume);
@@ -147,8 +147,8 @@ Renderer::State::Frame Renderer::State::prepareSplats(Commands& commands, const 
     resolve = std::make_unique<ResolvePass>(device, settings.depth);
   }
   if (sorted && !sort) sort = std::make_unique<DepthSort>(device, built.volume);
-  Frame frame{.constants = constantsOf(camera, settings, progress),
-              .targets = targetPool.take(device, settings, sorted ? TargetKind::Image : TargetKind::Sums)};
+  Splatting frame{.constants = constantsOf(camera, settings, progress),
+                  .targets = targetPool.take(device, settings, sorted ? TargetKind::Image : TargetKind::Sums)};
   if (sorted) {
     sort->record(commands, built.volume, built.visible, camera);
     frame.order = &sort->voxels();
@@ -165,9 +165,9 @@ Renderer::State::Frame Renderer::State::prepareSplats(Commands& commands, const 
 }
 
 /// Records a frame up to the sums in the targets; for Sorted these are the image.
-Renderer::State::Frame Renderer::State::recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
-                                                     const Progress& progress) {
-  Frame frame = prepareSplats(commands, camera, settings, progress);
+Renderer::State::Splatting Renderer::State::recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
+                                                         const Progress& progress) {
+  Splatting frame = prepareSplats(commands, camera, settings, progress);
   recordDrawing(commands, frame);
   return frame;
 }
@@ -226,11 +226,10 @@ Renderer::State::Gathering Renderer::State::prepareGather(const Camera& camera, 
 }
 
 /// Reads the image in the targets, without their optical depth.
-std::shared_ptr<const SplatTargets> Renderer::State::recordGather(Commands& commands, const Camera& camera,
-                                                                  const FrameSettings& wanted,
+std::shared_ptr<const FrameTargets> Renderer::State::recordGather(Commands& commands, const Camera& camera, const FrameSettings& wanted,
                                                                   const Progress& progress) {
   const Gathering frame = prepareGather(camera, wanted, progress);
-  const std::shared_ptr<const SplatTargets> targets = targetPool.take(device, frame.settings, TargetKind::Image);
+  const std::shared_ptr<const FrameTargets> targets = targetPool.take(device, frame.settings, TargetKind::Image);
   gather->record(commands, *gatherVolume, frame.lattice, *targets);
   return targets;
 }
@@ -251,7 +250,7 @@ FixedSums Renderer::State::gatherShares(const Camera& camera, const FrameSetting
 FixedSums Renderer::State::splatShares(const Camera& camera, const FrameSettings& settings, const SharePart& part,
                                        const Progress& progress) {
   Commands commands(device);
-  Frame frame = prepareSplats(commands, camera, settings, progress);
+  Splatting frame = prepareSplats(commands, camera, settings, progress);
   if (!shares || shares->hasDistance() != settings.depth) shares = std::make_unique<ShareDrawing>(device, built, settings.depth);
   if (frame.isCut()) {
     const StageTimer timer(frameTimes, kChoosingShares);
@@ -265,11 +264,10 @@ FixedSums Renderer::State::splatShares(const Camera& camera, const FrameSettings
                       frameTimes, progress);
 }
 
-std::shared_ptr<const SplatTargets> Renderer::State::recordImage(Commands& commands, const Camera& camera,
-                                                                 const FrameSettings& settings,
+std::shared_ptr<const FrameTargets> Renderer::State::recordImage(Commands& commands, const Camera& camera, const FrameSettings& settings,
                                                                  const Progress& progress) {
   if (drawsByGathering(settings)) return recordGather(commands, camera, settings, progress);
-  Frame frame = recordSplats(commands, camera, settings, progress);
+  Splatting frame = recordSplats(commands, camera, settings, progress);
   if (settings.composite != Composite::Sorted || settings.depth) resolve->record(commands, frame.constants, *frame.targets);
   return frame.targets;
 }

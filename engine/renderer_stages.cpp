@@ -12,7 +12,7 @@ std::vector<SplatSums> RendererStages::renderSums(const Camera& camera, const Fr
   Commands commands(state_.device);
   FrameSettings whole = settings;
   whole.cullThreshold = 0.0f;
-  const Renderer::State::Frame frame = state_.recordSplats(commands, camera, whole);
+  const Renderer::State::Splatting frame = state_.recordSplats(commands, camera, whole);
   commands.beginPass("read back");
   const SumsReadback sums(state_.device, commands, *frame.targets);
   commands.submitAndWait();
@@ -25,7 +25,7 @@ GatherStages RendererStages::renderGatherStages(const Camera& camera, const Fram
   checkCamera(camera);
   checkFrameFits(state_.device, settings);
   Commands commands(state_.device);
-  const std::shared_ptr<const SplatTargets> targets = state_.recordImage(commands, camera, settings, {});
+  const std::shared_ptr<const FrameTargets> targets = state_.recordImage(commands, camera, settings, {});
   commands.submitAndWait();
   addTimes(state_.frameTimes, commands.times());
   GatherStages stages = downloadGatherStages(state_.device, state_.built, *state_.gatherVolume, *state_.gather);

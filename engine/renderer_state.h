@@ -48,9 +48,9 @@ struct Renderer::State {
   TargetReadback colorReadback, distanceReadback;
   std::vector<StageTime> buildTimes, frameTimes;
 
-  struct Frame {
+  struct Splatting {
     FrameConstants constants;
-    std::shared_ptr<const SplatTargets> targets;
+    std::shared_ptr<const FrameTargets> targets;
     const AttenuationTable* table = nullptr;  ///< where the frame reads it
     const Buffer* order = nullptr;            ///< of the voxels, where they are sorted
     const CutCandidates* candidates = nullptr;  ///< of a frame that draws some shares only
@@ -60,14 +60,13 @@ struct Renderer::State {
   const BuiltVolume& builtWithBlocks(const Progress& progress = {});
   const AttenuationTable& sweptTable(const Progress& progress = {});
   const AttenuationTable& tableWithLevels(const Progress& progress = {});
-  SplatPass::Inputs recordList(Commands& commands, const Frame& frame);
-  CutInputs cutInputs(const Frame& frame) const;
-  void recordDrawing(Commands& commands, const Frame& frame);
+  SplatPass::Inputs recordList(Commands& commands, const Splatting& frame);
+  CutInputs cutInputs(const Splatting& frame) const;
+  void recordDrawing(Commands& commands, const Splatting& frame);
   FrameSettings resolved(const FrameSettings& settings);
   FrameConstants constantsOf(const Camera& camera, const FrameSettings& settings, const Progress& progress);
-  Frame prepareSplats(Commands& commands, const Camera& camera, const FrameSettings& settings, const Progress& progress);
-  Frame recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings,
-                     const Progress& progress = {});
+  Splatting prepareSplats(Commands& commands, const Camera& camera, const FrameSettings& settings, const Progress& progress);
+  Splatting recordSplats(Commands& commands, const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
   struct Gathering {
     FrameSettings settings;
     FrameConstants constants;
@@ -75,10 +74,10 @@ struct Renderer::State {
   };
   Gathering prepareGather(const Camera& camera, const FrameSettings& wanted, const Progress& progress);
   void prepareVolume(const GatherVolume::Shading& shading, const Progress& progress);
-  std::shared_ptr<const SplatTargets> recordGather(Commands& commands, const Camera& camera,
-                                                   const FrameSettings& settings, const Progress& progress);
-  std::shared_ptr<const SplatTargets> recordImage(Commands& commands, const Camera& camera,
-                                                  const FrameSettings& settings, const Progress& progress);
+  std::shared_ptr<const FrameTargets> recordGather(Commands& commands, const Camera& camera, const FrameSettings& settings,
+                                                   const Progress& progress);
+  std::shared_ptr<const FrameTargets> recordImage(Commands& commands, const Camera& camera, const FrameSettings& settings,
+                                                  const Progress& progress);
   /// Calls `draw`, which draws and reads back a frame, with settings in which Draw::Auto is resolved: to Splats where the gather finds
   /// too little memory.
   template <typename DrawFrame>

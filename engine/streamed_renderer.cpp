@@ -314,7 +314,7 @@ void StreamedRenderer::State::drawCube(const Frame& frame, const StreamedLevel& 
 }
 
 Image StreamedRenderer::State::resolve(const Frame& frame) {
-  const std::shared_ptr<const SplatTargets> targets = targetPool.take(device, frame.settings, TargetKind::Image);
+  const std::shared_ptr<const FrameTargets> targets = targetPool.take(device, frame.settings, TargetKind::Image);
   Commands commands(device);
   gather->recordImage(commands, frame.lattice, classification.isPost(levelAt(0).outline), *targets);
   commands.beginPass("read back");

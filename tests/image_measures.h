@@ -1,5 +1,5 @@
 #pragma once
-// How far two pictures of one size are apart, in premultiplied RGBA: the plain definitions, for tests.
+// How far two images of one size are apart, in premultiplied RGBA: the plain definitions, for tests.
 
 #include <algorithm>
 #include <cmath>
@@ -27,11 +27,10 @@ inline double psnr(const Image& a, const Image& b) {
 }
 
 /// The largest relative error of the depths where something is seen: alpha above 1e-3 in `expected`.
-inline double worstRelativeDepth(const Image& picture, const Image& expected) {
+inline double worstRelativeDepth(const Image& image, const Image& expected) {
   double worst = 0.0;
   for (std::size_t i = 0; i < expected.pixels.size(); ++i)
-    if (expected.pixels[i].a > 1e-3f)
-      worst = std::max(worst, std::abs(double(picture.depth[i]) / double(expected.depth[i]) - 1.0));
+    if (expected.pixels[i].a > 1e-3f) worst = std::max(worst, std::abs(double(image.depth[i]) / double(expected.depth[i]) - 1.0));
   return worst;
 }
 

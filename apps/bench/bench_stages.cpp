@@ -40,11 +40,11 @@ double passTime(const std::vector<StageTime>& times, std::string_view name) {
 }
 
 /// Milliseconds of the passes of the last frame.
-struct Frame {
+struct PassTimes {
   double cut = 1e30, draw = 1e30;
   double total() const { return cut + draw; }
 };
-Frame frameTime(const Renderer& renderer) {
+PassTimes passTimes(const Renderer& renderer) {
   const std::vector<StageTime> times = renderer.timings();
   return {.cut = passTime(times, "level of detail and culling"),
           .draw = passTime(times, "splat set-up") + passTime(times, "splat draw")};
@@ -149,7 +149,7 @@ std::vector<Result> zoom(const Device& device, int resolution, int runs) {
       renderer.render(camera, {.size = size, .lod = lod});  // what is made once
       const double time = least(runs, [&] {
         renderer.render(camera, {.size = size, .lod = lod});
-        return frameTime(renderer).total();
+        return passTimes(renderer).total();
       });
       results.push_back({.name = fmt::format("cloud {}^3, {:g} pixels a voxel, --lod {:g}: {} splats",
                                              resolution, pixels, lod, drawnSplats(renderer)),
@@ -167,12 +167,12 @@ std::vector<Result> culling(const Device& device, QualityColor color, int resolu
   for (const bool culled : {false, true}) {
     const FrameSettings settings{.size = glm::ivec2(1024), .culling = culled};
     renderer.render(camera, settings);  // what is made once
-    Frame best;
+    PassTimes best;
     least(runs, [&] {
       renderer.render(camera, settings);
-      const Frame frame = frameTime(renderer);
-      if (frame.total() < best.total()) best = frame;
-      return frame.total();
+      const PassTimes times = passTimes(renderer);
+      if (times.total() < best.total()) best = times;
+      return times.total();
     });
     results.push_back(
         {.name = fmt::format("{} head {}^3{}: {} splats, {:.3f} of it choosing them",

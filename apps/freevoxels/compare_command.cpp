@@ -72,7 +72,7 @@ Limit parseLimit(const std::string& text) {
 }
 
 Image readFinite(const std::string& file) {
-  Image image = readPicture(file);
+  Image image = readImage(file);
   if (const auto bad = findNonFinite(image))
     fail(ErrorKind::Input,
          "cannot compare '{}': channel {} of pixel ({}, {}) is NaN or infinite; render it again", file,
@@ -155,7 +155,7 @@ void writeDifference(const std::string& file, const Image& test, const Image& re
   if (isExr(file))
     writeExr(file, absoluteDifference(test, reference), {.fullFloat = true});
   else
-    writePng(file, magmaPicture(map));
+    writePng(file, magmaImage(map));
 }
 
 }  // namespace

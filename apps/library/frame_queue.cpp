@@ -39,7 +39,7 @@ void SubmittedFrame::wait() const {
   done_.get();
 }
 
-const SplatTargets& SubmittedFrame::targets() const {
+const FrameTargets& SubmittedFrame::targets() const {
   wait();
   return *targets_;
 }

@@ -22,7 +22,7 @@ struct FrameCancelled {};
 /// A frame that was submitted. Its caller and the thread that draws it share it. Any thread may call the member functions.
 class SubmittedFrame {
  public:
-  using Targets = std::shared_ptr<const SplatTargets>;
+  using Targets = std::shared_ptr<const FrameTargets>;
   using Draw = std::function<Targets(const Progress&)>;
 
   /// `draw` draws the frame and calls the progress function that it is given, which also calls `progress`.
@@ -38,7 +38,7 @@ class SubmittedFrame {
 
   /// Waits. The images of the frame, complete and in layout GENERAL. The renderer draws no other frame into them as long as this
   /// object exists.
-  const SplatTargets& targets() const;
+  const FrameTargets& targets() const;
   /// Waits. A value that the device's timeline semaphore (Queue) had after the frame was complete.
   std::uint64_t completion() const;
   DeviceContext& context() const { return *context_; }

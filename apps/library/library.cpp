@@ -221,7 +221,7 @@ DeviceFrame deviceFrame(const Frame& frame) {
       fail(freevoxels::ErrorKind::Usage, "the frame is on a device of the library's own: create its renderer with a context from adopt()");
     const SubmittedFrame& drawn = *frame.state_->frame;
     const auto handles = [](const RenderTarget& target) { return DeviceFrame::Image{target.handle(), target.view(), target.format()}; };
-    const SplatTargets& targets = drawn.targets();
+    const FrameTargets& targets = drawn.targets();
     const glm::uvec2 size(targets.colorEnergy.size());
     return DeviceFrame{.color = handles(targets.colorEnergy),
                        .depth = handles(targets.distance),

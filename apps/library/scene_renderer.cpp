@@ -101,11 +101,10 @@ Image SceneRenderer::render(const KeywordOptions& options, bool depth, const Pro
   return image;
 }
 
-std::shared_ptr<const SplatTargets> SceneRenderer::renderOnDevice(const KeywordOptions& options, bool depth,
-                                                                  const Progress& progress) {
+std::shared_ptr<const FrameTargets> SceneRenderer::renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress) {
   const std::lock_guard lock(context_->mutex);
   const FrameSettings settings = prepare(options, depth, progress);
-  std::shared_ptr<const SplatTargets> targets = renderer_->renderOnDevice(scene_.camera, settings, progress);
+  std::shared_ptr<const FrameTargets> targets = renderer_->renderOnDevice(scene_.camera, settings, progress);
   context_->checkValidation();
   return targets;
 }

@@ -40,7 +40,7 @@ class SceneRenderer {
   /// Draws a frame. What frames share is made again only if the options change it.
   Image render(const KeywordOptions& options, bool depth, const Progress& progress);
   /// The same frame, which stays on the device, complete.
-  std::shared_ptr<const SplatTargets> renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress);
+  std::shared_ptr<const FrameTargets> renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress);
 
   /// Stage times of the last frame and of the data from which it was drawn.
   std::vector<StageTime> timings() const;

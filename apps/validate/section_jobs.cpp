@@ -32,18 +32,18 @@ namespace {
 
 constexpr int kQuickFileEdge = 40, kWholeFileEdge = 128;
 constexpr int kQuickProcedural = 32, kMedium = 64, kLarge = 128;  ///< voxels along an edge
-constexpr int kQuickPicture = 80, kWholePicture = 96;
+constexpr int kQuickImage = 80, kWholeImage = 96;
 constexpr int kQuickCube = 40, kWholeCube = 64;
 constexpr int kQuickQuality = 48;  ///< voxels along an edge for comparisons with the oracle
-constexpr int kQuickQualityPicture = 96, kWholeQualityPicture = 160, kLargeQualityPicture = 256;
+constexpr int kQuickQualityImage = 96, kWholeQualityImage = 160, kLargeQualityImage = 256;
 /// Least resolution with goals: in coarser volumes structures have the size of a voxel.
 constexpr int kLeastResolutionWithGoals = kLarge;
-constexpr int kQuickLightPicture = 64;
-constexpr glm::ivec2 kGatherLightPicture{40, 32};
+constexpr int kQuickLightImage = 64;
+constexpr glm::ivec2 kGatherLightImage{40, 32};
 constexpr int kQuickSky = 24;  ///< voxels along an edge for skies, for which the oracle is slow
 constexpr int kDetailResolution = kMedium;
-constexpr int kTurntableResolution = kMedium, kTurntableFrames = 36, kTurntablePicture = 128;
-constexpr int kQuickFlightFrames = 8, kWholeFlightFrames = 60, kFlightPicture = 64;
+constexpr int kTurntableResolution = kMedium, kTurntableFrames = 36, kTurntableImage = 128;
+constexpr int kQuickFlightFrames = 8, kWholeFlightFrames = 60, kFlightImage = 64;
 constexpr int kFlightSubject = 2;  ///< index into kQualitySubjects: the cloud
 
 constexpr std::array<QualitySubject, 3> kCullingSubjects{{{"head", QualityColor::Skin, false},
@@ -67,16 +67,11 @@ constexpr std::array<ProceduralScene, 7> kProcedural{{{"cube", SceneColor::Densi
 
 /// `makeScene` is called when the job runs, so that a scene is only in memory while it is needed.
 template <typename MakeScene>
-void addScene(std::vector<SectionJob>& jobs, const Device& device, const std::string& name,
-              glm::ivec2 picture, const MakeScene& makeScene) {
-  jobs.push_back({fmt::format("stages of {}", name),
-                  [=, &device] { return stageChecks(deviceStages(device), makeScene(), picture); }});
-  jobs.push_back({fmt::format("gather of {}", name),
-                  [=, &device] { return gatherChecks(deviceGather(device), makeScene(), picture); }});
-  jobs.push_back({fmt::format("invariances of {}", name),
-                  [=, &device] { return invariances(device, makeScene(), picture); }});
-  jobs.push_back({fmt::format("levels of {}", name),
-                  [=, &device] { return levelChecks(device, makeScene(), picture); }});
+void addScene(std::vector<SectionJob>& jobs, const Device& device, const std::string& name, glm::ivec2 image, const MakeScene& makeScene) {
+  jobs.push_back({fmt::format("stages of {}", name), [=, &device] { return stageChecks(deviceStages(device), makeScene(), image); }});
+  jobs.push_back({fmt::format("gather of {}", name), [=, &device] { return gatherChecks(deviceGather(device), makeScene(), image); }});
+  jobs.push_back({fmt::format("invariances of {}", name), [=, &device] { return invariances(device, makeScene(), image); }});
+  jobs.push_back({fmt::format("levels of {}", name), [=, &device] { return levelChecks(device, makeScene(), image); }});
 }
 
 std::vector<int> resolutions(const Extent& extent, int quick) {
@@ -91,9 +86,9 @@ QualityScene openQualityScene(const Device& device, const QualitySubject& subjec
 
 /// Images have more than a pixel a voxel, since with fewer pixels no method shows its quality.
 QualityRun qualityRun(const Extent& extent, int resolution) {
-  const int whole = resolution >= kLarge ? kLargeQualityPicture : kWholeQualityPicture;
+  const int whole = resolution >= kLarge ? kLargeQualityImage : kWholeQualityImage;
   return {.views = extent.quick ? quickQualityViews() : qualityViews(),
-          .pictureEdge = extent.quick ? kQuickQualityPicture : whole,
+          .imageEdge = extent.quick ? kQuickQualityImage : whole,
           .hasGoals = resolution >= kLeastResolutionWithGoals};
 }
 
@@ -102,24 +97,19 @@ void addQuality(std::vector<SectionJob>& jobs, const Device& device, const Exten
   const auto found = std::make_shared<std::vector<QualityFigures>>();
   for (const int resolution : resolutions(extent, kQuickQuality))
     for (const QualitySubject& subject : kQualitySubjects)
-      jobs.push_back({fmt::format("picture quality of {} at {}^3", subject.procedural, resolution),
-                      [=, &device, &subject] {
-                        auto [section, figures] = pictureQuality(
-                            deviceStages(device), openQualityScene(device, subject, resolution),
-                            qualityMethods(), qualityRun(extent, resolution));
+      jobs.push_back({fmt::format("image quality of {} at {}^3", subject.procedural, resolution), [=, &device, &subject] {
+                        auto [section, figures] = imageQuality(deviceStages(device), openQualityScene(device, subject, resolution),
+                                                               qualityMethods(), qualityRun(extent, resolution));
                         found->push_back(std::move(figures));
                         return section;
                       }});
-  jobs.push_back(
-      {"summary of picture quality", [found] { return summariseQuality(*found, qualityMethods()); }});
+  jobs.push_back({"summary of image quality", [found] { return summariseQuality(*found, qualityMethods()); }});
 }
 
 void addTurntable(std::vector<SectionJob>& jobs, const Device& device) {
-  jobs.push_back({"picture quality around the head", [&device] {
-                    return turntableQuality(
-                        deviceStages(device),
-                        openQualityScene(device, kQualitySubjects.front(), kTurntableResolution),
-                        kTurntableFrames, kTurntablePicture);
+  jobs.push_back({"image quality around the head", [&device] {
+                    return turntableQuality(deviceStages(device), openQualityScene(device, kQualitySubjects.front(), kTurntableResolution),
+                                            kTurntableFrames, kTurntableImage);
                   }});
 }
 
@@ -140,18 +130,16 @@ void addDetail(std::vector<SectionJob>& jobs, const Device& device, bool quick) 
 void addFlight(std::vector<SectionJob>& jobs, const Device& device, const Extent& extent) {
   const int resolution = extent.quick ? kQuickQuality : kMedium;
   const int frames = extent.quick ? kQuickFlightFrames : kWholeFlightFrames;
-  jobs.push_back({"picture quality within the cloud", [=, &device] {
-                    return flyThroughQuality(
-                        deviceStages(device),
-                        openQualityScene(device, kQualitySubjects[kFlightSubject], resolution), frames,
-                        kFlightPicture);
+  jobs.push_back({"image quality within the cloud", [=, &device] {
+                    return flyThroughQuality(deviceStages(device), openQualityScene(device, kQualitySubjects[kFlightSubject], resolution),
+                                             frames, kFlightImage);
                   }});
 }
 
 /// For the opaque head, of which most is hidden, and for the volumes of the quality checks.
 void addCulling(std::vector<SectionJob>& jobs, const Device& device, const Extent& extent) {
   const int resolution = extent.quick ? kQuickQuality : kDetailResolution;
-  const int edge = extent.quick ? kQuickQualityPicture : kLargeQualityPicture;
+  const int edge = extent.quick ? kQuickQualityImage : kLargeQualityImage;
   for (const QualitySubject& subject : kCullingSubjects) {
     if (extent.quick && &subject != &kCullingSubjects.front()) continue;
     jobs.push_back({fmt::format("culling of {}", subject.procedural), [=, &device, &subject] {
@@ -167,7 +155,7 @@ void addLight(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
   for (const QualitySubject& subject : std::span(kQualitySubjects).subspan(quick ? 2 : 1, quick ? 1 : 2))
     jobs.push_back({fmt::format("light on {}", subject.procedural), [=, &device, &subject] {
                       return lightQuality(device, openQualityScene(device, subject, resolution),
-                                          quick ? kQuickLightPicture : kQuickQualityPicture);
+                                          quick ? kQuickLightImage : kQuickQualityImage);
                     }});
   // With steep transfer functions the oracle takes a quarter of a minute for an image.
   for (const QualitySubject& subject : std::span(kCullingSubjects).first(quick ? 0 : 2)) {
@@ -175,19 +163,17 @@ void addLight(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
     jobs.push_back({fmt::format("light on the {}'s {}", subject.procedural, color), [=, &device, &subject] {
                       QualityScene scene = openQualityScene(device, subject, kMedium);
                       scene.name += fmt::format(", {}", color);
-                      return opaqueLightQuality(device, scene, quickQualityViews(), kWholeQualityPicture);
+                      return opaqueLightQuality(device, scene, quickQualityViews(), kWholeQualityImage);
                     }});
   }
   const int sky = quick ? kQuickSky : kQuickProcedural;
   jobs.push_back({"light from all around", [=, &device] {
                     return environmentQuality(device, openQualityScene(device, kQualitySubjects[2], sky),
-                                              quick ? kQuickLightPicture : kQuickQualityPicture);
+                                              quick ? kQuickLightImage : kQuickQualityImage);
                   }});
-  jobs.push_back({"emission of fire", [=, &device] {
-                    return emissionChecks(device, resolution,
-                                          quick ? kQuickLightPicture : kQuickQualityPicture);
-                  }});
-  jobs.push_back({"gather with lights", [&device] { return gatherLightChecks(deviceGather(device), kGatherLightPicture); }});
+  jobs.push_back(
+      {"emission of fire", [=, &device] { return emissionChecks(device, resolution, quick ? kQuickLightImage : kQuickQualityImage); }});
+  jobs.push_back({"gather with lights", [&device] { return gatherLightChecks(deviceGather(device), kGatherLightImage); }});
   jobs.push_back({"shadows", [=, &device] { return shadowChecks(device, resolution); }});
 }
 
@@ -207,31 +193,27 @@ void addCluster(std::vector<SectionJob>& jobs, const Device& device, const Exten
 }
 
 /// One view of a file's volume: the default method and sorted blending.
-ReportSection fileQuality(const Device& device, const ValidationScene& scene, int pictureEdge) {
+ReportSection fileQuality(const Device& device, const ValidationScene& scene, int imageEdge) {
   const std::vector<QualityMethod>& all = qualityMethods();
   const QualityView view;
-  return pictureQuality(deviceStages(device),
-                        {.name = scene.name, .volume = scene.volume, .classification = scene.classification},
-                        {all.front(), all[sortedMethod(all)]},
-                        {.views = {&view, 1}, .pictureEdge = pictureEdge})
+  return imageQuality(deviceStages(device), {.name = scene.name, .volume = scene.volume, .classification = scene.classification},
+                      {all.front(), all[sortedMethod(all)]}, {.views = {&view, 1}, .imageEdge = imageEdge})
       .section;
 }
 
 }  // namespace
 
 std::vector<SectionJob> planSections(const Device& device, const Extent& extent) {
-  const glm::ivec2 picture(extent.quick ? kQuickPicture : kWholePicture);
+  const glm::ivec2 image(extent.quick ? kQuickImage : kWholeImage);
   const int cube = extent.quick ? kQuickCube : kWholeCube;
   std::vector<SectionJob> jobs;
   jobs.push_back({"closed forms", [&device, cube] { return closedForms(deviceStages(device), cube); }});
   for (const int resolution : resolutions(extent, kQuickProcedural))
     for (const ProceduralScene& scene : kProcedural) {
       if (resolution == kLarge && !extent.resolution && !scene.alsoLarge) continue;
-      addScene(jobs, device, fmt::format("{} at {}^3", scene.name, resolution), picture,
-               [resolution, &scene, &device] {
-                 return makeValidationScene(openProcedural(scene.name, glm::ivec3(resolution), maximumVoxels(device)),
-                                            scene.color, resolution);
-               });
+      addScene(jobs, device, fmt::format("{} at {}^3", scene.name, resolution), image, [resolution, &scene, &device] {
+        return makeValidationScene(openProcedural(scene.name, glm::ivec3(resolution), maximumVoxels(device)), scene.color, resolution);
+      });
     }
   addPaperFigures(jobs, device);
   addDetail(jobs, device, extent.quick);
@@ -245,10 +227,9 @@ std::vector<SectionJob> planSections(const Device& device, const Extent& extent)
     const auto scene = std::make_shared<ValidationScene>(
         makeValidationScene(InputDescription{.volume = file}.open(maximumVoxels(device)), SceneColor::Density,
                             extent.quick ? kQuickFileEdge : kWholeFileEdge));
-    addScene(jobs, device, file, picture, [scene] { return *scene; });
-    const int edge = extent.quick ? kQuickQualityPicture : kWholeQualityPicture;
-    jobs.push_back({fmt::format("picture quality of {}", file),
-                    [scene, edge, &device] { return fileQuality(device, *scene, edge); }});
+    addScene(jobs, device, file, image, [scene] { return *scene; });
+    const int edge = extent.quick ? kQuickQualityImage : kWholeQualityImage;
+    jobs.push_back({fmt::format("image quality of {}", file), [scene, edge, &device] { return fileQuality(device, *scene, edge); }});
   }
   if (extent.only) std::erase_if(jobs, [&](const SectionJob& job) { return job.name.find(*extent.only) == std::string::npos; });
   if (jobs.empty())

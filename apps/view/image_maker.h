@@ -55,7 +55,7 @@ struct DrawnImage {
   Scene scene;               ///< the resolved scene, with all voxels of the volume
   glm::ivec3 wholeDimensions{0};  ///< of the volume's box before it was clipped
   DeviceDescription device;  ///< device that made it
-  std::shared_ptr<const SplatTargets> image;     ///< on the device, which must outlive the image
+  std::shared_ptr<const FrameTargets> image;     ///< on the device, which must outlive the image
   std::shared_ptr<const RenderTarget> shown;     ///< the same image, or the diagnosis in its place
   std::shared_ptr<const RenderTarget> compared;  ///< of the other method, or null
   std::vector<StageTime> times;

@@ -158,7 +158,7 @@ void GatherPass::recordRegion(Commands& commands, const GatherVolume& volume, co
   commands.barrier(kCompute, kCompute);
 }
 
-std::vector<Binding> GatherPass::imageBindings(const Sums& from, const Sums& to, const SplatTargets& targets) const {
+std::vector<Binding> GatherPass::imageBindings(const Sums& from, const Sums& to, const FrameTargets& targets) const {
   return {&frame_,
           &from.colorEnergyTexels,
           &from.distanceTexels,
@@ -168,14 +168,14 @@ std::vector<Binding> GatherPass::imageBindings(const Sums& from, const Sums& to,
           targets.distance.exists() ? &targets.distance : &targets.colorEnergy};
 }
 
-void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets) {
+void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
   const Pipeline stencil =
       makeImagePass(device_, shaders::gather_stencil, targets.distance.exists(), direct_, scalars);
   commands.dispatch(stencil, imageBindings(gathered_, direct_ ? gathered_ : smoothed_, targets), glm::ivec3(frame.samples, 1));
   commands.barrier(kCompute, kCompute);
 }
 
-void GatherPass::recordUpsampling(Commands& commands, const shader::GatherFrame& frame, const SplatTargets& targets) {
+void GatherPass::recordUpsampling(Commands& commands, const shader::GatherFrame& frame, const FrameTargets& targets) {
   if (direct_) return;
   for (const bool alongY : {false, true}) {
     const Pipeline upsample =
@@ -187,20 +187,20 @@ void GatherPass::recordUpsampling(Commands& commands, const shader::GatherFrame&
 }
 
 void GatherPass::record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
-                        const SplatTargets& targets) {
+                        const FrameTargets& targets) {
   begin(commands, frame);
   commands.beginPass("gather");
   recordSamples(commands, volume, frame);
   recordPixels(commands, frame, volume.hasScalars(), targets);
 }
 
-void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets) {
+void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
   begin(commands, frame);
   recordPixels(commands, frame, scalars, targets);
 }
 
 /// The image of the gathered samples.
-void GatherPass::recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets) {
+void GatherPass::recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
   commands.beginPass("gather image");
   for (const RenderTarget* target : targets.all())
     commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kCompute, kCompute);

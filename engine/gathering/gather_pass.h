@@ -36,13 +36,13 @@ class GatherPass {
  public:
   explicit GatherPass(const Device& device);
   void record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
-              const SplatTargets& targets);
+              const FrameTargets& targets);
 
   /// The steps of record(), for tests that alter what lies between them: begin() allocates the sums and writes the frame that the steps after it read.
   /// The targets have to be in layout GENERAL.
   void begin(Commands& commands, const shader::GatherFrame& frame);
   void recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
-  void recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets);
+  void recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
   /// The sums of the bricks of a part, in fixed point, instead of those of all samples. `frame.part` is filled in.
   void recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
                   const TexelView& skips);
@@ -51,9 +51,9 @@ class GatherPass {
   void recordClear(Commands& commands, const shader::GatherFrame& frame);
   void recordRegion(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
   /// The image in `targets`, as record() leaves it; `frame` is that of the whole volume.
-  void recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets);
+  void recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
   /// Does nothing if the lattice is that of the pixels.
-  void recordUpsampling(Commands& commands, const shader::GatherFrame& frame, const SplatTargets& targets);
+  void recordUpsampling(Commands& commands, const shader::GatherFrame& frame, const FrameTargets& targets);
 
   /// The lattice and the sums of the last frame; for validation and tests. The downloads wait.
   const GatherLattice& lattice() const { return lattice_; }
@@ -71,9 +71,9 @@ class GatherPass {
   enum class Extent { Whole, Part, Region };  ///< what of the volume is marched
   void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
                        const TexelView& skips, glm::ivec2 extent, Extent marched);
-  void recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const SplatTargets& targets);
+  void recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
   std::vector<GatherSums> download(const Sums& sums) const;
-  std::vector<Binding> imageBindings(const Sums& from, const Sums& to, const SplatTargets& targets) const;
+  std::vector<Binding> imageBindings(const Sums& from, const Sums& to, const FrameTargets& targets) const;
 
   const Device& device_;
   GatherLattice lattice_;  ///< of the last frame

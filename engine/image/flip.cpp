@@ -133,7 +133,7 @@ Exposures flipExposures(const Image& reference) {
   return exposuresBetween(exposureOf(brightest), exposureOf(*median));
 }
 
-Image magmaPicture(const FlipMap& map) {
+Image magmaImage(const FlipMap& map) {
   // Every fifteenth of matplotlib's 256 colours (CC0). Linear interpolation reproduces the others to 3/255.
   constexpr glm::vec3 kMagma[] = {
       {0, 0, 4},      {9, 7, 32},      {26, 16, 66},    {49, 17, 101},   {74, 16, 121},   {98, 25, 128},

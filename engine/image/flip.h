@@ -47,6 +47,6 @@ Exposures exposuresBetween(double start, double stop);
 Exposures flipExposures(const Image& reference);
 
 /// The map in matplotlib's colours "magma", opaque: 0 is black, 1 is yellow.
-Image magmaPicture(const FlipMap& map);
+Image magmaImage(const FlipMap& map);
 
 }  // namespace freevoxels

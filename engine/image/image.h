@@ -54,7 +54,7 @@ Image readExr(const std::filesystem::path& file, std::int64_t maximumPixels = st
 Image readPng(const std::filesystem::path& file);
 
 /// Calls readExr or readPng, by the first bytes of the file, not by its name. Fails with ErrorKind::Input.
-Image readPicture(const std::filesystem::path& file);
+Image readImage(const std::filesystem::path& file);
 
 /// The background of an image, linear Rec.709, interpolated linearly from the top edge to the bottom edge.
 struct Background {

@@ -130,7 +130,7 @@ void AccumulatePass::recordMarks(Commands& commands, const Buffer& splats, const
                             chunk * sizeof(shader::ChunkArguments));
 }
 
-void AccumulatePass::record(Commands& commands, const FrameConstants& frame, const SplatTargets& targets) {
+void AccumulatePass::record(Commands& commands, const FrameConstants& frame, const FrameTargets& targets) {
   const std::array<Binding, 7> bindings{&targets.colorEnergy, &targets.opticalDepth,
                                         withDistance_ ? &targets.distance : &targets.opticalDepth,
                                         &overflow_, &reached_, &tiles_, &arguments_};

@@ -43,7 +43,7 @@ class AccumulatePass {
   void recordMarks(Commands& commands, const Buffer& splats, const BlockList& list, std::uint32_t chunk);
   /// Adds the share's sums in the marked tiles of the targets, and sets those to 0. The targets are in layout
   /// GENERAL.
-  void record(Commands& commands, const FrameConstants& frame, const SplatTargets& targets);
+  void record(Commands& commands, const FrameConstants& frame, const FrameTargets& targets);
   /// Reads the sums back, after the recorded commands are complete. Blocks until the copy is complete.
   FixedSums read() const;
 

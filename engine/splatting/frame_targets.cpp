@@ -6,34 +6,32 @@
 
 namespace freevoxels {
 
-std::vector<const RenderTarget*> SplatTargets::all() const {
+std::vector<const RenderTarget*> FrameTargets::all() const {
   std::vector targets{&colorEnergy};
   if (opticalDepth.exists()) targets.push_back(&opticalDepth);
   if (distance.exists()) targets.push_back(&distance);
   return targets;
 }
 
-SplatTargets makeTargets(const Device& device, const FrameSettings& settings, TargetKind kind) {
-  SplatTargets targets{.colorEnergy = RenderTarget(device, settings.size, kTargetColorFormat, "C and E"),
-                       .opticalDepth = {},
-                       .distance = {}};
+FrameTargets makeTargets(const Device& device, const FrameSettings& settings, TargetKind kind) {
+  FrameTargets targets{
+      .colorEnergy = RenderTarget(device, settings.size, kTargetColorFormat, "C and E"), .opticalDepth = {}, .distance = {}};
   if (settings.depth) targets.distance = RenderTarget(device, settings.size, kTargetScalarFormat, "distance");
   if (kind == TargetKind::Sums)
     targets.opticalDepth = RenderTarget(device, settings.size, kTargetScalarFormat, "T");
   return targets;
 }
 
-std::shared_ptr<const SplatTargets> TargetPool::take(const Device& device, const FrameSettings& settings,
-                                                     TargetKind kind) {
-  const auto isIdle = [](const std::shared_ptr<const SplatTargets>& targets) { return targets.use_count() == 1; };
-  const auto suits = [&](const std::shared_ptr<const SplatTargets>& targets) {
+std::shared_ptr<const FrameTargets> TargetPool::take(const Device& device, const FrameSettings& settings, TargetKind kind) {
+  const auto isIdle = [](const std::shared_ptr<const FrameTargets>& targets) { return targets.use_count() == 1; };
+  const auto suits = [&](const std::shared_ptr<const FrameTargets>& targets) {
     return targets->colorEnergy.size() == settings.size && targets->distance.exists() == settings.depth &&
            targets->opticalDepth.exists() == (kind == TargetKind::Sums);
   };
   std::erase_if(kept_, [&](const auto& targets) { return !suits(targets); });  // before others are allocated
   const auto idle = std::ranges::find_if(kept_, isIdle);
   if (idle != kept_.end()) return *idle;
-  return kept_.emplace_back(std::make_shared<const SplatTargets>(makeTargets(device, settings, kind)));
+  return kept_.emplace_back(std::make_shared<const FrameTargets>(makeTargets(device, settings, kind)));
 }
 
 std::uint64_t targetBytes(const FrameSettings& settings) {

@@ -16,7 +16,7 @@ constexpr VkFormat kTargetScalarFormat = VK_FORMAT_R32_SFLOAT;
 /// The sums of a frame: C and E, T, and where depth is asked for, the sum of e times distance. Sorted:
 /// premultiplied colour and alpha, and the distance blended like the colour. A frame that is complete has its image in
 /// `colorEnergy`, linear premultiplied RGBA, and the mean distance in `distance`.
-struct SplatTargets {
+struct FrameTargets {
   RenderTarget colorEnergy;   ///< RGBA32F
   RenderTarget opticalDepth;  ///< R32F, or does not exist
   RenderTarget distance;      ///< R32F, or does not exist
@@ -28,7 +28,7 @@ enum class TargetKind {
   Image,  ///< of a frame that needs no sums at the pixels: without T
 };
 
-SplatTargets makeTargets(const Device& device, const FrameSettings& settings, TargetKind kind);
+FrameTargets makeTargets(const Device& device, const FrameSettings& settings, TargetKind kind);
 std::uint64_t targetBytes(const FrameSettings& settings);
 /// Fails with ErrorKind::OutOfMemory where this device cannot hold such a frame: to be called before any other work.
 void checkFrameFits(const Device& device, const FrameSettings& settings);
@@ -39,10 +39,10 @@ class TargetPool {
  public:
   /// Targets that nobody else holds, with undefined contents: kept ones, or new ones. They are the caller's as long as the
   /// pointer is kept. Frees kept ones of another size or kind.
-  std::shared_ptr<const SplatTargets> take(const Device& device, const FrameSettings& settings, TargetKind kind);
+  std::shared_ptr<const FrameTargets> take(const Device& device, const FrameSettings& settings, TargetKind kind);
 
  private:
-  std::vector<std::shared_ptr<const SplatTargets>> kept_;
+  std::vector<std::shared_ptr<const FrameTargets>> kept_;
 };
 
 }  // namespace freevoxels

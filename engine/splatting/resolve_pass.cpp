@@ -11,7 +11,7 @@ ResolvePass::ResolvePass(const Device& device, bool withDistance)
     : withDistance_(withDistance),
       pipeline_(makeComputePipeline(device, shaders::resolve, {withDistance ? 1u : 0u})) {}
 
-void ResolvePass::record(Commands& commands, const FrameConstants& frame, const SplatTargets& targets) const {
+void ResolvePass::record(Commands& commands, const FrameConstants& frame, const FrameTargets& targets) const {
   // Without T or without distances the binding is not read; the other target is bound in its place.
   const std::array<Binding, 3> images{
       &targets.colorEnergy, targets.opticalDepth.exists() ? &targets.opticalDepth : &targets.distance,

@@ -10,7 +10,7 @@ namespace freevoxels {
 class ResolvePass {
  public:
   ResolvePass(const Device& device, bool withDistance);
-  void record(Commands& commands, const FrameConstants& frame, const SplatTargets& targets) const;
+  void record(Commands& commands, const FrameConstants& frame, const FrameTargets& targets) const;
 
  private:
   bool withDistance_;

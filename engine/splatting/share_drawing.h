@@ -20,7 +20,7 @@ class ShareDrawing {
     std::uint64_t mostBlocks;  ///< an upper bound of their number
     std::optional<int> wholeLevel;  ///< the level, if these are all blocks of a level
     const FrameConstants& frame;
-    const SplatTargets& targets;
+    const FrameTargets& targets;
     FixedSums layout;           ///< the image, the rectangle and the digits; without values
   };
   /// Submits `commands`, which make the list of blocks, together with the commands recorded here. Then draws

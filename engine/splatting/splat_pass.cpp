@@ -52,7 +52,7 @@ SplatPass::SplatPass(const Device& device, bool withDistance, bool sorted)
       frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "frame"),
       eyeDepths_(device, kEyeDepthsBytes, MemoryUse::Device, "eye depths") {}
 
-void SplatPass::beginRendering(Commands& commands, const SplatTargets& targets, const FrameConstants& frame,
+void SplatPass::beginRendering(Commands& commands, const FrameTargets& targets, const FrameConstants& frame,
                                VkAttachmentLoadOp load) const {
   std::vector<VkRenderingAttachmentInfo> attachments;
   for (const RenderTarget* target : targets.all())
@@ -97,8 +97,7 @@ void SplatPass::recordFrame(Commands& commands, const DeviceVolume& volume, cons
   commands.update(frame_, setup);
 }
 
-void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,
-                       const SplatTargets& targets) {
+void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameConstants& frame, const FrameTargets& targets) {
   const std::uint64_t count =
       std::clamp<std::uint64_t>(inputs.volume.stored.front(), 1, shader::kSplatsPerChunk);
   if (splats_.bytes() < count * sizeof(shader::Splat))

@@ -78,8 +78,7 @@ class SplatPass {
     /// Called where a chunk's splats are set up, with their buffer of shader::Splat and the chunk; may be empty.
     std::function<void(const Buffer& splats, std::uint32_t chunk)> onSplats;
   };
-  void record(Commands& commands, const Inputs& inputs, const FrameConstants& frame,
-              const SplatTargets& targets);
+  void record(Commands& commands, const Inputs& inputs, const FrameConstants& frame, const FrameTargets& targets);
   /// Allocates memory for frames with exact depths, as RaySweep::makeRoom; must be called before recording.
   void makeRoomForRays(const DeviceVolume& volume, const RaySource& eye, std::uint64_t mostBytes);
   /// Whether such memory is allocated.
@@ -89,8 +88,7 @@ class SplatPass {
 
  private:
   void recordFrame(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame);
-  void beginRendering(Commands& commands, const SplatTargets& targets, const FrameConstants& frame,
-                      VkAttachmentLoadOp load) const;
+  void beginRendering(Commands& commands, const FrameTargets& targets, const FrameConstants& frame, VkAttachmentLoadOp load) const;
 
   const Device& device_;
   bool withDistance_, sorted_;

@@ -16,7 +16,7 @@ double worldPerIndex(const shader::ResolvePush& rays, glm::dvec2 pixel) {
 
 }  // namespace
 
-SumsReadback::SumsReadback(const Device& device, Commands& commands, const SplatTargets& targets) {
+SumsReadback::SumsReadback(const Device& device, Commands& commands, const FrameTargets& targets) {
   colorEnergy_.record(device, commands, targets.colorEnergy);
   opticalDepth_.record(device, commands, targets.opticalDepth);
   if (targets.distance.exists()) distance_.emplace().record(device, commands, targets.distance);

@@ -14,7 +14,7 @@ namespace freevoxels {
 /// commands are complete.
 class SumsReadback {
  public:
-  SumsReadback(const Device& device, Commands& commands, const SplatTargets& targets);
+  SumsReadback(const Device& device, Commands& commands, const FrameTargets& targets);
   /// The sums of every pixel, top row first. `distance` is 0 if the targets have none.
   std::vector<SplatSums> read(const FrameConstants& frame) const;
 

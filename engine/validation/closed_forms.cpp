@@ -68,21 +68,20 @@ void checkCube(const StageMaker& make, int edge, ReportSection& section) {
   const glm::ivec2 size(3 * edge);
   const Volume cube = constantVolume(glm::ivec3(edge), cubeTransform(glm::ivec3(edge)), 1.0);
   const auto device = make(cube, physical(sigma, color), {});
-  ReportPictures pictures{.caption = "A homogeneous cube: the device's pictures", .pictures = {}};
+  ReportPictures pictures{.caption = "A homogeneous cube: the device's images", .pictures = {}};
   for (const View& view : kViews) {
     const Camera camera = cameraOf(cube, view);
-    const BoxPicture box = boxPicture(cube, sigma, color, camera, size);
-    const Image picture = device->picture(camera, {.size = size});
+    const BoxImage box = boxImage(cube, sigma, color, camera, size);
+    const Image image = device->image(camera, {.size = size});
     MaxError worst;
     for (std::size_t i = 0; i < box.interior.size(); ++i)
       for (int c = 0; c < 4 && box.interior[i]; ++c)
-        worst.take(std::abs(double(picture.pixels[i][c]) - double(box.image.pixels[i][c])),
-                   [&] { return pixelText(size, i); });
+        worst.take(std::abs(double(image.pixels[i][c]) - double(box.image.pixels[i][c])), [&] { return pixelText(size, i); });
     const std::string name = fmt::format("from {}, {} {}", view.azimuth, view.elevation,
                                          view.orthographic ? "orthographic" : "perspective");
     section.checks.push_back(
         worst.atMost(kInsideTolerance, fmt::format("homogeneous cube away from its edges, {}", name)));
-    pictures.pictures.push_back({name, picture});
+    pictures.pictures.push_back({name, image});
   }
   section.pictures.push_back(std::move(pictures));
 }
@@ -113,11 +112,11 @@ Check checkEmpty(const StageMaker& make) {
   MaxError worst;
   for (const Composite composite : {Composite::Normalised, Composite::Additive}) {
     const FrameSettings settings{.size = {32, 32}, .composite = composite, .depth = true};
-    const Image picture = device->picture(framingCamera(empty, 35.0, 25.0, 1.0, {}), settings);
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+    const Image image = device->image(framingCamera(empty, 35.0, 25.0, 1.0, {}), settings);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
       const auto where = [&] { return pixelText(settings.size, i); };
-      for (int c = 0; c < 4; ++c) worst.take(std::abs(double(picture.pixels[i][c])), where);
-      worst.take(std::isinf(picture.depth[i]) ? 0.0 : 1.0, where);
+      for (int c = 0; c < 4; ++c) worst.take(std::abs(double(image.pixels[i][c])), where);
+      worst.take(std::isinf(image.depth[i]) ? 0.0 : 1.0, where);
     }
   }
   return worst.atMost(0.0, "an empty volume is transparent and infinitely far");

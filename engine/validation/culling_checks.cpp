@@ -57,12 +57,11 @@ Image amplifiedDifference(const Image& a, const Image& b) {
 
 }  // namespace
 
-ReportSection cullingChecks(const Device& device, const QualityScene& scene, int pictureEdge) {
-  ReportSection section{
-      .title = fmt::format("Culling: {}", scene.name),
-      .text = "Pictures without what is outside of them or hidden, against pictures of everything."};
+ReportSection cullingChecks(const Device& device, const QualityScene& scene, int imageEdge) {
+  ReportSection section{.title = fmt::format("Culling: {}", scene.name),
+                        .text = "Images without what is outside of them or hidden, against images of everything."};
   Renderer renderer(device, scene.volume, scene.classification, {});
-  const FrameSettings culled{.size = glm::ivec2(pictureEdge), .lod = 0.0f};
+  const FrameSettings culled{.size = glm::ivec2(imageEdge), .lod = 0.0f};
   FrameSettings whole = culled, clipped = culled;
   whole.culling = false;
   clipped.cullThreshold = 0.0f;
@@ -77,19 +76,18 @@ ReportSection cullingChecks(const Device& device, const QualityScene& scene, int
     const Image expected = renderer.render(view.camera, whole);
     const Image inImage = renderer.render(view.camera, clipped);
     worstClipped.take(largestDifference(inImage, expected).figure(), [&] { return view.name; });
-    const Image picture = renderer.render(view.camera, culled);
+    const Image image = renderer.render(view.camera, culled);
     table.rows.push_back(countsRow(view.name, renderer.cutCounts(), *renderer.occupiedVoxelCount()));
-    const double psnr = std::min(compareImages(picture, expected).psnr, 200.0);
+    const double psnr = std::min(compareImages(image, expected).psnr, 200.0);
     if (psnr < leastPsnr) {
       leastPsnr = psnr;
       leastAt = view.name;
     }
-    worst.take(largestDifference(picture, expected).figure(), [&] {
+    worst.take(largestDifference(image, expected).figure(), [&] {
       section.pictures = {{.caption = fmt::format("Where they differ most: {}", view.name),
                            .pictures = {{"everything", expected},
-                                        {"culled", picture},
-                                        {fmt::format("difference times {:g}", kAmplification),
-                                         amplifiedDifference(picture, expected)}}}};
+                                        {"culled", image},
+                                        {fmt::format("difference times {:g}", kAmplification), amplifiedDifference(image, expected)}}}};
       return view.name;
     });
   }

@@ -13,6 +13,6 @@ inline constexpr double kCullingDifference = 1e-2, kCullingPsnr = 50.0, kFrustum
 
 /// Views from far and near, orthographic, from inside and of a small part. Reports how many blocks are
 /// considered, empty, outside, hidden, opened and drawn, and the images and place of the largest difference.
-ReportSection cullingChecks(const Device& device, const QualityScene& scene, int pictureEdge);
+ReportSection cullingChecks(const Device& device, const QualityScene& scene, int imageEdge);
 
 }  // namespace freevoxels

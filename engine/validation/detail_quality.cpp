@@ -19,18 +19,18 @@ constexpr double kLeastPsnr = 35.0;
 /// A change between frames that all voxels show as well is not a step, nor is less than one code of an 8-bit
 /// image in addition.
 constexpr double kZoomMargin = 1.0 / 255.0;
-constexpr int kZoomFrames = 60, kZoomPicture = 64;
+constexpr int kZoomFrames = 60, kZoomImage = 64;
 constexpr double kZoomNear = 2.0, kZoomFar = 0.125;  ///< in pixels per voxel
 constexpr std::array<QualityView, 3> kViews{{{35, 25}, {200, 10}, {0, 0}}};
 
 /// Width in pixels of a voxel in the middle of the volume.
-double pixelsPerVoxel(const Volume& volume, const Camera& camera, int pictureEdge) {
+double pixelsPerVoxel(const Volume& volume, const Camera& camera, int imageEdge) {
   const double height = 2.0 * std::tan(camera.verticalFov * std::numbers::pi / 360.0) *
                         glm::length(camera.lookAt - camera.position);
-  return volume.voxelSize() / height * pictureEdge;
+  return volume.voxelSize() / height * imageEdge;
 }
 
-Image picture(Renderer& renderer, const Camera& camera, int edge, float lod) {
+Image image(Renderer& renderer, const Camera& camera, int edge, float lod) {
   return renderer.render(camera, {.size = glm::ivec2(edge), .lod = lod});
 }
 
@@ -45,8 +45,7 @@ Check checkAgainstVoxels(Renderer& renderer, const Volume& volume, double pixels
   for (const QualityView& view : kViews) {
     const Camera camera = viewCamera(volume, view);
     const int edge = std::max(int(std::lround(pixels / pixelsPerVoxel(volume, camera, 1))), 1);
-    const double psnr =
-        compareImages(picture(renderer, camera, edge, 1.0f), picture(renderer, camera, edge, 0.0f)).psnr;
+    const double psnr = compareImages(image(renderer, camera, edge, 1.0f), image(renderer, camera, edge, 0.0f)).psnr;
     row.push_back(fmt::format("{:.1f}", psnr));
     if (psnr >= worst.figure) continue;
     worst.figure = psnr;
@@ -60,7 +59,7 @@ Check checkAgainstVoxels(Renderer& renderer, const Volume& volume, double pixels
 Check checkZoom(Renderer& renderer, const Volume& volume, ReportPlot& plot) {
   Camera camera = viewCamera(volume, kViews[0]);
   const glm::dvec3 toEye = camera.position - camera.lookAt;
-  const double framed = pixelsPerVoxel(volume, camera, kZoomPicture);
+  const double framed = pixelsPerVoxel(volume, camera, kZoomImage);
   MaxError worst;
   std::array<Image, 2> last;
   plot.series = {{"level of detail 1", {}}, {"voxels", {}}};
@@ -69,7 +68,7 @@ Check checkZoom(Renderer& renderer, const Volume& volume, ReportPlot& plot) {
     camera.position = camera.lookAt + framed / pixels * toEye;
     std::array<double, 2> change{};
     for (std::size_t i = 0; i < 2; ++i) {
-      Image now = picture(renderer, camera, kZoomPicture, i == 0 ? 1.0f : 0.0f);
+      Image now = image(renderer, camera, kZoomImage, i == 0 ? 1.0f : 0.0f);
       if (frame > 0) {
         change[i] = compareImages(now, last[i]).rmse;
         plot.series[i].points.emplace_back(pixels, change[i]);
@@ -86,7 +85,7 @@ Check checkZoom(Renderer& renderer, const Volume& volume, ReportPlot& plot) {
 
 ReportSection detailQuality(const Device& device, const QualityScene& scene) {
   ReportSection section{.title = fmt::format("Level of detail: {}", scene.name),
-                        .text = "Pictures at level of detail 1 against those of all voxels."};
+                        .text = "Images at level of detail 1 against those of all voxels."};
   Renderer renderer(device, scene.volume, scene.classification, {});
   ReportTable table{.caption = "PSNR in dB", .columns = {"voxels"}, .rows = {}};
   for (const QualityView& view : kViews) table.columns.push_back(viewText(view));

@@ -66,8 +66,8 @@ Check checkBoxes(const Device& device, int resolution) {
     Renderer renderer(device, volume, classification, {});
     const glm::dvec3 expected = light * (depth > 0.0 ? -std::expm1(-depth) / depth : 1.0);
     for (const Method& method : kMethods) {
-      const Image picture = renderer.render(camera, {.size = {8, 8}, .attenuation = method.attenuation});
-      for (const glm::vec4& pixel : picture.pixels)
+      const Image image = renderer.render(camera, {.size = {8, 8}, .attenuation = method.attenuation});
+      for (const glm::vec4& pixel : image.pixels)
         for (int c = 0; c < 2; ++c)
           worst.take(std::abs(double(pixel[c]) / expected[c] - 1.0),
                      [&] { return fmt::format("optical depth {:g}, {}", depth, method.name); });
@@ -91,10 +91,9 @@ void checkFire(const Device& device, const Volume& volume, const Medium& medium,
                             .pictures = {{"oracle", oracle}},
                             .background = glm::vec3(0.0f)};
     for (std::size_t i = 0; i < kMethods.size(); ++i) {
-      const Image picture =
-          renderer.render(camera, {.size = glm::ivec2(edge), .attenuation = kMethods[i].attenuation});
-      const double psnr = compareImages(picture, oracle).psnr;
-      pictures.pictures.push_back({kMethods[i].name, picture});
+      const Image image = renderer.render(camera, {.size = glm::ivec2(edge), .attenuation = kMethods[i].attenuation});
+      const double psnr = compareImages(image, oracle).psnr;
+      pictures.pictures.push_back({kMethods[i].name, image});
       if (&view == views || psnr < checks[i].figure)
         checks[i] = {.name = fmt::format("{}, {}", medium.name, kMethods[i].name),
                      .figure = psnr,
@@ -110,7 +109,7 @@ void checkFire(const Device& device, const Volume& volume, const Medium& medium,
 
 }  // namespace
 
-ReportSection emissionChecks(const Device& device, int resolution, int pictureEdge) {
+ReportSection emissionChecks(const Device& device, int resolution, int imageEdge) {
   ReportSection section{.title = fmt::format("Emission: procedural:fire, {0}x{0}x{0} voxels", resolution),
                         .text =
                             "What is hot sends out light: against the oracle, and a box of one temperature "
@@ -118,7 +117,7 @@ ReportSection emissionChecks(const Device& device, int resolution, int pictureEd
   Volume volume = makeProcedural("fire", resolution);
   cropToActive(volume);
   section.checks.push_back(checkBoxes(device, resolution));
-  for (const Medium& medium : kMedia) checkFire(device, volume, medium, pictureEdge, section);
+  for (const Medium& medium : kMedia) checkFire(device, volume, medium, imageEdge, section);
   return section;
 }
 

@@ -11,6 +11,6 @@ inline constexpr double kFirePsnr = 32.0;
 
 /// The procedural fire at `resolution`³ voxels, with and without its smoke, from several views; and boxes of
 /// one temperature.
-ReportSection emissionChecks(const Device& device, int resolution, int pictureEdge);
+ReportSection emissionChecks(const Device& device, int resolution, int imageEdge);
 
 }  // namespace freevoxels

@@ -8,7 +8,7 @@
 #include "engine/image/metrics.h"
 #include "engine/validation/fly_through.h"
 #include "engine/validation/max_error.h"
-#include "engine/validation/quality_pictures.h"
+#include "engine/validation/quality_images.h"
 
 namespace freevoxels {
 
@@ -28,11 +28,9 @@ std::vector<QualityMethod> methods() {
   return {first, table, all[sortedMethod(all)]};
 }
 
-ReportPlot::Series psnrSeries(const std::string& name, const std::vector<Image>& pictures,
-                              const std::vector<Image>& oracle) {
+ReportPlot::Series psnrSeries(const std::string& name, const std::vector<Image>& images, const std::vector<Image>& oracle) {
   ReportPlot::Series series{.name = name, .points = {}};
-  for (std::size_t i = 0; i < pictures.size(); ++i)
-    series.points.emplace_back(double(i), compareImages(pictures[i], oracle[i]).psnr);
+  for (std::size_t i = 0; i < images.size(); ++i) series.points.emplace_back(double(i), compareImages(images[i], oracle[i]).psnr);
   return series;
 }
 
@@ -49,20 +47,19 @@ Check leastPsnr(const ReportPlot::Series& series) {
 }
 
 /// How much the images change from one frame to the next, and how much of that is an error.
-ReportPlot changePlot(const std::vector<Image>& pictures, const std::vector<Image>& oracle) {
-  ReportPlot plot{.caption = "Change since the frame before",
-                  .xLabel = "frame",
-                  .yLabel = "RMSE",
-                  .series = {{.name = "picture", .points = {}},
-                             {.name = "oracle", .points = {}},
-                             {.name = "what is wrong of it", .points = {}}}};
-  for (std::size_t i = 1; i < pictures.size(); ++i) {
+ReportPlot changePlot(const std::vector<Image>& images, const std::vector<Image>& oracle) {
+  ReportPlot plot{
+      .caption = "Change since the frame before",
+      .xLabel = "frame",
+      .yLabel = "RMSE",
+      .series = {{.name = "image", .points = {}}, {.name = "oracle", .points = {}}, {.name = "what is wrong of it", .points = {}}}};
+  for (std::size_t i = 1; i < images.size(); ++i) {
     const auto add = [&](std::size_t series, double y) {
       plot.series[series].points.emplace_back(double(i), y);
     };
-    add(0, compareImages(pictures[i], pictures[i - 1]).rmse);
+    add(0, compareImages(images[i], images[i - 1]).rmse);
     add(1, compareImages(oracle[i], oracle[i - 1]).rmse);
-    add(2, wrongChange(pictures[i - 1], pictures[i], oracle[i - 1], oracle[i]));
+    add(2, wrongChange(images[i - 1], images[i], oracle[i - 1], oracle[i]));
   }
   return plot;
 }
@@ -75,13 +72,12 @@ Check mostWrongChange(const ReportPlot::Series& wrong, const std::string& method
                       "RMSE");
 }
 
-ReportPictures someFrames(const std::string& method, const std::vector<Image>& pictures,
-                          const std::vector<Image>& oracle) {
+ReportPictures someFrames(const std::string& method, const std::vector<Image>& images, const std::vector<Image>& oracle) {
   ReportPictures shown{.caption = fmt::format("Frames of \"{}\", each before the oracle's", method),
                        .pictures = {}};
   for (std::size_t i = 0; i < kShownFrames; ++i) {
-    const std::size_t frame = i * (pictures.size() - 1) / (kShownFrames - 1);
-    shown.pictures.push_back({fmt::format("frame {}", frame), pictures[frame]});
+    const std::size_t frame = i * (images.size() - 1) / (kShownFrames - 1);
+    shown.pictures.push_back({fmt::format("frame {}", frame), images[frame]});
     shown.pictures.push_back({"oracle", oracle[frame]});
   }
   return shown;
@@ -102,28 +98,25 @@ double wrongChange(const Image& before, const Image& after, const Image& trueBef
   return std::sqrt(squares / (4.0 * double(after.pixels.size())));
 }
 
-ReportSection flyThroughQuality(const StageMaker& make, const QualityScene& scene, int frames,
-                                int pictureEdge) {
+ReportSection flyThroughQuality(const StageMaker& make, const QualityScene& scene, int frames, int imageEdge) {
   const std::vector<Camera> cameras = flyThrough(scene.volume, frames);
-  const glm::ivec2 size(pictureEdge);
-  const std::vector<Image> oracle = oraclePictures(scene, cameras, size);
-  ReportSection section{
-      .title = fmt::format("Picture quality: a flight through {}", scene.name),
-      .text = fmt::format(
-          "{} frames of {}x{} pixels, from outside to the centre and out again, the view turning on "
-          "the way. What of the change from one frame to the next is not the oracle's would be seen "
-          "as popping.",
-          frames, pictureEdge, pictureEdge)};
+  const glm::ivec2 size(imageEdge);
+  const std::vector<Image> oracle = oracleImages(scene, cameras, size);
+  ReportSection section{.title = fmt::format("Image quality: a flight through {}", scene.name),
+                        .text = fmt::format("{} frames of {}x{} pixels, from outside to the centre and out again, the view turning on "
+                                            "the way. What of the change from one frame to the next is not the oracle's would be seen "
+                                            "as popping.",
+                                            frames, imageEdge, imageEdge)};
   ReportPlot psnr{
       .caption = "PSNR against the oracle", .xLabel = "frame", .yLabel = "PSNR in dB", .series = {}};
   for (const QualityMethod& method : methods()) {
-    const std::vector<Image> pictures = methodPictures(make, scene, method, cameras, size);
-    psnr.series.push_back(psnrSeries(method.name, pictures, oracle));
+    const std::vector<Image> images = methodImages(make, scene, method, cameras, size);
+    psnr.series.push_back(psnrSeries(method.name, images, oracle));
     if (psnr.series.size() > 1) continue;
-    section.plots.push_back(changePlot(pictures, oracle));
+    section.plots.push_back(changePlot(images, oracle));
     section.checks = {leastPsnr(psnr.series.front()),
                       mostWrongChange(section.plots.front().series.back(), method.name)};
-    section.pictures.push_back(someFrames(method.name, pictures, oracle));
+    section.pictures.push_back(someFrames(method.name, images, oracle));
   }
   section.plots.insert(section.plots.begin(), std::move(psnr));
   return section;

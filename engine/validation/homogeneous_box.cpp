@@ -62,12 +62,11 @@ int voxelsAhead(glm::ivec3 voxel, glm::ivec3 direction, glm::ivec3 dimensions) {
   return count;
 }
 
-BoxPicture boxPicture(const Volume& volume, double sigma, glm::vec3 color, const Camera& camera,
-                      glm::ivec2 size) {
+BoxImage boxImage(const Volume& volume, double sigma, glm::vec3 color, const Camera& camera, glm::ivec2 size) {
   constexpr int kSamples = 4;
   const PixelRays rays = pixelRays(camera, size, volume.indexToWorld);
   const Box box{.high = glm::dvec3(volume.dimensions) - 0.5};
-  BoxPicture picture{.image = {.size = size, .pixels = {}, .depth = {}}, .interior = {}};
+  BoxImage image{.image = {.size = size, .pixels = {}, .depth = {}}, .interior = {}};
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x) {
       double alpha = 0.0;
@@ -81,10 +80,10 @@ BoxPicture boxPicture(const Volume& volume, double sigma, glm::vec3 color, const
         alpha += -std::expm1(-sigma * chord.length * world) / (kSamples * kSamples);
         interior = interior && chord.interior;
       }
-      picture.image.pixels.emplace_back(glm::dvec4(glm::dvec3(color) * alpha, alpha));
-      picture.interior.push_back(interior);
+      image.image.pixels.emplace_back(glm::dvec4(glm::dvec3(color) * alpha, alpha));
+      image.interior.push_back(interior);
     }
-  return picture;
+  return image;
 }
 
 }  // namespace freevoxels

@@ -19,13 +19,12 @@ glm::dmat4 shearedTransform(glm::ivec3 dimensions);
 /// The number of voxels between a voxel and the outside along a direction.
 int voxelsAhead(glm::ivec3 voxel, glm::ivec3 direction, glm::ivec3 dimensions);
 
-struct BoxPicture {
+struct BoxImage {
   Image image;                 ///< 1 - exp(-sigma * chord), averaged over 4x4 rays a pixel
   std::vector<bool> interior;  ///< pixels whose rays enter and leave the box away from its edges
 };
 
 /// All voxels of the volume have extinction `sigma`; the world around it has none.
-BoxPicture boxPicture(const Volume& volume, double sigma, glm::vec3 color, const Camera& camera,
-                      glm::ivec2 size);
+BoxImage boxImage(const Volume& volume, double sigma, glm::vec3 color, const Camera& camera, glm::ivec2 size);
 
 }  // namespace freevoxels

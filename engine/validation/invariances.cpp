@@ -22,12 +22,12 @@ namespace {
 
 /// Tolerance for sums of a few hundred 32-bit floats in another order, relative to the largest in the image.
 constexpr double kOrderTolerance = 1e-5;
-constexpr double kPictureTolerance = 1e-5;
+constexpr double kImageTolerance = 1e-5;
 /// Tolerance for codes that round to the other side when a line is swept by another shader, which changes the
 /// colour of a pixel where few voxels mix.
 constexpr double kAxesTolerance = 5e-3;
 
-struct Frame {
+struct CheckedFrame {
   const Device& device;
   const ValidationScene& scene;
   Camera camera;
@@ -60,8 +60,7 @@ MaxError sumsDifference(const std::vector<SplatSums>& a, const std::vector<Splat
   return worst;
 }
 
-void checkOrder(const Frame& frame, const SteppedVolume& steps, const std::vector<SplatSums>& whole,
-                ReportSection& section) {
+void checkOrder(const CheckedFrame& frame, const SteppedVolume& steps, const std::vector<SplatSums>& whole, ReportSection& section) {
   const auto compare = [&](const char* name, const std::vector<std::uint32_t>& voxels) {
     const auto sums = drawVoxels(frame.device, steps, voxels, frame.camera, frame.settings);
     section.checks.push_back(
@@ -74,7 +73,7 @@ void checkOrder(const Frame& frame, const SteppedVolume& steps, const std::vecto
   compare("order: drawn in random order", voxels);
 }
 
-std::vector<SplatSums> sumOfGroups(const Frame& frame, const SteppedVolume& steps, unsigned groups) {
+std::vector<SplatSums> sumOfGroups(const CheckedFrame& frame, const SteppedVolume& steps, unsigned groups) {
   std::vector<std::vector<std::uint32_t>> parts(groups);
   std::mt19937 generator(groups);
   for (const std::uint32_t voxel : steps.voxels) parts[generator() % groups].push_back(voxel);
@@ -86,28 +85,24 @@ std::vector<SplatSums> sumOfGroups(const Frame& frame, const SteppedVolume& step
   return total;
 }
 
-void checkGroups(const Frame& frame, const SteppedVolume& steps, const Image& picture,
-                 ReportSection& section) {
+void checkGroups(const CheckedFrame& frame, const SteppedVolume& steps, const Image& image, ReportSection& section) {
   for (const unsigned groups : {2u, 5u}) {
     const Image added = referenceResolve(sumOfGroups(frame, steps, groups), frame.settings);
-    section.checks.push_back(
-        largestDifference(picture, added)
-            .atMost(kPictureTolerance,
-                    fmt::format("partition: {} random groups, added and resolved once", groups)));
+    section.checks.push_back(largestDifference(image, added)
+                                 .atMost(kImageTolerance, fmt::format("partition: {} random groups, added and resolved once", groups)));
   }
 }
 
-Check checkRunToRun(const Frame& frame, StageOutputs& first, const TableBytes& table, const Image& picture) {
+Check checkRunToRun(const CheckedFrame& frame, StageOutputs& first, const TableBytes& table, const Image& image) {
   const auto second = deviceStages(frame.device)(frame.scene.volume, frame.scene.classification, {});
   const TableBytes tableAgain = second->table();
   MaxError worst;
   for (int d = 0; d < kLatticeStepCount; ++d)
     worst.take(table[std::size_t(d)] == tableAgain[std::size_t(d)] ? 0.0 : 1.0,
                [&] { return "table, " + directionText(kLatticeSteps, d); });
-  for (const Image& again :
-       {first.picture(frame.camera, frame.settings), second->picture(frame.camera, frame.settings)})
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-      worst.take(std::memcmp(&picture.pixels[i], &again.pixels[i], sizeof(glm::vec4)) == 0 ? 0.0 : 1.0,
+  for (const Image& again : {first.image(frame.camera, frame.settings), second->image(frame.camera, frame.settings)})
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+      worst.take(std::memcmp(&image.pixels[i], &again.pixels[i], sizeof(glm::vec4)) == 0 ? 0.0 : 1.0,
                  [&] { return pixelText(frame.settings.size, i); });
   return worst.atMost(0.0, "run to run: the same bits");
 }
@@ -193,15 +188,15 @@ const std::array<NamedChange, 3> kChanges{
      {"x, y, z stored as y, z, x", {{1, 2, 0}, glm::bvec3(false)}},
      {"x, y, z stored as z, -y, x", {{2, 1, 0}, {false, true, false}}}}};
 
-void checkAxes(const Frame& frame, const TableBytes& table, const Image& picture, ReportSection& section) {
+void checkAxes(const CheckedFrame& frame, const TableBytes& table, const Image& image, ReportSection& section) {
   for (const NamedChange& named : kChanges) {
     const Volume changed = named.change.apply(frame.scene.volume);
     const auto outputs = deviceStages(frame.device)(changed, frame.scene.classification, {});
     section.checks.push_back(
         changedTableDifference(frame.scene.volume, table, changed, outputs->table(), named.change)
             .atMost(1.0, fmt::format("axes: table, {}", named.name), "codes"));
-    section.checks.push_back(largestDifference(picture, outputs->picture(frame.camera, frame.settings))
-                                 .atMost(kAxesTolerance, fmt::format("axes: picture, {}", named.name)));
+    section.checks.push_back(largestDifference(image, outputs->image(frame.camera, frame.settings))
+                                 .atMost(kAxesTolerance, fmt::format("axes: image, {}", named.name)));
   }
 }
 
@@ -214,24 +209,23 @@ ReportSection invariances(const Device& device, const ValidationScene& scene, gl
           "What must change nothing but rounding: the order in which voxels are drawn, "
           "drawing them in groups apart, sweeping slab by slab, running again, and the axes that the same "
           "field is stored along."};
-  const Frame frame{
-      .device = device,
-      .scene = scene,
-      .camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, double(size.x) / size.y, {}),
-      .settings = {.size = size, .lod = 0.0f}};
+  const CheckedFrame frame{.device = device,
+                           .scene = scene,
+                           .camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, double(size.x) / size.y, {}),
+                           .settings = {.size = size, .lod = 0.0f}};
   const auto outputs = deviceStages(device)(scene.volume, scene.classification, {});
   const TableBytes table = outputs->table();
-  const Image picture = outputs->picture(frame.camera, frame.settings);
+  const Image image = outputs->image(frame.camera, frame.settings);
   const std::vector<SplatSums> sums = outputs->sums(frame.camera, frame.settings);
   {
     const SteppedVolume steps = prepareSteps(device, scene.volume, scene.classification, {});
     checkOrder(frame, steps, sums, section);
-    checkGroups(frame, steps, picture, section);
+    checkGroups(frame, steps, image, section);
     section.checks.push_back(checkSlabs(table, sweepThinSlabs(device, steps)));
   }
-  section.checks.push_back(checkRunToRun(frame, *outputs, table, picture));
+  section.checks.push_back(checkRunToRun(frame, *outputs, table, image));
   section.checks.push_back(checkOpposites(scene.volume, outputs->extinction(), table));
-  checkAxes(frame, table, picture, section);
+  checkAxes(frame, table, image, section);
   return section;
 }
 

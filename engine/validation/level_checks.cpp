@@ -22,7 +22,7 @@ constexpr double kLightTolerance = 2e-3;       ///< half a step of 9 bits
 constexpr double kLightFloor = 1e-3;           ///< as a fraction of the brightest: fainter blocks count as that
 constexpr double kColorTolerance = 1e-3;       ///< for 16-bit halves
 constexpr double kCodeTolerance = 1.0;
-constexpr double kPictureTolerance = 1e-5;
+constexpr double kImageTolerance = 1e-5;
 constexpr int kCameras = 24;
 
 struct Variant {
@@ -113,13 +113,13 @@ Check checkCoverage(Renderer& renderer, const Volume& volume, const LevelData& v
 }
 
 /// A view near enough for several levels.
-Check checkCutPicture(Renderer& renderer, const ValidationScene& scene, const LevelData& voxels,
-                      std::span<const LevelData> levels, const TableSettings& table, glm::ivec2 size) {
+Check checkCutImage(Renderer& renderer, const ValidationScene& scene, const LevelData& voxels, std::span<const LevelData> levels,
+                    const TableSettings& table, glm::ivec2 size) {
   Camera camera =
       framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, double(size.x) / size.y, {});
   camera.position = camera.lookAt + 0.6 * (camera.position - camera.lookAt);
   const FrameSettings settings{.size = size, .lod = 6.0f};
-  const Image picture = renderer.render(camera, settings);
+  const Image image = renderer.render(camera, settings);
   const SplatInputs inputs{.extinction = voxels.extinction,
                            .table = voxels.table,
                            .tableSettings = table,
@@ -127,8 +127,7 @@ Check checkCutPicture(Renderer& renderer, const ValidationScene& scene, const Le
                            .emission = voxels.emission};
   const auto sums = referenceBlockSums(scene.volume, scene.classification, inputs, camera, settings,
                                        RendererStages(renderer).downloadDrawnBlocks());
-  return largestDifference(picture, referenceResolve(sums, settings))
-      .atMost(kPictureTolerance, "cut: picture of several levels");
+  return largestDifference(image, referenceResolve(sums, settings)).atMost(kImageTolerance, "cut: image of several levels");
 }
 
 /// A bound as half a byte keeps it: never darker, and for linear8 0 only for 0.
@@ -229,7 +228,7 @@ ReportSection levelChecks(const Device& device, const ValidationScene& scene, gl
       section.checks.push_back(std::move(check));
     if (&variant != &kVariants.front()) continue;
     section.checks.push_back(checkCoverage(renderer, scene.volume, voxels, size));
-    section.checks.push_back(checkCutPicture(renderer, scene, voxels, levels, variant.settings, size));
+    section.checks.push_back(checkCutImage(renderer, scene, voxels, levels, variant.settings, size));
   }
   return section;
 }

@@ -175,8 +175,8 @@ struct LitCase {
 bool looksAlike(const Lighting& a, const Lighting& b) { return a.lights == b.lights && a.environment == b.environment; }
 
 /// Images with each way of lighting.
-void compareToOracle(const Device& device, const QualityScene& scene, std::span<const QualityView> views,
-                     int pictureEdge, const std::vector<LitCase>& cases, ReportSection& section) {
+void compareToOracle(const Device& device, const QualityScene& scene, std::span<const QualityView> views, int imageEdge,
+                     const std::vector<LitCase>& cases, ReportSection& section) {
   ReportTable table{.caption = "PSNR against the oracle, dB", .columns = {"view"}, .rows = {}};
   Renderer renderer(device, scene.volume, scene.classification, {});
   section.checks.resize(cases.size());
@@ -189,19 +189,17 @@ void compareToOracle(const Device& device, const QualityScene& scene, std::span<
     std::vector<std::string> row{viewText(view)};
     for (std::size_t i = 0; i < cases.size(); ++i) {
       if (i == 0 || !looksAlike(cases[i].lighting, cases[i - 1].lighting)) {
-        const OracleSettings truth{.size = glm::ivec2(pictureEdge), .tolerance = 4e-3, .lighting = cases[i].lighting};
+        const OracleSettings truth{.size = glm::ivec2(imageEdge), .tolerance = 4e-3, .lighting = cases[i].lighting};
         oracle = renderOracle(scene.volume, scene.classification, camera, truth).image;
         pictures.pictures.push_back({"oracle", oracle});
       }
-      const FrameSettings settings{.size = glm::ivec2(pictureEdge), .draw = cases[i].draw, .lighting = cases[i].lighting};
-      const Image picture = renderer.render(camera, settings);
-      const double psnr = compareImages(picture, oracle).psnr;
+      const FrameSettings settings{.size = glm::ivec2(imageEdge), .draw = cases[i].draw, .lighting = cases[i].lighting};
+      const Image image = renderer.render(camera, settings);
+      const double psnr = compareImages(image, oracle).psnr;
       row.push_back(fmt::format("{:.1f}", psnr));
       sums[i] += psnr;
-      pictures.pictures.push_back({cases[i].name, picture});
-      pictures.pictures.push_back(
-          {fmt::format("{}: {:g} times the difference", cases[i].name, kDifferenceGain),
-           amplified(picture, oracle)});
+      pictures.pictures.push_back({cases[i].name, image});
+      pictures.pictures.push_back({fmt::format("{}: {:g} times the difference", cases[i].name, kDifferenceGain), amplified(image, oracle)});
       if (table.rows.empty() || psnr < section.checks[i].figure)
         section.checks[i] = {.name = cases[i].name,
                              .figure = psnr,
@@ -226,23 +224,21 @@ void compareToOracle(const Device& device, const QualityScene& scene, std::span<
 
 }  // namespace
 
-ReportSection lightQuality(const Device& device, const QualityScene& scene, int pictureEdge) {
-  ReportSection section{
-      .title = fmt::format("Light: {}, {}x{} pixels", scene.name, pictureEdge, pictureEdge),
-      .text = "One light from the side. The oracle marches a shadow ray from every point of every ray."};
+ReportSection lightQuality(const Device& device, const QualityScene& scene, int imageEdge) {
+  ReportSection section{.title = fmt::format("Light: {}, {}x{} pixels", scene.name, imageEdge, imageEdge),
+                        .text = "One light from the side. The oracle marches a shadow ray from every point of every ray."};
   std::vector<LitCase> cases;
   for (const Shadows& shadows : kShadows)
     cases.push_back(
         {fmt::format("lit, {} shadows", shadows.name), sideLight(shadows.attenuation), shadows.goal});
   cases.push_back({"lit, gathered", sideLight(LightAttenuation::Exact), kExactLightPsnr, 0.0, Draw::Gather});
   const std::array<QualityView, 2> views{{{}, {.azimuth = 200.0, .elevation = -20.0}}};
-  compareToOracle(device, scene, views, pictureEdge, cases, section);
+  compareToOracle(device, scene, views, imageEdge, cases, section);
   return section;
 }
 
-ReportSection opaqueLightQuality(const Device& device, const QualityScene& scene, std::span<const QualityView> views,
-                                 int pictureEdge) {
-  ReportSection section{.title = fmt::format("Light on what is opaque: {}, {}x{} pixels", scene.name, pictureEdge, pictureEdge),
+ReportSection opaqueLightQuality(const Device& device, const QualityScene& scene, std::span<const QualityView> views, int imageEdge) {
+  ReportSection section{.title = fmt::format("Light on what is opaque: {}, {}x{} pixels", scene.name, imageEdge, imageEdge),
                         .text = "Shadows are exact. The oracle marches a shadow ray from every point of every ray."};
   const std::vector<Light> lights{{.place = {1.0, 1.0, 0.3}, .intensity = 0.6 * kDefaultIrradiance},
                                   {.place = {-0.8, 0.3, 1.0}, .intensity = 0.3 * kDefaultIrradiance},
@@ -250,22 +246,21 @@ ReportSection opaqueLightQuality(const Device& device, const QualityScene& scene
   const Lighting one{.lights = {{.place = {1.0, 1.0, 0.3}}}, .attenuation = LightAttenuation::Exact};
   const Lighting three{.lights = lights, .attenuation = LightAttenuation::Exact};
   const QualityScene scan{.name = scene.name, .volume = filled(scene.volume), .classification = scene.classification};
-  compareToOracle(device, scan, views, pictureEdge,
+  compareToOracle(device, scan, views, imageEdge,
                   {{"one light", one, kOpaqueWorstPsnr, kOpaqueMeanPsnr, Draw::Gather},
                    {"three lights", three, kOpaqueWorstPsnr, kOpaqueMeanPsnr, Draw::Gather}},
                   section);
   return section;
 }
 
-ReportSection environmentQuality(const Device& device, const QualityScene& scene, int pictureEdge) {
-  ReportSection section{
-      .title = fmt::format("Light from all around: {}, {}x{} pixels", scene.name, pictureEdge, pictureEdge),
-      .text =
-          "A sky with a sun. The table has it from its 26 directions, the oracle "
-          "from 150."};
+ReportSection environmentQuality(const Device& device, const QualityScene& scene, int imageEdge) {
+  ReportSection section{.title = fmt::format("Light from all around: {}, {}x{} pixels", scene.name, imageEdge, imageEdge),
+                        .text =
+                            "A sky with a sun. The table has it from its 26 directions, the oracle "
+                            "from 150."};
   const Lighting sky{.lights = {}, .environment = std::make_shared<Environment>(makeSky(kSkyRows))};
   const QualityView view;
-  compareToOracle(device, scene, {&view, 1}, pictureEdge, {{"lit by a sky", sky, kEnvironmentPsnr}}, section);
+  compareToOracle(device, scene, {&view, 1}, imageEdge, {{"lit by a sky", sky, kEnvironmentPsnr}}, section);
   return section;
 }
 

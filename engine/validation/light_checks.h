@@ -14,17 +14,16 @@ namespace freevoxels {
 inline constexpr double kTableLightPsnr = 32.0, kExactLightPsnr = 38.0, kEnvironmentPsnr = 42.0;
 
 /// One light from the side, in several views.
-ReportSection lightQuality(const Device& device, const QualityScene& scene, int pictureEdge);
+ReportSection lightQuality(const Device& device, const QualityScene& scene, int imageEdge);
 
 /// Least mean over the views, and least worst view, of opaque lit volumes.
 inline constexpr double kOpaqueMeanPsnr = 35.0, kOpaqueWorstPsnr = 32.0;
 
 /// One and three lights with exact shadows on volumes that become opaque within a few voxels.
-ReportSection opaqueLightQuality(const Device& device, const QualityScene& scene, std::span<const QualityView> views,
-                                 int pictureEdge);
+ReportSection opaqueLightQuality(const Device& device, const QualityScene& scene, std::span<const QualityView> views, int imageEdge);
 
 /// A sky with a sun, in one view: the oracle marches towards it from every point of the volume.
-ReportSection environmentQuality(const Device& device, const QualityScene& scene, int pictureEdge);
+ReportSection environmentQuality(const Device& device, const QualityScene& scene, int imageEdge);
 
 /// The shadow of a small opaque ball in thin fog, which 26 directions draw as a star, and the light inside an
 /// opaque hollow ball, where there is none; in volumes of `resolution`³ voxels.

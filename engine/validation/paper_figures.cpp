@@ -25,7 +25,7 @@ namespace {
 
 /// Figure 2: a cube of optical depth 3.5 from face to face.
 constexpr int kTableCubeEdge = 32;
-const glm::ivec2 kTablePicture(256);
+const glm::ivec2 kTableImage(256);
 /// A camera that sees the sides +y and +z, which the directions point to, and -x, which they come from.
 constexpr QualityView kTableView{-35, 25};
 constexpr double kTableCubeExtinction = 3.5;
@@ -38,14 +38,14 @@ constexpr double kHalfCodeTransmittance = 0.007;
 
 /// Figure 6: the fewer voxels, the larger their pattern.
 constexpr int kLeakingCubeEdge = 8;
-const glm::ivec2 kLeakingPicture(128);
+const glm::ivec2 kLeakingImage(128);
 constexpr double kLeakingCubeExtinction = 4.0;
 constexpr std::array<QualityView, 2> kLeakingViews{{{0, 0}, {35, 25}}};
 
 /// Figure 7: a head in soft tissue, the light beside and above; and a smaller one for the oracle, whose
 /// shadow rays take their time.
 constexpr int kLitHeadEdge = 64, kJudgedHeadEdge = 32;
-const glm::ivec2 kLitPicture(192), kJudgedPicture(64);
+const glm::ivec2 kLitImage(192), kJudgedImage(64);
 constexpr QualityView kLitView{30, 8};
 const glm::dvec3 kToLight(-1.0, 0.8, 0.35), kRed(1.0, 0.12, 0.06);
 constexpr double kLitIntensity = 2.0 * kDefaultIrradiance;
@@ -85,11 +85,10 @@ Check checkTransmittances(const Volume& shown, int direction) {
                                                           directionText(kLatticeSteps, direction)));
 }
 
-double meanAlphaError(const Image& picture, const Image& oracle) {
+double meanAlphaError(const Image& image, const Image& oracle) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-    sum += std::abs(double(picture.pixels[i].a) - double(oracle.pixels[i].a));
-  return sum / double(picture.pixels.size());
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) sum += std::abs(double(image.pixels[i].a) - double(oracle.pixels[i].a));
+  return sum / double(image.pixels.size());
 }
 
 void addLeakingView(const StageMaker& make, const Volume& cube, const QualityView& view,
@@ -97,10 +96,8 @@ void addLeakingView(const StageMaker& make, const Volume& cube, const QualityVie
   const Classification classification = physical(kLeakingCubeExtinction, glm::vec3(0.0f));
   const Camera camera = viewCamera(cube, view);
   const auto outputs = make(cube, classification, {});
-  const Image oracle = renderOracle(cube, classification, camera, {.size = kLeakingPicture}).image;
-  const auto draw = [&](Composite composite) {
-    return outputs->picture(camera, {.size = kLeakingPicture, .composite = composite});
-  };
+  const Image oracle = renderOracle(cube, classification, camera, {.size = kLeakingImage}).image;
+  const auto draw = [&](Composite composite) { return outputs->image(camera, {.size = kLeakingImage, .composite = composite}); };
   const Image sorted = draw(Composite::Sorted), additive = draw(Composite::Additive),
               normalised = draw(Composite::Normalised);
   const double sortedError = meanAlphaError(sorted, oracle);
@@ -133,16 +130,16 @@ struct LitHead {
     outputs = make(volume, classification, {});
   }
   Camera camera() const { return viewCamera(volume, kLitView); }
-  Image picture(glm::ivec2 size, const std::optional<Lighting>& lighting) const {
-    return outputs->picture(camera(), {.size = size, .lighting = lighting});
+  Image image(glm::ivec2 size, const std::optional<Lighting>& lighting) const {
+    return outputs->image(camera(), {.size = size, .lighting = lighting});
   }
 };
 
 Check checkLitHead(const LitHead& head, const Lighting& lighting) {
-  const OracleSettings truth{.size = kJudgedPicture, .tolerance = 4e-3, .lighting = lighting};
+  const OracleSettings truth{.size = kJudgedImage, .tolerance = 4e-3, .lighting = lighting};
   const Image oracle = renderOracle(head.volume, head.classification, head.camera(), truth).image;
   return {.name = fmt::format("figure 7: red light, {}^3", kJudgedHeadEdge),
-          .figure = compareImages(head.picture(kJudgedPicture, lighting), oracle).psnr,
+          .figure = compareImages(head.image(kJudgedImage, lighting), oracle).psnr,
           .bound = Check::Bound::AtLeast,
           .tolerance = kTableLightPsnr,
           .unit = "dB",
@@ -178,8 +175,8 @@ ReportSection paperFigure2(const StageMaker& make) {
     const Volume shown = transmittances(cube, table[std::size_t(direction)]);
     section.checks.push_back(checkTransmittances(shown, direction));
     const auto outputs = make(shown, asBrightness(shown), {});
-    pictures.pictures.push_back({directionText(kLatticeSteps, direction),
-                                 outputs->picture(viewCamera(shown, kTableView), {.size = kTablePicture})});
+    pictures.pictures.push_back(
+        {directionText(kLatticeSteps, direction), outputs->image(viewCamera(shown, kTableView), {.size = kTableImage})});
   }
   section.pictures.push_back(std::move(pictures));
   return section;
@@ -218,20 +215,19 @@ ReportSection paperFigure7(const StageMaker& make) {
   Lighting red = white, turning = white;
   red.lights.front().color = kRed;
   turning.tint = kFleshTint;
-  const Image turned = shown.picture(kLitPicture, turning);
+  const Image turned = shown.image(kLitImage, turning);
   section.pictures.push_back({.caption = "From " + viewText(kLitView),
-                              .pictures = {{"without light", shown.picture(kLitPicture, std::nullopt)},
-                                           {"red light", shown.picture(kLitPicture, red)},
+                              .pictures = {{"without light", shown.image(kLitImage, std::nullopt)},
+                                           {"red light", shown.image(kLitImage, red)},
                                            {"white light that turns red", turned}},
                               .background = glm::vec3(0.0f)});
-  section.checks = {
-      checkLitHead(judged, red),
-      {.name = "figure 7: red over blue, of white light that turns red against that which does not",
-       .figure = redOverBlue(turned) / redOverBlue(shown.picture(kLitPicture, white)),
-       .bound = Check::Bound::AtLeast,
-       .tolerance = kLeastBleeding,
-       .unit = "",
-       .where = ""}};
+  section.checks = {checkLitHead(judged, red),
+                    {.name = "figure 7: red over blue, of white light that turns red against that which does not",
+                     .figure = redOverBlue(turned) / redOverBlue(shown.image(kLitImage, white)),
+                     .bound = Check::Bound::AtLeast,
+                     .tolerance = kLeastBleeding,
+                     .unit = "",
+                     .where = ""}};
   return section;
 }
 

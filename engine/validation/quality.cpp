@@ -10,7 +10,7 @@
 #include "engine/image/metrics.h"
 #include "engine/scene/orbit.h"
 #include "engine/validation/max_error.h"
-#include "engine/validation/quality_pictures.h"
+#include "engine/validation/quality_images.h"
 #include "engine/volume/subject.h"
 
 namespace freevoxels {
@@ -22,10 +22,9 @@ constexpr double kLargestJump = 1.0;  ///< dB
 /// Scales differences so that those below 1/8 can be distinguished.
 constexpr float kDifferenceGain = 8.0f;
 
-std::vector<PictureFigures> figuresOf(const std::vector<Image>& pictures, const std::vector<Image>& oracle) {
-  std::vector<PictureFigures> figures;
-  for (std::size_t i = 0; i < pictures.size(); ++i)
-    figures.push_back(compareToOracle(pictures[i], oracle[i]));
+std::vector<ImageFigures> figuresOf(const std::vector<Image>& images, const std::vector<Image>& oracle) {
+  std::vector<ImageFigures> figures;
+  for (std::size_t i = 0; i < images.size(); ++i) figures.push_back(compareToOracle(images[i], oracle[i]));
   return figures;
 }
 
@@ -36,20 +35,19 @@ Image visibleDifference(const Image& test, const Image& reference) {
   return difference;
 }
 
-Image flipPicture(const Image& test, const Image& reference) {
+Image flipErrorImage(const Image& test, const Image& reference) {
   const glm::vec3 grey(kFlipBackground);
   const Image shown = compositeOver(reference, grey);
-  return magmaPicture(hdrFlip(compositeOver(test, grey), shown, flipExposures(shown)));
+  return magmaImage(hdrFlip(compositeOver(test, grey), shown, flipExposures(shown)));
 }
 
-ReportPictures worstPictures(const std::string& view, const Image& oracle, const QualityMethod& first,
-                             const Image& picture, const Image& sorted) {
+ReportPictures worstPictures(const std::string& view, const Image& oracle, const QualityMethod& first, const Image& image,
+                             const Image& sorted) {
   return {.caption = fmt::format("The view {}, where the method \"{}\" is worst", view, first.name),
           .pictures = {{"oracle", oracle},
-                       {first.name, picture},
-                       {fmt::format("{}: {:g} times the difference", first.name, kDifferenceGain),
-                        visibleDifference(picture, oracle)},
-                       {first.name + ": HDR-FLIP, black 0, yellow 1", flipPicture(picture, oracle)},
+                       {first.name, image},
+                       {fmt::format("{}: {:g} times the difference", first.name, kDifferenceGain), visibleDifference(image, oracle)},
+                       {first.name + ": HDR-FLIP, black 0, yellow 1", flipErrorImage(image, oracle)},
                        {"sorted", sorted}},
           .background = {}};
 }
@@ -60,9 +58,10 @@ QualityScene classifiedAfter(QualityScene scene) {
 }
 
 const char* const kQualityText =
-    "Pictures against the oracle, a converged ray march on the CPU: until doubling its rays changes no pixel "
-    "by 0.004, which is 80 dB from a quarter of that, of scalars that are classified after interpolation, as the first method's are. PSNR is of premultiplied RGBA; HDR-FLIP "
-    "is the mean of the map, with both pictures over a grey of 0.18: over black, pictures that are mostly "
+    "Images against the oracle, a converged ray march on the CPU: until doubling its rays changes no pixel "
+    "by 0.004, which is 80 dB from a quarter of that, of scalars that are classified after interpolation, as the first method's are. PSNR "
+    "is of premultiplied RGBA; HDR-FLIP "
+    "is the mean of the map, with both images over a grey of 0.18: over black, images that are mostly "
     "empty would be judged at exposures that nobody looks at them with. \"nearest, additive (paper)\" is the "
     "method of Subr et al. 2007 (Eq. 5 and 10); \"sorted\" is back-to-front alpha blending (Eq. 9).";
 
@@ -70,40 +69,38 @@ std::vector<double> turntablePsnr(const StageMaker& make, const QualityScene& sc
                                   const QualityMethod& method, const std::vector<Camera>& cameras,
                                   const std::vector<Image>& oracle) {
   std::vector<double> psnr;
-  const std::vector<Image> pictures = methodPictures(make, scene, method, cameras, oracle.front().size);
-  for (std::size_t i = 0; i < pictures.size(); ++i)
-    psnr.push_back(compareImages(pictures[i], oracle[i]).psnr);
+  const std::vector<Image> images = methodImages(make, scene, method, cameras, oracle.front().size);
+  for (std::size_t i = 0; i < images.size(); ++i) psnr.push_back(compareImages(images[i], oracle[i]).psnr);
   return psnr;
 }
 
 }  // namespace
 
-QualityResult pictureQuality(const StageMaker& make, const QualityScene& scene,
-                             const std::vector<QualityMethod>& methods, const QualityRun& run) {
-  const glm::ivec2 size(run.pictureEdge);
+QualityResult imageQuality(const StageMaker& make, const QualityScene& scene, const std::vector<QualityMethod>& methods,
+                           const QualityRun& run) {
+  const glm::ivec2 size(run.imageEdge);
   std::vector<Camera> cameras;
   for (const QualityView& view : run.views) cameras.push_back(viewCamera(scene.volume, view));
-  const std::vector<Image> oracle = oraclePictures(classifiedAfter(scene), cameras, size);
+  const std::vector<Image> oracle = oracleImages(classifiedAfter(scene), cameras, size);
   QualityFigures figures{.scene = scene.name,
                          .thin = scene.thin,
                          .resolution = scene.resolution,
                          .hasGoals = run.hasGoals,
                          .views = {run.views.begin(), run.views.end()},
                          .figures = {}};
-  std::vector<std::vector<Image>> pictures;
+  std::vector<std::vector<Image>> images;
   for (const QualityMethod& method : methods) {
-    pictures.push_back(methodPictures(make, scene, method, cameras, size));
-    figures.figures.push_back(figuresOf(pictures.back(), oracle));
+    images.push_back(methodImages(make, scene, method, cameras, size));
+    figures.figures.push_back(figuresOf(images.back(), oracle));
   }
   const std::size_t worst = figures.worstView(0);
-  ReportSection section{
-      .title = fmt::format("Picture quality: {}, {}x{} pixels", scene.name, size.x, size.y),
-      .text = kQualityText,
-      .checks = sceneChecks(figures, methods),
-      .tables = {methodTable(figures, methods)},
-      .plots = {},
-      .pictures = {worstPictures(viewText(run.views[worst]), oracle[worst], methods.front(),
-                                 pictures.front()[worst], pictures[sortedMethod(methods)][worst])}};
+  ReportSection section{.title = fmt::format("Image quality: {}, {}x{} pixels", scene.name, size.x, size.y),
+                        .text = kQualityText,
+                        .checks = sceneChecks(figures, methods),
+                        .tables = {methodTable(figures, methods)},
+                        .plots = {},
+                        .pictures = {worstPictures(viewText(run.views[worst]), oracle[worst], methods.front(), images.front()[worst],
+                                                   images[sortedMethod(methods)][worst])}};
   if (run.views.size() > 1) section.tables.push_back(viewTable(figures, methods));
   return {std::move(section), std::move(figures)};
 }
@@ -117,16 +114,15 @@ Check largestJump(const std::vector<glm::dvec2>& series, double tolerance, std::
   return worst.atMost(tolerance, std::move(name), "dB");
 }
 
-ReportSection turntableQuality(const StageMaker& make, const QualityScene& scene, int frames,
-                               int pictureEdge) {
+ReportSection turntableQuality(const StageMaker& make, const QualityScene& scene, int frames, int imageEdge) {
   std::vector<Camera> cameras = framingOrbit(scene.volume, 0.0, kTurntableElevation, 4 * frames, 1.0, {});
   cameras.resize(std::size_t(frames) + 1);
-  const std::vector<Image> oracle = oraclePictures(classifiedAfter(scene), cameras, glm::ivec2(pictureEdge));
+  const std::vector<Image> oracle = oracleImages(classifiedAfter(scene), cameras, glm::ivec2(imageEdge));
   ReportSection section{
-      .title = fmt::format("Picture quality: a quarter of a turn around {}", scene.name),
+      .title = fmt::format("Image quality: a quarter of a turn around {}", scene.name),
       .text = fmt::format("{} frames of {}x{} pixels at elevation {:g}, from one distance. Quality changes smoothly with the angle "
                           "between the line of sight and the axes; a step from one frame to the next would be seen as popping.",
-                          cameras.size(), pictureEdge, pictureEdge, kTurntableElevation)};
+                          cameras.size(), imageEdge, imageEdge, kTurntableElevation)};
   ReportPlot plot{.caption = "PSNR against the oracle",
                   .xLabel = "azimuth in degrees",
                   .yLabel = "PSNR in dB",

@@ -12,9 +12,9 @@ namespace freevoxels {
 namespace {
 
 template <typename Value>
-double meanOf(const std::vector<PictureFigures>& figures, Value value) {
+double meanOf(const std::vector<ImageFigures>& figures, Value value) {
   double sum = 0.0;
-  for (const PictureFigures& figure : figures) sum += value(figure);
+  for (const ImageFigures& figure : figures) sum += value(figure);
   return sum / double(figures.size());
 }
 
@@ -46,18 +46,18 @@ Check againstSorted(const QualityFigures& scene, std::size_t method, const std::
 }
 
 /// "31.2–44.7"
-std::string rangeText(const std::vector<PictureFigures>& figures) {
-  const auto [least, largest] = std::ranges::minmax(figures, {}, &PictureFigures::psnr);
+std::string rangeText(const std::vector<ImageFigures>& figures) {
+  const auto [least, largest] = std::ranges::minmax(figures, {}, &ImageFigures::psnr);
   return fmt::format("{:.1f}–{:.1f}", least.psnr, largest.psnr);
 }
 
 /// The mean over all views of all scenes that count.
 double meanPsnr(const std::vector<QualityFigures>& scenes, std::size_t method, bool onlyWithGoals) {
-  std::vector<PictureFigures> all;
+  std::vector<ImageFigures> all;
   for (const QualityFigures& scene : scenes)
     if (scene.hasGoals || !onlyWithGoals)
       all.insert(all.end(), scene.figures[method].begin(), scene.figures[method].end());
-  return meanOf(all, [](const PictureFigures& figure) { return figure.psnr; });
+  return meanOf(all, [](const ImageFigures& figure) { return figure.psnr; });
 }
 
 ReportTable summaryTable(const std::vector<QualityFigures>& scenes,
@@ -78,23 +78,22 @@ ReportTable summaryTable(const std::vector<QualityFigures>& scenes,
 
 }  // namespace
 
-PictureFigures compareToOracle(const Image& picture, const Image& oracle) {
+ImageFigures compareToOracle(const Image& image, const Image& oracle) {
   const glm::vec3 grey(kFlipBackground);
-  const Image test = compositeOver(picture, grey), reference = compositeOver(oracle, grey);
-  return {.psnr = compareImages(picture, oracle).psnr,
-          .flip = hdrFlip(test, reference, flipExposures(reference)).mean()};
+  const Image test = compositeOver(image, grey), reference = compositeOver(oracle, grey);
+  return {.psnr = compareImages(image, oracle).psnr, .flip = hdrFlip(test, reference, flipExposures(reference)).mean()};
 }
 
 double QualityFigures::meanPsnr(std::size_t method) const {
-  return meanOf(figures[method], [](const PictureFigures& figure) { return figure.psnr; });
+  return meanOf(figures[method], [](const ImageFigures& figure) { return figure.psnr; });
 }
 
 double QualityFigures::meanFlip(std::size_t method) const {
-  return meanOf(figures[method], [](const PictureFigures& figure) { return figure.flip; });
+  return meanOf(figures[method], [](const ImageFigures& figure) { return figure.flip; });
 }
 
 std::size_t QualityFigures::worstView(std::size_t method) const {
-  const auto worst = std::ranges::min_element(figures[method], {}, &PictureFigures::psnr);
+  const auto worst = std::ranges::min_element(figures[method], {}, &ImageFigures::psnr);
   return std::size_t(worst - figures[method].begin());
 }
 
@@ -140,9 +139,8 @@ std::vector<Check> sceneChecks(const QualityFigures& scene, const std::vector<Qu
 
 ReportSection summariseQuality(const std::vector<QualityFigures>& scenes,
                                const std::vector<QualityMethod>& methods) {
-  ReportSection section{
-      .title = "Picture quality: summary",
-      .text = "All methods on all volumes. The last column is the mean over all views of all volumes."};
+  ReportSection section{.title = "Image quality: summary",
+                        .text = "All methods on all volumes. The last column is the mean over all views of all volumes."};
   if (std::ranges::any_of(scenes, &QualityFigures::hasGoals))
     for (std::size_t method = 0; method < methods.size(); ++method)
       if (methods[method].goals.mean)

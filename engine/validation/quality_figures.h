@@ -15,11 +15,11 @@ namespace freevoxels {
 /// exposures at which nobody looks at them.
 inline constexpr float kFlipBackground = 0.18f;
 
-struct PictureFigures {
+struct ImageFigures {
   double psnr = 0.0;  ///< in dB, of premultiplied RGBA
   double flip = 0.0;  ///< mean HDR-FLIP over grey
 };
-PictureFigures compareToOracle(const Image& picture, const Image& oracle);
+ImageFigures compareToOracle(const Image& image, const Image& oracle);
 
 /// The figures of one scene.
 struct QualityFigures {
@@ -28,7 +28,7 @@ struct QualityFigures {
   int resolution = 0;  ///< voxels along an edge of the volume before it is cropped
   bool hasGoals = false;
   std::vector<QualityView> views;
-  std::vector<std::vector<PictureFigures>> figures;  ///< [method][view]
+  std::vector<std::vector<ImageFigures>> figures;  ///< [method][view]
 
   double meanPsnr(std::size_t method) const;
   double meanFlip(std::size_t method) const;

@@ -30,7 +30,7 @@ constexpr double kCodeTolerance = 1.0;
 /// Codes of smaller depths along rays are finer than 32-bit floats can add up.
 constexpr double kShallowDepth = 1e-3;
 constexpr double kSumsTolerance = 1e-4;
-constexpr double kPictureTolerance = 1e-5, kDistanceTolerance = 1e-5;
+constexpr double kImageTolerance = 1e-5, kDistanceTolerance = 1e-5;
 
 /// An error in a pixel's sum is relative to that sum, but to no less than this fraction of the image's
 /// largest sum: at the rim of a single footprint a sum is (1 - r²/R²)⁴ for an r that is nearly R, of which
@@ -199,12 +199,11 @@ Check checkSums(const std::vector<SplatSums>& sums, const std::vector<SplatSums>
   return worst.atMost(kSumsTolerance, fmt::format("splat sums: {}, {}", channel.name, method), "relative");
 }
 
-Check checkDistance(const Image& picture, const Image& reference, const char* method) {
+Check checkDistance(const Image& image, const Image& reference, const char* method) {
   MaxError worst;
-  for (std::size_t i = 0; i < picture.depth.size(); ++i)
+  for (std::size_t i = 0; i < image.depth.size(); ++i)
     if (reference.pixels[i].a >= kLeastAlpha)
-      worst.take(relativeDifference(double(picture.depth[i]), double(reference.depth[i])),
-                 [&] { return pixelText(picture.size, i); });
+      worst.take(relativeDifference(double(image.depth[i]), double(reference.depth[i])), [&] { return pixelText(image.size, i); });
   return worst.atMost(kDistanceTolerance, fmt::format("resolve: distance, {}", method), "relative");
 }
 
@@ -269,19 +268,18 @@ void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, R
   for (const Channel& channel : std::span(kChannels).first(method.depth ? 4 : 3))
     section.checks.push_back(checkSums(sums, reference, channel, size, method.name));
 
-  const Image picture = outcome.device.picture(camera, settings);
+  const Image image = outcome.device.image(camera, settings);
   const Image resolved = referenceResolve(sums, settings);
-  section.checks.push_back(largestDifference(picture, resolved)
-                               .atMost(kPictureTolerance, fmt::format("resolve: RGBA, {}", method.name)));
-  if (method.depth) section.checks.push_back(checkDistance(picture, resolved, method.name));
-  section.pictures.push_back(comparedPictures(picture, referenceResolve(reference, settings), fmt::format("Method: {}", method.name),
+  section.checks.push_back(largestDifference(image, resolved).atMost(kImageTolerance, fmt::format("resolve: RGBA, {}", method.name)));
+  if (method.depth) section.checks.push_back(checkDistance(image, resolved, method.name));
+  section.pictures.push_back(comparedPictures(image, referenceResolve(reference, settings), fmt::format("Method: {}", method.name),
                                               "reference, from the device's table"));
 }
 
 constexpr const char* kExplanation =
     "Every stage on the device against a double-precision version on the CPU that is given what the device "
     "made in the stage before. Extinction is relative to the voxel's own; the splat sums are relative to the "
-    "pixel's own, or to 5 % of the picture's largest where that is more.";
+    "pixel's own, or to 5 % of the image's largest where that is more.";
 
 }  // namespace
 

@@ -20,9 +20,7 @@ class RendererOutputs : public StageOutputs {
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
     return RendererStages(renderer_).renderSums(camera, settings);
   }
-  Image picture(const Camera& camera, const FrameSettings& settings) override {
-    return renderer_.render(camera, settings);
-  }
+  Image image(const Camera& camera, const FrameSettings& settings) override { return renderer_.render(camera, settings); }
 
  private:
   Renderer renderer_;

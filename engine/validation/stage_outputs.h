@@ -34,7 +34,7 @@ class StageOutputs {
   virtual RayCodes rays(const Camera& camera) = 0;
   /// The sums of every pixel before the resolve.
   virtual std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) = 0;
-  virtual Image picture(const Camera& camera, const FrameSettings& settings) = 0;
+  virtual Image image(const Camera& camera, const FrameSettings& settings) = 0;
 };
 
 /// Runs the stages. The volume is not needed after the call.

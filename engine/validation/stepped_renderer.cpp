@@ -68,7 +68,7 @@ std::vector<SplatSums> drawVoxels(const Device& device, const SteppedVolume& ste
 
   const FrameConstants frame =
       makeFrameConstants(device, steps.volume, steps.table.settings, camera, settings);
-  const SplatTargets targets = makeTargets(device, settings, TargetKind::Sums);
+  const FrameTargets targets = makeTargets(device, settings, TargetKind::Sums);
   SplatPass splats(device, settings.depth);
   Commands commands(device);
   splats.record(commands,

@@ -77,9 +77,9 @@ TEST_F(BadOutput, WhatWasThereSurvivesAFailure) {
 TEST_F(BadOutputDeathTest, FullDisk) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   FV_REQUIRE_LIMITED_DISK(folder.path());
-  const std::string picture = "render procedural:cloud --resolution 24 --size 256x256 --quiet ";
-  expectDiskFull(folder, picture + "@a.exr");
-  expectDiskFull(folder, picture + "@a.png");
+  const std::string image = "render procedural:cloud --resolution 24 --size 256x256 --quiet ";
+  expectDiskFull(folder, image + "@a.exr");
+  expectDiskFull(folder, image + "@a.png");
   expectDiskFull(folder, "generate cloud @a.vdb --resolution 48 --quiet");
 }
 

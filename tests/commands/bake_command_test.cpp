@@ -11,25 +11,25 @@ namespace freevoxels::test {
 namespace {
 
 const std::filesystem::path kData = FREEVOXELS_DATA_DIR;
-constexpr double kSamePicture = 60.0;       // dB
+constexpr double kSameImage = 60.0;     // dB
 constexpr double kSameFromAfar = 55.0;  // of levels of the file in place of levels of the voxels, in dB
 
 class BakeCommand : public CommandTest {
  protected:
-  Image picture(const std::string& name) const { return readExr(folder / name); }
+  Image image(const std::string& name) const { return readExr(folder / name); }
 };
 
-TEST_F(BakeCommand, KeptScalarsDrawTheSamePictureToTheBit) {
+TEST_F(BakeCommand, KeptScalarsDrawTheSameImageToTheBit) {
   expectSuccess(run("bake procedural:cloud @a.fvx --resolution 64 --keep-scalars --quiet"));
   for (const std::string look : {"", " --unlit --draw splats"}) {
     const std::string options = " --size 40x30 --quiet --float" + look;
     expectSuccess(run("render procedural:cloud @original.exr --resolution 64" + options));
     expectSuccess(run("render @a.fvx @baked.exr" + options));
-    EXPECT_EQ(largestDifference(picture("baked.exr"), picture("original.exr")), 0.0) << options;
+    EXPECT_EQ(largestDifference(image("baked.exr"), image("original.exr")), 0.0) << options;
   }
 }
 
-TEST_F(BakeCommand, SixteenBitsDrawTheSamePictureTo60Decibels) {
+TEST_F(BakeCommand, SixteenBitsDrawTheSameImageTo60Decibels) {
   struct Case {
     std::string volume, classification;
   };
@@ -38,7 +38,7 @@ TEST_F(BakeCommand, SixteenBitsDrawTheSamePictureTo60Decibels) {
     expectSuccess(run("bake " + look.volume + " @a.fvx --resolution 64 --quiet " + look.classification));
     expectSuccess(run("render " + look.volume + " @original.exr --resolution 64 --size 48 --quiet --float " + look.classification));
     expectSuccess(run("render @a.fvx @baked.exr --size 48 --quiet --float"));
-    EXPECT_GE(psnr(picture("baked.exr"), picture("original.exr")), kSamePicture) << look.volume;
+    EXPECT_GE(psnr(image("baked.exr"), image("original.exr")), kSameImage) << look.volume;
   }
 }
 
@@ -51,7 +51,7 @@ TEST_F(BakeCommand, AFixedClassificationCannotBeChangedAndAKeptOneCan) {
   const std::string function = R"( --size 24 --unlit --quiet --float --transfer-function {"opacity":[[0,0],[1,0.3]],"range":[0,1]})";
   expectSuccess(run("render procedural:cloud @original.exr --resolution 32" + function));
   expectSuccess(run("render @kept.fvx @kept.exr" + function));
-  EXPECT_EQ(largestDifference(picture("kept.exr"), picture("original.exr")), 0.0);
+  EXPECT_EQ(largestDifference(image("kept.exr"), image("original.exr")), 0.0);
   for (const std::string option : {"--grid density", "--temperature-grid heat", "--albedo-grid color"})
     expectCleanRefusal("render @kept.fvx @a.png --size 16 " + option, ExitCode::Usage, option.substr(0, option.find(' ')));
 }
@@ -89,7 +89,7 @@ TEST_F(BakeCommand, ACoarserLevelIsDrawnWhereItShowsTheSameOrWhereMemoryIsShort)
   expectSuccess(run("render procedural:cloud @original.exr --resolution 128" + options));
   expectSuccess(run("render @a.fvx @far.exr --timings @t.json" + options));
   EXPECT_LT(nlohmann::json::parse(readBytes(folder / "t.json"))["voxels"], 128 * 128 * 128 / 7);
-  EXPECT_GE(psnr(picture("far.exr"), picture("original.exr")), kSameFromAfar);
+  EXPECT_GE(psnr(image("far.exr"), image("original.exr")), kSameFromAfar);
   const ProgramResult limited = run("render @a.fvx @near.exr --size 64 --unlit --memory-limit 4");
   EXPECT_EQ(limited.exitCode, 0) << limited.err;
   EXPECT_NE(limited.err.find("of its resolution"), std::string::npos) << limited.err;
@@ -100,13 +100,13 @@ TEST_F(BakeCommand, WhatDoesNotFitIsDrawnCubeByCubeAsTheWholeVolumeIs) {
   expectSuccess(run("bake procedural:cloud @a.fvx --resolution 192 --quiet"));
   const std::string render = "render @a.fvx --size 40 --camera-position 3,1,2 --look-at 0,0,0 --fov 2 --float ";
   expectSuccess(run(render + "@whole.exr --quiet"));
-  ASSERT_GT(largestDifference(picture("whole.exr"), Image{.size = {40, 40}, .pixels = std::vector<glm::vec4>(1600)}), 0.1);
+  ASSERT_GT(largestDifference(image("whole.exr"), Image{.size = {40, 40}, .pixels = std::vector<glm::vec4>(1600)}), 0.1);
   std::vector<Image> inCubes;
   for (const int limit : {48, 64, 256}) {
     const ProgramResult result = run(render + fmt::format("@limited.exr --verbose --memory-limit {}", limit));
     expectSuccess(result);
-    EXPECT_GE(psnr(picture("limited.exr"), picture("whole.exr")), 60.0) << limit;
-    if (result.err.find("cube by cube: the volume does not fit") != std::string::npos) inCubes.push_back(picture("limited.exr"));
+    EXPECT_GE(psnr(image("limited.exr"), image("whole.exr")), 60.0) << limit;
+    if (result.err.find("cube by cube: the volume does not fit") != std::string::npos) inCubes.push_back(image("limited.exr"));
   }
   ASSERT_GE(inCubes.size(), 2u);
   for (const Image& image : inCubes) EXPECT_EQ(image.pixels, inCubes.front().pixels);
@@ -120,16 +120,16 @@ TEST_F(BakeCommand, SplatsOfWhatDoesNotFitAreDrawnRegionByRegionToTheSameBitsInA
   expectSuccess(run("bake procedural:cloud @a.fvx --resolution 192 --quiet"));
   const std::string render = "render @a.fvx --size 40 --camera-position 3,1,2 --look-at 0,0,0 --fov 2 --draw splats ";
   expectSuccess(run(render + "@shares.exr --share 0/1 --float --quiet"));
-  ASSERT_GT(largestDifference(picture("shares.exr"), Image{.size = {40, 40}, .pixels = std::vector<glm::vec4>(1600)}), 0.1);
+  ASSERT_GT(largestDifference(image("shares.exr"), Image{.size = {40, 40}, .pixels = std::vector<glm::vec4>(1600)}), 0.1);
   for (const int limit : {48, 64}) {
     const ProgramResult result = run(render + fmt::format("@limited.exr --float --verbose --memory-limit {}", limit));
     expectSuccess(result);
     EXPECT_NE(result.err.find("region by region: the volume does not fit"), std::string::npos) << result.err;
-    EXPECT_EQ(largestDifference(picture("limited.exr"), picture("shares.exr")), 0.0) << limit;
+    EXPECT_EQ(largestDifference(image("limited.exr"), image("shares.exr")), 0.0) << limit;
   }
   for (const std::string part : {"0", "1"}) expectSuccess(run(render + "@part" + part + ".exr --quiet --sums --share " + part + "/2"));
   expectSuccess(run("merge @part0.exr @part1.exr @merged.exr --float --quiet"));
-  EXPECT_EQ(largestDifference(picture("merged.exr"), picture("shares.exr")), 0.0);
+  EXPECT_EQ(largestDifference(image("merged.exr"), image("shares.exr")), 0.0);
 }
 
 TEST_F(BakeCommand, BadOutputsAreRefused) {
@@ -145,7 +145,7 @@ TEST_F(BakeCommand, AnInterruptedBakeLeavesNothing) {
   }
 }
 
-TEST_F(BakeCommand, RealFogVolumesDrawTheSamePictureTo60Decibels) {
+TEST_F(BakeCommand, RealFogVolumesDrawTheSameImageTo60Decibels) {
   if (!std::filesystem::is_directory(kData)) GTEST_SKIP() << "there are no real volumes in " << kData;
   for (const std::string name : {"wdas_cloud_sixteenth", "smoke1", "dragon_with_xform"}) {
     const std::string file = (kData / (name + ".vdb")).string();
@@ -154,7 +154,7 @@ TEST_F(BakeCommand, RealFogVolumesDrawTheSamePictureTo60Decibels) {
     expectSuccess(run("bake " + file + " @a.fvx --quiet"));
     expectSuccess(run("render " + file + " @original.exr --size 64 --unlit --quiet --float"));
     expectSuccess(run("render @a.fvx @baked.exr --size 64 --unlit --quiet --float"));
-    EXPECT_GE(psnr(picture("baked.exr"), picture("original.exr")), kSamePicture);
+    EXPECT_GE(psnr(image("baked.exr"), image("original.exr")), kSameImage);
   }
 }
 

@@ -51,7 +51,7 @@ TEST_F(CompareCommand, MeasuresAsJsonAndAsATable) {
     EXPECT_NE(table.out.find(word), std::string::npos) << word << "\n" << table.out;
 }
 
-TEST_F(CompareCommand, EqualPicturesAreEqualInEitherFormat) {
+TEST_F(CompareCommand, EqualImagesAreEqualInEitherFormat) {
   write("a.exr", {0.5f, 0.25f, 0.0f, 0.5f});
   write("b.png", {1.0f, 0.0f, 1.0f, 1.0f});
   write("c.exr", {1.0f, 0.0f, 1.0f, 1.0f});
@@ -66,7 +66,7 @@ TEST_F(CompareCommand, EqualPicturesAreEqualInEitherFormat) {
       run("compare @a.exr @a.exr --fail-above psnr=300 --fail-above rmse=0 --fail-above hdr-flip=0"));
 }
 
-TEST_F(CompareCommand, TheSecondPictureIsTheReference) {
+TEST_F(CompareCommand, TheSecondImageIsTheReference) {
   write("dim.exr", {0.01f, 0.01f, 0.01f, 1.0f});
   write("bright.exr", {10.0f, 10.0f, 10.0f, 1.0f});
   const double ofBright = compare("@dim.exr @bright.exr").at("exposures").at("start");
@@ -128,11 +128,11 @@ TEST_F(CompareCommand, WritesTheDifference) {
   EXPECT_TRUE(std::filesystem::exists(folder / "f.png"));
 }
 
-TEST_F(CompareCommand, RefusesPicturesThatDoNotCompare) {
+TEST_F(CompareCommand, RefusesImagesThatDoNotCompare) {
   write("a.exr", {0.5f, 0.5f, 0.5f, 1.0f});
   write("wide.exr", {0.5f, 0.5f, 0.5f, 1.0f}, {25, 16});
   write("nan.exr", {0.5f, std::numeric_limits<float>::quiet_NaN(), 0.5f, 1.0f});
-  writeBytes(folder / "text.png", "this is no picture");
+  writeBytes(folder / "text.png", "this is no image");
   writeBytes(folder / "short.exr", readBytes(folder / "a.exr").substr(0, 200));
   expectCleanRefusal("compare @a.exr @wide.exr", ExitCode::Input, "24x16");
   expectCleanRefusal("compare @a.exr @nan.exr", ExitCode::Input, "nan.exr': channel G of pixel (0, 0)");

@@ -29,7 +29,7 @@ class EmissionCommand : public CommandTest {
   }
 };
 
-TEST_F(EmissionCommand, TheHeaderRepeatsThePicture) {
+TEST_F(EmissionCommand, TheHeaderRepeatsTheImage) {
   expectSuccess(run(std::string("render @fire.vdb @a.exr @a.png --emission --float") + kSmall));
   const std::string made = readBytes(folder / "a.exr");
   const std::string command = exrAttribute(made, "freevoxels:command");
@@ -39,14 +39,13 @@ TEST_F(EmissionCommand, TheHeaderRepeatsThePicture) {
   Arguments arguments = recordedCommand(made, folder / "b.exr");
   arguments.emplace_back("--quiet");
   expectSuccess(runFreevoxels(arguments));
-  EXPECT_EQ(readPicture(folder / "b.exr").pixels, readPicture(folder / "a.exr").pixels);
+  EXPECT_EQ(readImage(folder / "b.exr").pixels, readImage(folder / "a.exr").pixels);
   float brightest = 0.0f;
-  for (const glm::vec4& pixel : readPicture(folder / "a.exr").pixels)
-    brightest = std::max(brightest, pixel.r - pixel.a);
+  for (const glm::vec4& pixel : readImage(folder / "a.exr").pixels) brightest = std::max(brightest, pixel.r - pixel.a);
   EXPECT_GT(brightest, 0.3f);  // a flame beside the smoke has no alpha
   // Naming the grid is enough, and the oracle sees it too.
   expectSuccess(run(std::string("render @fire.vdb @c.exr --temperature-grid heat --float") + kSmall));
-  EXPECT_EQ(readPicture(folder / "c.exr").pixels, readPicture(folder / "a.exr").pixels);
+  EXPECT_EQ(readImage(folder / "c.exr").pixels, readImage(folder / "a.exr").pixels);
   expectSuccess(run(std::string("oracle @fire.vdb @d.exr --temperature-grid heat") + kSmall));
 }
 
@@ -54,7 +53,7 @@ TEST_F(EmissionCommand, ColoursAreAlbedosAndClippedWithOneWarning) {
   const ProgramResult result = run(std::string("render @fire.vdb @a.exr --albedo-grid Cd --unlit --size 40x40"));
   EXPECT_EQ(result.exitCode, 0) << result.err;
   EXPECT_NE(result.err.find("512 voxels of grid 'Cd'"), std::string::npos) << result.err;
-  const glm::vec4 middle = readPicture(folder / "a.exr").pixels[20 * 40 + 20];
+  const glm::vec4 middle = readImage(folder / "a.exr").pixels[20 * 40 + 20];
   EXPECT_NEAR(middle.r / middle.a, 1.0f, 2e-3f);
   EXPECT_NEAR(middle.g / middle.a, 0.5f, 2e-3f);
   EXPECT_EQ(middle.b, 0.0f);

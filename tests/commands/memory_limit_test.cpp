@@ -1,4 +1,4 @@
-// How much memory a picture takes, and --memory-limit.
+// How much memory an image takes, and --memory-limit.
 
 #include <nlohmann/json.hpp>
 

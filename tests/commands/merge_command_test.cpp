@@ -49,7 +49,7 @@ TEST_F(MergeCommandTest, MissingAndDoubledSharesAreNamed) {
   expectCleanRefusal("merge @p0.exr @p1.exr @p2.exr @again.exr @a.png", ExitCode::Input, "have the same shares, 1/3");
 }
 
-TEST_F(MergeCommandTest, PartsOfOtherPicturesAreRefused) {
+TEST_F(MergeCommandTest, PartsOfOtherImagesAreRefused) {
   renderPart("p0.exr", "0/256");
   const auto expectDifference = [&](const std::string& more, const std::string& mention) {
     renderPart("other.exr", "1/256", more);
@@ -69,12 +69,12 @@ TEST_F(MergeCommandTest, PartsOfOtherPicturesAreRefused) {
   expectCleanRefusal("merge @p0.exr @p1.exr @a.png", ExitCode::Input, "the version of freevoxels");
 }
 
-TEST_F(MergeCommandTest, NamesThatAreNoPartsOrNoPicturesAreRefused) {
+TEST_F(MergeCommandTest, NamesThatAreNoPartsOrNoImagesAreRefused) {
   renderPart("p0.exr", "0/2");
   renderPart("p1.exr", "1/2");
-  expectSuccess(run("render " + std::string(kScene) + "@picture.exr"));
+  expectSuccess(run("render " + std::string(kScene) + "@image.exr"));
   expectCleanRefusal("merge @p0.exr @p1.exr", ExitCode::Usage, "OUT is required");
-  expectCleanRefusal("merge @picture.exr @p1.exr @a.png", ExitCode::Usage, "picture.exr");
+  expectCleanRefusal("merge @image.exr @p1.exr @a.png", ExitCode::Usage, "image.exr");
   expectCleanRefusal("merge @p0.exr @a.png @p1.exr", ExitCode::Usage, "name all parts before the images");
   expectCleanRefusal("merge @p0.exr @p1.exr @a.tif", ExitCode::Usage, "a.tif");
   const std::string bytes = readBytes(folder / "p1.exr");

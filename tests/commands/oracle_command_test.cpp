@@ -1,4 +1,4 @@
-// freevoxels oracle: the scene options of render, another way to the picture.
+// freevoxels oracle: the scene options of render, another way to the image.
 
 #include <algorithm>
 #include <cmath>
@@ -58,7 +58,7 @@ TEST_F(OracleCommand, TheSameCommandGivesTheSameBytes) {
   EXPECT_EQ(first.find("freevoxels render"), std::string::npos);
 }
 
-TEST_F(OracleCommand, SceneOptionsChangeThePicture) {
+TEST_F(OracleCommand, SceneOptionsChangeTheImage) {
   writeBytes(folder / "red.json", R"({"opacity":[[0,0],[1,0.5]],"color":[[0,1,0,0]]})");
   const std::string standard = march("");
   for (const std::string& options :

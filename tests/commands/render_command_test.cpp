@@ -213,8 +213,8 @@ TEST_F(RenderCommand, PaperIsEightOptionsAndYieldsToEach) {
             "yes");
 }
 
-/// It leaks, so that it is another picture, and has no use for the table.
-TEST_F(RenderCommand, SortedIsAnotherPictureWithoutTheTable) {
+/// It leaks, so that it is another image, and has no use for the table.
+TEST_F(RenderCommand, SortedIsAnotherImageWithoutTheTable) {
   const auto pixels = [&](const std::string& options) {
     render(options + " --unlit --float --aov depth");
     return readExr(folder / "a.exr");
@@ -251,7 +251,7 @@ TEST_F(RenderCommand, CameraOptionsMoveTheCamera) {
     EXPECT_NE(standard, render(options)) << options;
 }
 
-TEST_F(RenderCommand, TransferFunctionColoursThePicture) {
+TEST_F(RenderCommand, TransferFunctionColoursTheImage) {
   writeBytes(folder / "red.json", R"({"opacity":[[0,0],[1,0.5]],"color":[[0,1,0,0],[1,1,0,0]]})");
   render("--transfer-function " + (folder / "red.json").string());
   float red = 0.0f, green = 0.0f;

@@ -1,4 +1,4 @@
-// Scenes: the same pictures as the options make, from a file; what is wrong with one is said.
+// Scenes: the same images as the options make, from a file; what is wrong with one is said.
 
 #include <fmt/format.h>
 
@@ -185,7 +185,7 @@ TEST_F(SceneCommand, ExamplesAreRight) {
   }
 }
 
-/// Every option of a picture is explained, and nothing else: no key is forgotten.
+/// Every option of an image is explained, and nothing else: no key is forgotten.
 TEST_F(SceneCommand, EveryKeyIsInTheirReadme) {
   const std::string readme = readBytes(kScenes + "/README.md");
   std::set<std::string> explained, known{"volume", "lights"};
@@ -274,7 +274,7 @@ TEST_F(SceneCommand, BadEnvironmentsAreRefused) {
   expectBad("--environment @e.exr", ExitCode::Input, "twice as wide as high");
   write({4, 2}, INFINITY);
   expectBad("--environment @e.exr", ExitCode::Input, "radiance is finite");
-  writeBytes(folder / "e.exr", "no picture");
+  writeBytes(folder / "e.exr", "no image");
   expectBad("--environment @e.exr", ExitCode::Input, "e.exr");
   expectBad("--environment-rotation 3", ExitCode::Usage, "--environment-rotation");
   expectBad("--environment-intensity 3", ExitCode::Usage, "--environment-intensity");

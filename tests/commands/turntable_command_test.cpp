@@ -1,4 +1,4 @@
-// freevoxels turntable: the options of render, a picture a frame.
+// freevoxels turntable: the options of render, an image a frame.
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -81,7 +81,7 @@ TEST_F(TurntableCommand, AFullTurnComesBackToTheFirstFrame) {
   EXPECT_GT(largestDifference(readExr(folder / "a0.exr"), readExr(folder / "a1.exr")), 1e-2);
 }
 
-TEST_F(TurntableCommand, OneFrameIsThePictureOfRender) {
+TEST_F(TurntableCommand, OneFrameIsTheImageOfRender) {
   turn("@#.exr --frames 1 --float");
   expectSuccess(run(std::string("render procedural:cloud @r.exr --float") + kSmall));
   EXPECT_TRUE(readBytes(folder / "0.exr") == readBytes(folder / "r.exr"));

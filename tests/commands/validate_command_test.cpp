@@ -42,7 +42,7 @@ TEST_F(ValidateCommand, PassesOnSmallVolumesAndSaysSoLineByLine) {
   EXPECT_EQ(linesWith(result.out, "Invariances: "), 8u);
   EXPECT_EQ(linesWith(result.out, "Emission: "), 1u);
   // Four procedural volumes, their summary, and the file.
-  EXPECT_EQ(linesWith(result.out, "Picture quality: "), 6u);
+  EXPECT_EQ(linesWith(result.out, "Image quality: "), 6u);
   // Figures 2, 6 and 7, and Eq. 9.
   EXPECT_EQ(linesWith(result.out, "Subr et al. 2007, "), 4u);
   EXPECT_NE(result.out.find("cloud.vdb density, "), std::string::npos) << result.out;

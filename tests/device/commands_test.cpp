@@ -161,8 +161,8 @@ TEST_F(FrameTest, AnImageOnTheDeviceIsTheImageOfTheHost) {
 TEST_F(FrameTest, TargetsAreDrawnIntoAgainWhenNobodyHoldsThem) {
   for (FrameSettings settings : kindsOfFrames()) {
     Renderer renderer(device(), volume_, {.densityScale = 6.0}, {});
-    std::shared_ptr<const SplatTargets> held = renderer.renderOnDevice(camera_, settings);
-    const SplatTargets* const first = held.get();
+    std::shared_ptr<const FrameTargets> held = renderer.renderOnDevice(camera_, settings);
+    const FrameTargets* const first = held.get();
     const Image image = downloadImage(device(), *held);
     const auto other = renderer.renderOnDevice(framingCamera(volume_, 90.0, 0.0, 1.4, {}), settings);
     EXPECT_NE(other.get(), first);

@@ -1,4 +1,4 @@
-// What a frame leaves out: pictures of the rest are those of everything, whatever hides or ends where.
+// What a frame leaves out: images of the rest are those of everything, whatever hides or ends where.
 
 #include <fmt/format.h>
 
@@ -39,14 +39,13 @@ class CullingTest : public DeviceTest {
     std::uint64_t voxels = 0;
   };
   /// At the default threshold.
-  static Outcome expectSamePicture(Renderer& renderer, const Camera& camera, FrameSettings settings,
-                                   const std::string& name) {
+  static Outcome expectSameImage(Renderer& renderer, const Camera& camera, FrameSettings settings, const std::string& name) {
     settings.culling = false;
     const Image expected = renderer.render(camera, settings);
     settings.culling = true;
-    const Image picture = renderer.render(camera, settings);
-    EXPECT_LE(largestDifference(picture, expected), kCullingDifference) << name;
-    EXPECT_GE(psnr(picture, expected), kCullingPsnr) << name;
+    const Image image = renderer.render(camera, settings);
+    EXPECT_LE(largestDifference(image, expected), kCullingDifference) << name;
+    EXPECT_GE(psnr(image, expected), kCullingPsnr) << name;
     return {renderer.cutCounts(), *renderer.occupiedVoxelCount()};
   }
 };
@@ -80,9 +79,9 @@ TEST_F(CullingTest, WhatIsLeftOutDoesNotShowFromAnywhere) {
         const FrameSettings settings{.size = {112, 96},
                                      .composite = i == 2 ? Composite::Additive : Composite::Normalised,
                                      .lod = i == 3 ? 3.0f : 0.0f};
-        hidden += expectSamePicture(renderer, camera, settings,
-                                    fmt::format("{}, camera {}, {} directions, code {}", subject.name, i,
-                                                directionCount(table.directions), int(table.code)))
+        hidden += expectSameImage(renderer, camera, settings,
+                                  fmt::format("{}, camera {}, {} directions, code {}", subject.name, i, directionCount(table.directions),
+                                              int(table.code)))
                       .counts.hidden;
       }
     }
@@ -94,8 +93,7 @@ TEST_F(CullingTest, MostOfAnOpaqueHeadIsNeverDrawn) {
   // Each voxel by itself, whatever the resolution.
   scene.classification.transferFunction->unitDistance = scene.volume.voxelSize();
   Renderer renderer(device(), scene.volume, scene.classification, {});
-  const Outcome outcome =
-      expectSamePicture(renderer, viewCamera(scene.volume, {}), {.size = {256, 256}}, "opaque head");
+  const Outcome outcome = expectSameImage(renderer, viewCamera(scene.volume, {}), {.size = {256, 256}}, "opaque head");
   EXPECT_LT(double(drawnBlocks(outcome.counts)), 0.30 * double(outcome.voxels));
 }
 
@@ -120,7 +118,7 @@ TEST_F(CullingTest, AHoleThatNoDirectionOfTheTableSeesShows) {
   const glm::dvec3 position(volume.indexToWorld * glm::dvec4(end, 1.0));
   const Camera camera{.position = position + 2.0 * along, .lookAt = position, .verticalFov = 30.0};
   const FrameSettings settings{.size = {161, 161}};
-  const Outcome outcome = expectSamePicture(renderer, camera, settings, "hole");
+  const Outcome outcome = expectSameImage(renderer, camera, settings, "hole");
   EXPECT_GT(outcome.counts.hidden, 100u);
   const glm::vec4 middle = renderer.render(camera, settings).pixels[80 * 161 + 80];
   EXPECT_GT(middle.r, 0.03f);  // the bottom's voxels have some of the walls' blue
@@ -137,10 +135,10 @@ TEST_F(CullingTest, WhatIsOutsideOfTheImageIsNotDrawn) {
       camera.verticalFov /= zoom;
       camera.orthographicHeight /= zoom;
       FrameSettings settings{.size = {90, 60}, .lod = 0.0f, .cullThreshold = 0.0f};
-      const Image picture = renderer.render(camera, settings);
+      const Image image = renderer.render(camera, settings);
       const CutCounts counts = renderer.cutCounts();
       settings.culling = false;
-      EXPECT_LE(largestDifference(picture, renderer.render(camera, settings)), kFrustumDifference);
+      EXPECT_LE(largestDifference(image, renderer.render(camera, settings)), kFrustumDifference);
       EXPECT_LT(double(drawnBlocks(counts)), (zoom > 2.0 ? 0.2 : 1.0) * double(*renderer.occupiedVoxelCount()));
       EXPECT_GT(counts.outside, 0u);
       EXPECT_EQ(counts.hidden, 0u);
@@ -171,7 +169,7 @@ TEST_F(CullingTest, CountsAddUp) {
   EXPECT_EQ(renderer.cutCounts().drawn, std::vector{*renderer.occupiedVoxelCount()});
 }
 
-/// The table counts from the outside; rays from the eye have no bounds; sorted pictures are of all voxels;
+/// The table counts from the outside; rays from the eye have no bounds; sorted images are of all voxels;
 /// and where nothing is dark in all of four directions there is nothing to ask.
 TEST_F(CullingTest, NothingIsHiddenWhereTheTableCannotTell) {
   const glm::ivec3 dimensions(40);

@@ -45,13 +45,12 @@ class EmissionTest : public SplatTest {
     const std::vector<float> device = RendererStages(renderer).downloadExtinction();
     return {device.begin(), device.end()};
   }
-  struct Frame {
+  struct View {
     Camera camera;
     FrameSettings settings;
   };
   /// Given the light that the device keeps, which has nine bits.
-  static void expectSamePictures(const Volume& volume, const Classification& classification,
-                                 const std::vector<Frame>& frames) {
+  static void expectSameImages(const Volume& volume, const Classification& classification, const std::vector<View>& frames) {
     Renderer renderer(device(), volume, classification, {});
     const auto extinction = extinctionOf(renderer);
     const auto table = RendererStages(renderer).downloadTable();
@@ -60,7 +59,7 @@ class EmissionTest : public SplatTest {
     for (std::size_t i = 0; i < frames.size(); ++i) {
       SCOPED_TRACE(i);
       const auto& [camera, settings] = frames[i];
-      const Image picture = renderer.render(camera, settings);
+      const Image image = renderer.render(camera, settings);
       const auto sums = referenceBlockSums(volume, classification,
                                            {.extinction = extinction,
                                             .table = table,
@@ -69,10 +68,10 @@ class EmissionTest : public SplatTest {
                                             .emission = emission},
                                            camera, settings, RendererStages(renderer).downloadDrawnBlocks());
       const Image expected = referenceResolve(sums, settings);
-      EXPECT_LE(largestDifference(picture, expected), 2e-3);
-      EXPECT_GE(psnr(picture, expected), 70.0);
+      EXPECT_LE(largestDifference(image, expected), 2e-3);
+      EXPECT_GE(psnr(image, expected), 70.0);
       float brightest = 0.0f;
-      for (const glm::vec4& pixel : picture.pixels) brightest = std::max(brightest, pixel.r);
+      for (const glm::vec4& pixel : image.pixels) brightest = std::max(brightest, pixel.r);
       EXPECT_GT(brightest, 0.8f);  // it shines
     }
   }
@@ -111,11 +110,11 @@ TEST_F(EmissionTest, EveryCompositeAndLookUpMatchesTheReference) {
   FrameSettings lit{.size = {40, 32}, .lod = 0.0f, .lighting = Lighting{.ambient = glm::dvec3(0.5)}};
   lit.lighting->lights.push_back({.place = {1.0, 0.7, 0.2}});
   lit.lighting->surface = 0.5;
-  expectSamePictures(volume, hot(volume),
-                     {{camera, {.size = {60, 48}, .lod = 0.0f}},
-                      {camera, {.size = {60, 48}, .composite = Composite::Additive, .lod = 0.0f}},
-                      {camera, {.size = {40, 32}, .attenuation = AttenuationLookup::Exact, .lod = 0.0f}},
-                      {camera, lit}});
+  expectSameImages(volume, hot(volume),
+                   {{camera, {.size = {60, 48}, .lod = 0.0f}},
+                    {camera, {.size = {60, 48}, .composite = Composite::Additive, .lod = 0.0f}},
+                    {camera, {.size = {40, 32}, .attenuation = AttenuationLookup::Exact, .lod = 0.0f}},
+                    {camera, lit}});
 }
 
 /// No extinction at all: sums without E and T, and blocks of nothing but light.
@@ -126,16 +125,16 @@ TEST_F(EmissionTest, FlamesWithoutSmokeMatchTheReference) {
   Camera inside = camera;
   inside.position = {0.02, 0.03, 0.01};
   inside.lookAt = {0.3, 0.1, -0.2};
-  expectSamePictures(volume, classification,
-                     {{camera, {.size = {40, 40}, .lod = 0.0f}},
-                      {camera, {.size = {40, 40}, .lod = 9.0f}},
-                      {inside, {.size = {40, 40}}},
-                      {inside, {.size = {40, 40}, .attenuation = AttenuationLookup::Bilinear}}});
+  expectSameImages(volume, classification,
+                   {{camera, {.size = {40, 40}, .lod = 0.0f}},
+                    {camera, {.size = {40, 40}, .lod = 9.0f}},
+                    {inside, {.size = {40, 40}}},
+                    {inside, {.size = {40, 40}, .attenuation = AttenuationLookup::Bilinear}}});
   Renderer renderer(device(), volume, classification, {});
   for (const glm::vec4& pixel : renderer.render(camera, {.size = {40, 40}}).pixels) EXPECT_EQ(pixel.a, 0.0f);
 }
 
-TEST_F(EmissionTest, LevelsAndTheirPicturesMatchTheReference) {
+TEST_F(EmissionTest, LevelsAndTheirImagesMatchTheReference) {
   const Volume volume = hotVolume(true, {19, 23, 17});
   const Classification classification = hot(volume);
   Renderer renderer(device(), volume, classification, {});
@@ -144,21 +143,20 @@ TEST_F(EmissionTest, LevelsAndTheirPicturesMatchTheReference) {
   for (const Check& check : compareLevels(volume, voxels, RendererStages(renderer).downloadLevels(), {}, "depth8"))
     EXPECT_TRUE(check.passed()) << check.name << ": " << check.figure << " " << check.where;
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
-  expectSamePictures(volume, classification,
-                     {{camera, {.size = {30, 30}, .lod = 6.0f, .culling = false}},
-                      {camera, {.size = {30, 30}, .lod = 20.0f, .culling = false}}});
+  expectSameImages(
+      volume, classification,
+      {{camera, {.size = {30, 30}, .lod = 6.0f, .culling = false}}, {camera, {.size = {30, 30}, .lod = 20.0f, .culling = false}}});
 }
 
-TEST_F(EmissionTest, SortedPicturesMatchTheReference) {
+TEST_F(EmissionTest, SortedImagesMatchTheReference) {
   const Volume volume = hotVolume(true);
   const Classification classification = hot(volume);
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
   const FrameSettings settings{.size = {50, 50}, .composite = Composite::Sorted};
   Renderer renderer(device(), volume, classification, {});
-  const Image picture = renderer.render(camera, settings);
-  const Image expected =
-      referenceSortedPicture(volume, classification, camera, settings, RendererStages(renderer).downloadBlockList());
-  EXPECT_GE(psnr(picture, expected), 60.0);
+  const Image image = renderer.render(camera, settings);
+  const Image expected = referenceSortedPicture(volume, classification, camera, settings, RendererStages(renderer).downloadBlockList());
+  EXPECT_GE(psnr(image, expected), 60.0);
 }
 
 /// What freevoxels-validate says of them.
@@ -187,10 +185,10 @@ TEST_F(EmissionTest, CullingLeavesALampInSmokeThere) {
   Renderer renderer(device(), volume, classification, {});
   const Camera camera = framingCamera(volume, 20.0, 15.0, 1.0, {});
   FrameSettings settings{.size = {64, 64}};
-  const Image picture = renderer.render(camera, settings);
+  const Image image = renderer.render(camera, settings);
   settings.culling = false;
   const Image expected = renderer.render(camera, settings);
-  EXPECT_LE(largestDifference(picture, expected), 1e-2);
+  EXPECT_LE(largestDifference(image, expected), 1e-2);
   EXPECT_GT(expected.pixels[32 * 64 + 32].r, 1.5f);
 }
 
@@ -209,12 +207,12 @@ TEST_F(EmissionTest, AlbedoGridsMatchTheReference) {
   const auto levels = RendererStages(renderer).downloadLevels();
   for (const float lod : {0.0f, 9.0f}) {
     const FrameSettings settings{.size = {40, 40}, .lod = lod, .culling = false};
-    const Image picture = renderer.render(camera, settings);
+    const Image image = renderer.render(camera, settings);
     const auto sums =
         referenceBlockSums(volume, classification,
                            {.extinction = extinction, .table = table, .tableSettings = {}, .coarser = levels},
                            camera, settings, RendererStages(renderer).downloadDrawnBlocks());
-    EXPECT_GE(psnr(picture, referenceResolve(sums, settings)), 70.0);
+    EXPECT_GE(psnr(image, referenceResolve(sums, settings)), 70.0);
   }
   const LevelData voxels = referenceVoxelLevel(volume, classification, extinction, table);
   for (const Check& check : compareLevels(volume, voxels, levels, {}, "depth8"))

@@ -33,8 +33,8 @@ TEST_F(EyeInsideTest, MatchesTheReferenceWhereverItIs) {
   const Volume v = volume(true);
   const glm::dvec3 directions[] = {{1.0, 0.3, -0.4}, {-0.2, -1.0, 0.3}, {0.1, 0.2, 1.0}};
   for (const glm::dvec3 direction : directions) {
-    expectSamePicture(v, at(v, {5.31, 6.63, 4.17}, direction), {.size = {48, 40}});
-    expectSamePicture(v, at(v, {-1.17, 5.93, 3.36}, direction), {.size = {48, 40}});  // kernels reach it
+    expectSameImage(v, at(v, {5.31, 6.63, 4.17}, direction), {.size = {48, 40}});
+    expectSameImage(v, at(v, {-1.17, 5.93, 3.36}, direction), {.size = {48, 40}});  // kernels reach it
   }
 }
 
@@ -47,28 +47,26 @@ TEST_F(EyeInsideTest, MatchesTheReferenceNearTheBox) {
     const double share = rayShare(AttenuationLookup::Auto, camera, v.dimensions, v.indexToWorld);
     EXPECT_GT(share, 0.1);
     EXPECT_LT(share, 0.9);
-    expectSamePicture(v, camera, {.size = {40, 32}});
-    expectSamePicture(v, camera, {.size = {40, 32}, .composite = Composite::Additive, .gradient = false});
+    expectSameImage(v, camera, {.size = {40, 32}});
+    expectSameImage(v, camera, {.size = {40, 32}, .composite = Composite::Additive, .gradient = false});
   }
 }
 
-/// Through the face, and in front of it: the picture changes as that of rays alone does, and by no step from
+/// Through the face, and in front of it: the image changes as that of rays alone does, and by no step from
 /// the table's.
 TEST_F(EyeInsideTest, NoStepShowsOnTheWayIntoTheBox) {
   const QualityScene scene =
       makeQualityScene({"head", QualityColor::Bone, false}, 32, makeProcedural("head", 32));
   Renderer renderer(device(), scene.volume, scene.classification, {});
-  std::vector<Image> pictures, exact, table;
+  std::vector<Image> images, exact, table;
   for (const double out : {1e-3, -1e-3, 0.1, 0.102}) {  // of the box's edge
     const glm::dvec3 eye(15.1, 16.3, 31.5 + 32.0 * out);
     const Camera camera = at(scene.volume, eye, {0.05, -0.1, -1.0});
-    pictures.push_back(renderer.render(camera, {.size = {64, 64}}));
+    images.push_back(renderer.render(camera, {.size = {64, 64}}));
     exact.push_back(renderer.render(camera, {.size = {64, 64}, .attenuation = AttenuationLookup::Exact}));
     table.push_back(renderer.render(camera, {.size = {64, 64}, .attenuation = AttenuationLookup::Bilinear}));
   }
-  const auto wrong = [&](std::size_t a, std::size_t b) {
-    return wrongChange(pictures[a], pictures[b], exact[a], exact[b]);
-  };
+  const auto wrong = [&](std::size_t a, std::size_t b) { return wrongChange(images[a], images[b], exact[a], exact[b]); };
   for (const std::size_t i : {0u, 2u})
     EXPECT_LT(wrong(i, i + 1), 0.1 * compareImages(table[i], exact[i]).rmse) << i;
 }
@@ -99,26 +97,25 @@ TEST_F(EyeInsideTest, MatchesTheReferenceAtPlacesOfTheLattice) {
   const Volume v = randomVolume(kSize, glm::dmat4(1.0), 0.6, 1.0);
   for (const glm::dvec3 place :
        {glm::dvec3(5.0, 7.0, 4.0), {5.5, 6.5, 3.5}, {5.0, 6.5, 4.25}, {-0.5, 6.25, 4.125}, {10.5, 13.5, 8.5}})
-    expectSamePicture(v, at(v, place, glm::dvec3(5.0, 6.0, 4.0) - 0.5 * place), {.size = {40, 32}});
+    expectSameImage(v, at(v, place, glm::dvec3(5.0, 6.0, 4.0) - 0.5 * place), {.size = {40, 32}});
 }
 
 TEST_F(EyeInsideTest, MatchesTheReferenceInAllDirectionsAndMethods) {
   const Volume v = volume(false);
   const glm::dvec3 place(5.31, 6.63, 4.17);
   for (const glm::dvec3 direction : {glm::dvec3(1, 0.01, 0), {-1, 0.01, 0}, {0.01, 0, 1}, {0.01, 0, -1}}) {
-    expectSamePicture(
-        v, at(v, place, direction),
-        {.size = {40, 40}, .composite = Composite::Additive, .attenuation = AttenuationLookup::Exact});
+    expectSameImage(v, at(v, place, direction),
+                    {.size = {40, 40}, .composite = Composite::Additive, .attenuation = AttenuationLookup::Exact});
     for (const AttenuationLookup lookup : {AttenuationLookup::Bilinear, AttenuationLookup::Nearest})
-      expectSamePicture(v, at(v, place, direction), {.size = {40, 40}, .attenuation = lookup});
+      expectSameImage(v, at(v, place, direction), {.size = {40, 40}, .attenuation = lookup});
   }
-  expectSamePicture(v, at(v, place, {1, 0.5, 0}, 150.0), {.size = {64, 48}, .gradient = false});
+  expectSameImage(v, at(v, place, {1, 0.5, 0}, 150.0), {.size = {64, 48}, .gradient = false});
 }
 
 /// Voxels just in front of the eye plane overflow nothing, and voxels beside the image stay beside it.
-TEST_F(EyeInsideTest, LargePicturesOfNearVoxelsMatchTheReference) {
+TEST_F(EyeInsideTest, LargeImagesOfNearVoxelsMatchTheReference) {
   const Volume v = volume(false);
-  expectSamePicture(v, at(v, {5.31, 6.63, 4.17}, {1.0, 0.2, 0.1}, 20.0), {.size = {200, 160}});
+  expectSameImage(v, at(v, {5.31, 6.63, 4.17}, {1.0, 0.2, 0.1}, 20.0), {.size = {200, 160}});
 }
 
 TEST_F(EyeInsideTest, AnOrthographicEyePlaneInsideMatchesTheReference) {
@@ -126,7 +123,7 @@ TEST_F(EyeInsideTest, AnOrthographicEyePlaneInsideMatchesTheReference) {
   Camera camera = at(v, {5.31, 6.63, 4.17}, {0.5, 0.3, -1.0});
   camera.orthographic = true;
   camera.orthographicHeight = 1.0;
-  expectSamePicture(v, camera, {.size = {60, 60}});
+  expectSameImage(v, camera, {.size = {60, 60}});
 }
 
 TEST_F(EyeInsideTest, NothingBehindTheEyeShows) {
@@ -153,13 +150,13 @@ TEST_F(EyeInsideTest, AHomogeneousCubeIsBeerLambertFromWithin) {
   for (const glm::dvec3 place : {glm::dvec3(11.5), {12.0, 12.0, 12.0}, {9.3, 13.6, 10.8}}) {
     const Camera camera = at(v, place, {0.0, 0.0, -1.0}, 50.0);
     const glm::ivec2 size(40);
-    const Image picture = renderer.render(camera, {.size = size});
+    const Image image = renderer.render(camera, {.size = size});
     const PixelRays rays = pixelRays(camera, size, v.indexToWorld);
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x) {
         const glm::dvec3 ray = rays.direction + (x + 0.5) * rays.directionX + (y + 0.5) * rays.directionY;
         const double length = (rays.origin.z + 0.5) / -ray.z * glm::length(glm::dmat3(v.indexToWorld) * ray);
-        const glm::vec4 pixel = picture.pixels[std::size_t(y * size.x + x)];
+        const glm::vec4 pixel = image.pixels[std::size_t(y * size.x + x)];
         ASSERT_NEAR(pixel.a, -std::expm1(-sigma * length), 2e-3) << x << "," << y;
         ASSERT_NEAR(pixel.g, 0.5 * pixel.a, 1e-5);
       }
@@ -184,13 +181,13 @@ TEST_F(EyeInsideTest, InAnOpaqueCavityOnlyItsInnerWallShows) {
   const glm::ivec2 size(40);
   for (const glm::dvec3 direction : {glm::dvec3(1.0, 0.2, 0.1), {-0.5, -1.0, 0.6}}) {
     const Camera camera = at(v, {10.8, 11.9, 12.4}, direction, 80.0);
-    const Image picture = renderer.render(camera, {.size = size});
-    for (const glm::vec4& pixel : picture.pixels) {
+    const Image image = renderer.render(camera, {.size = size});
+    for (const glm::vec4& pixel : image.pixels) {
       ASSERT_GT(pixel.a, 0.999f);
       ASSERT_GT(pixel.r, 0.85f);
       ASSERT_LT(pixel.b, 0.05f);
     }
-    EXPECT_GE(psnr(picture, renderOracle(v, classification, camera, {.size = size}).image), 40.0);
+    EXPECT_GE(psnr(image, renderOracle(v, classification, camera, {.size = size}).image), 40.0);
   }
 }
 
@@ -200,24 +197,21 @@ TEST_F(EyeInsideTest, ASingleVoxelSeenFromItsMiddleIsHalfAVoxelDeep) {
   Renderer renderer(device(), v, physical(0.5), {});
   for (const glm::dvec3 direction : {glm::dvec3(1.0, 0.2, 0.1), {-0.1, -1.0, 0.3}})
     for (const AttenuationLookup lookup : {AttenuationLookup::Auto, AttenuationLookup::Nearest}) {
-      const Image picture =
-          renderer.render(at(v, glm::dvec3(0.0), direction), {.size = {9, 9}, .attenuation = lookup});
-      for (const glm::vec4& pixel : picture.pixels)
-        ASSERT_NEAR(pixel.a, -std::expm1(-0.5 * kFootprintPeak / 2.0), 1e-5);
+      const Image image = renderer.render(at(v, glm::dvec3(0.0), direction), {.size = {9, 9}, .attenuation = lookup});
+      for (const glm::vec4& pixel : image.pixels) ASSERT_NEAR(pixel.a, -std::expm1(-0.5 * kFootprintPeak / 2.0), 1e-5);
     }
 }
 
-/// No step of a hundredth of a voxel changes the picture more than its neighbours do.
-TEST_F(EyeInsideTest, SmallStepsOfTheEyeChangeThePictureALittle) {
+/// No step of a hundredth of a voxel changes the image more than its neighbours do.
+TEST_F(EyeInsideTest, SmallStepsOfTheEyeChangeTheImageALittle) {
   const Volume v = volume(false);
   Renderer renderer(device(), v, physical(20.0), {});
-  std::vector<Image> pictures;
+  std::vector<Image> images;
   for (int i = 0; i < 60; ++i)  // past voxels' centres and the planes between them
-    pictures.push_back(
-        renderer.render(at(v, {4.7 + 0.01 * i, 6.8 + 0.01 * i, 4.0}, {1.0, 0.2, 0.1}), {.size = {24, 24}}));
+    images.push_back(renderer.render(at(v, {4.7 + 0.01 * i, 6.8 + 0.01 * i, 4.0}, {1.0, 0.2, 0.1}), {.size = {24, 24}}));
   double least = 1.0, most = 0.0;
-  for (std::size_t i = 1; i < pictures.size(); ++i) {
-    const double change = largestDifference(pictures[i], pictures[i - 1]);
+  for (std::size_t i = 1; i < images.size(); ++i) {
+    const double change = largestDifference(images[i], images[i - 1]);
     least = std::min(least, change);
     most = std::max(most, change);
   }

@@ -44,12 +44,12 @@ class HierarchyTest : public DeviceTest {
   }
 
   /// Drawn by both from the device's levels and its choice of blocks, of which there are several levels.
-  void expectReferencePicture(const Volume& volume, const Classification& classification,
-                              const Camera& camera, FrameSettings settings, const TableSettings& table = {}) {
+  void expectReferenceImage(const Volume& volume, const Classification& classification, const Camera& camera, FrameSettings settings,
+                            const TableSettings& table = {}) {
     settings.depth = true;
     settings.culling = false;
     Renderer renderer(device(), volume, classification, table);
-    const Image picture = renderer.render(camera, settings);
+    const Image image = renderer.render(camera, settings);
     const std::vector<Block> drawn = RendererStages(renderer).downloadDrawnBlocks();
     EXPECT_GT(drawn.back().level, 0);
     const LevelData voxels = voxelLevel(renderer, volume, classification);
@@ -59,9 +59,9 @@ class HierarchyTest : public DeviceTest {
         {.extinction = voxels.extinction, .table = voxels.table, .tableSettings = table, .coarser = levels},
         camera, settings, drawn);
     const Image expected = referenceResolve(sums, settings);
-    EXPECT_LE(largestDifference(picture, expected), 1e-4);
-    EXPECT_LE(worstRelativeDepth(picture, expected), 1e-3);
-    EXPECT_GE(psnr(picture, expected), 90.0);
+    EXPECT_LE(largestDifference(image, expected), 1e-4);
+    EXPECT_LE(worstRelativeDepth(image, expected), 1e-3);
+    EXPECT_GE(psnr(image, expected), 90.0);
   }
 };
 
@@ -183,18 +183,14 @@ TEST_F(HierarchyTest, CutsMatchTheReference) {
   Camera near = framingCamera(volume, 35.0, 25.0, 1.2, {});
   near.position = near.lookAt + 0.7 * (near.position - near.lookAt);
   for (const AttenuationLookup attenuation : {AttenuationLookup::Bilinear, AttenuationLookup::Exact})
-    expectReferencePicture(volume, coloured(volume), near,
-                           {.size = {60, 50}, .attenuation = attenuation, .lod = 4.0f});
-  expectReferencePicture(volume, {.densityScale = 9.0}, near,
-                         {.size = {60, 50}, .composite = Composite::Additive, .gradient = false, .lod = 3.0f},
-                         {.code = AttenuationCode::Linear8,
-                          .pathLengthCorrection = false,
-                          .directions = DirectionSet::Directions98});
-  expectReferencePicture(volume, {.densityScale = 9.0}, near, {.size = {14, 12}});
+    expectReferenceImage(volume, coloured(volume), near, {.size = {60, 50}, .attenuation = attenuation, .lod = 4.0f});
+  expectReferenceImage(volume, {.densityScale = 9.0}, near,
+                       {.size = {60, 50}, .composite = Composite::Additive, .gradient = false, .lod = 3.0f},
+                       {.code = AttenuationCode::Linear8, .pathLengthCorrection = false, .directions = DirectionSet::Directions98});
+  expectReferenceImage(volume, {.densityScale = 9.0}, near, {.size = {14, 12}});
   for (const AttenuationLookup attenuation : {AttenuationLookup::Bilinear, AttenuationLookup::Exact})
-    expectReferencePicture(volume, {.densityScale = 9.0},
-                           framingCamera(volume, -110.0, -40.0, 1.0, {.orthographic = true}),
-                           {.size = {50, 50}, .attenuation = attenuation, .lod = 5.0f});
+    expectReferenceImage(volume, {.densityScale = 9.0}, framingCamera(volume, -110.0, -40.0, 1.0, {.orthographic = true}),
+                         {.size = {50, 50}, .attenuation = attenuation, .lod = 5.0f});
 }
 
 TEST_F(HierarchyTest, TheSameCutTwiceIsBitIdentical) {

@@ -1,4 +1,4 @@
-// Lit pictures on the device: against the double-precision reference, against closed forms, and what lights
+// Lit images on the device: against the double-precision reference, against closed forms, and what lights
 // do to each other.
 
 #include <cmath>
@@ -44,31 +44,28 @@ class LightingTest : public SplatTest {
 TEST_F(LightingTest, EveryKindOfLightMatchesTheReference) {
   const Volume v = volume(true);
   for (const Composite composite : {Composite::Normalised, Composite::Additive})
-    expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.25, {}),
-                      {.size = {75, 60}, .composite = composite, .lighting = everything()});
+    expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.25, {}), {.size = {75, 60}, .composite = composite, .lighting = everything()});
 }
 
 TEST_F(LightingTest, EveryLookUpMatchesTheReference) {
   const Volume v = volume(true);
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
-  expectSamePicture(v, camera,
-                    {.size = {50, 50}, .attenuation = AttenuationLookup::Exact, .lighting = everything()});
-  expectSamePicture(v, camera, {.size = {50, 50}, .lighting = everything()},
-                    {.directions = DirectionSet::Directions98});
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {.orthographic = true}),
-                    {.size = {50, 50},
-                     .composite = Composite::Additive,
-                     .attenuation = AttenuationLookup::Nearest,
-                     .gradient = false,
-                     .lighting = everything()},
-                    {AttenuationCode::Linear8, false});
+  expectSameImage(v, camera, {.size = {50, 50}, .attenuation = AttenuationLookup::Exact, .lighting = everything()});
+  expectSameImage(v, camera, {.size = {50, 50}, .lighting = everything()}, {.directions = DirectionSet::Directions98});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {.orthographic = true}),
+                  {.size = {50, 50},
+                   .composite = Composite::Additive,
+                   .attenuation = AttenuationLookup::Nearest,
+                   .gradient = false,
+                   .lighting = everything()},
+                  {AttenuationCode::Linear8, false});
 }
 
 TEST_F(LightingTest, SurfacesMatchTheReference) {
   const Volume v = volume(true);
   Lighting lighting = everything();
   lighting.surface = 0.8;
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
 }
 
 /// For every look-up, with surfaces and an environment, and several orders of scattering.
@@ -81,10 +78,10 @@ TEST_F(LightingTest, TintsMatchTheReference) {
   lighting.scattering = 3;
   lighting.scatteringScale = 0.6;
   lighting.environment = std::make_shared<Environment>(makeSky(64));
-  expectSamePicture(v, camera, {.size = {50, 50}, .lighting = lighting});
-  expectSamePicture(v, camera, {.size = {50, 50}, .lighting = lighting}, {.code = AttenuationCode::Linear8});
+  expectSameImage(v, camera, {.size = {50, 50}, .lighting = lighting});
+  expectSameImage(v, camera, {.size = {50, 50}, .lighting = lighting}, {.code = AttenuationCode::Linear8});
   lighting.attenuation = LightAttenuation::Exact;
-  expectSamePicture(v, camera, {.size = {50, 50}, .lighting = lighting});
+  expectSameImage(v, camera, {.size = {50, 50}, .lighting = lighting});
 }
 
 TEST_F(LightingTest, ATintLetsNothingThroughAnOpaqueWall) {
@@ -111,10 +108,10 @@ TEST_F(LightingTest, EnvironmentsMatchTheReference) {
   auto sky = std::make_shared<Environment>(makeSky(64));
   sky->rotation = 77.0;
   lighting.environment = sky;
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
   lighting.lights.clear();
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting},
-                    {.directions = DirectionSet::Directions98});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting},
+                  {.directions = DirectionSet::Directions98});
 }
 
 /// While the eye's transmittance is exact as well, so that light from all around alone needs a table. One
@@ -146,7 +143,7 @@ TEST_F(LightingTest, LightsInsideMatchTheReference) {
   lighting.lights = {
       {.place = {0.05, 0.12, -0.08}, .atInfinity = false, .intensity = 2.0},
       {.place = {-0.2, 0.1, 0.1}, .atInfinity = false, .color = {1.0, 0.0, 0.0}, .intensity = 2.0}};
-  expectSamePicture(v, framingCamera(v, -110.0, -40.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
+  expectSameImage(v, framingCamera(v, -110.0, -40.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
 }
 
 TEST_F(LightingTest, ExactLightsMatchTheReference) {
@@ -154,7 +151,7 @@ TEST_F(LightingTest, ExactLightsMatchTheReference) {
   Lighting lighting = everything();
   lighting.attenuation = LightAttenuation::Exact;
   lighting.lights.push_back({.place = {0.05, 0.12, -0.08}, .atInfinity = false, .intensity = 0.2});
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
 }
 
 /// Turning the camera sweeps nothing again, moving a light does. Without ambient light no table is made.
@@ -218,7 +215,7 @@ TEST_F(LightingTest, AutoShadowsByTheTableWhereMemoryIsShort) {
   EXPECT_EQ(lightSweeps(4 * rays - kMiB), 0);
 }
 
-TEST_F(LightingTest, SortedPicturesMatchTheReference) {
+TEST_F(LightingTest, SortedImagesMatchTheReference) {
   const Volume v = volume(true);
   const Classification classification = coloured(v, 0.5f);
   const auto extinction = referenceExtinction(v, classification);
@@ -228,11 +225,10 @@ TEST_F(LightingTest, SortedPicturesMatchTheReference) {
       {.volume = v, .extinction = extinction, .table = table, .coarser = {}, .tableSettings = {}}, settings);
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
   Renderer renderer(device(), v, classification, {});
-  const Image picture = renderer.render(camera, settings);
-  const Image expected =
-      referenceSortedPicture(v, classification, camera, settings, referenceVisibleVoxels(extinction), &light);
-  EXPECT_LE(largestDifference(picture, expected), 5e-3);
-  EXPECT_GE(psnr(picture, expected), 65.0);
+  const Image image = renderer.render(camera, settings);
+  const Image expected = referenceSortedPicture(v, classification, camera, settings, referenceVisibleVoxels(extinction), &light);
+  EXPECT_LE(largestDifference(image, expected), 5e-3);
+  EXPECT_GE(psnr(image, expected), 65.0);
 }
 
 TEST_F(LightingTest, BlocksMatchTheReference) {
@@ -241,7 +237,7 @@ TEST_F(LightingTest, BlocksMatchTheReference) {
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
   const FrameSettings settings{.size = {30, 30}, .lod = 9.0f, .culling = false, .lighting = everything()};
   Renderer renderer(device(), v, classification, {});
-  const Image picture = renderer.render(camera, settings);
+  const Image image = renderer.render(camera, settings);
   const std::vector<Block> blocks = RendererStages(renderer).downloadDrawnBlocks();
   ASSERT_GT(blocks.front().level, 0);
   const std::vector<LevelData> levels = RendererStages(renderer).downloadLevels();
@@ -251,7 +247,7 @@ TEST_F(LightingTest, BlocksMatchTheReference) {
       v, classification,
       {.extinction = extinction, .table = RendererStages(renderer).downloadTable(), .tableSettings = {}, .coarser = levels},
       camera, settings, blocks);
-  EXPECT_GE(psnr(picture, referenceResolve(sums, settings)), 90.0);
+  EXPECT_GE(psnr(image, referenceResolve(sums, settings)), 90.0);
 }
 
 TEST_F(LightingTest, TwoLightsAreTheSumOfEachAlone) {

@@ -87,15 +87,14 @@ TEST_F(OccupancyTest, BlocksOfAlmostNothingDrawNoNaN) {
   });
   Renderer renderer(device(), volume, {.densityScale = 1.0}, {});
   for (const float lod : {0.0f, 2.0f, 40.0f}) {
-    const Image picture =
-        renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {16, 16}, .lod = lod});
-    for (const glm::vec4& pixel : picture.pixels)
+    const Image image = renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {16, 16}, .lod = lod});
+    for (const glm::vec4& pixel : image.pixels)
       for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::isfinite(pixel[c]));
   }
 }
 
 /// A transfer function may leave nothing of a volume that is full of values.
-TEST_F(OccupancyTest, AVolumeThatHoldsNothingIsAnEmptyPicture) {
+TEST_F(OccupancyTest, AVolumeThatHoldsNothingIsAnEmptyImage) {
   const glm::ivec3 size(20, 9, 11);
   const Volume volume = randomVolume(size, cubeTransform(size), kFull, 1.0);
   const Classification classification{
@@ -105,10 +104,9 @@ TEST_F(OccupancyTest, AVolumeThatHoldsNothingIsAnEmptyPicture) {
   for (const AttenuationLookup lookup : {AttenuationLookup::Bilinear, AttenuationLookup::Exact})
     for (const float lod : {0.0f, 8.0f})
       for (const Composite composite : {Composite::Normalised, Composite::Sorted}) {
-        const Image picture =
-            renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}),
-                            {.size = {24, 24}, .composite = composite, .attenuation = lookup, .lod = lod});
-        for (const glm::vec4& pixel : picture.pixels) EXPECT_EQ(pixel, glm::vec4(0.0f));
+        const Image image = renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}),
+                                            {.size = {24, 24}, .composite = composite, .attenuation = lookup, .lod = lod});
+        for (const glm::vec4& pixel : image.pixels) EXPECT_EQ(pixel, glm::vec4(0.0f));
       }
   EXPECT_EQ(renderer.occupiedVoxelCount(), 0u);
 }

@@ -1,4 +1,4 @@
-// Whole pictures: closed forms, order independence, determinism.
+// Whole images: closed forms, order independence, determinism.
 
 #include <fmt/format.h>
 
@@ -17,7 +17,7 @@ namespace {
 using RendererTest = DeviceTest;
 
 /// A smooth kernel cannot draw the box's sharp edges, whose silhouettes are all that limits the whole
-/// picture: most where a face is seen edge-on. Away from them the picture is the closed form.
+/// image: most where a face is seen edge-on. Away from them the image is the closed form.
 TEST_F(RendererTest, HomogeneousCubeIsBeerLambertFromAnyDirection) {
   const double sigma = 2.5;
   const glm::vec3 color(0.8f, 0.5f, 0.2f);
@@ -33,21 +33,20 @@ TEST_F(RendererTest, HomogeneousCubeIsBeerLambertFromAnyDirection) {
       camera.position = 3.0 * glm::normalize(camera.position);  // the cube's bounding sphere fits the image
       camera.orthographic = orthographic;
       camera.orthographicHeight = 1.8;
-      const Image picture = renderer.render(camera, {.size = size});
-      const BoxPicture box = boxPicture(volume, sigma, color, camera, size);
+      const Image image = renderer.render(camera, {.size = size});
+      const BoxImage box = boxImage(volume, sigma, color, camera, size);
       double worst = 0.0;
       for (std::size_t i = 0; i < box.interior.size(); ++i)
         for (int c = 0; c < 4 && box.interior[i]; ++c)
-          worst = std::max(worst, double(std::abs(picture.pixels[i][c] - box.image.pixels[i][c])));
-      const double whole = psnr(picture, box.image);
+          worst = std::max(worst, double(std::abs(image.pixels[i][c] - box.image.pixels[i][c])));
+      const double whole = psnr(image, box.image);
       const std::string name =
           fmt::format("from {},{} {}", view.x, view.y, orthographic ? "orthographic" : "perspective");
       const glm::dvec3 towardsEye = glm::abs(glm::normalize(camera.position));
       const bool edgeOn = std::min({towardsEye.x, towardsEye.y, towardsEye.z}) < 0.1;
       EXPECT_LE(worst, 1.5e-3) << name;
       EXPECT_GE(whole, edgeOn ? 28.0 : 55.0) << name;
-      std::printf("homogeneous cube 64^3 %s: inside its edges at most %.1e off, whole picture %.1f dB\n",
-                  name.c_str(), worst, whole);
+      std::printf("homogeneous cube 64^3 %s: inside its edges at most %.1e off, whole image %.1f dB\n", name.c_str(), worst, whole);
     }
 }
 
@@ -59,9 +58,9 @@ TEST_F(RendererTest, OpticalDepthAddsUpToBeerLambertInsideTheCube) {
   Renderer renderer(device(), volume, {.densityScale = sigma}, {});
   const Camera camera = framingCamera(volume, 50.0, 30.0, 1.0, {});
   const glm::ivec2 size(101);
-  const Image picture = renderer.render(camera, {.size = size});
-  const Image expected = boxPicture(volume, sigma, {}, camera, size).image;
-  EXPECT_NEAR(picture.pixels[50 * 101 + 50].a, expected.pixels[50 * 101 + 50].a, 1e-3);
+  const Image image = renderer.render(camera, {.size = size});
+  const Image expected = boxImage(volume, sigma, {}, camera, size).image;
+  EXPECT_NEAR(image.pixels[50 * 101 + 50].a, expected.pixels[50 * 101 + 50].a, 1e-3);
 }
 
 TEST_F(RendererTest, EmptyVolumeIsBackground) {
@@ -69,10 +68,10 @@ TEST_F(RendererTest, EmptyVolumeIsBackground) {
   const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [](int, int, int) { return 0.0; });
   Renderer renderer(device(), volume, {}, {});
   for (Composite composite : {Composite::Normalised, Composite::Additive}) {
-    const Image picture = renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}),
-                                          {.size = {32, 32}, .composite = composite, .depth = true});
-    for (const glm::vec4& pixel : picture.pixels) ASSERT_EQ(pixel, glm::vec4(0.0f));
-    for (float depth : picture.depth) ASSERT_TRUE(std::isinf(depth));
+    const Image image =
+        renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {32, 32}, .composite = composite, .depth = true});
+    for (const glm::vec4& pixel : image.pixels) ASSERT_EQ(pixel, glm::vec4(0.0f));
+    for (float depth : image.depth) ASSERT_TRUE(std::isinf(depth));
   }
 }
 
@@ -97,12 +96,10 @@ TEST_F(RendererTest, MoreSplatsThanOneChunkAreAllDrawn) {
   EXPECT_EQ(*renderer.occupiedVoxelCount(), volume.voxelCount());
   const Camera camera = framingCamera(volume, 0.0, 0.0, 1.0, {});
   const glm::ivec2 size(128);
-  EXPECT_GE(psnr(renderer.render(camera, {.size = size}),
-                 boxPicture(volume, sigma, glm::vec3(0.9f), camera, size).image),
-            40.0);
+  EXPECT_GE(psnr(renderer.render(camera, {.size = size}), boxImage(volume, sigma, glm::vec3(0.9f), camera, size).image), 40.0);
 }
 
-TEST_F(RendererTest, MirroredCameraMirrorsThePicture) {
+TEST_F(RendererTest, MirroredCameraMirrorsTheImage) {
   const glm::ivec3 dimensions(20);
   const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [](int x, int y, int z) {
     return double(y) / 20.0 + (std::abs(x - 9.5) < 4 ? 1.0 : 0.0) + (z > 9 ? 0.3 : 0.0);  // symmetric in x
@@ -119,7 +116,7 @@ TEST_F(RendererTest, MirroredCameraMirrorsThePicture) {
     }
 }
 
-TEST_F(RendererTest, ThePictureIsTheRightWayRound) {
+TEST_F(RendererTest, TheImageIsTheRightWayRound) {
   const glm::ivec3 dimensions(24);
   const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [](int x, int y, int) {
     return x > 17 && y > 17 ? 1.0 : 0.0;  // a bar along z, at large x and y
@@ -127,8 +124,8 @@ TEST_F(RendererTest, ThePictureIsTheRightWayRound) {
   Renderer renderer(device(), volume, {.densityScale = 20.0}, {});
   const glm::ivec2 size(40);
   // Seen from +z with y up, x grows to the right; row 0 is the top.
-  const Image picture = renderer.render(framingCamera(volume, 0.0, 0.0, 1.0, {}), {.size = size});
-  const auto alpha = [&](int x, int y) { return picture.pixels[std::size_t(y * size.x + x)].a; };
+  const Image image = renderer.render(framingCamera(volume, 0.0, 0.0, 1.0, {}), {.size = size});
+  const auto alpha = [&](int x, int y) { return image.pixels[std::size_t(y * size.x + x)].a; };
   EXPECT_GT(alpha(32, 7), 0.5f);
   EXPECT_LT(alpha(7, 7), 0.01f);
   EXPECT_LT(alpha(32, 32), 0.01f);
@@ -140,9 +137,9 @@ TEST_F(RendererTest, AbsurdDensitiesAreOpaqueNotEmpty) {
   const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [](int, int, int) { return 3.0; });
   for (double scale : {1e10, 1e38, 1e300}) {
     Renderer renderer(device(), volume, {.densityScale = scale}, {});
-    const Image picture = renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {21, 21}});
-    EXPECT_EQ(picture.pixels[10 * 21 + 10].a, 1.0f) << scale;
-    for (const glm::vec4& pixel : picture.pixels) ASSERT_TRUE(std::isfinite(pixel.r + pixel.a)) << scale;
+    const Image image = renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {21, 21}});
+    EXPECT_EQ(image.pixels[10 * 21 + 10].a, 1.0f) << scale;
+    for (const glm::vec4& pixel : image.pixels) ASSERT_TRUE(std::isfinite(pixel.r + pixel.a)) << scale;
   }
 }
 

@@ -1,4 +1,4 @@
-// The sorted picture on the device against the double-precision reference and Eq. 9.
+// The sorted image on the device against the double-precision reference and Eq. 9.
 
 #include <cmath>
 #include <cstring>
@@ -16,23 +16,22 @@ namespace {
 
 class SortedSplatsTest : public DeviceTest {
  protected:
-  static void expectSamePicture(const Volume& volume, const Camera& camera, glm::ivec2 size) {
+  static void expectSameImage(const Volume& volume, const Camera& camera, glm::ivec2 size) {
     const Classification classification = coloured(volume);
     const FrameSettings settings{.size = size, .composite = Composite::Sorted, .depth = true};
     Renderer renderer(device(), volume, classification, {});
-    const Image picture = renderer.render(camera, settings);
+    const Image image = renderer.render(camera, settings);
     const Image expected =
-        referenceSortedPicture(volume, classification, camera, settings,
-                               referenceVisibleVoxels(referenceExtinction(volume, classification)));
+        referenceSortedPicture(volume, classification, camera, settings, referenceVisibleVoxels(referenceExtinction(volume, classification)));
     double largest = 0.0;
     for (std::size_t i = 0; i < expected.pixels.size(); ++i) {
       largest = std::max(largest, double(expected.pixels[i].a));
-      ASSERT_EQ(std::isinf(picture.depth[i]), picture.pixels[i].a == 0.0f);
+      ASSERT_EQ(std::isinf(image.depth[i]), image.pixels[i].a == 0.0f);
     }
     EXPECT_GE(largest, 0.2);
-    EXPECT_LE(largestDifference(picture, expected), 1e-3);
-    EXPECT_LE(worstRelativeDepth(picture, expected), 1e-3);
-    EXPECT_GE(psnr(picture, expected), 90.0);
+    EXPECT_LE(largestDifference(image, expected), 1e-3);
+    EXPECT_LE(worstRelativeDepth(image, expected), 1e-3);
+    EXPECT_GE(psnr(image, expected), 90.0);
   }
 
   static constexpr glm::ivec3 kSize{11, 14, 9};
@@ -43,47 +42,47 @@ class SortedSplatsTest : public DeviceTest {
 
 TEST_F(SortedSplatsTest, PerspectiveMatchesTheReference) {
   const Volume v = volume(false);
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.25, {}), {125, 100});
-  expectSamePicture(v, {.position = {0.0, 0.0, 2.5}, .lookAt = {}}, {100, 100});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.25, {}), {125, 100});
+  expectSameImage(v, {.position = {0.0, 0.0, 2.5}, .lookAt = {}}, {100, 100});
 }
 
 TEST_F(SortedSplatsTest, ShearedVoxelsMatchTheReference) {
   const Volume v = volume(true);
-  expectSamePicture(v, framingCamera(v, -110.0, -40.0, 0.8, {}), {96, 120});
+  expectSameImage(v, framingCamera(v, -110.0, -40.0, 0.8, {}), {96, 120});
 }
 
 TEST_F(SortedSplatsTest, OrthographicMatchesTheReference) {
   Camera base;
   base.orthographic = true;
   const Volume v = volume(true);
-  expectSamePicture(v, framingCamera(v, 20.0, 60.0, 1.0, base), {100, 100});
+  expectSameImage(v, framingCamera(v, 20.0, 60.0, 1.0, base), {100, 100});
   const Volume straight = volume(false);
-  expectSamePicture(straight, framingCamera(straight, 0.0, 0.0, 1.0, base), {100, 100});
+  expectSameImage(straight, framingCamera(straight, 0.0, 0.0, 1.0, base), {100, 100});
 }
 
 TEST_F(SortedSplatsTest, VoxelsSmallerThanPixelsMatchTheReference) {
   const Volume v = volume(true);
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {7, 7});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {7, 7});
 }
 
 TEST_F(SortedSplatsTest, SplatsLargerThanTheLargestPointMatchTheReference) {
   const Volume v = randomVolume({3, 3, 3}, cubeTransform({3, 3, 3}), 0.8, 1.0);
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {700, 700});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {700, 700});
 }
 
 TEST_F(SortedSplatsTest, TheEyeInsideTheVolumeDrawsWhatIsInFront) {
   const Camera camera{.position = {0.03, 0.02, 0.01}, .lookAt = {0.3, 0.1, -0.4}, .verticalFov = 70.0};
-  expectSamePicture(volume(false), camera, {64, 64});
+  expectSameImage(volume(false), camera, {64, 64});
 }
 
 TEST_F(SortedSplatsTest, EmptyVolumeIsBackground) {
   const Volume v = makeVolume(kSize, cubeTransform(kSize), [](int, int, int) { return 0.0; });
   Renderer renderer(device(), v, {}, {});
   for (const bool depth : {false, true}) {
-    const Image picture = renderer.render(framingCamera(v, 35.0, 25.0, 1.0, {}),
-                                          {.size = {32, 32}, .composite = Composite::Sorted, .depth = depth});
-    for (const glm::vec4& pixel : picture.pixels) ASSERT_EQ(pixel, glm::vec4(0.0f));
-    for (float distance : picture.depth) ASSERT_TRUE(std::isinf(distance));
+    const Image image =
+        renderer.render(framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {32, 32}, .composite = Composite::Sorted, .depth = depth});
+    for (const glm::vec4& pixel : image.pixels) ASSERT_EQ(pixel, glm::vec4(0.0f));
+    for (float distance : image.depth) ASSERT_TRUE(std::isinf(distance));
   }
 }
 

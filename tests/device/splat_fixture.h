@@ -1,5 +1,5 @@
 #pragma once
-// Pictures on the device against the double-precision reference.
+// Images on the device against the double-precision reference.
 
 #include <algorithm>
 #include <cmath>
@@ -26,24 +26,24 @@ class SplatTest : public DeviceTest {
 
   /// The table may be one code off here and there (its own test), which moves a colour by up to 1e-2 where
   /// few voxels mix; alpha does not use the table.
-  void expectSamePicture(const Volume& volume, const Camera& camera, FrameSettings settings,
-                         const TableSettings& table = {}, float opacity = 0.5f) {
+  void expectSameImage(const Volume& volume, const Camera& camera, FrameSettings settings, const TableSettings& table = {},
+                       float opacity = 0.5f) {
     const Classification classification = coloured(volume, opacity);
     settings.depth = true;
     Renderer renderer(device(), volume, classification, table);
-    const Image picture = renderer.render(camera, settings);
+    const Image image = renderer.render(camera, settings);
     const Image expected = reference(volume, classification, table, camera, settings);
     double worstColor = 0.0, worstAlpha = 0.0;
     for (std::size_t i = 0; i < expected.pixels.size(); ++i) {
-      const glm::dvec4 difference = glm::abs(glm::dvec4(picture.pixels[i]) - glm::dvec4(expected.pixels[i]));
+      const glm::dvec4 difference = glm::abs(glm::dvec4(image.pixels[i]) - glm::dvec4(expected.pixels[i]));
       worstColor = std::max({worstColor, difference.x, difference.y, difference.z});
       worstAlpha = std::max(worstAlpha, difference.w);
     }
     const bool normalised = settings.composite == Composite::Normalised;
     EXPECT_LE(worstColor, 5e-3);
     EXPECT_LE(worstAlpha, normalised ? 1e-4 : 5e-3);
-    EXPECT_LE(worstRelativeDepth(picture, expected), 2e-3);
-    EXPECT_GE(psnr(picture, expected), 65.0);
+    EXPECT_LE(worstRelativeDepth(image, expected), 2e-3);
+    EXPECT_GE(psnr(image, expected), 65.0);
   }
 
   static constexpr glm::ivec3 kSize{11, 14, 9};

@@ -9,19 +9,19 @@ namespace {
 
 TEST_F(SplatTest, PerspectiveMatchesTheReference) {
   const Volume v = volume(false);
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.25, {}), {.size = {125, 100}});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.25, {}), {.size = {125, 100}});
 }
 
 TEST_F(SplatTest, ShearedVoxelsMatchTheReference) {
   const Volume v = volume(true);
-  expectSamePicture(v, framingCamera(v, -110.0, -40.0, 0.8, {}), {.size = {96, 120}});
+  expectSameImage(v, framingCamera(v, -110.0, -40.0, 0.8, {}), {.size = {96, 120}});
 }
 
 TEST_F(SplatTest, ExactMatchesTheReference) {
   const Volume v = volume(true);
   for (const Composite composite : {Composite::Normalised, Composite::Additive})
-    expectSamePicture(v, framingCamera(v, -110.0, -40.0, 0.8, {}),
-                      {.size = {96, 120}, .composite = composite, .attenuation = AttenuationLookup::Exact});
+    expectSameImage(v, framingCamera(v, -110.0, -40.0, 0.8, {}),
+                    {.size = {96, 120}, .composite = composite, .attenuation = AttenuationLookup::Exact});
 }
 
 /// Where two components of the direction are the same but for rounding, the rays and the voxels that look
@@ -32,66 +32,63 @@ TEST_F(SplatTest, ExactMatchesTheReferenceInParallelAlongDiagonals) {
   base.orthographic = true;
   for (const glm::dvec2 orbit :
        {glm::dvec2(45, 25), glm::dvec2(45, 0), glm::dvec2(225, 25), glm::dvec2(0, 45)})
-    expectSamePicture(
-        v, framingCamera(v, orbit.x, orbit.y, 1.0, base),
-        {.size = {60, 60}, .composite = Composite::Additive, .attenuation = AttenuationLookup::Exact});
+    expectSameImage(v, framingCamera(v, orbit.x, orbit.y, 1.0, base),
+                    {.size = {60, 60}, .composite = Composite::Additive, .attenuation = AttenuationLookup::Exact});
 }
 
 TEST_F(SplatTest, OrthographicMatchesTheReference) {
   const Volume v = volume(true);
   Camera base;
   base.orthographic = true;
-  expectSamePicture(v, framingCamera(v, 20.0, 60.0, 1.0, base), {.size = {100, 100}});
-  expectSamePicture(v, framingCamera(v, 0.0, 0.0, 1.0, base), {.size = {100, 100}});
+  expectSameImage(v, framingCamera(v, 20.0, 60.0, 1.0, base), {.size = {100, 100}});
+  expectSameImage(v, framingCamera(v, 0.0, 0.0, 1.0, base), {.size = {100, 100}});
 }
 
 TEST_F(SplatTest, ThePapersSettingsMatchTheReference) {
   const Volume v = volume(false);
-  expectSamePicture(
-      v, framingCamera(v, 35.0, 25.0, 1.0, {}),
-      {.size = {90, 90}, .composite = Composite::Additive, .attenuation = AttenuationLookup::Nearest},
-      {AttenuationCode::Linear8, false});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}),
+                  {.size = {90, 90}, .composite = Composite::Additive, .attenuation = AttenuationLookup::Nearest},
+                  {AttenuationCode::Linear8, false});
 }
 
 TEST_F(SplatTest, NinetyEightDirectionsMatchTheReference) {
   const Volume v = volume(true);
   const TableSettings table{.directions = DirectionSet::Directions98};
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.25, {}), {.size = {125, 100}}, table);
-  expectSamePicture(v, framingCamera(v, -110.0, -40.0, 1.0, {}),
-                    {.size = {90, 90}, .attenuation = AttenuationLookup::Nearest}, table);
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.25, {}), {.size = {125, 100}}, table);
+  expectSameImage(v, framingCamera(v, -110.0, -40.0, 1.0, {}), {.size = {90, 90}, .attenuation = AttenuationLookup::Nearest}, table);
 }
 
 TEST_F(SplatTest, WideAngleMatchesTheReference) {
   const Volume v = volume(false);
   Camera base;
   base.verticalFov = 110.0;
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, base), {.size = {120, 120}});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, base), {.size = {120, 120}});
 }
 
 TEST_F(SplatTest, TelephotoMatchesTheReference) {
   const Volume v = volume(true);
   Camera base;
   base.verticalFov = 2.0;
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, base), {.size = {120, 120}});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, base), {.size = {120, 120}});
 }
 
 TEST_F(SplatTest, ExtremelyWideImagesMatchTheReference) {
   const Volume v = volume(false);
   const Camera close{.position = {0.0, 0.0, 0.8}, .lookAt = {0.0, 0.0, -0.2}, .verticalFov = 60.0};
-  expectSamePicture(v, close, {.size = {8000, 4}});
-  expectSamePicture(v, close, {.size = {4, 3000}});
+  expectSameImage(v, close, {.size = {8000, 4}});
+  expectSameImage(v, close, {.size = {4, 3000}});
 }
 
 TEST_F(SplatTest, VoxelsSmallerThanPixelsMatchTheReference) {
   const Volume v = volume(true);
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {7, 7}, .lod = 0.0f});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {7, 7}, .lod = 0.0f});
 }
 
 TEST_F(SplatTest, SplatsLargerThanTheLargestPointMatchTheReference) {
   const Volume v = randomVolume({3, 3, 3}, cubeTransform({3, 3, 3}), 0.8, 1.0);
   const int size =
       700;  // a voxel is over 100 pixels wide, its footprint nearly 400: more than points can be here
-  expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {size, size}});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {size, size}});
 }
 
 TEST_F(SplatTest, SplatsCentredOutsideTheImageStillReachIntoIt) {
@@ -99,13 +96,13 @@ TEST_F(SplatTest, SplatsCentredOutsideTheImageStillReachIntoIt) {
   Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
   camera.verticalFov /= 6.0;
   camera.lookAt += glm::dvec3(0.2, 0.1, 0.0);
-  expectSamePicture(v, camera, {.size = {80, 80}});
+  expectSameImage(v, camera, {.size = {80, 80}});
 }
 
 TEST_F(SplatTest, OpaqueVolumesMatchTheReference) {
   const Volume v = randomVolume(kSize, shearedTransform(kSize), 1.0, 1.0);
   for (const AttenuationCode code : {AttenuationCode::Depth8, AttenuationCode::Linear8})
-    expectSamePicture(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {90, 90}}, {.code = code}, 1.0f);
+    expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {90, 90}}, {.code = code}, 1.0f);
 }
 
 /// The table's depths end at 16, and a voxel of this medium has almost as much by itself: what is deep in it
@@ -123,10 +120,9 @@ TEST_F(SplatTest, WhatIsDeepInAnOpaqueMediumDoesNotShine) {
       .unitDistance = 0.7 * volume.voxelSize()};
   Renderer renderer(device(), volume, classification, {});
   for (const float lod : {0.0f, 9.0f}) {
-    const Image picture = renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}),
-                                          {.size = {96, 96}, .lod = lod, .culling = false});
+    const Image image = renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {96, 96}, .lod = lod, .culling = false});
     float brightest = 0.0f;
-    for (const glm::vec4& pixel : picture.pixels) brightest = std::max(brightest, pixel.r);
+    for (const glm::vec4& pixel : image.pixels) brightest = std::max(brightest, pixel.r);
     EXPECT_LT(brightest, 4e-3f) << "lod " << lod;
   }
 }

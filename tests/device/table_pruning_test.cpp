@@ -81,7 +81,7 @@ TEST_F(SeenRunsTest, AreAllThatThereIsOfFog) {
 }
 
 /// The first frame reads no levels: its table is whole.
-TEST_F(SeenRunsTest, GiveTheSamePicturesBitForBit) {
+TEST_F(SeenRunsTest, GiveTheSameImagesBitForBit) {
   const Volume volume = opaqueVolume();
   const glm::dvec3 middle(volume.indexToWorld * glm::dvec4(glm::dvec3(volume.dimensions) / 2.0, 1.0));
   FrameSettings whole{.size = {64, 64}, .lod = 0.0f, .culling = false};
@@ -95,18 +95,18 @@ TEST_F(SeenRunsTest, GiveTheSamePicturesBitForBit) {
   inside.position = middle;
   inside.lookAt = middle + glm::dvec3(1.0, 0.3, 0.2);
   Renderer renderer(device(), volume, classification(volume, kOpaque), {});
-  const auto pictures = [&] {
+  const auto images = [&] {
     std::vector<std::vector<glm::vec4>> pixels;
     for (const Camera& camera : {outside, inside})
       for (const FrameSettings& settings : {whole, lit})
         pixels.push_back(renderer.render(camera, settings).pixels);
     return pixels;
   };
-  const auto expected = pictures();
+  const auto expected = images();
   const std::uint64_t bytes = renderer.memory().stored();
   renderer.render(outside, {.size = {64, 64}});
   EXPECT_LT(renderer.memory().stored(), bytes);
-  EXPECT_EQ(pictures(), expected);
+  EXPECT_EQ(images(), expected);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
           tryTo([&] { listVdb(file.path()); });
         }
         for (const char* kind : {"exr", "png"})
-          for (const auto& file : fs::directory_iterator(folder / kind)) tryTo([&] { readPicture(file.path()); });
+          for (const auto& file : fs::directory_iterator(folder / kind)) tryTo([&] { readImage(file.path()); });
       }
     });
   for (std::thread& thread : threads) thread.join();

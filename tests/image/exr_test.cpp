@@ -118,7 +118,7 @@ TEST(Exr, SameImageGivesTheSameBytes) {
 
 TEST(Exr, RefusesToReadMissingForeignAndTruncatedFiles) {
   const TemporaryFolder folder;
-  writeBytes(folder / "text.exr", "this is no picture");
+  writeBytes(folder / "text.exr", "this is no image");
   writeExr(folder / "a.exr", makeNoise({64, 64}), {});
   const std::string whole = readBytes(folder / "a.exr");
   writeBytes(folder / "short.exr", whole.substr(0, whole.size() / 2));

@@ -52,11 +52,11 @@ TEST(FixedSums, TreesOfAdditionsHaveTheSameBits) {
   EXPECT_EQ(left.values, right.values);
 }
 
-TEST(FixedSums, PicturesAndDamagedFilesAreRefused) {
+TEST(FixedSums, ImagesAndDamagedFilesAreRefused) {
   const test::TemporaryFolder folder;
-  writeExr(folder / "picture.exr", {.size = {4, 4}, .pixels = std::vector<glm::vec4>(16)}, {});
-  EXPECT_FALSE(holdsSums(folder / "picture.exr"));
-  test::expectRefusal([&] { readSums(folder / "picture.exr"); }, ErrorKind::Input, {"picture.exr", "it is an image"});
+  writeExr(folder / "image.exr", {.size = {4, 4}, .pixels = std::vector<glm::vec4>(16)}, {});
+  EXPECT_FALSE(holdsSums(folder / "image.exr"));
+  test::expectRefusal([&] { readSums(folder / "image.exr"); }, ErrorKind::Input, {"image.exr", "it is an image"});
   test::expectRefusal([&] { readSums(folder / "none.exr"); }, ErrorKind::Input, {"none.exr", "no such file"});
   writeSums(folder / "sums.exr", randomSums(kSumChannels), {});
   const std::string bytes = test::readBytes(folder / "sums.exr");

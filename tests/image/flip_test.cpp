@@ -107,7 +107,7 @@ TEST(HdrFlip, AgreesWithTheAuthorsProgram) {
   expectAuthors(hdrFlip(pair.test, pair.reference, given), {0.533547, 0.446920, 0.424244, 0.980332});
 }
 
-/// Constant pictures pass the filters as they are and have no features: their FLIP is the redistributed HyAB
+/// Constant images pass the filters as they are and have no features: their FLIP is the redistributed HyAB
 /// distance, worked out here by hand from CIELAB values in the literature (D65).
 double byHand(double lightness, double chroma) {
   // Green is (87.73, -86.18, 83.18), blue (32.30, 79.19, -107.86); Hunt scales a and b by 0.01 L.
@@ -118,7 +118,7 @@ double byHand(double lightness, double chroma) {
   return 0.95 + 0.05 * (value - 0.4 * largest) / (0.6 * largest);
 }
 
-TEST(LdrFlip, ConstantPicturesAreAsFarApartAsTheirColours) {
+TEST(LdrFlip, ConstantImagesAreAsFarApartAsTheirColours) {
   const Image black = makeConstant({0, 0, 0}), white = makeConstant({1, 1, 1});
   expectConstant(ldrFlip(white, black), byHand(100.0, 0.0), 1e-4);
   expectConstant(ldrFlip(makeConstant({0, 0, 1}), makeConstant({0, 1, 0})), 1.0, 1e-5);
@@ -131,7 +131,7 @@ TEST(LdrFlip, ConstantPicturesAreAsFarApartAsTheirColours) {
                  byHand(76.0693 - 69.4695, 0.0), 1e-4);
 }
 
-TEST(Flip, EqualPicturesDifferNowhere) {
+TEST(Flip, EqualImagesDifferNowhere) {
   const Image image = makeBlocks({150, 40}, 3, 5);
   expectConstant(ldrFlip(image, image), 0.0, 0.0);
   expectConstant(hdrFlip(image, image, flipExposures(image)), 0.0, 0.0);
@@ -147,12 +147,12 @@ TEST(HdrFlip, SeesWhatIsBrighterThanADisplay) {
   EXPECT_GT(hdrFlip(brighter, bright, flipExposures(bright)).mean(), 0.05);
 }
 
-TEST(Flip, DoesNotDependOnWhichPictureIsWhich) {
+TEST(Flip, DoesNotDependOnWhichImageIsWhich) {
   const Pair pair = Pair().nearer();
   EXPECT_EQ(ldrFlip(pair.test, pair.reference).values, ldrFlip(pair.reference, pair.test).values);
 }
 
-TEST(Flip, TurnsWithThePictures) {
+TEST(Flip, TurnsWithTheImages) {
   const Pair pair = Pair().nearer();
   const FlipMap map = ldrFlip(pair.test, pair.reference);
   const FlipMap mirror = ldrFlip(mirrored(pair.test), mirrored(pair.reference));
@@ -243,14 +243,14 @@ TEST(HdrFlip, HugeValuesStayFinite) {
 TEST(FlipMap, MeanAndMagmaColours) {
   FlipMap map{{3, 1}, {0.0f, 1.0f, 0.5f}};
   EXPECT_DOUBLE_EQ(map.mean(), 0.5);
-  const Image picture = magmaPicture(map);
-  ASSERT_EQ(picture.size, glm::ivec2(3, 1));
-  const auto luminance = [&](std::size_t i) { return picture.pixels[i].r + picture.pixels[i].g; };
+  const Image image = magmaImage(map);
+  ASSERT_EQ(image.size, glm::ivec2(3, 1));
+  const auto luminance = [&](std::size_t i) { return image.pixels[i].r + image.pixels[i].g; };
   EXPECT_LT(luminance(0), 0.01f);
   EXPECT_GT(luminance(1), 1.9f);
   // matplotlib's magma(0.5) is (183, 55, 121).
-  EXPECT_NEAR(picture.pixels[2].r, std::pow((183.0 / 255.0 + 0.055) / 1.055, 2.4), 0.01);
-  EXPECT_NEAR(picture.pixels[2].b, std::pow((121.0 / 255.0 + 0.055) / 1.055, 2.4), 0.01);
+  EXPECT_NEAR(image.pixels[2].r, std::pow((183.0 / 255.0 + 0.055) / 1.055, 2.4), 0.01);
+  EXPECT_NEAR(image.pixels[2].b, std::pow((121.0 / 255.0 + 0.055) / 1.055, 2.4), 0.01);
 }
 
 }  // namespace

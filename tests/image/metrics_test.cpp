@@ -20,7 +20,7 @@ Image makeNoise(glm::ivec2 size, std::uint32_t seed) {
   return image;
 }
 
-TEST(Metrics, EqualPicturesHaveNoErrorAndInfinitePsnr) {
+TEST(Metrics, EqualImagesHaveNoErrorAndInfinitePsnr) {
   const Image image = makeNoise({50, 30}, 1);
   const ImageMetrics metrics = compareImages(image, image);
   EXPECT_EQ(metrics.rmse, 0.0);

@@ -91,7 +91,7 @@ TEST(Png, LightTakesAsMuchAlphaAsItNeeds) {
   EXPECT_EQ(writeAndRead({flame[0]}, over(background)), (Bytes{188, 118, 0}));
 }
 
-TEST(Png, BackgroundShowsThroughAndMakesThePictureOpaque) {
+TEST(Png, BackgroundShowsThroughAndMakesTheImageOpaque) {
   const glm::vec3 background(1.0f, 0.0f, 0.36f);
   // 0.25 + 0.5 * 1 = 0.75 is byte 225; 0.5 * 0.36 = 0.18; an empty pixel is the background.
   EXPECT_EQ(writeAndRead({{0.25f, 0.5f, 0.0f, 0.5f}, {0.0f, 0.0f, 0.0f, 0.0f}}, over(background)),
@@ -114,7 +114,7 @@ TEST(Png, BackgroundChangesLinearlyFromTheTopEdgeToTheBottomEdge) {
   EXPECT_EQ(readStored(folder / "a.png").bytes, (Bytes{137, 225, 188, 225, 137, 188}));
 }
 
-TEST(Png, ExposureBrightensThePictureButNotTheBackground) {
+TEST(Png, ExposureBrightensTheImageButNotTheBackground) {
   EXPECT_EQ(writeAndRead({{0.125f, 0.045f, 0.0f, 1.0f}}, {.exposure = 2.0}), (Bytes{188, 118, 0, 255}));
   DisplayLook look = over(glm::vec3(0.5f));
   look.exposure = -1.0;
@@ -254,7 +254,7 @@ TEST(PngInput, RefusesMissingForeignAndTruncatedFiles) {
   for (std::uint8_t& byte : noise) byte = std::uint8_t((state = state * 1664525u + 1013904223u) >> 24);
   writeStored(folder / "a.png", {64, 64}, 8, PNG_COLOR_TYPE_RGB, noise);
   std::string whole = readBytes(folder / "a.png");
-  test::writeBytes(folder / "text.png", "this is no picture");
+  test::writeBytes(folder / "text.png", "this is no image");
   test::writeBytes(folder / "empty.png", "");
   test::writeBytes(folder / "short.png", whole.substr(0, whole.size() / 2));
   test::writeBytes(folder / "header.png", whole.substr(0, 20));
@@ -272,18 +272,18 @@ TEST(PngInput, RefusesMissingForeignAndTruncatedFiles) {
   }
 }
 
-TEST(PictureFile, IsReadByWhatItIsNotByItsName) {
+TEST(ImageFile, IsReadByWhatItIsNotByItsName) {
   const TemporaryFolder folder;
   Image image;
   image.size = {2, 1};
   image.pixels = {{1, 0, 0, 1}, {0, 1, 0, 1}};
   writePng(folder / "a.png", image);
-  std::filesystem::rename(folder / "a.png", folder / "picture.exr");
-  EXPECT_EQ(readPicture(folder / "picture.exr").pixels, image.pixels);
+  std::filesystem::rename(folder / "a.png", folder / "image.exr");
+  EXPECT_EQ(readImage(folder / "image.exr").pixels, image.pixels);
   writeExr(folder / "b.exr", image, {});
-  EXPECT_EQ(readPicture(folder / "b.exr").pixels, image.pixels);
+  EXPECT_EQ(readImage(folder / "b.exr").pixels, image.pixels);
   test::writeBytes(folder / "text.png", "x");
-  EXPECT_THROW(readPicture(folder / "text.png"), Error);
+  EXPECT_THROW(readImage(folder / "text.png"), Error);
 }
 
 TEST(PngDeathTest, FullDiskIsOneSentenceAndLeavesNoFile) {

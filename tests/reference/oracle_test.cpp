@@ -310,7 +310,7 @@ TEST(Oracle, EmptyVolumeIsTransparentAndInfinitelyFar) {
   }
 }
 
-/// However few pixels it covers: an orthographic picture's alpha integrates to the volume of thin matter.
+/// However few pixels it covers: an orthographic image's alpha integrates to the volume of thin matter.
 TEST(Oracle, VoxelsSmallerThanAPixelAreNotLost) {
   const Volume volume = block({1, 1, 1});
   const double sigma = 1e-3;
@@ -358,7 +358,7 @@ TEST(Oracle, IsTheSameOnAnyNumberOfCores) {
   for (const double fraction : fractions) EXPECT_TRUE(fraction >= 0.0 && fraction <= 1.0);
 }
 
-/// Two independent ways to the same picture.
+/// Two independent ways to the same image.
 TEST(Oracle, SplatsOfASmoothVolumeComeClose) {
   Volume volume = makeProcedural("cloud", 48);
   cropToActive(volume);

@@ -1,4 +1,4 @@
-// The picture of a homogeneous cube against Beer-Lambert, from several directions.
+// The image of a homogeneous cube against Beer-Lambert, from several directions.
 
 #include <gtest/gtest.h>
 
@@ -82,7 +82,7 @@ double beerLambertPsnr(const Scene& scene, const Camera& camera, const Image& im
 }
 
 /// Reached: 59 to 70 dB; 40 to 44 dB where an orthographic camera looks along a face, so that the whole depth
-/// of the cube ends within a voxel and the picture shows the kernel's edge in place of the trilinear one.
+/// of the cube ends within a voxel and the image shows the kernel's edge in place of the trilinear one.
 /// Against the sharp box: 58 to 68 and 37 to 40 dB.
 TEST(ReferenceCube, IsBeerLambertFromAnyDirection) {
   struct View {

@@ -311,7 +311,7 @@ TEST(ReferenceSplats, OrderOfTheVoxelsDoesNotMatter) {
   }
 }
 
-TEST(ReferenceSplats, GroupsOfVoxelsDrawnAloneAddUpToThePicture) {
+TEST(ReferenceSplats, GroupsOfVoxelsDrawnAloneAddUpToTheImage) {
   const Scene scene = randomScene();
   const Camera camera = framingCamera(scene.volume, -60, 10, 1.0, Camera{});
   FrameSettings settings = frameOf({48, 48});

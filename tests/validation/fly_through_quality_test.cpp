@@ -22,7 +22,7 @@ QualityScene smallCloud() {
   return scene;
 }
 
-/// Pictures of an eye inside the volume lack what is opaque by a quarter.
+/// Images of an eye inside the volume lack what is opaque by a quarter.
 class Popping : public StageOutputs {
  public:
   Popping(std::unique_ptr<StageOutputs> whole, const Volume& volume)
@@ -35,8 +35,8 @@ class Popping : public StageOutputs {
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
     return whole_->sums(camera, settings);
   }
-  Image picture(const Camera& camera, const FrameSettings& settings) override {
-    Image image = whole_->picture(camera, settings);
+  Image image(const Camera& camera, const FrameSettings& settings) override {
+    Image image = whole_->image(camera, settings);
     if (eyeIsInside(camera, dimensions_, indexToWorld_))
       for (glm::vec4& pixel : image.pixels) pixel *= 0.75f;
     return image;

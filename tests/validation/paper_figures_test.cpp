@@ -31,10 +31,10 @@ struct WrongStages : StageOutputs {
     for (SplatSums& s : sums) s.depth *= 0.99f;
     return sums;
   }
-  Image picture(const Camera& camera, const FrameSettings& settings) override {
+  Image image(const Camera& camera, const FrameSettings& settings) override {
     FrameSettings changed = settings;
     if (changed.composite == asked) changed.composite = drawn;
-    return right->picture(camera, changed);
+    return right->image(camera, changed);
   }
 };
 

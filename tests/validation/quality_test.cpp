@@ -1,7 +1,7 @@
-// Picture quality: what is read off the figures, and that stages broken on purpose are noticed.
+// Image quality: what is read off the figures, and that stages broken on purpose are noticed.
 
 #include "engine/validation/quality.h"
-#include "engine/validation/quality_pictures.h"
+#include "engine/validation/quality_images.h"
 
 #include <gtest/gtest.h>
 
@@ -107,7 +107,7 @@ TEST(QualityFigures, JumpsOfASeries) {
   EXPECT_FALSE(jump({40.0, kNan, 40.0, 40.0}).passed());
 }
 
-TEST(QualityFigures, APictureAgainstItselfAndAnother) {
+TEST(QualityFigures, AImageAgainstItselfAndAnother) {
   const Image black{.size = {8, 8}, .pixels = std::vector(64, glm::vec4(0.0f)), .depth = {}};
   const Image grey{.size = {8, 8}, .pixels = std::vector(64, glm::vec4(0.1f)), .depth = {}};
   EXPECT_EQ(compareToOracle(grey, grey).psnr, kInfinity);
@@ -145,13 +145,13 @@ TEST(QualityScenes, TransferFunctionsAreThoseOfTheFiles) {
   }
 }
 
-/// Draws what the oracle does, changed by `change`, which is told how many pictures came before.
+/// Draws what the oracle does, changed by `change`, which is told how many images came before.
 struct OracleStages : StageOutputs {
   using Change = std::function<void(Image&, const FrameSettings&, int)>;
   Volume volume;
   Classification classification;
   Change change;
-  int pictures = 0;
+  int images = 0;
 
   std::vector<float> extinction() override { return {}; }
   std::vector<glm::dvec3> emission() override { return {}; }
@@ -159,11 +159,11 @@ struct OracleStages : StageOutputs {
   std::vector<std::uint32_t> visibleVoxels() override { return {}; }
   RayCodes rays(const Camera&) override { return {}; }
   std::vector<SplatSums> sums(const Camera&, const FrameSettings&) override { return {}; }
-  Image picture(const Camera& camera, const FrameSettings& settings) override {
+  Image image(const Camera& camera, const FrameSettings& settings) override {
     Image image =
         renderOracle(volume, classification, camera, {.size = settings.size, .tolerance = kQualityTolerance})
             .image;
-    change(image, settings, pictures++);
+    change(image, settings, images++);
     return image;
   }
 };
@@ -186,16 +186,15 @@ QualityScene tinyScene() {
   return makeQualityScene(kQualitySubjects[1], 8, makeProcedural("shells", 8));
 }
 
-TEST(PictureQuality, ComparesEachMethodWithTheOracleInEachView) {
+TEST(ImageQuality, ComparesEachMethodWithTheOracleInEachView) {
   const auto make = oracleStages([](Image& image, const FrameSettings& settings, int before) {
     if (settings.composite == Composite::Sorted) brighten(image, before == 1 ? 0.1f : 0.01f);
   });
   const auto [section, figures] =
-      pictureQuality(make, tinyScene(), madeUpMethods(),
-                     {.views = quickQualityViews(), .pictureEdge = 12, .hasGoals = true});
+      imageQuality(make, tinyScene(), madeUpMethods(), {.views = quickQualityViews(), .imageEdge = 12, .hasGoals = true});
   ASSERT_EQ(figures.figures.size(), 2u);
   ASSERT_EQ(figures.figures[0].size(), 3u);
-  for (const PictureFigures& figure : figures.figures[0]) EXPECT_EQ(figure.psnr, kInfinity);
+  for (const ImageFigures& figure : figures.figures[0]) EXPECT_EQ(figure.psnr, kInfinity);
   EXPECT_NEAR(figures.figures[1][0].psnr, 40.0, 1e-3);
   EXPECT_NEAR(figures.figures[1][1].psnr, 20.0, 1e-3);
   EXPECT_EQ(figures.worstView(1), 1u);
@@ -205,19 +204,17 @@ TEST(PictureQuality, ComparesEachMethodWithTheOracleInEachView) {
   EXPECT_EQ(section.pictures[0].pictures.size(), 5u);
 }
 
-TEST(PictureQuality, NoticesAPictureThatIsOff) {
+TEST(ImageQuality, NoticesAImageThatIsOff) {
   const auto make = oracleStages([](Image& image, const FrameSettings& settings, int before) {
     if (settings.composite == Composite::Normalised && before == 2) brighten(image, 0.05f);
   });
   const ReportSection section =
-      pictureQuality(make, tinyScene(), madeUpMethods(),
-                     {.views = quickQualityViews(), .pictureEdge = 12, .hasGoals = true})
-          .section;
+      imageQuality(make, tinyScene(), madeUpMethods(), {.views = quickQualityViews(), .imageEdge = 12, .hasGoals = true}).section;
   EXPECT_EQ(section.failures(), 2u);  // too low, and below sorted blending
   for (const Check& check : section.checks) EXPECT_EQ(check.where, viewText(quickQualityViews()[2]));
 }
 
-TEST(PictureQuality, NoticesAFrameOfATurntableThatPops) {
+TEST(ImageQuality, NoticesAFrameOfATurntableThatPops) {
   const auto make = [](float third) {
     return oracleStages([third](Image& image, const FrameSettings&, int before) {
       brighten(image, before == 2 ? third : 0.01f);

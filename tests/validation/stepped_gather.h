@@ -54,7 +54,7 @@ struct SteppedGather : GatherOutputs {
     volume->describe(rays);
     if (alterQuads) alterQuads(device, volume->quads(rays.mainAxis));
 
-    const SplatTargets targets = makeTargets(device, settings, TargetKind::Image);
+    const FrameTargets targets = makeTargets(device, settings, TargetKind::Image);
     run([&](Commands& commands) {
       for (const RenderTarget* target : targets.all())
         commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kStage, kStage);

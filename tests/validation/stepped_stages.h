@@ -51,9 +51,7 @@ struct SteppedStages : StageOutputs {
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
     return drawVoxels(device, steps, drawn, camera, settings);
   }
-  Image picture(const Camera& camera, const FrameSettings& settings) override {
-    return resolve(sums(camera, settings), settings);
-  }
+  Image image(const Camera& camera, const FrameSettings& settings) override { return resolve(sums(camera, settings), settings); }
 
   /// In the order of Volume::values.
   void replacePlane(int direction, const std::vector<std::uint8_t>& bytes) {

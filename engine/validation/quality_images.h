@@ -13,11 +13,9 @@ namespace freevoxels {
 /// a third of the time, and what is measured with them is below 65 dB.
 inline constexpr double kQualityTolerance = 4e-3;
 
-std::vector<Image> oraclePictures(const QualityScene& scene, const std::vector<Camera>& cameras,
-                                  glm::ivec2 size);
+std::vector<Image> oracleImages(const QualityScene& scene, const std::vector<Camera>& cameras, glm::ivec2 size);
 
-std::vector<Image> methodPictures(const StageMaker& make, const QualityScene& scene,
-                                  const QualityMethod& method, const std::vector<Camera>& cameras,
-                                  glm::ivec2 size);
+std::vector<Image> methodImages(const StageMaker& make, const QualityScene& scene, const QualityMethod& method,
+                                const std::vector<Camera>& cameras, glm::ivec2 size);
 
 }  // namespace freevoxels

@@ -30,7 +30,7 @@ Image cropped(const Image& image, const PixelRectangle& part) {
   return result;
 }
 
-Image readPicture(const std::filesystem::path& file) {
+Image readImage(const std::filesystem::path& file) {
   constexpr std::string_view kPng = "\x89PNG", kExr = "\x76\x2f\x31\x01";
   checkInputFile("image", file);
   std::array<char, 4> start{};
