@@ -242,7 +242,7 @@ void EmissionPanel::draw(ViewState& state, GridList& grids) {
   if (!all) return;
   ImGui::PushID("emission");
   EmissionDescription& options = state.scene.emission;
-  const bool mayShine = all->empty() || std::ranges::any_of(*all, &GridChoice::isReal);
+  const bool mayShine = all->empty() || std::ranges::any_of(*all, &GridChoice::isScalar);
   bool shines = options.grid().has_value();
   if (shines || mayShine) {
     if (tick("Emission", shines)) {
@@ -260,7 +260,7 @@ bool EmissionPanel::drawOptions(ViewState& state, const std::vector<GridChoice>&
   EmissionDescription& options = state.scene.emission;
   bool changed = false;
   if (grids.size() > 1) {
-    changed |= chooseGrid("Temperature", grids, &GridChoice::isReal, "automatic", options.temperatureGrid);
+    changed |= chooseGrid("Temperature", grids, &GridChoice::isScalar, "automatic", options.temperatureGrid);
     hint("Grid of the temperatures", "--temperature-grid");
   }
   const std::optional<Emission>& resolved = state.latest->scene.classification.emission;

@@ -43,7 +43,7 @@ std::vector<GridInfo> describeVdb(const std::filesystem::path& file);
 struct GridChoice {
   std::string name;                                              ///< as GridInfo::name
   bool isDensity = false;                                        ///< whether readVdb accepts it
-  bool isReal = false, isTemperature = false, isAlbedo = false;  ///< the latter two as in GridInfo
+  bool isScalar = false, isTemperature = false, isAlbedo = false;  ///< the latter two as in GridInfo
 };
 
 /// Lists the grids in file order. Reads only the file's table of contents and each grid's metadata, or the

@@ -99,7 +99,7 @@ TemperatureGrid toTemperature(const openvdb::FloatGrid& grid, const std::string&
 VdbChannels::VdbChannels(VdbFile& file, const VdbFile::Entry& density, const MoreGrids& more) : file_(file) {
   if (more.temperature) {
     temperature_ = &chooseTemperature(file, *more.temperature);
-    if (!isReal(*temperature_))
+    if (!isScalar(*temperature_))
       fail(ErrorKind::Input,
            "grid '{}' of '{}' holds no temperatures: its values are of type {}; choose a float grid with "
            "{}",

@@ -103,10 +103,7 @@ void initialiseOpenVdb() {
 VdbFile::VdbFile(const fs::path& path) : path_(path), file_(path.string()), header_(readVdbHeader(path)) {
   initialiseOpenVdb();
   if (header_.hasOffsets) {
-    guarded("the header", [&] {
-      openWithoutDelay(file_);
-      return GridBase::Ptr();
-    });
+    guarded("the header", [&] { openWithoutDelay(file_); });
     listGrids();
   } else {
     readStreamedGrids();
@@ -133,7 +130,6 @@ void VdbFile::readStreamedGrids() {
     input.exceptions(std::ios::failbit | std::ios::badbit);  // without exceptions OpenVDB reads on beyond the end of the file
     input.open(path_, std::ios::binary);
     streamed_ = readWholeStream<openvdb::io::Stream>(input);
-    return GridBase::Ptr();
   });
   for (const GridBase::Ptr& grid : streamed_)
     entries_.push_back({.baseName = oneLine(grid->getName()),
@@ -143,11 +139,11 @@ void VdbFile::readStreamedGrids() {
   nameEntries(entries_);
 }
 
-GridBase::Ptr VdbFile::guarded(const std::string& what, const std::function<GridBase::Ptr()>& read) const {
+void VdbFile::guarded(const std::string& what, const std::function<void()>& read) const {
   try {
     const CrashNote note(fmt::format("cannot read {} of '{}': the file is damaged; copy or download it again", what,
                                      printable(path_.string())));
-    return read();
+    read();
   } catch (const std::bad_alloc&) {
     fail(ErrorKind::OutOfMemory,
          "not enough memory to read {} of '{}'; free some, or crop or resample the volume", what,
@@ -178,7 +174,7 @@ const VdbFile::Entry& VdbFile::choose(const std::string& name) {
 const VdbFile::Entry& VdbFile::chooseByDefault() {
   std::vector<const Entry*> densities, reals;
   for (const Entry& entry : entries_) {
-    if (!isReal(entry)) continue;
+    if (!isScalar(entry)) continue;
     reals.push_back(&entry);
     if (lowerCase(entry.baseName) == "density") densities.push_back(&entry);
   }
@@ -207,11 +203,13 @@ const VdbFile::Entry& VdbFile::firstOf(const std::vector<const Entry*>& sameName
 }
 
 GridBase::Ptr VdbFile::readMetadata(const Entry& entry) {
-  if (!streamed_.empty()) return streamed_[std::size_t(&entry - entries_.data())];
-  return guarded(fmt::format("grid '{}'", entry.name), [&] { return file_.readGridMetadata(entry.key); });
+  if (!streamed_.empty()) return streamed_[indexOf(entry)];
+  GridBase::Ptr grid;
+  guarded(fmt::format("grid '{}'", entry.name), [&] { grid = file_.readGridMetadata(entry.key); });
+  return grid;
 }
 
-bool VdbFile::isOfBlender(const Entry& entry) {
+bool VdbFile::isFromBlender(const Entry& entry) {
   const GridBase::Ptr grid = readMetadata(entry);
   const auto creatorIsBlender = [](const openvdb::MetaMap& metadata) {
     const auto creator = metadata.getMetadata<openvdb::StringMetadata>("creator");
@@ -226,10 +224,11 @@ bool VdbFile::isOfBlender(const Entry& entry) {
 }
 
 GridBase::Ptr VdbFile::read(const Entry& entry) {
-  const auto index = std::size_t(&entry - entries_.data());
-  if (!streamed_.empty()) return streamed_[index];
-  checkTree(header_.grids[index]);
-  return guarded(fmt::format("grid '{}'", entry.name), [&] { return file_.readGrid(entry.key); });
+  if (!streamed_.empty()) return streamed_[indexOf(entry)];
+  checkTree(header_.grids[indexOf(entry)]);
+  GridBase::Ptr grid;
+  guarded(fmt::format("grid '{}'", entry.name), [&] { grid = file_.readGrid(entry.key); });
+  return grid;
 }
 
 void VdbFile::checkTree(const VdbHeader::Grid& grid) const {
@@ -239,7 +238,7 @@ void VdbFile::checkTree(const VdbHeader::Grid& grid) const {
   checkVdbTree(reader, isShared ? *parent : grid);
 }
 
-bool isReal(const VdbFile::Entry& entry) {
+bool isScalar(const VdbFile::Entry& entry) {
   return whyTypeUnusable(entry.treeType, entry.valueType).empty();
 }
 

@@ -44,15 +44,16 @@ class VdbFile {
   /// For Volume::warnings.
   const std::vector<std::string>& warnings() const { return warnings_; }
   /// Whether the metadata of the file or of the grid say that Blender wrote it: its world has +z up.
-  bool isOfBlender(const Entry& entry);
+  bool isFromBlender(const Entry& entry);
 
  private:
   void listGrids();
   void readStreamedGrids();
   void checkTree(const VdbHeader::Grid& grid) const;
   /// Runs `read`, with OpenVDB's exceptions turned into one sentence, and a CrashNote in case that it crashes.
-  openvdb::GridBase::Ptr guarded(const std::string& what,
-                                 const std::function<openvdb::GridBase::Ptr()>& read) const;
+  void guarded(const std::string& what, const std::function<void()>& read) const;
+  /// The place of a grid in entries_, and in header_.grids or streamed_.
+  std::size_t indexOf(const Entry& entry) const { return std::size_t(&entry - entries_.data()); }
   const Entry& chooseByDefault();
   const Entry& firstOf(const std::vector<const Entry*>& sameName);
 
@@ -61,14 +62,13 @@ class VdbFile {
   VdbHeader header_;
   std::vector<Entry> entries_;
   std::vector<std::string> warnings_;
-  std::vector<openvdb::GridBase::Ptr>
-      streamed_;  ///< grids in the order of entries_, for a file that can only be read as a whole
+  std::vector<openvdb::GridBase::Ptr> streamed_;  ///< all grids of a file that can only be read as a whole
 };
 
 /// Names of temperature grids, in the order of preference.
 inline constexpr std::array<const char*, 3> kTemperatureNames{"temperature", "heat", "flame"};
 /// Whether the grid has scalars, or colours, by OpenVDB's names of value types.
-bool isReal(const VdbFile::Entry& entry);
+bool isScalar(const VdbFile::Entry& entry);
 bool isColor(const VdbFile::Entry& entry);
 
 /// Why a grid of this type cannot be drawn, in one clause; empty if it can.

@@ -145,7 +145,7 @@ void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
 }
 
 bool hasTemperatures(const VdbFile::Entry& entry) {
-  return isReal(entry) && std::ranges::find(kTemperatureNames, entry.baseName) != kTemperatureNames.end();
+  return isScalar(entry) && std::ranges::find(kTemperatureNames, entry.baseName) != kTemperatureNames.end();
 }
 
 /// Whether a grid can hold albedos. Staggered vectors are velocities.
@@ -189,7 +189,7 @@ std::vector<GridChoice> listVdb(const std::filesystem::path& path) {
   for (const VdbFile::Entry& entry : file.entries()) {
     GridChoice& choice = choices.emplace_back(GridChoice{.name = entry.name});
     choice.isDensity = whyTypeUnusable(entry.treeType, entry.valueType).empty();
-    choice.isReal = isReal(entry);
+    choice.isScalar = isScalar(entry);
     choice.isTemperature = hasTemperatures(entry);
     if (openvdb::GridBase::isRegistered(entry.treeType))
       choice.isAlbedo = hasAlbedos(entry, *file.readMetadata(entry));

@@ -119,7 +119,7 @@ Volume readVdb(const std::filesystem::path& path, const std::string& gridName, s
     volume.warnings.insert(volume.warnings.begin(), file.warnings().begin(), file.warnings().end());
     volume.isLevelSet = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
     orientScan(volume);
-    if (file.isOfBlender(entry)) {
+    if (file.isFromBlender(entry)) {
       volume.upReason = "Blender wrote the file";
       volume.up = {0.0, 0.0, 1.0};
     }

@@ -104,7 +104,7 @@ TEST_F(VdbChannelsTest, TheGridsAreListedForWhatTheyCanBe) {
   for (std::size_t i = 0; i < infos.size(); ++i) {
     EXPECT_EQ(choices[i].name, infos[i].name);
     EXPECT_EQ(choices[i].isDensity, infos[i].unusable.empty());
-    EXPECT_EQ(choices[i].isReal, infos[i].hasRange);
+    EXPECT_EQ(choices[i].isScalar, infos[i].hasRange);
     EXPECT_EQ(choices[i].isTemperature, infos[i].isTemperature);
     EXPECT_EQ(choices[i].isAlbedo, infos[i].isAlbedo);
   }
