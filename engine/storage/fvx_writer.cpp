@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <limits>
 
 #include "engine/core/checked_file.h"
 #include "engine/core/error.h"
@@ -13,6 +12,7 @@
 #include "engine/storage/plane_codec.h"
 #include "engine/storage/region_sweep.h"
 #include "engine/storage/spool.h"
+#include "engine/storage/spooled_planes.h"
 
 namespace freevoxels::fvx {
 
@@ -21,80 +21,6 @@ namespace {
 std::uint64_t roundUp(std::uint64_t bytes, std::uint64_t alignment) {
   return (bytes + alignment - 1) / alignment * alignment;
 }
-
-struct EncodedChunk {
-  ChunkEntry entry;
-  std::vector<std::byte> bytes;  ///< stored bytes; empty if there is nothing to store
-};
-
-/// The mask of the bricks (ChunkEntry::brickMask) of which any value satisfies `holds(value)`.
-template <typename Holds>
-std::uint64_t bricksThat(const std::vector<float>& values, const Holds& holds) {
-  std::uint64_t mask = 0;
-  for (std::size_t first = 0; first < values.size(); first += kBrickVoxels)
-    if (std::any_of(values.begin() + std::ptrdiff_t(first), values.begin() + std::ptrdiff_t(first + kBrickVoxels), holds))
-      mask |= std::uint64_t(1) << first / kBrickVoxels % kChunkBricks;
-  return mask;
-}
-
-class ChunkEncoder {
- public:
-  explicit ChunkEncoder(const WriteSettings& settings) : settings_(settings) {}
-
-  EncodedChunk encode(const ChunkValues& chunk, std::size_t channel) const {
-    const std::vector<float>& values = chunk.channels[channel];
-    EncodedChunk result{.entry = {.cell = chunk.cell, .brickMask = maskOf(chunk, channel)}};
-    ChunkEntry& entry = result.entry;
-    if (entry.brickMask == 0) return result;
-    const Encoding& encoding = *settings_.encodings[channel];
-    const std::size_t components = std::size_t(valuesPerVoxel(Channel(channel)));
-    const std::size_t brickBytes = kBrickVoxels * encoding.bytesPerValue();
-    const std::vector<float> nothing(kBrickVoxels, kInactiveVoxel);
-    entry.bytes = std::uint64_t(entry.bricks()) * components * brickBytes;
-    result.bytes.resize(entry.bytes);
-    entry.minimum = std::numeric_limits<float>::max();
-    entry.maximum = -entry.minimum;
-    std::span<std::byte> rest(result.bytes);
-    for (std::size_t brick = 0; brick < kChunkBricks; ++brick) {
-      if ((entry.brickMask >> brick & 1u) == 0) continue;
-      for (std::size_t component = 0; component < components; ++component) {
-        const std::size_t first = (component * kChunkBricks + brick) * kBrickVoxels;
-        const std::span<const float> from =
-            values.empty() ? std::span<const float>(nothing) : std::span(values).subspan(first, kBrickVoxels);
-        freevoxels::fvx::encode(encoding, from, rest.first(brickBytes));
-        rest = rest.subspan(brickBytes);
-        summarise(from, component == 0, entry);
-      }
-    }
-    if (entry.activeVoxels == 0) entry.minimum = entry.maximum = 0.0f;
-    if (settings_.compress) entry.codec = compressPlanes(encoding.bytesPerValue(), result.bytes);
-    entry.storedBytes = result.bytes.size();
-    entry.hash = XXH3_64bits(result.bytes.data(), result.bytes.size());
-    return result;
-  }
-
- private:
-  /// Bricks of scalars exist wherever there are temperatures, because voxels with emission alone are drawn
-  /// too.
-  std::uint64_t maskOf(const ChunkValues& chunk, std::size_t channel) const {
-    const auto isActive = [](float value) { return value != kInactiveVoxel; };
-    if (Channel(channel) != Channel::Scalars) return bricksThat(chunk.channels[channel], isActive);
-    const std::uint64_t temperatures = bricksThat(chunk.channels[std::size_t(Channel::Temperature)], isActive);
-    if (!settings_.leaveOutZeros) return temperatures | bricksThat(chunk.channels[channel], isActive);
-    return temperatures | bricksThat(chunk.channels[channel], [](float value) { return value > 0.0f; });
-  }
-
-  static void summarise(std::span<const float> values, bool count, ChunkEntry& entry) {
-    for (const float value : values) {
-      if (value == kInactiveVoxel) continue;
-      if (count) ++entry.activeVoxels;
-      entry.minimum = std::min(entry.minimum, value);
-      entry.maximum = std::max(entry.maximum, value);
-    }
-  }
-
-  const WriteSettings& settings_;
-};
 
 /// The range of extinctions of the scalars between two scalars.
 void setExtinctions(const Classification& classification, ChunkEntry& entry) {
@@ -110,69 +36,6 @@ void setExtinctions(const Classification& classification, ChunkEntry& entry) {
     entry.mostExtinction = std::max(entry.mostExtinction, extinctionOf(point.scalar));
   }
 }
-
-/// The densities of planes of a level, from its spooled chunks of scalars.
-class SpooledPlanes {
- public:
-  SpooledPlanes(glm::ivec3 dimensions, std::span<const ChunkEntry> chunks, const Spool& spool, const Encoding& encoding)
-      : dimensions_(dimensions),
-        chunks_(chunks),
-        spool_(spool),
-        bytesPerValue_(encoding.bytesPerValue()),
-        decoder_(encoding) {}
-
-  void read(int first, std::span<float> densities) const {
-    std::ranges::fill(densities, 0.0f);
-    tbb::parallel_for(std::size_t(0), chunks_.size(), [&](std::size_t i) {
-      if (chunks_[i].cell.z == first / kChunkEdge) readChunk(chunks_[i], first, densities);
-    });
-  }
-
- private:
-  static constexpr int kEdge = ScalarBricks::kEdge, kBricks = kChunkEdge / kEdge;
-
-  /// The bricks of the layer that begins at plane `first`, which are consecutive.
-  void readChunk(const ChunkEntry& chunk, int first, std::span<float> densities) const {
-    const int layer = first / kEdge % kBricks, number = layer * kBricks * kBricks;
-    const std::size_t brickBytes = kBrickVoxels * bytesPerValue_;
-    const auto before = std::size_t(std::popcount(chunk.brickMask & ((std::uint64_t(1) << number) - 1)));
-    const std::uint64_t mask = chunk.brickMask >> number & 0xffff;
-    if (mask == 0) return;
-    std::vector<std::byte> bytes(std::size_t(std::popcount(mask)) * brickBytes);
-    if (chunk.codec == Codec::None) {
-      spool_.readAt(chunk.offset + before * brickBytes, bytes);
-    } else {
-      std::vector<std::byte> stored(chunk.storedBytes), all(chunk.bytes);
-      spool_.readAt(chunk.offset, stored);
-      FV_CHECK_EQ(decompressPlanes(stored, bytesPerValue_, all), true);
-      std::ranges::copy(std::span(all).subspan(before * brickBytes, bytes.size()), bytes.begin());
-    }
-    std::span<const std::byte> rest(bytes);
-    for (int brick = 0; brick < kBricks * kBricks; ++brick) {
-      if ((mask >> brick & 1u) == 0) continue;
-      ScalarBricks::Brick values;
-      decoder_.decode(rest.first(brickBytes), values);
-      rest = rest.subspan(brickBytes);
-      place(values, chunk.cell * kChunkEdge + glm::ivec3(brick % kBricks, brick / kBricks, layer) * kEdge, densities);
-    }
-  }
-
-  void place(const ScalarBricks::Brick& values, glm::ivec3 first, std::span<float> densities) const {
-    const glm::ivec3 end = glm::min(dimensions_ - first, kEdge);
-    const std::size_t width = std::size_t(dimensions_.x), plane = width * std::size_t(dimensions_.y);
-    for (glm::ivec3 v(0); v.z < end.z; ++v.z)
-      for (v.y = 0; v.y < end.y; ++v.y) {
-        float* const row = &densities[std::size_t(v.z) * plane + std::size_t(first.y + v.y) * width + std::size_t(first.x)];
-        for (v.x = 0; v.x < end.x; ++v.x) row[v.x] = std::max(values[ScalarBricks::indexInBrick(v)], 0.0f);
-      }
-  }
-
-  glm::ivec3 dimensions_;
-  std::span<const ChunkEntry> chunks_;
-  const Spool& spool_;
-  std::size_t bytesPerValue_;
-  Decoder decoder_;
-};
 
 /// The regions that have chunks, in the order of these.
 std::vector<glm::ivec3> regionsOf(std::span<const ChunkEntry> chunks) {
@@ -252,30 +115,6 @@ class SectionWriter {
 
 }  // namespace
 
-std::vector<std::byte> encodeChunks(const WriteSettings& settings, std::span<const ChunkValues> chunks) {
-  const ChunkEncoder encoder(settings);
-  std::vector<std::array<EncodedChunk, kChannels>> encoded(chunks.size());
-  std::vector<ChunkEighth> eighths(chunks.size());
-  tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t i) {
-    if (chunks[i].empty()) return;
-    for (std::size_t channel = 0; channel < kChannels; ++channel)
-      if (settings.encodings[channel]) encoded[i][channel] = encoder.encode(chunks[i], channel);
-    eighths[i] = coarser(chunks[i], settings.dimensions, settings.withoutData);
-  });
-  BytePacker bytes;
-  for (std::size_t i = 0; i < chunks.size(); ++i) {
-    if (chunks[i].empty()) continue;
-    for (std::size_t channel = 0; channel < kChannels; ++channel) {
-      if (!settings.encodings[channel]) continue;
-      bytes.value(encoded[i][channel].entry);
-      bytes.values(encoded[i][channel].bytes);
-    }
-    bytes.value(eighths[i].cell);
-    for (const std::vector<float>& values : eighths[i].channels) bytes.values(values);
-  }
-  return bytes.take();
-}
-
 struct FvxWriter::State {
   WriteSettings settings;
   std::vector<glm::ivec3> dimensions;  ///< by level
@@ -283,10 +122,10 @@ struct FvxWriter::State {
   std::unique_ptr<Spool> regionSpool;  ///< null without regions
   std::vector<RegionEntry> regions;    ///< with offsets in the spool
   std::filesystem::path folder;
-  ChunkEncoder encoder{settings};
   ChunkPyramid pyramid{settings.dimensions, settings.withoutData, [this](int level, const ChunkValues& chunk) {
                          for (std::size_t channel = 0; channel < kChannels; ++channel)
-                           if (settings.encodings[channel]) store(std::size_t(level), channel, encoder.encode(chunk, channel));
+                           if (settings.encodings[channel])
+                             store(std::size_t(level), channel, encodeChunk(settings, chunk, Channel(channel)));
                        }};
 
   State(const std::filesystem::path& spoolFolder, const WriteSettings& given)

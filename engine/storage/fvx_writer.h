@@ -7,30 +7,16 @@
 #include <string>
 
 #include "engine/core/stages.h"
-#include "engine/storage/chunk_pyramid.h"
-#include "engine/storage/fvx_description.h"
+#include "engine/storage/chunk_encoder.h"
 #include "engine/volume/subject.h"
 
 namespace freevoxels::fvx {
-
-struct WriteSettings {
-  glm::ivec3 dimensions{0};
-  Encodings encodings;
-  WithoutData withoutData = WithoutData::Zero;  ///< how voxels without data count in means of scalars
-  /// Whether to leave out bricks of scalars of which none is above 0, in addition to those without data.
-  bool leaveOutZeros = false;
-  bool compress = false;
-};
 
 /// What densities are swept with (region_sweep.h).
 struct RegionSettings {
   double densityScale = 1.0;  ///< extinction per world unit at density 1
   glm::dmat4 indexToWorld{1.0};
 };
-
-/// Encodes chunks of level 0, with the means that the levels above need of them, for FvxWriter::add, which may be in another process.
-/// Uses all threads.
-std::vector<std::byte> encodeChunks(const WriteSettings& settings, std::span<const ChunkValues> chunks);
 
 /// Throws std::system_error if it cannot write: to be used within writeAtomically (core/atomic_file.h). Calls: add() any number of times, then
 /// summary(), then sweepRegions() if the file has regions, then finish() once.
