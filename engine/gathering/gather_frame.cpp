@@ -1,11 +1,10 @@
-// The gather's lattice and rays, computed in double precision on the host.
+#include "engine/gathering/gather_frame.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include "engine/gathering/gather_pass.h"
+#include <vector>
 
 namespace freevoxels {
 
@@ -155,6 +154,26 @@ glm::ivec2 sampleCount(glm::ivec2 size, double pitch) {
 }
 
 }  // namespace
+
+/// Tests a grid of rays, with a margin for the rays in between.
+bool someRayHasAxis(const shader::GatherFrame& frame, int axis) {
+  if (axis == frame.mainAxis) return true;
+  constexpr int kGrid = 64;
+  constexpr float kMargin = 1.05f;
+  const glm::vec2 half = 0.5f * glm::vec2(frame.size) + 2.0f * frame.pitch;
+  const glm::vec2 low = glm::max(frame.seenLow, -half), high = glm::min(frame.seenHigh, half);
+  if (low.x > high.x || low.y > high.y) return false;
+  for (int j = 0; j <= kGrid; ++j) {
+    for (int i = 0; i <= kGrid; ++i) {
+      const glm::vec3 position(1.0f, glm::mix(low, high, glm::vec2(float(i), float(j)) / float(kGrid)));
+      glm::vec3 size;
+      for (int a = 0; a < 3; ++a) size[a] = std::abs(glm::dot(frame.axes[a].along, position));
+      const float largest = std::max({size.x, size.y, size.z});
+      if (size[frame.mainAxis] <= kMargin * shader::kLeastAlong * largest && kMargin * size[axis] >= largest) return true;
+    }
+  }
+  return false;
+}
 
 std::optional<SampleRectangle> samplesThatSee(const DeviceVolume& volume, const Camera& camera, const shader::GatherFrame& frame,
                                               glm::ivec3 begin, glm::ivec3 end) {

@@ -59,26 +59,6 @@ Pipeline makeImagePass(const Device& device, const Shader& code, bool withDistan
 
 }  // namespace
 
-/// Tests a grid of rays, with a margin for the rays in between.
-bool someRayHasAxis(const shader::GatherFrame& frame, int axis) {
-  if (axis == frame.mainAxis) return true;
-  constexpr int kGrid = 64;
-  constexpr float kMargin = 1.05f;
-  const glm::vec2 half = 0.5f * glm::vec2(frame.size) + 2.0f * frame.pitch;
-  const glm::vec2 low = glm::max(frame.seenLow, -half), high = glm::min(frame.seenHigh, half);
-  if (low.x > high.x || low.y > high.y) return false;
-  for (int j = 0; j <= kGrid; ++j) {
-    for (int i = 0; i <= kGrid; ++i) {
-      const glm::vec3 position(1.0f, glm::mix(low, high, glm::vec2(float(i), float(j)) / float(kGrid)));
-      glm::vec3 size;
-      for (int a = 0; a < 3; ++a) size[a] = std::abs(glm::dot(frame.axes[a].along, position));
-      const float largest = std::max({size.x, size.y, size.z});
-      if (size[frame.mainAxis] <= kMargin * shader::kLeastAlong * largest && kMargin * size[axis] >= largest) return true;
-    }
-  }
-  return false;
-}
-
 GatherPass::GatherPass(const Device& device)
     : device_(device), frame_(device, sizeof(shader::GatherFrame), MemoryUse::Device, "gather frame",
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT) {}

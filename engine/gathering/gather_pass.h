@@ -4,31 +4,12 @@
 // pixels. The transmittance to the eye is computed along each sample's ray: Subr et al. 2007, Section 2.1,
 // Eq. 4, without an attenuation table.
 
-#include <optional>
-
+#include "engine/gathering/gather_frame.h"
 #include "engine/gathering/gather_stages.h"
 #include "engine/gathering/gather_volume.h"
 #include "engine/splatting/splat_pass.h"
 
 namespace freevoxels {
-
-/// The lattice and the rays of a frame, computed in double precision on the host. The caller fills in the
-/// levels: from `finest`, which may be one below the rule's, to `coarsest`. Rays end at the transmittance
-/// `endTransmittance`.
-shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& camera, const FrameSettings& settings,
-                                    const DetailRule& detail, double endTransmittance);
-
-/// Whether some ray of the lattice may march along this axis.
-bool someRayHasAxis(const shader::GatherFrame& frame, int axis);
-
-/// A rectangle of samples of a lattice.
-struct SampleRectangle {
-  glm::ivec2 first{0}, extent{0};
-};
-/// The samples of a frame of `volume` whose rays may meet what is interpolated of the voxels from `begin` to `endTransmittance` - 1; nothing if there are
-/// none.
-std::optional<SampleRectangle> samplesThatSee(const DeviceVolume& volume, const Camera& camera, const shader::GatherFrame& frame, glm::ivec3 begin,
-                                              glm::ivec3 end);
 
 /// COMPUTE gather.comp, gather_stencil.comp and gather_upsample.comp: premultiplied RGBA in `targets.colorEnergy` and the
 /// mean distance in `targets.distance`, if that exists. Leaves the targets in layout GENERAL, visible to transfer.

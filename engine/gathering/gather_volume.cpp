@@ -9,6 +9,7 @@
 #include "embedded/brick_quads.h"
 #include "embedded/shade_blocks.h"
 #include "engine/core/error.h"
+#include "engine/octree/occupancy.h"
 #include "engine/volume/packed_light.h"
 
 namespace freevoxels {
@@ -187,9 +188,10 @@ void GatherVolume::prepare(const Shading& shading, std::vector<StageTime>& times
   wantedLevels_ = 0;
   for (int level = shading.frame.detail.finest; level <= shading.frame.detail.coarsest; ++level)
     wantedLevels_ |= 1u << level;
-  if (!sameLight) shadedLevels_ = 0;
-  for (std::size_t axis = 0; axis < quads_.size(); ++axis)
-    if (!sameLight) quads_[axis].levels = 0;
+  if (!sameLight) {
+    shadedLevels_ = 0;
+    for (Quads& quads : quads_) quads.levels = 0;
+  }
   makeSources();
   const auto makeRoomForAll = [&] {
     for (std::size_t axis = 0; axis < quads_.size(); ++axis)
@@ -267,13 +269,12 @@ void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
 }
 
 void GatherVolume::record(Commands& commands, const Shading& shading) {
-  if ((wantedLevels_ & ~shadedLevels_) != 0) recordShading(commands, shading);
+  if (lacksLevels(shadedLevels_)) recordShading(commands, shading);
   if (lightSlots() > 0) recordLightCodes(commands, shading);
   if (hasSurfaces()) recordGradients(commands);
   for (int axis = 0; axis < 3; ++axis) {
     if (!shading.axes[std::size_t(axis)]) continue;
-    Quads& quads = quads_[std::size_t(axis)];
-    if ((wantedLevels_ & ~quads.levels) != 0) recordQuads(commands, axis);
+    if (lacksLevels(quads_[std::size_t(axis)].levels)) recordQuads(commands, axis);
     if (lightSlots() > 0) recordLightQuads(commands, axis);
   }
 }
@@ -292,7 +293,7 @@ void GatherVolume::recordQuads(Commands& commands, int axis) {
   commands.beginPass("brick quads");
   if (quads.levels == 0) recordBricks(commands, axis, 0, 0, 1, scalarCodes(0), quads.medium, hasColors());  // the empty one
   for (int level = 0; level <= built_.volume.hierarchy.top(); ++level)
-    if (((wantedLevels_ & ~quads.levels) >> level & 1u) != 0)
+    if (lacksLevel(quads.levels, level))
       recordBricks(commands, axis, level, firstBricks_[std::size_t(level)], firstBricks_[std::size_t(level) + 1],
                    scalarCodes(level), quads.medium, hasColors() && (lit_ || !scalarCodes(level)));
   commands.barrier(kCompute, kCompute);
@@ -332,8 +333,7 @@ void GatherVolume::recordShading(Commands& commands, const Shading& shading) {
   commands.beginPass("shade blocks");
   commands.update(frame_, shading.frame.setup);
   for (int level = 0; level <= volume.hierarchy.top(); ++level)
-    if (((wantedLevels_ & ~shadedLevels_) >> level & 1u) != 0 && shadesLevel(level))
-      shade(commands, shading, level);
+    if (lacksLevel(shadedLevels_, level) && shadesLevel(level)) shade(commands, shading, level);
   shadedLevels_ |= wantedLevels_;
 }
 
@@ -353,6 +353,28 @@ void GatherVolume::describe(shader::GatherFrame& frame) const {
   frame.color = built_.volume.albedo;
   describeLights(frame);
   for (int number = frame.finest; number <= frame.coarsest; ++number) frame.levels[number] = levels_[std::size_t(number)];
+}
+
+std::vector<GatherBlocks> GatherVolume::downloadBlocks() const {
+  const DeviceVolume& volume = built_.volume;
+  std::vector<GatherBlocks> levels(std::size_t(volume.hierarchy.top()) + 1);
+  for (int level = 0; level <= volume.hierarchy.top(); ++level) {
+    if ((wantedLevels_ >> level & 1u) == 0 || (level == 0 && hasScalars())) continue;
+    const GridLayout& grid = volume.hierarchy.levels[std::size_t(level)];
+    const std::vector<std::uint32_t> indices = downloadStored(device_, volume, level);
+    std::vector<glm::uvec2> stored(indices.size());
+    if (!stored.empty())
+      download(device_, sources_, std::as_writable_bytes(std::span(stored)), volume.firstRank(level) * sizeof(glm::uvec2));
+    const double perWorldUnit = 1.0 / (kStoredDepth * volume.voxelSize);
+    GatherBlocks& blocks = levels[std::size_t(level)];
+    blocks.dimensions = grid.dimensions;
+    for (const glm::uvec2 block : scatterToDense(stored, indices, grid.voxels())) {
+      blocks.extinction.push_back(perWorldUnit * double(glm::unpackHalf2x16(block.y).x));
+      blocks.source.push_back(hasColors() ? sourceUnit_ * perWorldUnit * unpackColor(block.x)
+                                          : blocks.extinction.back() * glm::dvec3(volume.albedo));
+    }
+  }
+  return levels;
 }
 
 }  // namespace freevoxels
