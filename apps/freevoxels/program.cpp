@@ -189,7 +189,7 @@ struct Deferring {
 }  // namespace
 
 std::string programVersion() {
-  return FREEVOXELS_VERSION;
+  return FREEVOXELS_PROGRAM_VERSION;
 }
 
 int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>& onFailure) {

@@ -9,6 +9,10 @@ scratch="$(mktemp -d)"
 trap 'rm -rf "$scratch"' EXIT
 
 cmake --install "$build" --component library --prefix "$scratch/installed"
+# The macros of the headers alone say which version they are.
+printf '#include <freevoxels/version.h>\nFREEVOXELS_VERSION_MAJOR . FREEVOXELS_VERSION_MINOR . FREEVOXELS_VERSION_PATCH\n' |
+  c++ -E -P -x c++ -I "$scratch/installed/include" - | tr -d ' ' >"$scratch/header_version.txt"
+"$build/bin/freevoxels" --version | grep -F "$(cat "$scratch/header_version.txt")"
 for example in minimal interop; do
   cp -r "$root/apps/examples/$example" "$scratch/$example" # away from the project's own headers
   cmake -S "$scratch/$example" -B "$scratch/$example/build" -G Ninja -DCMAKE_PREFIX_PATH="$scratch/installed"

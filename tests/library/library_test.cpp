@@ -1,5 +1,6 @@
 // The installed interface: closed forms, what frames share, submitted frames, errors.
 
+#include <fmt/format.h>
 #include <freevoxels/freevoxels.h>
 #include <gtest/gtest.h>
 
@@ -200,6 +201,11 @@ TEST(Library, VolumesSayWhatIsRemarkableAboutThem) {
   const std::vector<std::string> warnings = v1::Volume::copy(values, {2, 2, 2}).warnings();
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_NE(warnings[0].find("1 voxel"), std::string::npos) << warnings[0];
+}
+
+TEST(Library, TheVersionIsThatOfTheHeaders) {
+  EXPECT_EQ(v1::version(), fmt::format("{}.{}.{}", FREEVOXELS_VERSION_MAJOR, FREEVOXELS_VERSION_MINOR, FREEVOXELS_VERSION_PATCH));
+  EXPECT_EQ(FREEVOXELS_VERSION, 10000 * FREEVOXELS_VERSION_MAJOR + 100 * FREEVOXELS_VERSION_MINOR + FREEVOXELS_VERSION_PATCH);
 }
 
 TEST(Library, AnExceptionOfProgressReachesTheCaller) {

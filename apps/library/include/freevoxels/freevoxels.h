@@ -1,5 +1,5 @@
 #pragma once
-// The FreeVoxels library: volumes in, images out. Includes the standard library only.
+// The FreeVoxels library: volumes in, images out. Includes the standard library and the version only.
 //
 // A scene is JSON text with the keys of a scene file, or the options of `freevoxels render` by name (with -
 // or _), in any mixture:
@@ -29,6 +29,8 @@
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "freevoxels/version.h"
 
 #if defined(__GNUC__)
 #define FREEVOXELS_API __attribute__((visibility("default")))
@@ -201,7 +203,7 @@ FREEVOXELS_API std::string loadScene(const std::filesystem::path& file);
 /// Writes a scene as a file for the command line and the viewer, with names of files relative to its folder, atomically.
 FREEVOXELS_API void saveScene(const std::filesystem::path& file, std::string_view scene);
 
-/// The version, such as "0.1.0".
+/// The version of the library, such as "0.1.0"; that of this header is FREEVOXELS_VERSION.
 FREEVOXELS_API std::string version();
 
 }  // namespace freevoxels::v1
