@@ -3,6 +3,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <glm/gtc/matrix_access.hpp>
 #include <memory>
@@ -13,6 +15,7 @@
 #include "apps/python/array_volume.h"
 #include "apps/python/python_values.h"
 #include "engine/core/error.h"
+#include "engine/description/scene_fields.h"
 #include "engine/volume/volume_of_scalars.h"
 
 namespace freevoxels {
@@ -157,21 +160,31 @@ void addRenderer(py::module_& module) {
       .def_property_readonly("device", [](const SceneRenderer& r) { return r.context()->device->description().name; }, "Name of the Vulkan device.");
 }
 
-/// render(): takes the keywords of the volume out of those of the frame. A file is read with all keywords,
-/// since the scene decides which of its grids are needed. Without a source it is the file of the scene.
-py::object renderOnce(const py::object& source, const py::object& progress, bool depth, py::kwargs keywords) {
+/// Whether a keyword of render() is of the volume, which is a file or an array, instead of the frame.
+bool isOfVolume(std::string keyword, bool isFile) {
+  constexpr std::array kOfArrays{"spacing", "origin", "transform", "no_data", "temperature"};
+  if (!isFile) return std::ranges::find(kOfArrays, keyword) != kOfArrays.end();
+  std::ranges::replace(keyword, '_', '-');
+  return std::ranges::any_of(sceneFields(), [&](const SceneField& field) { return field.section == "input" && field.name == keyword; });
+}
+
+/// A file is read with all keywords, since the scene decides which of its grids are needed. Without a source it is the file of the scene.
+py::object renderOnce(const py::object& source, const py::object& progress, bool depth, const py::kwargs& keywords) {
   const py::object type = py::type::of<PythonVolume>();
   py::object volume = source;
-  const bool isFile = source.is_none() || py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__");
-  const std::vector<const char*> taken =
-      isFile ? std::vector{"grid", "resolution", "clip_box"} : std::vector{"spacing", "origin", "transform", "no_data", "temperature"};
+  py::kwargs ofFrame = keywords;
   if (!py::isinstance<PythonVolume>(source)) {
-    py::dict given = isFile ? py::dict(keywords.attr("copy")()) : py::dict();
-    for (const char* key : taken)
-      if (keywords.contains(key)) given[key] = keywords.attr("pop")(key);
-    volume = (isFile ? py::object(type.attr("open")) : type)(source, **given);
+    const bool isFile = source.is_none() || py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__");
+    py::dict ofVolume;
+    ofFrame = py::kwargs();
+    for (const auto& [key, value] : keywords) {
+      const bool ofVolumeAlone = isOfVolume(key.cast<std::string>(), isFile);
+      if (isFile || ofVolumeAlone) ofVolume[key] = value;
+      if (!ofVolumeAlone) ofFrame[key] = value;
+    }
+    volume = (isFile ? py::object(type.attr("open")) : type)(source, **ofVolume);
   }
-  return render(*makeRenderer(volume.cast<PythonVolume>(), keywords), progress, depth, {});
+  return render(*makeRenderer(volume.cast<PythonVolume>(), ofFrame), progress, depth, {});
 }
 
 }  // namespace

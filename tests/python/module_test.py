@@ -67,6 +67,12 @@ class RenderTest(unittest.TestCase):
         np.testing.assert_array_equal(freevoxels.render(strided, density_scale=0.01, size=(40, 40)), expected)
         np.testing.assert_array_equal(freevoxels.render(np.asfortranarray(whole), density_scale=0.01, size=(40, 40)), expected)
 
+    def test_a_file_is_rendered_with_all_options_of_input(self):
+        part = dict(resolution=24, clip_box=(0, 0, 0, 23, 23, 15), clip_plane=(12, 12, 12, 1, 0, 0))
+        volume = freevoxels.Volume.open("procedural:cloud", **part)
+        image = freevoxels.render("procedural:cloud", size=(40, 40), **part)
+        np.testing.assert_array_equal(image, freevoxels.render(volume, size=(40, 40)))
+
     def test_temperatures_shine(self):
         image = freevoxels.render(blob(), temperature=2000 * blob(), emission=5, density_scale=0.1, unlit=True, size=(40, 40))
         self.assertGreater(image[20, 20, 0], 2 * image[20, 20, 2])

@@ -1,0 +1,193 @@
+"""Types of the module `freevoxels` for editors and type checkers; the functions' own documentation is that of help(freevoxels).
+
+The keywords of options are those of apps/scenes/README.md, which gives their units, ranges and defaults, with _ in place of -. Each also
+takes the text of the command line (size="640x420"). An object of a section's name, as load_scene() returns it, holds the options of that
+section: camera={"orbit": (35, 25)}.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from os import PathLike
+from typing import Any, Literal, TypedDict, overload
+
+from numpy import float32
+from numpy.typing import ArrayLike, NDArray
+from typing_extensions import Unpack
+
+__version__: str
+
+_Path = str | PathLike[str]
+_Number = float  # in classes with a keyword `float`
+_Numbers = Sequence[float] | NDArray[Any] | str
+_Pair = _Numbers
+_Triple = _Numbers  # (x, y, z), or linear (red, green, blue)
+_Section = Mapping[str, Any]
+_Image = NDArray[float32]  # (height, width, 4): linear, premultiplied
+_Depth = NDArray[float32]  # (height, width)
+_Progress = Callable[[str, float], object]  # (stage, fraction of it that is done, 0 to 1)
+
+class _Part(TypedDict, total=False):  # which part of a file is read
+    grid: str
+    resolution: int | _Triple
+    clip_box: _Numbers
+    clip_plane: _Numbers
+    input: _Section
+
+class _Input(_Part, total=False):
+    volume: _Path
+
+class _Camera(TypedDict, total=False):
+    orbit: _Pair
+    camera_position: _Triple
+    look_at: _Triple
+    up: _Triple
+    fov: float
+    orthographic: float
+    size: Sequence[int] | str
+    frames: int
+    camera: _Section
+
+class _Classification(TypedDict, total=False):
+    density_scale: float
+    albedo: _Triple
+    albedo_grid: str
+    transfer_function: _Path | Mapping[str, Any]
+    classification: Literal["post", "pre"] | _Section
+
+class _Emission(TypedDict, total=False):
+    emission: bool | float | _Section
+    temperature_grid: str
+    temperature_scale: float
+    temperature_offset: float
+
+class _Light(TypedDict, total=False):
+    light: Mapping[str, Any] | str | Sequence[Mapping[str, Any] | str]  # one light, several of them, or the section
+    lights: Sequence[Mapping[str, Any] | str]
+    unlit: bool
+    ambient: float | _Triple
+    environment: _Path
+    environment_rotation: float
+    environment_intensity: float
+    extinction_tint: _Triple
+    phase_g: float
+    light_attenuation: Literal["table", "exact", "auto"]
+    shading: Literal["auto", "scatter", "gradient"]
+    surface_share: float
+    scattering: int
+    scattering_scale: float
+
+class _Method(TypedDict, total=False):
+    draw: Literal["auto", "gather", "splats"]
+    composite: Literal["normalised", "additive", "sorted"]
+    attenuation: Literal["bilinear", "nearest", "exact", "auto"]
+    directions: Literal[26, 98]
+    code: Literal["depth8", "linear8"]
+    path_length_correction: bool
+    gradient: bool
+    lod: float
+    culling: bool
+    cull_threshold: float
+    hierarchy_filter: Literal["geometric", "arithmetic"]
+    paper: bool
+    method: _Section
+
+class _Output(TypedDict, total=False):
+    background: _Triple | Literal["transparent"]
+    exposure: _Number
+    tone_map: Literal["none", "filmic", "aces"]
+    float: bool
+    png_bits: Literal[8, 16]
+    aov: str
+    crop: Sequence[int] | str
+    output: _Section
+
+class _Device(TypedDict, total=False):
+    device: str  # part of a device's name, or its number in `freevoxels devices`
+    memory_limit: int  # MiB of device memory
+
+class _SceneFile(TypedDict, total=False):
+    scene: _Path  # supplies what the other keywords leave out
+
+class _FrameOptions(_Camera, _Classification, _Emission, _Light, _Method, _Device, _SceneFile, total=False):
+    output: _Section  # has no effect, but belongs to a whole scene
+
+class _RendererOptions(_FrameOptions, total=False):
+    input: _Section  # has no effect, but belongs to a whole scene
+
+class _OpenOptions(_Input, _FrameOptions, total=False): ...
+
+class _OnceOptions(_Part, _FrameOptions, total=False):
+    spacing: float | Sequence[float]
+    origin: Sequence[float]
+    transform: ArrayLike | None
+    no_data: float | None
+    temperature: ArrayLike | None
+
+class _SceneOptions(_Input, _Camera, _Classification, _Emission, _Light, _Method, _Output, _SceneFile, total=False): ...
+
+class Error(Exception):
+    parameters: tuple[str, ...]  # the keywords that the sentence names
+
+class UsageError(Error, ValueError): ...
+class InputError(Error, ValueError): ...
+class OutputError(Error, OSError): ...
+class DeviceError(Error, RuntimeError): ...
+class OutOfMemoryError(Error, MemoryError): ...
+
+class Volume:
+    def __init__(
+        self,
+        array: ArrayLike,
+        *,
+        spacing: float | Sequence[float] = ...,
+        origin: Sequence[float] = ...,
+        transform: ArrayLike | None = ...,
+        no_data: float | None = ...,
+        temperature: ArrayLike | None = ...,
+    ) -> None: ...
+    @staticmethod
+    def open(file: _Path | None = ..., **kwargs: Unpack[_OpenOptions]) -> Volume: ...
+    @property
+    def shape(self) -> tuple[int, int, int]: ...
+    @property
+    def range(self) -> tuple[float, float]: ...
+    @property
+    def active_voxels(self) -> int: ...
+    @property
+    def origin(self) -> tuple[float, float, float]: ...
+    @property
+    def source(self) -> str: ...
+
+class Renderer:
+    def __init__(self, volume: Volume, **kwargs: Unpack[_RendererOptions]) -> None: ...
+    @overload
+    def render(
+        self, *, progress: _Progress | None = ..., depth: Literal[False] = ..., **kwargs: Unpack[_RendererOptions]
+    ) -> _Image: ...
+    @overload
+    def render(
+        self, *, progress: _Progress | None = ..., depth: Literal[True], **kwargs: Unpack[_RendererOptions]
+    ) -> tuple[_Image, _Depth]: ...
+    @property
+    def timings(self) -> list[tuple[str, float]]: ...
+    @property
+    def device(self) -> str: ...
+
+@overload
+def render(
+    volume: ArrayLike | _Path | Volume | None = ...,
+    *,
+    progress: _Progress | None = ...,
+    depth: Literal[False] = ...,
+    **kwargs: Unpack[_OnceOptions],
+) -> _Image: ...
+@overload
+def render(
+    volume: ArrayLike | _Path | Volume | None = ...,
+    *,
+    progress: _Progress | None = ...,
+    depth: Literal[True],
+    **kwargs: Unpack[_OnceOptions],
+) -> tuple[_Image, _Depth]: ...
+def load_scene(file: _Path) -> dict[str, Any]: ...
+def save_scene(file: _Path, **kwargs: Unpack[_SceneOptions]) -> None: ...
+def save(file: _Path, image: ArrayLike, *, depth: ArrayLike | None = ..., **kwargs: Unpack[_Output]) -> None: ...
