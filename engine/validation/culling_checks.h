@@ -8,7 +8,7 @@
 namespace freevoxels {
 
 /// Largest difference of a pixel and least PSNR in dB with hidden blocks left out at the default threshold;
-/// and the largest difference if only what is outside of the image is left out.
+/// and the largest difference if only what is outside of the image is left out: engine/docs/validation.md, Bounds.
 inline constexpr double kCullingDifference = 1e-2, kCullingPsnr = 50.0, kFrustumDifference = 1e-5;
 
 /// Views from far and near, orthographic, from inside and of a small part. Reports how many blocks are

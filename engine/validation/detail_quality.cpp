@@ -15,7 +15,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kLeastPsnr = 35.0;
+constexpr double kLeastPsnr = 35.0;  ///< in dB: engine/docs/validation.md, Bounds
 /// A change between frames that all voxels show as well is not a step, nor is less than one code of an 8-bit
 /// image in addition.
 constexpr double kZoomMargin = 1.0 / 255.0;

@@ -6,7 +6,7 @@
 
 namespace freevoxels {
 
-/// Least PSNR of images of a fire, in dB.
+/// Least PSNR of images of a fire, in dB: engine/docs/validation.md, Bounds.
 inline constexpr double kFirePsnr = 32.0;
 
 /// The procedural fire at `resolution`³ voxels, with and without its smoke, from several views; and boxes of

@@ -14,7 +14,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kLeastPsnr = 40.0;  ///< in dB, for every frame
+constexpr double kLeastPsnr = 40.0;  ///< in dB, for every frame: engine/docs/validation.md, Bounds
 constexpr double kMostWrongChange =
     0.015;  ///< twice the error at 42 dB; a layer of voxels that pops makes 0.05
 constexpr int kShownFrames = 6;

@@ -10,7 +10,7 @@
 namespace freevoxels {
 
 /// Least PSNR in dB of lit images of volumes without structures of the size of a voxel: with shadows of the
-/// table, with exact shadows, and lit by a sky.
+/// table, with exact shadows, and lit by a sky: engine/docs/validation.md, Bounds.
 inline constexpr double kTableLightPsnr = 32.0, kExactLightPsnr = 38.0, kEnvironmentPsnr = 42.0;
 
 /// One light from the side, in several views.
