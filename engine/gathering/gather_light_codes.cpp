@@ -72,13 +72,12 @@ void GatherVolume::dropLightCodes() {
 /// Computes the codes of all blocks of bricks, occupied or not.
 void GatherVolume::recordLightCodes(Commands& commands, const Shading& shading) {
   if (surroundings_ == nullptr && ambientChannels_ > 0 && ownAmbient_->record(commands, *shading.lighting, shading.frame.eye)) dropLightCodes();
-  if ((wantedLevels_ & ~lightLevels_) == 0) return;
+  if (!lacksLevels(lightLevels_)) return;
   commands.beginPass("light depths");
   if (lightLevels_ == 0)
     for (int slot = surroundings_ != nullptr ? sampleLights() : 0; slot < lightSlots(); ++slot) commands.clear(lightCodes_[std::size_t(slot)]);  // of the empty brick
   for (int level = 0; level <= built_.volume.hierarchy.top(); ++level) {
-    if (((wantedLevels_ & ~lightLevels_) >> level & 1u) == 0 || firstBricks_[std::size_t(level)] == firstBricks_[std::size_t(level) + 1])
-      continue;
+    if (!lacksLevel(lightLevels_, level) || firstBricks_[std::size_t(level)] == firstBricks_[std::size_t(level) + 1]) continue;
     if (surroundings_ == nullptr) recordLightDepths(commands, shading, level);
     recordAmbientCodes(commands, level);
   }
@@ -127,8 +126,7 @@ void GatherVolume::recordAmbientCodes(Commands& commands, int level) {
 }
 
 void GatherVolume::recordGradients(Commands& commands) {
-  const std::uint32_t levels = wantedLevels_ & ~gradientLevels_;
-  if (levels == 0) return;
+  if (!lacksLevels(gradientLevels_)) return;
   if (gradients_.bytes() == 0) {
     const std::uint64_t blocks = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks;
     gradients_ = Buffer(device_, blocks * sizeof(std::uint32_t), MemoryUse::Device, "gradients of surfaces");
@@ -139,7 +137,7 @@ void GatherVolume::recordGradients(Commands& commands) {
   const std::array<Binding, 2> bindings{&brickCellTexels_, &volume.occupancyTexels};
   for (int level = 0; level <= volume.hierarchy.top(); ++level) {
     const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
-    if ((levels >> level & 1u) == 0 || count == 0) continue;
+    if (!lacksLevel(gradientLevels_, level) || count == 0) continue;
     const auto scalars = scalarCodes(level);
     const Pipeline pass = makeComputePipeline(device_, shaders::surface_gradients, {scalars.has_value()});
     const shader::SurfaceGradientsPush push{.level = volume.onDevice(level),
@@ -151,12 +149,12 @@ void GatherVolume::recordGradients(Commands& commands) {
     commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
   }
   commands.barrier(kCompute, kCompute);
-  gradientLevels_ |= levels;
+  gradientLevels_ |= wantedLevels_;
 }
 
 void GatherVolume::recordLightQuads(Commands& commands, int axis) {
   Quads& quads = quads_[std::size_t(axis)];
-  if ((wantedLevels_ & ~quads.lightLevels) == 0) return;
+  if (!lacksLevels(quads.lightLevels)) return;
   commands.beginPass("brick quads");
   for (std::size_t slot = 0; slot < std::size_t(lightSlots()); ++slot) {
     const auto make = [&](int level, std::uint32_t first, std::uint32_t end) {
@@ -170,7 +168,7 @@ void GatherVolume::recordLightQuads(Commands& commands, int axis) {
     };
     if (quads.lightLevels == 0) make(0, 0, 1);
     for (int level = 0; level <= built_.volume.hierarchy.top(); ++level)
-      if (((wantedLevels_ & ~quads.lightLevels) >> level & 1u) != 0)
+      if (lacksLevel(quads.lightLevels, level))
         make(level, firstBricks_[std::size_t(level)], firstBricks_[std::size_t(level) + 1]);
   }
   commands.barrier(kCompute, kCompute);
@@ -218,7 +216,7 @@ std::vector<GatherLight> GatherVolume::downloadLight() const {
   const std::vector<std::uint32_t> gradients = hasSurfaces() ? words(gradients_) : std::vector<std::uint32_t>();
   std::vector<GatherLight> levels(levels_.size());
   for (std::size_t level = 0; level < levels_.size(); ++level) {
-    if ((wantedLevels_ & lightLevels_) >> level == 0 || codes.empty()) continue;
+    if (((wantedLevels_ & lightLevels_) >> level & 1u) == 0 || codes.empty()) continue;
     const shader::GatherLevel& cells = levels_[level];
     GatherLight& light = levels[level];
     light.depths.resize(std::size_t(sampleLights()));
