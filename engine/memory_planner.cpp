@@ -130,14 +130,14 @@ std::uint64_t maximumVoxels(const Device& device) {
   const auto voxels = double(cube.levels.front().voxels());
   const auto bytes = double(occupancyBytes(cube));
   const double most = double(std::min(device.largestBinding(sizeof(shader::OccupancyWord)), device.memoryBytes()));
-  return std::uint64_t(std::min(most * (voxels / bytes), double(kMostNumberedVoxels)));
+  return std::uint64_t(std::min(most * (voxels / bytes), double(kMaxNumberedVoxels)));
 }
 
 bool exceedsDevice(std::uint64_t deviceBytes, std::uint64_t mostVoxels, glm::ivec3 box, std::uint64_t activeVoxels) {
   // The least that a voxel with data takes: its extinction, and its indices in the list of occupied voxels and in that of drawn ones.
-  constexpr std::uint64_t kLeastBytes = sizeof(float) + 2 * sizeof(std::uint32_t);
+  constexpr std::uint64_t kMinBytes = sizeof(float) + 2 * sizeof(std::uint32_t);
   const glm::u64vec3 size(box);
-  return size.x * size.y * size.z > mostVoxels || activeVoxels > deviceBytes / kLeastBytes;
+  return size.x * size.y * size.z > mostVoxels || activeVoxels > deviceBytes / kMinBytes;
 }
 
 bool tableReplacesEyeRays(const FrameSettings& settings, const Error& reason) {

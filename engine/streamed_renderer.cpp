@@ -337,8 +337,8 @@ std::optional<std::string> StreamedRenderer::whyNot(const FvxFile& file, const C
   if (!settings.lighting) return {};
   const Lighting& lighting = *settings.lighting;
   if (lightAttenuationFor(settings) == LightAttenuation::Table) return "shadows from the table need the whole volume";
-  if (lighting.lights.size() > std::size_t(shader::kMostSampleLights))
-    return fmt::format("more than {} lights need the whole volume", shader::kMostSampleLights);
+  if (lighting.lights.size() > std::size_t(shader::kMaxSampleLights))
+    return fmt::format("more than {} lights need the whole volume", shader::kMaxSampleLights);
   if (lighting.hasAmbient() && ambientCellEdge(volume.dimensions, lighting.phaseG != 0.0) > kEdge)
     return "the volume is too long for ambient light with a phase function";
   return {};

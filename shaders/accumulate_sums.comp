@@ -20,7 +20,7 @@ layout(scalar, binding = 5) readonly buffer Tiles { uint tiles[]; };
 layout(scalar, binding = 6) readonly buffer Arguments { TileArguments arguments; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Sums { uvec2 values[]; };
 
-const float kMostOfRange = 0.99;  // less than 1 by more than rounding
+const float kMaxOfRange = 0.99;  // less than 1 by more than rounding
 
 // Pixel ray: world length per index length, which the footprints leave out (splat.frag).
 float worldPerIndex(ivec2 pixel) {
@@ -35,7 +35,7 @@ float worldPerIndex(ivec2 pixel) {
 float reduction(vec4 sums) {
   const float color = max(sums.r, max(sums.g, sums.b)) * exp2(float(push.colorDigits - kSumBits));
   const float most = max(color, sums.a * exp2(float(push.energyDigits - kSumBits)));
-  return most > kMostOfRange ? kMostOfRange / most : 1.0;
+  return most > kMaxOfRange ? kMaxOfRange / most : 1.0;
 }
 
 void add(uint channel, uint pixel, float x, int digits, inout bool fits) {

@@ -5,7 +5,7 @@
 
 layout(scalar, binding = 9) readonly buffer Tiles { uint tiles[]; };
 
-const int kMostTiles = 8;  // along an axis; the tiles of a larger block are tested in parts
+const int kMaxTiles = 8;  // along an axis; the tiles of a larger block are tested in parts
 
 // Whether every pixel that anything in the block can reach is covered. `center` is relative to the volume's
 // middle.
@@ -28,7 +28,7 @@ bool isOccluded(vec3 center, int edge) {
   const vec2 half_ = reach * steepest + kSplatRadius + 0.5;
   const ivec2 first = ivec2(clamp(floor((pixel - half_) / float(kCoverTile)), vec2(0.0), vec2(frame.tiles)));
   const ivec2 end = ivec2(clamp(floor((pixel + half_) / float(kCoverTile)) + 1.0, vec2(0.0), vec2(frame.tiles)));
-  if (any(greaterThan(end - first, ivec2(kMostTiles)))) return false;
+  if (any(greaterThan(end - first, ivec2(kMaxTiles)))) return false;
   for (int y = first.y; y < end.y; ++y)
     for (int x = first.x; x < end.x; ++x)
       if (tiles[y * frame.tiles.x + x] == 0) return false;

@@ -92,7 +92,7 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray 
   lit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
   if (kSurfaces) {
     lit.surface = 0.0;
-    if (sums.transmittance * ray.layer * medium.a > kLeastShaded) {
+    if (sums.transmittance * ray.layer * medium.a > kMinShaded) {
       findGradients(last, found, level, ray, slice);
       const vec3 gradient = 0.5 * (last.gradient + found.gradient);
       const float reach = length(gradient) / frame.extinctionUnit;

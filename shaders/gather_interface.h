@@ -23,11 +23,11 @@ FV_CONSTANT int kBrickQuadsThreads = kGatherBrickEdge * kGatherBrickEdge;
 // Quads of more bricks than a texel buffer or allocation can hold are split into pieces of this number of
 // bricks.
 FV_CONSTANT int kPieceBricksLog2 = 17;
-FV_CONSTANT int kMostPieces = 32;
+FV_CONSTANT int kMaxPieces = 32;
 // Largest number of lights that are evaluated at samples, from quads of optical depths.
-FV_CONSTANT int kMostSampleLights = 4;
+FV_CONSTANT int kMaxSampleLights = 4;
 // Quads of codes of light: a slot for each light, then one for each channel of ambient light.
-FV_CONSTANT int kMostLightSlots = kMostSampleLights + 3;
+FV_CONSTANT int kMaxLightSlots = kMaxSampleLights + 3;
 FV_CONSTANT int kAmbientThreads = 64;     // of a workgroup of ambient_sweep.comp
 // For classification after interpolation: the number of the transfer function's intervals of the scalar, and
 // that of the codes of scalars, which start at 1.
@@ -41,20 +41,20 @@ FV_CONSTANT float kFootprintVariance = 0.1624f;
 // shells; it exceeds 1 because the stencil is coarse.
 FV_CONSTANT float kStencilStrength = 1.2f;
 // Largest variance that the stencil adds, in squares of the pitch: beyond it the middle weight would be nearly 0.
-FV_CONSTANT float kMostVariance = 0.8f;
+FV_CONSTANT float kMaxVariance = 0.8f;
 // Least transmittance that the stencil distinguishes from 0.
-FV_CONSTANT float kLeastTransmittance = 1e-6f;
+FV_CONSTANT float kMinTransmittance = 1e-6f;
 
 // A ray marches along the major axis of the image's middle, unless its component along that is less than this
 // fraction of its largest component: so most frames read one axis.
-FV_CONSTANT float kLeastAlong = 0.5f;
+FV_CONSTANT float kMinAlong = 0.5f;
 // Slices that are tested for emptiness together on rays that move by more than a block a slice, instead of kSkipGroup.
 FV_CONSTANT int kObliqueGroup = kSkipGroup / 2;
 
 // The bit of a brick's number that says that the brick belongs to the part that is drawn.
 FV_CONSTANT uint kOwnBrick = 0x80000000u;
 // Largest optical depth that a brick of a part adds to its sample: what is behind that is invisible.
-FV_CONSTANT float kMostBrickDepth = 16.0f;
+FV_CONSTANT float kMaxBrickDepth = 16.0f;
 
 // How rays meet the slices of blocks across one index axis. Pixel positions (x, y) are relative to the
 // image's middle. The sides are the other two axes in ascending order. Values are affine in the position:
@@ -67,8 +67,8 @@ struct GatherAxis {
   vec2 tilt;           // projection of a step along the axis to the image, in pixels times distance, at the image's middle
   float tiltDepth;     // change of the distance by that step
   float middlePlane;   // voxels
-  uvec2 mediumPieces[kMostPieces], sourcePieces[kMostPieces], towardsPieces[kMostPieces];  // device addresses of quads
-  uvec2 lightPieces[kMostLightSlots][kMostPieces];
+  uvec2 mediumPieces[kMaxPieces], sourcePieces[kMaxPieces], towardsPieces[kMaxPieces];  // device addresses of quads
+  uvec2 lightPieces[kMaxLightSlots][kMaxPieces];
   ivec2 slices[2][kMaximumLevels];  // by the ray's sign along the axis (0: descending) and level: first and end, ascending
 };
 
@@ -114,7 +114,7 @@ struct GatherRegion {
 struct GatherFrame {
   GatherPart part;        // only where the dispatch is specialised for parts
   GatherRegion region;    // only where it is specialised for regions
-  SampleLight lights[kMostSampleLights];
+  SampleLight lights[kMaxSampleLights];
   vec3 tint;              // factor of the extinction between light and voxel
   float phaseG;
   float surface;          // fraction of the lights that is reflected like a surface

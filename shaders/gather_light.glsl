@@ -4,7 +4,7 @@
 #include "gather_march.glsl"
 #include "surface_scattering.glsl"
 
-const float kMostLightDepth = 0.99 * kOpaqueDepth;  // approximately the end of the code of depths along rays
+const float kMaxLightDepth = 0.99 * kOpaqueDepth;  // approximately the end of the code of depths along rays
 
 // The mean of exp(-depth) over a segment along which the depth changes linearly from 0 to x, of either sign.
 float meanTransmittance(float x) { return abs(x) < 0.02 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(-x)) / x; }
@@ -43,7 +43,7 @@ vec3 lightOf(int light, SegmentLight lit, float depth, vec3 toEye) {
   }
   const float begin = lit.begin[light], change = lit.change[light];
   // A stored depth at the end of its range stands for any larger one; times a tint below 1 it would let light through.
-  if (kTinted && begin + max(change, 0.0) >= kMostLightDepth) return vec3(0.0);
+  if (kTinted && begin + max(change, 0.0) >= kMaxLightDepth) return vec3(0.0);
   vec3 sum = vec3(0.0);
   float scale = 1.0;
   for (int octave = 0; octave < kOctaves; ++octave) {
@@ -74,7 +74,7 @@ void addSegment(inout Sums sums, vec4 medium, float segmentLength, float ahead, 
     [[unroll]] for (int c = 0; c < 3; ++c)
       if (c < kAmbient) leaving[c] = exp(-lit.ambientBegin[c]) * meanTransmittance(depth + lit.ambientChange[c]);
     leaving = frame.ambient * (kAmbient == 1 ? leaving.rrr : leaving);
-    [[unroll]] for (int i = 0; i < kMostSampleLights; ++i)
+    [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i)
       if (i < kLights) leaving += lightOf(i, lit, depth, toEye);
   }
   sums.color += sums.transmittance * segmentLength * leaving * medium.rgb;
@@ -92,7 +92,7 @@ float lightDepth(int slot, int quad, vec4 weights) {
 // The optical depths towards the lights that a quad has. Blocks beyond the volume have none.
 vec4 depthsTowardsLights(int quad, vec4 weights) {
   vec4 depths = vec4(0.0);
-  [[unroll]] for (int i = 0; i < kMostSampleLights; ++i)
+  [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i)
     if (i < kLights) depths[i] = lightDepth(i, quad, weights);
   return depths;
 }
@@ -108,7 +108,7 @@ vec3 ambientAt(int quad, vec4 weights) {
 // volume it stays as it is at the border. About as much ambient light arrives around the volume as at its border.
 void continueDepths(inout vec4 depths, inout vec3 ambient, Slices level, vec2 position) {
   const vec2 first = clamp(position + 1.0, 1e-6, 1.0), last = clamp(vec2(level.dimensions) - position, 1e-6, 1.0);
-  [[unroll]] for (int i = 0; i < kMostSampleLights; ++i) {
+  [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i) {
     if (i >= kLights) continue;
     const SampleLight light = frame.lights[i];
     const vec2 shares = max(first, vec2(light.lightsFirst[kSideA], light.lightsFirst[kSideB])) *
@@ -122,7 +122,7 @@ void continueDepths(inout vec4 depths, inout vec3 ambient, Slices level, vec2 po
 
 // The depths towards the lights on a slice beyond the volume, from those at the other end of the stretch to it.
 vec4 depthsBeyond(int slice, vec4 depths) {
-  [[unroll]] for (int i = 0; i < kMostSampleLights; ++i)
+  [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i)
     if (i < kLights) depths[i] *= 1.0 - (slice < 0 ? frame.lights[i].lightsFirst[kAxis] : frame.lights[i].lightsLast[kAxis]);
   return depths;
 }

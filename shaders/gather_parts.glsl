@@ -31,7 +31,7 @@ void endBrick(inout Sums sums, Ray ray) {
   [[unroll]] for (int c = 0; c < 3; ++c)
     partSums[c] = addFixed(partSums[c], frame.sourceUnit * sums.color[c], part.colorDigits, partFits);
   partSums[3] = addFixed(partSums[3], sums.begin - sums.transmittance, part.energyDigits, partFits);
-  partSums[4] = addFixed(partSums[4], min(sums.depth, kMostBrickDepth), part.depthDigits, partFits);
+  partSums[4] = addFixed(partSums[4], min(sums.depth, kMaxBrickDepth), part.depthDigits, partFits);
   partSums[5] = addFixed(partSums[5], ray.perSlice * sums.distance, part.distanceDigits, partFits);
   sums.brick = 0;
 }

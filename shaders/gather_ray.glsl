@@ -16,7 +16,7 @@ vec3 alongAxes(vec3 position) {
 int marchAxis(vec3 position, vec3 along) {
   const vec3 size = abs(along);
   const bool seen = all(greaterThanEqual(position.yz, frame.seenLow)) && all(lessThanEqual(position.yz, frame.seenHigh));
-  const bool isMain = size[frame.mainAxis] >= kLeastAlong * max(size.x, max(size.y, size.z));
+  const bool isMain = size[frame.mainAxis] >= kMinAlong * max(size.x, max(size.y, size.z));
   return !seen || isMain ? frame.mainAxis : majorAxis(along);
 }
 

@@ -67,7 +67,7 @@ vec2 scalarNear(Slices level, vec3 position) {
 // little is visible, the extinction is taken as constant on this path.
 vec4 depthsAt(Slices level, SliceValues at, vec3 position, bool shows) {
   vec4 depths = at.depths;
-  [[unroll]] for (int i = 0; i < kMostSampleLights; ++i) {
+  [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i) {
     if (i >= kLights) continue;
     vec3 toLight = frame.lights[i].across;
     if (frame.lights[i].atInfinity == 0) {
@@ -111,7 +111,7 @@ void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout Slice
   nearLit.position = farLit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
   if (kSurfaces) {
     nearLit.surface = farLit.surface = 0.0;
-    if (shown > 2.0 * kLeastShaded) {
+    if (shown > 2.0 * kMinShaded) {
       findGradients(last, found, level, ray, slice);
       const vec3 nearGradient = mix(last.gradient, found.gradient, 0.25), farGradient = mix(last.gradient, found.gradient, 0.75);
       const float nearChange = changeAcross(mix(first.scalar, second.scalar, 0.25), length(nearGradient));
@@ -133,7 +133,7 @@ void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout Slice
       vec4 weights;
       last.depths = depthsTowardsLights(quadAt(level, ray.origin + ray.slope * float(before), before, weights), weights);
     }
-    bool shows = shown > kLeastShaded;
+    bool shows = shown > kMinShaded;
     if (kSurfaces) shows = shows && min(nearLit.surface, farLit.surface) < kMostlySurface;
     if (last.arriving.x < 0.0 && !enters) last.arriving = depthsAt(level, last, voxelPosition(ray, float(before)), shows);
     found.arriving = leaves ? depthsBeyond(slice, last.arriving) : depthsAt(level, found, voxelPosition(ray, float(slice)), shows);

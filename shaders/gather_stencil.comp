@@ -33,7 +33,7 @@ vec3 missingCovariance(vec3 position, float distance) {
   const vec3 covariance =
       kStencilStrength * kFootprintVariance * vec3(tilt.x * tilt.x, tilt.x * tilt.y, tilt.y * tilt.y) + vec3(widening, 0.0, widening);
   const vec3 inLattice = covariance / (frame.pitch * frame.pitch);
-  return inLattice * min(kMostVariance / max(inLattice.x + inLattice.z, 1e-20), 1.0);
+  return inLattice * min(kMaxVariance / max(inLattice.x + inLattice.z, 1e-20), 1.0);
 }
 
 void main() {
@@ -65,11 +65,11 @@ void main() {
   MeanDistance mean = kNoDistance;
   [[unroll]] for (int i = 0; i < 9; ++i) {
     color += weights[i] * colors[i];
-    depth -= weights[i] * log(max(1.0 - colors[i].a, kLeastTransmittance));
+    depth -= weights[i] * log(max(1.0 - colors[i].a, kMinTransmittance));
     addSample(mean, weights[i], colors[i].a, weighted[i]);
   }
   distance = distancesOf(mean, color.a);
-  if (!kScalars && color.a > kLeastTransmittance) {
+  if (!kScalars && color.a > kMinTransmittance) {
     const float scale = (1.0 - exp(-max(depth, 0.0))) / color.a;
     color *= scale;
     distance *= scale;

@@ -4,7 +4,7 @@
 #include "gather_light.glsl"
 #include "packed_gradient.glsl"
 
-const float kLeastShaded = 1.0 / 512.0;  // least share of a pixel for which the normal of a surface is computed
+const float kMinShaded = 1.0 / 512.0;  // least share of a pixel for which the normal of a surface is computed
 const float kOutside = 2.5;               // blocks from a surface at which the light that reaches it is looked up
 
 // The gradient at a position on a slice; beyond the volume that of its border.

@@ -8,7 +8,7 @@
 #include "self_attenuation.glsl"
 #include "surface_scattering.glsl"
 
-const float kMostRayDepth = 0.9999 * kOpaqueDepth;  // the end of the code of depths along rays
+const float kMaxRayDepth = 0.9999 * kOpaqueDepth;  // the end of the code of depths along rays
 
 // The properties of a block as seen from the eye.
 struct SeenBlock {
@@ -62,7 +62,7 @@ Sides lightReaching(SeenBlock seen, vec3 direction, float depth, float unsaturat
     return Sides(vec3(means.x), vec3(means.y));
   }
   // At the end of its code a depth may be larger, and a tint would let light through.
-  if (unsaturated == 0.0 || depth >= kMostRayDepth) return Sides(vec3(0.0), vec3(0.0));
+  if (unsaturated == 0.0 || depth >= kMaxRayDepth) return Sides(vec3(0.0), vec3(0.0));
   Sides sides;
   for (int c = 0; c < 3; ++c) {
     const float tint = frame.lighting.tint[c];

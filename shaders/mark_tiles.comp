@@ -29,6 +29,6 @@ void main() {
       if (reached[tile] != 0 || atomicExchange(reached[tile], 1u) != 0) continue;
       const uint place = atomicAdd(arguments.tileCount, 1);
       tiles[place] = tile;
-      atomicMax(arguments.groupsX, min(place + 1, uint(kMostTileGroups)));
+      atomicMax(arguments.groupsX, min(place + 1, uint(kMaxTileGroups)));
     }
 }

@@ -48,7 +48,7 @@ void main() {
     }
   }
   const uint rank = push.parent.firstRank + i;
-  FloatStore(push.stores.extinction).values[rank] = kEmits && mean == 0.0 ? 0.0 : max(mean, kLeastExtinction);
+  FloatStore(push.stores.extinction).values[rank] = kEmits && mean == 0.0 ? 0.0 : max(mean, kMinExtinction);
   if (kEmits) WordStore(push.stores.emission).values[rank] = packLight(light);
   if (kColors)
     PairStore(push.stores.blockColors).values[rank - push.firstColor] = packColor(opacity > 0.0 ? color / opacity : vec3(0.0));

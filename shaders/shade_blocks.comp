@@ -13,7 +13,7 @@
 layout(local_size_x = kShadeThreads) in;
 layout(scalar, push_constant) uniform Push { ShadePush push; };
 
-const float kLeastLight = 1e-4;  // smaller light is stored as this
+const float kMinLight = 1e-4;  // smaller light is stored as this
 const float kLargestStored = 65280.0;  // largest value of halves and of packed light
 
 ScatteredLight scatteredBy(Block block, float sigma, uint rank) {
@@ -41,7 +41,7 @@ void main() {
   }
   if (kEmits) source += frame.emissionUnit * unpackLight(storedEmission(rank));
   // A block without any light would count as one that has no source term.
-  if (push.lightOnly != 0) source = max(source, kLeastLight / push.sourceScale);
+  if (push.lightOnly != 0) source = max(source, kMinLight / push.sourceScale);
   const vec4 stored = min(vec4(push.sourceScale * source, push.extinctionScale * sigma) * (push.lightOnly != 0 ? 1.0 : inside), kLargestStored);
   PairStore(push.sources).values[rank] = uvec2(packLight(stored.rgb), packHalf2x16(vec2(stored.a, 0.0)));
   if (kLit && kAnyView)

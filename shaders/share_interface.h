@@ -24,7 +24,7 @@ struct ShareKeyPush {
 };
 
 // Workgroups of accumulate_sums.comp, each of which takes one tile after the other: as many as every device dispatches.
-FV_CONSTANT int kMostTileGroups = 65535;
+FV_CONSTANT int kMaxTileGroups = 65535;
 
 // The arguments of the dispatch of accumulate_sums.comp, and the length of its list of tiles of kResolveTile x kResolveTile pixels.
 struct TileArguments {

@@ -56,7 +56,7 @@ void main() {
   if (footprint.cut) {
     const vec3 fromEye = block.center - frame.middle + frame.eyeToMiddle;
     // What has light alone is cut, too.
-    splat.opticalDepth = kEmits ? -max(splat.opticalDepth, kLeastExtinction) : -splat.opticalDepth;
+    splat.opticalDepth = kEmits ? -max(splat.opticalDepth, kMinExtinction) : -splat.opticalDepth;
     splat.depthToEye = vec3(toEye.depth, 0.0, dot(fromEye, fromEye));
     if (frame.gradient != 0) splat.depthToEye.xy += sigma * vec2(-length(frame.indexToWorld * fromEye), 1.0);
   }

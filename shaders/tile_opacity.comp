@@ -10,7 +10,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "frame_interface.h"
 
-const float kLeastEnergy = 0.25;
+const float kMinEnergy = 0.25;
 
 layout(local_size_x = kCoverThreads) in;
 layout(scalar, push_constant) uniform Push { TilePush push; };
@@ -25,7 +25,7 @@ bool isCoveredPixel(ivec2 pixel) {
   const vec3 worldRay = push.rays.worldRay + position.x * push.rays.worldRayX + position.y * push.rays.worldRayY;
   const float worldPerIndex = length(worldRay) / length(ray);
   return imageLoad(opticalDepth, pixel).r * worldPerIndex >= push.hiddenDepth &&
-         imageLoad(colorEnergy, pixel).a * worldPerIndex >= kLeastEnergy;
+         imageLoad(colorEnergy, pixel).a * worldPerIndex >= kMinEnergy;
 }
 
 void main() {

@@ -10,7 +10,7 @@
 layout(binding = TRANSFER_TABLE_BINDING) uniform textureBuffer transferTable;  // TransferTable::texels
 
 // Least change of the scalar along a stretch, in intervals, for which its mean is taken from integrals.
-const float kLeastChange = 16.0;
+const float kMinChange = 16.0;
 
 // The transfer function's integral up to a scalar, and its value there.
 void tableAt(float scalar, out vec4 integral, out vec4 medium) {
@@ -23,7 +23,7 @@ void tableAt(float scalar, out vec4 integral, out vec4 medium) {
 // significant digits.
 vec4 meanBetween(float from, vec4 fromIntegral, vec4 fromMedium, float to, vec4 toIntegral, vec4 toMedium) {
   const float change = to - from;
-  return abs(change) > kLeastChange ? (toIntegral - fromIntegral) / change : 0.5 * (fromMedium + toMedium);
+  return abs(change) > kMinChange ? (toIntegral - fromIntegral) / change : 0.5 * (fromMedium + toMedium);
 }
 
 #endif

@@ -17,7 +17,7 @@ namespace freevoxels {
 namespace {
 
 /// A procedural volume of more voxels is made chunk by chunk.
-constexpr std::uint64_t kMostVoxelsInMemory = std::uint64_t(1) << 27;
+constexpr std::uint64_t kMaxVoxelsInMemory = std::uint64_t(1) << 27;
 /// Voxels along the longest edge of the same volume from which the classification is then found.
 constexpr int kSampleEdge = 256;
 
@@ -106,7 +106,7 @@ void BakeCommand::run() {
   line.begin("reading " + scene_.description.input.volume);
   const std::optional<std::string> name = proceduralName(scene_.description.input.volume);
   const glm::u64vec3 size(scene_.description.input.resolution.value_or(glm::ivec3(kDefaultResolution)));
-  if (name && size.x * size.y * size.z > kMostVoxelsInMemory)
+  if (name && size.x * size.y * size.z > kMaxVoxelsInMemory)
     bakeProcedural(*name, line);
   else
     bake(line);

@@ -16,13 +16,13 @@ struct Conversion {
 };
 
 std::optional<Conversion> findConversion(const std::string& text, std::size_t from) {
-  constexpr std::size_t kMostDigits = 9;  // that an int holds
+  constexpr std::size_t kMaxDigits = 9;  // that an int holds
   for (std::size_t begin = text.find('%', from); begin != std::string::npos; begin = text.find('%', begin + 1)) {
     std::size_t digits = 1;
     const char* const number = text.data() + begin + 1;
     const auto [end, error] = std::from_chars(number, text.data() + text.size(), digits);
     const bool isPadded = error == std::errc() && *number == '0';
-    if ((isPadded || end == number) && digits >= 1 && digits <= kMostDigits && *end == 'd')
+    if ((isPadded || end == number) && digits >= 1 && digits <= kMaxDigits && *end == 'd')
       return Conversion{begin, std::size_t(end - text.data()) + 1, digits};
   }
   return std::nullopt;

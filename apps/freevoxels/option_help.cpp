@@ -47,7 +47,7 @@ const std::vector<OptionHelp> kVolumeHelp{
                  kReferenceTemperature)},
     {"temperature-grid", "Grid of the temperatures; turns emission on by itself [temperature, heat or flame]"},
     {"temperature-scale", fmt::format("Kelvin per unit of the grid [1; if no value is above {:g}, the scale that makes the largest {:g} K]",
-                                      kLeastKelvinMaximum, kReferenceTemperature)},
+                                      kMinKelvinMaximum, kReferenceTemperature)},
     {"temperature-offset",
      fmt::format("Kelvin at value 0 of the grid [0; with such an automatic scale {:g}]", kEmberTemperature)},
 

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kDigits = "0123456789";
-constexpr std::size_t kMostDigits = 9;  // that an int holds
+constexpr std::size_t kMaxDigits = 9;  // that an int holds
 
 std::size_t nameStart(const std::string& file) {
   return file.rfind('/') + 1;  // 0 without a folder
@@ -26,7 +26,7 @@ std::size_t nameStart(const std::string& file) {
 std::optional<int> numberOf(const std::string& name, const std::string& pattern) {
   const std::size_t first = pattern.find('#'), end = pattern.find_last_of('#') + 1;
   const std::size_t around = first + pattern.size() - end;
-  if (name.size() <= around || name.size() - around > kMostDigits) return std::nullopt;
+  if (name.size() <= around || name.size() - around > kMaxDigits) return std::nullopt;
   const char* const digits = name.data() + first;
   const char* const digitsEnd = digits + (name.size() - around);
   int number = 0;
@@ -127,7 +127,7 @@ std::optional<Sequence> sequenceAround(const std::string& file) {
   const std::size_t before = file.find_last_not_of(kDigits, end == 0 ? 0 : end - 1);
   const std::size_t first = std::max(before + 1, nameStart(file));  // 0 where all of it are digits
   const std::size_t digits = end > first ? end - first : 0;
-  if (digits == 0 || digits > kMostDigits || file.find('#', nameStart(file)) != std::string::npos)
+  if (digits == 0 || digits > kMaxDigits || file.find('#', nameStart(file)) != std::string::npos)
     return std::nullopt;
   Sequence most;
   for (std::size_t width = file[first] == '0' ? digits : 1; width <= digits; ++width) {

@@ -37,9 +37,9 @@ Source sourceOf(const py::array& array) {
   if (array.ndim() != 3)
     fail(ErrorKind::Input, "the array has {} dimension{}: a volume needs three, ordered z, y, x", array.ndim(),
          array.ndim() == 1 ? "" : "s");
-  constexpr py::ssize_t kMost = std::numeric_limits<std::int32_t>::max();
+  constexpr py::ssize_t kMax = std::numeric_limits<std::int32_t>::max();
   for (py::ssize_t axis = 0; axis < 3; ++axis)
-    if (array.shape(axis) < 1 || array.shape(axis) > kMost)
+    if (array.shape(axis) < 1 || array.shape(axis) > kMax)
       fail(ErrorKind::Input, "the array has the shape {}: every dimension of a volume is at least 1", shapeText(array));
   return {static_cast<const char*>(array.data()),
           {array.strides(2), array.strides(1), array.strides(0)},

@@ -101,7 +101,7 @@ int main(int argc, char** argv) {
   app.add_option("FILE", extent.files, "OpenVDB files or baked volumes to check as well, the middle of those that are large");
   app.add_flag("--quick", extent.quick, "Small volumes and images");
   addWholeNumber(app, "--resolution", "N", extent.resolution, "Voxels along an edge of the procedural volumes",
-                 {1.0, double(kMostResolution)});
+                 {1.0, double(kMaxResolution)});
   addText(app, "--only", "TEXT", extent.only, "Only the sections whose name contains TEXT, such as 'light' or 'stages of cloud'");
   files.add(app);
   device.add(app);

@@ -37,7 +37,7 @@ constexpr int kQuickCube = 40, kWholeCube = 64;
 constexpr int kQuickQuality = 48;  ///< voxels along an edge for comparisons with the oracle
 constexpr int kQuickQualityImage = 96, kWholeQualityImage = 160, kLargeQualityImage = 256;
 /// Least resolution with goals: in coarser volumes structures have the size of a voxel.
-constexpr int kLeastResolutionWithGoals = kLarge;
+constexpr int kMinResolutionWithGoals = kLarge;
 constexpr int kQuickLightImage = 64;
 constexpr glm::ivec2 kGatherLightImage{40, 32};
 constexpr int kQuickSky = 24;  ///< voxels along an edge for skies, for which the oracle is slow
@@ -89,7 +89,7 @@ QualityRun qualityRun(const Extent& extent, int resolution) {
   const int whole = resolution >= kLarge ? kLargeQualityImage : kWholeQualityImage;
   return {.views = extent.quick ? quickQualityViews() : qualityViews(),
           .imageEdge = extent.quick ? kQuickQualityImage : whole,
-          .hasGoals = resolution >= kLeastResolutionWithGoals};
+          .hasGoals = resolution >= kMinResolutionWithGoals};
 }
 
 /// A job for each volume, and one that summarises their results.

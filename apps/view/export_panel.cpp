@@ -16,7 +16,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr int kMostCommandLines = 7;  // that are seen at once
+constexpr int kMaxCommandLines = 7;  // that are seen at once
 
 std::string savedSentence(const std::string& file) {
   std::error_code unknown;
@@ -31,7 +31,7 @@ void drawCommand(const DrawnImage& drawn, const std::string& file) {
   const auto columns = std::size_t(std::max(room / ImGui::CalcTextSize("M").x, 1.0f));
   std::string wrapped = wrappedCommand(commandOf(drawn, file), columns);
   const auto lines = int(1 + std::ranges::count(wrapped, '\n'));
-  const float height = float(std::min(lines, kMostCommandLines)) * ImGui::GetTextLineHeight();
+  const float height = float(std::min(lines, kMaxCommandLines)) * ImGui::GetTextLineHeight();
   ImGui::InputTextMultiline("##command", &wrapped, {-1.0f, height + 2.0f * style.FramePadding.y}, ImGuiInputTextFlags_ReadOnly);
   ImGui::PopFont();
 }

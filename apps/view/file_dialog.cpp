@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostFiles = 20000;  // that are listed
+constexpr std::size_t kMaxFiles = 20000;  // that are listed
 
 std::string sizeText(std::uintmax_t bytes) {
   if (bytes < 1024) return fmt::format("{} B", bytes);
@@ -82,7 +82,7 @@ void FileDialog::go(fs::path folder) {
   std::vector<Entry> folders;
   std::vector<fs::directory_entry> files;
   std::error_code problem;
-  for (fs::directory_iterator at(folder, problem), end; !problem && at != end && files.size() < kMostFiles; at.increment(problem)) {
+  for (fs::directory_iterator at(folder, problem), end; !problem && at != end && files.size() < kMaxFiles; at.increment(problem)) {
     std::error_code unknown;
     if (at->path().filename().string().starts_with('.')) continue;
     if (at->is_directory(unknown))

@@ -15,7 +15,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kLeastThreshold = 1e-5, kMostThreshold = 0.1;
+constexpr double kMinThreshold = 1e-5, kMaxThreshold = 0.1;
 
 struct Usual {
   TableSettings table;
@@ -61,7 +61,7 @@ bool drawDetail(MethodDescription& method, const FrameSettings& usual) {
   hint("Leaves out blocks outside of the image or behind others", "--culling");
   ImGui::BeginDisabled(!method.culling.value_or(usual.culling));
   double threshold = method.cullThreshold.value_or(double(usual.cullThreshold));
-  if (slideLogarithmic("Cull threshold", threshold, kLeastThreshold, kMostThreshold)) {
+  if (slideLogarithmic("Cull threshold", threshold, kMinThreshold, kMaxThreshold)) {
     method.cullThreshold = threshold;
     changed = true;
   }

@@ -105,14 +105,14 @@ bool drawLight(std::size_t number, LightingDescription::GivenLight& given, const
 
 /// A colour and how bright it is; each keeps the other.
 bool editRadiance(glm::dvec3& radiance) {
-  constexpr double kLeast = 1e-3, kMost = 100.0;
+  constexpr double kMin = 1e-3, kMax = 100.0;
   double brightness = std::max({radiance.r, radiance.g, radiance.b});
   glm::dvec3 color = brightness > 0.0 ? radiance / brightness : glm::dvec3(1.0);
   bool changed = editColor("Ambient colour", color);
-  changed |= slideLogarithmic("Radiance", brightness, kLeast, kMost);
+  changed |= slideLogarithmic("Radiance", brightness, kMin, kMax);
   hint("Radiance from all directions", "--ambient");
   if (changed)
-    for (int c = 0; c < 3; ++c) radiance[c] = roundedTo(std::max(brightness, kLeast) * color[c], 1e-5);
+    for (int c = 0; c < 3; ++c) radiance[c] = roundedTo(std::max(brightness, kMin) * color[c], 1e-5);
   return changed;
 }
 
@@ -130,7 +130,7 @@ bool drawScattering(LightingDescription& options) {
     changed = true;
   }
   hint("Orders of scattering in fog; 1 is single scattering", "--scattering");
-  changed |= slideOptional("Phase g", options.phaseG, 0.0, -kMostPhaseG, kMostPhaseG, "%.2f");
+  changed |= slideOptional("Phase g", options.phaseG, 0.0, -kMaxPhaseG, kMaxPhaseG, "%.2f");
   hint("Henyey-Greenstein asymmetry: forwards above 0, backwards below", "--phase-g");
   changed |= choose("Shadows", kLightAttenuationWords, options.attenuation, LightAttenuation::Auto);
   hint("Transmittance to the lights: from the table, or exact along rays", "--light-attenuation");
@@ -140,7 +140,7 @@ bool drawScattering(LightingDescription& options) {
 bool drawTint(LightingDescription& options) {
   glm::dvec3 tint = options.tint.value_or(glm::dvec3(1.0));
   const bool changed =
-      ImGui::SliderScalarN(beginRow("Extinction tint"), ImGuiDataType_Double, &tint.x, 3, &kLeastTint, &kMostTint, "%.2f",
+      ImGui::SliderScalarN(beginRow("Extinction tint"), ImGuiDataType_Double, &tint.x, 3, &kMinTint, &kMaxTint, "%.2f",
                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
   hint("Factors of the red, green and blue extinction of light", "--extinction-tint");
   if (!changed) return false;

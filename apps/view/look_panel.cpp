@@ -21,7 +21,7 @@ glm::dvec2 rangeOf(const TransferModel& model, const Volume& volume) {
   return model.range.value_or(glm::dvec2(volume.minimum, volume.maximum));
 }
 
-constexpr double kLeastOffset = -2000.0, kMostOffset = 4000.0;  // kelvin
+constexpr double kMinOffset = -2000.0, kMaxOffset = 4000.0;  // kelvin
 
 }  // namespace
 
@@ -275,7 +275,7 @@ bool EmissionPanel::drawOptions(ViewState& state, const std::vector<GridChoice>&
   if (options.temperatureScale && !options.temperatureOffset)  // which a scale of its own would make 0
     options.temperatureOffset = resolved->temperatureOffset;
   double offset = options.temperatureOffset.value_or(resolved->temperatureOffset);
-  if (slide("Offset", offset, kLeastOffset, kMostOffset, "%.0f K")) {
+  if (slide("Offset", offset, kMinOffset, kMaxOffset, "%.0f K")) {
     options.temperatureOffset = offset;
     changed = true;
   }

@@ -16,7 +16,7 @@ namespace {
 constexpr std::array kAxisColors{IM_COL32(224, 96, 88, 255), IM_COL32(124, 196, 96, 255), IM_COL32(92, 148, 240, 255)};
 constexpr ImU32 kInk = IM_COL32(235, 235, 240, 255), kShade = IM_COL32(0, 0, 0, 150), kBox = IM_COL32(200, 205, 215, 110);
 constexpr ImU32 kPlaneColor = IM_COL32(240, 200, 80, 255);
-constexpr float kLeastSlope = 0.15f;  // sine of the angle between a plane's normal and the view from which its handle follows the normal
+constexpr float kMinSlope = 0.15f;  // sine of the angle between a plane's normal and the view from which its handle follows the normal
 
 float unit() {
   return ImGui::GetFontSize() / 15.0f;
@@ -238,7 +238,7 @@ void ClipHandles::addPlane(const ViewState& state, const ImageFrame& frame) {
   glm::vec2 step(to->x - from->x, to->y - from->y);
   // Seen along its normal, the plane follows the mouse up and down.
   const glm::vec2 upwards(beside->x - from->x, beside->y - from->y);
-  if (glm::length(step) < kLeastSlope * glm::length(upwards)) step = upwards;
+  if (glm::length(step) < kMinSlope * glm::length(upwards)) step = upwards;
   handles.push_back({kPlane, *from, step});
 }
 

@@ -112,7 +112,7 @@ void SessionStore::take(const Json& root) {
   recent_.clear();
   bookmarks_.clear();
   for (const Json& name : root.value("recent", Json::array()))
-    if (name.is_string() && recent_.size() < kMostRecent) recent_.push_back(name);
+    if (name.is_string() && recent_.size() < kMaxRecent) recent_.push_back(name);
   knowsHowToTurn_ = root.contains("knows_how_to_turn");
   const Json stored = root.value("bookmarks", Json::object());
   for (const auto& [volume, cameras] : stored.items()) try {
@@ -146,7 +146,7 @@ void SessionStore::remember(const std::string& opened) {
   update([&](Json& root) {
     Json list = Json::array({name});
     for (const Json& other : root.value("recent", Json::array()))
-      if (other.is_string() && other != name && list.size() < kMostRecent) list.push_back(other);
+      if (other.is_string() && other != name && list.size() < kMaxRecent) list.push_back(other);
     root["recent"] = list;
   });
 }

@@ -19,7 +19,7 @@ std::filesystem::path sessionFolder();
 /// whole. What cannot be read counts as empty; what cannot be written is kept for this session only.
 class SessionStore {
  public:
-  static constexpr std::size_t kMostRecent = 10;
+  static constexpr std::size_t kMaxRecent = 10;
   static constexpr glm::ivec2 kThumbnailSize{96, 72};
 
   /// Nothing is read and stored if `folder` is empty.

@@ -39,8 +39,8 @@ auto interpolated(const Points& points, double x, const ValueOf& valueOf) {
 /// x for a point, as near to that as its neighbours let it.
 template <typename Points>
 double placed(const Points& points, std::size_t point, double x) {
-  const double low = point == 0 ? 0.0 : rounded(points[point - 1].x + kLeastPointGap);
-  const double high = point + 1 == points.size() ? 1.0 : rounded(points[point + 1].x - kLeastPointGap);
+  const double low = point == 0 ? 0.0 : rounded(points[point - 1].x + kMinPointGap);
+  const double high = point + 1 == points.size() ? 1.0 : rounded(points[point + 1].x - kMinPointGap);
   return low <= high ? std::clamp(rounded(x), low, high) : points[point].x;
 }
 
@@ -48,7 +48,7 @@ double placed(const Points& points, std::size_t point, double x) {
 template <typename Points>
 std::optional<std::size_t> near(const Points& points, double x) {
   for (std::size_t i = 0; i < points.size(); ++i)
-    if (std::abs(points[i].x - x) < kLeastPointGap) return i;
+    if (std::abs(points[i].x - x) < kMinPointGap) return i;
   return std::nullopt;
 }
 

@@ -15,7 +15,7 @@ namespace freevoxels {
 double roundedTo(double value, double step);
 
 /// Least distance between the points of a list.
-inline constexpr double kLeastPointGap = 1e-3;
+inline constexpr double kMinPointGap = 1e-3;
 
 struct TransferModel {
   struct OpacityPoint {

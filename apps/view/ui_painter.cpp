@@ -35,9 +35,9 @@ Texture makeFonts(const Device& device) {
 void makeRoom(const Device& device, Buffer& buffer, std::uint64_t bytes, const char* name,
               VkBufferUsageFlags usage) {
   if (buffer.bytes() >= bytes && buffer.bytes() > 0) return;
-  constexpr std::uint64_t kLeast = 1 << 16;
+  constexpr std::uint64_t kMin = 1 << 16;
   buffer = {};
-  buffer = Buffer(device, std::max(2 * bytes, kLeast), MemoryUse::Upload, name, usage);
+  buffer = Buffer(device, std::max(2 * bytes, kMin), MemoryUse::Upload, name, usage);
 }
 
 /// A clip rectangle in pixels of the image.

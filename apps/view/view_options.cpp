@@ -11,7 +11,7 @@ namespace freevoxels {
 namespace {
 
 constexpr const char* kFirstVolume = "procedural:cloud";
-constexpr int kMostFrames = 1'000'000;
+constexpr int kMaxFrames = 1'000'000;
 
 }  // namespace
 
@@ -27,7 +27,7 @@ void ViewOptions::add(CLI::App& app) {
   file->group("Window");
   addWholeNumber(app, "--after", "N", after,
                  "Frames of the window to wait before the screenshot after the image is complete [1]",
-                 {1.0, double(kMostFrames)})
+                 {1.0, double(kMaxFrames)})
       ->needs(file)
       ->group("Window");
 }

@@ -81,7 +81,7 @@ void ViewState::clip(const std::optional<VoxelBox>& box, const std::optional<Cli
 void EditHistory::follow(const Edits& now, bool changed, bool busy) {
   if (changed && settled_ && !open_) {
     past_.push_back(*settled_);
-    if (past_.size() > kMost) past_.pop_front();
+    if (past_.size() > kMax) past_.pop_front();
     future_.clear();
     open_ = true;
   }

@@ -79,7 +79,7 @@ class EditHistory {
   void redo(ViewState& state) { step(state, future_, past_); }
 
  private:
-  static constexpr std::size_t kMost = 200;
+  static constexpr std::size_t kMax = 200;
   void step(ViewState& state, std::deque<Edits>& from, std::deque<Edits>& to);
 
   std::deque<Edits> past_, future_;

@@ -18,7 +18,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr float kMostFramesPerSecond = 120.0f;
+constexpr float kMaxFramesPerSecond = 120.0f;
 
 int frameOf(const ViewState& state) {
   const auto& files = state.sequence->files;
@@ -123,7 +123,7 @@ void SequencePanel::drawControls(ViewState& state, int& frame) {
     plays_ = false;
   }
   if (ImGui::Button(plays_ ? "Pause (space)###play" : "Play (space)###play", {-1.0f, 0.0f})) playOrPause();
-  ImGui::SliderFloat(beginRow("Rate"), &framesPerSecond_, 1.0f, kMostFramesPerSecond, "%.0f frames/s",
+  ImGui::SliderFloat(beginRow("Rate"), &framesPerSecond_, 1.0f, kMaxFramesPerSecond, "%.0f frames/s",
                      ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
   drawSentence(problem_, false);
 }

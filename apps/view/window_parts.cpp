@@ -8,7 +8,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr float kLeastPanelWidth = 240.0f;
+constexpr float kMinPanelWidth = 240.0f;
 
 std::string timeText(const DrawnImage& drawn, bool whole, double perSecond) {
   const std::string often = whole || perSecond == 0.0 ? "" : fmt::format(", {:.0f} images/s", perSecond);
@@ -39,8 +39,8 @@ void drawSplitter(float& panelWidth, float scale, float top, float height) {
                                               ImGui::GetColorU32(ImGuiCol_SliderGrab));
   }
   if (ImGui::IsItemActive())
-    panelWidth = std::clamp(ImGui::GetIO().MousePos.x + 0.5f * width, kLeastPanelWidth * scale,
-                             std::max(0.6f * ImGui::GetIO().DisplaySize.x, kLeastPanelWidth * scale));
+    panelWidth = std::clamp(ImGui::GetIO().MousePos.x + 0.5f * width, kMinPanelWidth * scale,
+                             std::max(0.6f * ImGui::GetIO().DisplaySize.x, kMinPanelWidth * scale));
   ImGui::End();
 }
 

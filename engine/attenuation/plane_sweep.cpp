@@ -26,7 +26,7 @@ namespace {
 constexpr int kEdge = ScalarBricks::kEdge;
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr VkPipelineStageFlags2 kTransfer = VK_PIPELINE_STAGE_2_TRANSFER_BIT;
-constexpr int kMostPlanes = 8, kLeastPlanes = 2;  ///< that are swept at a time
+constexpr int kMaxPlanes = 8, kMinPlanes = 2;  ///< that are swept at a time
 
 /// What a sweep looks up of a voxel: its extinction per world unit, or its scalar in intervals of the transfer function's table.
 class VoxelValues {
@@ -76,8 +76,8 @@ class SweptLight::Sweep {
         sides_(dimensions_[(fan.axis + 1) % 3], dimensions_[(fan.axis + 2) % 3]),
         strideB_(sides_.x + 2),
         planeStride_(strideB_ * (sides_.y + 2)) {
-    planes_ = kMostPlanes;
-    while (planes_ > kLeastPlanes && bytes() > device.availableBytes()) planes_ /= 2;
+    planes_ = kMaxPlanes;
+    while (planes_ > kMinPlanes && bytes() > device.availableBytes()) planes_ /= 2;
     if (bytes() > device.availableBytes())
       fail(ErrorKind::OutOfMemory, "exact shadows of this light need {} MiB, and {} has {} MiB left: use {}", bytes() >> 20,
            device.description().name, device.availableBytes() >> 20, Parameter("light-attenuation", "table"));
@@ -250,7 +250,7 @@ class SweptLight::Sweep {
   const glm::ivec3 dimensions_;
   const glm::ivec2 sides_;
   const int strideB_, planeStride_;
-  int planes_ = kMostPlanes;
+  int planes_ = kMaxPlanes;
   glm::dmat3 indexToWorld_{1.0};
   Buffer slab_, carried_, depths_, frame_, codes_, table_;
   TexelView slabTexels_, tableTexels_;

@@ -33,12 +33,12 @@ fs::path folderOf(const fs::path& file) {
 }
 
 /// Symbolic links are followed at most so often, as Linux does.
-constexpr int kMostLinks = 40;
+constexpr int kMaxLinks = 40;
 
 /// The file that a symbolic link points to, whether or not it exists: writing replaces that file and keeps the link.
 fs::path followLinks(fs::path file) {
   std::error_code error;
-  for (int i = 0; i < kMostLinks && fs::is_symlink(file, error); ++i) {
+  for (int i = 0; i < kMaxLinks && fs::is_symlink(file, error); ++i) {
     const fs::path target = fs::read_symlink(file, error);
     if (error) break;
     file = folderOf(file) / target;  // an absolute target takes the place of the folder

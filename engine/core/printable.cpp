@@ -24,7 +24,7 @@ std::size_t lengthAfter(unsigned char first) {
 
 /// The UTF-8 character at the beginning of `text`, or one byte that begins none.
 Character firstCharacter(std::string_view text) {
-  constexpr std::uint32_t kLeast[] = {0, 0, 0x80, 0x800, 0x10000};  // of a character of so many bytes
+  constexpr std::uint32_t kMin[] = {0, 0, 0x80, 0x800, 0x10000};  // of a character of so many bytes
   const auto first = static_cast<unsigned char>(text.front());
   const std::size_t length = lengthAfter(first);
   if (length == 1) return {first, 1, true};
@@ -35,7 +35,7 @@ Character firstCharacter(std::string_view text) {
     code = code << 6 | (static_cast<unsigned char>(byte) & 0x3fu);
   }
   const bool isSurrogate = code >= 0xd800 && code < 0xe000;
-  if (code < kLeast[length] || code > 0x10ffff || isSurrogate) return {};
+  if (code < kMin[length] || code > 0x10ffff || isSurrogate) return {};
   return {code, length, true};
 }
 

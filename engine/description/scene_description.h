@@ -33,7 +33,7 @@ inline bool operator==(const PixelRectangle& a, const PixelRectangle& b) {
 }
 
 /// Largest number of pixels along an edge of an image, and of voxels along an edge of a procedural volume.
-inline constexpr int kMaximumImageEdge = 16384, kMostResolution = 2048;
+inline constexpr int kMaximumImageEdge = 16384, kMaxResolution = 2048;
 inline constexpr int kDefaultResolution = 128;
 /// Default number of orders of scattering.
 inline constexpr int kDefaultScattering = 3;
@@ -44,7 +44,7 @@ inline constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
 struct InputDescription {
   std::string volume;              ///< an OpenVDB file, a baked volume (.fvx) or "procedural:NAME"
   std::optional<std::string> grid;  ///< of an OpenVDB file, as readVdb has it; else `density`, or the only float grid
-  std::optional<glm::ivec3> resolution;  ///< voxels of a procedural volume, 1 to kMostResolution; else kDefaultResolution
+  std::optional<glm::ivec3> resolution;  ///< voxels of a procedural volume, 1 to kMaxResolution; else kDefaultResolution
   std::optional<VoxelBox> clipBox;       ///< in the volume's box; the voxels outside of it are not drawn
   std::optional<ClipPlane> clipPlane;    ///< the voxels in front of it are not drawn
 
@@ -139,9 +139,9 @@ struct LightingDescription {
   std::optional<glm::dvec3> ambient;                                ///< radiance from everywhere, linear Rec.709, at least 0
   std::optional<std::string> environment;                           ///< an .exr (environment.h)
   std::optional<double> environmentRotation, environmentIntensity;  ///< as in Environment
-  std::optional<glm::dvec3> tint;                ///< kLeastTint to kMostTint
-  std::optional<double> phaseG;                  ///< -kMostPhaseG to kMostPhaseG
-  std::optional<int> scattering;                 ///< orders, 1 to kMostOctaves; else kDefaultScattering
+  std::optional<glm::dvec3> tint;                ///< kMinTint to kMaxTint
+  std::optional<double> phaseG;                  ///< -kMaxPhaseG to kMaxPhaseG
+  std::optional<int> scattering;                 ///< orders, 1 to kMaxOctaves; else kDefaultScattering
   std::optional<double> scatteringScale;         ///< 0 to 1
   std::optional<LightAttenuation> attenuation;   ///< else Auto
   std::optional<Shading> shading;                ///< else Auto

@@ -155,7 +155,7 @@ void addInput(std::vector<SceneField>& fields) {
   section.add("volume", &Input::volume, text(Kind::Volume, "the name of a volume")).replaces = {"grid", "resolution", "clip-box",
                                                                                                 "clip-plane"};
   section.add("grid", &Input::grid, text(Kind::Name, "NAME"));
-  Codec<glm::ivec3> resolution = extent<glm::ivec3>("WxHxD", kMostResolution);
+  Codec<glm::ivec3> resolution = extent<glm::ivec3>("WxHxD", kMaxResolution);
   resolution.text = [](const glm::ivec3& size) { return resolutionText(size); };
   section.add("resolution", &Input::resolution, resolution);
   section.add("clip-box", &Input::clipBox,
@@ -268,7 +268,7 @@ void addLighting(std::vector<SceneField>& fields) {
   section.add("light-attenuation", &Lit::attenuation, words(kLightAttenuationWords));
   section.add("shading", &Lit::shading, words(kShadingWords)).replaces = {"surface-share"};
   section.add("surface-share", &Lit::surface, numbers<double>({.form = "S", .range = kUnit}));
-  section.add("scattering", &Lit::scattering, numbers<int>({.form = "N", .range = {1.0, double(kMostOctaves)}, .whole = true}));
+  section.add("scattering", &Lit::scattering, numbers<int>({.form = "N", .range = {1.0, double(kMaxOctaves)}, .whole = true}));
   section.add("scattering-scale", &Lit::scatteringScale, numbers<double>({.form = "S", .range = kUnit}));
   addLights(section);
   Codec<glm::dvec3> ambient = numbers<glm::dvec3>({.form = "R,G,B", .range = kPositive});
@@ -281,8 +281,8 @@ void addLighting(std::vector<SceneField>& fields) {
   section.add("environment", &Lit::environment, text(Kind::File, "FILE.exr"));
   section.add("environment-rotation", &Lit::environmentRotation, numbers<double>({.form = "DEG"}));
   section.add("environment-intensity", &Lit::environmentIntensity, numbers<double>({.form = "I", .range = kPositive}));
-  section.add("extinction-tint", &Lit::tint, numbers<glm::dvec3>({.form = "R,G,B", .range = {kLeastTint, kMostTint}}));
-  section.add("phase-g", &Lit::phaseG, numbers<double>({.form = "G", .range = {-kMostPhaseG, kMostPhaseG}}));
+  section.add("extinction-tint", &Lit::tint, numbers<glm::dvec3>({.form = "R,G,B", .range = {kMinTint, kMaxTint}}));
+  section.add("phase-g", &Lit::phaseG, numbers<double>({.form = "G", .range = {-kMaxPhaseG, kMaxPhaseG}}));
 }
 
 void addMethod(std::vector<SceneField>& fields) {

@@ -13,7 +13,7 @@ namespace {
 /// Least number of lattice samples per voxel at the reference distance.
 constexpr double kSamplesPerVoxel = 2.0;
 /// A lattice that would hardly be coarser than the pixels is that of the pixels, which needs no upsampling.
-constexpr double kLeastPitch = 1.15;
+constexpr double kMinPitch = 1.15;
 
 /// The pixels' rays, with pixel positions relative to the image's middle.
 struct CentredRays {
@@ -169,7 +169,7 @@ bool someRayHasAxis(const shader::GatherFrame& frame, int axis) {
       glm::vec3 size;
       for (int a = 0; a < 3; ++a) size[a] = std::abs(glm::dot(frame.axes[a].along, position));
       const float largest = std::max({size.x, size.y, size.z});
-      if (size[frame.mainAxis] <= kMargin * shader::kLeastAlong * largest && kMargin * size[axis] >= largest) return true;
+      if (size[frame.mainAxis] <= kMargin * shader::kMinAlong * largest && kMargin * size[axis] >= largest) return true;
     }
   }
   return false;
@@ -229,7 +229,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   const SeenRectangle seen = seenRectangle(rays, toPixel, dimensions, orthographic);
   frame.seenLow = seen[0];
   frame.seenHigh = seen[1];
-  const bool coarse = pitch > kLeastPitch;
+  const bool coarse = pitch > kMinPitch;
   // At least a few samples, however near the volume is.
   frame.pitch = coarse ? float(std::min(pitch, double(std::max(settings.size.x, settings.size.y)))) : 1.0f;
   frame.samples = coarse ? sampleCount(settings.size, double(frame.pitch)) : settings.size;

@@ -32,7 +32,7 @@ glm::dvec3 unpackGradient(std::uint32_t bits) {
 bool GatherVolume::lightsSamples(const DeviceVolume& volume, const Lighting* lighting) {
   if (lighting == nullptr || volume.hasEmission()) return false;
   if (lighting->lights.empty()) return lighting->hasAmbient();
-  return lighting->lights.size() <= std::size_t(shader::kMostSampleLights) && lighting->attenuation == LightAttenuation::Exact;
+  return lighting->lights.size() <= std::size_t(shader::kMaxSampleLights) && lighting->attenuation == LightAttenuation::Exact;
 }
 
 /// Keeps the codes until the lights move.
@@ -52,7 +52,7 @@ void GatherVolume::prepareSampled(const Lighting* lighting, std::vector<StageTim
     ownAmbient_.emplace(device_, volume_, classification_, edge);
   }
   const std::uint64_t bytes = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks * sizeof(std::uint16_t);
-  for (int slot = 0; slot < shader::kMostLightSlots; ++slot) {
+  for (int slot = 0; slot < shader::kMaxLightSlots; ++slot) {
     Buffer& codes = lightCodes_[std::size_t(slot)];
     if (slot >= lightSlots())
       codes = {};
@@ -240,8 +240,5 @@ std::vector<GatherLight> GatherVolume::downloadLight() const {
   }
   return levels;
 }
-
-=======
->>>>>>> cd5ad17 (Declare the gather's lattice in gather_frame.h)
 
 }  // namespace freevoxels

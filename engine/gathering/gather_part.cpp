@@ -14,9 +14,9 @@ namespace {
 
 constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
-/// A ray adds at most 2^kMostBricksLog2 bricks' optical depths, of at most kMostBrickDepth = 2^4 each, within 63 bits.
-constexpr int kMostBricksLog2 = 12, kDepthDigits = 62 - 4 - kMostBricksLog2;
-constexpr int kMostChunkLevels = 2;  ///< a chunk has at most 2^this bricks along an edge
+/// A ray adds at most 2^kMaxBricksLog2 bricks' optical depths, of at most kMaxBrickDepth = 2^4 each, within 63 bits.
+constexpr int kMaxBricksLog2 = 12, kDepthDigits = 62 - 4 - kMaxBricksLog2;
+constexpr int kMaxChunkLevels = 2;  ///< a chunk has at most 2^this bricks along an edge
 constexpr std::uint64_t kChunksPerShare = 4;
 /// Samples around the image of the volume that its interpolation reaches.
 constexpr float kMargin = 2.0f;
@@ -33,7 +33,7 @@ void forEachCell(glm::ivec3 size, const Visit& visit) {
 /// kChunksPerShare chunks a share. Large chunks cost less, as rays through a part also pass slices of its neighbours.
 std::vector<std::pair<std::uint64_t, glm::ivec3>> chunkPositions(const std::vector<glm::ivec3>& bricks, glm::ivec3 size) {
   std::vector<std::pair<std::uint64_t, glm::ivec3>> positions;
-  for (int levels = kMostChunkLevels; levels >= 0; --levels) {
+  for (int levels = kMaxChunkLevels; levels >= 0; --levels) {
     positions.clear();
     for (const glm::ivec3 brick : bricks) positions.emplace_back(hilbertIndex(glm::uvec3(brick >> levels), hilbertBits(size)), brick);
     std::ranges::stable_sort(positions, {}, &std::pair<std::uint64_t, glm::ivec3>::first);

@@ -57,9 +57,9 @@ GatherVolume::GatherVolume(const Device& device, const Volume& volume, const Cla
   const std::uint64_t quads = std::uint64_t(bricks) * shader::kGatherBrickBlocks;
   const bool inOne = quads <= device.limits().maxTexelBufferElements && quads * sizeof(glm::uvec4) <= device.maximumAllocation();
   bricksPerPiece_ = inOne ? bricks : 1u << shader::kPieceBricksLog2;
-  if (bricks > std::uint64_t(bricksPerPiece_) * shader::kMostPieces)
+  if (bricks > std::uint64_t(bricksPerPiece_) * shader::kMaxPieces)
     fail(ErrorKind::OutOfMemory, "the gather needs {} quads of voxels, more than the {} that it can number: use {}", quads,
-         std::uint64_t(bricksPerPiece_) * shader::kMostPieces * shader::kGatherBrickBlocks, Parameter("draw", "splats"));
+         std::uint64_t(bricksPerPiece_) * shader::kMaxPieces * shader::kGatherBrickBlocks, Parameter("draw", "splats"));
 }
 
 /// Finds the cells of the octree that are bricks, and those that rays skip. A position in a cell stays for

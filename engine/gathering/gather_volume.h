@@ -68,7 +68,7 @@ class GatherVolume {
   /// The quads of one axis.
   struct Quads {
     QuadStore medium, source, towards;
-    std::array<QuadStore, shader::kMostLightSlots> light;  ///< codes of light (lightCodes_)
+    std::array<QuadStore, shader::kMaxLightSlots> light;  ///< codes of light (lightCodes_)
     std::uint32_t levels = 0;  ///< a bit for each level that exists
     std::uint32_t lightLevels = 0;
     std::uint64_t bytes() const;
@@ -170,7 +170,7 @@ class GatherVolume {
   std::optional<AmbientPass> ownAmbient_;
   /// 16 bits a block, in bricks: sqrt(optical depth / kOpaqueDepth) towards each light, and for each ambient
   /// channel that of -log of the fraction of the unshadowed light that reaches it.
-  std::array<Buffer, shader::kMostLightSlots> lightCodes_;
+  std::array<Buffer, shader::kMaxLightSlots> lightCodes_;
   std::uint32_t lightLevels_ = 0;
   Buffer gradients_;  ///< 4 bytes a block, in bricks; empty until surfaces are lit at samples
   std::uint32_t gradientLevels_ = 0;

@@ -42,7 +42,7 @@ glm::dvec4 resolved(const FixedSums& sums, std::size_t i, bool normalised) {
 
 /// Where the interpolated depth in front of an opaque edge hides what a sample shows, its sums are nearly 0: below this part of alpha its
 /// colour is that of the samples around it.
-constexpr double kLeastEnergy = 0.01;
+constexpr double kMinEnergy = 0.01;
 
 Image resolveSamples(const FixedSums& sums) {
   const SampleLattice& lattice = *sums.lattice;
@@ -51,7 +51,7 @@ Image resolveSamples(const FixedSums& sums) {
   for (std::size_t i = 0; i < sums.pixelCount(); ++i) {
     const glm::ivec2 own = {int(i) % sums.extent.x, int(i) / sums.extent.x};
     const double alpha = -std::expm1(-sums.value(SumChannel::OpticalDepth, i));
-    const bool isHidden = sums.value(SumChannel::Energy, i) < kLeastEnergy * alpha;
+    const bool isHidden = sums.value(SumChannel::Energy, i) < kMinEnergy * alpha;
     const glm::ivec2 low = isHidden ? glm::max(own - 1, glm::ivec2(0)) : own, high = isHidden ? glm::min(own + 1, sums.extent - 1) : own;
     LatticeSample sum;
     for (int y = low.y; y <= high.y; ++y)

@@ -23,7 +23,7 @@ namespace freevoxels {
 namespace {
 
 constexpr std::array<const char*, kSumChannels> kNames{"red", "green", "blue", "energy", "depth", "distance"};
-constexpr std::int64_t kMostPixels = std::int64_t(1) << 30;
+constexpr std::int64_t kMaxPixels = std::int64_t(1) << 30;
 constexpr const char* kMethod = "freevoxels:method";
 constexpr const char* kLattice = "freevoxels:lattice";  ///< only where the sums are those of samples
 
@@ -89,8 +89,8 @@ FixedSums readLayout(const std::filesystem::path& file, const Imf::Header& heade
   if (const auto* lattice = header.findTypedAttribute<Imf::StringAttribute>(kLattice)) sums.lattice = latticeOf(lattice->value());
   const glm::ivec2 full = sums.fullSize();
   const bool hasDistance = header.channels().findChannel("distance.high") != nullptr;
-  if (display.min.x != 0 || display.min.y != 0 || std::int64_t(sums.size.x) * sums.size.y > kMostPixels ||
-      std::int64_t(full.x) * full.y > kMostPixels || glm::any(glm::lessThan(sums.first, glm::ivec2(0))) ||
+  if (display.min.x != 0 || display.min.y != 0 || std::int64_t(sums.size.x) * sums.size.y > kMaxPixels ||
+      std::int64_t(full.x) * full.y > kMaxPixels || glm::any(glm::lessThan(sums.first, glm::ivec2(0))) ||
       glm::any(glm::greaterThan(sums.first + sums.extent, full)) || (sums.lattice && !hasDistance))
     fail(ErrorKind::Input, "cannot read '{}': its rectangle of sums is not inside of its image; render this share again",
          file.string());

@@ -18,7 +18,7 @@ namespace {
 using namespace shader;
 
 constexpr double kNoDistance = -1.0;
-constexpr int kMostSamples = 1 << 16;
+constexpr int kMaxSamples = 1 << 16;
 
 /// A weighted sum of samples, with weights of both signs. Its mean distance stays within the range of those of the samples.
 class WeightedSamples {
@@ -49,7 +49,7 @@ int marchAxis(const SampleLattice& lattice, glm::dvec2 position) {
   glm::dvec3 along;
   for (int axis = 0; axis < 3; ++axis) along[axis] = std::abs(glm::dot(lattice.axes[std::size_t(axis)].along, glm::dvec3(1.0, position)));
   const double largest = std::max({along.x, along.y, along.z});
-  if (!seen || along[lattice.mainAxis] >= double(kLeastAlong) * largest) return lattice.mainAxis;
+  if (!seen || along[lattice.mainAxis] >= double(kMinAlong) * largest) return lattice.mainAxis;
   return along.x == largest ? 0 : along.y == largest ? 1 : 2;
 }
 
@@ -62,7 +62,7 @@ glm::dvec3 missingCovariance(const SampleLattice& lattice, glm::dvec2 position, 
   const glm::dvec3 covariance = double(kFootprintVariance) / (lattice.pitch * lattice.pitch) *
                                 (double(kStencilStrength) * glm::dvec3(tilt.x * tilt.x, tilt.x * tilt.y, tilt.y * tilt.y) +
                                  glm::dvec3(widening, 0.0, widening));
-  return covariance * std::min(double(kMostVariance) / std::max(covariance.x + covariance.z, 1e-20), 1.0);
+  return covariance * std::min(double(kMaxVariance) / std::max(covariance.x + covariance.z, 1e-20), 1.0);
 }
 
 LatticeSample stencilAt(const SampleLattice& lattice, const std::vector<LatticeSample>& samples, glm::ivec2 index) {
@@ -83,10 +83,10 @@ LatticeSample stencilAt(const SampleLattice& lattice, const std::vector<LatticeS
   double depth = 0.0;
   for (std::size_t i = 0; i < 9; ++i) {
     sum.add(weights[i], *around[i]);
-    depth -= weights[i] * std::log(std::max(1.0 - around[i]->color.a, double(kLeastTransmittance)));
+    depth -= weights[i] * std::log(std::max(1.0 - around[i]->color.a, double(kMinTransmittance)));
   }
   LatticeSample result = sum.sum();
-  if (lattice.scalars || result.color.a <= double(kLeastTransmittance)) return result;
+  if (lattice.scalars || result.color.a <= double(kMinTransmittance)) return result;
   // Footprints add up optical depths; interpolated scalars have none of their own.
   const double scale = -std::expm1(-std::max(depth, 0.0)) / result.color.a;
   return {scale * result.color, scale * result.distance};
@@ -154,7 +154,7 @@ SampleLattice latticeOf(const std::string& text) {
     number = std::remove_reference_t<decltype(number)>(isValid ? value : 0.0);
   });
   isValid = isValid && glm::all(glm::greaterThan(lattice.samples, glm::ivec2(3))) &&
-            glm::all(glm::lessThan(lattice.samples, glm::ivec2(kMostSamples))) && lattice.pitch > 0.0 && lattice.mainAxis >= 0 &&
+            glm::all(glm::lessThan(lattice.samples, glm::ivec2(kMaxSamples))) && lattice.pitch > 0.0 && lattice.mainAxis >= 0 &&
             lattice.mainAxis < 3;
   if (!isValid) throw std::invalid_argument("its lattice of samples is damaged");
   return lattice;

@@ -23,7 +23,7 @@ struct SampleLattice {
     bool operator==(const Axis&) const = default;
   };
   std::array<Axis, 3> axes{};
-  int mainAxis = 2;                ///< along which rays march, except for those with less than kLeastAlong of their direction along it
+  int mainAxis = 2;                ///< along which rays march, except for those with less than kMinAlong of their direction along it
   double pixelsPerVoxel = 1.0;     ///< at distance 1; orthographic: anywhere
   bool orthographic = false;
   bool scalars = false;            ///< whether voxels are classified after interpolation

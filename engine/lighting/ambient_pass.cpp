@@ -48,7 +48,7 @@ std::size_t countOf(glm::ivec3 cells) {
 
 int ambientCellEdge(glm::ivec3 dimensions, bool hasPhase) {
   int edge = 1;
-  while (countOf((dimensions + edge - 1) / edge) > (hasPhase ? kMostPhaseCells : kMostAmbientCells)) edge *= 2;
+  while (countOf((dimensions + edge - 1) / edge) > (hasPhase ? kMaxPhaseCells : kMaxAmbientCells)) edge *= 2;
   return edge;
 }
 

@@ -19,7 +19,7 @@ namespace freevoxels {
 /// Largest numbers of cells, without and with a phase function. Ambient light is smooth, so that cells may be
 /// cubes of 2, 4, ... voxels along an edge. With a phase function every view has its own sweeps, which have
 /// fewer cells.
-inline constexpr std::uint64_t kMostAmbientCells = 4u << 20, kMostPhaseCells = 1u << 19;
+inline constexpr std::uint64_t kMaxAmbientCells = 4u << 20, kMaxPhaseCells = 1u << 19;
 int ambientCellEdge(glm::ivec3 dimensions, bool hasPhase);
 
 /// The mean extinction, per world unit, of each cell, x fastest. The part of a cell beyond the volume counts

@@ -15,7 +15,7 @@ namespace {
 using Brick = ScalarBricks::Brick;
 
 /// Largest number of bytes of classified voxels that are kept from one upload of their batch to the next.
-constexpr std::uint64_t kMostKept = std::uint64_t(256) << 20;
+constexpr std::uint64_t kMaxKept = std::uint64_t(256) << 20;
 
 static_assert(shader::kMaximumExtinction == float(kMaximumExtinction));
 
@@ -37,7 +37,7 @@ DeviceBricks::DeviceBricks(const Device& device, const DeviceVolume& target, con
       firstVoxels_(device, bricksPerBatch_ * sizeof(glm::ivec3), MemoryUse::Device, "places of bricks") {
   if (target.hasEmission())
     emissions_ = Buffer(device, scalars_.bytes(), MemoryUse::Device, "emission of bricks");
-  if (classification.transferFunction && 2 * batches_ * kBatchBytes <= kMostKept) kept_.resize(batches_);
+  if (classification.transferFunction && 2 * batches_ * kBatchBytes <= kMaxKept) kept_.resize(batches_);
   if (target.hasColors) colors_ = Buffer(device, scalars_.bytes(), MemoryUse::Device, "colours of bricks");
 }
 

@@ -36,9 +36,9 @@ void checkHolds(const Device& device, glm::ivec3 box, std::uint64_t bytes, std::
 void checkBoxFits(const Device& device, const HierarchyLayout& hierarchy) {
   const glm::ivec3 box = hierarchy.levels.front().dimensions;
   checkBinds(device, box, occupancyBytes(hierarchy), sizeof(shader::OccupancyWord));
-  if (hierarchy.levels.front().paddedVoxels() > kMostNumberedVoxels)
+  if (hierarchy.levels.front().paddedVoxels() > kMaxNumberedVoxels)
     fail(ErrorKind::OutOfMemory, "a volume of {}x{}x{} voxels has more than the {} that can be numbered: crop or resample it", box.x,
-         box.y, box.z, kMostNumberedVoxels);
+         box.y, box.z, kMaxNumberedVoxels);
   checkHolds(device, box, occupancyBytes(hierarchy) + brickBytes(box));
 }
 

@@ -17,7 +17,7 @@ std::uint64_t occupancyBytes(const HierarchyLayout& hierarchy);
 std::uint64_t brickBytes(glm::ivec3 box);
 
 /// Shaders index voxels with signed 32-bit integers, including the padding of rows.
-inline constexpr std::uint64_t kMostNumberedVoxels = std::numeric_limits<std::int32_t>::max();
+inline constexpr std::uint64_t kMaxNumberedVoxels = std::numeric_limits<std::int32_t>::max();
 
 /// Fails if the device cannot bind `bytes` in one buffer whose texels have `texelBytes`.
 void checkBinds(const Device& device, glm::ivec3 box, std::uint64_t bytes, std::uint64_t texelBytes);

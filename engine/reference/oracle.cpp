@@ -17,7 +17,7 @@ namespace freevoxels {
 namespace {
 
 constexpr int kFewestSamples = 2;
-constexpr int kMostFirstSamples = 16;
+constexpr int kMaxFirstSamples = 16;
 
 /// The state of a pixel: means over its rays so far.
 struct PixelMean {
@@ -74,7 +74,7 @@ int Sampler::firstSamples() const {
   }
   const double apart = std::max(glm::length(rays_.originX + farthest * rays_.directionX),
                                 glm::length(rays_.originY + farthest * rays_.directionY));
-  const double wanted = std::clamp(std::ceil(apart), double(kFewestSamples), double(kMostFirstSamples));
+  const double wanted = std::clamp(std::ceil(apart), double(kFewestSamples), double(kMaxFirstSamples));
   return std::min(int(std::bit_ceil(unsigned(wanted))), settings_.maximumSamples / 2);
 }
 

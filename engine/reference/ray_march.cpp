@@ -31,7 +31,7 @@ constexpr double kNodeDistance = 0.3872983346207417;
 constexpr double kMaxIntervalDepth = 0.5;
 /// Largest number of intervals in a cell. Reached only if its optical depth is above 2000, so that the ray
 /// ends at once.
-constexpr double kMostIntervals = 4096.0;
+constexpr double kMaxIntervals = 4096.0;
 
 /// Calls visit(cube, t0, t1) for the unit cubes from `first` to `last` that the ray passes between `enter`
 /// and `leave`, in order, until it returns false. The parts add up to the whole, whatever the rounding:
@@ -247,7 +247,7 @@ bool March::crossCell(const glm::vec4* corner, const glm::vec4* emission, glm::i
     return transmittance_ >= kNegligibleTransmittance;
   }
   const double wanted = std::max(total / kMaxIntervalDepth, (leave - enter) * intervals_);
-  const int count = std::max(int(std::ceil(std::min(wanted, kMostIntervals))), 1);
+  const int count = std::max(int(std::ceil(std::min(wanted, kMaxIntervals))), 1);
   for (int i = 0; i < count && transmittance_ >= kNegligibleTransmittance; ++i)
     addInterval(cubic, emitted ? &*emitted : nullptr, depth, double(i) / count, double(i + 1) / count, enter,
                 leave - enter);

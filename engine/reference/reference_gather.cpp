@@ -14,14 +14,14 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kSamplesPerVoxel = 2.0, kLeastPitch = 1.15;
+constexpr double kSamplesPerVoxel = 2.0, kMinPitch = 1.15;
 /// For a camera near the volume the lattice is made for this part of the distance to the farthest corner.
 constexpr double kNearReference = 0.75;
 /// A ray marches along the main axis if its component along it is at least this part of its largest
 /// component.
-constexpr double kLeastAlongMain = 0.5;
+constexpr double kMinAlongMain = 0.5;
 /// The mean of a transfer function is that of both ends if they are fewer intervals apart than this.
-constexpr double kLeastChange = 16.0;
+constexpr double kMinChange = 16.0;
 
 /// The part in front of the eye of a tent with a half width of 1, whose middle is `ahead` in front of the
 /// eye.
@@ -95,7 +95,7 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
   const double reference = rays_.orthographic ? 1.0 : std::max(mean, kNearReference * farthest);
   const double pitch = std::min(pixelsPerVoxel_ / (kSamplesPerVoxel * reference), double(std::max(size_.x, size_.y)));
   lattice_ = {.samples = size_, .pitch = 1.0, .first = 0.5 - middle_};
-  if (pitch > kLeastPitch) {
+  if (pitch > kMinPitch) {
     lattice_.pitch = double(float(pitch));  // the value by which the device's samples are placed
     lattice_.samples = glm::ivec2(glm::floor(glm::dvec2(size_ - 1) / lattice_.pitch)) + 4;
     lattice_.first -= lattice_.pitch;
@@ -129,7 +129,7 @@ ReferenceGather::Ray ReferenceGather::rayThrough(glm::dvec2 position) const {
 int ReferenceGather::axisOf(glm::dvec2 position, const Ray& ray) const {
   const bool seen = glm::all(glm::greaterThanEqual(position, seenLow_)) && glm::all(glm::lessThanEqual(position, seenHigh_));
   const glm::dvec3 size = glm::abs(ray.direction);
-  const bool isMain = size[mainAxis_] >= kLeastAlongMain * std::max({size.x, size.y, size.z});
+  const bool isMain = size[mainAxis_] >= kMinAlongMain * std::max({size.x, size.y, size.z});
   return !seen || isMain ? mainAxis_ : majorAxis(ray.direction);
 }
 
@@ -238,7 +238,7 @@ glm::dvec4 ReferenceGather::integralUpTo(double scalar) const {
 }
 
 glm::dvec4 ReferenceGather::meanBetween(double from, double to) const {
-  if (std::abs(to - from) <= kLeastChange) return 0.5 * (mediumAt(from) + mediumAt(to));
+  if (std::abs(to - from) <= kMinChange) return 0.5 * (mediumAt(from) + mediumAt(to));
   return (integralUpTo(to) - integralUpTo(from)) / (to - from);
 }
 

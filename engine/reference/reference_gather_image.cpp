@@ -16,8 +16,8 @@ namespace {
 constexpr double kKernelVariance = 0.1624;
 /// Factor by which the coarse stencil exceeds the missing variance.
 constexpr double kStrength = 1.2;
-constexpr double kMostVariance = 0.8;  ///< largest variance that a stencil of 3x3 samples can add, in squares of the pitch
-constexpr double kLeastTransmittance = 1e-6;
+constexpr double kMaxVariance = 0.8;  ///< largest variance that a stencil of 3x3 samples can add, in squares of the pitch
+constexpr double kMinTransmittance = 1e-6;
 constexpr double kUnknown = -1.0;
 
 /// Adds samples with weights of both signs. The mean distance of the result stays between those of the samples.
@@ -63,7 +63,7 @@ glm::dvec3 ReferenceGather::missingCovariance(glm::dvec2 position, double distan
   const glm::dvec3 covariance =
       perSquare * (kStrength * glm::dvec3(tilt.x * tilt.x, tilt.x * tilt.y, tilt.y * tilt.y) + glm::dvec3(widening, 0.0, widening));
   const double sum = covariance.x + covariance.z;
-  return sum > kMostVariance ? kMostVariance / sum * covariance : covariance;
+  return sum > kMaxVariance ? kMaxVariance / sum * covariance : covariance;
 }
 
 GatherSums ReferenceGather::smoothedAt(const std::vector<GatherSums>& samples, glm::ivec2 sample) const {
@@ -90,11 +90,11 @@ GatherSums ReferenceGather::smoothedAt(const std::vector<GatherSums>& samples, g
                             : x != 0           ? 0.5 * covariance.x
                                                : 0.5 * covariance.z;
       sum.add(weight, neighbour(x, y));
-      depth -= weight * std::log(std::max(1.0 - neighbour(x, y).energy, kLeastTransmittance));
+      depth -= weight * std::log(std::max(1.0 - neighbour(x, y).energy, kMinTransmittance));
     }
   GatherSums result = sum.result();
   // Footprints add up optical depths; scalars are interpolated as they are.
-  if (hasScalars() || result.energy <= kLeastTransmittance) return result;
+  if (hasScalars() || result.energy <= kMinTransmittance) return result;
   const double scale = -std::expm1(-std::max(depth, 0.0)) / result.energy;
   return {.color = scale * result.color, .energy = scale * result.energy, .distance = scale * result.distance};
 }

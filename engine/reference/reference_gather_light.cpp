@@ -15,7 +15,7 @@ namespace {
 
 /// Least share of a pixel's alpha for which light is computed along the scalar's gradient, and for which a surface has a normal: for
 /// blocks, and for scalars, of whose stretches each has two halves.
-constexpr double kLeastShown = 1.0 / 512.0;
+constexpr double kMinShown = 1.0 / 512.0;
 /// Share of reflected light from which on the rest is computed coarsely.
 constexpr double kMostlySurface = 0.95;
 /// Blocks from a surface at which the light that reaches it is looked up.
@@ -277,7 +277,7 @@ void ReferenceGather::marchLitBlocks(GatherSums& sums, double& transmittance, co
     if (before < 0 || before >= end) setBeyond(stretch.begin, found, slab, before);
     if (slice < 0 || slice >= end) setBeyond(stretch.end, last, slab, slice);
     stretch.position = ray.origin + slab.distance(ray, slice - 0.5 * slab.sign) * ray.direction;
-    if (lighting_->surface > 0.0 && transmittance * slab.layer(ray) * mean.a > kLeastShown) {
+    if (lighting_->surface > 0.0 && transmittance * slab.layer(ray) * mean.a > kMinShown) {
       const glm::dvec3 gradient = 0.5 * (gradientAt(light, ray, slab, before) + gradientAt(light, ray, slab, slice));
       const double reach = glm::length(gradient);
       setSurface(stretch, gradient, -std::min(2.0 * reach / std::max(mean.a + reach, 1e-20), 1.0));
@@ -312,7 +312,7 @@ std::array<ReferenceGather::Stretch, 2> ReferenceGather::lightStretch(const Gath
   halves[0].end.ambient = halves[1].begin.ambient = glm::mix(ambientBegin, ambientEnd, share);
   halves[1].end.ambient = ambientEnd;
   for (Stretch& half : halves) half.position = place(slice - 0.5 * slab.sign);
-  if (lighting_->surface > 0.0 && shown > 2.0 * kLeastShown) {
+  if (lighting_->surface > 0.0 && shown > 2.0 * kMinShown) {
     const glm::dvec3 a = gradientAt(light, ray, slab, before), b = gradientAt(light, ray, slab, slice);
     glm::dvec3 gradients(0.0);
     double changes = 0.0;
@@ -334,7 +334,7 @@ std::array<ReferenceGather::Stretch, 2> ReferenceGather::lightStretch(const Gath
     lastArriving.reset();
     return halves;
   }
-  const bool shows = shown > kLeastShown && std::min(halves[0].surface, halves[1].surface) < kMostlySurface;
+  const bool shows = shown > kMinShown && std::min(halves[0].surface, halves[1].surface) < kMostlySurface;
   const auto upTo = [&](const Arriving& stored, const Scalar& scalar, int at) {
     Arriving arriving = stored;
     addLayerTowards(arriving, scalar, place(at), shows);

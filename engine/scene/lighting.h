@@ -26,12 +26,12 @@ inline constexpr double kHighlight = 0.2, kHighlightExponent = 40.0;
 
 /// Range of the extinction tint. Beyond the largest optical depth that can be encoded the transmittance is
 /// unknown, which a smaller tint would make visible.
-inline constexpr double kLeastTint = 0.2, kMostTint = 5.0;
+inline constexpr double kMinTint = 0.2, kMaxTint = 5.0;
 
-inline constexpr int kMostOctaves = 8;
+inline constexpr int kMaxOctaves = 8;
 
 /// Largest |g|: the narrowest phase function that 32-bit floats can represent.
-inline constexpr double kMostPhaseG = 0.99;
+inline constexpr double kMaxPhaseG = 0.99;
 
 struct Light {
   /// A position in world space, or for a light at infinity the direction towards it, of any length but 0.
@@ -58,9 +58,9 @@ struct Lighting {
   /// Radiance by direction, added to `ambient`. May be null.
   std::shared_ptr<const Environment> environment;
   /// Factor of the extinction for each colour between a light, or the ambient light, and the point of
-  /// scattering; not between that point and the eye. In kLeastTint..kMostTint.
+  /// scattering; not between that point and the eye. In kMinTint..kMaxTint.
   glm::dvec3 tint{1.0};
-  /// Asymmetry g of the phase function, in -kMostPhaseG..kMostPhaseG: 0 scatters equally in all directions,
+  /// Asymmetry g of the phase function, in -kMaxPhaseG..kMaxPhaseG: 0 scatters equally in all directions,
   /// positive values forwards.
   double phaseG = 0.0;
   /// The fraction in 0..1 of light that a voxel reflects like a surface (surfaceScattering) where the
@@ -70,7 +70,7 @@ struct Lighting {
   /// Multiple scattering is approximated by octaves (Wrenninge, Kulla and Lundqvist 2013): octave i is lit as by single
   /// scattering, but with the optical depth towards the light, the phase function's g and the light itself all multiplied
   /// by scatteringScale^i. 1 octave is single scattering. Surfaces scatter in the first one only.
-  int scattering = 1;           ///< octaves, 1..kMostOctaves
+  int scattering = 1;           ///< octaves, 1..kMaxOctaves
   double scatteringScale = 0.5;  ///< in 0..1
 
   double octaveScale(int octave) const { return std::pow(scatteringScale, octave); }

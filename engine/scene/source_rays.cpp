@@ -13,7 +13,7 @@ constexpr double kMargin = 1.5;
 /// voxel alone (within 0.5 dB of the image); at a whole voxel images of thin shells lose 3 dB.
 constexpr double kFinestSpacing = 0.5;
 /// Largest number of rays of a face for every line of voxels along its axis.
-constexpr double kMostRaysPerLine = 6.0;
+constexpr double kMaxRaysPerLine = 6.0;
 
 struct Interval {
   double low, high;
@@ -26,7 +26,7 @@ void placeRays(FaceRays& fan, const std::array<Interval, 2>& covered, glm::ivec3
     return covered[std::size_t(side)].high - covered[std::size_t(side)].low;
   };
   const glm::ivec2 across(dimensions[(fan.axis + 1) % 3], dimensions[(fan.axis + 2) % 3]);
-  const double mostRays = kMostRaysPerLine * (across.x + 4.0) * (across.y + 4.0);
+  const double mostRays = kMaxRaysPerLine * (across.x + 4.0) * (across.y + 4.0);
   fan.spacing = std::max(kFinestSpacing, std::sqrt(length(0) * length(1) / mostRays));
   for (int side = 0; side < 2; ++side) {
     const auto [low, high] = covered[std::size_t(side)];

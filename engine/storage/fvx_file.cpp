@@ -104,7 +104,7 @@ void FvxFile::checkHeader() const {
   if (size < header().fileBytes)
     fail(ErrorKind::Input, "'{}' is incomplete: it has {} of {} bytes; copy it again", name, size, header().fileBytes);
   if (size > header().fileBytes) failDamaged(fmt::format("it has {} bytes instead of {}", size, header().fileBytes));
-  if (header().byteOrderMark != kByteOrderMark || header().sectionCount > kMostSections) failDamaged("its header is impossible");
+  if (header().byteOrderMark != kByteOrderMark || header().sectionCount > kMaxSections) failDamaged("its header is impossible");
   for (const Section& section : sections())
     if (section.offset % kPageBytes != 0 || section.offset > size || section.bytes > size - section.offset)
       failDamaged("a section is not where it should be");
@@ -136,9 +136,9 @@ ContentCells FvxFile::readContent() const {
   ContentHeader header;
   if (raw.size() < sizeof(header)) failDamaged("its content cells are too short");
   std::memcpy(&header, raw.data(), sizeof(header));
-  constexpr int kMostCells = 1 << 10;
+  constexpr int kMaxCells = 1 << 10;
   const glm::ivec3 cells = header.cells;
-  const bool possible = glm::all(glm::greaterThan(cells, glm::ivec3(0))) && glm::all(glm::lessThan(cells, glm::ivec3(kMostCells)));
+  const bool possible = glm::all(glm::greaterThan(cells, glm::ivec3(0))) && glm::all(glm::lessThan(cells, glm::ivec3(kMaxCells)));
   const std::uint64_t count = possible ? std::uint64_t(cells.x) * std::uint64_t(cells.y) * std::uint64_t(cells.z) : 0;
   if (!possible || raw.size() != sizeof(header) + (count + 7) / 8 || !(header.edge > 0.0)) failDamaged("its content cells are impossible");
   ContentCells content{.cells = Cells(cells), .edge = header.edge};

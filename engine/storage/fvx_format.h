@@ -27,8 +27,8 @@ inline constexpr int kRegionEdge = 2 * kChunkEdge;     ///< voxels; the eight ch
 inline constexpr int kRegionHalo = 1;                  ///< voxels
 inline constexpr int kEntryFaces = 54;                 ///< of a region: regions.h
 inline constexpr float kLargestEntryDepth = 16.0f;     ///< larger depths are stored as this
-inline constexpr int kMostLevels = 9;                  ///< of the octree, level 0 included
-inline constexpr int kLongestEdge = kChunkEdge << (kMostLevels - 1);  ///< of a volume, voxels
+inline constexpr int kMaxLevels = 9;                  ///< of the octree, level 0 included
+inline constexpr int kLongestEdge = kChunkEdge << (kMaxLevels - 1);  ///< of a volume, voxels
 inline constexpr int kChunkVoxels = kChunkEdge * kChunkEdge * kChunkEdge;
 inline constexpr int kBrickVoxels = ScalarBricks::kEdge * ScalarBricks::kEdge * ScalarBricks::kEdge;
 static_assert(kChunkBricks * kBrickVoxels == kChunkVoxels);
@@ -64,7 +64,7 @@ struct Section {
 };
 static_assert(sizeof(Section) == 64);
 
-inline constexpr int kMostSections = 62;
+inline constexpr int kMaxSections = 62;
 
 struct Header {
   std::array<std::uint8_t, 12> identifier = kIdentifier;
@@ -74,10 +74,10 @@ struct Header {
   std::uint64_t fileBytes = 0;
   std::uint64_t hash = 0;  ///< XXH3-64 of these 4096 bytes with 0 here
   std::array<std::uint8_t, 88> reserved{};
-  std::array<Section, kMostSections> sections{};
+  std::array<Section, kMaxSections> sections{};
 };
 static_assert(sizeof(Header) == kPageBytes);
-static_assert(5 + 2 * kChannels * kMostLevels <= kMostSections);
+static_assert(5 + 2 * kChannels * kMaxLevels <= kMaxSections);
 
 /// The visible cells of the volume (ContentCells of subject.h), followed by a bit for each, x fastest.
 struct ContentHeader {

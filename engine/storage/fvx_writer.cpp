@@ -130,7 +130,7 @@ struct FvxWriter::State {
 
   State(const std::filesystem::path& spoolFolder, const WriteSettings& given)
       : settings(given), dimensions(levelDimensions(given.dimensions)), stores(dimensions.size()), folder(spoolFolder) {
-    FV_CHECK_LE(dimensions.size(), std::size_t(kMostLevels));
+    FV_CHECK_LE(dimensions.size(), std::size_t(kMaxLevels));
     for (auto& level : stores)
       for (std::size_t channel = 0; channel < kChannels; ++channel)
         if (settings.encodings[channel]) level[channel].spool = std::make_unique<Spool>(folder);

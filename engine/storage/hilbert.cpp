@@ -44,7 +44,7 @@ void turn(Transposed& x, std::size_t i, std::uint32_t bit) {
 }  // namespace
 
 std::uint64_t hilbertIndex(glm::uvec3 cell, int bits) {
-  FV_CHECK_LE(bits, kMostHilbertBits);
+  FV_CHECK_LE(bits, kMaxHilbertBits);
   Transposed x{cell.x, cell.y, cell.z};
   const std::uint32_t top = 1u << (bits - 1);
   for (std::uint32_t bit = top; bit > 1; bit >>= 1)
@@ -60,7 +60,7 @@ std::uint64_t hilbertIndex(glm::uvec3 cell, int bits) {
 }
 
 glm::uvec3 hilbertCell(std::uint64_t index, int bits) {
-  FV_CHECK_LE(bits, kMostHilbertBits);
+  FV_CHECK_LE(bits, kMaxHilbertBits);
   Transposed x = transposed(index, bits);
   const std::uint32_t last = x[2] >> 1;
   x[2] ^= x[1];

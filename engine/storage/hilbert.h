@@ -10,7 +10,7 @@
 namespace freevoxels {
 
 /// Largest number of bits of a coordinate: an index has three times as many.
-inline constexpr int kMostHilbertBits = 21;
+inline constexpr int kMaxHilbertBits = 21;
 
 /// Position along the curve through the cube of 2^bits cells a side, 0 to 8^bits - 1. Each coordinate is
 /// below 2^bits. Cells at consecutive positions share a face; the first 8^k positions fill a cube of 2^k

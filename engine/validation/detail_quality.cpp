@@ -15,7 +15,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kLeastPsnr = 35.0;  ///< in dB: engine/docs/validation.md, Bounds
+constexpr double kMinPsnr = 35.0;  ///< in dB: engine/docs/validation.md, Bounds
 /// A change between frames that all voxels show as well is not a step, nor is less than one code of an 8-bit
 /// image in addition.
 constexpr double kZoomMargin = 1.0 / 255.0;
@@ -39,7 +39,7 @@ Check checkAgainstVoxels(Renderer& renderer, const Volume& volume, double pixels
   Check worst{.name = fmt::format("level of detail 1: voxels of {:g} pixel", pixels),
               .figure = 1e9,
               .bound = Check::Bound::AtLeast,
-              .tolerance = kLeastPsnr,
+              .tolerance = kMinPsnr,
               .unit = "dB"};
   std::vector<std::string> row{fmt::format("{:g} pixel", pixels)};
   for (const QualityView& view : kViews) {

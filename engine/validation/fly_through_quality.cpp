@@ -14,8 +14,8 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kLeastPsnr = 40.0;  ///< in dB, for every frame: engine/docs/validation.md, Bounds
-constexpr double kMostWrongChange =
+constexpr double kMinPsnr = 40.0;  ///< in dB, for every frame: engine/docs/validation.md, Bounds
+constexpr double kMaxWrongChange =
     0.015;  ///< twice the error at 42 dB; a layer of voxels that pops makes 0.05
 constexpr int kShownFrames = 6;
 
@@ -41,7 +41,7 @@ Check leastPsnr(const ReportPlot::Series& series) {
   return {.name = fmt::format("{}: least PSNR of any frame", series.name),
           .figure = worst.y,
           .bound = Check::Bound::AtLeast,
-          .tolerance = kLeastPsnr,
+          .tolerance = kMinPsnr,
           .unit = "dB",
           .where = fmt::format("frame {:g}", worst.x)};
 }
@@ -68,7 +68,7 @@ Check mostWrongChange(const ReportPlot::Series& wrong, const std::string& method
   MaxError worst;
   for (const glm::dvec2 point : wrong.points)
     worst.take(point.y, [&] { return fmt::format("frame {:g}", point.x); });
-  return worst.atMost(kMostWrongChange, method + ": change from frame to frame that is not the oracle's",
+  return worst.atMost(kMaxWrongChange, method + ": change from frame to frame that is not the oracle's",
                       "RMSE");
 }
 

@@ -24,7 +24,7 @@ namespace {
 /// Half a step of the 11 bits that a half has, and of 9 bits.
 constexpr double kExtinctionTolerance = 5e-4, kSourceTolerance = 2e-3;
 /// Optical depths of a voxel that halves hold with fewer bits.
-constexpr double kLeastDepth = 1e-6;
+constexpr double kMinDepth = 1e-6;
 constexpr double kPitchTolerance = 1e-6;
 /// Steps of the codes of 16 bits, of the rays and of the blocks.
 constexpr double kLightCodeTolerance = 3.0 / 65535.0;
@@ -39,7 +39,7 @@ constexpr double kScalarTolerance = 3e-3;
 constexpr float kEndTransmittance = 0.5f;
 /// An error in a sample counts relative to the sample, but to no less than this part of the largest.
 constexpr double kFloor = 5e-2;
-constexpr double kLeastEnergy = 1e-3;  ///< of samples and pixels whose distance is compared
+constexpr double kMinEnergy = 1e-3;  ///< of samples and pixels whose distance is compared
 
 enum class View { Framed, Orthographic, Inside, Wide, Near };
 enum class Light { None, FromBehind, AllKinds, Surfaces };
@@ -122,7 +122,7 @@ struct Channel {
 constexpr std::array<Channel, 3> kChannels{{{"C", [](const GatherSums& s) { return s.color; }},
                                             {"E", [](const GatherSums& s) { return glm::dvec3(s.energy); }},
                                             {"sum of e z", [](const GatherSums& s) {
-                                               const bool known = s.distance >= 0.0 && s.energy >= kLeastEnergy;
+                                               const bool known = s.distance >= 0.0 && s.energy >= kMinEnergy;
                                                return glm::dvec3(known ? s.distance : 0.0);
                                              }}}};
 
@@ -141,7 +141,7 @@ Check checkLattice(const GatherLattice& lattice, const GatherLattice& reference,
 /// Checks the blocks of all levels that the frame reads.
 void checkBlocks(const GatherStages& stages, const ValidationScene& scene, const char* frame, std::vector<Check>& checks) {
   MaxError extinction, source;
-  const double least = kLeastDepth / scene.volume.voxelSize();
+  const double least = kMinDepth / scene.volume.voxelSize();
   for (std::size_t level = 0; level < stages.blocks.size(); ++level) {
     const GatherBlocks& blocks = stages.blocks[level];
     if (!blocks.exists()) continue;
@@ -220,7 +220,7 @@ void checkImage(const Image& image, const Image& reference, const std::string& s
   checks.push_back(largestDifference(image, reference).atMost(kImageTolerance, fmt::format("{}: RGBA, {}", stage, frame)));
   MaxError worst;
   for (std::size_t i = 0; i < image.depth.size(); ++i)
-    if (reference.pixels[i].a >= float(kLeastEnergy))
+    if (reference.pixels[i].a >= float(kMinEnergy))
       worst.take(relativeDifference(double(image.depth[i]), double(reference.depth[i])), [&] { return pixelText(image.size, i); });
   checks.push_back(worst.atMost(kDistanceTolerance, fmt::format("{}: distance, {}", stage, frame), "relative"));
 }

@@ -22,8 +22,8 @@ constexpr float kDifferenceGain = 8.0f;
 constexpr double kBallRadius = 3.0;  ///< voxels
 /// The fraction of the light that a ball takes from the fog that may be missing beside its shadow. A shadow
 /// in voxels is wider than the ball's by the footprints of the fog.
-constexpr double kMostBeside = 0.1;
-constexpr double kMostLeak = 1e-3;
+constexpr double kMaxBeside = 0.1;
+constexpr double kMaxLeak = 1e-3;
 constexpr int kSkyRows = 128;
 
 struct Shadows {
@@ -95,7 +95,7 @@ void checkBall(const Device& device, int resolution, ReportSection& section) {
     if (shadows.attenuation == LightAttenuation::Exact)
       section.checks.push_back({.name = "a ball in fog: light that is missing beside its shadow, exact",
                                 .figure = beside,
-                                .tolerance = kMostBeside,
+                                .tolerance = kMaxBeside,
                                 .unit = "of all that is missing",
                                 .where = ""});
   }
@@ -149,7 +149,7 @@ void checkHollow(const Device& device, int resolution, ReportSection& section) {
       });
     }
     section.checks.push_back(
-        worst.atMost(kMostLeak, fmt::format("fog within an opaque hollow ball: light, {}", shadows.name),
+        worst.atMost(kMaxLeak, fmt::format("fog within an opaque hollow ball: light, {}", shadows.name),
                      "of the light outside"));
   }
 }

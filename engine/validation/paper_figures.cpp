@@ -51,7 +51,7 @@ const glm::dvec3 kToLight(-1.0, 0.8, 0.35), kRed(1.0, 0.12, 0.06);
 constexpr double kLitIntensity = 2.0 * kDefaultIrradiance;
 /// As in flesh, red light travels far and blue light does not.
 const glm::dvec3 kFleshTint(0.3, 1.0, 1.6);
-constexpr double kLeastBleeding = 1.2;
+constexpr double kMinBleeding = 1.2;
 
 /// A volume whose scalars are the transmittances along a direction, from the table.
 Volume transmittances(const Volume& cube, const std::vector<std::uint8_t>& plane) {
@@ -225,7 +225,7 @@ ReportSection paperFigure7(const StageMaker& make) {
                     {.name = "figure 7: red over blue, of white light that turns red against that which does not",
                      .figure = redOverBlue(turned) / redOverBlue(shown.image(kLitImage, white)),
                      .bound = Check::Bound::AtLeast,
-                     .tolerance = kLeastBleeding,
+                     .tolerance = kMinBleeding,
                      .unit = "",
                      .where = ""}};
   return section;

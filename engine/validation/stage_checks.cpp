@@ -37,7 +37,7 @@ constexpr double kImageTolerance = 1e-5, kDistanceTolerance = 1e-5;
 /// 32-bit floats keep few digits, and which is invisible.
 constexpr double kSumsFloor = 5e-2;
 /// Mean distances are compared in pixels with at least this alpha.
-constexpr float kLeastAlpha = 1e-3f;
+constexpr float kMinAlpha = 1e-3f;
 
 struct TableVariant {
   const char* name;
@@ -202,7 +202,7 @@ Check checkSums(const std::vector<SplatSums>& sums, const std::vector<SplatSums>
 Check checkDistance(const Image& image, const Image& reference, const char* method) {
   MaxError worst;
   for (std::size_t i = 0; i < image.depth.size(); ++i)
-    if (reference.pixels[i].a >= kLeastAlpha)
+    if (reference.pixels[i].a >= kMinAlpha)
       worst.take(relativeDifference(double(image.depth[i]), double(reference.depth[i])), [&] { return pixelText(image.size, i); });
   return worst.atMost(kDistanceTolerance, fmt::format("resolve: distance, {}", method), "relative");
 }

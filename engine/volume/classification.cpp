@@ -58,7 +58,7 @@ double totalDensity(const Volume& volume) {
 }
 
 bool areKelvin(const TemperatureGrid& grid) {
-  return !(grid.maximum > 0.0f) || double(grid.maximum) > kLeastKelvinMaximum;
+  return !(grid.maximum > 0.0f) || double(grid.maximum) > kMinKelvinMaximum;
 }
 
 /// Sums over all voxels of the emitted luminance, its square, and its product with the extinction.

@@ -100,9 +100,9 @@ inline constexpr double kLevelSetOpticalDepth = 3.0;
 /// The default albedo of volumes with emission.
 inline constexpr float kSmokeAlbedo = 0.5f;
 
-/// The default mapping of temperature grids to kelvin. A grid without values above kLeastKelvinMaximum is not
+/// The default mapping of temperature grids to kelvin. A grid without values above kMinKelvinMaximum is not
 /// in kelvin: its 0 becomes kEmberTemperature and its largest value kReferenceTemperature.
-inline constexpr double kLeastKelvinMaximum = 200.0, kEmberTemperature = 1000.0;
+inline constexpr double kMinKelvinMaximum = 200.0, kEmberTemperature = 1000.0;
 double automaticTemperatureOffset(const TemperatureGrid& grid);
 double automaticTemperatureScale(const TemperatureGrid& grid, double offset);
 

@@ -12,7 +12,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr int kMostSkipped = 8;  // groups of slices
+constexpr int kMaxSkipped = 8;  // groups of slices
 
 /// The range of the values of some voxels; empty if low > high.
 struct Range {
@@ -110,7 +110,7 @@ Cells spread(const Cells& cells, int low, int high) {
 Cells groupsToSkip(const Cells& met) {
   Cells skips(met.dimensions), near = met;
   for (std::size_t i = 0; i < met.values.size(); ++i) skips.values[i] = met.values[i] ? 0 : 1;
-  for (int groups = 1; groups <= kMostSkipped; ++groups) {
+  for (int groups = 1; groups <= kMaxSkipped; ++groups) {
     near = spread(near, -1, 1);
     for (std::size_t i = 0; i < met.values.size(); ++i) skips.values[i] = near.values[i] ? skips.values[i] : std::uint8_t(groups);
   }

@@ -10,8 +10,8 @@ namespace freevoxels {
 
 namespace {
 
-constexpr int kMostCells = 48;             // along the longest edge
-constexpr std::size_t kMostSources = 128;
+constexpr int kMaxCells = 48;             // along the longest edge
+constexpr std::size_t kMaxSources = 128;
 
 /// A source has this squared radius, in squared edges of its cube, so that it is not brighter than the middle
 /// of a sphere of the same volume and emission.
@@ -43,7 +43,7 @@ double luminance(const glm::dvec3& color) { return glm::dot(color, glm::dvec3(0.
 Cells cellsOf(const Volume& volume, const Classification& classification) {
   const glm::ivec3 n = volume.dimensions;
   Cells cells;
-  cells.edge = (std::max({n.x, n.y, n.z}) + kMostCells - 1) / kMostCells;
+  cells.edge = (std::max({n.x, n.y, n.z}) + kMaxCells - 1) / kMaxCells;
   cells.size = (n + cells.edge - 1) / cells.edge;
   cells.values.resize(std::size_t(cells.size.x) * std::size_t(cells.size.y) * std::size_t(cells.size.z));
   const double share = 1.0 / (double(cells.edge) * cells.edge * cells.edge);
@@ -66,7 +66,7 @@ Cells cellsOf(const Volume& volume, const Classification& classification) {
 }
 
 /// Joins the cells to sources: one for each cube of 1, 2, 4, ... cells along an edge, the smallest that gives
-/// at most kMostSources sources.
+/// at most kMaxSources sources.
 std::vector<Source> sourcesOf(const Cells& cells, double cellEdge) {
   for (int group = 1;; group *= 2) {
     const glm::ivec3 groups = (cells.size + group - 1) / group;
@@ -83,7 +83,7 @@ std::vector<Source> sourcesOf(const Cells& cells, double cellEdge) {
           sum.place += luminance(power) * glm::dvec3(cell);
         }
     std::erase_if(sums, [](const Source& source) { return source.power == glm::dvec3(0.0); });
-    if (sums.size() > kMostSources && groups != glm::ivec3(1)) continue;
+    if (sums.size() > kMaxSources && groups != glm::ivec3(1)) continue;
     for (Source& source : sums) {
       source.place /= luminance(source.power);
       source.core2 = kCore2 * group * group * cellEdge * cellEdge;

@@ -8,7 +8,7 @@ namespace freevoxels {
 namespace {
 
 constexpr int kCellsAlongLongestSide = 64;
-constexpr float kLeastDensity = 1.0f / 256.0f;  // as a fraction of the largest density
+constexpr float kMinDensity = 1.0f / 256.0f;  // as a fraction of the largest density
 constexpr double kMargin = 0.13;
 
 }  // namespace
@@ -25,7 +25,7 @@ Subject boxOf(const Volume& volume) {
 ContentCells contentCells(const Volume& volume, const Classification& classification) {
   const glm::ivec3 n = volume.dimensions;
   const int edge = (std::max({n.x, n.y, n.z}) + kCellsAlongLongestSide - 1) / kCellsAlongLongestSide;
-  return {.cells = metCells(volume, classification, edge, kLeastDensity * volume.maximum), .edge = double(edge)};
+  return {.cells = metCells(volume, classification, edge, kMinDensity * volume.maximum), .edge = double(edge)};
 }
 
 Subject contentOf(const Volume& volume, const Classification& classification) {

@@ -13,7 +13,7 @@ namespace {
 constexpr int kIntervals = shader::kTransferIntervals;
 /// Scalars that are farther outside of the function's points than this many times their extent get the code
 /// of the range's end.
-constexpr double kMostOutside = 4.0;
+constexpr double kMaxOutside = 4.0;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ TransferTable::TransferTable(const TransferFunction& function, float minimum, fl
     : low_(minimum), high_(maximum) {
   const double first = std::min(function.opacity.front().scalar, function.color.front().scalar);
   const double last = std::max(function.opacity.back().scalar, function.color.back().scalar);
-  const double outside = kMostOutside * (last - first);
+  const double outside = kMaxOutside * (last - first);
   if (outside > 0.0) {
     low_ = std::clamp(low_, first - outside, last + outside);
     high_ = std::clamp(high_, first - outside, last + outside);

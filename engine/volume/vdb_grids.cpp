@@ -62,11 +62,11 @@ std::string valueTypeOf(const std::string& treeType, bool savedAsHalf) {
 }
 
 std::string listOf(const std::vector<VdbFile::Entry>& entries) {
-  constexpr std::size_t kMostListed = 20;
+  constexpr std::size_t kMaxListed = 20;
   std::string list;
-  for (const VdbFile::Entry& entry : std::span(entries).first(std::min(entries.size(), kMostListed)))
+  for (const VdbFile::Entry& entry : std::span(entries).first(std::min(entries.size(), kMaxListed)))
     list += fmt::format("{}'{}' ({})", list.empty() ? "" : ", ", entry.name, entry.valueType);
-  if (entries.size() > kMostListed) list += fmt::format(" and {} more", entries.size() - kMostListed);
+  if (entries.size() > kMaxListed) list += fmt::format(" and {} more", entries.size() - kMaxListed);
   return list.empty() ? "none" : list;
 }
 

@@ -244,9 +244,9 @@ VdbHeader readVdbHeader(const std::filesystem::path& file) {
   skipMetadata(reader);
   const auto gridCount = reader.read<std::int32_t>();
   // OpenVDB makes room for as many grids as a stream counts before it reads the first one.
-  constexpr std::uint64_t kLeastGridBytes = 3 * sizeof(std::uint32_t) + 3 * sizeof(std::int64_t) + 3 * sizeof(std::uint32_t);
+  constexpr std::uint64_t kMinGridBytes = 3 * sizeof(std::uint32_t) + 3 * sizeof(std::int64_t) + 3 * sizeof(std::uint32_t);
   if (gridCount < 0) reader.failDamaged("its header counts {} grids", gridCount);
-  reader.require(std::uint64_t(gridCount) * kLeastGridBytes);
+  reader.require(std::uint64_t(gridCount) * kMinGridBytes);
   if (!header.hasOffsets) {
     checkStreamedGrids(reader, gridCount);
     return header;

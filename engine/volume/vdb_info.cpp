@@ -83,13 +83,13 @@ void describeVoxels(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
 }
 
 /// Boxes of more voxels are not counted: it would take too long.
-constexpr std::uint64_t kMostCounted = std::uint64_t(1) << 29;
+constexpr std::uint64_t kMaxCounted = std::uint64_t(1) << 29;
 
 template <typename ToDensity>
 std::vector<std::uint64_t> storedBlocks(const FloatTree& tree,
                                         const std::vector<const FloatTree::LeafNodeType*>& leaves,
                                         const openvdb::CoordBBox& bounds, const ToDensity& toDensity) {
-  if (bounds.volume() > kMostCounted) return {};
+  if (bounds.volume() > kMaxCounted) return {};
   std::vector<bool> holding(bounds.volume(), false);
   const auto hold = [&](const openvdb::Coord& voxel) {
     const openvdb::Coord place = voxel - bounds.min(), size = bounds.dim();

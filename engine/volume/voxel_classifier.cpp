@@ -45,7 +45,7 @@ double TransferIntegral::extinctionUpTo(double place) const {
 }
 
 glm::dvec4 TransferIntegral::meanAt(double from, double to) const {
-  if (std::abs(to - from) > kLeastChange) return glm::max((upTo(to) - upTo(from)) / (to - from), 0.0);
+  if (std::abs(to - from) > kMinChange) return glm::max((upTo(to) - upTo(from)) / (to - from), 0.0);
   const std::size_t i = std::min(std::size_t(from), kIntervals - 1);
   return sums_[i + 1] - sums_[i];
 }
@@ -72,7 +72,7 @@ ClassifiedVoxel VoxelClassifier::meanOver(float place, const std::array<float, 6
   double extinction = 0.0;
   for (const float other : halfWay) {
     const double change = double(other) - double(place);
-    extinction += std::abs(change) > TransferIntegral::kLeastChange ? (integral_->extinctionUpTo(other) - own) / change : there;
+    extinction += std::abs(change) > TransferIntegral::kMinChange ? (integral_->extinctionUpTo(other) - own) / change : there;
   }
   const glm::dvec4 range = integral_->meanAt(first, last);
   return {std::clamp(extinction / 6.0, 0.0, kMaximumExtinction), range.a > 0.0 ? glm::dvec3(range) / range.a : glm::dvec3(0.0)};

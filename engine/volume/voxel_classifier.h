@@ -34,7 +34,7 @@ class TransferIntegral {
   bool holdsAnythingAt(double lowPlace, double highPlace) const;
   bool isOccupied(double low, double high) const { return holdsAnythingAt(place(low), place(high)); }
 
-  static constexpr double kLeastChange = 1e-3;  ///< least distance, in intervals, for which differences of the integral are used
+  static constexpr double kMinChange = 1e-3;  ///< least distance, in intervals, for which differences of the integral are used
 
  private:
   double lowest_ = 0.0, perScalar_ = 0.0;

@@ -417,7 +417,7 @@ TEST_F(GatherTest, ATurntableShowsNoStepWhereTheAxisChanges) {
 
 /// The octree's next level comes in slice by slice, over several per cent of the distance, and not at once.
 TEST_F(GatherTest, ASlowZoomShowsNoStepWhereTheLevelChanges) {
-  constexpr double kMostChange = 1.0 / 8.0 / 255.0;  // of the error, RMSE: an eighth of a code of an 8-bit image
+  constexpr double kMaxChange = 1.0 / 8.0 / 255.0;  // of the error, RMSE: an eighth of a code of an 8-bit image
   const Scene scene = cloud(64);
   const Camera framed = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
   std::vector<Camera> cameras;
@@ -427,7 +427,7 @@ TEST_F(GatherTest, ASlowZoomShowsNoStepWhereTheLevelChanges) {
   }
   const std::vector<double> found = qualities(scene, cameras, 96);
   const auto error = [&](std::size_t i) { return std::pow(10.0, -0.05 * found[i]); };
-  for (std::size_t i = 1; i < found.size(); ++i) EXPECT_NEAR(error(i), error(i - 1), kMostChange) << "frame " << i;
+  for (std::size_t i = 1; i < found.size(); ++i) EXPECT_NEAR(error(i), error(i - 1), kMaxChange) << "frame " << i;
   EXPECT_LT(found.back(), found.front() - 1.0);  // the level did change
 }
 

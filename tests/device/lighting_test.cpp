@@ -95,7 +95,7 @@ TEST_F(LightingTest, ATintLetsNothingThroughAnOpaqueWall) {
       .position = {-3, 0, 0}, .lookAt = {0, 0, 0}, .orthographic = true, .orthographicHeight = 1.0};
   for (const LightAttenuation attenuation : {LightAttenuation::Table, LightAttenuation::Exact}) {
     const Lighting lighting{
-        .lights = {{.place = {1, 0, 0}}}, .tint = glm::dvec3(kLeastTint), .attenuation = attenuation};
+        .lights = {{.place = {1, 0, 0}}}, .tint = glm::dvec3(kMinTint), .attenuation = attenuation};
     for (const glm::vec4& pixel : renderer.render(camera, {.size = {24, 24}, .lighting = lighting}).pixels)
       EXPECT_LT(pixel.r, 1e-3f);
   }

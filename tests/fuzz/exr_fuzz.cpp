@@ -5,9 +5,9 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace freevoxels;
-  constexpr std::int64_t kMostPixels = 1 << 16;
+  constexpr std::int64_t kMaxPixels = 1 << 16;
   Imf::setGlobalThreadCount(0);  // handing such small images to other threads takes longer than reading them
   const fuzz::FuzzFile file(bytes, size);
-  fuzz::tryTo([&] { readExr(file.path(), kMostPixels); });
+  fuzz::tryTo([&] { readExr(file.path(), kMaxPixels); });
   return 0;
 }

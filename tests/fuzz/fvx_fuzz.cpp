@@ -37,7 +37,7 @@ void repairHashes(Bytes& bytes) {
   std::memcpy(&header, bytes.data(), sizeof(header));
   header.identifier = fvx::kIdentifier;
   header.fileBytes = bytes.size();
-  for (std::size_t i = 0; i < std::min<std::size_t>(header.sectionCount, fvx::kMostSections); ++i) {
+  for (std::size_t i = 0; i < std::min<std::size_t>(header.sectionCount, fvx::kMaxSections); ++i) {
     fvx::Section& section = header.sections[i];
     if (!holds(bytes, section.offset, section.bytes) || section.offset < sizeof(header)) continue;
     if (section.kind == fvx::SectionKind::ChunkIndex) repairEntries<fvx::ChunkEntry>(bytes, section);
@@ -52,7 +52,7 @@ void repairHashes(Bytes& bytes) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  constexpr std::uint64_t kMostVoxels = 1 << 20;
+  constexpr std::uint64_t kMaxVoxels = 1 << 20;
   Bytes bytes(data, data + size);
   repairHashes(bytes);
   const fuzz::FuzzFile bytesAsFile(bytes.data(), bytes.size());
@@ -61,7 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (int level = 0; level < file->levels(); ++level)
       for (const fvx::RegionEntry& region : file->regions(level)) fuzz::tryTo([&] { readBakedRegion(*file, region); });
     fuzz::tryTo([&] { file->checkAll(); });
-    readBaked(file, finestLevel(*file, kMostVoxels));
+    readBaked(file, finestLevel(*file, kMaxVoxels));
   });
   return 0;
 }

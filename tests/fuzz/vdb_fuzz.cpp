@@ -8,11 +8,11 @@ extern "C" const char* __lsan_default_suppressions() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace freevoxels;
-  constexpr std::uint64_t kMostVoxels = 1 << 20;
+  constexpr std::uint64_t kMaxVoxels = 1 << 20;
   const fuzz::FuzzFile file(bytes, size);
   fuzz::tryTo([&] { describeVdb(file.path()); });
   fuzz::tryTo([&] { listVdb(file.path()); });
-  fuzz::tryTo([&] { readVdb(file.path(), "", kMostVoxels, {.temperature = ""}); });
-  fuzz::tryTo([&] { readVdb(file.path(), "", kMostVoxels); });
+  fuzz::tryTo([&] { readVdb(file.path(), "", kMaxVoxels, {.temperature = ""}); });
+  fuzz::tryTo([&] { readVdb(file.path(), "", kMaxVoxels); });
   return 0;
 }

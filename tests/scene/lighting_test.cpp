@@ -11,7 +11,7 @@ namespace freevoxels {
 namespace {
 
 TEST(Lighting, PhaseFunctionIntegratesToOne) {
-  for (const double g : {-0.9, -0.3, 0.0, 0.5, 0.85, kMostPhaseG}) {
+  for (const double g : {-0.9, -0.3, 0.0, 0.5, 0.85, kMaxPhaseG}) {
     // Over the angle, in steps that are finest forwards and backwards.
     constexpr int kSteps = 200000;
     double sum = 0.0, mean = 0.0;

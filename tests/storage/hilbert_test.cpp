@@ -31,9 +31,9 @@ TEST(Hilbert, IndexAndCellAreInverseForAllCellsOfACube) {
 }
 
 TEST(Hilbert, IndexAndCellAreInverseForTheMostBits) {
-  constexpr std::uint32_t kLast = (1u << kMostHilbertBits) - 1;
+  constexpr std::uint32_t kLast = (1u << kMaxHilbertBits) - 1;
   for (const glm::uvec3 cell : {glm::uvec3(0), glm::uvec3(kLast), glm::uvec3(kLast, 0, 1), glm::uvec3(123456, 2000000, 765432)})
-    EXPECT_EQ(hilbertCell(hilbertIndex(cell, kMostHilbertBits), kMostHilbertBits), cell);
+    EXPECT_EQ(hilbertCell(hilbertIndex(cell, kMaxHilbertBits), kMaxHilbertBits), cell);
 }
 
 TEST(Hilbert, ConsecutiveIndicesAreNeighbouringCells) {

@@ -21,7 +21,7 @@ TEST(SessionStore, ThereAreAtMostTenFiles) {
   const TemporaryFolder folder;
   SessionStore store(folder / "state");
   for (int i = 0; i < 15; ++i) store.remember("/" + std::to_string(i) + ".vdb");
-  ASSERT_EQ(store.recent().size(), SessionStore::kMostRecent);
+  ASSERT_EQ(store.recent().size(), SessionStore::kMaxRecent);
   EXPECT_EQ(store.recent().front(), "/14.vdb");
   EXPECT_EQ(store.recent().back(), "/5.vdb");
 }
