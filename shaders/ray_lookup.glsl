@@ -5,6 +5,7 @@
 #include "catmull_rom.glsl"
 #include "interface.h"
 #include "major_axis.glsl"
+#include "ray_pair.glsl"
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 
@@ -20,7 +21,7 @@ const float kSmoothRange = 1.0;  // range of the depths of neighbouring rays up 
 
 // Where a position lies between the rays of a plane.
 struct RayPlace {
-  uint first;   // the first of 4x4 rays around it, among the pairs of planes
+  uint first;   // the first of 4x4 rays around it
   int odd;      // which plane of the pair
   vec2 within;  // position between the middle 2x2 rays, 0..1
   float apart;  // voxels between rays
@@ -35,7 +36,7 @@ RayPlace rayPlace(FaceRays fan, vec3 position, int plane) {
   const vec2 low = clamp(floor(ray), vec2(1.0), vec2(fan.rayCount - 3));
   place.within = clamp(ray - low, 0.0, 1.0);
   const uint row = uint(fan.rayCount.x);
-  place.first = uint(plane / 2) * row * uint(fan.rayCount.y) + uint(low.x) - 1 + (uint(low.y) - 1) * row;
+  place.first = uint(low.x) - 1 + (uint(low.y) - 1) * row;
   place.odd = plane & 1;
   return place;
 }
@@ -50,7 +51,7 @@ vec3 rayDepth(FaceRays fan, vec3 position) {
   const float apart = at.apart;
   const uint row = uint(fan.rayCount.x);
   uint first = at.first;
-  RayDepths depths = RayDepths(fan.depths);
+  RayDepths depths = RayDepths(pairAddress(fan, plane / 2));
   const vec4 weightsX = cubicWeights(w.x), slopesX = cubicSlopes(w.x);
   const vec4 weightsY = cubicWeights(w.y), slopesY = cubicSlopes(w.y);
   vec3 sum = vec3(0.0);
@@ -71,8 +72,9 @@ float rayTransmittance(FaceRays fan, vec3 position) {
   if (fan.planeCount == 0) return 1.0;
   const int plane = (int(round(position[fan.axis])) - fan.firstPlane) * fan.direction;
   if (plane < 0) return 1.0;
-  const RayPlace at = rayPlace(fan, position, min(plane, fan.planeCount - 1));
-  RayDepths depths = RayDepths(fan.depths);
+  const int kept = min(plane, fan.planeCount - 1);
+  const RayPlace at = rayPlace(fan, position, kept);
+  RayDepths depths = RayDepths(pairAddress(fan, kept / 2));
   vec4 inner;
   [[unroll]] for (int i = 0; i < 4; ++i)
     inner[i] = unpackUnorm2x16(depths.pairs[at.first + 1 + (i & 1) + uint(fan.rayCount.x) * (1 + (i >> 1))])[at.odd];

@@ -7,6 +7,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_samplerless_texture_functions : require
 #define TRANSFER_TABLE_BINDING 2
+#include "ray_pair.glsl"
 #include "transfer_table.glsl"
 
 // Whether extinction is classified after interpolation: depths are then those up to the planes, from scalars
@@ -116,7 +117,6 @@ void main() {
   int pair = max(planes.x / 2, begin);
   const int behind = min(planes.y / 2 + 1, end);
   if (pair >= behind) return;
-  Depths depths = Depths(fan.depths);
   float depth = 0.0;
   if (planes.x / 2 < begin)
     depth = carried[ray];
@@ -137,7 +137,7 @@ void main() {
       planeDepths[i] = depth;
       if (!kScalars) depth += layer * interpolated(plane, atFirst + perPlane * float(plane));
     }
-    depths.pairs[uint(pair) * rays + ray] = packUnorm2x16(sqrt(clamp(planeDepths / kOpaqueDepth, 0.0, 1.0)));
+    Depths(pairAddress(fan, pair)).pairs[ray] = packUnorm2x16(sqrt(clamp(planeDepths / kOpaqueDepth, 0.0, 1.0)));
   } while (++pair < behind);
   if (push.slab.end < fan.planeCount) carried[ray] = depth;
 }

@@ -156,13 +156,14 @@ class SweptLight::Sweep {
         fill(coordinateOf(begin - 1 + i), std::span(slab).subspan(std::size_t(i) * std::size_t(planeStride_), std::size_t(planeStride_)));
       upload(device_, slab_, std::as_bytes(std::span(slab)));
     }
-    // The depths of plane 2k and 2k + 1 are in pair k; in the buffer, pair begin / 2 - 1 is the first.
+    // The depths of plane 2k and 2k + 1 are in pair k; in the buffer, pair begin / 2 - 1 is the first. Places among all planes may wrap
+    // around, as they do in the shaders.
     const VkDeviceSize pairBytes = fan_.rays() * sizeof(std::uint32_t);
     const VkDeviceAddress depths = depths_.address() - pairBytes * VkDeviceSize(std::int64_t(begin / 2 - 1));
     const shader::FaceRays fan = deviceFan(fan_, depths);
     const shader::RaySlab place{.begin = begin,
                                 .end = end,
-                                .origin = 1 + strideB_ + (1 - begin) * planeStride_,
+                                .origin = int(std::uint32_t(1 + strideB_) + std::uint32_t(1 - begin) * std::uint32_t(planeStride_)),
                                 .planeStride = planeStride_,
                                 .strideA = 1,
                                 .strideB = strideB_};
