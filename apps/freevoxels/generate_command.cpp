@@ -2,7 +2,9 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <optional>
 
+#include "apps/freevoxels/progress_line.h"
 #include "apps/freevoxels/text_table.h"
 #include "engine/core/error.h"
 #include "engine/volume/procedural.h"
@@ -49,10 +51,17 @@ void GenerateCommand::run() const {
     fail(ErrorKind::Usage, "'{}' is not named .vdb, and generate writes OpenVDB files; name it so", file_);
   checkOutput(file_);
   const ProceduralField field(name_, scene_.description.input.resolution.value_or(glm::ivec3(kDefaultResolution)));
+  ProgressLine line(!messages_.quiet);
+  line.begin("computing voxels");
+  const Progress shown = line.progress();
   {
-    const DeferredInterrupts wholeFile;
-    writeVdb(file_, field, "density");
+    std::optional<DeferredInterrupts> wholeFile;
+    writeVdb(file_, field, "density", [&](std::string_view stage, double fraction) {
+      if (fraction == 1.0) wholeFile.emplace();
+      if (shown) shown(stage, fraction);
+    });
   }
+  line.erase();
   if (!messages_.quiet) fmt::print("{}\n", file_);
 }
 

@@ -11,10 +11,10 @@
 #include <span>
 #include <vector>
 
+#include "engine/core/spool.h"
 #include "engine/core/stages.h"
 #include "engine/scene/source_rays.h"
 #include "engine/storage/fvx_file.h"
-#include "engine/storage/spool.h"
 #include "engine/volume/classification.h"
 #include "engine/vulkan/device.h"
 
@@ -50,7 +50,7 @@ class SweptLight {
   RaySource source_;
   glm::ivec3 bricks_{0};                ///< along the axes
   std::vector<std::uint32_t> records_;  ///< by brick: 0 where there is none, or the number of its codes in `codes_`, from 1
-  fvx::Spool codes_;
+  Spool codes_;
 };
 
 /// Marks the bricks of a level that have data, and their neighbours.

@@ -8,10 +8,10 @@
 
 #include "engine/core/checked_file.h"
 #include "engine/core/error.h"
+#include "engine/core/spool.h"
 #include "engine/storage/packed_bytes.h"
 #include "engine/storage/plane_codec.h"
 #include "engine/storage/region_sweep.h"
-#include "engine/storage/spool.h"
 #include "engine/storage/spooled_planes.h"
 
 namespace freevoxels::fvx {

@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "engine/core/spool.h"
 #include "engine/storage/regions.h"
-#include "engine/storage/spool.h"
 
 namespace freevoxels::fvx {
 

@@ -6,7 +6,7 @@
 
 #include "engine/storage/fvx_encoding.h"
 #include "engine/storage/fvx_format.h"
-#include "engine/storage/spool.h"
+#include "engine/core/spool.h"
 #include "engine/volume/scalar_bricks.h"
 
 namespace freevoxels::fvx {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/core/stages.h"
 #include "engine/volume/procedural.h"
 #include "engine/volume/volume.h"
 
@@ -75,7 +76,8 @@ Volume readVdb(const std::filesystem::path& file, const std::string& gridName, s
 /// Writes the active voxels as a float fog volume, and temperatures as a second grid. Atomic
 /// (core/atomic_file.h).
 void writeVdb(const std::filesystem::path& file, const Volume& volume, const std::string& gridName);
-/// The same of a field, of which no volume is made: leaves of 8^3 voxels that hold something are in memory, 2 KiB each, and nothing else.
-void writeVdb(const std::filesystem::path& file, const ProceduralField& field, const std::string& gridName);
+/// The same of a field, of which no volume is made: 160 bytes for every 8^3 voxels that hold something are in memory, and their values in
+/// a temporary file without a name beside `file`. `progress` is told 1 before the file itself is written.
+void writeVdb(const std::filesystem::path& file, const ProceduralField& field, const std::string& gridName, const Progress& progress = {});
 
 }  // namespace freevoxels

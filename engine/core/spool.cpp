@@ -1,4 +1,4 @@
-#include "engine/storage/spool.h"
+#include "engine/core/spool.h"
 
 #include <unistd.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-namespace freevoxels::fvx {
+namespace freevoxels {
 
 namespace {
 
@@ -18,7 +18,7 @@ namespace {
 }  // namespace
 
 Spool::Spool(const std::filesystem::path& folder) {
-  std::string name = (folder / ".freevoxels-bake.XXXXXX").string();
+  std::string name = (folder / ".freevoxels-spool.XXXXXX").string();
   const int descriptor = mkstemp(name.data());
   if (descriptor < 0) throwErrno();
   unlink(name.c_str());
@@ -47,4 +47,4 @@ void Spool::readAt(std::uint64_t offset, std::span<std::byte> bytes) const {
   }
 }
 
-}  // namespace freevoxels::fvx
+}  // namespace freevoxels

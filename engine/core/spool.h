@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace freevoxels::fvx {
+namespace freevoxels {
 
 /// All functions throw std::system_error if the disk fails.
 class Spool {
@@ -42,4 +42,4 @@ class Spool {
   std::uint64_t bytes_ = 0;
 };
 
-}  // namespace freevoxels::fvx
+}  // namespace freevoxels
