@@ -20,6 +20,8 @@ namespace {
 constexpr std::uint64_t kMaxVoxelsInMemory = std::uint64_t(1) << 27;
 /// Voxels along the longest edge of the same volume from which the classification is then found.
 constexpr int kSampleEdge = 256;
+/// A volume of a file whose values take more is read part by part.
+constexpr std::uint64_t kMostBytesInMemory = std::uint64_t(1) << 30;
 
 /// Shows progress, and defers interrupts from when the file exists under a temporary name.
 class BakeProgress {
@@ -108,7 +110,7 @@ void BakeCommand::run() {
   const glm::u64vec3 size(scene_.description.input.resolution.value_or(glm::ivec3(kDefaultResolution)));
   if (name && size.x * size.y * size.z > kMaxVoxelsInMemory)
     bakeProcedural(*name, line);
-  else
+  else if (name || !bakeParts(line))
     bake(line);
   line.erase();
   if (!messages_.quiet && leads()) fmt::print("{}\n", file_);
@@ -135,7 +137,23 @@ void BakeCommand::bakeProcedural(const std::string& name, ProgressLine& line) co
   Volume sample = makeProcedural(name, glm::max(size / factor, 1));
   if (!scene_.description.emission.grid()) sample.temperature.reset();
   const Classification classification = scene_.description.resolveClassification(sample);
-  const StreamedVolume stream = proceduralStream(field, sample, classification);
+  bakeStream(proceduralStream(field, sample, classification), sample, classification, line);
+}
+
+bool BakeCommand::bakeParts(ProgressLine& line) const {
+  const SceneDescription& description = scene_.description;
+  if (description.emission.grid() || description.classification.albedoGrid || fvx::isFvx(description.input.volume)) return false;
+  const std::unique_ptr<const VdbParts> parts = VdbParts::open(description.input.volume, description.input.grid.value_or(""), kMostBytesInMemory);
+  if (!parts) return false;
+  const Classification classification = description.resolveClassification(parts->sample());
+  line.erase();
+  logRemarks(description, {.volume = std::make_shared<const Volume>(parts->sample()), .classification = classification});
+  bakeStream(partsStream(*parts, classification), parts->sample(), classification, line);
+  return true;
+}
+
+void BakeCommand::bakeStream(const StreamedVolume& stream, const Volume& sample, const Classification& classification,
+                             ProgressLine& line) const {
   BakeProgress progress(line);
   const BakeSettings chosen = settings(sample, classification);
   if (group_ != nullptr) agree(contentHash(sample, classification, nullptr), chosen);

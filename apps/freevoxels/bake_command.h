@@ -18,9 +18,12 @@ class BakeCommand {
 
  private:
   void run();
-  /// Bakes a volume that is held in memory; bakeProcedural() one that is too large for that, chunk by chunk.
+  /// Bakes a volume that is held in memory; the others those that are too large for that, chunk by chunk.
   void bake(ProgressLine& line) const;
   void bakeProcedural(const std::string& name, ProgressLine& line) const;
+  /// Does nothing and returns false where the file's volume fits into memory, or cannot be read in parts.
+  bool bakeParts(ProgressLine& line) const;
+  void bakeStream(const StreamedVolume& stream, const Volume& sample, const Classification& classification, ProgressLine& line) const;
   /// Options of the file, for a volume with this classification.
   BakeSettings settings(const Volume& volume, const Classification& classification) const;
 

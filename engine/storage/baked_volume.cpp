@@ -267,6 +267,19 @@ void encodeInTurn(std::span<const glm::ivec3> cells, const ChunkSource& chunk, c
 
 }  // namespace
 
+StreamedVolume partsStream(const VdbParts& parts, const Classification& classification) {
+  StreamedVolume stream{.outline = parts.outline(),
+                        .content = contentCells(parts.sample(), classification),
+                        .range = {parts.outline().minimum, parts.outline().maximum},
+                        .chunk = [&parts](glm::ivec3 cell) {
+                          ChunkValues chunk = chunkOf(parts.read(cell * fvx::kChunkEdge, fvx::kChunkEdge), glm::ivec3(0));
+                          chunk.cell = cell;
+                          return chunk;
+                        }};
+  stream.content.edge *= double(parts.outline().dimensions.x) / double(parts.sample().dimensions.x);
+  return stream;
+}
+
 void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volume, const Classification& classification,
                   const BakeSettings& settings, const Progress& progress, const BakeTeam& team) {
   const glm::ivec3 dimensions = volume.outline.dimensions;

@@ -11,6 +11,7 @@
 #include "engine/core/stages.h"
 #include "engine/storage/chunk_pyramid.h"
 #include "engine/storage/fvx_file.h"
+#include "engine/volume/vdb_parts.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -46,6 +47,8 @@ struct StreamedVolume {
   glm::vec2 range{0.0f};
   ChunkSource chunk;
 };
+/// Of a file; `parts` must outlive the result.
+StreamedVolume partsStream(const VdbParts& parts, const Classification& classification);
 void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volume, const Classification& classification,
                   const BakeSettings& settings, const Progress& progress = {}, const BakeTeam& team = {});
 

@@ -26,14 +26,18 @@ namespace fs = std::filesystem;
 using openvdb::GridBase;
 using openvdb::io::GridDescriptor;
 
-/// Opens without delayed loading, which only costs time if every value is needed, and which newer versions of
-/// OpenVDB do not have.
+/// Opens with or without delayed loading, which only costs time if every value is needed, and which newer versions of
+/// OpenVDB do not have. Returns whether there is any.
 template <typename File>
-void openWithoutDelay(File& file) {
-  if constexpr (requires { file.open(false); })
-    file.open(false);
-  else
+bool openFile(File& file, bool delaysValues) {
+  if constexpr (requires { file.open(false); }) {
+    file.setCopyMaxBytes(0);  // it is read in place
+    file.open(delaysValues);
+    return delaysValues;
+  } else {
     file.open();
+    return false;
+  }
 }
 
 template <typename Stream>
@@ -100,10 +104,10 @@ void initialiseOpenVdb() {
   static_cast<void>(once);
 }
 
-VdbFile::VdbFile(const fs::path& path) : path_(path), file_(path.string()), header_(readVdbHeader(path)) {
+VdbFile::VdbFile(const fs::path& path, bool delaysValues) : path_(path), file_(path.string()), header_(readVdbHeader(path)) {
   initialiseOpenVdb();
   if (header_.hasOffsets) {
-    guarded("the header", [&] { openWithoutDelay(file_); });
+    guarded("the header", [&] { delaysValues_ = openFile(file_, delaysValues); });
     listGrids();
   } else {
     readStreamedGrids();

@@ -30,8 +30,10 @@ class VdbFile {
     std::string key;        ///< OpenVDB's name of the grid
   };
 
-  /// Fails as readVdbHeader does, and with ErrorKind::Input if OpenVDB rejects the file.
-  explicit VdbFile(const std::filesystem::path& path);
+  /// Fails as readVdbHeader does, and with ErrorKind::Input if OpenVDB rejects the file. With `delaysValues` the leaves of grids that
+  /// are read leave their values in the file, as long as this object lives, where OpenVDB can do that.
+  explicit VdbFile(const std::filesystem::path& path, bool delaysValues = false);
+  bool delaysValues() const { return delaysValues_; }
 
   const std::filesystem::path& path() const { return path_; }
   const std::vector<Entry>& entries() const { return entries_; }
@@ -58,6 +60,7 @@ class VdbFile {
   const Entry& firstOf(const std::vector<const Entry*>& sameName);
 
   std::filesystem::path path_;
+  bool delaysValues_ = false;
   openvdb::io::File file_;
   VdbHeader header_;
   std::vector<Entry> entries_;

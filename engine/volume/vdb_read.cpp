@@ -1,14 +1,18 @@
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <new>
 
 #include "engine/core/error.h"
+#include "engine/core/printable.h"
 #include "engine/volume/scan.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/vdb_bricks.h"
 #include "engine/volume/vdb_channels.h"
 #include "engine/volume/vdb_grids.h"
+#include "engine/volume/vdb_parts.h"
 
 namespace freevoxels {
 
@@ -63,6 +67,25 @@ void normaliseWorld(Volume& volume) {
   }
 }
 
+/// Without voxels.
+Volume boxVolume(const FloatGrid& grid, const CoordBBox& bounds, const std::string& source) {
+  Volume volume{.source = source,
+                .dimensions = {bounds.dim().x(), bounds.dim().y(), bounds.dim().z()},
+                .indexOrigin = {bounds.min().x(), bounds.min().y(), bounds.min().z()}};
+  volume.indexToWorld = indexToWorldOf(grid, volume.indexOrigin);
+  normaliseWorld(volume);
+  return volume;
+}
+
+/// Adds what the file says of the volume, once the values are known.
+void finishVolume(VdbFile& file, const VdbFile::Entry& entry, Volume& volume) {
+  volume.warnings.insert(volume.warnings.begin(), file.warnings().begin(), file.warnings().end());
+  orientScan(volume);
+  if (!file.isFromBlender(entry)) return;
+  volume.upReason = "Blender wrote the file";
+  volume.up = {0.0, 0.0, 1.0};
+}
+
 /// Makes the volume of the box around the voxels that `toDensity` keeps and around `more`.
 template <typename ToDensity>
 Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::string& source,
@@ -75,12 +98,7 @@ Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::st
   bounds.expand(more);
   checkSize(bounds, maximumVoxels, source);
 
-  Volume volume;
-  volume.source = source;
-  volume.dimensions = {bounds.dim().x(), bounds.dim().y(), bounds.dim().z()};
-  volume.indexOrigin = {bounds.min().x(), bounds.min().y(), bounds.min().z()};
-  volume.indexToWorld = indexToWorldOf(grid, volume.indexOrigin);
-  normaliseWorld(volume);
+  Volume volume = boxVolume(grid, bounds, source);
   volume.scalars = bricksOf(grid.tree(), std::move(leaves), volume.dimensions, volume.indexOrigin, toDensity);
   summariseValues(volume);
   return volume;
@@ -90,8 +108,9 @@ std::string whyUnusable(const VdbFile& file, const VdbFile::Entry& entry, const 
   return fmt::format("grid '{}' of '{}' cannot be rendered: {}", entry.name, file.path().string(), why);
 }
 
-[[noreturn]] void failUnusable(const VdbFile& file, const VdbFile::Entry& entry, const std::string& why) {
-  throw Error(ErrorKind::Input, whyUnusable(file, entry, why));
+void checkUsable(VdbFile& file, const VdbFile::Entry& entry) {
+  for (const std::string& why : {whyTypeUnusable(entry.treeType, entry.valueType), whyTransformUnusable(file.readMetadata(entry)->transform())})
+    if (!why.empty()) throw Error(ErrorKind::Input, whyUnusable(file, entry, why));
 }
 
 }  // namespace
@@ -100,10 +119,7 @@ Volume readVdb(const std::filesystem::path& path, const std::string& gridName, s
                const MoreGrids& more) {
   VdbFile file(path);
   const VdbFile::Entry& entry = file.choose(gridName);
-  if (const std::string why = whyTypeUnusable(entry.treeType, entry.valueType); !why.empty())
-    failUnusable(file, entry, why);
-  if (const std::string why = whyTransformUnusable(file.readMetadata(entry)->transform()); !why.empty())
-    failUnusable(file, entry, why);
+  checkUsable(file, entry);
   VdbChannels channels(file, entry, more);
 
   const openvdb::GridBase::Ptr grid = file.read(entry);
@@ -116,18 +132,129 @@ Volume readVdb(const std::filesystem::path& path, const std::string& gridName, s
       return toVolume(*floats, toDensity, source, channels.bounds(), maximumVoxels);
     });
     channels.addTo(volume);
-    volume.warnings.insert(volume.warnings.begin(), file.warnings().begin(), file.warnings().end());
     volume.isLevelSet = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
-    orientScan(volume);
-    if (file.isFromBlender(entry)) {
-      volume.upReason = "Blender wrote the file";
-      volume.up = {0.0, 0.0, 1.0};
-    }
+    finishVolume(file, entry, volume);
     return volume;
   } catch (const std::bad_alloc&) {
     fail(ErrorKind::OutOfMemory, "not enough memory for {}; free some, or resample or crop the volume",
          source);
   }
+}
+
+namespace {
+
+constexpr int kSampleEdge = 256;
+/// Cubes of this number of voxels along an edge are read at a time, and this number of them is kept in memory.
+constexpr int kCubeEdge = 64;
+constexpr std::size_t kCubes = 16;
+constexpr double kMostVoxels = 1e12;  ///< of a box that is gone through cube by cube
+
+/// A copy with the values, which the tree's leaf leaves in the file.
+VdbLeaf load(const VdbLeaf& leaf, const std::string& source) {
+  try {
+    VdbLeaf loaded(leaf);
+    loaded.getFirstValue();
+    return loaded;
+  } catch (const openvdb::Exception& e) {
+    fail(ErrorKind::Input, "cannot read {}: {}; the file may be damaged", source, printable(e.what()));
+  }
+}
+
+}  // namespace
+
+struct VdbParts::Source {
+  explicit Source(const std::filesystem::path& path) : file(path, true) {}
+
+  VdbFile file;
+  const VdbFile::Entry* entry = nullptr;
+  std::string name;
+  FloatGrid::ConstPtr grid;
+};
+
+std::unique_ptr<VdbParts> VdbParts::open(const std::filesystem::path& path, const std::string& gridName, std::uint64_t mostBytes) {
+  auto source = std::make_unique<Source>(path);
+  if (!source->file.delaysValues()) return nullptr;
+  source->entry = &source->file.choose(gridName);
+  checkUsable(source->file, *source->entry);
+  source->name = fmt::format("{} {}", path.filename().string(), source->entry->name);
+  const openvdb::GridBase::ConstPtr grid = source->file.read(*source->entry);
+  if (!grid->isType<FloatGrid>() || grid->getGridClass() == openvdb::GRID_LEVEL_SET) return nullptr;
+  source->grid = openvdb::gridConstPtrCast<FloatGrid>(grid);
+  if (source->grid->tree().leafCount() * sizeof(ScalarBricks::Brick) <= mostBytes) return nullptr;
+  const openvdb::Vec3d n(source->grid->evalActiveVoxelBoundingBox().dim().asVec3d());
+  if (n.x() * n.y() * n.z() > kMostVoxels) return nullptr;
+  return std::unique_ptr<VdbParts>(new VdbParts(std::move(source)));
+}
+
+VdbParts::VdbParts(std::unique_ptr<Source> source)
+    : source_(std::move(source)), outline_(boxVolume(*source_->grid, source_->grid->evalActiveVoxelBoundingBox(), source_->name)) {
+  const glm::ivec3 n = outline_.dimensions;
+  const int step = (std::max({n.x, n.y, n.z}) + kSampleEdge - 1) / kSampleEdge;
+  sample_ = outline_;
+  sample_.dimensions = glm::max(n / step, 1);
+  sample_.indexToWorld[3] = outline_.indexToWorld * glm::dvec4(glm::dvec3((step - 1) / 2.0), 1.0);
+  for (int axis = 0; axis < 3; ++axis) sample_.indexToWorld[axis] *= double(step);
+  sample_.scalars = ScalarBricks(sample_.dimensions);
+  const auto addToSample = [&](const Volume& part, glm::ivec3 first) {
+    const glm::ivec3 begin = (first - step / 2 + step - 1) / step, end = (first + kCubeEdge - step / 2 + step - 1) / step;
+    for (glm::ivec3 v = glm::max(begin, 0); v.z < std::min(end.z, sample_.dimensions.z); ++v.z)
+      for (v.y = std::max(begin.y, 0); v.y < std::min(end.y, sample_.dimensions.y); ++v.y)
+        for (v.x = std::max(begin.x, 0); v.x < std::min(end.x, sample_.dimensions.x); ++v.x)
+          if (const float value = part.scalars.at(v * step + step / 2 - first); value != kInactiveVoxel) sample_.scalars.set(v, value);
+  };
+
+  std::vector<glm::ivec3> cubes;
+  for (glm::ivec3 first(0); first.z < n.z; first.z += kCubeEdge)
+    for (first.y = 0; first.y < n.y; first.y += kCubeEdge)
+      for (first.x = 0; first.x < n.x; first.x += kCubeEdge) cubes.push_back(first);
+  for (std::size_t first = 0; first < cubes.size(); first += kCubes) {
+    std::vector<Volume> parts(std::min(kCubes, cubes.size() - first));
+    tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) { parts[i] = read(cubes[first + i], kCubeEdge); });
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const Volume& part = parts[i];
+      if (part.activeVoxels == 0) continue;
+      addToSample(part, cubes[first + i]);
+      outline_.minimum = outline_.activeVoxels == 0 ? part.minimum : std::min(outline_.minimum, part.minimum);
+      outline_.maximum = outline_.activeVoxels == 0 ? part.maximum : std::max(outline_.maximum, part.maximum);
+      outline_.activeVoxels += part.activeVoxels;
+      outline_.nanVoxels += part.nanVoxels;
+      outline_.negativeVoxels += part.negativeVoxels;
+    }
+  }
+
+  summariseValues(sample_);
+  finishVolume(source_->file, *source_->entry, sample_);
+  outline_.warnings = sample_.warnings;
+  outline_.up = sample_.up;
+  outline_.upReason = sample_.upReason;
+  sample_.minimum = outline_.minimum;
+  sample_.maximum = outline_.maximum;
+  sample_.nanVoxels = outline_.nanVoxels;
+  sample_.negativeVoxels = outline_.negativeVoxels;
+}
+
+VdbParts::~VdbParts() = default;
+
+Volume VdbParts::read(glm::ivec3 first, int edge) const {
+  constexpr int n = ScalarBricks::kEdge;
+  const openvdb::FloatTree& tree = source_->grid->tree();
+  Volume part{.dimensions = glm::ivec3(edge), .scalars = ScalarBricks(glm::ivec3(edge))};
+  const glm::ivec3 begin = first + outline_.indexOrigin, end = glm::min(first + edge, outline_.dimensions) + outline_.indexOrigin;
+  for (glm::ivec3 corner = begin & ~(n - 1); corner.z < end.z; corner.z += n)
+    for (corner.y = begin.y & ~(n - 1); corner.y < end.y; corner.y += n)
+      for (corner.x = begin.x & ~(n - 1); corner.x < end.x; corner.x += n) {
+        const openvdb::Coord at(corner.x, corner.y, corner.z);
+        const VdbLeaf* const kept = tree.probeConstLeaf(at);
+        if (kept == nullptr && !tree.isValueOn(at)) continue;
+        const VdbLeaf leaf = kept == nullptr ? VdbLeaf(at, tree.getValue(at), true) : load(*kept, source_->name);
+        const glm::ivec3 low = glm::max(corner, begin), high = glm::min(corner + n, end);
+        for (glm::ivec3 v = low; v.z < high.z; ++v.z)
+          for (v.y = low.y; v.y < high.y; ++v.y)
+            for (v.x = low.x; v.x < high.x; ++v.x)
+              if (const openvdb::Coord voxel(v.x, v.y, v.z); leaf.isValueOn(voxel)) part.scalars.set(v - begin, leaf.getValue(voxel));
+      }
+  summariseValues(part);
+  return part;
 }
 
 }  // namespace freevoxels

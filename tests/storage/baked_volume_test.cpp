@@ -10,10 +10,13 @@
 
 #include "engine/storage/procedural_stream.h"
 #include "engine/volume/coarse_volume.h"
+#include "engine/volume/vdb.h"
+#include "engine/volume/vdb_parts.h"
 #include "tests/limited_disk.h"
 #include "tests/refusal.h"
 #include "tests/storage/baked_fixture.h"
 #include "tests/temporary_folder.h"
+#include "tests/volume/vdb_fixture.h"
 
 namespace freevoxels {
 namespace {
@@ -204,6 +207,28 @@ TEST(BakedVolume, AStreamedVolumeIsTheOneThatIsHeldInMemory) {
     bakeStreamed(folder / "streamed.fvx", proceduralStream(field, whole, kDense), kDense, {});
     EXPECT_TRUE(test::readBytes(folder / "whole.fvx") == test::readBytes(folder / "streamed.fvx")) << name;
   }
+}
+
+TEST(BakedVolume, PartsOfAnOpenVdbFileMakeTheSameFileAsTheWhole) {
+  const test::TemporaryFolder folder;
+  Volume volume = test::patchyVolume({75, 40, 53}, test::smoothVolume().indexToWorld);
+  volume.indexOrigin = {-21, 5, -130};
+  for (glm::ivec3 v(24, 20, 30); v.x < 56; ++v.x)  // uniform leaves, which become tiles
+    for (v.y = 4; v.y < 36; ++v.y)
+      for (v.z = 12; v.z < 44; ++v.z) volume.scalars.set(v, 0.75f);
+  volume.scalars.set({3, 2, 1}, std::numeric_limits<float>::quiet_NaN());
+  const std::filesystem::path file = folder / "a.vdb";
+  writeVdb(file, volume, "density");
+  const Volume whole = readVdb(file, "", std::uint64_t(1) << 28);
+  EXPECT_EQ(VdbParts::open(file, "", std::uint64_t(1) << 28), nullptr) << "it fits";
+  const std::unique_ptr<const VdbParts> parts = VdbParts::open(file, "", 0);
+  ASSERT_NE(parts, nullptr);
+  EXPECT_EQ(parts->outline().nanVoxels, 1u);
+  EXPECT_EQ(parts->sample().nanVoxels, 1u);
+  EXPECT_EQ(denseScalars(parts->sample()), denseScalars(whole)) << "of so few voxels, every one";
+  bakeVolume(folder / "whole.fvx", whole, kDense, {});
+  bakeStreamed(folder / "parts.fvx", partsStream(*parts, kDense), kDense, {});
+  EXPECT_TRUE(test::readBytes(folder / "whole.fvx") == test::readBytes(folder / "parts.fvx"));
 }
 
 TEST(BakedVolume, WhatIsSeenIsInTheFileWhateverTheLevel) {
