@@ -18,6 +18,8 @@ bool isControl(const InputEvent& event) {
          (event.code == GLFW_KEY_LEFT_CONTROL || event.code == GLFW_KEY_RIGHT_CONTROL);
 }
 
+bool isRelease(const InputEvent& event) { return event.kind == Kind::Key && !event.down; }
+
 bool isModifier(const InputEvent& event) {
   return event.kind == Kind::Key && event.code >= GLFW_KEY_LEFT_SHIFT && event.code <= GLFW_KEY_RIGHT_SUPER;
 }
@@ -44,20 +46,28 @@ bool hides(const InputEvent& event, const InputEvent& before) {
 
 }  // namespace
 
+void InputQueue::take(std::vector<InputEvent>& frame) {
+  const InputEvent& next = events_.front();
+  if (isControl(next)) control_ = next.down;
+  frame.push_back(next);
+  events_.pop_front();
+}
+
 std::vector<InputEvent> InputQueue::nextFrame() {
   std::vector<InputEvent> frame;
   if (held_ > 0) {
     --held_;
+    // Keys that are released do not wait: while one is down Dear ImGui repeats it, and Enter would leave the field.
+    while (!events_.empty() && isRelease(events_.front())) take(frame);
+    if (!frame.empty()) unsettled_ = kSettlingFrames;
     return frame;
   }
   while (!events_.empty()) {
     const InputEvent& next = events_.front();
     if (std::ranges::any_of(frame, [&](const InputEvent& before) { return hides(next, before); })) break;
-    if (isControl(next)) control_ = next.down;
     const bool confirms = next.kind == Kind::Key && next.code == GLFW_KEY_ENTER;
     if (next.kind == Kind::Key && next.down && (confirms || (control_ && !isModifier(next)))) held_ = kShortcutFrames;
-    frame.push_back(next);
-    events_.pop_front();
+    take(frame);
   }
   unsettled_ = frame.empty() ? std::max(unsettled_ - 1, 0) : kSettlingFrames;
   return frame;

@@ -288,9 +288,9 @@ TEST_F(Viewer, AFolderIsGoneThroughToAFile) {
   session->hands("windowsize @ 900 600");
   session->save('s', "a.png");
   session->open("below");
-  session->hands("sleep 0.5 type --delay 1 deeper");
+  session->hands("type --delay 1 deeper");
   session->hands("key Return");
-  session->hands("sleep 0.5 type --delay 1 good.vdb");
+  session->hands("type --delay 1 good.vdb");
   session->hands("key Return mousemove 700 300");
   session->saveAll('e', "b.json", "below/deeper/b.json");  // the dialog stays in the folder
   const nlohmann::json scene = nlohmann::json::parse(readBytes(folder / "below/deeper/b.json"));

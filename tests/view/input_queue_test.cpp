@@ -46,7 +46,7 @@ TEST(InputQueue, AClickIsSeenAndWhereItWas) {
 TEST(InputQueue, ModifiersHoldForWhatIsBetweenThem) {
   EXPECT_EQ(frames({key(GLFW_KEY_LEFT_CONTROL, true), key('S', true), key('S', false),
                     key(GLFW_KEY_LEFT_CONTROL, false)}),
-            "20000011")
+            "220000")
       << "and what is typed then waits for the field";
   EXPECT_EQ(frames({key(GLFW_KEY_LEFT_SHIFT, true),
                     {.kind = Kind::Wheel, .value = {0.0, 1.0}},
@@ -60,6 +60,10 @@ TEST(InputQueue, TextComesBeforeTheKeyAfterIt) {
             "23200000");
   EXPECT_EQ(frames({character('a'), character('b'), key(GLFW_KEY_ENTER, true)}), "2100000")
       << "what is typed after Enter waits for the field that it leads to";
+}
+
+TEST(InputQueue, ReleasedKeysDoNotWaitForTheFieldInWhichTheyWouldRepeat) {
+  EXPECT_EQ(frames({key(GLFW_KEY_ENTER, true), key(GLFW_KEY_ENTER, false), character('a')}), "1100001");
 }
 
 TEST(InputQueue, TheOrderStays) {
