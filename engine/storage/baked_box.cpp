@@ -1,7 +1,9 @@
 #include "engine/storage/baked_box.h"
 
+#include <sys/mman.h>
 #include <tbb/parallel_for.h>
 
+#include <cstdint>
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 #include <vector>
@@ -44,6 +46,13 @@ std::vector<ChunkPart> chunksOf(const FvxFile& file, Channel channel, int level,
   return chunks;
 }
 
+/// What was read of a chunk no longer counts as this process's memory. It stays in the system's cache, from which whoever reads the same
+/// pages gets them again.
+void release(const FvxFile& file, const ChunkEntry& chunk) {
+  const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(&file.header()) + chunk.offset, first = begin / fvx::kPageBytes * fvx::kPageBytes;
+  madvise(reinterpret_cast<void*>(first), begin + chunk.storedBytes - first, MADV_DONTNEED);
+}
+
 /// One set of bricks for each value of a voxel.
 std::vector<ScalarBricks> readChannel(const FvxFile& file, Channel channel, int level, const fvx::VoxelBox& box) {
   const std::vector<ChunkPart> chunks = chunksOf(file, channel, level, box);
@@ -64,6 +73,7 @@ std::vector<ScalarBricks> readChannel(const FvxFile& file, Channel channel, int 
     for (const auto& [number, cell] : chunks[i].bricks)
       for (std::size_t component = 0; component < result.size(); ++component)
         decoder.decode(bytes.subspan((number * result.size() + component) * brickBytes, brickBytes), result[component].makeBrick(cell));
+    release(file, *chunks[i].chunk);
   });
   return result;
 }
