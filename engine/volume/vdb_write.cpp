@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <fstream>
 #include <functional>
 #include <memory>
@@ -10,6 +11,7 @@
 #include <span>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 #include <vector>
 
 #include "engine/core/atomic_file.h"
@@ -129,15 +131,20 @@ class SpooledArchive : public openvdb::io::Archive {
   }
 
   void write(const std::filesystem::path& file, std::span<const std::unique_ptr<SpooledGrid>> grids) const {
+    errno = 0;
     std::ofstream os;
     os.exceptions(std::ios::failbit | std::ios::badbit);
-    os.open(file, std::ios::binary);
-    writeHeader(os, true);
-    openvdb::MetaMap().writeMeta(os);
-    const auto count = openvdb::Int32(grids.size());
-    os.write(reinterpret_cast<const char*>(&count), sizeof(count));
-    for (const auto& spooled : grids) writeSpooled(os, *spooled);
-    os.close();
+    try {
+      os.open(file, std::ios::binary);
+      writeHeader(os, true);
+      openvdb::MetaMap().writeMeta(os);
+      const auto count = openvdb::Int32(grids.size());
+      os.write(reinterpret_cast<const char*>(&count), sizeof(count));
+      for (const auto& spooled : grids) writeSpooled(os, *spooled);
+      os.close();
+    } catch (const std::ios_base::failure&) {  // which does not say why
+      throw std::system_error(errno != 0 ? errno : EIO, std::generic_category());
+    }
   }
 
  private:

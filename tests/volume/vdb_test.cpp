@@ -371,6 +371,16 @@ TEST_F(Vdb, AFullDiskIsReportedAndLeavesNothing) {
               testing::ExitedWithCode(int(ErrorKind::Output)), "cloud.vdb");
 }
 
+TEST_F(Vdb, AFullDiskOfAFieldIsReportedAndLeavesNothing) {
+  FV_REQUIRE_LIMITED_DISK(folder.path());
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  for (const std::size_t bytes : {65536, 196608}) {  // in the temporary file, and in the file itself
+    const auto writeLarge = [](const fs::path& disk) { writeVdb(disk / "cloud.vdb", ProceduralField("cloud", glm::ivec3(64)), "density"); };
+    EXPECT_EXIT(test::exitWithErrorOnLimitedDisk(folder.path(), bytes, writeLarge), testing::ExitedWithCode(int(ErrorKind::Output)),
+                "cannot write .*cloud.vdb.*No space left");
+  }
+}
+
 TEST_F(Vdb, ALevelSetIsTheSameWithABackgroundOf0) {
   const FloatGrid::Ptr sphere = openvdb::tools::createLevelSetSphere<FloatGrid>(20.0f, openvdb::Vec3f(0.0f), 1.0f);
   write({sphere});
