@@ -3,6 +3,7 @@
 #include <sys/mman.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
@@ -49,8 +50,11 @@ std::vector<ChunkPart> chunksOf(const FvxFile& file, Channel channel, int level,
 /// What was read of a chunk no longer counts as this process's memory. It stays in the system's cache, from which whoever reads the same
 /// pages gets them again.
 void release(const FvxFile& file, const ChunkEntry& chunk) {
-  const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(&file.header()) + chunk.offset, first = begin / fvx::kPageBytes * fvx::kPageBytes;
-  madvise(reinterpret_cast<void*>(first), begin + chunk.storedBytes - first, MADV_DONTNEED);
+  constexpr std::uintptr_t kAround = 1 << 16;  // Linux maps aligned pieces of this size around a page that is read
+  const std::uintptr_t map = reinterpret_cast<std::uintptr_t>(&file.header()), begin = map + chunk.offset;
+  const std::uintptr_t first = std::max(begin / kAround * kAround, map);
+  const std::uintptr_t end = std::min((begin + chunk.storedBytes + kAround - 1) / kAround * kAround, map + file.header().fileBytes);
+  madvise(reinterpret_cast<void*>(first), end - first, MADV_DONTNEED);
 }
 
 /// One set of bricks for each value of a voxel.
