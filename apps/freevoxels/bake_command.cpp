@@ -21,7 +21,7 @@ constexpr std::uint64_t kMaxVoxelsInMemory = std::uint64_t(1) << 27;
 /// Voxels along the longest edge of the same volume from which the classification is then found.
 constexpr int kSampleEdge = 256;
 /// A volume of a file whose values take more is read part by part.
-constexpr std::uint64_t kMostBytesInMemory = std::uint64_t(1) << 30;
+constexpr std::uint64_t kMaxBytesInMemory = std::uint64_t(1) << 30;
 
 /// Shows progress, and defers interrupts from when the file exists under a temporary name.
 class BakeProgress {
@@ -143,7 +143,7 @@ void BakeCommand::bakeProcedural(const std::string& name, ProgressLine& line) co
 bool BakeCommand::bakeParts(ProgressLine& line) const {
   const SceneDescription& description = scene_.description;
   if (description.emission.grid() || description.classification.albedoGrid || fvx::isFvx(description.input.volume)) return false;
-  const std::unique_ptr<const VdbParts> parts = VdbParts::open(description.input.volume, description.input.grid.value_or(""), kMostBytesInMemory);
+  const std::unique_ptr<const VdbParts> parts = VdbParts::open(description.input.volume, description.input.grid.value_or(""), kMaxBytesInMemory);
   if (!parts) return false;
   const Classification classification = description.resolveClassification(parts->sample());
   line.erase();

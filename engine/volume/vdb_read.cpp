@@ -147,7 +147,7 @@ constexpr int kSampleEdge = 256;
 /// Cubes of this number of voxels along an edge are read at a time, and this number of them is kept in memory.
 constexpr int kCubeEdge = 64;
 constexpr std::size_t kCubes = 16;
-constexpr double kMostVoxels = 1e12;  ///< of a box that is gone through cube by cube
+constexpr double kMaxVoxels = 1e12;  ///< of a box that is gone through cube by cube
 
 /// A copy with the values, which the tree's leaf leaves in the file.
 VdbLeaf load(const VdbLeaf& leaf, const std::string& source) {
@@ -182,7 +182,7 @@ std::unique_ptr<VdbParts> VdbParts::open(const std::filesystem::path& path, cons
   source->grid = openvdb::gridConstPtrCast<FloatGrid>(grid);
   if (source->grid->tree().leafCount() * sizeof(ScalarBricks::Brick) <= mostBytes) return nullptr;
   const openvdb::Vec3d n(source->grid->evalActiveVoxelBoundingBox().dim().asVec3d());
-  if (n.x() * n.y() * n.z() > kMostVoxels) return nullptr;
+  if (n.x() * n.y() * n.z() > kMaxVoxels) return nullptr;
   return std::unique_ptr<VdbParts>(new VdbParts(std::move(source)));
 }
 
