@@ -30,7 +30,7 @@ class FrameRenderer {
   /// Memory of the volume, or of the largest part of it that is held at a time.
   virtual VolumeMemory memory() const = 0;
 
-  // What a renderer does not know that holds parts of the volume.
+  // Known only to a renderer that holds the whole volume.
 
   /// The number of occupied voxels, where it is known.
   virtual std::optional<std::uint64_t> occupiedVoxelCount() const { return {}; }

@@ -1,10 +1,9 @@
-// Where the depths of a pair of planes are among those of a face's rays, whose number may exceed 32 bits where only some of them are
-// in memory.
+// Where the depths of a pair of planes are. A face's rays may have more depths than 32 bits can number where only some are in memory.
 #ifndef RAY_PAIR_GLSL
 #define RAY_PAIR_GLSL
 #include "interface.h"
 
-// Device address; of the depth of each ray.
+// The device address of the pair's depths, one for each ray.
 uvec2 pairAddress(FaceRays fan, int pair) {
   uint high, low, carry;
   umulExtended(uint(pair), 4 * uint(fan.rayCount.x * fan.rayCount.y), high, low);
