@@ -50,8 +50,11 @@ std::string uuidText(const std::uint8_t (&uuid)[VK_UUID_SIZE]) {
 
 std::vector<VkPhysicalDevice> physicalDevices(const Instance& instance) {
   std::uint32_t count = 0;
-  VK_CHECK(vkEnumeratePhysicalDevices(instance.handle(), &count, nullptr));
-  std::vector<VkPhysicalDevice> devices(count);
+  std::vector<VkPhysicalDevice> devices;
+  VkResult result = VK_SUCCESS;
+  instance.callLocking([&] { result = vkEnumeratePhysicalDevices(instance.handle(), &count, nullptr); });
+  VK_CHECK_RESULT(result, "vkEnumeratePhysicalDevices");
+  devices.resize(count);
   VK_CHECK(vkEnumeratePhysicalDevices(instance.handle(), &count, devices.data()));
   return devices;
 }
@@ -195,7 +198,8 @@ Device::Device(const Instance& instance, std::string_view selector, std::uint64_
                                 .pQueueCreateInfos = &queue,
                                 .enabledExtensionCount = std::uint32_t(extensions.size()),
                                 .ppEnabledExtensionNames = extensions.data()};
-  const VkResult result = vkCreateDevice(physical_, &info, nullptr, &device_);
+  VkResult result = VK_SUCCESS;
+  instance.callLocking([&] { result = vkCreateDevice(physical_, &info, nullptr, &device_); });
   if (result == VK_ERROR_EXTENSION_NOT_PRESENT)
     fail(ErrorKind::Device, "{} lacks one of the extensions {}: choose another with {}", description_.name,
          fmt::join(extensions, ", "), Parameter("device"));

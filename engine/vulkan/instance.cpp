@@ -142,8 +142,17 @@ Instance::Instance(VkInstance adopted) : isOwn_(false), instance_(adopted) {
   loadFunctions(instance_, false);
 }
 
+void Instance::callLocking(const std::function<void()>& functions) const {
+  try {
+    functions();
+  } catch (...) {
+    isLoaderLocked_ = true;
+    throw;
+  }
+}
+
 Instance::~Instance() {
-  if (!isOwn_) return;
+  if (!isOwn_ || isLoaderLocked_) return;
   if (messenger_ != VK_NULL_HANDLE)
     extensionFunction<PFN_vkDestroyDebugUtilsMessengerEXT>(instance_, "vkDestroyDebugUtilsMessengerEXT")(instance_, messenger_, nullptr);
   vkDestroyInstance(instance_, nullptr);

@@ -30,6 +30,9 @@ class Instance {
   bool validates() const { return messenger_ != VK_NULL_HANDLE; }
   /// Number of warnings and errors of the validation layers so far.
   std::uint64_t validationMessageCount() const { return validationMessages_; }
+  /// Calls functions of the loader that take its lock, and passes exceptions on. A driver that finds no memory may throw one, which leaves
+  /// the lock taken: this instance is then never destroyed, as that would wait for the lock forever.
+  void callLocking(const std::function<void()>& functions) const;
 
  private:
   static VKAPI_ATTR VkBool32 VKAPI_CALL onValidationMessage(VkDebugUtilsMessageSeverityFlagBitsEXT, VkDebugUtilsMessageTypeFlagsEXT,
@@ -40,6 +43,7 @@ class Instance {
   VkInstance instance_ = VK_NULL_HANDLE;
   VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
   std::atomic<std::uint64_t> validationMessages_ = 0;
+  mutable std::atomic<bool> isLoaderLocked_ = false;
 };
 
 }  // namespace freevoxels
