@@ -162,21 +162,11 @@ ReferenceGather::Slab ReferenceGather::slabOf(const Ray& ray, int axis, int leve
 
 /// The bilinear source term and extinction on a slice.
 glm::dvec4 ReferenceGather::blockAt(const Ray& ray, const Slab& slab, int slice, const GatherBlocks& blocks) const {
-  const std::array<int, 2> sides = sidesOf(slab.axis);
-  const glm::dvec2 position = slab.position(ray, slice), low = glm::floor(position);
   glm::dvec4 medium(0.0);
-  for (int corner = 0; corner < 4; ++corner) {
-    glm::ivec3 cell;
-    cell[slab.axis] = slice;
-    cell[sides[0]] = int(low.x) + (corner & 1);
-    cell[sides[1]] = int(low.y) + (corner >> 1);
-    if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(cell, blocks.dimensions))) continue;
-    const glm::dvec2 away = glm::abs(position - glm::dvec2(cell[sides[0]], cell[sides[1]]));
-    const std::size_t block =
-        std::size_t(cell.x) + std::size_t(blocks.dimensions.x) *
-                                  (std::size_t(cell.y) + std::size_t(blocks.dimensions.y) * std::size_t(cell.z));
-    medium += (1.0 - away.x) * (1.0 - away.y) * glm::dvec4(blocks.source[block], blocks.extinction[block]);
-  }
+  forCorners(slab.position(ray, slice), slab.axis, slice, blocks.dimensions, [&](std::size_t, double weight, glm::ivec3 block) {
+    const std::size_t i = indexOf(block, blocks.dimensions);
+    medium += weight * glm::dvec4(blocks.source[i], blocks.extinction[i]);
+  });
   return medium;
 }
 
@@ -191,25 +181,23 @@ void ReferenceGather::marchBlocks(GatherSums& sums, double& transmittance, const
   }
 }
 
+std::optional<double> ReferenceGather::scalarOf(glm::ivec3 voxel) const {
+  const int code = table_->code(volume_.scalars.at(voxel));
+  if (code == 0) return {};
+  return double(code - 1) * shader::kTransferIntervals / shader::kScalarCodes;
+}
+
 ReferenceGather::Scalar ReferenceGather::scalarAt(const Ray& ray, const Slab& slab, int slice) const {
-  const std::array<int, 2> sides = sidesOf(slab.axis);
-  const glm::dvec2 position = slab.position(ray, slice), low = glm::floor(position), part = position - low;
+  const glm::dvec2 position = slab.position(ray, slice), part = position - glm::floor(position);
   std::array<double, 4> values{}, weights{};
-  bool whole = true;
-  for (int corner = 0; corner < 4; ++corner) {
-    const glm::dvec2 side(corner & 1, corner >> 1);
-    glm::ivec3 voxel;
-    voxel[slab.axis] = slice;
-    voxel[sides[0]] = int(low.x + side.x);
-    voxel[sides[1]] = int(low.y + side.y);
-    const bool inside = glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) && glm::all(glm::lessThan(voxel, volume_.dimensions));
-    const int code = inside ? table_->code(volume_.scalars.at(voxel)) : 0;
-    const glm::dvec2 shares = glm::mix(1.0 - part, part, side);
-    whole = whole && code != 0;
-    if (code == 0) continue;
-    weights[std::size_t(corner)] = shares.x * shares.y;
-    values[std::size_t(corner)] = double(code - 1) * shader::kTransferIntervals / shader::kScalarCodes;
-  }
+  int known = 0;
+  forCorners(position, slab.axis, slice, volume_.dimensions, [&](std::size_t corner, double weight, glm::ivec3 voxel) {
+    const std::optional<double> scalar = scalarOf(voxel);
+    if (!scalar) return;
+    weights[corner] = weight;
+    values[corner] = *scalar;
+    ++known;
+  });
   Scalar found;
   double sum = 0.0;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -218,7 +206,7 @@ ReferenceGather::Scalar ReferenceGather::scalarAt(const Ray& ray, const Slab& sl
   }
   if (found.coverage > 0.0) found.value = sum / found.coverage;
   found.ahead = found.behind = found.value;
-  if (!whole) return found;
+  if (known < 4) return found;
   const glm::dvec2 halfStep = slab.position(ray, slice + 0.5 * slab.sign) - position;
   const auto bilinear = [&](glm::dvec2 at) {
     return glm::mix(glm::mix(values[0], values[1], at.x), glm::mix(values[2], values[3], at.x), at.y);

@@ -47,7 +47,7 @@ class ReferenceGather {
 
   /// Marches the ray of every sample. `blocks` and `light` are indexed by level; without lighting `light` is not read.
   std::vector<GatherSums> samples(std::span<const GatherBlocks> blocks, std::span<const GatherLight> light) const;
-  /// The scalars of all voxels, in intervals of the transfer function's table.
+  /// The scalars of all voxels, in intervals of the transfer function's table, for volumes whose voxels all have data.
   std::vector<double> scalars() const;
   /// Restores the round footprint.
   std::vector<GatherSums> smoothed(const std::vector<GatherSums>& samples) const;
@@ -71,11 +71,15 @@ class ReferenceGather {
   void marchBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab, const GatherBlocks& blocks) const;
   /// With `light`, what reaches the samples; null without lighting.
   void marchScalars(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab, const GatherLight* light) const;
+  /// The voxel's scalar in intervals of the transfer function's table; none without data.
+  std::optional<double> scalarOf(glm::ivec3 voxel) const;
   Scalar scalarAt(const Ray& ray, const Slab& slab, int slice) const;
   glm::dvec4 blockAt(const Ray& ray, const Slab& slab, int slice, const GatherBlocks& blocks) const;
   // With lighting, in reference_gather_light.cpp:
   void marchLitBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab, const GatherBlocks& blocks,
                       const GatherLight& light) const;
+  void lightSurfaces(std::array<Stretch, 2>& halves, const GatherLight& light, const Ray& ray, const Slab& slab, int slice, double first,
+                     double second) const;
   std::array<Stretch, 2> lightStretch(const GatherLight& light, const Ray& ray, const Slab& slab, int slice, const Scalar& last,
                                       const Scalar& found, const std::array<glm::dvec4, 2>& means, double transmittance,
                                       std::optional<Arriving>& lastArriving) const;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "engine/reference/reference_depth.h"
 #include "engine/reference/reference_gather_ray.h"
+#include "engine/reference/reference_light.h"
 #include "engine/reference/reference_rays.h"
 #include "shaders/gather_interface.h"
 
@@ -22,28 +22,6 @@ constexpr double kMostlySurface = 0.95;
 constexpr double kOutside = 2.5;
 /// Depths from this one on may be larger than they are stored.
 constexpr double kUnknownDepth = 0.99 * kOpaqueDepth;
-/// The squared distance in voxels below which a light is no brighter: see ReferenceLight.
-const double kNearestLight2 = std::pow(3.0 / (4.0 * std::numbers::pi), 2.0 / 3.0) / 3.0;
-
-/// The weights of the four blocks around a position on a slice, and the blocks, of which those beyond the volume have none.
-template <typename Add>
-void forCorners(glm::dvec2 position, int axis, int slice, glm::ivec3 dimensions, const Add& add) {
-  const std::array<int, 2> sides = sidesOf(axis);
-  const glm::dvec2 low = glm::floor(position), part = position - low;
-  for (int corner = 0; corner < 4; ++corner) {
-    const glm::dvec2 side(corner & 1, corner >> 1 & 1), shares = glm::mix(1.0 - part, part, side);
-    glm::ivec3 block;
-    block[axis] = slice;
-    block[sides[0]] = int(low.x + side.x);
-    block[sides[1]] = int(low.y + side.y);
-    const bool within = glm::all(glm::greaterThanEqual(block, glm::ivec3(0))) && glm::all(glm::lessThan(block, dimensions));
-    if (within) add(shares.x * shares.y, block);
-  }
-}
-
-std::size_t indexOf(glm::ivec3 block, glm::ivec3 dimensions) {
-  return std::size_t(block.x) + std::size_t(dimensions.x) * (std::size_t(block.y) + std::size_t(dimensions.y) * std::size_t(block.z));
-}
 
 }  // namespace
 
@@ -91,7 +69,7 @@ std::vector<double> ReferenceGather::scalars() const {
   for (std::size_t i = 0; i < volume_.voxelCount(); ++i) {
     const glm::ivec3 n = volume_.dimensions;
     const glm::ivec3 voxel(int(i) % n.x, int(i) / n.x % n.y, int(i) / n.x / n.y);
-    result.push_back(double(table_->code(volume_.scalars.at(voxel)) - 1) * shader::kTransferIntervals / shader::kScalarCodes);
+    result.push_back(scalarOf(voxel).value());
   }
   return result;
 }
@@ -112,7 +90,7 @@ bool ReferenceGather::isLitBorder(std::size_t light, int axis, bool first) const
 ReferenceGather::Arriving ReferenceGather::storedAt(const GatherLight& light, const Slab& slab, glm::dvec2 position, int slice) const {
   Arriving roots;
   const glm::ivec3 dimensions = dimensionsOf(slab);
-  forCorners(position, slab.axis, slice, dimensions, [&](double weight, glm::ivec3 block) {
+  forCorners(position, slab.axis, slice, dimensions, [&](std::size_t, double weight, glm::ivec3 block) {
     const std::size_t i = indexOf(block, dimensions);
     for (std::size_t l = 0; l < light.depths.size(); ++l) roots.depths[l] += weight * std::sqrt(light.depths[l][i]);
     for (std::size_t c = 0; c < 3 && !light.ambient.empty(); ++c)
@@ -153,12 +131,12 @@ std::pair<double, double> ReferenceGather::scalarNear(glm::dvec3 position) const
   for (int corner = 0; corner < 8; ++corner) {
     const glm::ivec3 voxel = glm::ivec3(low) + glm::ivec3(corner & 1, corner >> 1 & 1, corner >> 2);
     if (glm::any(glm::lessThan(voxel, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(voxel, volume_.dimensions))) continue;
-    const int code = table_->code(volume_.scalars.at(voxel));
-    if (code == 0) continue;
+    const std::optional<double> scalar = scalarOf(voxel);
+    if (!scalar) continue;
     const glm::dvec3 shares = 1.0 - glm::abs(position - glm::dvec3(voxel));
     const double weight = shares.x * shares.y * shares.z;
     coverage += weight;
-    sum += weight * double(code - 1) * shader::kTransferIntervals / shader::kScalarCodes;
+    sum += weight * *scalar;
   }
   return {coverage > 0.0 ? sum / coverage : 0.0, coverage};
 }
@@ -187,7 +165,7 @@ glm::dvec3 ReferenceGather::gradientAt(const GatherLight& light, const Ray& ray,
   glm::dvec3 gradient(0.0);
   const glm::dvec2 position = glm::clamp(slab.position(ray, within), glm::dvec2(0.0), onSides(glm::dvec3(dimensions - 1), slab.axis));
   forCorners(position, slab.axis, within, dimensions,
-             [&](double weight, glm::ivec3 block) { gradient += weight * light.gradients[indexOf(block, dimensions)]; });
+             [&](std::size_t, double weight, glm::ivec3 block) { gradient += weight * light.gradients[indexOf(block, dimensions)]; });
   return gradient;
 }
 
@@ -290,6 +268,27 @@ void ReferenceGather::marchLitBlocks(GatherSums& sums, double& transmittance, co
   }
 }
 
+/// Lights the halves of a stretch as surfaces, whose normals are the scalar's gradients. `first` and `second` are the scalars at its ends.
+void ReferenceGather::lightSurfaces(std::array<Stretch, 2>& halves, const GatherLight& light, const Ray& ray, const Slab& slab, int slice,
+                                    double first, double second) const {
+  const glm::dvec3 a = gradientAt(light, ray, slab, slice - slab.sign), b = gradientAt(light, ray, slab, slice);
+  glm::dvec3 gradients(0.0);
+  double changes = 0.0;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double part = i == 0 ? 0.25 : 0.75;
+    const glm::dvec3 gradient = glm::mix(a, b, part);
+    const double scalar = glm::mix(first, second, part), reach = glm::length(gradient);
+    const double above = mediumAt(std::min(scalar + reach, double(shader::kTransferIntervals))).a;
+    const double below = mediumAt(std::max(scalar - reach, 0.0)).a;
+    const double change = (above - below) / std::max({above, below, 1e-20});
+    setSurface(halves[i], gradient, -change);
+    gradients += gradient;
+    changes += change;
+  }
+  const glm::dvec3 outwards = changes > 0.0 ? -gradients : changes < 0.0 ? gradients : glm::dvec3(0.0);
+  lightFromOutside(halves, light, ray, slab, slice - 0.5 * slab.sign, outwards);
+}
+
 /// What reaches the two halves of a stretch between slices of scalars, whose media are `means`. `lastArriving` is what reached the end of
 /// the stretch before, if that had a medium, and is set to that of this one.
 std::array<ReferenceGather::Stretch, 2> ReferenceGather::lightStretch(const GatherLight& light, const Ray& ray, const Slab& slab, int slice,
@@ -312,24 +311,7 @@ std::array<ReferenceGather::Stretch, 2> ReferenceGather::lightStretch(const Gath
   halves[0].end.ambient = halves[1].begin.ambient = glm::mix(ambientBegin, ambientEnd, share);
   halves[1].end.ambient = ambientEnd;
   for (Stretch& half : halves) half.position = place(slice - 0.5 * slab.sign);
-  if (lighting_->surface > 0.0 && shown > 2.0 * kMinShown) {
-    const glm::dvec3 a = gradientAt(light, ray, slab, before), b = gradientAt(light, ray, slab, slice);
-    glm::dvec3 gradients(0.0);
-    double changes = 0.0;
-    for (std::size_t i = 0; i < 2; ++i) {
-      const double part = i == 0 ? 0.25 : 0.75;
-      const glm::dvec3 gradient = glm::mix(a, b, part);
-      const double scalar = glm::mix(first.value, second.value, part), reach = glm::length(gradient);
-      const double above = mediumAt(std::min(scalar + reach, double(shader::kTransferIntervals))).a;
-      const double below = mediumAt(std::max(scalar - reach, 0.0)).a;
-      const double change = (above - below) / std::max({above, below, 1e-20});
-      setSurface(halves[i], gradient, -change);
-      gradients += gradient;
-      changes += change;
-    }
-    const glm::dvec3 outwards = changes > 0.0 ? -gradients : changes < 0.0 ? gradients : glm::dvec3(0.0);
-    lightFromOutside(halves, light, ray, slab, slice - 0.5 * slab.sign, outwards);
-  }
+  if (lighting_->surface > 0.0 && shown > 2.0 * kMinShown) lightSurfaces(halves, light, ray, slab, slice, first.value, second.value);
   if (sum <= 0.0) {
     lastArriving.reset();
     return halves;

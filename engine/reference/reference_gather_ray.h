@@ -22,6 +22,27 @@ inline double meanTransmittance(double x) {
   return std::abs(x) < 1e-6 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
 }
 
+/// Calls `add(corner, weight, block)` with the bilinear weights of those of the four blocks around a position on a slice that are in the
+/// volume. The second side's corners follow the first's.
+template <typename Add>
+void forCorners(glm::dvec2 position, int axis, int slice, glm::ivec3 dimensions, const Add& add) {
+  const std::array<int, 2> sides = sidesOf(axis);
+  const glm::dvec2 low = glm::floor(position), part = position - low;
+  for (int corner = 0; corner < 4; ++corner) {
+    const glm::dvec2 side(corner & 1, corner >> 1 & 1), shares = glm::mix(1.0 - part, part, side);
+    glm::ivec3 block;
+    block[axis] = slice;
+    block[sides[0]] = int(low.x + side.x);
+    block[sides[1]] = int(low.y + side.y);
+    const bool within = glm::all(glm::greaterThanEqual(block, glm::ivec3(0))) && glm::all(glm::lessThan(block, dimensions));
+    if (within) add(std::size_t(corner), shares.x * shares.y, block);
+  }
+}
+
+inline std::size_t indexOf(glm::ivec3 block, glm::ivec3 dimensions) {
+  return std::size_t(block.x) + std::size_t(dimensions.x) * (std::size_t(block.y) + std::size_t(dimensions.y) * std::size_t(block.z));
+}
+
 /// The slices of a level that a ray's march reads: `first` to `end` - 1 in the order of the march.
 struct ReferenceGather::Slab {
   int axis = 0, sign = 1;

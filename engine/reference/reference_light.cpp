@@ -12,10 +12,6 @@ namespace {
 /// In index space: at a smaller distance from a light the direction is undefined, and +z is used.
 constexpr double kAtLight = 1e-3;
 
-/// The squared radius of a ball in squared edges of a cube of equal volume, divided by the 3 of the mean of 1
-/// / distance² from its middle.
-const double kNearestLight2 = std::pow(3.0 / (4.0 * std::numbers::pi), 2.0 / 3.0) / 3.0;
-
 /// The integral of exp(-x t) over t from 0 to 1.
 double meanOver(double x) {
   return std::abs(x) < 1e-9 ? 1.0 : -std::expm1(-x) / x;

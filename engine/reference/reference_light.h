@@ -2,13 +2,19 @@
 // The light that blocks scatter, in double precision: Subr et al. 2007, Section 4.3. Shares no code with the
 // shaders.
 
+#include <cmath>
 #include <memory>
+#include <numbers>
 #include <vector>
 
 #include "engine/reference/reference_depth.h"
 #include "engine/scene/lighting.h"
 
 namespace freevoxels {
+
+/// The squared radius of a ball in squared edges of a cube of equal volume, divided by the 3 of the mean of 1
+/// / distance² from its middle.
+inline const double kNearestLight2 = std::pow(3.0 / (4.0 * std::numbers::pi), 2.0 / 3.0) / 3.0;
 
 /// The input of reference_depth.h from earlier stages. Keeps references.
 struct LightInputs {

@@ -2,47 +2,12 @@
 
 #include <cmath>
 
-#include "engine/reference/oracle.h"
 #include "engine/validation/quality_scenes.h"
-#include "engine/validation/sky_environment.h"
-#include "engine/volume/subject.h"
 #include "engine/volume/voxel_classifier.h"
-#include "tests/device/splat_fixture.h"
+#include "tests/device/gather_fixture.h"
 
 namespace freevoxels {
 namespace {
-
-class GatherTest : public SplatTest {
- protected:
-  static FrameSettings gathering(glm::ivec2 size) {
-    return {.size = size, .draw = Draw::Gather, .lod = 0.0f};
-  }
-  /// Looks along -z at the volume's middle with this many pixels a voxel.
-  static Camera alongZ(const Volume& volume, glm::ivec2 size, double pixelsPerVoxel) {
-    Camera camera;
-    camera.lookAt = glm::dvec3(volume.indexToWorld * glm::dvec4(0.5 * glm::dvec3(volume.dimensions - 1), 1.0));
-    camera.position = camera.lookAt + glm::dvec3(0.0, 0.0, 10.0);
-    camera.orthographic = true;
-    camera.orthographicHeight = size.y / pixelsPerVoxel * glm::length(glm::dvec3(volume.indexToWorld[1]));
-    return camera;
-  }
-  struct Scene {
-    Volume volume;
-    Classification classification;
-  };
-  static Scene cloud(int resolution) {
-    Scene scene{.volume = makeProcedural("cloud", resolution), .classification = {}};
-    scene.classification.densityScale = automaticDensityScale(scene.volume, 2.0);
-    return scene;
-  }
-  static double qualityOf(const Scene& scene, const Camera& camera, const FrameSettings& settings) {
-    Renderer renderer(device(), scene.volume, scene.classification, {});
-    const Oracle oracle = renderOracle(scene.volume, scene.classification, camera,
-                                       {.size = settings.size, .tolerance = 4e-3, .lighting = settings.lighting});
-    return psnr(renderer.render(camera, settings), oracle.image);
-  }
-  static std::vector<double> qualities(const Scene& scene, const std::vector<Camera>& cameras, int pixels);
-};
 
 TEST_F(GatherTest, HomogeneousBoxIsTheLawOfBeerAndLambert) {
   const Volume box = makeVolume({20, 20, 12}, cubeTransform({20, 20, 12}), [](int, int, int) { return 1.0; });
@@ -188,199 +153,6 @@ TEST_F(GatherTest, ShearedGridMatchesTheOracle) {
   EXPECT_GE(qualityOf(scene, camera, gathering({96, 96})), 40.0);
 }
 
-TEST_F(GatherTest, LitVolumesAreAsNearToTheOracleAsSplats) {
-  for (const double phaseG : {0.0, 0.6}) {
-    const Scene scene = cloud(32);
-    const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
-    FrameSettings settings{.size = {64, 64}, .draw = Draw::Splats, .lighting = Lighting{.lights = {{}}, .phaseG = phaseG}};
-    const double splats = qualityOf(scene, camera, settings);
-    settings.draw = Draw::Gather;
-    EXPECT_GE(qualityOf(scene, camera, settings), splats - 0.3) << phaseG;
-  }
-}
-
-/// Ambient light, and that of a sky with a sun, by gathering and by splats: from far away, and from within the volume's box.
-TEST_F(GatherTest, PhaseFunctionActsOnLightFromEverywhere) {
-  const Scene scene = cloud(16);
-  Environment sky = makeSky(64);
-  sky.intensity = 0.3;
-  Camera camera = framingCamera(scene.volume, 180.0, 25.0, 1.0, {});
-  FrameSettings settings{
-      .size = {24, 24},
-      .lighting = Lighting{
-          .ambient = glm::dvec3(0.3), .environment = std::make_shared<Environment>(sky), .phaseG = 0.6, .scattering = 2}};
-  EXPECT_GE(qualityOf(scene, camera, settings), 42.0);
-  settings.draw = Draw::Gather;
-  EXPECT_GE(qualityOf(scene, camera, settings), 42.0);
-  camera.position = camera.lookAt + 0.2 * (camera.position - camera.lookAt);
-  settings.lighting = Lighting{.ambient = glm::dvec3(1.0), .phaseG = -0.4};
-  EXPECT_GE(qualityOf(scene, camera, settings), 40.0);
-}
-
-/// A column of optical depth D with tint t scatters (1 - exp(-(1 + t) D)) / (1 + t) of the unshadowed light if it is lit from the eye's
-/// side, and D exp(-D) if it is lit from behind with t = 1. An octave scales the depth as a tint does.
-TEST_F(GatherTest, LightThroughAHomogeneousBoxIsItsIntegral) {
-  const Volume box = makeVolume({20, 20, 12}, cubeTransform({20, 20, 12}), [](int, int, int) { return 1.0; });
-  const glm::ivec2 size(15, 15);
-  const Camera camera = alongZ(box, size, 1.0);
-  const double length = 12.0 * glm::length(glm::dvec3(box.indexToWorld[2]));
-  for (const double depth : {0.3, 2.0, 6.0}) {
-    Renderer renderer(device(), box, {.densityScale = depth / length, .albedo = glm::vec3(1.0f)}, {});
-    FrameSettings settings = gathering(size);
-    settings.lighting = Lighting{.lights = {{.place = {0.0, 0.0, 1.0}}}, .tint = {1.0, 0.5, 2.0}};
-    const glm::vec4 front = renderer.render(camera, settings).pixels[7 + 7 * 15];
-    for (int c = 0; c < 3; ++c) {
-      const double both = 1.0 + settings.lighting->tint[c], expected = (1.0 - std::exp(-both * depth)) / both;
-      EXPECT_NEAR(front[c], expected, 0.01 * expected) << depth << ' ' << c;
-    }
-    settings.lighting = Lighting{.lights = {{.place = {0.0, 0.0, -1.0}}}};
-    const glm::vec4 behind = renderer.render(camera, settings).pixels[7 + 7 * 15];
-    EXPECT_NEAR(behind.r, depth * std::exp(-depth), 0.02 * depth * std::exp(-depth)) << depth;
-    settings.lighting = Lighting{.lights = {{.place = {0.0, 0.0, 1.0}}}, .scattering = 3, .scatteringScale = 0.4};
-    double octaves = 0.0;
-    for (const double scale : {1.0, 0.4, 0.16}) octaves += scale * (1.0 - std::exp(-(1.0 + scale) * depth)) / (1.0 + scale);
-    EXPECT_NEAR(renderer.render(camera, settings).pixels[7 + 7 * 15].r, octaves, 0.01 * octaves) << depth;
-  }
-}
-
-/// Fog that ends only where the volume does, seen from its lit and from its shadowed sides.
-TEST_F(GatherTest, LightThatReachesTheBordersOfAFullVolumeMatchesTheOracle) {
-  const glm::ivec3 n(12);
-  const Scene fog{.volume = makeVolume(n, cubeTransform(n), [](int, int, int) { return 1.0; }), .classification = {.densityScale = 3.0}};
-  Scene scan = fog;
-  scan.classification = {.transferFunction = TransferFunction{.opacity = {{0.0f, 0.1f}, {2.0f, 0.1f}},
-                                                              .color = {{0.0f, glm::vec3(1.0f)}},
-                                                              .unitDistance = 0.035}};
-  const Camera camera = framingCamera(fog.volume, 35.0, 25.0, 1.0, {});
-  for (const Scene* scene : std::array<const Scene*, 2>{&fog, &scan})
-    for (const glm::dvec3 toLight : {glm::dvec3(-1.0, -0.2, -1.0), glm::dvec3(1.0, 0.3, 1.0)}) {
-      FrameSettings settings = gathering({32, 32});
-      settings.lighting = Lighting{.lights = {{.place = toLight}}};
-      EXPECT_GE(qualityOf(*scene, camera, settings), 36.0) << toLight.x;
-    }
-}
-
-/// On an opaque surface light falls off within one voxel, which one value per voxel, as splats have, cannot show.
-TEST_F(GatherTest, LightOnOpaqueSkinComesNearerToTheOracleThanThatOfSplats) {
-  QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 32, makeProcedural("head", 32));
-  const Scene scene{.volume = head.volume, .classification = head.classification};
-  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
-  FrameSettings settings{.size = {64, 64}, .draw = Draw::Splats, .lighting = Lighting{.lights = {{.place = {1.0, 1.0, 1.0}}}}};
-  settings.lod = 0.0f;
-  const double splats = qualityOf(scene, camera, settings);
-  settings.draw = Draw::Gather;
-  EXPECT_GE(qualityOf(scene, camera, settings), splats + 5.0);
-}
-
-/// Opaque spheres, of scalars and of densities, of 4 pixels a voxel: the light that surfaces scatter depends on their normals alone,
-/// without steps from voxel to voxel. On the flank of the highlight 0.1 is a degree.
-TEST_F(GatherTest, LitSurfacesAreSmooth) {
-  constexpr int kEdge = 48;
-  constexpr double kRadius = 20.0;  // voxels
-  const glm::dvec3 middle(0.5 * (kEdge - 1));
-  const auto inside = [&](int x, int y, int z) { return kRadius - glm::length(glm::dvec3(x, y, z) - middle); };
-  Scene ofScalars{.volume = makeVolume(glm::ivec3(kEdge), cubeTransform(glm::ivec3(kEdge)), inside), .classification = {}};
-  ofScalars.classification.transferFunction = TransferFunction{
-      .opacity = {{-0.5f, 0.0f}, {0.5f, 0.99f}}, .color = {{0.0f, glm::vec3(1.0f)}}, .unitDistance = ofScalars.volume.voxelSize()};
-  ofScalars.classification.order = ClassificationOrder::Post;
-  Scene ofDensities{.volume = makeVolume(glm::ivec3(kEdge), cubeTransform(glm::ivec3(kEdge)),
-                                         [&](int x, int y, int z) { return std::clamp(0.5 + inside(x, y, z) / 3.0, 0.0, 1.0); }),
-                    .classification = {.albedo = glm::vec3(1.0f)}};
-  ofDensities.classification.densityScale = 3.0 / ofDensities.volume.voxelSize();
-  const glm::dvec3 toLight = glm::normalize(glm::dvec3(-1.0, 1.0, 1.0)), toEye(0.0, 0.0, 1.0);
-  for (const Scene* scene : {&ofScalars, &ofDensities}) {
-    SCOPED_TRACE(scene == &ofScalars ? "scalars" : "densities");
-    constexpr int kPixels = 192;
-    const Camera camera = alongZ(scene->volume, {kPixels, kPixels}, 4.0);
-    Renderer renderer(device(), scene->volume, scene->classification, {});
-    FrameSettings settings = gathering({kPixels, kPixels});
-    settings.lighting = Lighting{.lights = {{.place = toLight}}, .surface = 1.0};
-    settings.lighting->attenuation = LightAttenuation::Exact;
-    const Image image = renderer.render(camera, settings);
-    double largest = 0.0, sum = 0.0;
-    int count = 0;
-    for (int y = 0; y < kPixels; ++y)
-      for (int x = 0; x < kPixels; ++x) {
-        const glm::dvec2 place = (glm::dvec2(x, kPixels - 1 - y) - 0.5 * (kPixels - 1)) / (4.0 * kRadius);
-        if (glm::length(place) > 0.8) continue;
-        const glm::dvec3 normal(place, std::sqrt(1.0 - glm::dot(place, place)));
-        if (glm::dot(normal, toLight) < 0.3) continue;
-        const double expected = kDefaultIrradiance * 0.5 * surfaceScattering(normal, toLight, toEye);
-        const double ratio = image.pixels[std::size_t(x + kPixels * y)].g / expected;
-        largest = std::max(largest, std::abs(ratio - 1.0));
-        sum += std::abs(ratio - 1.0);
-        ++count;
-      }
-    EXPECT_GT(count, 5000);
-    EXPECT_LT(sum / count, scene == &ofScalars ? 0.015 : 0.025);
-    EXPECT_LT(largest, scene == &ofScalars ? 0.08 : 0.13);
-  }
-}
-
-TEST_F(GatherTest, LightsOfAllKindsMatchTheOracle) {
-  Scene scene = cloud(32);
-  scene.classification.densityScale *= 5.0;
-  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
-  const glm::dvec3 inside(scene.volume.indexToWorld * glm::dvec4(20.2, 21.4, 9.7, 1.0));
-  FrameSettings settings = gathering({48, 48});
-  settings.lighting = Lighting{.lights = {{.place = {0.3, 1.0, 0.2}, .color = {1.0, 0.8, 0.5}},
-                                          {.place = {1.0, 0.7, 0.9}, .atInfinity = false, .intensity = 6.0},
-                                          {.place = inside, .atInfinity = false, .color = {0.1, 0.2, 0.3}, .intensity = 0.1},
-                                          {.place = {-1.0, 0.1, -0.2}, .intensity = 2.0}},
-                               .tint = {0.5, 1.0, 2.0},
-                               .phaseG = 0.4,
-                               .scattering = 2};
-  EXPECT_GE(qualityOf(scene, camera, settings), 38.0);
-  settings.lod = 1.0f;
-  settings.lighting->scattering = 1;
-  Camera distant = camera;
-  distant.position = camera.lookAt + 5.0 * (camera.position - camera.lookAt);
-  EXPECT_GE(qualityOf(scene, distant, settings), 33.0);  // as without lights: some ten pixels
-}
-
-/// With a tint, and of an environment, which have a channel for each colour; beside a light, and of scalars.
-TEST_F(GatherTest, LightFromEverywhereMatchesTheOracle) {
-  Scene scene = cloud(20);
-  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
-  const Lighting uniform{.ambient = {0.9, 0.7, 0.5}};
-  Lighting tinted = uniform, sky;
-  tinted.tint = {0.5, 1.0, 2.0};
-  sky.lights = {{.place = {1.0, 0.2, 0.4}}};
-  sky.scattering = 3;
-  constexpr double kOctaves = 1.75;  // times as bright
-  sky.lights[0].intensity /= kOctaves;
-  auto around = std::make_shared<Environment>(makeSky(16));
-  around->intensity /= kOctaves;
-  sky.environment = around;
-  FrameSettings settings = gathering({32, 32});
-  for (const Lighting& lighting : {tinted, sky}) {
-    settings.lighting = lighting;
-    EXPECT_GE(qualityOf(scene, camera, settings), 42.0);
-  }
-  QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 20, makeProcedural("head", 20));
-  head.classification.order = ClassificationOrder::Post;
-  settings.lighting = uniform;
-  EXPECT_GE(qualityOf({.volume = head.volume, .classification = head.classification}, framingCamera(head.volume, 35.0, 25.0, 1.0, {}), settings), 30.0);
-}
-
-/// Ambient light is computed again if the tint changes, and kept if only its colour does.
-TEST_F(GatherTest, ChangedLightFromEverywhereIsFoundAgain) {
-  const Scene scene = cloud(32);
-  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
-  Renderer renderer(device(), scene.volume, scene.classification, {});
-  FrameSettings settings = gathering({64, 64});
-  settings.lighting = Lighting{.ambient = glm::dvec3(0.5)};
-  const Image half = renderer.render(camera, settings);
-  settings.lighting->ambient = glm::dvec3(1.0);
-  const Image whole = renderer.render(camera, settings);
-  for (std::size_t i = 0; i < half.pixels.size(); ++i)
-    EXPECT_TRUE(glm::all(glm::lessThan(glm::abs(glm::vec3(2.0f * half.pixels[i] - whole.pixels[i])), glm::vec3(1e-5f)))) << i;
-  settings.lighting->tint = {0.5, 1.0, 2.0};
-  EXPECT_LT(psnr(renderer.render(camera, settings), whole), 45.0);
-  settings.lighting = Lighting{.ambient = glm::dvec3(0.5)};
-  EXPECT_TRUE(renderer.render(camera, settings).pixels == half.pixels);
-}
-
 TEST_F(GatherTest, CoarseLevelsLookLikeVoxels) {
   const Volume volume = makeProcedural("cloud", 96);
   const Classification classification{.densityScale = automaticDensityScale(volume, 2.0)};
@@ -391,19 +163,6 @@ TEST_F(GatherTest, CoarseLevelsLookLikeVoxels) {
   const Image voxels = renderer.render(camera, settings);
   settings.lod = 1.0f;
   EXPECT_GE(psnr(renderer.render(camera, settings), voxels), 45.0);
-}
-
-/// PSNR to the oracle, of level of detail 1.
-std::vector<double> GatherTest::qualities(const Scene& scene, const std::vector<Camera>& cameras, int pixels) {
-  Renderer renderer(device(), scene.volume, scene.classification, {});
-  FrameSettings settings = gathering(glm::ivec2(pixels));
-  settings.lod = 1.0f;
-  std::vector<double> result;
-  for (const Camera& camera : cameras) {
-    const Oracle oracle = renderOracle(scene.volume, scene.classification, camera, {.size = settings.size, .tolerance = 4e-3});
-    result.push_back(psnr(renderer.render(camera, settings), oracle.image));
-  }
-  return result;
 }
 
 /// Past 45 degrees rays march along another axis.
@@ -508,26 +267,6 @@ TEST_F(GatherTest, IsTheSameToTheBitEveryTime) {
   const Image image = first.render(camera, settings);
   EXPECT_TRUE(image.pixels == first.render(camera, settings).pixels);
   EXPECT_TRUE(image.pixels == second.render(camera, settings).pixels);
-}
-
-/// What was shaded for one light or for none is not shown with another.
-TEST_F(GatherTest, ChangedLightsAreShadedAgain) {
-  const Volume volume = makeProcedural("cloud", 32);
-  const Classification classification{.densityScale = automaticDensityScale(volume, 2.0)};
-  const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
-  Renderer renderer(device(), volume, classification, {});
-  FrameSettings settings = gathering({64, 64});
-  const Image unlit = renderer.render(camera, settings);
-  settings.lighting = Lighting{.lights = {{.place = {1.0, 0.2, 0.0}}}};
-  const Image right = renderer.render(camera, settings);
-  settings.lighting->lights[0].place = {-1.0, 0.2, 0.0};
-  const Image left = renderer.render(camera, settings);
-  EXPECT_LT(psnr(left, right), 40.0);
-  EXPECT_LT(psnr(unlit, right), 40.0);
-  settings.lighting->lights[0].place = {1.0, 0.2, 0.0};
-  EXPECT_TRUE(renderer.render(camera, settings).pixels == right.pixels);
-  settings.lighting.reset();
-  EXPECT_TRUE(renderer.render(camera, settings).pixels == unlit.pixels);
 }
 
 TEST_F(GatherTest, NothingIsDrawnOfAnEmptyVolume) {
