@@ -22,9 +22,7 @@ constexpr double kFlightPerSecond = 0.5;  // of the box's longest edge
 constexpr float kSplitReach = 8.0f;       // of the mouse, to take the split
 constexpr float kCheckEdge = 12.0f;       // of the squares behind what is transparent
 
-bool isDown(int key) {
-  return ImGui::IsKeyDown(key);
-}
+constexpr std::array kFlightKeys{GLFW_KEY_D, GLFW_KEY_A, GLFW_KEY_E, GLFW_KEY_Q, GLFW_KEY_W, GLFW_KEY_S};
 
 double longestEdge(const Volume& volume) {
   const glm::dmat3 axes(volume.indexToWorld);
@@ -150,9 +148,14 @@ void ImageArea::drag(ViewState& state, const ImageFrame& frame) {
 }
 
 void ImageArea::fly(ViewState& state) {
-  glm::dvec3 way(double(isDown(GLFW_KEY_D)) - double(isDown(GLFW_KEY_A)),
-                 double(isDown(GLFW_KEY_E)) - double(isDown(GLFW_KEY_Q)),
-                 double(isDown(GLFW_KEY_W)) - double(isDown(GLFW_KEY_S)));
+  // A key that is still down after a shortcut or after text was not pressed to fly.
+  const bool free = keysAreFree() && !ImGui::GetIO().KeyCtrl;
+  for (std::size_t i = 0; i < kFlightKeys.size(); ++i) {
+    const bool pressed = flies_[i] || ImGui::IsKeyPressed(kFlightKeys[i], false);
+    flies_[i] = free && pressed && ImGui::IsKeyDown(kFlightKeys[i]);
+  }
+  glm::dvec3 way{double(flies_[0]) - double(flies_[1]), double(flies_[2]) - double(flies_[3]),
+                 double(flies_[4]) - double(flies_[5])};
   if (way == glm::dvec3(0.0) || !state.latest) return;
   moves_ = true;
   const double pace = ImGui::GetIO().KeyShift ? 4.0 : 1.0;
@@ -188,7 +191,7 @@ void ImageArea::draw(ViewState& state, const ShownTextures& textures) {
     state.split = std::clamp((io.MousePos.x - low.x) / room.x, 0.0f, 1.0f);
   moves_ = ImGui::IsItemActive() && held_ == Held::Camera;
   if (hovered && io.MouseWheel != 0.0f) state.look(dollied(*state.camera, std::pow(kDollyPerNotch, double(io.MouseWheel))));
-  if (keysAreFree() && !io.KeyCtrl) fly(state);
+  fly(state);
 }
 
 }  // namespace freevoxels

@@ -1,6 +1,7 @@
 #pragma once
 // The area of the window that shows the image, moves the camera, and changes window and level.
 
+#include <array>
 #include <glm/glm.hpp>
 
 #include "apps/view/overlays.h"
@@ -44,6 +45,7 @@ class ImageArea {
     std::optional<VoxelBox> box;
     std::optional<ClipPlane> plane;
   } clip_;  ///< the handle that is held, as it was when it was taken
+  std::array<bool, 6> flies_{};  ///< for each of the keys right, left, up, down, on and back
   bool moves_ = false, turned_ = false;
 };
 

@@ -46,30 +46,27 @@ bool hides(const InputEvent& event, const InputEvent& before) {
 
 }  // namespace
 
-void InputQueue::take(std::vector<InputEvent>& frame) {
-  const InputEvent& next = events_.front();
-  if (isControl(next)) control_ = next.down;
-  frame.push_back(next);
-  events_.pop_front();
-}
-
 std::vector<InputEvent> InputQueue::nextFrame() {
   std::vector<InputEvent> frame;
-  if (held_ > 0) {
-    --held_;
-    // Keys that are released do not wait: while one is down Dear ImGui repeats it, and Enter would leave the field.
-    while (!events_.empty() && isRelease(events_.front())) take(frame);
-    if (!frame.empty()) unsettled_ = kSettlingFrames;
-    return frame;
-  }
+  const bool waits = held_ > 0;
+  if (waits) --held_;
   while (!events_.empty()) {
     const InputEvent& next = events_.front();
     if (std::ranges::any_of(frame, [&](const InputEvent& before) { return hides(next, before); })) break;
+    // Keys that are released do not wait: while one is down Dear ImGui repeats it, and Enter would leave the field.
+    // What follows does, anew.
+    if (waits && !isRelease(next)) break;
     const bool confirms = next.kind == Kind::Key && next.code == GLFW_KEY_ENTER;
-    if (next.kind == Kind::Key && next.down && (confirms || (control_ && !isModifier(next)))) held_ = kShortcutFrames;
-    take(frame);
+    if (waits || (next.kind == Kind::Key && next.down && (confirms || (control_ && !isModifier(next)))))
+      held_ = kShortcutFrames;
+    if (isControl(next)) control_ = next.down;
+    frame.push_back(next);
+    events_.pop_front();
   }
-  unsettled_ = frame.empty() ? std::max(unsettled_ - 1, 0) : kSettlingFrames;
+  if (!frame.empty())
+    unsettled_ = kSettlingFrames;
+  else if (!waits)
+    unsettled_ = std::max(unsettled_ - 1, 0);
   return frame;
 }
 

@@ -27,8 +27,6 @@ class InputQueue {
   std::vector<InputEvent> nextFrame();
 
  private:
-  void take(std::vector<InputEvent>& frame);
-
   std::deque<InputEvent> events_;
   bool control_ = false;          ///< whether Ctrl is held down
   int held_ = 0, unsettled_ = 0;  ///< frames

@@ -132,7 +132,12 @@ TEST_F(Viewer, HandsMoveTheCamera) {
   EXPECT_NEAR(was.z * arm.x - was.x * arm.z, -std::sin(0.1 * M_PI) * (was.x * was.x + was.z * was.z), 1e-9)
       << "a tenth of the height is a tenth of half a turn";
   for (int i = 0; i < 5; ++i) session->hands(fmt::format("mousemove {} 60 click 1", 390 + 7 * i));
-  EXPECT_EQ(armOf(sceneOf(*session, "clicked.json")), arm) << "a motion before a press turns nothing";
+  const nlohmann::json clicked = sceneOf(*session, "clicked.json");
+  EXPECT_EQ(armOf(clicked), arm) << "a motion before a press turns nothing";
+  session->hands("keydown ctrl keydown w keyup ctrl sleep 0.1 keyup w");
+  EXPECT_EQ(sceneOf(*session, "shortcut.json").at("camera"), clicked.at("camera")) << "what is left of a shortcut flies nowhere";
+  session->hands("keydown w sleep 0.1 keyup w");
+  EXPECT_NE(vectorOf(sceneOf(*session, "flown.json"), "look-at"), vectorOf(clicked, "look-at"));
   for (int axis = 0; axis < 6; ++axis) {
     session->hands("key " + std::to_string(axis + 1));
     glm::dvec3 side(0.0);
