@@ -1,11 +1,11 @@
 #pragma once
 // Internal to the vdb_*.cpp files, since it includes OpenVDB: the values of a tree as bricks of a box.
 
-#include <openvdb/openvdb.h>
 #include <tbb/parallel_for.h>
 
 #include <vector>
 
+#include "engine/volume/openvdb_trees.h"
 #include "engine/volume/vdb_density.h"
 #include "engine/volume/volume.h"
 

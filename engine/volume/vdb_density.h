@@ -2,7 +2,6 @@
 // Internal to the vdb_*.cpp files, since it includes OpenVDB: the conversion of a grid's values to densities,
 // and the box of the voxels that are kept.
 
-#include <openvdb/openvdb.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
 
@@ -10,6 +9,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/volume/openvdb_trees.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {

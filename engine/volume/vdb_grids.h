@@ -3,7 +3,6 @@
 // them can be drawn.
 
 #include <openvdb/io/File.h>
-#include <openvdb/openvdb.h>
 
 #include <array>
 #include <filesystem>
@@ -11,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/volume/openvdb_trees.h"
 #include "engine/volume/vdb_header.h"
 
 namespace freevoxels {

@@ -1,7 +1,6 @@
 // Inputs that cannot be drawn are refused in one sentence, and nothing is written.
 
-#include <openvdb/openvdb.h>
-
+#include "engine/volume/openvdb_trees.h"
 #include "tests/commands/program_runner.h"
 
 namespace freevoxels::test {

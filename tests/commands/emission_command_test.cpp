@@ -1,8 +1,7 @@
 // Emission and grids of albedos from the command line.
 
-#include <openvdb/openvdb.h>
-
 #include "engine/image/image.h"
+#include "engine/volume/openvdb_trees.h"
 #include "tests/commands/program_runner.h"
 
 namespace freevoxels::test {

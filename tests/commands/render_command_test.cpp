@@ -1,6 +1,5 @@
 // freevoxels render, done well.
 
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/image/image.h"
+#include "engine/volume/openvdb_trees.h"
 #include "engine/volume/procedural.h"
 #include "tests/commands/render_fixture.h"
 

@@ -1,10 +1,9 @@
 // freevoxels render of several volumes: the files of a pattern, or named one by one.
 
-#include <openvdb/openvdb.h>
-
 #include <nlohmann/json.hpp>
 
 #include "engine/image/image.h"
+#include "engine/volume/openvdb_trees.h"
 #include "engine/volume/procedural.h"
 #include "engine/volume/vdb.h"
 #include "tests/commands/program_runner.h"

@@ -1,7 +1,6 @@
 // Writes small valid files for the fuzzers to begin with: seeds FOLDER, into FOLDER/{vdb,exr,png,json,fvx}.
 
 #include <openvdb/io/Stream.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include <fstream>
@@ -9,6 +8,7 @@
 #include "engine/core/error.h"
 #include "engine/image/image.h"
 #include "engine/storage/baked_volume.h"
+#include "engine/volume/openvdb_trees.h"
 #include "engine/volume/vdb_grids.h"
 
 namespace {

@@ -2,10 +2,10 @@
 // A .vdb file to write and to read, and grids to put into it.
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 
 #include <string>
 
+#include "engine/volume/openvdb_trees.h"
 #include "engine/volume/procedural.h"
 #include "engine/volume/vdb.h"
 #include "tests/refusal.h"

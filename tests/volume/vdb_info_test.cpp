@@ -1,7 +1,6 @@
 // The grids of a .vdb file: what is said of them, and how they are named and chosen.
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
 #include "tests/volume/vdb_fixture.h"

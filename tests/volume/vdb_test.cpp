@@ -1,7 +1,6 @@
 #include "engine/volume/vdb.h"
 
 #include <gtest/gtest.h>
-#include <openvdb/openvdb.h>
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <unistd.h>
