@@ -8,7 +8,7 @@
 
 namespace freevoxels {
 
-inline double largestDifference(const Image& a, const Image& b) {
+inline double largestPixelDifference(const Image& a, const Image& b) {
   double largest = 0.0;
   for (std::size_t i = 0; i < a.pixels.size(); ++i)
     for (int c = 0; c < 4; ++c)

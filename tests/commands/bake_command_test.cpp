@@ -25,7 +25,7 @@ TEST_F(BakeCommand, KeptScalarsDrawTheSameImageToTheBit) {
     const std::string options = " --size 40x30 --quiet --float" + look;
     expectSuccess(run("render procedural:cloud @original.exr --resolution 64" + options));
     expectSuccess(run("render @a.fvx @baked.exr" + options));
-    EXPECT_EQ(largestDifference(image("baked.exr"), image("original.exr")), 0.0) << options;
+    EXPECT_EQ(largestPixelDifference(image("baked.exr"), image("original.exr")), 0.0) << options;
   }
 }
 
@@ -51,7 +51,7 @@ TEST_F(BakeCommand, AFixedClassificationCannotBeChangedAndAKeptOneCan) {
   const std::string function = R"( --size 24 --unlit --quiet --float --transfer-function {"opacity":[[0,0],[1,0.3]],"range":[0,1]})";
   expectSuccess(run("render procedural:cloud @original.exr --resolution 32" + function));
   expectSuccess(run("render @kept.fvx @kept.exr" + function));
-  EXPECT_EQ(largestDifference(image("kept.exr"), image("original.exr")), 0.0);
+  EXPECT_EQ(largestPixelDifference(image("kept.exr"), image("original.exr")), 0.0);
   for (const std::string option : {"--grid density", "--temperature-grid heat", "--albedo-grid color"})
     expectCleanRefusal("render @kept.fvx @a.png --size 16 " + option, ExitCode::Usage, option.substr(0, option.find(' ')));
 }
@@ -100,7 +100,7 @@ TEST_F(BakeCommand, WhatDoesNotFitIsDrawnCubeByCubeAsTheWholeVolumeIs) {
   expectSuccess(run("bake procedural:cloud @a.fvx --resolution 192 --quiet"));
   const std::string render = "render @a.fvx --size 40 --camera-position 3,1,2 --look-at 0,0,0 --fov 2 --float ";
   expectSuccess(run(render + "@whole.exr --quiet"));
-  ASSERT_GT(largestDifference(image("whole.exr"), Image{.size = {40, 40}, .pixels = std::vector<glm::vec4>(1600)}), 0.1);
+  ASSERT_GT(largestPixelDifference(image("whole.exr"), Image{.size = {40, 40}, .pixels = std::vector<glm::vec4>(1600)}), 0.1);
   std::vector<Image> inCubes;
   for (const int limit : {48, 64, 256}) {
     const ProgramResult result = run(render + fmt::format("@limited.exr --verbose --memory-limit {}", limit));
@@ -120,16 +120,16 @@ TEST_F(BakeCommand, SplatsOfWhatDoesNotFitAreDrawnRegionByRegionToTheSameBitsInA
   expectSuccess(run("bake procedural:cloud @a.fvx --resolution 192 --quiet"));
   const std::string render = "render @a.fvx --size 40 --camera-position 3,1,2 --look-at 0,0,0 --fov 2 --draw splats ";
   expectSuccess(run(render + "@shares.exr --share 0/1 --float --quiet"));
-  ASSERT_GT(largestDifference(image("shares.exr"), Image{.size = {40, 40}, .pixels = std::vector<glm::vec4>(1600)}), 0.1);
+  ASSERT_GT(largestPixelDifference(image("shares.exr"), Image{.size = {40, 40}, .pixels = std::vector<glm::vec4>(1600)}), 0.1);
   for (const int limit : {48, 64}) {
     const ProgramResult result = run(render + fmt::format("@limited.exr --float --verbose --memory-limit {}", limit));
     expectSuccess(result);
     EXPECT_NE(result.err.find("region by region: the volume does not fit"), std::string::npos) << result.err;
-    EXPECT_EQ(largestDifference(image("limited.exr"), image("shares.exr")), 0.0) << limit;
+    EXPECT_EQ(largestPixelDifference(image("limited.exr"), image("shares.exr")), 0.0) << limit;
   }
   for (const std::string part : {"0", "1"}) expectSuccess(run(render + "@part" + part + ".exr --quiet --sums --share " + part + "/2"));
   expectSuccess(run("merge @part0.exr @part1.exr @merged.exr --float --quiet"));
-  EXPECT_EQ(largestDifference(image("merged.exr"), image("shares.exr")), 0.0);
+  EXPECT_EQ(largestPixelDifference(image("merged.exr"), image("shares.exr")), 0.0);
 }
 
 TEST_F(BakeCommand, BadOutputsAreRefused) {

@@ -44,7 +44,7 @@ class CullingTest : public DeviceTest {
     const Image expected = renderer.render(camera, settings);
     settings.culling = true;
     const Image image = renderer.render(camera, settings);
-    EXPECT_LE(largestDifference(image, expected), kCullingDifference) << name;
+    EXPECT_LE(largestPixelDifference(image, expected), kCullingDifference) << name;
     EXPECT_GE(psnr(image, expected), kCullingPsnr) << name;
     return {renderer.cutCounts(), *renderer.occupiedVoxelCount()};
   }
@@ -138,7 +138,7 @@ TEST_F(CullingTest, WhatIsOutsideOfTheImageIsNotDrawn) {
       const Image image = renderer.render(camera, settings);
       const CutCounts counts = renderer.cutCounts();
       settings.culling = false;
-      EXPECT_LE(largestDifference(image, renderer.render(camera, settings)), kFrustumDifference);
+      EXPECT_LE(largestPixelDifference(image, renderer.render(camera, settings)), kFrustumDifference);
       EXPECT_LT(double(drawnBlocks(counts)), (zoom > 2.0 ? 0.2 : 1.0) * double(*renderer.occupiedVoxelCount()));
       EXPECT_GT(counts.outside, 0u);
       EXPECT_EQ(counts.hidden, 0u);

@@ -68,7 +68,7 @@ class EmissionTest : public SplatTest {
                                             .emission = emission},
                                            camera, settings, RendererStages(renderer).downloadDrawnBlocks());
       const Image expected = referenceResolve(sums, settings);
-      EXPECT_LE(largestDifference(image, expected), 2e-3);
+      EXPECT_LE(largestPixelDifference(image, expected), 2e-3);
       EXPECT_GE(psnr(image, expected), 70.0);
       float brightest = 0.0f;
       for (const glm::vec4& pixel : image.pixels) brightest = std::max(brightest, pixel.r);
@@ -188,7 +188,7 @@ TEST_F(EmissionTest, CullingLeavesALampInSmokeThere) {
   const Image image = renderer.render(camera, settings);
   settings.culling = false;
   const Image expected = renderer.render(camera, settings);
-  EXPECT_LE(largestDifference(image, expected), 1e-2);
+  EXPECT_LE(largestPixelDifference(image, expected), 1e-2);
   EXPECT_GT(expected.pixels[32 * 64 + 32].r, 1.5f);
 }
 

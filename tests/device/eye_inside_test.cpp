@@ -211,7 +211,7 @@ TEST_F(EyeInsideTest, SmallStepsOfTheEyeChangeTheImageALittle) {
     images.push_back(renderer.render(at(v, {4.7 + 0.01 * i, 6.8 + 0.01 * i, 4.0}, {1.0, 0.2, 0.1}), {.size = {24, 24}}));
   double least = 1.0, most = 0.0;
   for (std::size_t i = 1; i < images.size(); ++i) {
-    const double change = largestDifference(images[i], images[i - 1]);
+    const double change = largestPixelDifference(images[i], images[i - 1]);
     least = std::min(least, change);
     most = std::max(most, change);
   }

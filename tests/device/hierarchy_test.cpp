@@ -59,7 +59,7 @@ class HierarchyTest : public DeviceTest {
         {.extinction = voxels.extinction, .table = voxels.table, .tableSettings = table, .coarser = levels},
         camera, settings, drawn);
     const Image expected = referenceResolve(sums, settings);
-    EXPECT_LE(largestDifference(image, expected), 1e-4);
+    EXPECT_LE(largestPixelDifference(image, expected), 1e-4);
     EXPECT_LE(worstRelativeDepth(image, expected), 1e-3);
     EXPECT_GE(psnr(image, expected), 90.0);
   }

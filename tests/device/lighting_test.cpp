@@ -227,7 +227,7 @@ TEST_F(LightingTest, SortedImagesMatchTheReference) {
   Renderer renderer(device(), v, classification, {});
   const Image image = renderer.render(camera, settings);
   const Image expected = referenceSortedPicture(v, classification, camera, settings, referenceVisibleVoxels(extinction), &light);
-  EXPECT_LE(largestDifference(image, expected), 5e-3);
+  EXPECT_LE(largestPixelDifference(image, expected), 5e-3);
   EXPECT_GE(psnr(image, expected), 65.0);
 }
 

@@ -118,7 +118,7 @@ TEST_F(SharesTest, TheImageIsThatOfAFrameThatIsDrawnAtOnce) {
     const Image expected = renderer.render(scene.camera, scene.settings);
     float brightest = 0.0f;
     for (const glm::vec4& pixel : expected.pixels) brightest = std::max({brightest, pixel.r, pixel.g, pixel.b, pixel.a});
-    EXPECT_LE(largestDifference(shared, expected), 2e-5 * brightest);
+    EXPECT_LE(largestPixelDifference(shared, expected), 2e-5 * brightest);
     ASSERT_EQ(shared.depth.size(), expected.depth.size());
     for (std::size_t i = 0; i < shared.depth.size(); ++i)
       if (expected.pixels[i].a > 1e-4f) { EXPECT_NEAR(shared.depth[i], expected.depth[i], 1e-5 * expected.depth[i]); }
@@ -171,7 +171,7 @@ TEST_F(SharesTest, HostResolvesALatticeAsTheDeviceDoes) {
     std::vector<LatticeSample> samples;
     for (const GatherSums& sum : stages.gathered) samples.push_back({{sum.color, sum.energy}, sum.distance});
     const Image image = resolveLattice(lattice, settings.size, samples);
-    EXPECT_LE(largestDifference(image, stages.image), 2e-5);
+    EXPECT_LE(largestPixelDifference(image, stages.image), 2e-5);
     for (std::size_t i = 0; i < image.depth.size(); ++i)
       if (image.pixels[i].a > 0.01f) { EXPECT_NEAR(image.depth[i], stages.image.depth[i], 1e-3 * image.depth[i]); }
   }
@@ -206,7 +206,7 @@ TEST_F(SharesTest, RectangleHoldsAllThatIsDrawn) {
   const FixedSums sums = renderer.renderShares(scene.camera, scene.settings, {});
   EXPECT_LT(sums.pixelCount(), std::size_t(128 * 96 / 4));
   scene.settings.cullThreshold = 0.0f;
-  EXPECT_LE(largestDifference(resolveSums(sums, true), renderer.render(scene.camera, scene.settings)), 2e-5);
+  EXPECT_LE(largestPixelDifference(resolveSums(sums, true), renderer.render(scene.camera, scene.settings)), 2e-5);
 }
 
 /// Half a unit of each of 256 shares, against the frame's largest sums.
@@ -233,7 +233,7 @@ TEST_F(SharesTest, OpaqueAndEmptyVolumesResolveAsTheyAre) {
     const FrameSettings settings{.size = {32, 32}, .draw = draw};
     const Image image = resolveSums(ofOpaque.renderShares(camera, settings, {}), true);
     EXPECT_NEAR(image.pixels[32 * 16 + 16].a, 1.0f, 2e-6f);  // the stencil knows no less transmittance than 1e-6
-    EXPECT_LE(largestDifference(image, ofOpaque.render(camera, settings)), draw == Draw::Splats ? 1e-4 : 0.02);
+    EXPECT_LE(largestPixelDifference(image, ofOpaque.render(camera, settings)), draw == Draw::Splats ? 1e-4 : 0.02);
     for (const glm::vec4& pixel : resolveSums(ofEmpty.renderShares(camera, settings, {1, 2}), true).pixels) EXPECT_EQ(pixel, glm::vec4(0.0f));
   }
 }

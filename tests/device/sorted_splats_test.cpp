@@ -29,7 +29,7 @@ class SortedSplatsTest : public DeviceTest {
       ASSERT_EQ(std::isinf(image.depth[i]), image.pixels[i].a == 0.0f);
     }
     EXPECT_GE(largest, 0.2);
-    EXPECT_LE(largestDifference(image, expected), 1e-3);
+    EXPECT_LE(largestPixelDifference(image, expected), 1e-3);
     EXPECT_LE(worstRelativeDepth(image, expected), 1e-3);
     EXPECT_GE(psnr(image, expected), 90.0);
   }

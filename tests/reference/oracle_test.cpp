@@ -333,7 +333,7 @@ TEST(Oracle, ConvergesToItsToleranceOrSaysThatItDidNot) {
   const Oracle standard = render(1e-3, 32), best = render(0.0, 64), coarse = render(1e-3, 4);
   EXPECT_TRUE(standard.converged);
   EXPECT_LT(standard.largestChange, 1e-3);
-  EXPECT_LT(largestDifference(standard.image, best.image), 1e-3);
+  EXPECT_LT(largestPixelDifference(standard.image, best.image), 1e-3);
   EXPECT_EQ(best.samples, 64);
   EXPECT_FALSE(best.converged);
   EXPECT_EQ(coarse.samples, 4);

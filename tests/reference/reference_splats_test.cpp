@@ -306,7 +306,7 @@ TEST(ReferenceSplats, OrderOfTheVoxelsDoesNotMatter) {
     std::shuffle(shuffled.begin(), shuffled.end(), std::mt19937(9));
     const Image image = referenceResolve(scene.sums(camera, settings), settings);
     EXPECT_GT(image.pixels[20 * 60 + 30].a, 0.3f);
-    EXPECT_LT(largestDifference(image, referenceResolve(scene.sums(camera, settings, shuffled), settings)),
+    EXPECT_LT(largestPixelDifference(image, referenceResolve(scene.sums(camera, settings, shuffled), settings)),
               1e-6);
   }
 }
@@ -332,7 +332,7 @@ TEST(ReferenceSplats, GroupsOfVoxelsDrawnAloneAddUpToTheImage) {
     }
     const Image whole = referenceResolve(scene.sums(camera, settings), settings);
     const Image added = referenceResolve(total, settings);
-    EXPECT_LT(largestDifference(whole, added), 1e-6);
+    EXPECT_LT(largestPixelDifference(whole, added), 1e-6);
     for (std::size_t i = 0; i < whole.depth.size(); ++i) EXPECT_FLOAT_EQ(whole.depth[i], added.depth[i]);
   }
 }
