@@ -51,7 +51,7 @@ int neededMiB(const ProgramResult& result) {
 }
 
 TEST_F(MemoryLimit, IsRaisedOnceOnlyWhateverItIs) {
-  for (const char* scene : {"procedural:cloud --resolution 72 --size 200x150 ", "procedural:head --resolution 48 --size 320x200 "}) {
+  for (const char* scene : {"procedural:cloud --resolution 48 --size 160x120 ", "procedural:head --resolution 40 --size 240x160 "}) {
     SCOPED_TRACE(scene);
     const std::string command = std::string("render ") + scene + "--quiet @a.png --memory-limit ";
     const int needed = neededMiB(run(command + "1"));

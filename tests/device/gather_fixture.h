@@ -30,11 +30,17 @@ class GatherTest : public SplatTest {
     scene.classification.densityScale = automaticDensityScale(scene.volume, 2.0);
     return scene;
   }
-  static double qualityOf(const Scene& scene, const Camera& camera, const FrameSettings& settings) {
+  /// PSNR to the oracle of frames that differ only in how they are drawn.
+  static std::vector<double> qualitiesOf(const Scene& scene, const Camera& camera, const std::vector<FrameSettings>& frames) {
     Renderer renderer(device(), scene.volume, scene.classification, {});
     const Oracle oracle = renderOracle(scene.volume, scene.classification, camera,
-                                       {.size = settings.size, .tolerance = 4e-3, .lighting = settings.lighting});
-    return psnr(renderer.render(camera, settings), oracle.image);
+                                       {.size = frames.front().size, .tolerance = 4e-3, .lighting = frames.front().lighting});
+    std::vector<double> result;
+    for (const FrameSettings& settings : frames) result.push_back(psnr(renderer.render(camera, settings), oracle.image));
+    return result;
+  }
+  static double qualityOf(const Scene& scene, const Camera& camera, const FrameSettings& settings) {
+    return qualitiesOf(scene, camera, {settings}).front();
   }
   /// PSNR to the oracle, of level of detail 1.
   static std::vector<double> qualities(const Scene& scene, const std::vector<Camera>& cameras, int pixels) {

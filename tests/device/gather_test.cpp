@@ -61,10 +61,10 @@ TEST_F(GatherTest, IsAsNearToTheOracleAsSplats) {
   for (const Camera& base : {Camera{}, orthographic})
     for (const glm::dvec2 angles : {glm::dvec2(35.0, 25.0), {80.0, 10.0}, {200.0, 75.0}}) {
       const Camera camera = framingCamera(scene.volume, angles.x, angles.y, 1.0, base);
-      const double splats = qualityOf(scene, camera, {.size = {128, 128}, .draw = Draw::Splats});
-      const double gather = qualityOf(scene, camera, gathering({128, 128}));
-      EXPECT_GE(gather, splats - 0.3) << angles.x << ' ' << angles.y;
-      EXPECT_GE(gather, 40.0) << angles.x << ' ' << angles.y;
+      const std::vector<double> quality =
+          qualitiesOf(scene, camera, {{.size = {128, 128}, .draw = Draw::Splats}, gathering({128, 128})});
+      EXPECT_GE(quality[1], quality[0] - 0.3) << angles.x << ' ' << angles.y;
+      EXPECT_GE(quality[1], 40.0) << angles.x << ' ' << angles.y;
     }
 }
 
@@ -118,15 +118,15 @@ TEST_F(GatherTest, InterpolatedScalarsMatchTheOracleWhereverTheyAreRead) {
                                                            .color = {{0.1f, {0.9f, 0.5f, 0.3f}}, {0.6f, {0.4f, 0.6f, 0.9f}}},
                                                            .unitDistance = scene.volume.voxelSize()};
   const Camera far = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
-  EXPECT_GE(qualityOf(scene, far, gathering({96, 96})), 42.0);
-  FrameSettings lit = gathering({64, 64});
+  EXPECT_GE(qualityOf(scene, far, gathering({64, 64})), 42.0);
+  FrameSettings lit = gathering({40, 40});
   lit.lighting = Lighting{.lights = {{}}};
   EXPECT_GE(qualityOf(scene, far, lit), 30.0);
   Camera inside;
   inside.position = glm::dvec3(scene.volume.indexToWorld * glm::dvec4(5.3, 12.1, 17.7, 1.0));
   inside.lookAt = glm::dvec3(scene.volume.indexToWorld * glm::dvec4(25.0, 12.0, 16.0, 1.0));
   inside.verticalFov = 70.0;
-  EXPECT_GE(qualityOf(scene, inside, gathering({96, 96})), 38.0);
+  EXPECT_GE(qualityOf(scene, inside, gathering({64, 64})), 38.0);
   Camera distant = far;
   distant.position = far.lookAt + 6.0 * (far.position - far.lookAt);
   FrameSettings coarse = gathering({96, 96});
