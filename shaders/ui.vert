@@ -1,5 +1,5 @@
 #version 460
-// Panels and pictures of the viewer's window: triangles of Dear ImGui.
+// Panels and images of the viewer's window: triangles of Dear ImGui.
 #extension GL_GOOGLE_include_directive : require
 #include "ui_interface.h"
 

@@ -42,7 +42,7 @@ std::vector<std::uint32_t> referenceBackToFront(const Volume& volume, const Came
   return sorted;
 }
 
-Image referenceSortedPicture(const Volume& volume, const Classification& classification, const Camera& camera,
+Image referenceSortedImage(const Volume& volume, const Classification& classification, const Camera& camera,
                              const FrameSettings& settings, std::span<const std::uint32_t> voxels,
                              const ReferenceLight* light) {
   const SplatProjector projector(volume, camera, settings.size);

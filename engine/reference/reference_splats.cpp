@@ -78,7 +78,7 @@ class SplatSummer {
   std::unique_ptr<ReferenceDepth> raysFor(const Camera& camera) const;
   std::unique_ptr<ReferenceDepth> tableFor(const Camera& camera) const;
   std::unique_ptr<ReferenceLight> lightFor() const;
-  void add(const Block& block, std::vector<SplatSums>& picture) const;
+  void add(const Block& block, std::vector<SplatSums>& image) const;
   double extinctionOf(const Block& block) const {
     return freevoxels::extinctionOf(block, volume_, inputs_.extinction, inputs_.coarser);
   }
@@ -218,7 +218,7 @@ double SplatSummer::leaving(const Block& block, const ProjectedSplat& splat, dou
          std::exp(-0.5 * own) * halfLayer(1.0, -1.0, own) + std::exp(-own) * halfLayer(0.5, -1.0, behind);
 }
 
-void SplatSummer::add(const Block& block, std::vector<SplatSums>& picture) const {
+void SplatSummer::add(const Block& block, std::vector<SplatSums>& image) const {
   const std::optional<ProjectedSplat> splat = projector_.project(block, centreOfMass(block));
   if (!splat) return;
   const double sigma = extinctionOf(block);
@@ -231,7 +231,7 @@ void SplatSummer::add(const Block& block, std::vector<SplatSums>& picture) const
                                   : projector_.leaving(*splat, sigma, layers);
   const glm::dvec3 radiance = light_ ? albedo * light_->scattered(block, splat->toEye) : albedo;
   const auto addTo = [&](const CoveredPixel& pixel) {
-    SplatSums& sums = picture[pixel.index];
+    SplatSums& sums = image[pixel.index];
     const double seen = leaving * std::exp(-depth.at(pixel)) * pixel.omega, energy = sigma * seen;
     sums.color += energy * radiance + seen * emission;
     sums.energy += energy;
@@ -243,17 +243,17 @@ void SplatSummer::add(const Block& block, std::vector<SplatSums>& picture) const
 
 template <typename Item, typename BlockOf>
 std::vector<SplatSums> SplatSummer::sum(std::span<const Item> list, const BlockOf& blockOf) const {
-  using Picture = std::vector<SplatSums>;
+  using SumImage = std::vector<SplatSums>;
   using Range = tbb::blocked_range<std::size_t>;
-  const auto addRange = [&](const Range& range, Picture picture) {
-    for (const Item& item : list.subspan(range.begin(), range.size())) add(blockOf(item), picture);
-    return picture;
+  const auto addRange = [&](const Range& range, SumImage image) {
+    for (const Item& item : list.subspan(range.begin(), range.size())) add(blockOf(item), image);
+    return image;
   };
-  const auto join = [](Picture left, const Picture& right) {
+  const auto join = [](SumImage left, const SumImage& right) {
     for (std::size_t i = 0; i < left.size(); ++i) left[i] += right[i];
     return left;
   };
-  const Picture empty(std::size_t(settings_.size.x) * std::size_t(settings_.size.y));
+  const SumImage empty(std::size_t(settings_.size.x) * std::size_t(settings_.size.y));
   const Range all(0, list.size(), std::max<std::size_t>(list.size() / kParts, 1));
   return tbb::parallel_deterministic_reduce(all, empty, addRange, join);
 }

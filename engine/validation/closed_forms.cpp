@@ -68,7 +68,7 @@ void checkCube(const StageMaker& make, int edge, ReportSection& section) {
   const glm::ivec2 size(3 * edge);
   const Volume cube = constantVolume(glm::ivec3(edge), cubeTransform(glm::ivec3(edge)), 1.0);
   const auto device = make(cube, physical(sigma, color), {});
-  ReportPictures pictures{.caption = "A homogeneous cube: the device's images", .pictures = {}};
+  ImageRow row{.caption = "A homogeneous cube: the device's images", .images = {}};
   for (const View& view : kViews) {
     const Camera camera = cameraOf(cube, view);
     const BoxImage box = boxImage(cube, sigma, color, camera, size);
@@ -81,9 +81,9 @@ void checkCube(const StageMaker& make, int edge, ReportSection& section) {
                                          view.orthographic ? "orthographic" : "perspective");
     section.checks.push_back(
         worst.atMost(kInsideTolerance, fmt::format("homogeneous cube away from its edges, {}", name)));
-    pictures.pictures.push_back({name, image});
+    row.images.push_back({name, image});
   }
-  section.pictures.push_back(std::move(pictures));
+  section.imageRows.push_back(std::move(row));
 }
 
 /// The depths of all pixels add up to sigma times the voxel's volume.

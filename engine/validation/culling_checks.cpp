@@ -84,8 +84,8 @@ ReportSection cullingChecks(const Device& device, const QualityScene& scene, int
       leastAt = view.name;
     }
     worst.take(largestDifference(image, expected).figure(), [&] {
-      section.pictures = {{.caption = fmt::format("Where they differ most: {}", view.name),
-                           .pictures = {{"everything", expected},
+      section.imageRows = {{.caption = fmt::format("Where they differ most: {}", view.name),
+                           .images = {{"everything", expected},
                                         {"culled", image},
                                         {fmt::format("difference times {:g}", kAmplification), amplifiedDifference(image, expected)}}}};
       return view.name;

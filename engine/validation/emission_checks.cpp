@@ -87,13 +87,13 @@ void checkFire(const Device& device, const Volume& volume, const Medium& medium,
     const Camera camera = viewCamera(volume, view);
     const Image oracle =
         renderOracle(volume, classification, camera, {.size = glm::ivec2(edge), .tolerance = 4e-3}).image;
-    ReportPictures pictures{.caption = fmt::format("{}, {}", medium.name, viewText(view)),
-                            .pictures = {{"oracle", oracle}},
+    ImageRow row{.caption = fmt::format("{}, {}", medium.name, viewText(view)),
+                            .images = {{"oracle", oracle}},
                             .background = glm::vec3(0.0f)};
     for (std::size_t i = 0; i < kMethods.size(); ++i) {
       const Image image = renderer.render(camera, {.size = glm::ivec2(edge), .attenuation = kMethods[i].attenuation});
       const double psnr = compareImages(image, oracle).psnr;
-      pictures.pictures.push_back({kMethods[i].name, image});
+      row.images.push_back({kMethods[i].name, image});
       if (&view == views || psnr < checks[i].figure)
         checks[i] = {.name = fmt::format("{}, {}", medium.name, kMethods[i].name),
                      .figure = psnr,
@@ -102,7 +102,7 @@ void checkFire(const Device& device, const Volume& volume, const Medium& medium,
                      .unit = "dB",
                      .where = viewText(view)};
     }
-    section.pictures.push_back(std::move(pictures));
+    section.imageRows.push_back(std::move(row));
   }
   section.checks.insert(section.checks.end(), checks.begin(), checks.end());
 }

@@ -72,13 +72,13 @@ Check mostWrongChange(const ReportPlot::Series& wrong, const std::string& method
                       "RMSE");
 }
 
-ReportPictures someFrames(const std::string& method, const std::vector<Image>& images, const std::vector<Image>& oracle) {
-  ReportPictures shown{.caption = fmt::format("Frames of \"{}\", each before the oracle's", method),
-                       .pictures = {}};
+ImageRow someFrames(const std::string& method, const std::vector<Image>& images, const std::vector<Image>& oracle) {
+  ImageRow shown{.caption = fmt::format("Frames of \"{}\", each before the oracle's", method),
+                       .images = {}};
   for (std::size_t i = 0; i < kShownFrames; ++i) {
     const std::size_t frame = i * (images.size() - 1) / (kShownFrames - 1);
-    shown.pictures.push_back({fmt::format("frame {}", frame), images[frame]});
-    shown.pictures.push_back({"oracle", oracle[frame]});
+    shown.images.push_back({fmt::format("frame {}", frame), images[frame]});
+    shown.images.push_back({"oracle", oracle[frame]});
   }
   return shown;
 }
@@ -116,7 +116,7 @@ ReportSection flyThroughQuality(const StageMaker& make, const QualityScene& scen
     section.plots.push_back(changePlot(images, oracle));
     section.checks = {leastPsnr(psnr.series.front()),
                       mostWrongChange(section.plots.front().series.back(), method.name)};
-    section.pictures.push_back(someFrames(method.name, images, oracle));
+    section.imageRows.push_back(someFrames(method.name, images, oracle));
   }
   section.plots.insert(section.plots.begin(), std::move(psnr));
   return section;

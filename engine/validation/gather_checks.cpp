@@ -276,7 +276,7 @@ void checkFrame(GatherOutputs& device, const ValidationScene& scene, const Class
     checkImage(stages.image, reference.image(stages.smoothed), "gather image", frame.name, section.checks);
   }
   section.checks.push_back(checkEnd(device, camera, settings, samples, tolerance, classification.emission.has_value(), frame.name));
-  section.pictures.push_back(comparedPictures(stages.image, reference.image(reference.smoothed(samples)),
+  section.imageRows.push_back(comparedImages(stages.image, reference.image(reference.smoothed(samples)),
                                               fmt::format("Frame: {}", frame.name), "reference, from the device's blocks"));
 }
 

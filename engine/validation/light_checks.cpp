@@ -83,13 +83,12 @@ void checkBall(const Device& device, int resolution, ReportSection& section) {
   const Classification medium{.densityScale = 1.0};
   const Volume fogAlone = foggyBall(resolution, false), fogAndBall = foggyBall(resolution, true);
   Renderer fog(device, fogAlone, medium, {}), ball(device, fogAndBall, medium, {});
-  ReportPictures pictures{.caption = "A ball in fog", .pictures = {}};
+  ImageRow row{.caption = "A ball in fog", .images = {}};
   for (const Shadows& shadows : kShadows) {
     FrameSettings settings{.size = glm::ivec2(4 * resolution)};
     settings.lighting = Lighting{.lights = {{.place = direction}}, .attenuation = shadows.attenuation};
     const Image empty = fog.render(kBoxCamera, settings), shaded = ball.render(kBoxCamera, settings);
-    pictures.pictures.push_back({fmt::format("{}: {:g} times what is missing", shadows.name, kDifferenceGain),
-                                 amplified(empty, shaded)});
+    row.images.push_back({fmt::format("{}: {:g} times what is missing", shadows.name, kDifferenceGain), amplified(empty, shaded)});
     const double beside = partBeside(empty, shaded, resolution, way);
     section.tables.front().rows.push_back({shadows.name, fmt::format("{:.3f}", beside)});
     if (shadows.attenuation == LightAttenuation::Exact)
@@ -99,7 +98,7 @@ void checkBall(const Device& device, int resolution, ReportSection& section) {
                                 .unit = "of all that is missing",
                                 .where = ""});
   }
-  section.pictures.push_back(std::move(pictures));
+  section.imageRows.push_back(std::move(row));
 }
 
 /// Scalar 1 in the wall of an opaque hollow ball, which is two voxels thick, 0.5 inside it; no data around
@@ -185,21 +184,21 @@ void compareToOracle(const Device& device, const QualityScene& scene, std::span<
   for (const QualityView& view : views) {
     const Camera camera = viewCamera(scene.volume, view);
     Image oracle;
-    ReportPictures pictures{.caption = viewText(view), .pictures = {}, .background = {}};
+    ImageRow shown{.caption = viewText(view), .images = {}, .background = {}};
     std::vector<std::string> row{viewText(view)};
     for (std::size_t i = 0; i < cases.size(); ++i) {
       if (i == 0 || !looksAlike(cases[i].lighting, cases[i - 1].lighting)) {
         const OracleSettings truth{.size = glm::ivec2(imageEdge), .tolerance = 4e-3, .lighting = cases[i].lighting};
         oracle = renderOracle(scene.volume, scene.classification, camera, truth).image;
-        pictures.pictures.push_back({"oracle", oracle});
+        shown.images.push_back({"oracle", oracle});
       }
       const FrameSettings settings{.size = glm::ivec2(imageEdge), .draw = cases[i].draw, .lighting = cases[i].lighting};
       const Image image = renderer.render(camera, settings);
       const double psnr = compareImages(image, oracle).psnr;
       row.push_back(fmt::format("{:.1f}", psnr));
       sums[i] += psnr;
-      pictures.pictures.push_back({cases[i].name, image});
-      pictures.pictures.push_back({fmt::format("{}: {:g} times the difference", cases[i].name, kDifferenceGain), amplified(image, oracle)});
+      shown.images.push_back({cases[i].name, image});
+      shown.images.push_back({fmt::format("{}: {:g} times the difference", cases[i].name, kDifferenceGain), amplified(image, oracle)});
       if (table.rows.empty() || psnr < section.checks[i].figure)
         section.checks[i] = {.name = cases[i].name,
                              .figure = psnr,
@@ -209,7 +208,7 @@ void compareToOracle(const Device& device, const QualityScene& scene, std::span<
                              .where = viewText(view)};
     }
     table.rows.push_back(std::move(row));
-    section.pictures.push_back(std::move(pictures));
+    section.imageRows.push_back(std::move(shown));
   }
   section.tables.push_back(std::move(table));
   for (std::size_t i = 0; i < cases.size(); ++i)

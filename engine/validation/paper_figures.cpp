@@ -111,8 +111,8 @@ void addLeakingView(const StageMaker& make, const Volume& cube, const QualityVie
   table.rows.push_back({viewText(view), fmt::format("{:.4f}", sortedError),
                         fmt::format("{:.4f}", meanAlphaError(additive, oracle)),
                         fmt::format("{:.4f}", meanAlphaError(normalised, oracle))});
-  section.pictures.push_back({.caption = "From " + viewText(view),
-                              .pictures = {{"sorted, back to front: leaks", sorted},
+  section.imageRows.push_back({.caption = "From " + viewText(view),
+                              .images = {{"sorted, back to front: leaks", sorted},
                                            {"FreeVoxels, additive", additive},
                                            {"FreeVoxels, normalised", normalised},
                                            {"oracle", oracle}},
@@ -164,10 +164,10 @@ ReportSection paperFigure2(const StageMaker& make) {
       .text =
           "Each voxel is as bright as the transmittance from it to the outside along a direction d, as the "
           "table has it (Eq. 5): white where the way is free, darker the more of the cube is in the way."};
-  ReportPictures pictures{
+  ImageRow row{
       .caption =
           "Seen from azimuth -35, elevation 25: +x points to the upper right, +y up, +z to the lower right",
-      .pictures = {},
+      .images = {},
       .background = kShownBackground};
   for (const int direction :
        {directionIndex(kLatticeSteps, {1, 0, 0}), directionIndex(kLatticeSteps, {1, 1, 0}),
@@ -175,10 +175,10 @@ ReportSection paperFigure2(const StageMaker& make) {
     const Volume shown = transmittances(cube, table[std::size_t(direction)]);
     section.checks.push_back(checkTransmittances(shown, direction));
     const auto outputs = make(shown, asBrightness(shown), {});
-    pictures.pictures.push_back(
+    row.images.push_back(
         {directionText(kLatticeSteps, direction), outputs->image(viewCamera(shown, kTableView), {.size = kTableImage})});
   }
-  section.pictures.push_back(std::move(pictures));
+  section.imageRows.push_back(std::move(row));
   return section;
 }
 
@@ -216,8 +216,8 @@ ReportSection paperFigure7(const StageMaker& make) {
   red.lights.front().color = kRed;
   turning.tint = kFleshTint;
   const Image turned = shown.image(kLitImage, turning);
-  section.pictures.push_back({.caption = "From " + viewText(kLitView),
-                              .pictures = {{"without light", shown.image(kLitImage, std::nullopt)},
+  section.imageRows.push_back({.caption = "From " + viewText(kLitView),
+                              .images = {{"without light", shown.image(kLitImage, std::nullopt)},
                                            {"red light", shown.image(kLitImage, red)},
                                            {"white light that turns red", turned}},
                               .background = glm::vec3(0.0f)});

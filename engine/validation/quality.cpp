@@ -41,10 +41,10 @@ Image flipErrorImage(const Image& test, const Image& reference) {
   return magmaImage(hdrFlip(compositeOver(test, grey), shown, flipExposures(shown)));
 }
 
-ReportPictures worstPictures(const std::string& view, const Image& oracle, const QualityMethod& first, const Image& image,
+ImageRow worstImages(const std::string& view, const Image& oracle, const QualityMethod& first, const Image& image,
                              const Image& sorted) {
   return {.caption = fmt::format("The view {}, where the method \"{}\" is worst", view, first.name),
-          .pictures = {{"oracle", oracle},
+          .images = {{"oracle", oracle},
                        {first.name, image},
                        {fmt::format("{}: {:g} times the difference", first.name, kDifferenceGain), visibleDifference(image, oracle)},
                        {first.name + ": HDR-FLIP, black 0, yellow 1", flipErrorImage(image, oracle)},
@@ -99,8 +99,8 @@ QualityResult imageQuality(const StageMaker& make, const QualityScene& scene, co
                         .checks = sceneChecks(figures, methods),
                         .tables = {methodTable(figures, methods)},
                         .plots = {},
-                        .pictures = {worstPictures(viewText(run.views[worst]), oracle[worst], methods.front(), images.front()[worst],
-                                                   images[sortedMethod(methods)][worst])}};
+                        .imageRows = {worstImages(viewText(run.views[worst]), oracle[worst], methods.front(), images.front()[worst],
+                                                  images[sortedMethod(methods)][worst])}};
   if (run.views.size() > 1) section.tables.push_back(viewTable(figures, methods));
   return {std::move(section), std::move(figures)};
 }

@@ -41,13 +41,13 @@ struct ReportPlot {
 };
 
 /// Images side by side, embedded as PNG over `background` (linear).
-struct ReportPictures {
-  struct Picture {
+struct ImageRow {
+  struct Captioned {
     std::string caption;
     Image image;
   };
   std::string caption;
-  std::vector<Picture> pictures;
+  std::vector<Captioned> images;
   glm::vec3 background{0.0f};
 };
 
@@ -57,7 +57,7 @@ struct ReportSection {
   std::vector<Check> checks;
   std::vector<ReportTable> tables;
   std::vector<ReportPlot> plots;
-  std::vector<ReportPictures> pictures;
+  std::vector<ImageRow> imageRows;
 
   std::size_t failures() const;
   bool passed() const { return failures() == 0; }

@@ -19,7 +19,7 @@ namespace {
 
 constexpr const char* kTitle = "FreeVoxels validation report";
 /// Smaller images are shown at whole multiples of their size, so that their pixels are visible.
-constexpr int kSmallPicture = 256;
+constexpr int kSmallImage = 256;
 
 std::string plural(std::size_t count, const char* noun) {
   return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
@@ -115,7 +115,7 @@ class HtmlWriter {
     for (const ReportTable& table : section.tables) this->table(table);
     for (const ReportPlot& plot : section.plots)
       add("<figure>\n{}<figcaption>{}</figcaption>\n</figure>\n", svgPlot(plot), escapeHtml(plot.caption));
-    for (const ReportPictures& pictures : section.pictures) this->pictures(pictures);
+    for (const ImageRow& row : section.imageRows) imageRow(row);
     add("</section>\n");
   }
 
@@ -157,19 +157,19 @@ class HtmlWriter {
     add("</tbody>\n</table>\n");
   }
 
-  void pictures(const ReportPictures& pictures) {
-    add("<figure>\n<div class=\"pictures\">\n");
-    for (const ReportPictures::Picture& picture : pictures.pictures) {
-      const glm::ivec2 size = picture.image.size;
-      const int scale = std::max(1, kSmallPicture / std::max({size.x, size.y, 1}));
-      const std::string caption = escapeHtml(picture.caption);
+  void imageRow(const ImageRow& row) {
+    add("<figure>\n<div class=\"images\">\n");
+    for (const ImageRow::Captioned& shown : row.images) {
+      const glm::ivec2 size = shown.image.size;
+      const int scale = std::max(1, kSmallImage / std::max({size.x, size.y, 1}));
+      const std::string caption = escapeHtml(shown.caption);
       add("<figure style=\"max-width: max(8rem, {}px)\"><img{} width=\"{}\" height=\"{}\" alt=\"{}\" "
           "src=\"data:image/png;base64,",
           scale * size.x, scale > 1 ? " class=\"small\"" : "", scale * size.x, scale * size.y, caption);
-      html_ += base64(encodePng(picture.image, {.background = Background{pictures.background, pictures.background}}));
+      html_ += base64(encodePng(shown.image, {.background = Background{row.background, row.background}}));
       add("\"><figcaption>{}</figcaption></figure>\n", caption);
     }
-    add("</div>\n<figcaption>{}</figcaption>\n</figure>\n", escapeHtml(pictures.caption));
+    add("</div>\n<figcaption>{}</figcaption>\n</figure>\n", escapeHtml(row.caption));
   }
 
   std::string html_;

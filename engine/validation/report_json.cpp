@@ -47,12 +47,12 @@ Json jsonOf(const ReportPlot& plot) {
           {"series", listOf(plot.series)}};
 }
 
-Json jsonOf(const ReportPictures::Picture& picture) {
-  return {{"caption", picture.caption}, {"width", picture.image.size.x}, {"height", picture.image.size.y}};
+Json jsonOf(const ImageRow::Captioned& shown) {
+  return {{"caption", shown.caption}, {"width", shown.image.size.x}, {"height", shown.image.size.y}};
 }
 
-Json jsonOf(const ReportPictures& pictures) {
-  return {{"caption", pictures.caption}, {"pictures", listOf(pictures.pictures)}};
+Json jsonOf(const ImageRow& row) {
+  return {{"caption", row.caption}, {"images", listOf(row.images)}};
 }
 
 Json jsonOf(const ReportSection& section) {
@@ -62,7 +62,7 @@ Json jsonOf(const ReportSection& section) {
           {"checks", listOf(section.checks)},
           {"tables", listOf(section.tables)},
           {"plots", listOf(section.plots)},
-          {"pictures", listOf(section.pictures)}};
+          {"image_rows", listOf(section.imageRows)}};
 }
 
 template <typename T>

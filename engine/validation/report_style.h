@@ -35,9 +35,9 @@ tbody th { font-weight: 400; }
 .failed th, .failed td { background: #fcefed; }
 figure { margin: 1.6rem 0; break-inside: avoid; }
 figcaption { margin-top: .5rem; color: var(--quiet); font-size: .85rem; }
-.pictures { display: flex; flex-wrap: wrap; gap: 1rem; }
-.pictures figure { flex: 1 1 12rem; margin: 0; }
-.pictures figcaption { color: var(--ink); }
+.images { display: flex; flex-wrap: wrap; gap: 1rem; }
+.images figure { flex: 1 1 12rem; margin: 0; }
+.images figcaption { color: var(--ink); }
 img { display: block; max-width: 100%; height: auto; }
 .small { image-rendering: pixelated; }
 .plot { display: block; width: 100%; max-width: 720px; }

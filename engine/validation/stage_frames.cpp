@@ -42,9 +42,9 @@ double largestComponent(glm::dvec3 v) {
   return std::isnan(v.x + v.y + v.z) ? std::numeric_limits<double>::quiet_NaN() : std::max({v.x, v.y, v.z});
 }
 
-ReportPictures comparedPictures(const Image& image, const Image& reference, std::string caption, std::string referenceCaption) {
+ImageRow comparedImages(const Image& image, const Image& reference, std::string caption, std::string referenceCaption) {
   return {.caption = std::move(caption),
-          .pictures = {{"device", image},
+          .images = {{"device", image},
                        {std::move(referenceCaption), reference},
                        {fmt::format("difference x {:g}", kBrightness), brightened(absoluteDifference(image, reference))}},
           .background = glm::vec3(0.01f)};

@@ -20,6 +20,6 @@ double relativeDifference(double value, double reference);
 double largestComponent(glm::dvec3 v);
 
 /// The device's image beside a reference, and their difference, brightened.
-ReportPictures comparedPictures(const Image& image, const Image& reference, std::string caption, std::string referenceCaption);
+ImageRow comparedImages(const Image& image, const Image& reference, std::string caption, std::string referenceCaption);
 
 }  // namespace freevoxels

@@ -15,11 +15,11 @@
 namespace freevoxels {
 namespace {
 
-constexpr int kEdge = 8;
+constexpr int kCubeEdge = 8;
 constexpr double kDepth = 2.0, kPhaseG = 0.3, kAlbedo = 0.5;
 
 Volume box() {
-  return makeVolume(glm::ivec3(kEdge), cubeTransform(glm::ivec3(kEdge)), [](int, int, int) { return 1.0; });
+  return makeVolume(glm::ivec3(kCubeEdge), cubeTransform(glm::ivec3(kCubeEdge)), [](int, int, int) { return 1.0; });
 }
 
 /// The middle pixel of the box seen along -z.
@@ -47,9 +47,9 @@ TEST(LitOracle, AHomogeneousBoxScattersWhatTheClosedFormsSay) {
   double sum = 0.0, tau = 0.0;
   constexpr int kSteps = 20000;
   for (int i = 0; i < kSteps; ++i) {
-    const double z = (kEdge + 1.0) * (i + 0.5) / kSteps;
-    const double part = std::min({z, kEdge + 1.0 - z, 1.0});
-    const double thickness = kDepth / kEdge * part * (kEdge + 1.0) / kSteps;
+    const double z = (kCubeEdge + 1.0) * (i + 0.5) / kSteps;
+    const double part = std::min({z, kCubeEdge + 1.0 - z, 1.0});
+    const double thickness = kDepth / kCubeEdge * part * (kCubeEdge + 1.0) / kSteps;
     sum += std::exp(-tau - part * kDepth / 2.0) * thickness;
     tau += thickness;
   }

@@ -70,17 +70,17 @@ void shiftTheLattice(SteppedGather& gather) {
   gather.alterUpsampling = [](shader::GatherFrame& frame) { frame.firstSample.x += 0.1f * frame.pitch; };
 }
 
-struct Defect {
+struct GatherDefect {
   const char* name;
   const char* stage;  ///< with which the names of the checks begin that must notice
   void (*apply)(SteppedGather&) = nullptr;
 };
 
-void PrintTo(const Defect& defect, std::ostream* stream) {
+void PrintTo(const GatherDefect& defect, std::ostream* stream) {
   *stream << defect.name;
 }
 
-constexpr Defect kDefects[] = {
+constexpr GatherDefect kGatherDefects[] = {
     {"ASliceSkipped", "gather samples", skipTheFirstSlice},
     {"ALevelsBorderCountedTwice", "gather samples", countALevelsBorderTwice},
     {"WeightsSwapped", "gather samples", swapWeights},
@@ -90,9 +90,9 @@ constexpr Defect kDefects[] = {
     {"LatticeShifted", "gather image", shiftTheLattice},
 };
 
-class GatherMutation : public DeviceTest, public testing::WithParamInterface<Defect> {
+class GatherMutation : public DeviceTest, public testing::WithParamInterface<GatherDefect> {
  protected:
-  static GatherMaker outputs(const Defect& defect) {
+  static GatherMaker outputs(const GatherDefect& defect) {
     return [defect](const Volume& volume, const Classification& classification) {
       auto made = std::make_unique<SteppedGather>(device(), volume, classification);
       if (defect.apply) defect.apply(*made);
@@ -117,7 +117,7 @@ TEST_P(GatherMutation, IsNoticedByTheChecksOfItsStageAndNoOthers) {
   EXPECT_GT(noticed, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, GatherMutation, testing::ValuesIn(kDefects),
+INSTANTIATE_TEST_SUITE_P(Of, GatherMutation, testing::ValuesIn(kGatherDefects),
                          [](const auto& defect) { return std::string(defect.param.name); });
 
 using GatherMutationTest = GatherMutation;

@@ -7,16 +7,16 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include "engine/reference/oracle.h"
 #include "engine/volume/procedural.h"
+#include "tests/not_finite.h"
 
 namespace freevoxels {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+using test::kInfinity;
+using test::kNan;
 
 std::vector<QualityMethod> madeUpMethods() {
   return {{.name = "first",
@@ -200,8 +200,8 @@ TEST(ImageQuality, ComparesEachMethodWithTheOracleInEachView) {
   EXPECT_EQ(figures.worstView(1), 1u);
   EXPECT_EQ(section.checks.size(), 2u);
   EXPECT_TRUE(section.passed());
-  ASSERT_EQ(section.pictures.size(), 1u);
-  EXPECT_EQ(section.pictures[0].pictures.size(), 5u);
+  ASSERT_EQ(section.imageRows.size(), 1u);
+  EXPECT_EQ(section.imageRows[0].images.size(), 5u);
 }
 
 TEST(ImageQuality, NoticesAImageThatIsOff) {

@@ -3,28 +3,28 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <regex>
 
 #include "engine/validation/base64.h"
 #include "engine/validation/report_text.h"
 #include "engine/validation/svg_plot.h"
+#include "tests/not_finite.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
 namespace freevoxels {
 namespace {
 
+using test::kInfinity;
+using test::kNan;
 using test::readBytes;
 using test::TemporaryFolder;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr const char* kHostile = "a<b & \"c\" 'd' </script>";
 constexpr const char* kHostileEscaped = "a&lt;b &amp; &quot;c&quot; &#39;d&#39; &lt;/script&gt;";
 
-Image picture(glm::ivec2 size, int seed) {
+Image pattern(glm::ivec2 size, int seed) {
   Image image;
   image.size = size;
   for (int i = 0; i < size.x * size.y; ++i) {
@@ -38,7 +38,7 @@ Report fullReport() {
   Report report;
   report.facts = {{"device", "llvmpipe"}, {"volume", kHostile}};
   ReportSection table{
-      .title = "Table", .text = "First.\n\nSecond.", .checks = {}, .tables = {}, .plots = {}, .pictures = {}};
+      .title = "Table", .text = "First.\n\nSecond.", .checks = {}, .tables = {}, .plots = {}, .imageRows = {}};
   table.checks = {
       {.name = "codes apart", .figure = 1.0, .tolerance = 1.0, .unit = "codes", .where = "voxel 3,4,5"},
       {.name = "PSNR",
@@ -47,7 +47,7 @@ Report fullReport() {
        .tolerance = 65.0,
        .unit = "dB",
        .where = ""},
-      {.name = "equal pictures",
+      {.name = "equal images",
        .figure = kInfinity,
        .bound = Check::Bound::AtLeast,
        .tolerance = 65.0,
@@ -58,17 +58,17 @@ Report fullReport() {
   table.tables.push_back({.caption = "By direction",
                           .columns = {"direction", "largest"},
                           .rows = {{kHostile, "0.5"}, {"+x", "12"}}});
-  ReportSection pictures{
-      .title = kHostile, .text = "", .checks = {}, .tables = {}, .plots = {}, .pictures = {}};
-  pictures.plots.push_back({.caption = "Error",
+  ReportSection rows{
+      .title = kHostile, .text = "", .checks = {}, .tables = {}, .plots = {}, .imageRows = {}};
+  rows.plots.push_back({.caption = "Error",
                             .xLabel = "resolution",
                             .yLabel = kHostile,
                             .series = {{"ours", {{16.0, 0.1}, {32.0, kNan}, {64.0, 1.0 / 3.0}}},
                                        {kHostile, {{16.0, -1e-7}, {64.0, kInfinity}}}}});
-  pictures.pictures.push_back({.caption = "Side by side",
-                               .pictures = {{kHostile, picture({5, 4}, 1)}, {"right", picture({300, 2}, 2)}},
+  rows.imageRows.push_back({.caption = "Side by side",
+                               .images = {{kHostile, pattern({5, 4}, 1)}, {"right", pattern({300, 2}, 2)}},
                                .background = {0.2f, 0.0f, 0.6f}});
-  report.sections = {table, pictures};
+  report.sections = {table, rows};
   return report;
 }
 
@@ -94,7 +94,7 @@ std::size_t countOf(const std::string& text, const std::string& part) {
 Report reportOf(const Check& check) {
   Report report;
   report.sections.push_back(
-      {.title = "Only", .text = "", .checks = {check}, .tables = {}, .plots = {}, .pictures = {}});
+      {.title = "Only", .text = "", .checks = {check}, .tables = {}, .plots = {}, .imageRows = {}});
   return report;
 }
 
@@ -196,7 +196,7 @@ TEST(ReportJson, ReadsBackWithTheSameFigures) {
   EXPECT_EQ(section["tables"][0].at("rows")[1], (std::vector<std::string>{"+x", "12"}));
 }
 
-TEST(ReportJson, HasPlotsAndTheSizesOfPictures) {
+TEST(ReportJson, HasPlotsAndTheSizesOfImages) {
   const nlohmann::json section = jsonOf(fullReport()).at("sections").at(1);
   const nlohmann::json& plot = section.at("plots").at(0);
   EXPECT_EQ(plot.at("x_label"), "resolution");
@@ -204,11 +204,11 @@ TEST(ReportJson, HasPlotsAndTheSizesOfPictures) {
   EXPECT_EQ(plot["series"][0].at("points")[2][1].get<double>(), 1.0 / 3.0);
   EXPECT_EQ(plot["series"][0]["points"][1], (nlohmann::json{32.0, "NaN"}));
   EXPECT_EQ(plot["series"][1]["points"][0][1].get<double>(), -1e-7);
-  const nlohmann::json& pictures = section.at("pictures").at(0);
-  EXPECT_EQ(pictures.at("caption"), "Side by side");
-  EXPECT_EQ(pictures.at("pictures")[1].at("caption"), "right");
-  EXPECT_EQ(pictures["pictures"][1].at("width"), 300);
-  EXPECT_EQ(pictures["pictures"][1].at("height"), 2);
+  const nlohmann::json& row = section.at("image_rows").at(0);
+  EXPECT_EQ(row.at("caption"), "Side by side");
+  EXPECT_EQ(row.at("images")[1].at("caption"), "right");
+  EXPECT_EQ(row["images"][1].at("width"), 300);
+  EXPECT_EQ(row["images"][1].at("height"), 2);
 }
 
 TEST(ReportHtml, HasEveryCheckAndTheFailuresOnceMore) {
@@ -243,7 +243,7 @@ TEST(ReportHtml, EscapesEverything) {
   EXPECT_EQ(html.find(kHostile), std::string::npos);
   EXPECT_EQ(html.find("</script>"), std::string::npos);
   // Fact; check, its failure; cell; label and series of the plot; title, its link; alternative and caption of
-  // the picture.
+  // the image.
   EXPECT_EQ(countOf(html, kHostileEscaped), 10u);
 }
 
@@ -271,26 +271,26 @@ std::string decoded(const std::string& text) {
   return bytes;
 }
 
-TEST(ReportHtml, PicturesAreEmbeddedOverTheirBackground) {
+TEST(ReportHtml, ImagesAreEmbeddedOverTheirBackground) {
   const Report report = fullReport();
-  const ReportPictures& pictures = report.sections[1].pictures[0];
+  const ImageRow& row = report.sections[1].imageRows[0];
   const std::string html = htmlOf(report);
   const std::regex source("src=\"data:image/png;base64,([^\"]*)\"");
   const TemporaryFolder folder;
   std::sregex_iterator it(html.begin(), html.end(), source);
-  for (const ReportPictures::Picture& picture : pictures.pictures) {
+  for (const ImageRow::Captioned& shown : row.images) {
     ASSERT_NE(it, std::sregex_iterator());
     test::writeBytes(folder / "embedded.png", decoded((*it++)[1]));
     const Image embedded = readPng(folder / "embedded.png");
-    ASSERT_EQ(embedded.size, picture.image.size);
+    ASSERT_EQ(embedded.size, shown.image.size);
     for (std::size_t i = 0; i < embedded.pixels.size(); ++i) {
-      const glm::vec4& pixel = picture.image.pixels[i];
+      const glm::vec4& pixel = shown.image.pixels[i];
       EXPECT_EQ(embedded.pixels[i].a, 1.0f);
       for (int c = 0; c < 3; ++c)  // a byte of sRGB is at most 0.009 of linear light
-        ASSERT_NEAR(embedded.pixels[i][c], pixel[c] + (1.0f - pixel.a) * pictures.background[c], 0.005f) << i;
+        ASSERT_NEAR(embedded.pixels[i][c], pixel[c] + (1.0f - pixel.a) * row.background[c], 0.005f) << i;
     }
   }
-  EXPECT_NE(html.find("width=\"255\" height=\"204\""), std::string::npos) << "small pictures are enlarged";
+  EXPECT_NE(html.find("width=\"255\" height=\"204\""), std::string::npos) << "small images are enlarged";
   EXPECT_NE(html.find("width=\"300\" height=\"2\""), std::string::npos);
 }
 
