@@ -38,16 +38,6 @@ struct DeviceRegion {
   LightPass lights;
 };
 
-/// The volume's box and classification, without anything on the device.
-DeviceVolume outlineOnDevice(const Volume& volume, const Classification& classification) {
-  return {.layout = GridLayout(volume.dimensions),
-          .hierarchy = HierarchyLayout(volume.dimensions),
-          .indexToWorld = volume.indexToWorld,
-          .albedo = classification.albedo,
-          .hasColors = volume.albedo.has_value(),
-          .voxelSize = volume.voxelSize()};
-}
-
 /// Table look-ups alone, of voxels.
 FrameSettings regionSettings(const FrameSettings& wanted) {
   FrameSettings settings = wanted;
@@ -156,7 +146,7 @@ struct RegionRenderer::State {
   TableSettings tableSettings;
   bool keepsRegions;
   Volume outline = bakedOutline(*file);
-  DeviceVolume outlineVolume = outlineOnDevice(outline, classification);
+  DeviceVolume outlineVolume = outlineOf(outline, classification);
   AttenuationSweep sweep{device, tableSettings, sweepStyle(device), true};
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<AccumulatePass> accumulate;

@@ -25,16 +25,6 @@ using fvx::FvxFile;
 constexpr int kEdge = StreamedRenderer::kCubeEdge, kHalo = StreamedRenderer::kCubeHalo, kBrick = ScalarBricks::kEdge;
 static_assert(kEdge % fvx::kChunkEdge == 0 && kHalo % kBrick == 0);
 
-/// The box and the classification of a level, without anything on the device.
-DeviceVolume outlineOnDevice(const Volume& volume, const Classification& classification) {
-  return {.layout = GridLayout(volume.dimensions),
-          .hierarchy = HierarchyLayout(volume.dimensions),
-          .indexToWorld = volume.indexToWorld,
-          .albedo = classification.albedo,
-          .hasColors = volume.albedo.has_value() || classification.transferFunction.has_value(),
-          .voxelSize = volume.voxelSize()};
-}
-
 /// Whether the coarser levels of a file are those of the octree: means of extinctions, of one colour.
 bool hasOctree(const Volume& volume, const Classification& classification) {
   return !classification.transferFunction && !volume.albedo;
@@ -67,7 +57,7 @@ struct StreamedLevel {
   StreamedLevel(std::shared_ptr<const FvxFile> file, int level, const Classification& classification)
       : baked{.file = std::move(file), .level = level, .classification = classification},
         outline(bakedOutline(*baked.file, level)),
-        onDevice(outlineOnDevice(outline, classification)) {
+        onDevice(outlineOf(outline, classification)) {
     const glm::ivec3 bricks = (outline.dimensions + kBrick - 1) / kBrick, cells = (outline.dimensions + kEdge - 1) / kEdge;
     const std::vector<std::uint8_t> around = bricksAround(*baked.file, level);
     std::vector<bool> isMet(std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z));

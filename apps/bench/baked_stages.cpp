@@ -40,12 +40,6 @@ class Folder {
   std::filesystem::path path_;
 };
 
-double millisecondsOf(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 Image firstImage(const Device& device, const std::filesystem::path& file, glm::ivec2 size, std::optional<int> level = {}) {
   SceneDescription scene;
   scene.input.volume = file.string();

@@ -55,12 +55,6 @@ std::uint64_t drawnSplats(const Renderer& renderer) {
   return std::accumulate(drawn.begin(), drawn.end(), std::uint64_t(0));
 }
 
-double millisecondsOf(const std::function<void()>& work) {
-  const auto start = std::chrono::steady_clock::now();
-  work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
 Lighting directionalLights(int count) {
   Lighting lighting;
   for (int i = 0; i < count; ++i) lighting.lights.push_back({.place = {std::cos(0.4 * i), 0.5, std::sin(0.4 * i)}});

@@ -18,6 +18,12 @@ double least(int runs, const std::function<double()>& run) {
   return best;
 }
 
+double millisecondsOf(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
 double copyTime(std::uint64_t bytes) {
   std::vector<char> from(bytes, 1), to(bytes, 2);
   const std::size_t half = bytes / 2;

@@ -20,6 +20,8 @@ struct Result {
 /// calls if they take less than a third of a second together.
 double least(int runs, const std::function<double()>& run);
 
+double millisecondsOf(const std::function<void()>& work);
+
 /// Milliseconds to copy `bytes` with two threads, the fastest of a few runs.
 double copyTime(std::uint64_t bytes);
 

@@ -15,7 +15,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kMergeExamples =
     "PARTs are written by 'freevoxels render --share I/N --sums'; the first name that is no such file, and all behind it, are images "
     "to\nwrite. Parts of different N can be mixed, as long as they have each share once.\n"
     "Examples:\n"
@@ -122,7 +122,7 @@ void MergeCommand::add(CLI::App& app) {
       ->required();
   scene_.addSection(*command, "output");
   messages_.add(*command);
-  command->footer(kExamples);
+  command->footer(kMergeExamples);
   command->callback([this] { run(); });
 }
 

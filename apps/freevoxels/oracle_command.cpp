@@ -14,7 +14,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kOracleExamples =
     "Examples:\n"
     "  freevoxels oracle cloud.vdb truth.exr --float --size 512x512\n"
     "  freevoxels oracle procedural:head truth.exr --aov depth --transfer-function bone.json\n"
@@ -34,7 +34,7 @@ void OracleCommand::add(CLI::App& app) {
       app.add_subcommand("oracle", "Draw a reference image by ray marching in double precision, for comparison");
   scene_.add(*command);
   messages_.add(*command);
-  command->footer(kExamples);
+  command->footer(kOracleExamples);
   command->callback([this] { run(); });
 }
 

@@ -80,10 +80,10 @@ std::vector<std::string> commandNames(const CLI::App& app) {
   return names;
 }
 
-using Words = std::vector<std::string>;
+using Arguments = std::vector<std::string>;
 
 /// The command that the words name, or the program itself, before they are parsed.
-const CLI::App& commandIn(const CLI::App& app, const Words& words) {
+const CLI::App& commandIn(const CLI::App& app, const Arguments& words) {
   const auto first = std::ranges::find_if(words, [](const std::string& word) { return !word.starts_with('-'); });
   if (first == words.end()) return app;
   const auto named = app.get_subcommands([&](const CLI::App* command) { return command->get_name() == *first; });
@@ -91,8 +91,8 @@ const CLI::App& commandIn(const CLI::App& app, const Words& words) {
 }
 
 /// One name of each of the command's options that has one that begins with `start`.
-Words optionsBeginningWith(const CLI::App& command, const std::string& start) {
-  Words names;
+Arguments optionsBeginningWith(const CLI::App& command, const std::string& start) {
+  Arguments names;
   for (const CLI::Option* option : command.get_options())
     for (const std::string& name : option->get_lnames())
       if (("--" + name).starts_with(start)) {
@@ -110,22 +110,22 @@ std::optional<std::string> unknownOptionName(const CLI::App& command, const std:
 }
 
 /// Completes beginnings of options that only one option has: "--res" is --resolution.
-void completeOptions(const CLI::App& app, Words& words) {
+void completeOptions(const CLI::App& app, Arguments& words) {
   const CLI::App& command = commandIn(app, words);
   for (std::string& word : words) {
     if (word == "--") return;  // what follows are no options
     const std::optional<std::string> name = unknownOptionName(command, word);
     if (!name) continue;
-    if (const Words meant = optionsBeginningWith(command, *name); meant.size() == 1) word.replace(0, name->size(), meant.front());
+    if (const Arguments meant = optionsBeginningWith(command, *name); meant.size() == 1) word.replace(0, name->size(), meant.front());
   }
 }
 
 /// "there is no option '--szie'; did you mean '--size'?" for the first word that is like an option and is none; else empty.
-std::string unknownOption(const CLI::App& command, const Words& words) {
+std::string unknownOption(const CLI::App& command, const Arguments& words) {
   for (const std::string& word : words) {
     const std::optional<std::string> name = unknownOptionName(command, word);
     if (!name) continue;
-    if (const Words meant = optionsBeginningWith(command, *name); meant.size() > 1)
+    if (const Arguments meant = optionsBeginningWith(command, *name); meant.size() > 1)
       return fmt::format("'{}' is the beginning of {}: write more of it", *name, fmt::join(meant, ", "));
     return fmt::format("there is no option '{}'{}", *name, suggestion(*name, optionsBeginningWith(command, "--")));
   }
@@ -139,7 +139,7 @@ std::string unknownCommand(const CLI::App& app, const std::string& word) {
   return fmt::format("there is no command '{}'{}", word, suggestion(word, commandNames(app)));
 }
 
-Outcome usageError(const CLI::App& app, const CLI::ParseError& error, const Words& words) {
+Outcome usageError(const CLI::App& app, const CLI::ParseError& error, const Arguments& words) {
   std::string sentence = error.what();
   const bool hasCommands = !commandNames(app).empty();
   const CLI::App& command = commandOf(app);
@@ -154,10 +154,10 @@ Outcome usageError(const CLI::App& app, const CLI::ParseError& error, const Word
   return {ExitCode::Usage, fmt::format("{} (see {} --help)", sentence, commandName(app))};
 }
 
-Outcome parseAndRun(CLI::App& app, Words words) {
+Outcome parseAndRun(CLI::App& app, Arguments words) {
   completeOptions(app, words);
   try {
-    app.parse(Words(words.rbegin(), words.rend()));  // CLI11 takes the last word first
+    app.parse(Arguments(words.rbegin(), words.rend()));  // CLI11 takes the last word first
     return finish();
   } catch (const CLI::Success& help) {
     app.exit(help);
@@ -199,7 +199,7 @@ int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>
   app.get_formatter()->label("REQUIRED", "");
   app.get_formatter()->label("TEXT", "");
   app.set_version_flag("--version", app.get_name() + " " + programVersion());
-  Outcome outcome = parseAndRun(app, Words(argv + 1, argv + argc));
+  Outcome outcome = parseAndRun(app, Arguments(argv + 1, argv + argc));
   if (outcome.code != ExitCode::Success) {
     if (onFailure) onFailure();
     std::ranges::replace(outcome.sentence, '\n', ' ');

@@ -6,7 +6,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kRenderExamples =
     "IN with a run of # (or %04d) in its file name is the sequence of the files that have a number there, which takes the place\n"
     "of the run of # of each OUT; more volumes may follow IN.\n"
     "Examples:\n"
@@ -24,7 +24,7 @@ void RenderCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("render", "Draw a volume, or a sequence of volumes, into images");
   options_.add(*command);
   sequence_.add(*command, options_.fixedView);
-  command->footer(kExamples);
+  command->footer(kRenderExamples);
   command->callback([this] {
     options_.messages.apply();
     options_.run(sequence_.plan(options_.scene));

@@ -8,7 +8,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kTurntableExamples =
     "A run of # in the file name of each OUT becomes the number of the frame, from 0.\n"
     "With --orbit (or neither) the camera turns about +y, its distance the least from which no frame cuts\n"
     "the volume; a --camera-position turns about the axis through --look-at along --up.\n"
@@ -28,7 +28,7 @@ void TurntableCommand::add(CLI::App& app) {
     addWholeNumber(*command, "--ranks-per-frame", "N", ranksPerFrame_,
                    "Ranks that draw a frame together; groups of so many draw frames side by side [all]", {1.0, double(kShares)})
         ->group("Device");
-  command->footer(kExamples);
+  command->footer(kTurntableExamples);
   command->callback([this] {
     if (ranksPerFrame_) options_.group->splitFrames(*ranksPerFrame_);
     options_.scene.takeScene("_####.png");

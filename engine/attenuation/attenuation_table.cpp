@@ -221,10 +221,9 @@ void AttenuationSweep::recordSlabs(Commands& commands, const DeviceVolume& volum
   const std::uint64_t own = extinction_.bytes() + keptDepths_.bytes();
   makeRoom(planSweep(volume.layout, settings_.directions, style_, device_.availableBytes() + own),
            entry_ != nullptr ? entry_->sideRows.bytes() : 0);
-  constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   if (entry_ != nullptr) {
     commands.copy(entry_->sideRows, extinction_, {.srcOffset = 0, .dstOffset = plan_.slabBytes, .size = entry_->sideRows.bytes()});
-    commands.barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, kCompute);
+    commands.barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, kComputeStage);
   }
   const int planes = volume.layout.dimensions.z;
   SlabSweep sweep{.commands = commands,
@@ -249,7 +248,7 @@ void AttenuationSweep::recordSlabs(Commands& commands, const DeviceVolume& volum
       recordRows(sweep);
     }
     if (halves_) halves_->record(sweep);
-    commands.barrier(kCompute, kCompute);
+    commands.barrier(kComputeStage, kComputeStage);
   }
 }
 

@@ -50,7 +50,7 @@ std::uint64_t threadsOf(const shader::HalfSweepPush& push, int voxelsPerThread) 
 }
 
 /// Push constants of a direction's sweep, without the slab.
-shader::HalfSweepPush sweepPush(const SlabSweep& sweep, glm::ivec3 cell) {
+shader::HalfSweepPush halfSweepPush(const SlabSweep& sweep, glm::ivec3 cell) {
   const DeviceVolume& volume = sweep.volume;
   const bool pathLengthCorrection = sweep.table.settings.pathLengthCorrection;
   const glm::ivec3 extent = volume.layout.dimensions;
@@ -88,7 +88,7 @@ void IntermediateSweep::record(SlabSweep& sweep) const {
   for (const glm::ivec3 cell : halfCells()) {
     // The march goes against the direction.
     if (sweep.slab.upwards ? cell.z > 0 : cell.z <= 0) continue;
-    shader::HalfSweepPush push = sweepPush(sweep, cell);
+    shader::HalfSweepPush push = halfSweepPush(sweep, cell);
     const std::uint64_t threads = threadsOf(push, voxelsPerThread_);
     push.slab = cell.z != 0
                     ? sweep.marchAlongZ(threads * std::uint64_t(linesPerThread(voxelsPerThread_, cell.x)))

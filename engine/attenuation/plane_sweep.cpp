@@ -24,7 +24,6 @@ namespace freevoxels {
 namespace {
 
 constexpr int kEdge = ScalarBricks::kEdge;
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr VkPipelineStageFlags2 kTransfer = VK_PIPELINE_STAGE_2_TRANSFER_BIT;
 constexpr int kMaxPlanes = 8, kMinPlanes = 2;  ///< that are swept at a time
 
@@ -173,12 +172,12 @@ class SweptLight::Sweep {
     commands.beginPass("light sweep");
     if (begin > 0) {
       commands.copy(depths_, depths_, {.srcOffset = pairBytes * VkDeviceSize(planes_ / 2), .dstOffset = 0, .size = pairBytes});
-      commands.barrier(kTransfer, kCompute);
+      commands.barrier(kTransfer, kComputeStage);
     }
     const std::array<Binding, 3> rays{&slabTexels_, &carried_, values_.areScalars() ? &tableTexels_ : &slabTexels_};
     commands.dispatchLinear(sweep_, rays, shader::RaySweepPush{.fan = fan, .indexToWorld = unit * indexToWorld_, .sides = sides_, .slab = place},
                             fan_.rays());
-    commands.barrier(kCompute, kCompute);
+    commands.barrier(kComputeStage, kComputeStage);
     commands.beginPass("light depths");
     commands.update(frame_, shader::LightPlanes{.fan = fan,
                                                 .slab = place,

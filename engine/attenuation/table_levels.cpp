@@ -9,8 +9,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-
 static_assert(shader::kFilterGeometric == int(HierarchyFilter::Geometric));
 static_assert(shader::kFilterArithmetic == int(HierarchyFilter::Arithmetic));
 
@@ -52,7 +50,7 @@ void TableLevels::record(Commands& commands, const DeviceVolume& volume,
       commands.dispatchLinear(pipelines_[level == 1 ? 1 : 0], bindings, push, boundBytes(push.parentCount),
                               (push.directionCount + perThread_ - 1) / perThread_);
     }
-    commands.barrier(kCompute, kCompute);
+    commands.barrier(kComputeStage, kComputeStage);
   }
 }
 

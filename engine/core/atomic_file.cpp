@@ -16,6 +16,7 @@
 
 #include "engine/core/checked_file.h"
 #include "engine/core/error.h"
+#include "engine/core/system_error.h"
 
 namespace freevoxels {
 
@@ -85,10 +86,6 @@ const char* remedyFor(int error) {
   fail(ErrorKind::Output, "cannot write '{}': {}; {}", destination.string(), asClause(message), remedyFor(0));
 }
 
-[[noreturn]] void throwErrno() {
-  throw std::system_error(errno, std::generic_category());
-}
-
 /// A name beside `target` that no other process and no other thread uses.
 fs::path unusedName(const fs::path& target) {
   std::random_device random;
@@ -97,7 +94,7 @@ fs::path unusedName(const fs::path& target) {
 
 /// Flushes to the disk. Some file systems cannot flush a folder: nothing can be done about that.
 void flushToDisk(int descriptor) {
-  if (fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP) throwErrno();
+  if (fsync(descriptor) != 0 && errno != EINVAL && errno != ENOTSUP) throwSystemError();
 }
 
 /// The new contents of a file, in its folder, until `publish` gives them its name. They have no name before that where the
@@ -112,7 +109,7 @@ class PendingFile {
     if (descriptor_ >= 0) close(descriptor_);
     path_ = unusedName(target);
     descriptor_ = open(path_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) throwErrno();
+    if (descriptor_ < 0) throwSystemError();
     isNamed_ = true;
   }
   ~PendingFile() {
@@ -138,11 +135,11 @@ class PendingFile {
     if (!isNamed_ && !linkAs(target_)) {
       // A link cannot replace a file; renaming can. Being killed between the two calls would leave the hidden name.
       const fs::path name = unusedName(target_);
-      if (!linkAs(name)) throwErrno();
+      if (!linkAs(name)) throwSystemError();
       path_ = name;
       isNamed_ = true;
     }
-    if (isNamed_ && std::rename(path_.c_str(), target_.c_str()) != 0) throwErrno();
+    if (isNamed_ && std::rename(path_.c_str(), target_.c_str()) != 0) throwSystemError();
     isNamed_ = false;
     flushFolder();
   }
@@ -151,17 +148,17 @@ class PendingFile {
   /// Also its owner and group, where this process may set them.
   void takeModeOfTarget() const {
     struct stat status {};
-    if (fstat(descriptor_, &status) != 0) throwErrno();
+    if (fstat(descriptor_, &status) != 0) throwSystemError();
     if (status.st_size == 0) throw std::runtime_error("nothing was written");
     if (stat(target_.c_str(), &status) != 0) return;
-    if (fchown(descriptor_, status.st_uid, status.st_gid) != 0 && errno != EPERM) throwErrno();
-    if (fchmod(descriptor_, status.st_mode & 07777) != 0 && errno != EPERM) throwErrno();
+    if (fchown(descriptor_, status.st_uid, status.st_gid) != 0 && errno != EPERM) throwSystemError();
+    if (fchmod(descriptor_, status.st_mode & 07777) != 0 && errno != EPERM) throwSystemError();
   }
 
   /// False where a file of that name exists.
   bool linkAs(const fs::path& name) const {
     if (linkat(AT_FDCWD, path_.c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0) return true;
-    if (errno != EEXIST) throwErrno();
+    if (errno != EEXIST) throwSystemError();
     return false;
   }
 

@@ -15,8 +15,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-
 /// Three signed components of 9 bits with a shared exponent of 5 bits, which is 16 more than it says (shaders/packed_gradient.glsl).
 glm::dvec3 unpackGradient(std::uint32_t bits) {
   glm::dvec3 gradient;
@@ -81,7 +79,7 @@ void GatherVolume::recordLightCodes(Commands& commands, const Shading& shading) 
     if (surroundings_ == nullptr) recordLightDepths(commands, shading, level);
     recordAmbientCodes(commands, level);
   }
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
   lightLevels_ |= wantedLevels_;
 }
 
@@ -148,7 +146,7 @@ void GatherVolume::recordGradients(Commands& commands) {
                                             .scalars = scalars.value_or(shader::CodeBricks())};
     commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
   }
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
   gradientLevels_ |= wantedLevels_;
 }
 
@@ -171,7 +169,7 @@ void GatherVolume::recordLightQuads(Commands& commands, int axis) {
       if (lacksLevel(quads.lightLevels, level))
         make(level, firstBricks_[std::size_t(level)], firstBricks_[std::size_t(level) + 1]);
   }
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
   quads.lightLevels |= wantedLevels_;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -12,8 +13,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
 /// A ray adds at most 2^kMaxBricksLog2 bricks' optical depths, of at most kMaxBrickDepth = 2^4 each, within 63 bits.
 constexpr int kMaxBricksLog2 = 12, kDepthDigits = 62 - 4 - kMaxBricksLog2;
 constexpr int kMaxChunkLevels = 2;  ///< a chunk has at most 2^this bricks along an edge
@@ -98,13 +97,8 @@ void GatherPartPass::choose(const GatherVolume& volume, const SharePart& part) {
   if (part_ == part) return;
   part_.reset();
   const PartCells cells = partCells(volume.cells(), volume.levels(), part);
-  const auto make = [&](Buffer& buffer, TexelView& view, std::span<const std::byte> bytes, VkFormat format, const char* name) {
-    buffer = Buffer(device_, bytes.size(), MemoryUse::Device, name, kTexels);
-    upload(device_, buffer, bytes);
-    view = TexelView(device_, buffer, format);
-  };
-  make(numbers_, numberTexels_, std::as_bytes(std::span(cells.numbers)), VK_FORMAT_R32_UINT, "brick numbers of a part");
-  make(skips_, skipTexels_, std::as_bytes(std::span(cells.skips)), VK_FORMAT_R8_UINT, "cells that a part skips");
+  std::tie(numbers_, numberTexels_) = uploadTexels(device_, std::as_bytes(std::span(cells.numbers)), VK_FORMAT_R32_UINT, "brick numbers of a part");
+  std::tie(skips_, skipTexels_) = uploadTexels(device_, std::as_bytes(std::span(cells.skips)), VK_FORMAT_R8_UINT, "cells that a part skips");
   part_ = part;
 }
 
@@ -143,9 +137,9 @@ void GatherPartPass::record(Commands& commands, GatherPass& gather, const Gather
                 .distanceDigits = digits(SumChannel::Distance)};
   std::ranges::copy(rays_.fans(), whole.part.fans);
   commands.clear(overflow_);
-  commands.barrier(kCompute | VK_PIPELINE_STAGE_2_TRANSFER_BIT, kCompute);
+  commands.barrier(kComputeStage | VK_PIPELINE_STAGE_2_TRANSFER_BIT, kComputeStage);
   gather.recordPart(commands, volume, whole, numberTexels_, skipTexels_);
-  commands.barrier(kCompute, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+  commands.barrier(kComputeStage, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
 }
 
 FixedSums GatherPartPass::read() const {

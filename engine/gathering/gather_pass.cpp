@@ -28,8 +28,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-
 /// The shaders for the whole volume, for a part and for a region.
 const std::array<const Shader*, 3>& gatherShaders(const GatherVolume& volume) {
   using namespace shaders;
@@ -113,7 +111,7 @@ void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume,
 
 void GatherPass::recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
   dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), frame.samples, Extent::Whole);
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
 }
 
 void GatherPass::recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
@@ -135,7 +133,7 @@ void GatherPass::recordRegion(Commands& commands, const GatherVolume& volume, co
   commands.beginPass("gather");
   begin(commands, frame);
   dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), frame.region.extent, Extent::Region);
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
 }
 
 std::vector<Binding> GatherPass::imageBindings(const Sums& from, const Sums& to, const FrameTargets& targets) const {
@@ -152,7 +150,7 @@ void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& fr
   const Pipeline stencil =
       makeImagePass(device_, shaders::gather_stencil, targets.distance.exists(), direct_, scalars);
   commands.dispatch(stencil, imageBindings(gathered_, direct_ ? gathered_ : smoothed_, targets), glm::ivec3(frame.samples, 1));
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
 }
 
 void GatherPass::recordUpsampling(Commands& commands, const shader::GatherFrame& frame, const FrameTargets& targets) {
@@ -162,7 +160,7 @@ void GatherPass::recordUpsampling(Commands& commands, const shader::GatherFrame&
         makeImagePass(device_, shaders::gather_upsample, targets.distance.exists(), alongY);
     commands.dispatch(upsample, imageBindings(alongY ? rows_ : smoothed_, alongY ? gathered_ : rows_, targets),
                       {frame.size.x, alongY ? frame.size.y : frame.samples.y, 1});
-    commands.barrier(kCompute, kCompute);
+    commands.barrier(kComputeStage, kComputeStage);
   }
 }
 
@@ -183,10 +181,10 @@ void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& fram
 void GatherPass::recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
   commands.beginPass("gather image");
   for (const RenderTarget* target : targets.all())
-    commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kCompute, kCompute);
+    commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kComputeStage, kComputeStage);
   recordStencil(commands, frame, scalars, targets);
   recordUpsampling(commands, frame, targets);
-  commands.barrier(kCompute, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+  commands.barrier(kComputeStage, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
 }
 
 std::vector<GatherSums> GatherPass::download(const Sums& sums) const {

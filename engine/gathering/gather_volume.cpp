@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "embedded/brick_quads.h"
@@ -16,8 +17,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
 
 /// The radiance of a stored source term that equals the stored extinction: 1, or more if half floats could
 /// not hold the brightest voxel. Lights are as bright as at the least distance that counts.
@@ -106,14 +105,9 @@ void GatherVolume::makeBricks(std::vector<StageTime>& times) {
     skips.insert(skips.end(), skipCells.values.begin(), skipCells.values.end());
   }
   firstBricks_.push_back(std::uint32_t(bricks.size()));
-  const auto make = [&](Buffer& buffer, TexelView& view, std::span<const std::byte> bytes, VkFormat format, const char* name) {
-    buffer = Buffer(device_, bytes.size(), MemoryUse::Device, name, kTexels);
-    upload(device_, buffer, bytes);
-    view = TexelView(device_, buffer, format);
-  };
-  make(brickNumbers_, brickNumberTexels_, std::as_bytes(std::span(numbers)), VK_FORMAT_R32_UINT, "brick numbers");
-  make(brickCells_, brickCellTexels_, std::as_bytes(std::span(bricks)), VK_FORMAT_R32G32B32A32_UINT, "brick cells");
-  make(skips_, skipTexels_, std::as_bytes(std::span(skips)), VK_FORMAT_R8_UINT, "cells to skip");
+  std::tie(brickNumbers_, brickNumberTexels_) = uploadTexels(device_, std::as_bytes(std::span(numbers)), VK_FORMAT_R32_UINT, "brick numbers");
+  std::tie(brickCells_, brickCellTexels_) = uploadTexels(device_, std::as_bytes(std::span(bricks)), VK_FORMAT_R32G32B32A32_UINT, "brick cells");
+  std::tie(skips_, skipTexels_) = uploadTexels(device_, std::as_bytes(std::span(skips)), VK_FORMAT_R8_UINT, "cells to skip");
 }
 
 /// Scalars without light need no source terms for voxels.
@@ -146,7 +140,7 @@ void GatherVolume::shade(Commands& commands, const Shading& shading, int level) 
       .meanLayer = meanLayer(volume),
       .lightOnly = lightOnly ? 1 : 0};
   commands.dispatchLinear(shadePass_, bindings, push, count);
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
 }
 
 bool GatherVolume::hasColors() const {
@@ -236,7 +230,7 @@ GatherVolume::QuadStore GatherVolume::makeStore(bool needed, std::uint64_t quadB
   const std::uint32_t bricks = firstBricks_.back();
   for (std::uint32_t first = 0; first == 0 || (needed && first < bricks); first += bricksPerPiece_) {
     const std::uint64_t quads = std::uint64_t(std::min(bricksPerPiece_, bricks - first)) * shader::kGatherBrickBlocks;
-    store.pieces.emplace_back(device_, (needed ? quads : 1) * quadBytes, MemoryUse::Device, name, kTexels);
+    store.pieces.emplace_back(device_, (needed ? quads : 1) * quadBytes, MemoryUse::Device, name, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
   }
   store.texels = TexelView(device_, store.pieces.front(), format);
   return store;
@@ -296,7 +290,7 @@ void GatherVolume::recordQuads(Commands& commands, int axis) {
     if (lacksLevel(quads.levels, level))
       recordBricks(commands, axis, level, firstBricks_[std::size_t(level)], firstBricks_[std::size_t(level) + 1],
                    scalarCodes(level), quads.medium, hasColors() && (lit_ || !scalarCodes(level)));
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
   quads.levels |= wantedLevels_;
 }
 

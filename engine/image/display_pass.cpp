@@ -23,7 +23,6 @@ void DisplayPass::record(Commands& commands, const RenderTarget& image, const Di
                          const Texture& shown) const {
   FV_CHECK_EQ(image.size().x, shown.size().x);
   FV_CHECK_EQ(image.size().y, shown.size().y);
-  constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   constexpr VkPipelineStageFlags2 kFragment = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
   const Background background = look.background.value_or(Background());
   const shader::DisplayPush push{.size = image.size(),
@@ -34,9 +33,9 @@ void DisplayPass::record(Commands& commands, const RenderTarget& image, const Di
                                  .bottom = background.bottom};
   const std::array<Binding, 3> bindings{&image, &shown, &srgb_};
   commands.beginPass("display");
-  commands.transition(shown.handle(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kFragment, kCompute);
+  commands.transition(shown.handle(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kFragment, kComputeStage);
   commands.dispatch(pipeline_, bindings, push, {image.size(), 1});
-  commands.transition(shown.handle(), VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kCompute,
+  commands.transition(shown.handle(), VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kComputeStage,
                       kFragment);
 }
 

@@ -13,7 +13,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr DirectionSet kDirections = DirectionSet::Directions26;
 
 /// Extinction by scalar: exact without a transfer function, otherwise from a table.
@@ -132,10 +131,10 @@ bool AmbientPass::record(Commands& commands, const Lighting& lighting, const Ray
         .tint = lighting.tint};
     const int planes = step.z != 0 ? cells_.z : step.y != 0 ? cells_.y : cells_.x;
     const std::uint64_t lines = std::uint64_t(cells_.x) * std::uint64_t(cells_.y) * std::uint64_t(cells_.z) / std::uint64_t(planes);
-    if (i > 0) commands.barrier(kCompute, kCompute);
+    if (i > 0) commands.barrier(kComputeStage, kComputeStage);
     commands.dispatchLinear(pipeline_, bindings, push, lines);
   }
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
   return true;
 }
 

@@ -13,8 +13,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-
 std::uint32_t groupsFor(std::uint32_t words) {
   return (words + shader::kOccupancyThreads - 1) / shader::kOccupancyThreads;
 }
@@ -60,9 +58,9 @@ void CompactionPass::recordCount(Commands& commands, const DeviceVolume& volume,
   const std::array<Binding, 2> scan{&list.groupOffsets, &totals};  // of no chunks, so that the second is not written
   commands.beginPass("block lists");
   commands.dispatchLinear(count_, count, push, threadsOf(push));
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
   commands.dispatchLinear(scan_, scan, push, shader::kScanThreads);
-  commands.barrier(kCompute, kCompute | VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+  commands.barrier(kComputeStage, kComputeStage | VK_PIPELINE_STAGE_2_TRANSFER_BIT);
   commands.copy(list.groupOffsets, totals,
                 {.srcOffset = totalAt, .dstOffset = VkDeviceSize(level) * sizeof(std::uint32_t), .size = sizeof(std::uint32_t)});
 }
@@ -86,7 +84,7 @@ void CompactionPass::recordList(Commands& commands, const DeviceVolume& volume, 
   const std::array<Binding, 2> write{&volume.occupancy, &list.groupOffsets};
   commands.beginPass("block lists");
   commands.dispatchLinear(write_, write, push, threadsOf(push));
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
 }
 
 std::uint64_t downloadBlockCount(const Device& device, const BlockList& list) {

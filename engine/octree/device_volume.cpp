@@ -54,15 +54,19 @@ double brightestSource(const Classification& classification, const Volume& volum
 
 }  // namespace
 
+DeviceVolume outlineOf(const Volume& volume, const Classification& classification) {
+  return {.layout = GridLayout(volume.dimensions),
+          .hierarchy = HierarchyLayout(volume.dimensions),
+          .indexToWorld = volume.indexToWorld,
+          .albedo = classification.albedo,
+          .hasColors = volume.albedo.has_value() || classification.transferFunction.has_value(),
+          .voxelSize = volume.voxelSize()};
+}
+
 DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
                               const Classification& classification) {
-  DeviceVolume result{.layout = GridLayout(volume.dimensions),
-                      .hierarchy = HierarchyLayout(volume.dimensions),
-                      .indexToWorld = volume.indexToWorld,
-                      .albedo = classification.albedo,
-                      .hasColors = volume.albedo.has_value() || classification.transferFunction.has_value(),
-                      .emissionUnit = brightestSource(classification, volume) / kBrightest,
-                      .voxelSize = volume.voxelSize()};
+  DeviceVolume result = outlineOf(volume, classification);
+  result.emissionUnit = brightestSource(classification, volume) / kBrightest;
   const std::uint64_t words = result.hierarchy.paddedBlocks() / shader::kBlocksPerWord;
   result.occupancy = Buffer(device, words * sizeof(shader::OccupancyWord), MemoryUse::Device, "occupancy",
                             VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);

@@ -11,8 +11,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
-
 static_assert(shader::kRowAlignment % 2 == 0);  // two children in a row are in the same occupancy word
 
 shader::MediumLevelPush mediumPush(const DeviceVolume& volume, int level) {
@@ -43,7 +41,7 @@ void MediumLevels::record(Commands& commands, const DeviceVolume& volume,
     const shader::MediumLevelPush push = mediumPush(volume, level);
     const std::array<Binding, 2> bindings{&volume.occupancy, &coarse[std::size_t(level) - 1].indices};
     commands.dispatchLinear(pipelines_[level == 1 ? 1 : 0], bindings, push, push.parentCount);
-    commands.barrier(kCompute, kCompute);
+    commands.barrier(kComputeStage, kComputeStage);
   }
 }
 

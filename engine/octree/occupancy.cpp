@@ -12,7 +12,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr int kQuad = 4;  // number of voxels of a row that an invocation of expand_voxels.comp writes
 
 }  // namespace
@@ -28,7 +27,7 @@ void OccupancyPass::recordVoxels(Commands& commands, const DeviceVolume& volume,
   const std::array<Binding, 4> bindings{&bricks.scalars(), &bricks.firstVoxels(), &bricks.emissions(), &volume.occupancy};
   const shader::BricksPush push = bricks.push();
   commands.dispatchLinear(voxels_, bindings, push, std::uint64_t(push.brickCount) * shader::kBrickThreads);
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
 }
 
 void OccupancyPass::recordBlocks(Commands& commands, const DeviceVolume& volume) const {
@@ -39,7 +38,7 @@ void OccupancyPass::recordBlocks(Commands& commands, const DeviceVolume& volume)
                                           .wordCount = std::uint32_t(volume.hierarchy.words(level))};
     const std::array<Binding, 1> occupancy{&volume.occupancy};
     commands.dispatchLinear(blocks_, occupancy, push, push.wordCount);
-    commands.barrier(kCompute, kCompute);
+    commands.barrier(kComputeStage, kComputeStage);
   }
 }
 
@@ -63,7 +62,7 @@ void ExpandPass::recordBox(Commands& commands, const DeviceVolume& volume, glm::
   const shader::ExpandPush push{.voxels = volume.onDevice(0), .first = first, .extent = quads};
   const std::array<Binding, 3> bindings{&volume.occupancyTexels, &volume.extinctionQuads, &extinction};
   commands.dispatch(pipeline_, bindings, push, quads);
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
 }
 
 std::vector<std::uint32_t> downloadStored(const Device& device, const DeviceVolume& volume, int level) {

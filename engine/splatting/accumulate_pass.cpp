@@ -20,7 +20,6 @@ static_assert(shader::kSumBits == kValueBits);
 
 constexpr double kOverlapMargin = 8.0;
 constexpr int kDepthDigits = kValueBits - 5;  // up to an optical depth of 32
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 
 double largestComponent(glm::dvec3 color) {
   return std::max({color.r, color.g, color.b});
@@ -125,7 +124,7 @@ void AccumulatePass::recordClear(Commands& commands, FixedSums layout) {
 void AccumulatePass::recordMarks(Commands& commands, const Buffer& splats, const BlockList& list, std::uint32_t chunk) {
   const std::array<Binding, 5> bindings{&splats, &list.chunks, &reached_, &tiles_, &arguments_};
   commands.beginPass("accumulate sums");
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
   commands.dispatchIndirect(mark_, bindings, shader::MarkPush{chunk, imageTiles(layout_.size)}, list.chunks,
                             chunk * sizeof(shader::ChunkArguments));
 }
@@ -144,11 +143,11 @@ void AccumulatePass::record(Commands& commands, const FrameConstants& frame, con
                                     .distanceDigits = digits(SumChannel::Distance),
                                     .sums = addressWords(sums_.address())};
   commands.beginPass("accumulate sums");
-  commands.barrier(kCompute, kCompute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
+  commands.barrier(kComputeStage, kComputeStage | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
   commands.dispatchIndirect(accumulate_, bindings, push, arguments_, 0);
-  commands.barrier(kCompute, kCompute | VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+  commands.barrier(kComputeStage, kComputeStage | VK_PIPELINE_STAGE_2_TRANSFER_BIT);
   commands.clear(arguments_);
-  commands.barrier(kCompute, kCompute | VK_PIPELINE_STAGE_2_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT);
+  commands.barrier(kComputeStage, kComputeStage | VK_PIPELINE_STAGE_2_TRANSFER_BIT | VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT);
 }
 
 FixedSums AccumulatePass::read() const {

@@ -34,12 +34,11 @@ DepthSort::DepthSort(const Device& device, const DeviceVolume& volume)
 
 void DepthSort::record(Commands& commands, const DeviceVolume& volume, const BlockList& visible,
                        const Camera& camera) const {
-  constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
   const std::array<Binding, 5> keys{&visible.indices, &visible.chunks, &pairs_.count, &pairs_.keys,
                                     &pairs_.values};
   commands.beginPass("depth sort");
   commands.dispatchLinear(keys_, keys, depthKeyPush(volume, visible, camera), pairs_.capacity);
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
   sort_.record(commands, pairs_);
 }
 

@@ -15,7 +15,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr int kThreads = shader::kSortGroups * shader::kSortThreads;
 
 }  // namespace
@@ -51,11 +50,11 @@ void RadixSort::record(Commands& commands, const SortPairs& pairs, int bits) con
     const std::array<Binding, 6> scatter{&pairs.count,   keys,       values,
                                          &pairs.offsets, sortedKeys, sortedValues};
     commands.dispatch(count_, count, push, {kThreads, 1, 1});
-    commands.barrier(kCompute, kCompute);
+    commands.barrier(kComputeStage, kComputeStage);
     commands.dispatch(scan_, scan, {shader::kSortThreads, 1, 1});
-    commands.barrier(kCompute, kCompute);
+    commands.barrier(kComputeStage, kComputeStage);
     commands.dispatch(scatter_, scatter, push, {kThreads, 1, 1});
-    commands.barrier(kCompute, kCompute);
+    commands.barrier(kComputeStage, kComputeStage);
     std::swap(keys, sortedKeys);
     std::swap(values, sortedValues);
   }

@@ -12,7 +12,6 @@ namespace {
 
 static_assert(kShares == shader::kSortDigits, "share_key.comp counts a share a thread");
 
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr int kShareBits = 2 * shader::kSortBits;  // one digit and a spare one: an even number of passes sorts in place
 constexpr std::uint64_t kCountBytes = kShares * sizeof(std::uint32_t);
 
@@ -75,7 +74,7 @@ void ShareList::record(Commands& commands, const DeviceVolume& volume, const Blo
   commands.beginPass("shares");
   commands.clear(counts_);
   commands.dispatchLinear(keys_, bindings, shader::ShareKeyPush{chunkCount}, mostBlocks);
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
   sort_.record(commands, pairs_, kShareBits);
 }
 

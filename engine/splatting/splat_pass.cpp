@@ -15,7 +15,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 constexpr VkPipelineStageFlags2 kDraw = VK_PIPELINE_STAGE_2_ALL_GRAPHICS_BIT;
 constexpr VkPipelineStageFlags2 kOutput = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
 
@@ -117,18 +116,18 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
   const Pipeline& pipeline = frame.quads ? quads_ : points_;
   for (const RenderTarget* target : targets.all())
     commands.transition(*target, inputs.continued ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED,
-                        VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kOutput | kCompute, kOutput);
+                        VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kOutput | kComputeStage, kOutput);
 
   if (!inputs.sameFrame) recordFrame(commands, inputs.volume, frame);
   const std::uint32_t endChunk = inputs.firstChunk + inputs.chunkCount;
   for (std::uint32_t chunk = inputs.firstChunk; chunk < endChunk; ++chunk) {
     const VkDeviceSize arguments = chunk * sizeof(shader::ChunkArguments);
     commands.beginPass("splat set-up");
-    commands.barrier(kDraw, kCompute);
+    commands.barrier(kDraw, kComputeStage);
     commands.dispatchIndirect(setUp, setup, shader::SetupPush{chunk}, inputs.visible->chunks, arguments);
     if (inputs.onSplats) inputs.onSplats(splats_, chunk);
     commands.beginPass("splat draw");
-    commands.barrier(kCompute, kDraw);
+    commands.barrier(kComputeStage, kDraw);
     beginRendering(
         commands, targets, frame,
         chunk == 0 && !inputs.continued ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD);
@@ -141,7 +140,7 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
   }
   for (const RenderTarget* target : targets.all())
     commands.transition(*target, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_IMAGE_LAYOUT_GENERAL, kOutput,
-                        kCompute | VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+                        kComputeStage | VK_PIPELINE_STAGE_2_TRANSFER_BIT);
 }
 
 }  // namespace freevoxels

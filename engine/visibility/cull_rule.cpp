@@ -10,7 +10,7 @@ namespace freevoxels {
 namespace {
 
 /// Margin in pixels for widened footprints, which reach farther, and for rounding.
-constexpr double kMargin = kFootprintRadius + 0.5;
+constexpr double kFootprintMargin = kFootprintRadius + 0.5;
 
 std::array<glm::dvec4, 5> imagePlanes(glm::dvec3 middle, const PixelRays& rays, glm::ivec2 size) {
   const glm::dmat3 basis = rays.orthographic ? glm::dmat3(rays.originX, rays.originY, rays.direction)
@@ -19,8 +19,8 @@ std::array<glm::dvec4, 5> imagePlanes(glm::dvec3 middle, const PixelRays& rays, 
   const glm::dmat3 rows = glm::transpose(glm::inverse(basis));
   const auto row = [&](int i) { return glm::dvec4(rows[i], glm::dot(rows[i], middle - rays.origin)); };
   const glm::dvec4 one = rays.orthographic ? glm::dvec4(0.0, 0.0, 0.0, 1.0) : row(2);
-  std::array<glm::dvec4, 5> planes{row(0) + kMargin * one, (size.x + kMargin) * one - row(0),
-                                   row(1) + kMargin * one, (size.y + kMargin) * one - row(1), row(2)};
+  std::array<glm::dvec4, 5> planes{row(0) + kFootprintMargin * one, (size.x + kFootprintMargin) * one - row(0),
+                                   row(1) + kFootprintMargin * one, (size.y + kFootprintMargin) * one - row(1), row(2)};
   for (glm::dvec4& plane : planes) plane /= glm::length(glm::dvec3(plane));
   return planes;
 }

@@ -13,7 +13,6 @@ namespace freevoxels {
 namespace {
 
 constexpr const char* kPassName = "level of detail and culling";
-constexpr VkPipelineStageFlags2 kCompute = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
 
 std::uint64_t groupsFor(std::uint64_t slots) {
   return (slots + shader::kCutSlotsPerGroup - 1) / shader::kCutSlotsPerGroup;
@@ -192,7 +191,7 @@ void CutPass::recordSelect(Commands& commands, const CutInputs& inputs, std::spa
     const Pipeline& select = level.children != nullptr ? selectCandidates_[voxels] : select_[std::size_t(part)][voxels];
     if (level.push.slotCount > 0)
       commands.dispatchLinear(select, bindings, level.push, groupsFor(level.push.slotCount) * shader::kCutThreads);
-    commands.barrier(kCompute, kCompute);
+    commands.barrier(kComputeStage, kComputeStage);
   }
 }
 
@@ -206,14 +205,14 @@ void CutPass::recordList(Commands& commands, std::span<const Level> levels, Part
                                               .firstChunk = first ? 0 : chunks,
                                               .chunkCount = chunks},
                           shader::kScanThreads);
-  commands.barrier(kCompute, kCompute | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
+  commands.barrier(kComputeStage, kComputeStage | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
   for (const Level& level : levels) {
     const std::array<Binding, 5> bindings{&frame_, level.parents, &masks_, &cut_.groupOffsets, &cut_.indices};
     if (level.push.slotCount > 0)
       commands.dispatchLinear(write_, bindings, level.push,
                               groupsFor(level.push.slotCount) * shader::kCutThreads);
   }
-  commands.barrier(kCompute, kCompute);
+  commands.barrier(kComputeStage, kComputeStage);
 }
 
 /// Counts the drawn blocks of each level by the offsets of the levels' first workgroups, in both parts.

@@ -10,7 +10,7 @@ namespace freevoxels {
 namespace {
 
 /// Relative margin for the device's rounding of distances.
-constexpr double kMargin = 1e-3;
+constexpr double kRangeMargin = 1e-3;
 
 /// Relative change of an orthographic camera's scale during which a level comes in.
 constexpr double kLevelRange = 0.25;
@@ -68,8 +68,8 @@ DetailRule detailRule(const HierarchyLayout& hierarchy, const PixelRays& rays, g
   for (int level = 1; level <= hierarchy.top(); ++level) {
     const glm::dvec2 range = rule.edgePerDistance * distances(rule, hierarchy, level);
     const int edge = Block{.level = level}.edge();
-    if (edge <= range.x * (1.0 - kMargin)) rule.finest = level;
-    if (edge <= range.y * (1.0 + kMargin)) rule.coarsest = level;
+    if (edge <= range.x * (1.0 - kRangeMargin)) rule.finest = level;
+    if (edge <= range.y * (1.0 + kRangeMargin)) rule.coarsest = level;
   }
   return rule;
 }

@@ -22,7 +22,7 @@ struct Cell {
   glm::dvec3 power{0.0};       // emission times the cell's volume
 };
 
-struct Cells {
+struct EmissionCells {
   glm::ivec3 size{0};
   int edge = 1;  // voxels
   std::vector<Cell> values;
@@ -40,9 +40,9 @@ struct Source {
 
 double luminance(const glm::dvec3& color) { return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722)); }
 
-Cells cellsOf(const Volume& volume, const Classification& classification) {
+EmissionCells cellsOf(const Volume& volume, const Classification& classification) {
   const glm::ivec3 n = volume.dimensions;
-  Cells cells;
+  EmissionCells cells;
   cells.edge = (std::max({n.x, n.y, n.z}) + kMaxCells - 1) / kMaxCells;
   cells.size = (n + cells.edge - 1) / cells.edge;
   cells.values.resize(std::size_t(cells.size.x) * std::size_t(cells.size.y) * std::size_t(cells.size.z));
@@ -67,7 +67,7 @@ Cells cellsOf(const Volume& volume, const Classification& classification) {
 
 /// Joins the cells to sources: one for each cube of 1, 2, 4, ... cells along an edge, the smallest that gives
 /// at most kMaxSources sources.
-std::vector<Source> sourcesOf(const Cells& cells, double cellEdge) {
+std::vector<Source> sourcesOf(const EmissionCells& cells, double cellEdge) {
   for (int group = 1;; group *= 2) {
     const glm::ivec3 groups = (cells.size + group - 1) / group;
     std::vector<Source> sums(std::size_t(groups.x) * std::size_t(groups.y) * std::size_t(groups.z));
@@ -93,7 +93,7 @@ std::vector<Source> sourcesOf(const Cells& cells, double cellEdge) {
 }
 
 /// The optical depth between the centres of two cells that are `length` world units apart.
-double depthBetween(const Cells& cells, const glm::dvec3& from, const glm::dvec3& to, double length) {
+double depthBetween(const EmissionCells& cells, const glm::dvec3& from, const glm::dvec3& to, double length) {
   const int steps = std::max(1, int(std::ceil(glm::length(to - from))));
   double sum = 0.0;
   for (int i = 0; i < steps; ++i) {
@@ -107,7 +107,7 @@ double depthBetween(const Cells& cells, const glm::dvec3& from, const glm::dvec3
 
 EmissionLight::EmissionLight(const Volume& volume, const Classification& classification) {
   if (!(brightestLight(classification, volume) > 0.0)) return;
-  const Cells cells = cellsOf(volume, classification);
+  const EmissionCells cells = cellsOf(volume, classification);
   cells_ = cells.size;
   const glm::dmat4 scaled = glm::dmat4(glm::dvec4(cells.edge, 0, 0, 0), glm::dvec4(0, cells.edge, 0, 0),
                                        glm::dvec4(0, 0, cells.edge, 0), glm::dvec4(glm::dvec3(0.5 * (cells.edge - 1)), 1));

@@ -38,9 +38,6 @@ constexpr std::array<Puff, 15> kPuffs{{{{-0.02f, -0.10f, 0.00f}, 0.175f},
 constexpr float kBase = -0.235f;  // height of the flat underside
 constexpr float kJoin = 0.045f;   // length over which neighbouring puffs melt
 
-struct Billow {
-  float frequency, amplitude;
-};
 constexpr std::array<Billow, 4> kBillows{{{7.0f, 0.085f}, {15.0f, 0.050f}, {32.0f, 0.024f}, {67.0f, 0.011f}}};
 constexpr float kFray = 0.022f;     // amplitude of the fraying
 constexpr float kSoftest = 0.075f;  // widest edge; where the cloud is deeper than this it is solid

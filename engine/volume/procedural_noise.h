@@ -19,4 +19,9 @@ float fractalNoise(glm::vec3 p, int octaves, std::uint32_t seed);
 /// meet.
 float billowNoise(glm::vec3 p, std::uint32_t seed);
 
+/// A layer of billowNoise.
+struct Billow {
+  float frequency, amplitude;
+};
+
 }  // namespace freevoxels

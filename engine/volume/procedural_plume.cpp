@@ -14,21 +14,17 @@ namespace {
 
 using glm::vec3;
 
-constexpr float kPi = std::numbers::pi_v<float>;
 constexpr float kBottom = -0.47f, kTop = 0.36f;    // of the axis
 constexpr float kAround = 0.31f, kTurns = 0.85f;   // the axis is a helix
 constexpr float kNarrow = 0.014f, kWide = 0.076f;  // radius of the smoke, below and above
 
-struct Billow {
-  float frequency, amplitude;  // amplitude in radii
-};
-constexpr std::array<Billow, 2> kBillows{{{12.0f, 0.9f}, {31.0f, 0.5f}}};
+constexpr std::array<Billow, 2> kSmokeBillows{{{12.0f, 0.9f}, {31.0f, 0.5f}}};  // amplitudes in radii
 constexpr float kReach = 0.7f;  // half the sum of the amplitudes
 constexpr float kSoft = 0.35f;  // width of the edge, in radii
-constexpr float kWarp = 0.05f;
+constexpr float kSmokeWarp = 0.05f;
 
 float angleAt(float t) {
-  return 2.0f * kPi * kTurns * t;
+  return 2.0f * std::numbers::pi_v<float> * kTurns * t;
 }
 
 vec3 axisAt(float t) {
@@ -37,7 +33,7 @@ vec3 axisAt(float t) {
 
 /// The derivative of the axis with respect to t.
 vec3 alongAxis(float t) {
-  const float speed = 2.0f * kPi * kTurns * kAround;
+  const float speed = 2.0f * std::numbers::pi_v<float> * kTurns * kAround;
   return {-speed * std::sin(angleAt(t)), kTop - kBottom, speed * std::cos(angleAt(t))};
 }
 
@@ -47,7 +43,7 @@ float radiusAt(float t) {
 
 /// Largest distance of smoke from the axis at parameter t.
 float reachAt(float t) {
-  return radiusAt(t) * (1.0f + kReach) + kWarp * t;
+  return radiusAt(t) * (1.0f + kReach) + kSmokeWarp * t;
 }
 
 /// Parameter t of the point of the axis that is nearest to p, as found by a few steps from p's height.
@@ -78,12 +74,12 @@ float plumeDensity(vec3 position) {
   const vec3 axis = axisAt(t);
   if (glm::length(position - axis) > reachAt(t)) return 0.0f;
 
-  const vec3 warped = position + kWarp * t * gradientNoise3(position * 5.0f, 61u);
+  const vec3 warped = position + kSmokeWarp * t * gradientNoise3(position * 5.0f, 61u);
   float distance = glm::length(warped - axis) / radius - 1.0f;  // in radii
   const float calm = glm::smoothstep(0.0f, 0.25f, t);
-  for (std::size_t i = 0; i < kBillows.size(); ++i) {
-    const vec3 place = warped * kBillows[i].frequency;
-    distance -= calm * kBillows[i].amplitude * (billowNoise(place, 71u + std::uint32_t(i)) - 0.5f);
+  for (std::size_t i = 0; i < kSmokeBillows.size(); ++i) {
+    const vec3 place = warped * kSmokeBillows[i].frequency;
+    distance -= calm * kSmokeBillows[i].amplitude * (billowNoise(place, 71u + std::uint32_t(i)) - 0.5f);
   }
   if (distance > 0.0f) return 0.0f;
   const float body = glm::smoothstep(0.0f, kSoft, -distance);

@@ -128,4 +128,11 @@ void download(const Device& device, const Buffer& buffer, std::span<std::byte> d
   }
 }
 
+std::pair<Buffer, TexelView> uploadTexels(const Device& device, std::span<const std::byte> data, VkFormat format, const char* name) {
+  Buffer buffer(device, data.size(), MemoryUse::Device, name, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  upload(device, buffer, data);
+  TexelView view(device, buffer, format);
+  return {std::move(buffer), std::move(view)};
+}
+
 }  // namespace freevoxels

@@ -112,4 +112,7 @@ void upload(const Device& device, const Buffer& buffer, std::span<const std::byt
 /// complete.
 void download(const Device& device, const Buffer& buffer, std::span<std::byte> data, VkDeviceSize first = 0);
 
+/// A device buffer that holds `data`, and its view as texels of `format`.
+std::pair<Buffer, TexelView> uploadTexels(const Device& device, std::span<const std::byte> data, VkFormat format, const char* name);
+
 }  // namespace freevoxels

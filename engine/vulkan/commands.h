@@ -31,6 +31,9 @@ using Binding = std::variant<const Buffer*, const TexelView*, const RenderTarget
 /// between.
 std::uint64_t ticksBetween(std::uint64_t first, std::uint64_t second, std::uint32_t bits);
 
+/// The stage of all compute passes, for barriers.
+inline constexpr VkPipelineStageFlags2 kComputeStage = VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT;
+
 /// The device time that a slice is meant to take.
 constexpr double kSliceMilliseconds = 40.0;
 

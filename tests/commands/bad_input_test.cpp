@@ -8,7 +8,7 @@ namespace freevoxels::test {
 namespace {
 
 /// Without the remark about the CPU, where there is no GPU.
-constexpr const char* kSmall = " --size 32x32 --quiet";
+constexpr const char* kSmallAndQuiet = " --size 32x32 --quiet";
 
 void writeGrids(const std::filesystem::path& file, const openvdb::GridCPtrVec& grids) {
   openvdb::io::File(file.string()).write(grids);
@@ -26,7 +26,7 @@ class BadInput : public CommandTest {
     SCOPED_TRACE(json);
     writeBytes(folder / "t.json", json);
     expectCleanRefusal(
-        std::string("render procedural:cube @a.png --resolution 8 --transfer-function @t.json") + kSmall,
+        std::string("render procedural:cube @a.png --resolution 8 --transfer-function @t.json") + kSmallAndQuiet,
         ExitCode::Input, mention);
   }
 };
@@ -34,36 +34,36 @@ class BadInput : public CommandTest {
 }  // namespace
 
 TEST_F(BadInput, MissingFile) {
-  expectCleanRefusal(std::string("render @none.vdb @a.exr @a.png") + kSmall, ExitCode::Input, "none.vdb");
+  expectCleanRefusal(std::string("render @none.vdb @a.exr @a.png") + kSmallAndQuiet, ExitCode::Input, "none.vdb");
   expectCleanRefusal("info @none.vdb", ExitCode::Input, "none.vdb");
 }
 
 TEST_F(BadInput, MissingFileNamesTheNearestOne) {
   makeCube("smoke_0001.vdb");
-  expectCleanRefusal(std::string("render @smoke_001.vdb @a.png") + kSmall, ExitCode::Input, "did you mean 'smoke_0001.vdb'?");
+  expectCleanRefusal(std::string("render @smoke_001.vdb @a.png") + kSmallAndQuiet, ExitCode::Input, "did you mean 'smoke_0001.vdb'?");
 }
 
 TEST_F(BadInput, ScanSaysWhatReadsIt) {
   writeBytes(folder / "head.NRRD", "NRRD0004\ntype: short\n");
   writeBytes(folder / "brain.nii.gz", "\x1f\x8b 123456789");
-  expectCleanRefusal(std::string("render @head.NRRD @a.png") + kSmall, ExitCode::Input, "is an NRRD scan");
+  expectCleanRefusal(std::string("render @head.NRRD @a.png") + kSmallAndQuiet, ExitCode::Input, "is an NRRD scan");
   expectCleanRefusal(std::string("info @brain.nii.gz"), ExitCode::Input, "read it in Python");
 }
 
 TEST_F(BadInput, FolderInsteadOfFile) {
   std::filesystem::create_directory(folder / "volumes.vdb");
-  expectCleanRefusal(std::string("render @volumes.vdb @a.png") + kSmall, ExitCode::Input, "volumes.vdb");
+  expectCleanRefusal(std::string("render @volumes.vdb @a.png") + kSmallAndQuiet, ExitCode::Input, "volumes.vdb");
 }
 
 TEST_F(BadInput, TextFileNamedVdb) {
   writeBytes(folder / "text.vdb", "Dear diary, today I wrote a long line of text into a file named .vdb.\n");
-  expectCleanRefusal(std::string("render @text.vdb @a.exr") + kSmall, ExitCode::Input, "text.vdb");
+  expectCleanRefusal(std::string("render @text.vdb @a.exr") + kSmallAndQuiet, ExitCode::Input, "text.vdb");
   expectCleanRefusal("info @text.vdb", ExitCode::Input, "text.vdb");
 }
 
 TEST_F(BadInput, EmptyFile) {
   writeBytes(folder / "empty.vdb", "");
-  expectCleanRefusal(std::string("render @empty.vdb @a.exr") + kSmall, ExitCode::Input, "empty.vdb");
+  expectCleanRefusal(std::string("render @empty.vdb @a.exr") + kSmallAndQuiet, ExitCode::Input, "empty.vdb");
 }
 
 TEST_F(BadInput, FileCutShortAnywhere) {
@@ -73,14 +73,14 @@ TEST_F(BadInput, FileCutShortAnywhere) {
   for (const std::size_t size : {std::size_t(4), std::size_t(40), whole.size() / 2, whole.size() - 1}) {
     SCOPED_TRACE(size);
     writeBytes(folder / "cut.vdb", whole.substr(0, size));
-    expectCleanRefusal(std::string("render @cut.vdb @a.exr") + kSmall, ExitCode::Input, "cut.vdb");
+    expectCleanRefusal(std::string("render @cut.vdb @a.exr") + kSmallAndQuiet, ExitCode::Input, "cut.vdb");
   }
 }
 
 TEST_F(BadInput, UnknownGrid) {
   makeCube("cube.vdb");
-  expectCleanRefusal(std::string("render @cube.vdb @a.png --grid smoke") + kSmall, ExitCode::Input, "smoke");
-  expectCleanRefusal(std::string("render @cube.vdb @a.png --grid density[7]") + kSmall, ExitCode::Input,
+  expectCleanRefusal(std::string("render @cube.vdb @a.png --grid smoke") + kSmallAndQuiet, ExitCode::Input, "smoke");
+  expectCleanRefusal(std::string("render @cube.vdb @a.png --grid density[7]") + kSmallAndQuiet, ExitCode::Input,
                      "density[7]");
 }
 
@@ -88,7 +88,7 @@ TEST_F(BadInput, EmptyGrid) {
   const auto grid = openvdb::FloatGrid::create();
   grid->setName("density");
   writeGrids(folder / "nothing.vdb", {grid});
-  expectCleanRefusal(std::string("render @nothing.vdb @a.png") + kSmall, ExitCode::Input, "nothing.vdb");
+  expectCleanRefusal(std::string("render @nothing.vdb @a.png") + kSmallAndQuiet, ExitCode::Input, "nothing.vdb");
   expectSuccess(run("info @nothing.vdb"));
 }
 
@@ -99,7 +99,7 @@ TEST_F(BadInput, FrustumTransform) {
   grid->setTransform(openvdb::math::Transform::createFrustumTransform(
       openvdb::BBoxd(openvdb::Vec3d(0), openvdb::Vec3d(4)), 0.5, 1.0));
   writeGrids(folder / "frustum.vdb", {grid});
-  expectCleanRefusal(std::string("render @frustum.vdb @a.png") + kSmall, ExitCode::Input, "frustum");
+  expectCleanRefusal(std::string("render @frustum.vdb @a.png") + kSmallAndQuiet, ExitCode::Input, "frustum");
 }
 
 TEST_F(BadInput, SeveralGridsAndNoChoice) {
@@ -111,12 +111,12 @@ TEST_F(BadInput, SeveralGridsAndNoChoice) {
     grids.push_back(grid);
   }
   writeGrids(folder / "two.vdb", grids);
-  expectCleanRefusal(std::string("render @two.vdb @a.png") + kSmall, ExitCode::Input, "flame");
-  expectSuccess(run(std::string("render @two.vdb @a.png --grid flame") + kSmall));
+  expectCleanRefusal(std::string("render @two.vdb @a.png") + kSmallAndQuiet, ExitCode::Input, "flame");
+  expectSuccess(run(std::string("render @two.vdb @a.png --grid flame") + kSmallAndQuiet));
 }
 
 TEST_F(BadInput, BadTransferFunction) {
-  expectCleanRefusal(std::string("render procedural:cube @a.png --transfer-function @none.json") + kSmall,
+  expectCleanRefusal(std::string("render procedural:cube @a.png --transfer-function @none.json") + kSmallAndQuiet,
                      ExitCode::Input, "none.json");
   expectBadTransferFunction("not json", "t.json");
   expectBadTransferFunction(R"({"opacity":[[0,0],[1,1]],"color":[[0,1,1,1]],"shine":1})", "shine");
@@ -132,7 +132,7 @@ TEST_F(BadInput, BadLights) {
     SCOPED_TRACE(options);
     for (const char* command : {"render", "oracle"})
       expectCleanRefusal(
-          fmt::format("{} procedural:cube @a.png --resolution 8 {}{}", command, options, kSmall),
+          fmt::format("{} procedural:cube @a.png --resolution 8 {}{}", command, options, kSmallAndQuiet),
           ExitCode::Usage, mention);
   };
   expectBadLight("--light color=1,1,1", "neither a direction nor a position");
@@ -151,19 +151,19 @@ TEST_F(BadInput, BadLights) {
   expectBadLight("--scattering 9", "--scattering");
   expectBadLight("--scattering-scale 1.5", "--scattering-scale");
   for (const char* option : {"--light-attenuation exact --ambient 1", "--shading gradient --ambient 1", "--surface-share 0.5 --shading scatter"})
-    expectCleanRefusal(fmt::format("render procedural:cube @a.png {}{}", option, kSmall), ExitCode::Usage,
+    expectCleanRefusal(fmt::format("render procedural:cube @a.png {}{}", option, kSmallAndQuiet), ExitCode::Usage,
                        std::string(option).substr(0, std::string(option).find(' ')));
 }
 
 TEST_F(BadInput, VolumeThatNoDeviceHolds) {
-  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 2048") + kSmall,
+  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 2048") + kSmallAndQuiet,
                      ExitCode::OutOfMemory, "--resolution");
 }
 
 TEST_F(BadInput, UnknownDevice) {
-  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --device 99") + kSmall,
+  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --device 99") + kSmallAndQuiet,
                      ExitCode::Device, "99");
-  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --device Voodoo2") + kSmall,
+  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --device Voodoo2") + kSmallAndQuiet,
                      ExitCode::Device, "Voodoo2");
 }
 

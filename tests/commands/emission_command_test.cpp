@@ -7,7 +7,7 @@
 namespace freevoxels::test {
 namespace {
 
-constexpr const char* kSmall = " --size 40x40 --quiet";
+constexpr const char* kSmallFire = " --size 40x40 --quiet";
 
 class EmissionCommand : public CommandTest {
  protected:
@@ -29,7 +29,7 @@ class EmissionCommand : public CommandTest {
 };
 
 TEST_F(EmissionCommand, TheHeaderRepeatsTheImage) {
-  expectSuccess(run(std::string("render @fire.vdb @a.exr @a.png --emission --float") + kSmall));
+  expectSuccess(run(std::string("render @fire.vdb @a.exr @a.png --emission --float") + kSmallFire));
   const std::string made = readBytes(folder / "a.exr");
   const std::string command = exrAttribute(made, "freevoxels:command");
   for (const char* part : {"--temperature-grid heat", "--temperature-scale 2000", "--emission ",
@@ -43,9 +43,9 @@ TEST_F(EmissionCommand, TheHeaderRepeatsTheImage) {
   for (const glm::vec4& pixel : readImage(folder / "a.exr").pixels) brightest = std::max(brightest, pixel.r - pixel.a);
   EXPECT_GT(brightest, 0.3f);  // a flame beside the smoke has no alpha
   // Naming the grid is enough, and the oracle sees it too.
-  expectSuccess(run(std::string("render @fire.vdb @c.exr --temperature-grid heat --float") + kSmall));
+  expectSuccess(run(std::string("render @fire.vdb @c.exr --temperature-grid heat --float") + kSmallFire));
   EXPECT_EQ(readImage(folder / "c.exr").pixels, readImage(folder / "a.exr").pixels);
-  expectSuccess(run(std::string("oracle @fire.vdb @d.exr --temperature-grid heat") + kSmall));
+  expectSuccess(run(std::string("oracle @fire.vdb @d.exr --temperature-grid heat") + kSmallFire));
 }
 
 TEST_F(EmissionCommand, ColoursAreAlbedosAndClippedWithOneWarning) {
@@ -61,7 +61,7 @@ TEST_F(EmissionCommand, ColoursAreAlbedosAndClippedWithOneWarning) {
 TEST_F(EmissionCommand, WhatCannotBeIsRefused) {
   const auto refuse = [&](const std::string& options, ExitCode code, const std::string& mention) {
     SCOPED_TRACE(options);
-    expectCleanRefusal("render @fire.vdb @a.png " + options + kSmall, code, mention);
+    expectCleanRefusal("render @fire.vdb @a.png " + options + kSmallFire, code, mention);
   };
   refuse("--temperature-grid none", ExitCode::Input, "none");
   refuse("--temperature-grid Cd", ExitCode::Input, "--temperature-grid");
@@ -74,9 +74,9 @@ TEST_F(EmissionCommand, WhatCannotBeIsRefused) {
   refuse("--emission --temperature-offset inf", ExitCode::Usage, "--temperature-offset");
   refuse("--temperature-scale 3", ExitCode::Usage, "--emission");
   refuse("--albedo-grid Cd --transfer-function @fire.vdb", ExitCode::Usage, "--transfer-function");
-  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --emission 1") + kSmall,
+  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --emission 1") + kSmallFire,
                      ExitCode::Usage, "procedural:fire");
-  expectCleanRefusal(std::string("render procedural:fire @a.png --temperature-grid t") + kSmall,
+  expectCleanRefusal(std::string("render procedural:fire @a.png --temperature-grid t") + kSmallFire,
                      ExitCode::Usage, "--temperature-grid");
 }
 

@@ -10,13 +10,13 @@ namespace freevoxels::test {
 
 namespace {
 
-constexpr const char* kSmall = " --resolution 24 --size 48x32 ";
+constexpr const char* kSmallOracle = " --resolution 24 --size 48x32 ";
 
 class OracleCommand : public CommandTest {
  protected:
   std::string march(const std::string& options, const std::string& file = "a.exr") const {
     SCOPED_TRACE(options);
-    expectSuccess(run("oracle procedural:cloud --unlit @" + file + kSmall + options));
+    expectSuccess(run("oracle procedural:cloud --unlit @" + file + kSmallOracle + options));
     return readBytes(folder / file);
   }
 };
@@ -25,7 +25,7 @@ class OracleCommand : public CommandTest {
 
 TEST_F(OracleCommand, WritesEveryOutputAndPrintsItsPath) {
   const ProgramResult result =
-      run(std::string("oracle procedural:cloud --unlit @a.exr @b.png --aov depth --background 0.2,0.1,0") + kSmall);
+      run(std::string("oracle procedural:cloud --unlit @a.exr @b.png --aov depth --background 0.2,0.1,0") + kSmallOracle);
   expectSuccess(result);
   EXPECT_EQ(result.out, (folder / "a.exr").string() + "\n" + (folder / "b.png").string() + "\n");
   EXPECT_EQ(result.err, "");
@@ -68,10 +68,10 @@ TEST_F(OracleCommand, SceneOptionsChangeTheImage) {
 }
 
 TEST_F(OracleCommand, QuietPrintsNothingAndVerboseSaysHowWell) {
-  const ProgramResult quiet = run(std::string("oracle procedural:cloud @a.png --unlit --quiet") + kSmall);
+  const ProgramResult quiet = run(std::string("oracle procedural:cloud @a.png --unlit --quiet") + kSmallOracle);
   expectSuccess(quiet);
   EXPECT_EQ(quiet.out + quiet.err, "");
-  const ProgramResult verbose = run(std::string("oracle procedural:cloud @a.png --unlit --verbose") + kSmall);
+  const ProgramResult verbose = run(std::string("oracle procedural:cloud @a.png --unlit --verbose") + kSmallOracle);
   expectSuccess(verbose);
   for (const char* word : {"--density-scale", "--camera-position", "48x32", "rays", "largest change"})
     EXPECT_NE(verbose.err.find(word), std::string::npos) << word << " should be in\n" << verbose.err;
@@ -79,7 +79,7 @@ TEST_F(OracleCommand, QuietPrintsNothingAndVerboseSaysHowWell) {
 
 TEST_F(OracleCommand, ProgressIsForTerminalsAndErased) {
   if (!terminalsAvailable()) GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
-  const Arguments arguments = words(std::string("oracle procedural:cloud @a.png --unlit") + kSmall);
+  const Arguments arguments = words(std::string("oracle procedural:cloud @a.png --unlit") + kSmallOracle);
   const ProgramResult shown = runFreevoxelsOnTerminal(arguments);
   expectSuccess(shown);
   EXPECT_NE(shown.err.find("rays a pixel"), std::string::npos) << shown.err;

@@ -12,7 +12,7 @@ namespace freevoxels::test {
 
 namespace {
 
-constexpr const char* kSmall = " --size 32x24 --unlit ";
+constexpr const char* kSmallUnlit = " --size 32x24 --unlit ";
 
 class SequenceCommand : public CommandTest {
  protected:
@@ -47,7 +47,7 @@ TEST_F(SequenceCommand, APatternIsDrawnFrameByFrameAsTheFirstFrameIsSeen) {
   write("s_0007.vdb", 1.0f);
   write("s_0008.vdb", 3.0f);
   write("s_0010.vdb", 5.0f);
-  const ProgramResult result = run(std::string("render @s_####.vdb @i_####.exr @i_%02d.png") + kSmall);
+  const ProgramResult result = run(std::string("render @s_####.vdb @i_####.exr @i_%02d.png") + kSmallUnlit);
   expectSuccess(result);
   EXPECT_EQ(result.out, lines({"i_0007.exr", "i_07.png", "i_0008.exr", "i_08.png", "i_0010.exr", "i_10.png"}));
   EXPECT_NE(result.err.find("no file of frame 9\n"), std::string::npos) << result.err;
@@ -65,7 +65,7 @@ TEST_F(SequenceCommand, APatternIsDrawnFrameByFrameAsTheFirstFrameIsSeen) {
 TEST_F(SequenceCommand, FramesAndTheirViewAreChosen) {
   for (const int number : {1, 2, 3, 4}) write(fmt::format("s{}.vdb", number), float(number));
   const ProgramResult result =
-      run(std::string("render @s%d.vdb @i_#.exr --frames 2-6:2 --no-fixed-view --timings @t.json") + kSmall);
+      run(std::string("render @s%d.vdb @i_#.exr --frames 2-6:2 --no-fixed-view --timings @t.json") + kSmallUnlit);
   expectSuccess(result);
   EXPECT_EQ(result.out, lines({"i_2.exr", "i_4.exr", "t.json"}));
   EXPECT_NE(result.err.find("no file of frame 6\n"), std::string::npos) << result.err;
@@ -78,7 +78,7 @@ TEST_F(SequenceCommand, FramesAndTheirViewAreChosen) {
 TEST_F(SequenceCommand, SeveralVolumesBecomeImagesOfTheirNamesInAFolder) {
   write("a.vdb", 1.0f);
   write("b.vdb", 2.0f);
-  const ProgramResult result = run(std::string("render @a.vdb @b.vdb procedural:cube --out-dir @images/of --format exr,jpg") + kSmall);
+  const ProgramResult result = run(std::string("render @a.vdb @b.vdb procedural:cube --out-dir @images/of --format exr,jpg") + kSmallUnlit);
   expectSuccess(result);
   EXPECT_EQ(result.out, lines({"images/of/a.exr", "images/of/a.jpg", "images/of/b.exr", "images/of/b.jpg", "images/of/cube.exr",
                                "images/of/cube.jpg"}));
@@ -90,7 +90,7 @@ TEST_F(SequenceCommand, AnEmptyFrameIsBackgroundAndADamagedOneIsLeftOut) {
   write("s2.vdb", 1.0f);
   writeBytes(folder / "s3.vdb", "no volume");
   writeEmpty("s4.vdb");
-  const ProgramResult result = run(std::string("render @s#.vdb @i#.exr --aov depth") + kSmall);
+  const ProgramResult result = run(std::string("render @s#.vdb @i#.exr --aov depth") + kSmallUnlit);
   EXPECT_EQ(result.exitCode, int(ExitCode::Input));
   EXPECT_EQ(result.out, lines({"i2.exr", "i1.exr", "i4.exr"}));
   EXPECT_NE(result.err.find("s3.vdb"), std::string::npos) << result.err;
@@ -120,7 +120,7 @@ TEST_F(SequenceCommand, ProgressSaysHowMuchTimeIsLeft) {
   if (!terminalsAvailable()) GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
   write("s1.vdb", 1.0f);
   write("s2.vdb", 1.0f);
-  const ProgramResult shown = runFreevoxelsOnTerminal(words(std::string("render @s#.vdb @i#.png") + kSmall));
+  const ProgramResult shown = runFreevoxelsOnTerminal(words(std::string("render @s#.vdb @i#.png") + kSmallUnlit));
   expectSuccess(shown);
   EXPECT_NE(shown.err.find("frame 1 of 2: "), std::string::npos) << shown.err;
   EXPECT_NE(shown.err.find("frame 2 of 2, "), std::string::npos) << shown.err;

@@ -12,12 +12,12 @@ namespace freevoxels::test {
 
 namespace {
 
-constexpr const char* kSmall = " --resolution 24 --size 48x36 ";
+constexpr const char* kSmallTurn = " --resolution 24 --size 48x36 ";
 
 class TurntableCommand : public CommandTest {
  protected:
   ProgramResult turn(const std::string& text) const {
-    const ProgramResult result = run("turntable procedural:cloud " + text + kSmall);
+    const ProgramResult result = run("turntable procedural:cloud " + text + kSmallTurn);
     expectSuccess(result);
     return result;
   }
@@ -83,7 +83,7 @@ TEST_F(TurntableCommand, AFullTurnComesBackToTheFirstFrame) {
 
 TEST_F(TurntableCommand, OneFrameIsTheImageOfRender) {
   turn("@#.exr --frames 1 --float");
-  expectSuccess(run(std::string("render procedural:cloud @r.exr --float") + kSmall));
+  expectSuccess(run(std::string("render procedural:cloud @r.exr --float") + kSmallTurn));
   EXPECT_TRUE(readBytes(folder / "0.exr") == readBytes(folder / "r.exr"));
 }
 
@@ -107,7 +107,7 @@ TEST_F(TurntableCommand, TimingsSumTheFrames) {
 TEST_F(TurntableCommand, ProgressCountsTheFrames) {
   if (!terminalsAvailable()) GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
   const ProgramResult shown =
-      runFreevoxelsOnTerminal(words(std::string("turntable procedural:cloud @#.png --frames 3") + kSmall));
+      runFreevoxelsOnTerminal(words(std::string("turntable procedural:cloud @#.png --frames 3") + kSmallTurn));
   expectSuccess(shown);
   for (const char* text : {"frame 1 of 3", "frame 3 of 3"})
     EXPECT_NE(shown.err.find(text), std::string::npos) << shown.err;

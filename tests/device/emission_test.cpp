@@ -155,7 +155,7 @@ TEST_F(EmissionTest, SortedImagesMatchTheReference) {
   const FrameSettings settings{.size = {50, 50}, .composite = Composite::Sorted};
   Renderer renderer(device(), volume, classification, {});
   const Image image = renderer.render(camera, settings);
-  const Image expected = referenceSortedPicture(volume, classification, camera, settings, RendererStages(renderer).downloadBlockList());
+  const Image expected = referenceSortedImage(volume, classification, camera, settings, RendererStages(renderer).downloadBlockList());
   EXPECT_GE(psnr(image, expected), 60.0);
 }
 

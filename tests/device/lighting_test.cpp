@@ -226,7 +226,7 @@ TEST_F(LightingTest, SortedImagesMatchTheReference) {
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
   Renderer renderer(device(), v, classification, {});
   const Image image = renderer.render(camera, settings);
-  const Image expected = referenceSortedPicture(v, classification, camera, settings, referenceVisibleVoxels(extinction), &light);
+  const Image expected = referenceSortedImage(v, classification, camera, settings, referenceVisibleVoxels(extinction), &light);
   EXPECT_LE(largestPixelDifference(image, expected), 5e-3);
   EXPECT_GE(psnr(image, expected), 65.0);
 }

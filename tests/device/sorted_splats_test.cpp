@@ -22,7 +22,7 @@ class SortedSplatsTest : public DeviceTest {
     Renderer renderer(device(), volume, classification, {});
     const Image image = renderer.render(camera, settings);
     const Image expected =
-        referenceSortedPicture(volume, classification, camera, settings, referenceVisibleVoxels(referenceExtinction(volume, classification)));
+        referenceSortedImage(volume, classification, camera, settings, referenceVisibleVoxels(referenceExtinction(volume, classification)));
     double largest = 0.0;
     for (std::size_t i = 0; i < expected.pixels.size(); ++i) {
       largest = std::max(largest, double(expected.pixels[i].a));

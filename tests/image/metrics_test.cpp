@@ -9,12 +9,12 @@
 namespace freevoxels {
 namespace {
 
-Image makeConstant(glm::vec4 pixel, glm::ivec2 size = {6, 4}) {
+Image uniformImage(glm::vec4 pixel, glm::ivec2 size = {6, 4}) {
   return {size, std::vector<glm::vec4>(std::size_t(size.x * size.y), pixel), {}};
 }
 
 Image makeNoise(glm::ivec2 size, std::uint32_t seed) {
-  Image image = makeConstant({}, size);
+  Image image = uniformImage({}, size);
   for (glm::vec4& pixel : image.pixels)
     for (int c = 0; c < 4; ++c) pixel[c] = float((seed = seed * 1664525u + 1013904223u) >> 8) / 16777216.0f;
   return image;
@@ -30,7 +30,7 @@ TEST(Metrics, EqualImagesHaveNoErrorAndInfinitePsnr) {
 
 TEST(Metrics, AConstantErrorIsItsOwnRootMeanSquare) {
   const ImageMetrics metrics =
-      compareImages(makeConstant({0.6f, 0.6f, 0.6f, 1.0f}), makeConstant({0.5f, 0.5f, 0.5f, 1.0f}));
+      compareImages(uniformImage({0.6f, 0.6f, 0.6f, 1.0f}), uniformImage({0.5f, 0.5f, 0.5f, 1.0f}));
   EXPECT_FALSE(metrics.countsAlpha);
   EXPECT_NEAR(metrics.rmse, 0.1, 1e-7);
   EXPECT_NEAR(metrics.psnr, 20.0, 1e-5);
@@ -38,7 +38,7 @@ TEST(Metrics, AConstantErrorIsItsOwnRootMeanSquare) {
 }
 
 TEST(Metrics, AlphaCountsAsAFourthChannelUnlessAllIsOpaque) {
-  const Image opaque = makeConstant({0.5f, 0.5f, 0.5f, 1.0f});
+  const Image opaque = uniformImage({0.5f, 0.5f, 0.5f, 1.0f});
   Image lessOpaque = opaque;
   for (glm::vec4& pixel : lessOpaque.pixels) pixel.a = 0.8f;
   const ImageMetrics alphaOnly = compareImages(lessOpaque, opaque);
@@ -52,7 +52,7 @@ TEST(Metrics, AlphaCountsAsAFourthChannelUnlessAllIsOpaque) {
 }
 
 TEST(Metrics, OneWrongPixelIsFoundWhereItIs) {
-  const Image reference = makeConstant({0.25f, 0.25f, 0.25f, 0.5f}, {40, 30});
+  const Image reference = uniformImage({0.25f, 0.25f, 0.25f, 0.5f}, {40, 30});
   Image test = reference;
   test.pixels[17 * 40 + 31].b = -1.75f;
   test.pixels[3 * 40 + 2].r = 1.0f;
@@ -65,7 +65,7 @@ TEST(Metrics, OneWrongPixelIsFoundWhereItIs) {
 }
 
 TEST(Metrics, OfEqualMaximaTheFirstInReadingOrderIsNamed) {
-  const Image reference = makeConstant({0, 0, 0, 1});
+  const Image reference = uniformImage({0, 0, 0, 1});
   Image test = reference;
   test.pixels[4].g = test.pixels[4].b = test.pixels[9].r = 0.5f;
   const ImageMetrics metrics = compareImages(test, reference);
@@ -82,7 +82,7 @@ TEST(Metrics, ThreadsDoNotChangeABit) {
 }
 
 TEST(Metrics, FindsNanAndInfinity) {
-  Image image = makeConstant({0.1f, 0.2f, 0.3f, 1.0f}, {7, 5});
+  Image image = uniformImage({0.1f, 0.2f, 0.3f, 1.0f}, {7, 5});
   EXPECT_FALSE(findNonFinite(image));
   image.pixels[3 * 7 + 4].g = std::numeric_limits<float>::quiet_NaN();
   image.pixels[4 * 7].r = -std::numeric_limits<float>::infinity();
@@ -103,7 +103,7 @@ TEST(Metrics, CompositesOverABackground) {
 
 TEST(Metrics, AbsoluteDifferenceOfEveryChannel) {
   const Image difference =
-      absoluteDifference(makeConstant({0.5f, 0.25f, 1.0f, 1.0f}), makeConstant({1.0f, 0.25f, 0.5f, 0.25f}));
+      absoluteDifference(uniformImage({0.5f, 0.25f, 1.0f, 1.0f}), uniformImage({1.0f, 0.25f, 0.5f, 0.25f}));
   for (const glm::vec4& pixel : difference.pixels) EXPECT_EQ(pixel, glm::vec4(0.5f, 0.0f, 0.5f, 0.75f));
 }
 

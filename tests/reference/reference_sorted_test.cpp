@@ -32,7 +32,7 @@ double sigmaOf(double opacity) {
 Image sortedAt(const Scene& scene, glm::dvec2 at) {
   FrameSettings settings = frameOf({1, 1}, Composite::Sorted);
   settings.depth = true;
-  return referenceSortedPicture(scene.volume, scene.classification, lookingDown(at.x, at.y, 1e-3), settings, scene.voxels);
+  return referenceSortedImage(scene.volume, scene.classification, lookingDown(at.x, at.y, 1e-3), settings, scene.voxels);
 }
 
 /// p and q in front (z = 1), s and t behind (Figure 4), each with its own colour and opacity.

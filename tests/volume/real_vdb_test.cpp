@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kPlenty = 1u << 28;
+constexpr std::uint64_t kMemoryLimit = 1u << 28;
 const fs::path kData = FREEVOXELS_DATA_DIR;
 
 struct RealFile {
@@ -34,7 +34,7 @@ TEST(RealVdb, FilesHaveTheirPublishedFigures) {
   for (const RealFile& expected : files) {
     if (!fs::exists(kData / expected.name)) continue;
     SCOPED_TRACE(expected.name);
-    const Volume volume = readVdb(kData / expected.name, "", kPlenty);
+    const Volume volume = readVdb(kData / expected.name, "", kMemoryLimit);
     EXPECT_EQ(volume.dimensions, expected.dimensions);
     EXPECT_TRUE(expected.activeVoxels == 0 || volume.activeVoxels == expected.activeVoxels)
         << volume.activeVoxels;
@@ -44,7 +44,7 @@ TEST(RealVdb, FilesHaveTheirPublishedFigures) {
 TEST(RealVdb, TheRotatedDragonStaysRotated) {
   const fs::path file = kData / "dragon_with_xform.vdb";
   if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
-  const Volume volume = readVdb(file, "", kPlenty);
+  const Volume volume = readVdb(file, "", kMemoryLimit);
   int offDiagonal = 0;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) offDiagonal += i != j && std::abs(volume.indexToWorld[i][j]) > 1e-3;
@@ -54,7 +54,7 @@ TEST(RealVdb, TheRotatedDragonStaysRotated) {
 TEST(RealVdb, TheLevelSetSphereHasItsVolume) {
   const fs::path file = kData / "sphere_ls.vdb";
   if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
-  const Volume volume = readVdb(file, "", kPlenty);
+  const Volume volume = readVdb(file, "", kMemoryLimit);
   double sum = 0.0;
   for (const float value : denseScalars(volume))
     if (value != kInactiveVoxel) sum += value;
@@ -67,7 +67,7 @@ TEST(RealVdb, EveryFileIsReadOrRefusedInOneSentence) {
   for (const auto& entry : fs::recursive_directory_iterator(kData)) {
     SCOPED_TRACE(entry.path().string());
     try {
-      EXPECT_GT(readVdb(entry.path(), "", kPlenty).activeVoxels, 0u);
+      EXPECT_GT(readVdb(entry.path(), "", kMemoryLimit).activeVoxels, 0u);
       EXPECT_EQ(entry.path().extension(), ".vdb");
     } catch (const Error& error) {
       const std::string sentence = error.what();
