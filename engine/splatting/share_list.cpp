@@ -73,7 +73,8 @@ void ShareList::record(Commands& commands, const DeviceVolume& volume, const Blo
                                         &pairs_.count, &pairs_.keys,   &pairs_.values, &counts_};
   commands.beginPass("shares");
   commands.clear(counts_);
-  commands.dispatchLinear(keys_, bindings, shader::ShareKeyPush{chunkCount}, mostBlocks);
+  // Also without blocks: the first invocation writes the number of pairs, which the sort reads.
+  commands.dispatchLinear(keys_, bindings, shader::ShareKeyPush{chunkCount}, std::max<std::uint64_t>(mostBlocks, 1));
   commands.barrier(kComputeStage, kComputeStage);
   sort_.record(commands, pairs_, kShareBits);
 }
