@@ -4,11 +4,11 @@
 #define SETUP_FRAME_GLSL
 #include "frame_interface.h"
 
-layout(constant_id = 0) const bool kLit = false;      // else a voxel sends out its colour
-layout(constant_id = 1) const bool kEmits = false;    // whether voxels have emission
-layout(constant_id = 2) const bool kColors = false;   // whether voxels have colours of their own
-layout(constant_id = 3) const bool kTinted = false;   // whether every colour of light has an extinction of its own
-layout(constant_id = 4) const bool kAnyView = false;  // whether light is computed for all positions of the eye (lighting.glsl)
+const bool kLit = LIT;  // a definition of the compiler; else a voxel sends out its colour
+layout(constant_id = 0) const bool kEmits = false;    // whether voxels have emission
+layout(constant_id = 1) const bool kColors = false;   // whether voxels have colours of their own
+layout(constant_id = 2) const bool kTinted = false;   // whether every colour of light has an extinction of its own
+layout(constant_id = 3) const bool kAnyView = false;  // whether light is computed for all positions of the eye (lighting.glsl)
 
 layout(scalar, binding = 0) readonly buffer Frame { SetupFrame frame; };
 #define PLANE_ADDRESSES_BINDING 1

@@ -8,7 +8,8 @@
 #include <utility>
 
 #include "embedded/brick_quads.h"
-#include "embedded/shade_blocks.h"
+#include "embedded/shade_blocks_lit.h"
+#include "embedded/shade_blocks_unlit.h"
 #include "engine/core/error.h"
 #include "engine/octree/occupancy.h"
 #include "engine/volume/packed_light.h"
@@ -323,7 +324,8 @@ void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::ui
 
 void GatherVolume::recordShading(Commands& commands, const Shading& shading) {
   const DeviceVolume& volume = built_.volume;
-  shadePass_ = makeComputePipeline(device_, shaders::shade_blocks, {lit_, volume.hasEmission(), volume.hasColors, shading.frame.tinted, hasTowards()});
+  shadePass_ = makeComputePipeline(device_, lit_ ? shaders::shade_blocks_lit : shaders::shade_blocks_unlit,
+                                   {volume.hasEmission(), volume.hasColors, shading.frame.tinted, hasTowards()});
   commands.beginPass("shade blocks");
   commands.update(frame_, shading.frame.setup);
   for (int level = 0; level <= volume.hierarchy.top(); ++level)

@@ -5,7 +5,8 @@
 
 #include "embedded/splat_fragment.h"
 #include "embedded/splat_fragment_distance.h"
-#include "embedded/splat_setup.h"
+#include "embedded/splat_setup_lit.h"
+#include "embedded/splat_setup_unlit.h"
 #include "embedded/splat_sorted.h"
 #include "embedded/splat_sorted_distance.h"
 #include "embedded/splat_vertex.h"
@@ -27,7 +28,7 @@ const Shader& fragmentShader(bool withDistance, bool sorted) {
 }
 
 Pipeline makeSetupPipeline(const Device& device, const DeviceVolume& volume, bool lit, bool tinted) {
-  return makeComputePipeline(device, shaders::splat_setup, {lit, volume.hasEmission(), volume.hasColors, tinted});
+  return makeComputePipeline(device, lit ? shaders::splat_setup_lit : shaders::splat_setup_unlit, {volume.hasEmission(), volume.hasColors, tinted});
 }
 
 Pipeline makeSplatPipeline(const Device& device, bool quads, bool withDistance, bool sorted) {
