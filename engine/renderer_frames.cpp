@@ -178,6 +178,7 @@ void Renderer::State::prepareVolume(const GatherVolume::Shading& shading, const 
   try {
     if (!gatherVolume) gatherVolume.emplace(device, hostVolume, classification, built, frameTimes);
     gatherVolume->prepare(shading, frameTimes);
+    GatherPass::compileAhead(device, *gatherVolume, shading.axes);
     Commands commands(device);
     gatherVolume->record(commands, shading);
     if (commands.empty()) return;

@@ -61,6 +61,11 @@ GatherPass::GatherPass(const Device& device)
     : device_(device), frame_(device, sizeof(shader::GatherFrame), MemoryUse::Device, "gather frame",
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT) {}
 
+void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, *gatherShaders(volume)[std::size_t(Extent::Whole)]);
+}
+
 void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
   if (sums.colorEnergy.bytes() >= samples * sizeof(glm::vec4)) return;
   constexpr VkBufferUsageFlags kUsage =

@@ -16,6 +16,8 @@ namespace freevoxels {
 class GatherPass {
  public:
   explicit GatherPass(const Device& device);
+  /// Has the pipeline of record() compiled for rays along the given axes. The volume is prepared for the frame.
+  static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes);
   void record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
               const FrameTargets& targets);
 

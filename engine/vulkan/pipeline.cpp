@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <system_error>
 
 #include "engine/core/error.h"
 
@@ -106,9 +107,9 @@ PipelineInterface interfaceOf(std::initializer_list<const Shader*> stages) {
   return interface;
 }
 
-PipelineParts makeLayout(const Device& device, std::initializer_list<const Shader*> shaders, VkPipelineBindPoint bindPoint) {
-  PipelineParts parts{.interface = interfaceOf(shaders), .bindPoint = bindPoint};
-  const PipelineInterface& interface = parts.interface;
+PipelineLayout makeLayout(const Device& device, std::initializer_list<const Shader*> shaders, VkPipelineBindPoint bindPoint) {
+  PipelineLayout result{.interface = interfaceOf(shaders), .bindPoint = bindPoint, .workgroup = (*shaders.begin())->workgroup};
+  const PipelineInterface& interface = result.interface;
   FV_CHECK_LE(interface.pushConstantBytes, device.limits().maxPushConstantsSize);
   const VkShaderStageFlags stages = stagesOf(bindPoint);
   std::vector<VkDescriptorSetLayoutBinding> bindings;
@@ -122,7 +123,7 @@ PipelineParts makeLayout(const Device& device, std::initializer_list<const Shade
       .pBindings = bindings.data()};
   VkDescriptorSetLayout set = VK_NULL_HANDLE;
   VK_CHECK(vkCreateDescriptorSetLayout(device.handle(), &setInfo, nullptr, &set));
-  parts.setLayout = OwnedSetLayout(device.handle(), set);
+  result.set = OwnedSetLayout(device.handle(), set);
 
   const VkPushConstantRange range{.stageFlags = stages, .offset = 0, .size = interface.pushConstantBytes};
   const VkPipelineLayoutCreateInfo layoutInfo{
@@ -133,13 +134,11 @@ PipelineParts makeLayout(const Device& device, std::initializer_list<const Shade
       .pPushConstantRanges = &range};
   VkPipelineLayout layout = VK_NULL_HANDLE;
   VK_CHECK(vkCreatePipelineLayout(device.handle(), &layoutInfo, nullptr, &layout));
-  parts.layout = OwnedPipelineLayout(device.handle(), layout);
-  return parts;
+  result.layout = OwnedPipelineLayout(device.handle(), layout);
+  return result;
 }
 
-PipelineParts makeCompute(const Device& device, const Shader& code, const Specialisation& constants) {
-  PipelineParts result = makeLayout(device, {&code}, VK_PIPELINE_BIND_POINT_COMPUTE);
-  result.workgroup = code.workgroup;
+OwnedPipeline compileCompute(const Device& device, VkPipelineLayout layout, const Shader& code, const Specialisation& constants) {
   const OwnedShaderModule module = makeModule(device, code);
   const SpecialisationInfo specialisation(constants);
   const VkComputePipelineCreateInfo info{
@@ -150,16 +149,15 @@ PipelineParts makeCompute(const Device& device, const Shader& code, const Specia
                 .module = module.get(),
                 .pName = "main",
                 .pSpecializationInfo = specialisation.get()},
-      .layout = result.layout.get()};
+      .layout = layout};
   VkPipeline pipeline = VK_NULL_HANDLE;
   VK_CHECK(vkCreateComputePipelines(device.handle(), device.pipelines().cache().handle(), 1, &info, nullptr, &pipeline));
-  result.pipeline = OwnedPipeline(device.handle(), pipeline);
   device.setName(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline), code.name);
-  return result;
+  return {device.handle(), pipeline};
 }
 
-PipelineParts makeGraphics(const Device& device, const Shader& vertex, const Shader& fragment, const PipelineKey& key) {
-  PipelineParts result = makeLayout(device, {&vertex, &fragment}, VK_PIPELINE_BIND_POINT_GRAPHICS);
+OwnedPipeline compileGraphics(const Device& device, VkPipelineLayout layout, const Shader& vertex, const Shader& fragment,
+                              const PipelineKey& key) {
   const OwnedShaderModule vertexModule = makeModule(device, vertex);
   const OwnedShaderModule fragmentModule = makeModule(device, fragment);
   const SpecialisationInfo specialisation(key.constants);
@@ -189,32 +187,82 @@ PipelineParts makeGraphics(const Device& device, const Shader& vertex, const Sha
                                           .pMultisampleState = &state.multisample,
                                           .pColorBlendState = &state.blend,
                                           .pDynamicState = &state.dynamic,
-                                          .layout = result.layout.get()};
+                                          .layout = layout};
   VkPipeline pipeline = VK_NULL_HANDLE;
   VK_CHECK(vkCreateGraphicsPipelines(device.handle(), device.pipelines().cache().handle(), 1, &info, nullptr, &pipeline));
-  result.pipeline = OwnedPipeline(device.handle(), pipeline);
   device.setName(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline), vertex.name);
-  return result;
+  return {device.handle(), pipeline};
 }
+
+/// At most this many threads compile ahead, of one fewer than there are processors.
+constexpr unsigned kMaxThreads = 4;
 
 }  // namespace
 
-Pipeline PipelineStore::get(const PipelineKey& key, const std::function<PipelineParts()>& make) {
-  Entry* entry = nullptr;
+VkPipeline Pipeline::handle() const {
+  if (stored_ == nullptr) return VK_NULL_HANDLE;
+  store_->compile(*stored_);
+  return stored_->pipeline.get();
+}
+
+PipelineStore::~PipelineStore() {
   {
     const std::lock_guard lock(mutex_);
-    entry = &entries_[key];  // whose address does not change
+    closing_ = true;
   }
-  std::call_once(entry->made, [&] {
+  changed_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+Pipeline PipelineStore::get(const PipelineKey& key, const std::function<PipelineLayout()>& makeLayout,
+                            const std::function<OwnedPipeline(VkPipelineLayout)>& compile) {
+  const std::lock_guard lock(mutex_);
+  const auto [place, isNew] = pipelines_.try_emplace(key);
+  StoredPipeline& stored = place->second;
+  if (!isNew) return {*this, stored};
+  try {
+    stored.layout = makeLayout();
+  } catch (...) {
+    pipelines_.erase(place);
+    throw;
+  }
+  stored.compile = [&stored, compile] { return compile(stored.layout.layout.get()); };
+  wanted_.push_back(&stored);
+  changed_.notify_one();
+  const unsigned processors = std::max(2u, std::thread::hardware_concurrency());
+  if (threads_.size() < std::min({std::size_t(kMaxThreads), std::size_t(processors - 1), wanted_.size()})) try {
+      threads_.emplace_back([this] { compileAhead(); });
+    } catch (const std::system_error&) {  // no more threads: who needs the pipeline compiles it
+    }
+  return {*this, stored};
+}
+
+void PipelineStore::compile(StoredPipeline& stored) {
+  std::call_once(stored.compiled, [&] {
     std::vector<StageTime> times;
     {
       const StageTimer timer(times, "make pipelines");
-      entry->parts = make();
+      stored.pipeline = stored.compile();
     }
     const std::lock_guard lock(mutex_);
     addTimes(times_, times);
   });
-  return Pipeline(entry->parts);
+}
+
+void PipelineStore::compileAhead() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [&] { return closing_ || !wanted_.empty(); });
+    if (closing_) return;
+    StoredPipeline& next = *wanted_.front();
+    wanted_.pop_front();
+    lock.unlock();
+    try {
+      compile(next);
+    } catch (const std::exception&) {  // thrown again to who needs the pipeline
+    }
+    lock.lock();
+  }
 }
 
 std::vector<StageTime> PipelineStore::times() const {
@@ -223,12 +271,15 @@ std::vector<StageTime> PipelineStore::times() const {
 }
 
 VkShaderStageFlags Pipeline::stages() const {
-  return stagesOf(parts_->bindPoint);
+  return stagesOf(bindPoint());
 }
 
 Pipeline makeComputePipeline(const Device& device, const Shader& shader, const Specialisation& constants) {
   const PipelineKey key{.code = {shader.words.data(), nullptr}, .constants = constants};
-  return device.pipelines().get(key, [&] { return makeCompute(device, shader, constants); });
+  return device.pipelines().get(key, [&] { return makeLayout(device, {&shader}, VK_PIPELINE_BIND_POINT_COMPUTE); },
+                                [&device, &shader, constants](VkPipelineLayout layout) {
+                                  return compileCompute(device, layout, shader, constants);
+                                });
 }
 
 Pipeline makeGraphicsPipeline(const Device& device, const Shader& vertex, const Shader& fragment, VkPrimitiveTopology topology,
@@ -238,7 +289,10 @@ Pipeline makeGraphicsPipeline(const Device& device, const Shader& vertex, const 
                         .topology = topology,
                         .attachments = {attachments.begin(), attachments.end()},
                         .blend = blend};
-  return device.pipelines().get(key, [&] { return makeGraphics(device, vertex, fragment, key); });
+  return device.pipelines().get(key, [&] { return makeLayout(device, {&vertex, &fragment}, VK_PIPELINE_BIND_POINT_GRAPHICS); },
+                                [&device, &vertex, &fragment, key](VkPipelineLayout layout) {
+                                  return compileGraphics(device, layout, vertex, fragment, key);
+                                });
 }
 
 }  // namespace freevoxels

@@ -3,13 +3,16 @@
 
 #include <array>
 #include <compare>
+#include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <filesystem>
 #include <functional>
 #include <glm/glm.hpp>
 #include <map>
 #include <mutex>
 #include <span>
+#include <thread>
 #include <vector>
 
 #include "engine/core/stages.h"
@@ -35,34 +38,44 @@ enum class Blend {
   Over,      ///< source + (1 - alpha of the fragment's output for this attachment) * destination
 };
 
-/// The objects of a pipeline, owned by the device.
-struct PipelineParts {
+/// What is known of a pipeline before it is compiled.
+struct PipelineLayout {
   PipelineInterface interface;
   VkPipelineBindPoint bindPoint = VK_PIPELINE_BIND_POINT_COMPUTE;
   glm::ivec3 workgroup{1};  ///< compute only
-  OwnedSetLayout setLayout;
+  OwnedSetLayout set;
   OwnedPipelineLayout layout;
+};
+
+/// A pipeline of a device. A thread of the store compiles it, or the thread that needs it first.
+struct StoredPipeline {
+  PipelineLayout layout;
+  std::function<OwnedPipeline()> compile;
+  std::once_flag compiled;
   OwnedPipeline pipeline;
 };
+
+class PipelineStore;
 
 /// A reference to a pipeline of a device, valid as long as the device.
 class Pipeline {
  public:
   Pipeline() = default;
-  explicit Pipeline(const PipelineParts& parts) : parts_(&parts) {}
+  Pipeline(PipelineStore& store, StoredPipeline& stored) : store_(&store), stored_(&stored) {}
 
-  /// VK_NULL_HANDLE for a default-constructed pipeline.
-  VkPipeline handle() const { return parts_ != nullptr ? parts_->pipeline.get() : VK_NULL_HANDLE; }
-  VkPipelineLayout layout() const { return parts_->layout.get(); }
-  VkPipelineBindPoint bindPoint() const { return parts_->bindPoint; }
+  /// Waits until the pipeline is compiled. VK_NULL_HANDLE for a default-constructed pipeline.
+  VkPipeline handle() const;
+  VkPipelineLayout layout() const { return stored_->layout.layout.get(); }
+  VkPipelineBindPoint bindPoint() const { return stored_->layout.bindPoint; }
   /// The stages that access the descriptors and the push constants.
   VkShaderStageFlags stages() const;
-  const PipelineInterface& interface() const { return parts_->interface; }
+  const PipelineInterface& interface() const { return stored_->layout.interface; }
   /// Invocations of one workgroup; compute only.
-  glm::ivec3 workgroup() const { return parts_->workgroup; }
+  glm::ivec3 workgroup() const { return stored_->layout.workgroup; }
 
  private:
-  const PipelineParts* parts_ = nullptr;
+  PipelineStore* store_ = nullptr;
+  StoredPipeline* stored_ = nullptr;
 };
 
 /// Everything that distinguishes pipelines. The interface is part of the code.
@@ -75,30 +88,39 @@ struct PipelineKey {
   auto operator<=>(const PipelineKey&) const = default;
 };
 
-/// The pipelines of a device, kept for reuse: lavapipe takes up to a tenth of a second to compile one. Any thread may call
-/// the member functions; different pipelines can be made at the same time.
+/// The pipelines of a device, kept for reuse: lavapipe takes up to a tenth of a second to compile one. Threads of the store
+/// compile them from when they are first asked for, while the caller goes on until it needs one. Any thread may call the member
+/// functions.
 class PipelineStore {
  public:
   /// `cacheFile` is the file of PipelineCache.
   PipelineStore(VkDevice device, const std::filesystem::path& cacheFile) : cache_(device, cacheFile) {}
+  /// Waits for what is being compiled.
+  ~PipelineStore();
 
-  /// Returns the pipeline for `key`, calling `make` first if there is none.
-  Pipeline get(const PipelineKey& key, const std::function<PipelineParts()>& make);
+  /// Returns the pipeline for `key`. If there is none, makes its layout now and has it compiled.
+  Pipeline get(const PipelineKey& key, const std::function<PipelineLayout()>& makeLayout,
+               const std::function<OwnedPipeline(VkPipelineLayout)>& compile);
+  /// Compiles `stored` unless it is compiled or another thread is about to, and waits for that. Throws what compiling throws.
+  void compile(StoredPipeline& stored);
   PipelineCache& cache() { return cache_; }
-  /// Time to create the pipelines, summed over all threads.
+  /// Time to compile the pipelines, summed over all threads.
   std::vector<StageTime> times() const;
 
  private:
-  struct Entry {
-    std::once_flag made;
-    PipelineParts parts;
-  };
+  void compileAhead();
+
   PipelineCache cache_;
   mutable std::mutex mutex_;  ///< of what follows
-  std::map<PipelineKey, Entry> entries_;
+  std::condition_variable changed_;
+  std::map<PipelineKey, StoredPipeline> pipelines_;  ///< whose addresses do not change
+  std::deque<StoredPipeline*> wanted_;
   std::vector<StageTime> times_;
+  bool closing_ = false;
+  std::vector<std::thread> threads_;  ///< that compile what is wanted
 };
 
+/// Returns at once; a thread compiles the pipeline.
 Pipeline makeComputePipeline(const Device& device, const Shader& shader, const Specialisation& constants = {});
 
 /// Returns a graphics pipeline without vertex input (shaders fetch vertices from buffers), depth test or face
