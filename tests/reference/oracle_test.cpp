@@ -328,7 +328,7 @@ TEST(Oracle, ConvergesToItsToleranceOrSaysThatItDidNot) {
   const Camera camera = framingCamera(volume, 35, 25, 1.5, Camera{});
   const auto render = [&](double tolerance, int samples) {
     return renderOracle(volume, colored(), camera,
-                        {.size = {30, 20}, .tolerance = tolerance, .maximumSamples = samples});
+                        {.size = {24, 16}, .tolerance = tolerance, .maximumSamples = samples});
   };
   const Oracle standard = render(1e-3, 32), best = render(0.0, 64), coarse = render(1e-3, 4);
   EXPECT_TRUE(standard.converged);
@@ -339,7 +339,7 @@ TEST(Oracle, ConvergesToItsToleranceOrSaysThatItDidNot) {
   EXPECT_EQ(coarse.samples, 4);
   EXPECT_FALSE(coarse.converged);
   EXPECT_GE(coarse.largestChange, 1e-3);
-  EXPECT_EQ(coarse.rays, 600u * (4 + 16));
+  EXPECT_EQ(coarse.rays, 384u * (4 + 16));
 }
 
 TEST(Oracle, IsTheSameOnAnyNumberOfCores) {
