@@ -138,7 +138,8 @@ PipelineLayout makeLayout(const Device& device, std::initializer_list<const Shad
   return result;
 }
 
-OwnedPipeline compileCompute(const Device& device, VkPipelineLayout layout, const Shader& code, const Specialisation& constants) {
+OwnedPipeline compileCompute(const Device& device, VkPipelineCache cache, VkPipelineLayout layout, const Shader& code,
+                             const Specialisation& constants) {
   const OwnedShaderModule module = makeModule(device, code);
   const SpecialisationInfo specialisation(constants);
   const VkComputePipelineCreateInfo info{
@@ -151,13 +152,13 @@ OwnedPipeline compileCompute(const Device& device, VkPipelineLayout layout, cons
                 .pSpecializationInfo = specialisation.get()},
       .layout = layout};
   VkPipeline pipeline = VK_NULL_HANDLE;
-  VK_CHECK(vkCreateComputePipelines(device.handle(), device.pipelines().cache().handle(), 1, &info, nullptr, &pipeline));
+  VK_CHECK(vkCreateComputePipelines(device.handle(), cache, 1, &info, nullptr, &pipeline));
   device.setName(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline), code.name);
   return {device.handle(), pipeline};
 }
 
-OwnedPipeline compileGraphics(const Device& device, VkPipelineLayout layout, const Shader& vertex, const Shader& fragment,
-                              const PipelineKey& key) {
+OwnedPipeline compileGraphics(const Device& device, VkPipelineCache cache, VkPipelineLayout layout, const Shader& vertex,
+                              const Shader& fragment, const PipelineKey& key) {
   const OwnedShaderModule vertexModule = makeModule(device, vertex);
   const OwnedShaderModule fragmentModule = makeModule(device, fragment);
   const SpecialisationInfo specialisation(key.constants);
@@ -189,13 +190,13 @@ OwnedPipeline compileGraphics(const Device& device, VkPipelineLayout layout, con
                                           .pDynamicState = &state.dynamic,
                                           .layout = layout};
   VkPipeline pipeline = VK_NULL_HANDLE;
-  VK_CHECK(vkCreateGraphicsPipelines(device.handle(), device.pipelines().cache().handle(), 1, &info, nullptr, &pipeline));
+  VK_CHECK(vkCreateGraphicsPipelines(device.handle(), cache, 1, &info, nullptr, &pipeline));
   device.setName(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline), vertex.name);
   return {device.handle(), pipeline};
 }
 
-/// At most this many threads compile ahead, of one fewer than there are processors.
-constexpr unsigned kMaxThreads = 4;
+/// Threads that compile ahead: one fewer than there are processors, and no more than this.
+constexpr std::size_t kMaxThreads = 4;
 
 }  // namespace
 
@@ -214,8 +215,7 @@ PipelineStore::~PipelineStore() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-Pipeline PipelineStore::get(const PipelineKey& key, const std::function<PipelineLayout()>& makeLayout,
-                            const std::function<OwnedPipeline(VkPipelineLayout)>& compile) {
+Pipeline PipelineStore::get(const PipelineKey& key, const std::function<PipelineLayout()>& makeLayout, const Compiler& compile) {
   const std::lock_guard lock(mutex_);
   const auto [place, isNew] = pipelines_.try_emplace(key);
   StoredPipeline& stored = place->second;
@@ -226,15 +226,21 @@ Pipeline PipelineStore::get(const PipelineKey& key, const std::function<Pipeline
     pipelines_.erase(place);
     throw;
   }
-  stored.compile = [&stored, compile] { return compile(stored.layout.layout.get()); };
+  stored.compile = [this, &stored, compile] { return compile(cache_.handle(), stored.layout.layout.get()); };
   wanted_.push_back(&stored);
   changed_.notify_one();
-  const unsigned processors = std::max(2u, std::thread::hardware_concurrency());
-  if (threads_.size() < std::min({std::size_t(kMaxThreads), std::size_t(processors - 1), wanted_.size()})) try {
-      threads_.emplace_back([this] { compileAhead(); });
-    } catch (const std::system_error&) {  // no more threads: who needs the pipeline compiles it
-    }
+  addThread();
   return {*this, stored};
+}
+
+/// Adds a thread if there is work for another one. Called with `mutex_` locked.
+void PipelineStore::addThread() {
+  const std::size_t processors = std::thread::hardware_concurrency();
+  if (threads_.size() >= std::min(std::clamp(processors, std::size_t(2), kMaxThreads + 1) - 1, wanted_.size())) return;
+  try {
+    threads_.emplace_back([this] { compileAhead(); });
+  } catch (const std::system_error&) {  // no more threads: who needs the pipeline compiles it
+  }
 }
 
 void PipelineStore::compile(StoredPipeline& stored) {
@@ -276,10 +282,11 @@ VkShaderStageFlags Pipeline::stages() const {
 
 Pipeline makeComputePipeline(const Device& device, const Shader& shader, const Specialisation& constants) {
   const PipelineKey key{.code = {shader.words.data(), nullptr}, .constants = constants};
-  return device.pipelines().get(key, [&] { return makeLayout(device, {&shader}, VK_PIPELINE_BIND_POINT_COMPUTE); },
-                                [&device, &shader, constants](VkPipelineLayout layout) {
-                                  return compileCompute(device, layout, shader, constants);
-                                });
+  return device.pipelines().get(
+      key, [&] { return makeLayout(device, {&shader}, VK_PIPELINE_BIND_POINT_COMPUTE); },
+      [&device, &shader, constants](VkPipelineCache cache, VkPipelineLayout layout) {
+        return compileCompute(device, cache, layout, shader, constants);
+      });
 }
 
 Pipeline makeGraphicsPipeline(const Device& device, const Shader& vertex, const Shader& fragment, VkPrimitiveTopology topology,
@@ -289,10 +296,11 @@ Pipeline makeGraphicsPipeline(const Device& device, const Shader& vertex, const 
                         .topology = topology,
                         .attachments = {attachments.begin(), attachments.end()},
                         .blend = blend};
-  return device.pipelines().get(key, [&] { return makeLayout(device, {&vertex, &fragment}, VK_PIPELINE_BIND_POINT_GRAPHICS); },
-                                [&device, &vertex, &fragment, key](VkPipelineLayout layout) {
-                                  return compileGraphics(device, layout, vertex, fragment, key);
-                                });
+  return device.pipelines().get(
+      key, [&] { return makeLayout(device, {&vertex, &fragment}, VK_PIPELINE_BIND_POINT_GRAPHICS); },
+      [&device, &vertex, &fragment, key](VkPipelineCache cache, VkPipelineLayout layout) {
+        return compileGraphics(device, cache, layout, vertex, fragment, key);
+      });
 }
 
 }  // namespace freevoxels

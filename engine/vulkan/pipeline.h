@@ -93,14 +93,15 @@ struct PipelineKey {
 /// functions.
 class PipelineStore {
  public:
+  using Compiler = std::function<OwnedPipeline(VkPipelineCache, VkPipelineLayout)>;
+
   /// `cacheFile` is the file of PipelineCache.
   PipelineStore(VkDevice device, const std::filesystem::path& cacheFile) : cache_(device, cacheFile) {}
   /// Waits for what is being compiled.
   ~PipelineStore();
 
   /// Returns the pipeline for `key`. If there is none, makes its layout now and has it compiled.
-  Pipeline get(const PipelineKey& key, const std::function<PipelineLayout()>& makeLayout,
-               const std::function<OwnedPipeline(VkPipelineLayout)>& compile);
+  Pipeline get(const PipelineKey& key, const std::function<PipelineLayout()>& makeLayout, const Compiler& compile);
   /// Compiles `stored` unless it is compiled or another thread is about to, and waits for that. Throws what compiling throws.
   void compile(StoredPipeline& stored);
   PipelineCache& cache() { return cache_; }
@@ -108,6 +109,7 @@ class PipelineStore {
   std::vector<StageTime> times() const;
 
  private:
+  void addThread();
   void compileAhead();
 
   PipelineCache cache_;
