@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds with sanitizers and runs what they are for. Takes an hour the first time on two cores.
 #   bash tests/sanitize.sh address [CTEST OPTIONS...]   address and undefined behaviour: the tests of the CPU and of the programs
-#   bash tests/sanitize.sh thread                       threads that read volumes and images; needs Clang (apt-get install clang)
+#   bash tests/sanitize.sh thread                       threads that read volumes and images, with Clang (apt-get install clang), and those of
+#                                                       the viewer, the library and pipelines
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 cd "$root"
@@ -19,7 +20,12 @@ case "${1:?say address or thread}" in
     cmake -S tests/fuzz -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DREADERS_SANITIZER=thread >/dev/null
     cmake --build "$build"
     TSAN_OPTIONS=report_bugs=0 "$build/seeds" "$build/seeds-made"  # only writes the files
-    TSAN_OPTIONS="suppressions=$root/tests/fuzz/thread_suppressions.txt halt_on_error=1" "$build/threads" "$build/seeds-made"
+    export TSAN_OPTIONS="suppressions=$root/tests/fuzz/thread_suppressions.txt halt_on_error=1"
+    "$build/threads" "$build/seeds-made"
+    cmake --preset sanitize-threads
+    cmake --build --preset sanitize-threads --target freevoxels_unit_tests freevoxels_device_tests
+    build-sanitize-threads/bin/freevoxels_unit_tests --gtest_filter='ExportJob*:OpenedFile*:SessionStore*'
+    build-sanitize-threads/bin/freevoxels_device_tests --gtest_filter='RenderThread*:ImageDirector*:ImageMaker*:PipelineStore*'
     ;;
   *)
     echo "say address or thread"
