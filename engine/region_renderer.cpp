@@ -10,6 +10,7 @@
 #include "engine/core/error.h"
 #include "engine/core/parameter.h"
 #include "engine/lighting/light_pass.h"
+#include "engine/octree/device_volume.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/scene/footprint.h"
 #include "engine/splatting/accumulate_pass.h"
@@ -146,7 +147,7 @@ struct RegionRenderer::State {
   TableSettings tableSettings;
   bool keepsRegions;
   Volume outline = bakedOutline(*file);
-  DeviceVolume outlineVolume = outlineOf(outline, classification);
+  DeviceVolume outlineVolume = outlineOnDevice(outline, classification);
   AttenuationSweep sweep{device, tableSettings, sweepStyle(device), true};
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<AccumulatePass> accumulate;

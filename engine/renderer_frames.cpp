@@ -174,11 +174,11 @@ Renderer::State::Splatting Renderer::State::recordSplats(Commands& commands, con
 
 /// What the gather keeps of the volume for further frames is made by a submission of its own, so that a frame that is
 /// abandoned while its image is drawn leaves it complete.
-void Renderer::State::prepareVolume(const GatherVolume::Shading& shading, const Progress& progress) {
+void Renderer::State::prepareVolume(const GatherVolume::Shading& shading, GatherPass::Extent marched, const Progress& progress) {
   try {
     if (!gatherVolume) gatherVolume.emplace(device, hostVolume, classification, built, frameTimes);
     gatherVolume->prepare(shading, frameTimes);
-    GatherPass::compileAhead(device, *gatherVolume, shading.axes);
+    GatherPass::compileAhead(device, *gatherVolume, shading.axes, marched);
     Commands commands(device);
     gatherVolume->record(commands, shading);
     if (commands.empty()) return;
@@ -191,7 +191,8 @@ void Renderer::State::prepareVolume(const GatherVolume::Shading& shading, const 
 }
 
 /// All that a gathered frame needs before its samples are marched.
-Renderer::State::Gathering Renderer::State::prepareGather(const Camera& camera, const FrameSettings& wanted, const Progress& progress) {
+Renderer::State::Gathering Renderer::State::prepareGather(const Camera& camera, const FrameSettings& wanted, GatherPass::Extent marched,
+                                                          const Progress& progress) {
   frameTimes.clear();
   lastDrawn = nullptr;
   lastLackedRays = false;
@@ -220,7 +221,7 @@ Renderer::State::Gathering Renderer::State::prepareGather(const Camera& camera, 
                  .lights = settings.lighting ? &lights->lights() : nullptr,
                  .axes = {someRayHasAxis(frame.lattice, 0), someRayHasAxis(frame.lattice, 1), someRayHasAxis(frame.lattice, 2)},
                  .keptQuadBytes = planKeptQuadBytes(device)},
-                progress);
+                marched, progress);
   if (!gather) gather.emplace(device);
   gatherVolume->describe(frame.lattice);
   return frame;
@@ -229,7 +230,7 @@ Renderer::State::Gathering Renderer::State::prepareGather(const Camera& camera, 
 /// Reads the image in the targets, without their optical depth.
 std::shared_ptr<const FrameTargets> Renderer::State::recordGather(Commands& commands, const Camera& camera, const FrameSettings& wanted,
                                                                   const Progress& progress) {
-  const Gathering frame = prepareGather(camera, wanted, progress);
+  const Gathering frame = prepareGather(camera, wanted, GatherPass::Extent::Whole, progress);
   const std::shared_ptr<const FrameTargets> targets = targetPool.take(device, frame.settings, TargetKind::Image);
   gather->record(commands, *gatherVolume, frame.lattice, *targets);
   return targets;
@@ -237,7 +238,7 @@ std::shared_ptr<const FrameTargets> Renderer::State::recordGather(Commands& comm
 
 FixedSums Renderer::State::gatherShares(const Camera& camera, const FrameSettings& settings, const SharePart& part,
                                         const Progress& progress) {
-  const Gathering frame = prepareGather(camera, settings, progress);
+  const Gathering frame = prepareGather(camera, settings, GatherPass::Extent::Part, progress);
   if (!gatherPart) gatherPart.emplace(device);
   Commands commands(device);
   gatherPart->record(commands, *gather, *gatherVolume, built.volume, frame.lattice, frame.constants.eye, part,

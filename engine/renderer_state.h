@@ -72,8 +72,8 @@ struct Renderer::State {
     FrameConstants constants;
     shader::GatherFrame lattice;
   };
-  Gathering prepareGather(const Camera& camera, const FrameSettings& wanted, const Progress& progress);
-  void prepareVolume(const GatherVolume::Shading& shading, const Progress& progress);
+  Gathering prepareGather(const Camera& camera, const FrameSettings& wanted, GatherPass::Extent marched, const Progress& progress);
+  void prepareVolume(const GatherVolume::Shading& shading, GatherPass::Extent marched, const Progress& progress);
   std::shared_ptr<const FrameTargets> recordGather(Commands& commands, const Camera& camera, const FrameSettings& settings,
                                                    const Progress& progress);
   std::shared_ptr<const FrameTargets> recordImage(Commands& commands, const Camera& camera, const FrameSettings& settings,

@@ -11,9 +11,10 @@
 #include "engine/core/parameter.h"
 #include "engine/gathering/gather_pass.h"
 #include "engine/lighting/ambient_pass.h"
+#include "engine/octree/device_volume.h"
 #include "engine/octree/volume_builder.h"
-#include "engine/storage/baked_box.h"
 #include "engine/splatting/splat_pass.h"
+#include "engine/storage/baked_box.h"
 #include "engine/vulkan/target_readback.h"
 
 namespace freevoxels {
@@ -57,7 +58,7 @@ struct StreamedLevel {
   StreamedLevel(std::shared_ptr<const FvxFile> file, int level, const Classification& classification)
       : baked{.file = std::move(file), .level = level, .classification = classification},
         outline(bakedOutline(*baked.file, level)),
-        onDevice(outlineOf(outline, classification)) {
+        onDevice(outlineOnDevice(outline, classification)) {
     const glm::ivec3 bricks = (outline.dimensions + kBrick - 1) / kBrick, cells = (outline.dimensions + kEdge - 1) / kEdge;
     const std::vector<std::uint8_t> around = bricksAround(*baked.file, level);
     std::vector<bool> isMet(std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z));

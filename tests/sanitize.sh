@@ -23,9 +23,11 @@ case "${1:?say address or thread}" in
     export TSAN_OPTIONS="suppressions=$root/tests/fuzz/thread_suppressions.txt halt_on_error=1"
     "$build/threads" "$build/seeds-made"
     cmake --preset sanitize-threads
-    cmake --build --preset sanitize-threads --target freevoxels_unit_tests freevoxels_device_tests
-    build-sanitize-threads/bin/freevoxels_unit_tests --gtest_filter='ExportJob*:OpenedFile*:SessionStore*'
-    build-sanitize-threads/bin/freevoxels_device_tests --gtest_filter='RenderThread*:ImageDirector*:ImageMaker*:PipelineStore*'
+    cmake --build --preset sanitize-threads --target freevoxels_unit_tests freevoxels_device_tests \
+      freevoxels_library_tests
+    build-sanitize-threads/bin/freevoxels_unit_tests --gtest_filter='PipelineStore*:ExportJob*:SessionStore*:BackgroundWriter*'
+    build-sanitize-threads/bin/freevoxels_device_tests --gtest_filter='RenderThread*:ImageDirector*:ImageMaker*'
+    build-sanitize-threads/bin/freevoxels_library_tests
     ;;
   *)
     echo "say address or thread"

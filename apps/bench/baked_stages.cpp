@@ -3,9 +3,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <filesystem>
-#include <functional>
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/core/error.h"

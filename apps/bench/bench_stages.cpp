@@ -1,9 +1,7 @@
 #include "apps/bench/bench_stages.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>

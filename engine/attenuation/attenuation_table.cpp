@@ -7,6 +7,7 @@
 #include "embedded/attenuation_sweep_x.h"
 #include "engine/attenuation/table_pruning.h"
 #include "engine/core/error.h"
+#include "engine/vulkan/commands.h"
 #include "shaders/interface.h"
 
 namespace freevoxels {

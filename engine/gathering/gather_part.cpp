@@ -8,6 +8,8 @@
 #include "engine/core/error.h"
 #include "engine/storage/hilbert.h"
 #include "engine/volume/coarse_cells.h"
+#include "engine/vulkan/buffer.h"
+#include "engine/vulkan/commands.h"
 
 namespace freevoxels {
 
@@ -97,8 +99,10 @@ void GatherPartPass::choose(const GatherVolume& volume, const SharePart& part) {
   if (part_ == part) return;
   part_.reset();
   const PartCells cells = partCells(volume.cells(), volume.levels(), part);
-  std::tie(numbers_, numberTexels_) = uploadTexels(device_, std::as_bytes(std::span(cells.numbers)), VK_FORMAT_R32_UINT, "brick numbers of a part");
-  std::tie(skips_, skipTexels_) = uploadTexels(device_, std::as_bytes(std::span(cells.skips)), VK_FORMAT_R8_UINT, "cells that a part skips");
+  std::tie(numbers_, numberTexels_) =
+      uploadTexels(device_, std::as_bytes(std::span(cells.numbers)), VK_FORMAT_R32_UINT, "brick numbers of a part");
+  std::tie(skips_, skipTexels_) =
+      uploadTexels(device_, std::as_bytes(std::span(cells.skips)), VK_FORMAT_R8_UINT, "cells that a part skips");
   part_ = part;
 }
 

@@ -23,6 +23,7 @@
 #include "embedded/gather_pre_unlit_region.h"
 #include "embedded/gather_stencil.h"
 #include "embedded/gather_upsample.h"
+#include "engine/vulkan/commands.h"
 
 namespace freevoxels {
 
@@ -61,9 +62,9 @@ GatherPass::GatherPass(const Device& device)
     : device_(device), frame_(device, sizeof(shader::GatherFrame), MemoryUse::Device, "gather frame",
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT) {}
 
-void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes) {
+void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, Extent marched) {
   for (int axis = 0; axis < 3; ++axis)
-    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, *gatherShaders(volume)[std::size_t(Extent::Whole)]);
+    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, *gatherShaders(volume)[std::size_t(marched)]);
 }
 
 void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {

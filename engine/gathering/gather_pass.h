@@ -16,8 +16,9 @@ namespace freevoxels {
 class GatherPass {
  public:
   explicit GatherPass(const Device& device);
-  /// Has the pipeline of record() compiled for rays along the given axes. The volume is prepared for the frame.
-  static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes);
+  enum class Extent { Whole, Part, Region };  ///< what of the volume is marched
+  /// Has the pipelines that march rays along the given axes compiled. The volume is prepared for the frame.
+  static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, Extent marched);
   void record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
               const FrameTargets& targets);
 
@@ -51,7 +52,6 @@ class GatherPass {
   };
   void setLattice(const shader::GatherFrame& frame);
   void makeRoom(Sums& sums, std::uint64_t samples);
-  enum class Extent { Whole, Part, Region };  ///< what of the volume is marched
   void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
                        const TexelView& skips, glm::ivec2 extent, Extent marched);
   void recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);

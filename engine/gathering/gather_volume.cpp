@@ -13,11 +13,12 @@
 #include "engine/core/error.h"
 #include "engine/octree/occupancy.h"
 #include "engine/volume/packed_light.h"
+#include "engine/vulkan/buffer.h"
+#include "engine/vulkan/commands.h"
 
 namespace freevoxels {
 
 namespace {
-
 
 /// The radiance of a stored source term that equals the stored extinction: 1, or more if half floats could
 /// not hold the brightest voxel. Lights are as bright as at the least distance that counts.
@@ -106,8 +107,10 @@ void GatherVolume::makeBricks(std::vector<StageTime>& times) {
     skips.insert(skips.end(), skipCells.values.begin(), skipCells.values.end());
   }
   firstBricks_.push_back(std::uint32_t(bricks.size()));
-  std::tie(brickNumbers_, brickNumberTexels_) = uploadTexels(device_, std::as_bytes(std::span(numbers)), VK_FORMAT_R32_UINT, "brick numbers");
-  std::tie(brickCells_, brickCellTexels_) = uploadTexels(device_, std::as_bytes(std::span(bricks)), VK_FORMAT_R32G32B32A32_UINT, "brick cells");
+  std::tie(brickNumbers_, brickNumberTexels_) =
+      uploadTexels(device_, std::as_bytes(std::span(numbers)), VK_FORMAT_R32_UINT, "brick numbers");
+  std::tie(brickCells_, brickCellTexels_) =
+      uploadTexels(device_, std::as_bytes(std::span(bricks)), VK_FORMAT_R32G32B32A32_UINT, "brick cells");
   std::tie(skips_, skipTexels_) = uploadTexels(device_, std::as_bytes(std::span(skips)), VK_FORMAT_R8_UINT, "cells to skip");
 }
 

@@ -35,8 +35,7 @@ void DisplayPass::record(Commands& commands, const RenderTarget& image, const Di
   commands.beginPass("display");
   commands.transition(shown.handle(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kFragment, kComputeStage);
   commands.dispatch(pipeline_, bindings, push, {image.size(), 1});
-  commands.transition(shown.handle(), VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kComputeStage,
-                      kFragment);
+  commands.transition(shown.handle(), VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kComputeStage, kFragment);
 }
 
 RenderTarget uploadImage(const Device& device, const Image& image) {

@@ -54,7 +54,7 @@ double brightestSource(const Classification& classification, const Volume& volum
 
 }  // namespace
 
-DeviceVolume outlineOf(const Volume& volume, const Classification& classification) {
+DeviceVolume outlineOnDevice(const Volume& volume, const Classification& classification) {
   return {.layout = GridLayout(volume.dimensions),
           .hierarchy = HierarchyLayout(volume.dimensions),
           .indexToWorld = volume.indexToWorld,
@@ -65,7 +65,7 @@ DeviceVolume outlineOf(const Volume& volume, const Classification& classificatio
 
 DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
                               const Classification& classification) {
-  DeviceVolume result = outlineOf(volume, classification);
+  DeviceVolume result = outlineOnDevice(volume, classification);
   result.emissionUnit = brightestSource(classification, volume) / kBrightest;
   const std::uint64_t words = result.hierarchy.paddedBlocks() / shader::kBlocksPerWord;
   result.occupancy = Buffer(device, words * sizeof(shader::OccupancyWord), MemoryUse::Device, "occupancy",

@@ -67,7 +67,7 @@ inline std::uint64_t extinctionBytes(std::uint64_t storedBlocks) {
 }
 
 /// The volume's box, transform and colours, with nothing on a device.
-DeviceVolume outlineOf(const Volume& volume, const Classification& classification);
+DeviceVolume outlineOnDevice(const Volume& volume, const Classification& classification);
 
 /// Makes the volume without the medium of its blocks.
 DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,

@@ -42,9 +42,8 @@ std::vector<std::uint32_t> referenceBackToFront(const Volume& volume, const Came
   return sorted;
 }
 
-Image referenceSortedImage(const Volume& volume, const Classification& classification, const Camera& camera,
-                             const FrameSettings& settings, std::span<const std::uint32_t> voxels,
-                             const ReferenceLight* light) {
+Image referenceSortedImage(const Volume& volume, const Classification& classification, const Camera& camera, const FrameSettings& settings,
+                           std::span<const std::uint32_t> voxels, const ReferenceLight* light) {
   const SplatProjector projector(volume, camera, settings.size);
   std::vector<BlendedPixel> blended(std::size_t(settings.size.x) * std::size_t(settings.size.y));
   const VoxelClassifier classifier(classification, volume);

@@ -25,8 +25,7 @@ std::vector<std::uint32_t> referenceBackToFront(const Volume& volume, const Came
 /// Draws the voxels. Image::depth, if requested, is the distance along the viewing axis, blended like the
 /// colour and divided by alpha; infinite where alpha is 0. Only the size of `settings` matters. `light`
 /// lights the voxels; without it they send out their colour.
-Image referenceSortedImage(const Volume& volume, const Classification& classification, const Camera& camera,
-                             const FrameSettings& settings, std::span<const std::uint32_t> voxels,
-                             const ReferenceLight* light = nullptr);
+Image referenceSortedImage(const Volume& volume, const Classification& classification, const Camera& camera, const FrameSettings& settings,
+                           std::span<const std::uint32_t> voxels, const ReferenceLight* light = nullptr);
 
 }  // namespace freevoxels

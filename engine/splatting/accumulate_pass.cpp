@@ -10,6 +10,7 @@
 #include "embedded/mark_tiles.h"
 #include "engine/core/error.h"
 #include "engine/volume/packed_light.h"
+#include "engine/vulkan/commands.h"
 #include "shaders/share_interface.h"
 
 namespace freevoxels {

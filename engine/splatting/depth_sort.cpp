@@ -3,6 +3,7 @@
 #include <array>
 
 #include "embedded/depth_key.h"
+#include "engine/vulkan/commands.h"
 #include "shaders/interface.h"
 
 namespace freevoxels {
@@ -32,8 +33,7 @@ DepthSort::DepthSort(const Device& device, const DeviceVolume& volume)
       sort_(device),
       pairs_(makeSortPairs(device, std::max<std::uint64_t>(volume.stored.front(), 1))) {}
 
-void DepthSort::record(Commands& commands, const DeviceVolume& volume, const BlockList& visible,
-                       const Camera& camera) const {
+void DepthSort::record(Commands& commands, const DeviceVolume& volume, const BlockList& visible, const Camera& camera) const {
   const std::array<Binding, 5> keys{&visible.indices, &visible.chunks, &pairs_.count, &pairs_.keys,
                                     &pairs_.values};
   commands.beginPass("depth sort");

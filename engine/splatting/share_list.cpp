@@ -4,6 +4,7 @@
 
 #include "embedded/share_key.h"
 #include "engine/core/error.h"
+#include "engine/vulkan/commands.h"
 #include "shaders/share_interface.h"
 
 namespace freevoxels {

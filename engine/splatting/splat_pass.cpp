@@ -11,6 +11,7 @@
 #include "embedded/splat_sorted_distance.h"
 #include "embedded/splat_vertex.h"
 #include "engine/core/error.h"
+#include "engine/vulkan/commands.h"
 
 namespace freevoxels {
 
@@ -28,7 +29,8 @@ const Shader& fragmentShader(bool withDistance, bool sorted) {
 }
 
 Pipeline makeSetupPipeline(const Device& device, const DeviceVolume& volume, bool lit, bool tinted) {
-  return makeComputePipeline(device, lit ? shaders::splat_setup_lit : shaders::splat_setup_unlit, {volume.hasEmission(), volume.hasColors, tinted});
+  return makeComputePipeline(device, lit ? shaders::splat_setup_lit : shaders::splat_setup_unlit,
+                             {volume.hasEmission(), volume.hasColors, tinted});
 }
 
 Pipeline makeSplatPipeline(const Device& device, bool quads, bool withDistance, bool sorted) {
@@ -112,8 +114,7 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
                                      &splats_};
   const std::array<Binding, 1> draw{&splats_};
   Pipeline& setUp = setups_[std::size_t(frame.lit) + std::size_t(frame.tinted)];
-  if (setUp.handle() == VK_NULL_HANDLE)
-    setUp = makeSetupPipeline(device_, inputs.volume, frame.lit, frame.tinted);
+  if (!setUp.exists()) setUp = makeSetupPipeline(device_, inputs.volume, frame.lit, frame.tinted);
   const Pipeline& pipeline = frame.quads ? quads_ : points_;
   for (const RenderTarget* target : targets.all())
     commands.transition(*target, inputs.continued ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED,

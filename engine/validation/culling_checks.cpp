@@ -85,9 +85,9 @@ ReportSection cullingChecks(const Device& device, const QualityScene& scene, int
     }
     worst.take(largestDifference(image, expected).figure(), [&] {
       section.imageRows = {{.caption = fmt::format("Where they differ most: {}", view.name),
-                           .images = {{"everything", expected},
-                                        {"culled", image},
-                                        {fmt::format("difference times {:g}", kAmplification), amplifiedDifference(image, expected)}}}};
+                            .images = {{"everything", expected},
+                                       {"culled", image},
+                                       {fmt::format("difference times {:g}", kAmplification), amplifiedDifference(image, expected)}}}};
       return view.name;
     });
   }

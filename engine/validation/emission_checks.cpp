@@ -87,9 +87,8 @@ void checkFire(const Device& device, const Volume& volume, const Medium& medium,
     const Camera camera = viewCamera(volume, view);
     const Image oracle =
         renderOracle(volume, classification, camera, {.size = glm::ivec2(edge), .tolerance = 4e-3}).image;
-    ImageRow row{.caption = fmt::format("{}, {}", medium.name, viewText(view)),
-                            .images = {{"oracle", oracle}},
-                            .background = glm::vec3(0.0f)};
+    ImageRow row{
+        .caption = fmt::format("{}, {}", medium.name, viewText(view)), .images = {{"oracle", oracle}}, .background = glm::vec3(0.0f)};
     for (std::size_t i = 0; i < kMethods.size(); ++i) {
       const Image image = renderer.render(camera, {.size = glm::ivec2(edge), .attenuation = kMethods[i].attenuation});
       const double psnr = compareImages(image, oracle).psnr;

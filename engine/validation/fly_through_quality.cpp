@@ -73,8 +73,7 @@ Check mostWrongChange(const ReportPlot::Series& wrong, const std::string& method
 }
 
 ImageRow someFrames(const std::string& method, const std::vector<Image>& images, const std::vector<Image>& oracle) {
-  ImageRow shown{.caption = fmt::format("Frames of \"{}\", each before the oracle's", method),
-                       .images = {}};
+  ImageRow shown{.caption = fmt::format("Frames of \"{}\", each before the oracle's", method), .images = {}};
   for (std::size_t i = 0; i < kShownFrames; ++i) {
     const std::size_t frame = i * (images.size() - 1) / (kShownFrames - 1);
     shown.images.push_back({fmt::format("frame {}", frame), images[frame]});

@@ -277,7 +277,7 @@ void checkFrame(GatherOutputs& device, const ValidationScene& scene, const Class
   }
   section.checks.push_back(checkEnd(device, camera, settings, samples, tolerance, classification.emission.has_value(), frame.name));
   section.imageRows.push_back(comparedImages(stages.image, reference.image(reference.smoothed(samples)),
-                                              fmt::format("Frame: {}", frame.name), "reference, from the device's blocks"));
+                                             fmt::format("Frame: {}", frame.name), "reference, from the device's blocks"));
 }
 
 constexpr const char* kExplanation =

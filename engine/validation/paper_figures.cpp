@@ -112,11 +112,11 @@ void addLeakingView(const StageMaker& make, const Volume& cube, const QualityVie
                         fmt::format("{:.4f}", meanAlphaError(additive, oracle)),
                         fmt::format("{:.4f}", meanAlphaError(normalised, oracle))});
   section.imageRows.push_back({.caption = "From " + viewText(view),
-                              .images = {{"sorted, back to front: leaks", sorted},
-                                           {"FreeVoxels, additive", additive},
-                                           {"FreeVoxels, normalised", normalised},
-                                           {"oracle", oracle}},
-                              .background = glm::vec3(1.0f)});
+                               .images = {{"sorted, back to front: leaks", sorted},
+                                          {"FreeVoxels, additive", additive},
+                                          {"FreeVoxels, normalised", normalised},
+                                          {"oracle", oracle}},
+                               .background = glm::vec3(1.0f)});
 }
 
 struct LitHead {
@@ -164,19 +164,16 @@ ReportSection paperFigure2(const StageMaker& make) {
       .text =
           "Each voxel is as bright as the transmittance from it to the outside along a direction d, as the "
           "table has it (Eq. 5): white where the way is free, darker the more of the cube is in the way."};
-  ImageRow row{
-      .caption =
-          "Seen from azimuth -35, elevation 25: +x points to the upper right, +y up, +z to the lower right",
-      .images = {},
-      .background = kShownBackground};
+  ImageRow row{.caption = "Seen from azimuth -35, elevation 25: +x points to the upper right, +y up, +z to the lower right",
+               .images = {},
+               .background = kShownBackground};
   for (const int direction :
        {directionIndex(kLatticeSteps, {1, 0, 0}), directionIndex(kLatticeSteps, {1, 1, 0}),
         directionIndex(kLatticeSteps, {1, 1, 1})}) {
     const Volume shown = transmittances(cube, table[std::size_t(direction)]);
     section.checks.push_back(checkTransmittances(shown, direction));
     const auto outputs = make(shown, asBrightness(shown), {});
-    row.images.push_back(
-        {directionText(kLatticeSteps, direction), outputs->image(viewCamera(shown, kTableView), {.size = kTableImage})});
+    row.images.push_back({directionText(kLatticeSteps, direction), outputs->image(viewCamera(shown, kTableView), {.size = kTableImage})});
   }
   section.imageRows.push_back(std::move(row));
   return section;
@@ -217,10 +214,10 @@ ReportSection paperFigure7(const StageMaker& make) {
   turning.tint = kFleshTint;
   const Image turned = shown.image(kLitImage, turning);
   section.imageRows.push_back({.caption = "From " + viewText(kLitView),
-                              .images = {{"without light", shown.image(kLitImage, std::nullopt)},
-                                           {"red light", shown.image(kLitImage, red)},
-                                           {"white light that turns red", turned}},
-                              .background = glm::vec3(0.0f)});
+                               .images = {{"without light", shown.image(kLitImage, std::nullopt)},
+                                          {"red light", shown.image(kLitImage, red)},
+                                          {"white light that turns red", turned}},
+                               .background = glm::vec3(0.0f)});
   section.checks = {checkLitHead(judged, red),
                     {.name = "figure 7: red over blue, of white light that turns red against that which does not",
                      .figure = redOverBlue(turned) / redOverBlue(shown.image(kLitImage, white)),

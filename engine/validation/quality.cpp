@@ -41,14 +41,13 @@ Image flipErrorImage(const Image& test, const Image& reference) {
   return magmaImage(hdrFlip(compositeOver(test, grey), shown, flipExposures(shown)));
 }
 
-ImageRow worstImages(const std::string& view, const Image& oracle, const QualityMethod& first, const Image& image,
-                             const Image& sorted) {
+ImageRow worstImages(const std::string& view, const Image& oracle, const QualityMethod& first, const Image& image, const Image& sorted) {
   return {.caption = fmt::format("The view {}, where the method \"{}\" is worst", view, first.name),
           .images = {{"oracle", oracle},
-                       {first.name, image},
-                       {fmt::format("{}: {:g} times the difference", first.name, kDifferenceGain), visibleDifference(image, oracle)},
-                       {first.name + ": HDR-FLIP, black 0, yellow 1", flipErrorImage(image, oracle)},
-                       {"sorted", sorted}},
+                     {first.name, image},
+                     {fmt::format("{}: {:g} times the difference", first.name, kDifferenceGain), visibleDifference(image, oracle)},
+                     {first.name + ": HDR-FLIP, black 0, yellow 1", flipErrorImage(image, oracle)},
+                     {"sorted", sorted}},
           .background = {}};
 }
 

@@ -273,7 +273,7 @@ void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, R
   section.checks.push_back(largestDifference(image, resolved).atMost(kImageTolerance, fmt::format("resolve: RGBA, {}", method.name)));
   if (method.depth) section.checks.push_back(checkDistance(image, resolved, method.name));
   section.imageRows.push_back(comparedImages(image, referenceResolve(reference, settings), fmt::format("Method: {}", method.name),
-                                              "reference, from the device's table"));
+                                             "reference, from the device's table"));
 }
 
 constexpr const char* kExplanation =

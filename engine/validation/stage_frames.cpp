@@ -45,8 +45,8 @@ double largestComponent(glm::dvec3 v) {
 ImageRow comparedImages(const Image& image, const Image& reference, std::string caption, std::string referenceCaption) {
   return {.caption = std::move(caption),
           .images = {{"device", image},
-                       {std::move(referenceCaption), reference},
-                       {fmt::format("difference x {:g}", kBrightness), brightened(absoluteDifference(image, reference))}},
+                     {std::move(referenceCaption), reference},
+                     {fmt::format("difference x {:g}", kBrightness), brightened(absoluteDifference(image, reference))}},
           .background = glm::vec3(0.01f)};
 }
 

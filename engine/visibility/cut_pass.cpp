@@ -7,6 +7,7 @@
 #include "embedded/compact_scan.h"
 #include "embedded/cut_select.h"
 #include "embedded/cut_write.h"
+#include "engine/vulkan/commands.h"
 
 namespace freevoxels {
 
@@ -172,7 +173,7 @@ void CutPass::recordPart(Commands& commands, const CutInputs& inputs, Part part)
 void CutPass::recordSelect(Commands& commands, const CutInputs& inputs, std::span<const Level> levels,
                            Part part) {
   const Buffer& anyBuffer = frame_;
-  if (inputs.candidates != nullptr && selectCandidates_[0].handle() == VK_NULL_HANDLE)
+  if (inputs.candidates != nullptr && !selectCandidates_[0].exists())
     for (const std::uint32_t voxels : {0u, 1u})
       selectCandidates_[voxels] = makeComputePipeline(device_, shaders::cut_select, {std::uint32_t(code_), 0u, voxels, 1u});
   for (const Level& level : levels | std::views::reverse) {

@@ -20,7 +20,7 @@
 namespace freevoxels {
 
 class Queue;
-struct PipelineStore;
+class PipelineStore;
 
 struct DeviceDescription {
   int index = 0;
@@ -37,7 +37,8 @@ struct DeviceDescription {
 /// All Vulkan devices, in the order of their indices.
 std::vector<DeviceDescription> listDevices(const Instance& instance);
 
-/// A device and a queue of the caller's, which must outlive the Device that uses them. They must meet device_requirements.h.
+/// A device and a queue of the caller's, which must outlive the Device that uses them. They must meet device_requirements.h. Threads of
+/// the Device compile pipelines until it ends.
 struct AdoptedDevice {
   VkPhysicalDevice physical = VK_NULL_HANDLE;
   VkDevice device = VK_NULL_HANDLE;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <initializer_list>
 #include <system_error>
 
@@ -142,15 +143,14 @@ OwnedPipeline compileCompute(const Device& device, VkPipelineCache cache, VkPipe
                              const Specialisation& constants) {
   const OwnedShaderModule module = makeModule(device, code);
   const SpecialisationInfo specialisation(constants);
-  const VkComputePipelineCreateInfo info{
-      .sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
-      .flags = VK_PIPELINE_CREATE_DISPATCH_BASE,
-      .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
-                .stage = VK_SHADER_STAGE_COMPUTE_BIT,
-                .module = module.get(),
-                .pName = "main",
-                .pSpecializationInfo = specialisation.get()},
-      .layout = layout};
+  const VkComputePipelineCreateInfo info{.sType = VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO,
+                                         .flags = VK_PIPELINE_CREATE_DISPATCH_BASE,
+                                         .stage = {.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO,
+                                                   .stage = VK_SHADER_STAGE_COMPUTE_BIT,
+                                                   .module = module.get(),
+                                                   .pName = "main",
+                                                   .pSpecializationInfo = specialisation.get()},
+                                         .layout = layout};
   VkPipeline pipeline = VK_NULL_HANDLE;
   VK_CHECK(vkCreateComputePipelines(device.handle(), cache, 1, &info, nullptr, &pipeline));
   device.setName(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline), code.name);
@@ -195,13 +195,12 @@ OwnedPipeline compileGraphics(const Device& device, VkPipelineCache cache, VkPip
   return {device.handle(), pipeline};
 }
 
-/// Threads that compile ahead: one fewer than there are processors, and no more than this.
+/// Threads that compile ahead: one fewer than there are processors, but at least one, and no more than this.
 constexpr std::size_t kMaxThreads = 4;
 
 }  // namespace
 
 VkPipeline Pipeline::handle() const {
-  if (stored_ == nullptr) return VK_NULL_HANDLE;
   store_->compile(*stored_);
   return stored_->pipeline.get();
 }
@@ -222,13 +221,13 @@ Pipeline PipelineStore::get(const PipelineKey& key, const std::function<Pipeline
   if (!isNew) return {*this, stored};
   try {
     stored.layout = makeLayout();
+    stored.compile = [this, &stored, compile] { return compile(cache_.handle(), stored.layout.layout.get()); };
+    wanted_.push_back(&stored);
   } catch (...) {
     pipelines_.erase(place);
     throw;
   }
-  stored.compile = [this, &stored, compile] { return compile(cache_.handle(), stored.layout.layout.get()); };
-  wanted_.push_back(&stored);
-  changed_.notify_one();
+  changed_.notify_all();
   addThread();
   return {*this, stored};
 }
@@ -236,7 +235,7 @@ Pipeline PipelineStore::get(const PipelineKey& key, const std::function<Pipeline
 /// Adds a thread if there is work for another one. Called with `mutex_` locked.
 void PipelineStore::addThread() {
   const std::size_t processors = std::thread::hardware_concurrency();
-  if (threads_.size() >= std::min(std::clamp(processors, std::size_t(2), kMaxThreads + 1) - 1, wanted_.size())) return;
+  if (idle_ >= wanted_.size() || threads_.size() + 1 >= std::clamp(processors, std::size_t(2), kMaxThreads + 1)) return;
   try {
     threads_.emplace_back([this] { compileAhead(); });
   } catch (const std::system_error&) {  // no more threads: who needs the pipeline compiles it
@@ -244,28 +243,42 @@ void PipelineStore::addThread() {
 }
 
 void PipelineStore::compile(StoredPipeline& stored) {
-  std::call_once(stored.compiled, [&] {
-    std::vector<StageTime> times;
-    {
-      const StageTimer timer(times, "make pipelines");
-      stored.pipeline = stored.compile();
-    }
-    const std::lock_guard lock(mutex_);
-    addTimes(times_, times);
-  });
+  using enum StoredPipeline::State;
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [&] { return stored.state != Compiling; });
+  if (stored.state == Compiled) return;
+  stored.state = Compiling;
+  lock.unlock();
+  std::vector<StageTime> times;
+  std::exception_ptr error;
+  try {
+    const StageTimer timer(times, "make pipelines");
+    stored.pipeline = stored.compile();
+  } catch (...) {
+    error = std::current_exception();
+  }
+  lock.lock();
+  stored.state = error ? Wanted : Compiled;
+  addTimes(times_, times);
+  lock.unlock();
+  changed_.notify_all();
+  if (error) std::rethrow_exception(error);
 }
 
 void PipelineStore::compileAhead() {
   std::unique_lock lock(mutex_);
   for (;;) {
+    ++idle_;
     changed_.wait(lock, [&] { return closing_ || !wanted_.empty(); });
+    --idle_;
     if (closing_) return;
     StoredPipeline& next = *wanted_.front();
     wanted_.pop_front();
+    if (next.state != StoredPipeline::State::Wanted) continue;
     lock.unlock();
     try {
       compile(next);
-    } catch (const std::exception&) {  // thrown again to who needs the pipeline
+    } catch (...) {  // thrown again to who needs the pipeline
     }
     lock.lock();
   }
@@ -297,7 +310,10 @@ Pipeline makeGraphicsPipeline(const Device& device, const Shader& vertex, const 
                         .attachments = {attachments.begin(), attachments.end()},
                         .blend = blend};
   return device.pipelines().get(
-      key, [&] { return makeLayout(device, {&vertex, &fragment}, VK_PIPELINE_BIND_POINT_GRAPHICS); },
+      key,
+      [&] {
+        return makeLayout(device, {&vertex, &fragment}, VK_PIPELINE_BIND_POINT_GRAPHICS);
+      },
       [&device, &vertex, &fragment, key](VkPipelineCache cache, VkPipelineLayout layout) {
         return compileGraphics(device, cache, layout, vertex, fragment, key);
       });

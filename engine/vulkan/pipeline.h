@@ -49,9 +49,11 @@ struct PipelineLayout {
 
 /// A pipeline of a device. A thread of the store compiles it, or the thread that needs it first.
 struct StoredPipeline {
+  enum class State { Wanted, Compiling, Compiled };
+
   PipelineLayout layout;
   std::function<OwnedPipeline()> compile;
-  std::once_flag compiled;
+  State state = State::Wanted;
   OwnedPipeline pipeline;
 };
 
@@ -63,7 +65,8 @@ class Pipeline {
   Pipeline() = default;
   Pipeline(PipelineStore& store, StoredPipeline& stored) : store_(&store), stored_(&stored) {}
 
-  /// Waits until the pipeline is compiled. VK_NULL_HANDLE for a default-constructed pipeline.
+  bool exists() const { return stored_ != nullptr; }
+  /// Compiles the pipeline, or waits until it is compiled, and throws what that throws.
   VkPipeline handle() const;
   VkPipelineLayout layout() const { return stored_->layout.layout.get(); }
   VkPipelineBindPoint bindPoint() const { return stored_->layout.bindPoint; }
@@ -102,10 +105,10 @@ class PipelineStore {
 
   /// Returns the pipeline for `key`. If there is none, makes its layout now and has it compiled.
   Pipeline get(const PipelineKey& key, const std::function<PipelineLayout()>& makeLayout, const Compiler& compile);
-  /// Compiles `stored` unless it is compiled or another thread is about to, and waits for that. Throws what compiling throws.
+  /// Compiles `stored` unless it is compiled; waits for a thread that does. Throws what compiling throws, and may be called again then.
   void compile(StoredPipeline& stored);
   PipelineCache& cache() { return cache_; }
-  /// Time to compile the pipelines, summed over all threads.
+  /// Time to compile the pipelines, summed over all threads: it overlaps that of other stages.
   std::vector<StageTime> times() const;
 
  private:
@@ -119,10 +122,13 @@ class PipelineStore {
   std::deque<StoredPipeline*> wanted_;
   std::vector<StageTime> times_;
   bool closing_ = false;
+  std::size_t idle_ = 0;              ///< threads that wait for work
   std::vector<std::thread> threads_;  ///< that compile what is wanted
 };
 
-/// Returns at once; a thread compiles the pipeline.
+// Pipelines are compiled by another thread, or when they are first bound, which throws the error of a compilation that fails. The shaders
+// must outlive the device.
+
 Pipeline makeComputePipeline(const Device& device, const Shader& shader, const Specialisation& constants = {});
 
 /// Returns a graphics pipeline without vertex input (shaders fetch vertices from buffers), depth test or face

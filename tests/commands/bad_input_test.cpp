@@ -25,9 +25,8 @@ class BadInput : public CommandTest {
   void expectBadTransferFunction(const std::string& json, const std::string& mention) {
     SCOPED_TRACE(json);
     writeBytes(folder / "t.json", json);
-    expectCleanRefusal(
-        std::string("render procedural:cube @a.png --resolution 8 --transfer-function @t.json") + kSmallAndQuiet,
-        ExitCode::Input, mention);
+    expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --transfer-function @t.json") + kSmallAndQuiet,
+                       ExitCode::Input, mention);
   }
 };
 
@@ -80,8 +79,7 @@ TEST_F(BadInput, FileCutShortAnywhere) {
 TEST_F(BadInput, UnknownGrid) {
   makeCube("cube.vdb");
   expectCleanRefusal(std::string("render @cube.vdb @a.png --grid smoke") + kSmallAndQuiet, ExitCode::Input, "smoke");
-  expectCleanRefusal(std::string("render @cube.vdb @a.png --grid density[7]") + kSmallAndQuiet, ExitCode::Input,
-                     "density[7]");
+  expectCleanRefusal(std::string("render @cube.vdb @a.png --grid density[7]") + kSmallAndQuiet, ExitCode::Input, "density[7]");
 }
 
 TEST_F(BadInput, EmptyGrid) {
@@ -116,8 +114,8 @@ TEST_F(BadInput, SeveralGridsAndNoChoice) {
 }
 
 TEST_F(BadInput, BadTransferFunction) {
-  expectCleanRefusal(std::string("render procedural:cube @a.png --transfer-function @none.json") + kSmallAndQuiet,
-                     ExitCode::Input, "none.json");
+  expectCleanRefusal(std::string("render procedural:cube @a.png --transfer-function @none.json") + kSmallAndQuiet, ExitCode::Input,
+                     "none.json");
   expectBadTransferFunction("not json", "t.json");
   expectBadTransferFunction(R"({"opacity":[[0,0],[1,1]],"color":[[0,1,1,1]],"shine":1})", "shine");
   expectBadTransferFunction(R"({"opacity":[[1,0],[0,1]],"color":[[0,1,1,1]]})", "opacity");
@@ -131,9 +129,8 @@ TEST_F(BadInput, BadLights) {
   const auto expectBadLight = [this](const std::string& options, const std::string& mention) {
     SCOPED_TRACE(options);
     for (const char* command : {"render", "oracle"})
-      expectCleanRefusal(
-          fmt::format("{} procedural:cube @a.png --resolution 8 {}{}", command, options, kSmallAndQuiet),
-          ExitCode::Usage, mention);
+      expectCleanRefusal(fmt::format("{} procedural:cube @a.png --resolution 8 {}{}", command, options, kSmallAndQuiet), ExitCode::Usage,
+                         mention);
   };
   expectBadLight("--light color=1,1,1", "neither a direction nor a position");
   expectBadLight("--light direction=1,0,0,position=1,2,3", "a direction and a position");
@@ -156,15 +153,14 @@ TEST_F(BadInput, BadLights) {
 }
 
 TEST_F(BadInput, VolumeThatNoDeviceHolds) {
-  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 2048") + kSmallAndQuiet,
-                     ExitCode::OutOfMemory, "--resolution");
+  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 2048") + kSmallAndQuiet, ExitCode::OutOfMemory,
+                     "--resolution");
 }
 
 TEST_F(BadInput, UnknownDevice) {
-  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --device 99") + kSmallAndQuiet,
-                     ExitCode::Device, "99");
-  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --device Voodoo2") + kSmallAndQuiet,
-                     ExitCode::Device, "Voodoo2");
+  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --device 99") + kSmallAndQuiet, ExitCode::Device, "99");
+  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --device Voodoo2") + kSmallAndQuiet, ExitCode::Device,
+                     "Voodoo2");
 }
 
 }  // namespace freevoxels::test

@@ -74,10 +74,9 @@ TEST_F(EmissionCommand, WhatCannotBeIsRefused) {
   refuse("--emission --temperature-offset inf", ExitCode::Usage, "--temperature-offset");
   refuse("--temperature-scale 3", ExitCode::Usage, "--emission");
   refuse("--albedo-grid Cd --transfer-function @fire.vdb", ExitCode::Usage, "--transfer-function");
-  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --emission 1") + kSmallFire,
-                     ExitCode::Usage, "procedural:fire");
-  expectCleanRefusal(std::string("render procedural:fire @a.png --temperature-grid t") + kSmallFire,
-                     ExitCode::Usage, "--temperature-grid");
+  expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --emission 1") + kSmallFire, ExitCode::Usage,
+                     "procedural:fire");
+  expectCleanRefusal(std::string("render procedural:fire @a.png --temperature-grid t") + kSmallFire, ExitCode::Usage, "--temperature-grid");
 }
 
 TEST_F(EmissionCommand, InfoSaysWhatGridsAreFor) {

@@ -57,7 +57,7 @@ TEST_F(MemoryLimit, IsRaisedOnceOnlyWhateverItIs) {
     const int needed = neededMiB(run(command + "1"));
     ASSERT_GT(needed, 1);
     // More is never too little, although more and more of it lets the gather draw.
-    for (const double part : {1.0, 1.6, 2.4, 4.0}) expectSuccess(run(command + std::to_string(int(part * needed))));
+    for (const double part : {1.0, 1.4, 1.8, 2.2, 2.6, 4.0}) expectSuccess(run(command + std::to_string(int(part * needed))));
     EXPECT_EQ(neededMiB(run(command + std::to_string(needed / 2))), needed) << "what was said at first";
   }
 }

@@ -64,8 +64,7 @@ TEST_F(SequenceCommand, APatternIsDrawnFrameByFrameAsTheFirstFrameIsSeen) {
 
 TEST_F(SequenceCommand, FramesAndTheirViewAreChosen) {
   for (const int number : {1, 2, 3, 4}) write(fmt::format("s{}.vdb", number), float(number));
-  const ProgramResult result =
-      run(std::string("render @s%d.vdb @i_#.exr --frames 2-6:2 --no-fixed-view --timings @t.json") + kSmallUnlit);
+  const ProgramResult result = run(std::string("render @s%d.vdb @i_#.exr --frames 2-6:2 --no-fixed-view --timings @t.json") + kSmallUnlit);
   expectSuccess(result);
   EXPECT_EQ(result.out, lines({"i_2.exr", "i_4.exr", "t.json"}));
   EXPECT_NE(result.err.find("no file of frame 6\n"), std::string::npos) << result.err;

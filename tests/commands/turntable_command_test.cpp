@@ -106,8 +106,7 @@ TEST_F(TurntableCommand, TimingsSumTheFrames) {
 
 TEST_F(TurntableCommand, ProgressCountsTheFrames) {
   if (!terminalsAvailable()) GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
-  const ProgramResult shown =
-      runFreevoxelsOnTerminal(words(std::string("turntable procedural:cloud @#.png --frames 3") + kSmallTurn));
+  const ProgramResult shown = runFreevoxelsOnTerminal(words(std::string("turntable procedural:cloud @#.png --frames 3") + kSmallTurn));
   expectSuccess(shown);
   for (const char* text : {"frame 1 of 3", "frame 3 of 3"})
     EXPECT_NE(shown.err.find(text), std::string::npos) << shown.err;

@@ -1,7 +1,10 @@
 // Edits in the window of freevoxels-view: by panels, handles in the image and slices, and their undoing.
 
+#include <cmath>
+#include <optional>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "engine/image/srgb.h"
 #include "tests/commands/viewer_fixture.h"

@@ -25,12 +25,8 @@ class Viewer : public CommandTest {
     setenv("XDG_STATE_HOME", folder.path().c_str(), 1);
     display.emplace();
   }
-  ProgramResult view(const std::string& text) const {
-    return runProgramFile(FREEVOXELS_VIEW_PROGRAM, words(text));
-  }
-  std::unique_ptr<ViewerSession> use(const std::string& text) const {
-    return std::make_unique<ViewerSession>(folder.path(), words(text));
-  }
+  ProgramResult view(const std::string& text) const { return runProgramFile(FREEVOXELS_VIEW_PROGRAM, words(text)); }
+  std::unique_ptr<ViewerSession> use(const std::string& text) const { return std::make_unique<ViewerSession>(folder.path(), words(text)); }
   static void expectQuietEnd(ViewerSession& session) {
     const ProgramResult result = session.quit();
     EXPECT_EQ(result.exitCode, 0);
@@ -43,9 +39,7 @@ class Viewer : public CommandTest {
     const auto& value = scene.at("camera").at(key);
     return {value.at(0), value.at(1), value.at(2)};
   }
-  static glm::dvec3 armOf(const nlohmann::json& scene) {
-    return vectorOf(scene, "camera-position") - vectorOf(scene, "look-at");
-  }
+  static glm::dvec3 armOf(const nlohmann::json& scene) { return vectorOf(scene, "camera-position") - vectorOf(scene, "look-at"); }
 
   std::optional<Display> display;
 };

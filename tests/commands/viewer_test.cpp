@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
 
 #include "tests/commands/viewer_fixture.h"
 

@@ -2,13 +2,14 @@
 
 #include <limits>
 
+#include "tests/not_finite.h"
 #include "tests/refusal.h"
 
 namespace freevoxels {
 namespace {
 
 constexpr glm::ivec2 kSize(24, 16);
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+using test::kInfinity;
 
 Camera cameraOf(bool orthographic) {
   return {.position = {3.0, 2.0, 6.0}, .lookAt = {0.5, 0.25, 0.0}, .orthographic = orthographic, .verticalFov = 40.0, .orthographicHeight = 5.0};
@@ -24,7 +25,7 @@ Image planeImage(const Camera& camera, glm::dvec3 normal, double offset) {
       const glm::dvec3 origin = rays.origin + u * rays.originX + v * rays.originY;
       const glm::dvec3 direction = rays.direction + u * rays.directionX + v * rays.directionY;
       const bool seen = x < kSize.x / 2;
-      image.depth.push_back(seen ? float((offset - glm::dot(normal, origin)) / glm::dot(normal, direction)) : kInfinity);
+      image.depth.push_back(seen ? float((offset - glm::dot(normal, origin)) / glm::dot(normal, direction)) : float(kInfinity));
       image.pixels.emplace_back(0.1f, 0.1f, 0.1f, seen ? 0.75f : 0.0f);
     }
   return image;

@@ -1,6 +1,8 @@
 #pragma once
 // Scenes and settings of the tests of gathered frames.
 
+#include <vector>
+
 #include "engine/reference/oracle.h"
 #include "engine/volume/subject.h"
 #include "tests/device/splat_fixture.h"

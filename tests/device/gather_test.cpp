@@ -61,8 +61,7 @@ TEST_F(GatherTest, IsAsNearToTheOracleAsSplats) {
   for (const Camera& base : {Camera{}, orthographic})
     for (const glm::dvec2 angles : {glm::dvec2(35.0, 25.0), {80.0, 10.0}, {200.0, 75.0}}) {
       const Camera camera = framingCamera(scene.volume, angles.x, angles.y, 1.0, base);
-      const std::vector<double> quality =
-          qualitiesOf(scene, camera, {{.size = {128, 128}, .draw = Draw::Splats}, gathering({128, 128})});
+      const std::vector<double> quality = qualitiesOf(scene, camera, {{.size = {128, 128}, .draw = Draw::Splats}, gathering({128, 128})});
       EXPECT_GE(quality[1], quality[0] - 0.3) << angles.x << ' ' << angles.y;
       EXPECT_GE(quality[1], 40.0) << angles.x << ' ' << angles.y;
     }

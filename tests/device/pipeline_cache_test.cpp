@@ -2,13 +2,8 @@
 
 #include "engine/vulkan/pipeline_cache.h"
 
-#include <algorithm>
-#include <array>
 #include <fstream>
-#include <thread>
-#include <vector>
 
-#include "embedded/light_depths.h"
 #include "engine/image/display_pass.h"
 #include "engine/vulkan/pipeline.h"
 #include "tests/device/device_fixture.h"
@@ -62,26 +57,6 @@ TEST_F(PipelineCacheTest, WithoutAFileThereIsNone) {
   const PipelineCache none(device().handle(), {});
   EXPECT_EQ(none.handle(), VkPipelineCache(VK_NULL_HANDLE));
   EXPECT_NE(pipelineCacheName("a-b", 1), pipelineCacheName("a-b", 2));
-}
-
-using PipelineStoreTest = DeviceTest;
-
-TEST_F(PipelineStoreTest, ThreadsThatNeedAPipelineAtTheSameTimeGetTheSame) {
-  const Device own(instance(), "");
-  std::array<VkPipeline, 4> handles{};
-  std::vector<std::thread> threads;
-  for (VkPipeline& handle : handles) threads.emplace_back([&] { handle = makeComputePipeline(own, shaders::light_depths, {1}).handle(); });
-  for (std::thread& thread : threads) thread.join();
-  EXPECT_NE(handles[0], VkPipeline(VK_NULL_HANDLE));
-  EXPECT_EQ(std::ranges::count(handles, handles[0]), 4);
-  EXPECT_NE(makeComputePipeline(own, shaders::light_depths, {0}).handle(), handles[0]);
-}
-
-TEST_F(PipelineStoreTest, ADeviceMayEndBeforeItsPipelinesAreCompiled) {
-  for (int i = 0; i < 3; ++i) {
-    const Device brief(instance(), "");
-    for (const std::uint32_t scalars : {0u, 1u}) makeComputePipeline(brief, shaders::light_depths, {scalars});
-  }
 }
 
 }  // namespace

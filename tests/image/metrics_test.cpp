@@ -29,8 +29,7 @@ TEST(Metrics, EqualImagesHaveNoErrorAndInfinitePsnr) {
 }
 
 TEST(Metrics, AConstantErrorIsItsOwnRootMeanSquare) {
-  const ImageMetrics metrics =
-      compareImages(uniformImage({0.6f, 0.6f, 0.6f, 1.0f}), uniformImage({0.5f, 0.5f, 0.5f, 1.0f}));
+  const ImageMetrics metrics = compareImages(uniformImage({0.6f, 0.6f, 0.6f, 1.0f}), uniformImage({0.5f, 0.5f, 0.5f, 1.0f}));
   EXPECT_FALSE(metrics.countsAlpha);
   EXPECT_NEAR(metrics.rmse, 0.1, 1e-7);
   EXPECT_NEAR(metrics.psnr, 20.0, 1e-5);
@@ -102,8 +101,7 @@ TEST(Metrics, CompositesOverABackground) {
 }
 
 TEST(Metrics, AbsoluteDifferenceOfEveryChannel) {
-  const Image difference =
-      absoluteDifference(uniformImage({0.5f, 0.25f, 1.0f, 1.0f}), uniformImage({1.0f, 0.25f, 0.5f, 0.25f}));
+  const Image difference = absoluteDifference(uniformImage({0.5f, 0.25f, 1.0f, 1.0f}), uniformImage({1.0f, 0.25f, 0.5f, 0.25f}));
   for (const glm::vec4& pixel : difference.pixels) EXPECT_EQ(pixel, glm::vec4(0.5f, 0.0f, 0.5f, 0.75f));
 }
 

@@ -13,6 +13,7 @@
 #include "engine/image/image.h"
 #include "engine/image/srgb.h"
 #include "tests/limited_disk.h"
+#include "tests/not_finite.h"
 #include "tests/temporary_folder.h"
 
 namespace freevoxels {
@@ -21,7 +22,7 @@ namespace {
 using test::readBytes;
 using test::TemporaryFolder;
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+using test::kNan;
 
 struct Png {
   unsigned width = 0, height = 0;

@@ -327,8 +327,7 @@ TEST(Oracle, ConvergesToItsToleranceOrSaysThatItDidNot) {
   const Volume volume = noise({12, 9, 17}, sheared());
   const Camera camera = framingCamera(volume, 35, 25, 1.5, Camera{});
   const auto render = [&](double tolerance, int samples) {
-    return renderOracle(volume, colored(), camera,
-                        {.size = {24, 16}, .tolerance = tolerance, .maximumSamples = samples});
+    return renderOracle(volume, colored(), camera, {.size = {24, 16}, .tolerance = tolerance, .maximumSamples = samples});
   };
   const Oracle standard = render(1e-3, 32), best = render(0.0, 64), coarse = render(1e-3, 4);
   EXPECT_TRUE(standard.converged);

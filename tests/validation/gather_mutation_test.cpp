@@ -81,12 +81,9 @@ void PrintTo(const GatherDefect& defect, std::ostream* stream) {
 }
 
 constexpr GatherDefect kGatherDefects[] = {
-    {"ASliceSkipped", "gather samples", skipTheFirstSlice},
-    {"ALevelsBorderCountedTwice", "gather samples", countALevelsBorderTwice},
-    {"WeightsSwapped", "gather samples", swapWeights},
-    {"RaysEndTooEarly", "gather samples", endRaysTooEarly},
-    {"BlocksThicker", "gather blocks", shadeThickerBlocks},
-    {"StencilLeftOut", "gather stencil", leaveTheStencilOut},
+    {"ASliceSkipped", "gather samples", skipTheFirstSlice}, {"ALevelsBorderCountedTwice", "gather samples", countALevelsBorderTwice},
+    {"WeightsSwapped", "gather samples", swapWeights},      {"RaysEndTooEarly", "gather samples", endRaysTooEarly},
+    {"BlocksThicker", "gather blocks", shadeThickerBlocks}, {"StencilLeftOut", "gather stencil", leaveTheStencilOut},
     {"LatticeShifted", "gather image", shiftTheLattice},
 };
 

@@ -93,7 +93,7 @@ void resolveWithoutNormalising(SteppedStages& stages) {
   };
 }
 
-struct Defect {
+struct StageDefect {
   const char* name;
   const char* stage;  ///< with which the names of the checks begin that must notice
   void (*apply)(SteppedStages&) = nullptr;
@@ -101,11 +101,11 @@ struct Defect {
   const char* stageAfter = stage;  ///< which did not see it, and so does not agree with the reference
 };
 
-void PrintTo(const Defect& defect, std::ostream* stream) {
+void PrintTo(const StageDefect& defect, std::ostream* stream) {
   *stream << defect.name;
 }
 
-constexpr Defect kDefects[] = {
+constexpr StageDefect kStageDefects[] = {
     {"ExtinctionOffByAFactor", "classify", nullptr, thicker},
     {"TwoDirectionsSwapped", "table", swapTwoPlanes},
     {"ProductInclusive", "table", includeTheVoxelItself},
@@ -117,9 +117,9 @@ constexpr Defect kDefects[] = {
     {"ColoursNotNormalised", "resolve", resolveWithoutNormalising},
 };
 
-class Mutation : public DeviceTest, public testing::WithParamInterface<Defect> {
+class Mutation : public DeviceTest, public testing::WithParamInterface<StageDefect> {
  protected:
-  static StageMaker stages(const Defect& defect) {
+  static StageMaker stages(const StageDefect& defect) {
     return [defect](const Volume& volume, const Classification& classification, const TableSettings& table) {
       auto made = std::make_unique<SteppedStages>(
           device(), volume, defect.classification ? defect.classification(classification) : classification,
@@ -154,13 +154,12 @@ TEST_P(Mutation, IsNoticedByTheChecksOfItsStageAndNoOthers) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Mutation, testing::ValuesIn(kDefects),
-                         [](const auto& defect) { return std::string(defect.param.name); });
+INSTANTIATE_TEST_SUITE_P(Of, Mutation, testing::ValuesIn(kStageDefects), [](const auto& defect) { return std::string(defect.param.name); });
 
 using MutationTest = Mutation;
 
 TEST_F(MutationTest, ClosedFormsNoticeWhatIsWrongInEveryVoxel) {
-  for (const Defect& defect : {Defect{"", "", includeTheVoxelItself}, Defect{"", "", readTheOtherCode}})
+  for (const StageDefect& defect : {StageDefect{"", "", includeTheVoxelItself}, StageDefect{"", "", readTheOtherCode}})
     EXPECT_FALSE(closedForms(stages(defect), kCubeEdge).passed());
 }
 

@@ -37,37 +37,25 @@ Image pattern(glm::ivec2 size, int seed) {
 Report fullReport() {
   Report report;
   report.facts = {{"device", "llvmpipe"}, {"volume", kHostile}};
-  ReportSection table{
-      .title = "Table", .text = "First.\n\nSecond.", .checks = {}, .tables = {}, .plots = {}, .imageRows = {}};
+  ReportSection table{.title = "Table", .text = "First.\n\nSecond.", .checks = {}, .tables = {}, .plots = {}, .imageRows = {}};
   table.checks = {
       {.name = "codes apart", .figure = 1.0, .tolerance = 1.0, .unit = "codes", .where = "voxel 3,4,5"},
-      {.name = "PSNR",
-       .figure = 65.4321,
-       .bound = Check::Bound::AtLeast,
-       .tolerance = 65.0,
-       .unit = "dB",
-       .where = ""},
-      {.name = "equal images",
-       .figure = kInfinity,
-       .bound = Check::Bound::AtLeast,
-       .tolerance = 65.0,
-       .unit = "dB",
-       .where = ""},
+      {.name = "PSNR", .figure = 65.4321, .bound = Check::Bound::AtLeast, .tolerance = 65.0, .unit = "dB", .where = ""},
+      {.name = "equal images", .figure = kInfinity, .bound = Check::Bound::AtLeast, .tolerance = 65.0, .unit = "dB", .where = ""},
       {.name = "by a hair", .figure = 1.0000001, .tolerance = 1.0, .unit = "", .where = "pixel 7,8"},
       {.name = kHostile, .figure = kNan, .tolerance = 0.1, .unit = "", .where = ""}};
   table.tables.push_back({.caption = "By direction",
                           .columns = {"direction", "largest"},
                           .rows = {{kHostile, "0.5"}, {"+x", "12"}}});
-  ReportSection rows{
-      .title = kHostile, .text = "", .checks = {}, .tables = {}, .plots = {}, .imageRows = {}};
-  rows.plots.push_back({.caption = "Error",
-                            .xLabel = "resolution",
-                            .yLabel = kHostile,
-                            .series = {{"ours", {{16.0, 0.1}, {32.0, kNan}, {64.0, 1.0 / 3.0}}},
-                                       {kHostile, {{16.0, -1e-7}, {64.0, kInfinity}}}}});
+  ReportSection rows{.title = kHostile, .text = "", .checks = {}, .tables = {}, .plots = {}, .imageRows = {}};
+  rows.plots.push_back(
+      {.caption = "Error",
+       .xLabel = "resolution",
+       .yLabel = kHostile,
+       .series = {{"ours", {{16.0, 0.1}, {32.0, kNan}, {64.0, 1.0 / 3.0}}}, {kHostile, {{16.0, -1e-7}, {64.0, kInfinity}}}}});
   rows.imageRows.push_back({.caption = "Side by side",
-                               .images = {{kHostile, pattern({5, 4}, 1)}, {"right", pattern({300, 2}, 2)}},
-                               .background = {0.2f, 0.0f, 0.6f}});
+                            .images = {{kHostile, pattern({5, 4}, 1)}, {"right", pattern({300, 2}, 2)}},
+                            .background = {0.2f, 0.0f, 0.6f}});
   report.sections = {table, rows};
   return report;
 }
@@ -93,8 +81,7 @@ std::size_t countOf(const std::string& text, const std::string& part) {
 
 Report reportOf(const Check& check) {
   Report report;
-  report.sections.push_back(
-      {.title = "Only", .text = "", .checks = {check}, .tables = {}, .plots = {}, .imageRows = {}});
+  report.sections.push_back({.title = "Only", .text = "", .checks = {check}, .tables = {}, .plots = {}, .imageRows = {}});
   return report;
 }
 

@@ -26,7 +26,8 @@ FREEVOXELS_API std::span<const char* const> requiredExtensions();
 /// VkDeviceCreateInfo::pNext, which must contain VkPhysicalDeviceVulkan12Features and VkPhysicalDeviceVulkan13Features.
 FREEVOXELS_API void enableRequiredFeatures(VkPhysicalDeviceFeatures2& chain);
 
-/// All of this is the caller's and must outlive the context, its renderers and their frames.
+/// All of this is the caller's and must outlive the context, its renderers and their frames. Threads of the context compile pipelines of
+/// the device until it ends.
 struct AdoptedDevice {
   VkInstance instance = VK_NULL_HANDLE;  ///< created for Vulkan 1.3
   VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
