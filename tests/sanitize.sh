@@ -12,6 +12,7 @@ case "${1:?say address or thread}" in
     cmake --preset sanitize
     cmake --build --preset sanitize --target freevoxels_unit_tests freevoxels_command_tests
     # LLVM, which draws on the CPU, keeps what it has allocated: leaks are looked for in the tests of the CPU alone.
+    export CTEST_PARALLEL_LEVEL="$(nproc)"
     ctest --preset sanitize --tests-regex '^[A-Z]' --exclude-regex 'Command|Viewer|BadOutput|BadInput|Usage|MemoryLimit' "$@"
     ASAN_OPTIONS=detect_leaks=0 ctest --preset sanitize --tests-regex 'Command|BadOutput|BadInput|Usage' "$@"
     ;;
