@@ -22,6 +22,7 @@ Spool::Spool(const std::filesystem::path& folder) {
 }
 
 void Spool::append(std::span<const std::byte> bytes) {
+  if (bytes.empty()) return;  // whose pointer may be null, which fwrite does not take
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) throwSystemError();
   bytes_ += bytes.size();
 }
