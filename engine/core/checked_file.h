@@ -25,7 +25,7 @@ class CheckedFile {
   CheckedFile& operator=(const CheckedFile&) = delete;
 
   void write(const void* bytes, std::size_t count) {
-    if (count > 0 && std::fwrite(bytes, 1, count, file_) != count) throwErrno();  // a null pointer is allowed for no bytes
+    if (count > 0 && std::fwrite(bytes, 1, count, file_) != count) throwErrno();  // fwrite accepts no null pointer
   }
   std::uint64_t tell() const {
     const off_t position = ftello(file_);

@@ -22,7 +22,7 @@ Spool::Spool(const std::filesystem::path& folder) {
 }
 
 void Spool::append(std::span<const std::byte> bytes) {
-  if (bytes.empty()) return;  // whose pointer may be null, which fwrite does not take
+  if (bytes.empty()) return;  // An empty span may have a null pointer, which fwrite does not accept.
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) throwSystemError();
   bytes_ += bytes.size();
 }

@@ -234,11 +234,11 @@ Pipeline PipelineStore::get(const PipelineKey& key, const std::function<Pipeline
 
 /// Adds a thread if there is work for another one. Called with `mutex_` locked.
 void PipelineStore::addThread() {
-  const std::size_t processors = std::thread::hardware_concurrency();
-  if (idle_ >= wanted_.size() || threads_.size() + 1 >= std::clamp(processors, std::size_t(2), kMaxThreads + 1)) return;
+  const std::size_t mostThreads = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 2, kMaxThreads + 1) - 1;
+  if (idle_ >= wanted_.size() || threads_.size() >= mostThreads) return;
   try {
     threads_.emplace_back([this] { compileAhead(); });
-  } catch (const std::system_error&) {  // no more threads: who needs the pipeline compiles it
+  } catch (const std::system_error&) {  // There are no more threads: the caller compiles the pipeline when it binds it.
   }
 }
 
@@ -278,7 +278,7 @@ void PipelineStore::compileAhead() {
     lock.unlock();
     try {
       compile(next);
-    } catch (...) {  // thrown again to who needs the pipeline
+    } catch (...) {  // The thread that binds the pipeline compiles it again and gets the error.
     }
     lock.lock();
   }
