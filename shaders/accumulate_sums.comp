@@ -6,6 +6,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 #include "fixed_point.glsl"
+#include "world_per_index.glsl"
 
 layout(constant_id = 0) const bool kWithDistance = false;
 
@@ -21,14 +22,6 @@ layout(scalar, binding = 6) readonly buffer Arguments { TileArguments arguments;
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer Sums { uvec2 values[]; };
 
 const float kMaxOfRange = 0.99;  // less than 1 by more than rounding
-
-// Pixel ray: world length per index length, which the footprints leave out (splat.frag).
-float worldPerIndex(ivec2 pixel) {
-  const vec2 position = vec2(pixel) + 0.5;
-  const vec3 ray = push.rays.ray + position.x * push.rays.rayX + position.y * push.rays.rayY;
-  const vec3 worldRay = push.rays.worldRay + position.x * push.rays.worldRayX + position.y * push.rays.worldRayY;
-  return length(worldRay) / length(ray);
-}
 
 // 1, or less where C or E is beyond its range: in normalised images the E of an extremely dense surface has no bound, but colours are
 // weighted means of C / E, so it is enough to keep their ratio.
@@ -51,7 +44,7 @@ void accumulate(ivec2 pixel) {
   const vec4 color = imageLoad(colorEnergy, pixel);
   const float depth = imageLoad(opticalDepth, pixel).r;
   if (color == vec4(0.0) && depth == 0.0) return;
-  const float scale = worldPerIndex(pixel);
+  const float scale = worldPerIndex(push.rays, pixel);
   const uint index = uint(place.x + push.extent.x * place.y);
   const vec4 sums = color * scale;
   const float reduced = reduction(sums);

@@ -24,6 +24,7 @@ bool isOccluded(vec3 center, int edge) {
     steepest = vec2(dot(abs(rows[0] - pixel.x * rows[2]), vec3(1.0)), dot(abs(rows[1] - pixel.y * rows[2]), vec3(1.0))) /
                nearest;
   }
+  pixel += frame.imageMiddle;
   // Margin for widened footprints, which reach farther, and for rounding.
   const vec2 half_ = reach * steepest + kSplatRadius + 0.5;
   const ivec2 first = ivec2(clamp(floor((pixel - half_) / float(kCoverTile)), vec2(0.0), vec2(frame.tiles)));

@@ -11,14 +11,14 @@ namespace freevoxels::shader {
 // A splat that is ready to draw: written by splat_setup.comp, read by splat.vert.
 struct Splat {
   vec4 colorEnergy;   // e_v c_v and e_v without the transmittance to the eye, times the footprint's peak
-  vec2 center;        // pixels, (0, 0) = the top left corner of the image
+  vec2 center;        // pixels from the middle of the image
   vec2 halfExtent;    // in pixels; 0 if the splat is not drawn
   vec3 conic;         // xx, xy, yy: (r/R)² |D|² = xx dx² + 2 xy dx dy + yy dy² at (dx, dy) from the centre
   float opticalDepth; // t_v times the footprint's peak, per world length of the ray; negative if the eye plane cuts the kernel
   float distance;     // from the eye plane along the viewing axis, world units
   vec3 depthToEye;    // depth at the voxel's centre, and its change per pixel along x and y
   // If the eye plane cuts the kernel, with q from the eye to its centre in index space: `conic` is q . D of
-  // the pixel (0, 0) and its change per pixel along x and y; `depthToEye` is the depth at the eye, its change
+  // the middle of the image and its change per pixel along x and y; `depthToEye` is the depth at the eye, its change
   // per world length along the ray, and |q|².
 };
 
@@ -52,12 +52,13 @@ struct FrameLighting {
 // their precision far from the origin.
 struct SetupFrame {
   mat3 indexToWorld;       // linear part
+  // Pixels are counted from the middle of the image, too.
   mat3 indexToPixel;       // index offset -> (x t, y t, t), orthographic (x, y, t): see PixelRays for x, y and t
   vec3 middle;             // of the volume, index space
   vec3 eyeToMiddle;        // from the ray origin, index space
   vec3 middleInPixels;     // indexToPixel * eyeToMiddle
   vec3 pixelX, pixelY;     // how the ray moves with x and y: its direction, or orthographic its origin; index space
-  vec3 ray;                // of pixel (0, 0), index space; orthographic: all rays have its direction
+  vec3 ray;                // of the middle of the image, index space; orthographic: all rays have its direction
   vec2 imageSize;          // pixels
   int orthographic;
   ivec3 dimensions;
@@ -99,11 +100,10 @@ struct SplatPush {
   vec3 rayLength2Squares;  //   + rayLength2Squares . (x², xy, y²)
   vec3 worldLength2;       // the same in world space
   vec3 worldLength2Squares;
-  vec2 viewportOrigin;   // of the enlarged viewport, in pixels
-  vec2 viewportSize;
+  vec2 viewportSize;  // of the enlarged viewport around the same middle, in pixels
 };
 
-// resolve.comp
+// resolve.comp. Rays are counted from the middle of the image.
 struct ResolvePush {
   vec3 ray, rayX, rayY;                  // index space
   vec3 worldRay, worldRayX, worldRayY;   // in world space

@@ -249,6 +249,7 @@ struct CutFrame {
   int hides;              // whether to leave out hidden blocks
   float darkDepths[kMaximumCells];  // by cell number: least stored depth that hides, for a line of sight of length 1
   ivec2 tiles;            // of the image
+  vec2 imageMiddle;       // pixels
   // As in SetupFrame:
   mat3 indexToWorld, indexToPixel;
   vec3 eyeToMiddle, middleInPixels;

@@ -20,7 +20,7 @@ void main() {
   if (halfExtent == vec2(0.0)) return;
   // A point is a square; a pixel more for the rasteriser's rounding.
   const vec2 reach = vec2(max(halfExtent.x, halfExtent.y) + 1.0);
-  const vec2 center = splats[local].center, last = vec2(push.tiles - 1);
+  const vec2 center = splats[local].center + push.imageMiddle, last = vec2(push.tiles - 1);
   const ivec2 low = ivec2(clamp(floor((center - reach) / float(kResolveTile)), vec2(0.0), last));
   const ivec2 high = ivec2(clamp(floor((center + reach) / float(kResolveTile)), vec2(0.0), last));
   for (int y = low.y; y <= high.y; ++y)

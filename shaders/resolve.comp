@@ -3,8 +3,8 @@
 // alpha is exact, and the sums only decide how the colours along the ray mix. Sorted: the colour is complete
 // already.
 #extension GL_GOOGLE_include_directive : require
-#include "frame_interface.h"
 #include "opacity.glsl"
+#include "world_per_index.glsl"
 
 layout(constant_id = 0) const bool kWithDistance = false;
 
@@ -17,19 +17,15 @@ layout(binding = 2, r32f) uniform image2D meanDistance;        // sum of e times
 void main() {
   const ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(pixel, push.size))) return;
-  const vec2 position = vec2(pixel) + 0.5;
-  const vec3 ray = push.ray + position.x * push.rayX + position.y * push.rayY;
-  const vec3 worldRay = push.worldRay + position.x * push.worldRayX + position.y * push.worldRayY;
-  const float worldPerIndex = length(worldRay) / length(ray);
-
+  const float scale = worldPerIndex(push, pixel);
   const vec4 sums = imageLoad(colorEnergy, pixel);
   if (kWithDistance) {
     const float weighted = imageLoad(meanDistance, pixel).r;
     imageStore(meanDistance, pixel, vec4(sums.a > 0.0 ? weighted / sums.a : uintBitsToFloat(0x7f800000u)));
   }
-  vec4 result = push.composite == kCompositeSorted ? sums : sums * worldPerIndex;
+  vec4 result = push.composite == kCompositeSorted ? sums : sums * scale;
   if (push.composite == kCompositeNormalised) {
-    const float alpha = opacityOf(imageLoad(opticalDepth, pixel).r * worldPerIndex);
+    const float alpha = opacityOf(imageLoad(opticalDepth, pixel).r * scale);
     result = vec4(result.rgb * (result.a > 0.0 ? alpha / result.a : 1.0), alpha);
   }
   imageStore(colorEnergy, pixel, result);

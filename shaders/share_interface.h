@@ -35,6 +35,7 @@ struct TileArguments {
 // mark_tiles.comp
 struct MarkPush {
   uint chunk;            // of the splats
+  vec2 imageMiddle;      // pixels
   ivec2 tiles;           // of the image
 };
 

@@ -15,7 +15,7 @@ layout(location = 2) out float distanceSum;
 // shows its lit half. Around the eye it grows along every ray by the voxel's own.
 float depthOnRay(float length2) {
   if (isCut()) return max(depthToEye.x + depthToEye.y * worldPerIndex(length2) * cutAhead(length2), 0.0);
-  const vec2 d = gl_FragCoord.xy - centerDistance.xy;
+  const vec2 d = pixelPosition() - centerDistance.xy;
   return max(depthToEye.x + dot(depthToEye.yz, d), 0.0);
 }
 

@@ -26,9 +26,9 @@ void main() {
   if (kQuads) {
     const vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1) * 2.0 - 1.0;
     // A splat near the eye may reach far beyond the image.
-    position = clamp(position + corner * splat.halfExtent, push.viewportOrigin, push.viewportOrigin + push.viewportSize);
+    position = clamp(position + corner * splat.halfExtent, -0.5 * push.viewportSize, 0.5 * push.viewportSize);
   }
-  gl_Position = vec4((position - push.viewportOrigin) / push.viewportSize * 2.0 - 1.0, 0.0, 1.0);
+  gl_Position = vec4(position / (0.5 * push.viewportSize), 0.0, 1.0);
   if (size == 0.0) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);  // outside the clip volume
   gl_PointSize = max(size, 1.0);
 }

@@ -8,7 +8,8 @@ const float kBeyondImage = 1e6;  // pixels
 const float kBoundsSlack = 2.0;  // in pixels: margin for rounding and for widened footprints
 
 bool besideImage(vec2 low, vec2 high) {
-  return any(lessThan(high, vec2(-kBoundsSlack))) || any(greaterThan(low, frame.imageSize + kBoundsSlack));
+  const vec2 beyond = 0.5 * frame.imageSize + kBoundsSlack;
+  return any(lessThan(high, -beyond)) || any(greaterThan(low, beyond));
 }
 
 struct Footprint {
@@ -33,7 +34,21 @@ void widenToPixel(inout Footprint footprint, vec3 shape, float scale) {
   const float after = widened.x * widened.z - widened.y * widened.y;
   footprint.conic = vec3(widened.z, -widened.y, widened.x) * (scale / after);
   footprint.amplitude = sqrt(max(before, 0.0) / after);
-  footprint.halfExtent *= sqrt(widened.xz / shape.xz);
+}
+
+// The bounds of conic(d) <= |D + d.x pixelX + d.y pixelY|², with D the ray of the centre: low and high edge. Without bounds where this
+// is no ellipse.
+vec4 boundsOf(Footprint footprint, vec3 ray) {
+  const bool parallel = frame.orthographic != 0;
+  const vec3 x = parallel ? vec3(0.0) : frame.pixelX, y = parallel ? vec3(0.0) : frame.pixelY;
+  const vec2 slope = vec2(dot(ray, x), dot(ray, y));
+  const vec3 matrix = footprint.conic - vec3(dot(x, x), dot(x, y), dot(y, y));
+  const float determinant = matrix.x * matrix.z - matrix.y * matrix.y;
+  if (!(determinant > 0.0) || !(matrix.x > 0.0)) return vec4(vec2(-kBeyondImage), vec2(kBeyondImage));
+  const vec3 inverse_ = vec3(matrix.z, -matrix.y, matrix.x) / determinant;
+  const vec2 shift = vec2(dot(inverse_.xy, slope), dot(inverse_.yz, slope));
+  const vec2 spread = sqrt((dot(ray, ray) + dot(slope, shift)) * inverse_.xz);
+  return footprint.center.xyxy + vec4(shift - spread, shift + spread);
 }
 
 // The positions x along an axis of the image at which rays can pass a kernel that the eye plane cuts: (k - x
@@ -54,7 +69,7 @@ vec2 cutBounds(float k, float z, vec3 row, vec3 rowZ) {
 }
 
 // The footprint of a cut kernel is integrated along each pixel's ray from the eye on. `conic` is the distance
-// along the ray of pixel (0, 0) to the kernel's centre, times |D|, and its change per pixel.
+// along the ray of the image's middle to the kernel's centre, times |D|, and its change per pixel.
 bool projectCut(vec3 q, vec3 pixel, inout Footprint footprint) {
   const mat3 rows = transpose(frame.indexToPixel);
   const vec2 x = cutBounds(pixel.x, pixel.z, rows[0], rows[2]);
@@ -68,8 +83,7 @@ bool projectCut(vec3 q, vec3 pixel, inout Footprint footprint) {
 
 // Projects the kernel's sphere of radius R, times the edge of a block, around the index position `offset`
 // (from the volume's middle) as seen from the eye: all rays D with |q x D|² <= R² |D|². Returns false behind
-// the eye, and for a perspective camera beside the image, since just in front of the eye plane the bounds of
-// such footprints would reach far over it. The eye plane may cut voxels' kernels, but none of a coarser
+// the eye and beside the image. The eye plane may cut voxels' kernels, but none of a coarser
 // block.
 bool project(vec3 offset, float edge, out Footprint footprint) {
   const vec3 q = offset + frame.eyeToMiddle;
@@ -93,23 +107,16 @@ bool project(vec3 offset, float edge, out Footprint footprint) {
 
   if (frame.orthographic != 0) {
     footprint.center = pixel.xy;
-    footprint.halfExtent = sqrt(shape.xz);
     footprint.ahead = partAhead(pixel.z / reach);
   } else {
-    // The bounds of the projected sphere, from its dual conic R² K Kᵀ - k kᵀ in pixels around the centre.
     const float nearest = pixel.z * pixel.z - radius2 * dot(rows[2], rows[2]);
     if (pixel.z <= 0.0 || nearest <= 0.0) return projectCut(q, pixel, footprint);
     footprint.center = pixel.xy / pixel.z;
-    const vec3 rowX = rows[0] - footprint.center.x * rows[2];
-    const vec3 rowY = rows[1] - footprint.center.y * rows[2];
-    const vec2 shift = radius2 * vec2(dot(rowX, rows[2]), dot(rowY, rows[2]));
-    const vec2 spread = sqrt(shift * shift + radius2 * vec2(dot(rowX, rowX), dot(rowY, rowY)) * nearest);
-    if (besideImage(footprint.center - (shift + spread) / nearest, footprint.center - (shift - spread) / nearest))
-      return false;
-    footprint.halfExtent = (abs(shift) + spread) / nearest;
   }
   widenToPixel(footprint, shape, scale);
-  return true;
+  const vec4 bounds = boundsOf(footprint, ray);
+  footprint.halfExtent = max(footprint.center - bounds.xy, bounds.zw - footprint.center);
+  return !besideImage(bounds.xy, bounds.zw);
 }
 
 #endif

@@ -8,7 +8,7 @@
 // in the table, which has no direction through the opening that the pixel looks through; then all of them
 // count.
 #extension GL_GOOGLE_include_directive : require
-#include "frame_interface.h"
+#include "world_per_index.glsl"
 
 const float kMinEnergy = 0.25;
 
@@ -20,12 +20,9 @@ layout(binding = 2, rgba32f) readonly uniform image2D colorEnergy;
 layout(binding = 3, r32f) readonly uniform image2D opticalDepth;
 
 bool isCoveredPixel(ivec2 pixel) {
-  const vec2 position = vec2(pixel) + 0.5;
-  const vec3 ray = push.rays.ray + position.x * push.rays.rayX + position.y * push.rays.rayY;
-  const vec3 worldRay = push.rays.worldRay + position.x * push.rays.worldRayX + position.y * push.rays.worldRayY;
-  const float worldPerIndex = length(worldRay) / length(ray);
-  return imageLoad(opticalDepth, pixel).r * worldPerIndex >= push.hiddenDepth &&
-         imageLoad(colorEnergy, pixel).a * worldPerIndex >= kMinEnergy;
+  const float scale = worldPerIndex(push.rays, pixel);
+  return imageLoad(opticalDepth, pixel).r * scale >= push.hiddenDepth &&
+         imageLoad(colorEnergy, pixel).a * scale >= kMinEnergy;
 }
 
 void main() {

@@ -154,7 +154,7 @@ std::optional<ProjectedSplat> SplatProjector::project(const Block& block, glm::d
 
 glm::dvec3 SplatProjector::toEye(glm::dvec3 position) const {
   const glm::dvec3 toEye = rays_.origin - position;
-  return rays_.orthographic || glm::length(toEye) < kAtEye ? -rays_.direction : toEye;
+  return rays_.orthographic || glm::length(toEye) < kAtEye ? -rayDirection(0.5 * glm::dvec2(imageSize_)) : toEye;
 }
 
 double SplatProjector::layerLength(const ProjectedSplat& splat) const {

@@ -52,7 +52,7 @@ class SplatProjector {
   BlockBox box(const Block& block) const { return boxOf(block, dimensions_); }
 
   /// The direction towards the eye, in index space and of any length, from any position in index space. At
-  /// the eye itself it is opposite to the ray of the top left corner.
+  /// the eye itself it is opposite to the ray of the image's middle.
   glm::dvec3 toEye(glm::dvec3 position) const;
   /// World length of a lattice layer in the viewing direction.
   double layerLength(const ProjectedSplat& splat) const;

@@ -194,6 +194,13 @@ double rayShare(AttenuationLookup lookup, const Camera& camera, glm::ivec3 dimen
   return std::max(1.0 - glm::length(beyond) / (kNearBox * longest), 0.0);
 }
 
+PixelRays PixelRays::countedFrom(glm::dvec2 position) const {
+  PixelRays moved = *this;
+  moved.origin += position.x * originX + position.y * originY;
+  moved.direction += position.x * directionX + position.y * directionY;
+  return moved;
+}
+
 PixelRays pixelRays(const Camera& camera, glm::ivec2 imageSize, const glm::dmat4& indexToWorld) {
   const glm::dmat4 worldToIndex = glm::inverse(indexToWorld);
   const glm::dmat3 linear(worldToIndex);

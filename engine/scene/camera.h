@@ -64,6 +64,9 @@ struct PixelRays {
   glm::dvec3 origin, originX, originY;
   glm::dvec3 direction, directionX, directionY;
   bool orthographic = false;
+
+  /// The same rays with (x, y) counted from `position`. From the middle of the image no large terms cancel in 32-bit floats.
+  PixelRays countedFrom(glm::dvec2 position) const;
 };
 
 /// The source of the lines of sight: the eye, or for an orthographic camera the direction towards it.

@@ -126,7 +126,7 @@ void AccumulatePass::recordMarks(Commands& commands, const Buffer& splats, const
   const std::array<Binding, 5> bindings{&splats, &list.chunks, &reached_, &tiles_, &arguments_};
   commands.beginPass("accumulate sums");
   commands.barrier(kComputeStage, kComputeStage);
-  commands.dispatchIndirect(mark_, bindings, shader::MarkPush{chunk, imageTiles(layout_.size)}, list.chunks,
+  commands.dispatchIndirect(mark_, bindings, shader::MarkPush{chunk, 0.5f * glm::vec2(layout_.size), imageTiles(layout_.size)}, list.chunks,
                             chunk * sizeof(shader::ChunkArguments));
 }
 

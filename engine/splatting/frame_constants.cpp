@@ -20,6 +20,12 @@ static_assert(shader::kLookupExact == int(AttenuationLookup::Exact));
 static_assert(shader::kCompositeAdditive == int(Composite::Additive));
 static_assert(shader::kCompositeSorted == int(Composite::Sorted));
 
+/// From an index offset to PixelRays' (x t, y t, t), orthographic (x, y, t).
+glm::dmat3 indexToPixel(const PixelRays& rays) {
+  return rays.orthographic ? glm::inverse(glm::dmat3(rays.originX, rays.originY, rays.direction))
+                           : glm::inverse(glm::dmat3(rays.directionX, rays.directionY, rays.direction));
+}
+
 /// Image positions of the box's corners, and the range of their distances from the eye plane.
 struct ProjectedBox {
   glm::dvec2 low{std::numeric_limits<double>::max()}, high{std::numeric_limits<double>::lowest()};
@@ -50,11 +56,14 @@ struct LengthSquared {
 };
 
 /// Upper bound of a splat's extent from its centre, in pixels. For a perspective camera a kernel at distance
-/// t reaches at most R |K0 - x K2| / (t - R |K2|) along x (splat_projection.glsl has the bound).
-double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions,
-                         const DetailRule& detail) {
-  const double widened = kFootprintRadius;  // a widened footprint is larger by at most this
+/// t reaches at most R |K0 - x K2| / (t - R |K2|) along x (boundsOf in splat_projection.glsl).
+double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions, const DetailRule& detail) {
   const glm::dmat3 rows = glm::transpose(toPixel);
+  // A widened footprint is larger by at most this: its rim where |D| changes by `step` of it, or less, in a pixel.
+  const double step = std::max(glm::length(rays.directionX), glm::length(rays.directionY)) * glm::length(rows[2]);
+  const double flat = kFootprintRadius * kFootprintRadius / (1.0 - std::pow(kFootprintRadius * step, 2.0));
+  if (flat < 0.0) return std::numeric_limits<double>::infinity();
+  const double widened = step * flat + std::sqrt((1.0 + step * step * flat) * flat);
   if (rays.orthographic)
     return kFootprintRadius * Block{.level = detail.coarsest}.edge() *
                std::max(glm::length(rows[0]), glm::length(rows[1])) +
@@ -95,9 +104,9 @@ void setCovered(FrameConstants& frame, const ProjectedBox& box, double reach, gl
   frame.coveredExtent = glm::ivec2(glm::clamp(glm::ceil(box.high + reach), glm::dvec2(first), last)) - first + 1;
 }
 
-shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& table, const Camera& camera,
-                              const FrameSettings& settings, const PixelRays& rays,
-                              const glm::dmat3& toPixel) {
+shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& table, const Camera& camera, const FrameSettings& settings,
+                              const PixelRays& rays) {
+  const glm::dmat3 toPixel = indexToPixel(rays);
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
   const glm::dvec3 eyeToMiddle = middle - rays.origin;
   const bool sorted = settings.composite == Composite::Sorted;
@@ -141,12 +150,12 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                                   const TableSettings& table, const Camera& camera,
                                   const FrameSettings& settings) {
   const PixelRays rays = pixelRays(camera, settings.size, volume.indexToWorld);
-  const glm::dvec3 pixelX = rays.orthographic ? rays.originX : rays.directionX;
-  const glm::dvec3 pixelY = rays.orthographic ? rays.originY : rays.directionY;
-  const glm::dmat3 toPixel = glm::inverse(glm::dmat3(pixelX, pixelY, rays.direction));
+  const glm::dmat3 toPixel = indexToPixel(rays);
+  const glm::dvec2 imageMiddle = 0.5 * glm::dvec2(settings.size);
+  const PixelRays fromMiddle = rays.countedFrom(imageMiddle);
   const glm::dmat3 linear(volume.indexToWorld);
   FrameConstants frame{};
-  frame.setup = setupFrame(volume, table, camera, settings, rays, toPixel);
+  frame.setup = setupFrame(volume, table, camera, settings, fromMiddle);
   frame.detail = detailRule(volume.hierarchy, rays, settings.size,
                             settings.composite == Composite::Sorted ? 0.0 : double(settings.lod));
   frame.cull = cullRule(volume.layout.dimensions, rays, settings);
@@ -155,12 +164,13 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   if (settings.culling) frame.hiddenTransmittance = double(settings.cullThreshold) / brightest;
   if (frame.cull.hiddenDepth > 0.0) frame.cull.hiddenDepth += std::log(brightest);
   if (!frame.eyeReadsTable()) frame.cull.hiddenDepth = 0.0;
-  frame.resolve = {.ray = rays.direction,
-                   .rayX = rays.directionX,
-                   .rayY = rays.directionY,
-                   .worldRay = linear * rays.direction,
-                   .worldRayX = linear * rays.directionX,
-                   .worldRayY = linear * rays.directionY,
+  const glm::dvec3 ray = fromMiddle.direction, rayX = fromMiddle.directionX, rayY = fromMiddle.directionY;
+  frame.resolve = {.ray = ray,
+                   .rayX = rayX,
+                   .rayY = rayY,
+                   .worldRay = linear * ray,
+                   .worldRayX = linear * rayX,
+                   .worldRayY = linear * rayY,
                    .size = settings.size,
                    .composite = int(settings.composite)};
 
@@ -180,17 +190,12 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   frame.quads = 2.0 * reach > largestPoint || widest > double(device.limits().maxViewportDimensions[0]) ||
                 widest > double(device.limits().maxViewportDimensions[1]);
   frame.viewportMargin = frame.quads ? 0.0f : float(margin);
-  // Relative to the middle of the image, so that no large terms cancel in 32-bit floats.
-  const glm::dvec2 imageMiddle = 0.5 * glm::dvec2(settings.size);
-  const glm::dvec3 rayX = rays.directionX, rayY = rays.directionY;
-  const glm::dvec3 ray = rays.direction + imageMiddle.x * rayX + imageMiddle.y * rayY;
   const LengthSquared index(ray, rayX, rayY), world(linear * ray, linear * rayX, linear * rayY);
   frame.splat = {.imageMiddle = imageMiddle,
                  .rayLength2 = index.linear,
                  .rayLength2Squares = index.squares,
                  .worldLength2 = world.linear,
                  .worldLength2Squares = world.squares,
-                 .viewportOrigin = glm::vec2(-frame.viewportMargin),
                  .viewportSize = glm::vec2(settings.size) + 2.0f * frame.viewportMargin};
   return frame;
 }

@@ -29,7 +29,7 @@ std::vector<SplatSums> SumsReadback::read(const FrameConstants& frame) const {
   std::vector<SplatSums> sums(opticalDepth.size());
   const std::size_t width = std::size_t(frame.resolve.size.x);
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    const glm::dvec2 pixel(double(i % width) + 0.5, double(i / width) + 0.5);
+    const glm::dvec2 pixel(double(i % width) + 0.5 - 0.5 * frame.resolve.size.x, double(i / width) + 0.5 - 0.5 * frame.resolve.size.y);
     const double length = worldPerIndex(frame.resolve, pixel);
     sums[i] = {.color = length * glm::dvec3(colorEnergy[i]),
                .energy = length * double(colorEnergy[i].a),

@@ -58,26 +58,26 @@ shader::CutFrame cutFrame(const CutInputs& inputs) {
   const DeviceVolume& volume = inputs.volume;
   const shader::SetupFrame& setup = inputs.setup;
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
-  shader::CutFrame frame{
-      .coarseFirst = std::uint32_t(volume.stored.front()),
-      .top = volume.hierarchy.top(),
-      .finest = inputs.detail.finest,
-      .coarsest = inputs.detail.coarsest,
-      .middle = middle,
-      .viewAxis = inputs.detail.viewAxis,
-      .middleDistance = float(glm::dot(inputs.detail.viewAxis, middle - inputs.detail.eye)),
-      .edgePerDistance = float(inputs.detail.edgePerDistance),
-      .outside = inputs.cull.outside ? 1 : 0,
-      .hides = inputs.cull.hiddenDepth > 0.0 ? 1 : 0,
-      .tiles = coverTiles(inputs.rays.size),
-      .indexToWorld = setup.indexToWorld,
-      .indexToPixel = setup.indexToPixel,
-      .eyeToMiddle = setup.eyeToMiddle,
-      .middleInPixels = setup.middleInPixels,
-      .ray = setup.ray,
-      .orthographic = setup.orthographic,
-      .pathLengthCorrection = setup.pathLengthCorrection,
-      .cells = setup.cells};
+  shader::CutFrame frame{.coarseFirst = std::uint32_t(volume.stored.front()),
+                         .top = volume.hierarchy.top(),
+                         .finest = inputs.detail.finest,
+                         .coarsest = inputs.detail.coarsest,
+                         .middle = middle,
+                         .viewAxis = inputs.detail.viewAxis,
+                         .middleDistance = float(glm::dot(inputs.detail.viewAxis, middle - inputs.detail.eye)),
+                         .edgePerDistance = float(inputs.detail.edgePerDistance),
+                         .outside = inputs.cull.outside ? 1 : 0,
+                         .hides = inputs.cull.hiddenDepth > 0.0 ? 1 : 0,
+                         .tiles = coverTiles(inputs.rays.size),
+                         .imageMiddle = 0.5f * setup.imageSize,
+                         .indexToWorld = setup.indexToWorld,
+                         .indexToPixel = setup.indexToPixel,
+                         .eyeToMiddle = setup.eyeToMiddle,
+                         .middleInPixels = setup.middleInPixels,
+                         .ray = setup.ray,
+                         .orthographic = setup.orthographic,
+                         .pathLengthCorrection = setup.pathLengthCorrection,
+                         .cells = setup.cells};
   std::ranges::copy(setup.levels, frame.levels);
   std::ranges::copy(inputs.cull.planes, frame.planes);
   setDarkDepths(frame, inputs);

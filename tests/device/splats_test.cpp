@@ -79,6 +79,17 @@ TEST_F(SplatTest, ExtremelyWideImagesMatchTheReference) {
   expectSameImage(v, close, {.size = {4, 3000}});
 }
 
+/// Where a pixel is 15° wide, the rim of a widened footprint is further away than its bounds in the middle say: a pixel's ray there is
+/// nearer to the voxel than the distance on the image tells.
+TEST_F(SplatTest, WidenedFootprintsReachTheirRimsInWidePixels) {
+  const Volume v = volume(false);
+  const Camera close{.position = {0.0, 0.0, 0.8}, .lookAt = {0.0, 0.0, -0.2}, .verticalFov = 60.0};
+  const Classification classification = coloured(v, 0.5f);
+  const FrameSettings settings{.size = {64, 4}, .lod = 0.0f};
+  Renderer renderer(device(), v, classification, {});
+  EXPECT_LE(largestPixelDifference(renderer.render(close, settings), reference(v, classification, {}, close, settings)), 5e-6);
+}
+
 TEST_F(SplatTest, VoxelsSmallerThanPixelsMatchTheReference) {
   const Volume v = volume(true);
   expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {7, 7}, .lod = 0.0f});

@@ -76,6 +76,17 @@ TEST(Camera, PixelRaysAgreeWithTheProjection) {
   }
 }
 
+TEST(Camera, RaysCountedFromThePositionOfAPixelAreTheSameRays) {
+  for (const bool orthographic : {false, true}) {
+    const PixelRays rays = pixelRays(obliqueCamera(orthographic), {40, 30}, obliqueTransform());
+    const PixelRays moved = rays.countedFrom({20.0, 15.0});
+    const glm::dvec3 origin = moved.origin - 20.0 * moved.originX + 4.5 * moved.originY;
+    const glm::dvec3 direction = moved.direction - 20.0 * moved.directionX + 4.5 * moved.directionY;
+    EXPECT_LT(glm::length(origin - (rays.origin + 19.5 * rays.originY)), 1e-12);
+    EXPECT_LT(glm::length(direction - (rays.direction + 19.5 * rays.directionY)), 1e-12);
+  }
+}
+
 TEST(Camera, RowZeroIsTheTopOfTheImageAndColumnZeroTheLeft) {
   const Camera camera;  // looks along -z with y up
   for (const bool orthographic : {false, true}) {
