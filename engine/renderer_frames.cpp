@@ -201,7 +201,7 @@ Renderer::State::Gathering Renderer::State::prepareGather(const Camera& camera, 
   FrameConstants& constants = frame.constants;
   settings.attenuation = AttenuationLookup::Exact;
   constants = makeFrameConstants(device, built.volume, tableSettings, camera, settings);
-  const bool lightsSamples = GatherVolume::lightsSamples(built.volume, settings.lighting ? &*settings.lighting : nullptr);
+  const bool lightsSamples = GatherVolume::lightsSamples(settings.lighting ? &*settings.lighting : nullptr);
   const bool shadesVoxels = settings.lighting && !lightsSamples;
   if ((shadesVoxels || constants.detail.coarsest > 0) && !built.hasBlocks()) {
     builtWithBlocks(progress);

@@ -1,6 +1,6 @@
 #version 460
 // What the gather reads of the blocks of a level in one fetch: of every block of a brick, and its next neighbours along the
-// sides of an axis, extinction, source term and how that depends on the direction to the eye; of voxels that are
+// sides of an axis, extinction, source term and one more word; of voxels that are
 // classified after interpolation the codes of their scalars in place of extinctions. In a brick blocks are in the order of
 // the march: the axis, then the first side, then the second one.
 #extension GL_GOOGLE_include_directive : require
@@ -13,7 +13,7 @@
 #extension GL_EXT_buffer_reference_uvec2 : require
 
 layout(constant_id = 0) const int kAxis = 2;
-layout(constant_id = 1) const bool kTowards = false;
+layout(constant_id = 1) const bool kExtra = false;
 layout(constant_id = 2) const bool kColored = true;
 layout(constant_id = 3) const bool kCodes = false;  // codes of 16 bits in place of extinctions: of scalars, or depths towards a light
 
@@ -33,7 +33,7 @@ const int kEdgeMask = kGatherBrickEdge - 1;
 // What is kept of two blocks, neighbours along the second side.
 struct Pair {
   uvec2 medium;  // halves of extinctions, or codes
-  uvec2 source, towards;
+  uvec2 source, extra;
 };
 
 Pair pairAt(ivec3 first) {
@@ -52,7 +52,7 @@ Pair pairAt(ivec3 first) {
     const uvec2 source = Sources(push.sources).values[rank];
     if (!kCodes) pair.medium[i] = occupied ? source.y : 0;
     pair.source[i] = occupied ? source.x : 0;
-    if (kTowards) pair.towards[i] = Words(push.towardsEye).values[rank];
+    if (kExtra) pair.extra[i] = occupied ? Words(push.extras).values[rank] : 0;
   }
   return pair;
 }
@@ -72,7 +72,7 @@ void main() {
     const Pair next = pairAt(cell);
     MediumQuads(push.medium).values[quad] = pair.medium | next.medium << 16;
     if (kColored) SourceQuads(push.source).values[quad] = uvec4(pair.source.x, next.source.x, pair.source.y, next.source.y);
-    if (kTowards) SourceQuads(push.towards).values[quad] = uvec4(pair.towards.x, next.towards.x, pair.towards.y, next.towards.y);
+    if (kExtra) SourceQuads(push.extra).values[quad] = uvec4(pair.extra.x, next.extra.x, pair.extra.y, next.extra.y);
     quad += kGatherBrickEdge;
     pair = next;
   }

@@ -109,6 +109,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransm
         last.hasGradient = false;
         last.depths = last.arriving = vec4(-1.0);
         last.medium = vec4(0.0);
+        last.emission = vec3(0.0);
       }
       slice += direction * empty;
       left -= empty;

@@ -8,7 +8,7 @@
 // The sum of a quad's source terms.
 vec3 sourceAt(int quad, uvec4 packed, vec4 weights, vec3 toEye) {
   if (kTowards) {
-    const uvec4 towards = towardsQuad(quad);
+    const uvec4 towards = extraQuad(quad);
     [[unroll]] for (int i = 0; i < 4; ++i) weights[i] *= 1.0 + dot(unpackSnorm4x8(towards[i]).xyz, toEye);
   }
   vec3 source = vec3(0.0);
@@ -47,6 +47,14 @@ void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
   addSegment(sums, medium, ray.layer * fractionInFront(ahead), ahead, lit, ray.toEye);
 }
 
+// The interpolated source term of the light that blocks emit.
+vec3 emissionAt(int quad, vec4 weights) {
+  const uvec4 packed = extraQuad(quad);
+  vec3 emission = vec3(0.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) emission += weights[i] * unpackLight(packed[i]);
+  return emission;
+}
+
 // For classified blocks that are lit at samples: the values on a slice.
 SliceValues blockValuesAt(Slices level, Ray ray, int slice, bool within) {
   vec4 weights;
@@ -57,7 +65,8 @@ SliceValues blockValuesAt(Slices level, Ray ray, int slice, bool within) {
   found.depths = depthsTowardsLights(quad, weights);
   found.ambient = ambientAt(quad, weights);
   continueDepths(found.depths, found.ambient, level, position);
-  found.coverage = found.medium.a > 0.0 ? 1.0 : 0.0;
+  found.emission = kEmits && within ? emissionAt(quad, weights) : vec3(0.0);
+  found.coverage = found.medium.a > 0.0 || (kEmits && found.emission != vec3(0.0)) ? 1.0 : 0.0;
   found.gradient = vec3(0.0);
   found.hasGradient = false;
   return found;
@@ -69,8 +78,9 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray 
   SliceValues found = blockValuesAt(level, ray, within ? slice : slice - int(ray.direction), within);
   const int brick = ownBrick;
   const vec4 medium = 0.5 * (last.medium + found.medium);
+  const vec3 emission = kEmits ? 0.5 * (last.emission + found.emission) : vec3(0.0);
   if (kParts || kRegion) {
-    if (brick == 0 || medium == vec4(0.0)) {
+    if (brick == 0 || (medium == vec4(0.0) && emission == vec3(0.0))) {
       last = found;
       return;
     }
@@ -100,6 +110,7 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray 
       lightFrom(lit, outsideOf(level, ray, float(slice) - 0.5 * ray.direction, -gradient));
     }
   }
+  lit.emission = emission;
   addSegment(sums, medium, ray.layer * clamp(ahead, 0.0, 1.0), ahead - 0.5, lit, ray.toEye);
   last = found;
 }

@@ -67,7 +67,7 @@ struct GatherAxis {
   vec2 tilt;           // projection of a step along the axis to the image, in pixels times distance, at the image's middle
   float tiltDepth;     // change of the distance by that step
   float middlePlane;   // voxels
-  uvec2 mediumPieces[kMaxPieces], sourcePieces[kMaxPieces], towardsPieces[kMaxPieces];  // device addresses of quads
+  uvec2 mediumPieces[kMaxPieces], sourcePieces[kMaxPieces], extraPieces[kMaxPieces];  // device addresses of quads
   uvec2 lightPieces[kMaxLightSlots][kMaxPieces];
   ivec2 slices[2][kMaximumLevels];  // by the ray's sign along the axis (0: descending) and level: first and end, ascending
 };
@@ -146,12 +146,13 @@ struct GatherFrame {
 struct ShadePush {
   uvec2 blocks;      // device addresses: of the level's list of occupied blocks,
   uvec2 sources;     // and by rank, of packed source term and extinction as a half,
-  uvec2 towards;     // and of what depends on the direction to the eye
+  uvec2 extra;       // and of how the source term depends on the direction to the eye, or of packed emission
   uint firstRank;
   uint count;
   float extinctionScale, sourceScale;  // factors from values per world unit to stored values
   float meanLayer;   // mean world length of light in a voxel over all directions
   int lightOnly;     // 1 if the source term is that of extinction and colour 1
+  int emissionApart;  // 1 if emission is kept apart from the source term
 };
 
 // expand_scalars.comp
@@ -241,8 +242,8 @@ struct BrickQuadsPush {
   uint firstBrick;
   uint count;        // of bricks
   uint firstQuad;    // index of the first quad
-  uvec2 medium, source, towards;  // device addresses of quads
-  uvec2 sources, towardsEye;        // device addresses of the output of shade_blocks.comp, by rank
+  uvec2 medium, source, extra;  // device addresses of quads
+  uvec2 sources, extras;        // device addresses of the output of shade_blocks.comp, by rank
   CodeBricks codes;
 };
 

@@ -9,7 +9,7 @@ const float kMaxLightDepth = 0.99 * kOpaqueDepth;  // approximately the end of t
 // The mean of exp(-depth) over a segment along which the depth changes linearly from 0 to x, of either sign.
 float meanTransmittance(float x) { return abs(x) < 0.02 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(-x)) / x; }
 
-// The light that arrives at a segment of a ray.
+// The light that arrives at a segment of a ray, and that it emits.
 struct SegmentLight {
   vec4 begin, change;   // optical depths towards the lights at the segment's beginning, and their change along it
   vec3 ambientBegin, ambientChange;  // the same for the depths that ambient light has passed, by channel
@@ -17,6 +17,7 @@ struct SegmentLight {
   vec3 normal;          // outward unit normal of a surface there, in world space
   float surface;        // fraction of the light that is reflected as by a surface, 0..1
   vec4 outside;         // optical depths towards the lights from a point outside of the surface
+  vec3 emission;        // source term of the light that the segment emits; only with kEmits
 };
 
 // What a surface adds to the sum of lightOf(). A surface that faces the light is not shadowed by its
@@ -68,7 +69,8 @@ void addSegment(inout Sums sums, vec4 medium, float segmentLength, float ahead, 
   const float depth = segmentLength * medium.a;
   const float through = exp(-depth);
   const float rest = sums.transmittance * through;
-  vec3 leaving = vec3(depth < 0.01 ? 1.0 - 0.5 * depth : (1.0 - through) / depth);
+  const float own = depth < 0.01 ? 1.0 - 0.5 * depth : (1.0 - through) / depth;
+  vec3 leaving = vec3(own);
   if (kSampled) {
     leaving = vec3(0.0);
     [[unroll]] for (int c = 0; c < 3; ++c)
@@ -77,7 +79,9 @@ void addSegment(inout Sums sums, vec4 medium, float segmentLength, float ahead, 
     [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i)
       if (i < kLights) leaving += lightOf(i, lit, depth, toEye);
   }
-  sums.color += sums.transmittance * segmentLength * leaving * medium.rgb;
+  vec3 source = leaving * medium.rgb;
+  if (kEmits) source += own * lit.emission;
+  sums.color += sums.transmittance * segmentLength * source;
   sums.distance += (sums.transmittance - rest) * max(ahead, 0.0);
   sums.transmittance = rest;
   if (kParts) sums.depth += depth;

@@ -20,13 +20,16 @@ layout(constant_id = 5) const int kLights = 0;        // number of lights evalua
 layout(constant_id = 6) const int kAmbient = 0;       // channels of ambient light evaluated at samples
 layout(constant_id = 7) const int kOctaves = 1;       // orders of scattering
 layout(constant_id = 8) const bool kTinted = false;   // whether the extinction differs between the colours of light
+layout(constant_id = 9) const bool kEmits = false;    // whether blocks that are lit at samples emit light, too
 
 layout(binding = 1) uniform utextureBuffer brickNumbers;     // with kParts, bricks of the part have kOwnBrick
 // Each quad has two neighbours along the first side, at this position and at the next one along the second
 // side.
 layout(binding = 2) uniform utextureBuffer mediumQuads;      // extinctions, four halves; or four codes of scalars
 layout(binding = 3) uniform utextureBuffer sourceQuads;      // four packed source terms; only with kColored
-layout(binding = 4) uniform utextureBuffer towardsQuads;     // four times three bytes; only with kTowards
+// Four words: with kTowards three signed bytes each, how the source term depends on the direction to the eye; with kEmits packed
+// emission.
+layout(binding = 4) uniform utextureBuffer extraQuads;
 layout(binding = 5, rgba32f) SUMS_ACCESS uniform imageBuffer colorEnergy;  // C, E
 layout(binding = 6, r32f) SUMS_ACCESS uniform imageBuffer distances;       // sum of e times distance
 
@@ -90,8 +93,8 @@ bool partFits = true;
 // The brick of the last quad if it belongs to the part, otherwise 0; with kRegion 1 if the quad is in the cube.
 int ownBrick = 0;
 
-// The values of a ray on a slice, for the stretch to the next slice. blockValuesAt() sets coverage, medium, depths, ambient and the gradient
-// only; scalarValuesAt() sets all of them.
+// The values of a ray on a slice, for the stretch to the next slice. blockValuesAt() sets coverage, medium, emission, depths, ambient and the
+// gradient only; scalarValuesAt() sets all of them.
 struct SliceValues {
   float coverage;  // share of the weights that voxels with data have, 0..1; if it is 0 the other values are undefined
   float scalar;    // in intervals of the transfer function's table
@@ -99,6 +102,7 @@ struct SliceValues {
   float behind;    // the scalar half a slice before
   vec4 integral;   // integrals of extinction times colour (rgb) and of extinction (a) over the scalar
   vec4 medium;     // extinction times colour and extinction at the scalar
+  vec3 emission;   // source term of the light that blocks emit, with kEmits
   vec3 light;      // relative to that of a source term of 1
   vec2 change;     // change of the scalar per voxel along the sides
   vec3 gradient;   // gradient of the scalar, or of the extinction, per block in index space
@@ -112,7 +116,7 @@ SliceValues emptySliceValues() {
   SliceValues nothing;
   nothing.coverage = nothing.scalar = nothing.ahead = nothing.behind = 0.0;
   nothing.integral = nothing.medium = vec4(0.0);
-  nothing.light = nothing.gradient = nothing.ambient = vec3(0.0);
+  nothing.light = nothing.gradient = nothing.ambient = nothing.emission = vec3(0.0);
   nothing.change = vec2(0.0);
   nothing.hasGradient = false;
   nothing.depths = nothing.arriving = vec4(-1.0);
@@ -130,9 +134,9 @@ uvec4 sourceQuad(int quad) {
   return SourcePiece(frame.axes[kAxis].sourcePieces[quad >> kPieceLog2]).values[quad & kPieceMask];
 }
 
-uvec4 towardsQuad(int quad) {
-  if (!kPieces) return texelFetch(towardsQuads, quad);
-  return SourcePiece(frame.axes[kAxis].towardsPieces[quad >> kPieceLog2]).values[quad & kPieceMask];
+uvec4 extraQuad(int quad) {
+  if (!kPieces) return texelFetch(extraQuads, quad);
+  return SourcePiece(frame.axes[kAxis].extraPieces[quad >> kPieceLog2]).values[quad & kPieceMask];
 }
 
 uvec2 lightQuad(int slot, int quad) {

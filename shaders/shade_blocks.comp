@@ -1,6 +1,6 @@
 #version 460
 // What the gather reads of occupied blocks, a thread for each block: extinction, and the source term, which
-// is the light that the block sends to the eye per world unit (extinction times colour, plus emission).
+// is the light that the block sends to the eye per world unit (extinction times colour, plus emission unless that is kept apart).
 // Without a phase function and surfaces the source term is computed once for all positions of the eye, until
 // lights change: it is to be multiplied by 1 + dot(towards, direction to the eye), a unit vector in world
 // space.
@@ -39,11 +39,17 @@ void main() {
     source *= scattered.light;
     towards = luminanceOf(source) / max(luminanceOf(scattered.light), 1e-37) * scattered.towards;
   }
-  if (kEmits) source += frame.emissionUnit * unpackLight(storedEmission(rank));
+  if (kEmits) {
+    const vec3 emission = frame.emissionUnit * unpackLight(storedEmission(rank));
+    if (push.emissionApart != 0)
+      WordStore(push.extra).values[rank] = packLight(min(push.sourceScale * inside * emission, kLargestStored));
+    else
+      source += emission;
+  }
   // A block without any light would count as one that has no source term.
   if (push.lightOnly != 0) source = max(source, kMinLight / push.sourceScale);
   const vec4 stored = min(vec4(push.sourceScale * source, push.extinctionScale * sigma) * (push.lightOnly != 0 ? 1.0 : inside), kLargestStored);
   PairStore(push.sources).values[rank] = uvec2(packLight(stored.rgb), packHalf2x16(vec2(stored.a, 0.0)));
   if (kLit && kAnyView)
-    WordStore(push.towards).values[rank] = packSnorm4x8(vec4(towards / max(luminanceOf(source), 1e-37), 0.0));
+    WordStore(push.extra).values[rank] = packSnorm4x8(vec4(towards / max(luminanceOf(source), 1e-37), 0.0));
 }

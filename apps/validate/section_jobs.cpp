@@ -174,6 +174,7 @@ void addLight(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
   jobs.push_back(
       {"emission of fire", [=, &device] { return emissionChecks(device, resolution, quick ? kQuickLightImage : kQuickQualityImage); }});
   jobs.push_back({"gather with lights", [&device] { return gatherLightChecks(deviceGather(device), kGatherLightImage); }});
+  jobs.push_back({"gather with lights and emission", [&device] { return gatherEmissionChecks(deviceGather(device), kGatherLightImage); }});
   jobs.push_back({"shadows", [=, &device] { return shadowChecks(device, resolution); }});
 }
 

@@ -28,8 +28,8 @@ glm::dvec3 unpackGradient(std::uint32_t bits) {
 
 }  // namespace
 
-bool GatherVolume::lightsSamples(const DeviceVolume& volume, const Lighting* lighting) {
-  if (lighting == nullptr || volume.hasEmission()) return false;
+bool GatherVolume::lightsSamples(const Lighting* lighting) {
+  if (lighting == nullptr) return false;
   if (lighting->lights.empty()) return lighting->hasAmbient();
   return lighting->lights.size() <= std::size_t(shader::kMaxSampleLights) && lighting->attenuation == LightAttenuation::Exact;
 }

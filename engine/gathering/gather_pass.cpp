@@ -48,7 +48,7 @@ Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, 
   return makeComputePipeline(device, shader,
                              {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.isLit(), volume.inPieces(),
                               std::uint32_t(volume.sampleLights()), std::uint32_t(volume.ambientChannels()),
-                              std::uint32_t(volume.octaves()), volume.isTinted()});
+                              std::uint32_t(volume.octaves()), volume.isTinted(), volume.hasEmissionApart()});
 }
 
 /// Bindings of the stencil and of the upsampling.
@@ -105,7 +105,7 @@ void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume,
                                   &numbers,
                                   &quads.medium.texels,
                                   &quads.source.texels,
-                                  &quads.towards.texels,
+                                  &quads.extra.texels,
                                   &gathered_.colorEnergyTexels,
                                   &gathered_.distanceTexels,
                                   &volume.transferTable(),

@@ -36,7 +36,8 @@ struct GatherSums {
 struct GatherBlocks {
   glm::ivec3 dimensions{0};
   std::vector<double> extinction;  ///< per world unit
-  std::vector<glm::dvec3> source;  ///< radiance that is sent to the eye per world unit
+  std::vector<glm::dvec3> source;  ///< radiance that is sent to the eye per world unit; for samples that are lit, for light of 1
+  std::vector<glm::dvec3> emission = {};  ///< radiance that is emitted per world unit, if it is not part of `source`; otherwise empty
 
   bool exists() const { return !extinction.empty(); }
 };

@@ -121,8 +121,8 @@ void GatherVolume::makeSources() {
     if (sources_.bytes() == 0)
       sources_ = Buffer(device_, blocks * sizeof(glm::uvec2), MemoryUse::Device, "source terms");
   }
-  if (hasTowards() && towards_.bytes() == 0)
-    towards_ = Buffer(device_, blocks * sizeof(std::uint32_t), MemoryUse::Device, "source directions");
+  if ((hasTowards() || hasEmissionApart()) && extras_.bytes() == 0)
+    extras_ = Buffer(device_, blocks * sizeof(std::uint32_t), MemoryUse::Device, "source directions or emission");
 }
 
 void GatherVolume::shade(Commands& commands, const Shading& shading, int level) {
@@ -133,23 +133,23 @@ void GatherVolume::shade(Commands& commands, const Shading& shading, int level) 
   const bool lightOnly = level == 0 && hasScalars();
   const std::array<Binding, 4> bindings{&frame_, shading.table != nullptr ? &shading.table->planeAddresses : &anyBuffer,
                                         &volume.occupancy, shading.lights != nullptr ? shading.lights : &anyBuffer};
-  const shader::ShadePush push{
-      .blocks = addressWords(built_.lists.of(level, built_.visible).indices.address()),
-      .sources = addressWords(sources_.address()),
-      .towards = addressWords(towards_.address()),
-      .firstRank = volume.firstRank(level),
-      .count = count,
-      .extinctionScale = float(kStoredDepth * volume.voxelSize),
-      .sourceScale = float((lightOnly ? 1.0 : kStoredDepth * volume.voxelSize) / sourceUnit_),
-      .meanLayer = meanLayer(volume),
-      .lightOnly = lightOnly ? 1 : 0};
+  const shader::ShadePush push{.blocks = addressWords(built_.lists.of(level, built_.visible).indices.address()),
+                               .sources = addressWords(sources_.address()),
+                               .extra = addressWords(extras_.address()),
+                               .firstRank = volume.firstRank(level),
+                               .count = count,
+                               .extinctionScale = float(kStoredDepth * volume.voxelSize),
+                               .sourceScale = float((lightOnly ? 1.0 : kStoredDepth * volume.voxelSize) / sourceUnit_),
+                               .meanLayer = meanLayer(volume),
+                               .lightOnly = lightOnly ? 1 : 0,
+                               .emissionApart = hasEmissionApart() ? 1 : 0};
   commands.dispatchLinear(shadePass_, bindings, push, count);
   commands.barrier(kComputeStage, kComputeStage);
 }
 
 bool GatherVolume::hasColors() const {
   const bool onlyScalars = hasScalars() && wantedLevels_ == 1u;  // whose colours come from the transfer function
-  return lit_ || (built_.volume.hasColors && !onlyScalars) || built_.volume.hasEmission();
+  return lit_ || (built_.volume.hasColors && !onlyScalars) || (built_.volume.hasEmission() && !hasEmissionApart());
 }
 
 bool GatherVolume::shadesLevel(int level) const {
@@ -170,11 +170,11 @@ void GatherVolume::prepare(const Shading& shading, std::vector<StageTime>& times
          "the volume's scalars take more memory than there is, which classification after interpolation needs: "
          "{} does without",
          Parameter("classification", "pre"));
-  const bool samples = lightsSamples(built_.volume, shading.lighting);
+  const bool samples = lightsSamples(shading.lighting);
   const bool lit = shading.lighting != nullptr && !samples;
   const bool viewDependent = lit && dependsOnView(*shading.lighting);
-  const bool sameLight =
-      lit == lit_ && !viewDependent && !viewDependent_ && (!lit || lighting_ == *shading.lighting);
+  const bool emissionWasApart = hasEmissionApart();
+  const bool sameSources = lit == lit_ && !viewDependent && !viewDependent_ && (!lit || lighting_ == *shading.lighting);
   sourceUnit_ = sourceUnit(built_.volume, lit ? shading.lighting : nullptr);
   lit_ = lit;
   viewDependent_ = viewDependent;
@@ -186,7 +186,7 @@ void GatherVolume::prepare(const Shading& shading, std::vector<StageTime>& times
   wantedLevels_ = 0;
   for (int level = shading.frame.detail.finest; level <= shading.frame.detail.coarsest; ++level)
     wantedLevels_ |= 1u << level;
-  if (!sameLight) {
+  if (!sameSources || hasEmissionApart() != emissionWasApart) {
     shadedLevels_ = 0;
     for (Quads& quads : quads_) quads.levels = 0;
   }
@@ -206,7 +206,7 @@ void GatherVolume::prepare(const Shading& shading, std::vector<StageTime>& times
 }
 
 std::uint64_t GatherVolume::Quads::bytes() const {
-  std::uint64_t sum = medium.bytes() + source.bytes() + towards.bytes();
+  std::uint64_t sum = medium.bytes() + source.bytes() + extra.bytes();
   for (const QuadStore& store : light) sum += store.bytes();
   return sum;
 }
@@ -250,7 +250,7 @@ void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
     for (std::size_t i = 0; i < there.light.size(); ++i)
       if (!holds(there.light[i], i < std::size_t(lightSlots()), sizeof(glm::uvec2))) return false;
     return holds(there.medium, true, sizeof(glm::uvec2)) && holds(there.source, hasColors(), sizeof(glm::uvec4)) &&
-           holds(there.towards, hasTowards(), sizeof(glm::uvec4));
+           holds(there.extra, hasTowards() || hasEmissionApart(), sizeof(glm::uvec4));
   };
   if (fits(quads)) return;
   for (std::size_t other = 0; other < axes.size(); ++other) {
@@ -261,7 +261,7 @@ void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
   quads = {};  // not both at once
   quads.medium = makeStore(true, sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "medium quads");
   quads.source = makeStore(hasColors(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source quads");
-  quads.towards = makeStore(hasTowards(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source direction quads");
+  quads.extra = makeStore(hasTowards() || hasEmissionApart(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "extra quads");
   for (std::size_t i = 0; i < quads.light.size(); ++i)
     quads.light[i] = makeStore(i < std::size_t(lightSlots()), sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "light quads");
 }
@@ -304,8 +304,8 @@ void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::ui
   if (first == end) return;
   const DeviceVolume& volume = built_.volume;
   const Quads& quads = quads_[std::size_t(axis)];
-  const bool towards = hasTowards() && colored;
-  const Pipeline pass = makeComputePipeline(device_, shaders::brick_quads, {std::uint32_t(axis), towards, colored, codes.has_value()});
+  const bool extra = (hasTowards() && colored) || (hasEmissionApart() && !codes);
+  const Pipeline pass = makeComputePipeline(device_, shaders::brick_quads, {std::uint32_t(axis), extra, colored, codes.has_value()});
   const std::array<Binding, 2> bindings{&brickCellTexels_, &volume.occupancyTexels};
   for (std::uint32_t next = first; next < end;) {
     const std::uint32_t piece = next / bricksPerPiece_;
@@ -316,9 +316,9 @@ void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::ui
                                       .firstQuad = next % bricksPerPiece_ * shader::kGatherBrickBlocks,
                                       .medium = addressWords(medium.address(piece)),
                                       .source = addressWords(quads.source.address(piece)),
-                                      .towards = addressWords(quads.towards.address(piece)),
+                                      .extra = addressWords(quads.extra.address(piece)),
                                       .sources = addressWords(sources_.address()),
-                                      .towardsEye = addressWords(towards_.address()),
+                                      .extras = addressWords(extras_.address()),
                                       .codes = codes.value_or(shader::CodeBricks())};
     commands.dispatchLinear(pass, bindings, push, std::uint64_t(bricks) * shader::kBrickQuadsThreads);
     next += bricks;
@@ -344,12 +344,12 @@ void GatherVolume::describe(shader::GatherFrame& frame) const {
     };
     setPieces(quads.medium, frame.axes[axis].mediumPieces);
     setPieces(quads.source, frame.axes[axis].sourcePieces);
-    setPieces(quads.towards, frame.axes[axis].towardsPieces);
+    setPieces(quads.extra, frame.axes[axis].extraPieces);
     for (std::size_t i = 0; i < quads.light.size(); ++i) setPieces(quads.light[i], frame.axes[axis].lightPieces[i]);
   }
   frame.extinctionUnit = float(1.0 / (kStoredDepth * built_.volume.voxelSize));
   frame.sourceUnit = float(sourceUnit_);
-  frame.color = built_.volume.albedo;
+  frame.color = built_.volume.albedo / float(sourceUnit_);
   describeLights(frame);
   for (int number = frame.finest; number <= frame.coarsest; ++number) frame.levels[number] = levels_[std::size_t(number)];
 }
@@ -362,8 +362,11 @@ std::vector<GatherBlocks> GatherVolume::downloadBlocks() const {
     const GridLayout& grid = volume.hierarchy.levels[std::size_t(level)];
     const std::vector<std::uint32_t> indices = downloadStored(device_, volume, level);
     std::vector<glm::uvec2> stored(indices.size());
+    std::vector<std::uint32_t> emission(hasEmissionApart() ? indices.size() : 0);
     if (!stored.empty())
       download(device_, sources_, std::as_writable_bytes(std::span(stored)), volume.firstRank(level) * sizeof(glm::uvec2));
+    if (!emission.empty())
+      download(device_, extras_, std::as_writable_bytes(std::span(emission)), volume.firstRank(level) * sizeof(std::uint32_t));
     const double perWorldUnit = 1.0 / (kStoredDepth * volume.voxelSize);
     GatherBlocks& blocks = levels[std::size_t(level)];
     blocks.dimensions = grid.dimensions;
@@ -372,6 +375,9 @@ std::vector<GatherBlocks> GatherVolume::downloadBlocks() const {
       blocks.source.push_back(hasColors() ? sourceUnit_ * perWorldUnit * unpackColor(block.x)
                                           : blocks.extinction.back() * glm::dvec3(volume.albedo));
     }
+    if (hasEmissionApart())
+      for (const std::uint32_t packed : scatterToDense(emission, indices, grid.voxels()))
+        blocks.emission.push_back(sourceUnit_ * perWorldUnit * unpackColor(packed));
   }
   return levels;
 }

@@ -49,8 +49,8 @@ class GatherVolume {
     std::uint64_t keptQuadBytes = 0;  ///< quads of other axes are kept for later frames up to so many bytes
   };
   /// Whether the transmittance of all lights is evaluated at the samples: for few lights from their rays, and
-  /// for ambient light. With more lights, and for lit volumes with emission, shading is per voxel.
-  static bool lightsSamples(const DeviceVolume& volume, const Lighting* lighting);
+  /// for ambient light. With more lights, shading is per voxel.
+  static bool lightsSamples(const Lighting* lighting);
   /// Allocates what the frame needs and adds the time of work on the host to `times`. Fails with
   /// ErrorKind::OutOfMemory.
   void prepare(const Shading& shading, std::vector<StageTime>& times);
@@ -67,7 +67,7 @@ class GatherVolume {
   };
   /// The quads of one axis.
   struct Quads {
-    QuadStore medium, source, towards;
+    QuadStore medium, source, extra;
     std::array<QuadStore, shader::kMaxLightSlots> light;  ///< codes of light (lightCodes_)
     std::uint32_t levels = 0;  ///< a bit for each level that exists
     std::uint32_t lightLevels = 0;
@@ -96,6 +96,8 @@ class GatherVolume {
   void describe(shader::GatherFrame& frame) const;
   /// Whether source terms depend on the direction to the eye.
   bool hasTowards() const { return lit_ && !viewDependent_; }
+  /// Whether emission is added to the light of samples, apart from the source terms.
+  bool hasEmissionApart() const { return lightSlots() > 0 && built_.volume.hasEmission(); }
   /// Whether blocks have their own source terms; otherwise all have the same albedo.
   bool hasColors() const;
   /// Whether voxels are classified after interpolation: quads of the finest level then hold codes of scalars.
@@ -152,7 +154,7 @@ class GatherVolume {
   Buffer skips_;         ///< bytes by level and cell: number of groups of slices to skip
   Buffer brickCells_;    ///< ivec4: each brick's first block
   Buffer sources_;       ///< by rank: packed source term, extinction as a half
-  Buffer towards_;       ///< by rank: three signed normalised bytes
+  Buffer extras_;        ///< by rank: three signed normalised bytes, or packed emission
   TexelView brickNumberTexels_, skipTexels_, brickCellTexels_;
   BrickCells cells_;
   std::vector<shader::GatherLevel> levels_;

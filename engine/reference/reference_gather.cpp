@@ -47,7 +47,7 @@ void addPart(GatherSums& sums, double& transmittance, glm::dvec4 medium, double 
 
 }  // namespace
 
-GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec3 voxels, glm::dvec3 albedo) {
+GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec3 voxels, glm::dvec3 albedo, bool emissionApart) {
   GatherBlocks blocks{.dimensions = medium.dimensions, .extinction = {}, .source = {}};
   glm::ivec3 cell;
   for (cell.z = 0; cell.z < medium.dimensions.z; ++cell.z)
@@ -59,7 +59,8 @@ GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec
         const glm::dvec3 color = medium.colors.empty() ? albedo : medium.colors[i];
         const glm::dvec3 emission = medium.emission.empty() ? glm::dvec3(0.0) : medium.emission[i];
         blocks.extinction.push_back(inside * medium.extinction[i]);
-        blocks.source.push_back(inside * (medium.extinction[i] * color + emission));
+        blocks.source.push_back(inside * (medium.extinction[i] * color + (emissionApart ? glm::dvec3(0.0) : emission)));
+        if (emissionApart && !medium.emission.empty()) blocks.emission.push_back(inside * emission);
       }
   return blocks;
 }
@@ -168,6 +169,16 @@ glm::dvec4 ReferenceGather::blockAt(const Ray& ray, const Slab& slab, int slice,
     medium += weight * glm::dvec4(blocks.source[i], blocks.extinction[i]);
   });
   return medium;
+}
+
+/// The bilinear emission on a slice, where that is not part of the source term.
+glm::dvec3 ReferenceGather::emissionAt(const Ray& ray, const Slab& slab, int slice, const GatherBlocks& blocks) const {
+  glm::dvec3 emission(0.0);
+  if (blocks.emission.empty()) return emission;
+  forCorners(slab.position(ray, slice), slab.axis, slice, blocks.dimensions, [&](std::size_t, double weight, glm::ivec3 block) {
+    emission += weight * blocks.emission[indexOf(block, blocks.dimensions)];
+  });
+  return emission;
 }
 
 void ReferenceGather::marchBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab,

@@ -22,10 +22,10 @@
 
 namespace freevoxels {
 
-/// The values of the blocks of a level before they are rounded for storage: extinction, and extinction times
-/// colour plus emission, each times the part of the block that is inside of the volume. `albedo` is the
-/// colour of levels without their own.
-GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec3 voxels, glm::dvec3 albedo);
+/// The values of the blocks of a level before they are rounded for storage: extinction, extinction times colour, and emission, which is
+/// part of the former or, for samples that are lit, `emissionApart`. Each is times the part of the block that is inside of the volume.
+/// `albedo` is the colour of levels without their own.
+GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec3 voxels, glm::dvec3 albedo, bool emissionApart);
 
 /// The depths towards a light of all blocks of a level, of which `extinction` has those of the voxels. Not for scalars.
 std::vector<double> referenceLightDepths(const Volume& volume, std::span<const double> extinction, const LevelData& medium, int level,
@@ -75,6 +75,7 @@ class ReferenceGather {
   std::optional<double> scalarOf(glm::ivec3 voxel) const;
   Scalar scalarAt(const Ray& ray, const Slab& slab, int slice) const;
   glm::dvec4 blockAt(const Ray& ray, const Slab& slab, int slice, const GatherBlocks& blocks) const;
+  glm::dvec3 emissionAt(const Ray& ray, const Slab& slab, int slice, const GatherBlocks& blocks) const;
   // With lighting, in reference_gather_light.cpp:
   void marchLitBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab, const GatherBlocks& blocks,
                       const GatherLight& light) const;

@@ -231,7 +231,10 @@ void ReferenceGather::addLit(GatherSums& sums, double& transmittance, glm::dvec4
                              const Stretch& stretch, const Ray& ray) const {
   const double depth = medium.a * length;
   const glm::dvec3 toEye = -glm::normalize(linear_ * ray.direction);
-  if (length > 0.0) sums.color += transmittance * length * leaving(stretch, depth, toEye) * glm::dvec3(medium);
+  if (length > 0.0) {
+    sums.color +=
+        transmittance * length * (leaving(stretch, depth, toEye) * glm::dvec3(medium) + meanTransmittance(depth) * stretch.emission);
+  }
   sums.distance += transmittance * -std::expm1(-depth) * std::max(distance, 0.0);
   transmittance *= std::exp(-depth);
 }
@@ -241,13 +244,15 @@ void ReferenceGather::marchLitBlocks(GatherSums& sums, double& transmittance, co
                                      const GatherLight& light) const {
   const int end = dimensionsOf(slab)[slab.axis];
   glm::dvec4 lastMedium(0.0);
+  glm::dvec3 lastEmission(0.0);
   Arriving last;
   for (int number = 0; number <= slab.count; ++number) {
     const int slice = slab.slice(number), before = slice - slab.sign;
     const bool within = number < slab.count;
     const glm::dvec4 medium = within ? blockAt(ray, slab, slice, blocks) : glm::dvec4(0.0), mean = 0.5 * (lastMedium + medium);
+    const glm::dvec3 emission = within ? emissionAt(ray, slab, slice, blocks) : glm::dvec3(0.0);
     const Arriving found = within ? arrivingAt(light, ray, slab, slice) : last;
-    Stretch stretch{.begin = last, .end = found, .position = glm::dvec3(0.0), .normal = glm::dvec3(0.0)};
+    Stretch stretch{.begin = last, .end = found, .emission = 0.5 * (lastEmission + emission)};
     if (number == 0) {
       stretch.begin = found;
       for (double& depth : stretch.begin.depths) depth = std::max(depth - slab.layer(ray) * mean.a, 0.0);
@@ -264,6 +269,7 @@ void ReferenceGather::marchLitBlocks(GatherSums& sums, double& transmittance, co
     const double length = std::clamp(slab.ahead(ray, slice), 0.0, 1.0) * slab.layer(ray);
     addLit(sums, transmittance, mean, length, slab.distance(ray, slice - 0.5 * slab.sign), stretch, ray);
     lastMedium = medium;
+    lastEmission = emission;
     last = found;
   }
 }

@@ -139,8 +139,8 @@ Check checkLattice(const GatherLattice& lattice, const GatherLattice& reference,
 }
 
 /// Checks the blocks of all levels that the frame reads.
-void checkBlocks(const GatherStages& stages, const ValidationScene& scene, const char* frame, std::vector<Check>& checks) {
-  MaxError extinction, source;
+void checkBlocks(const GatherStages& stages, const ValidationScene& scene, const Frame& frame, std::vector<Check>& checks) {
+  MaxError extinction, source, emission;
   const double least = kMinDepth / scene.volume.voxelSize();
   for (std::size_t level = 0; level < stages.blocks.size(); ++level) {
     const GatherBlocks& blocks = stages.blocks[level];
@@ -148,20 +148,26 @@ void checkBlocks(const GatherStages& stages, const ValidationScene& scene, const
     LevelData medium = stages.medium[level];
     if (level == 0) medium = referenceVoxelLevel(scene.volume, scene.classification, medium.extinction, {}, medium.emission);
     const GatherBlocks expected =
-        referenceGatherBlocks(medium, int(level), scene.volume.dimensions, scene.classification.albedo);
+        referenceGatherBlocks(medium, int(level), scene.volume.dimensions, scene.classification.albedo, frame.light != Light::None);
     FV_CHECK_EQ(blocks.extinction.size(), expected.extinction.size());
+    FV_CHECK_EQ(blocks.emission.size(), expected.emission.size());
     for (std::size_t i = 0; i < blocks.extinction.size(); ++i) {
       const auto where = [&] {
         const glm::ivec3 n = blocks.dimensions;
         return fmt::format("block ({}, {}, {}) of level {}", int(i) % n.x, int(i) / n.x % n.y, int(i) / n.x / n.y, level);
       };
       extinction.take(std::abs(blocks.extinction[i] - expected.extinction[i]) / std::max(expected.extinction[i], least), where);
-      const double difference = largestComponent(glm::abs(blocks.source[i] - expected.source[i]));
-      source.take(difference / std::max(largestComponent(expected.source[i]), least), where);
+      const auto apart = [&](glm::dvec3 stored, glm::dvec3 wanted) {
+        return largestComponent(glm::abs(stored - wanted)) / std::max(largestComponent(wanted), least);
+      };
+      source.take(apart(blocks.source[i], expected.source[i]), where);
+      if (!expected.emission.empty()) emission.take(apart(blocks.emission[i], expected.emission[i]), where);
     }
   }
-  checks.push_back(extinction.atMost(kExtinctionTolerance, fmt::format("gather blocks: extinction, {}", frame), "relative"));
-  checks.push_back(source.atMost(kSourceTolerance, fmt::format("gather blocks: source, {}", frame), "relative"));
+  checks.push_back(extinction.atMost(kExtinctionTolerance, fmt::format("gather blocks: extinction, {}", frame.name), "relative"));
+  checks.push_back(source.atMost(kSourceTolerance, fmt::format("gather blocks: source, {}", frame.name), "relative"));
+  if (scene.classification.emission && frame.light != Light::None)
+    checks.push_back(emission.atMost(kSourceTolerance, fmt::format("gather blocks: emission, {}", frame.name), "relative"));
 }
 
 /// Checks what the frame's samples read of the light, of all levels that it reads. The depths of scalars come from a sweep that is checked
@@ -259,7 +265,7 @@ void checkFrame(GatherOutputs& device, const ValidationScene& scene, const Class
   const ReferenceGather reference(scene.volume, classification, camera, settings);
   section.checks.push_back(checkLattice(stages.lattice, reference.lattice(), frame.name));
   if (stages.lattice.samples != reference.lattice().samples) return;
-  if (std::ranges::any_of(stages.blocks, &GatherBlocks::exists)) checkBlocks(stages, scene, frame.name, section.checks);
+  if (std::ranges::any_of(stages.blocks, &GatherBlocks::exists)) checkBlocks(stages, scene, frame, section.checks);
   if (settings.lighting) checkLight(stages, scene, reference, *settings.lighting, frame.name, section.checks);
   const std::vector<GatherSums> samples = reference.samples(stages.blocks, stages.light);
   const double tolerance = reference.hasScalars() ? kScalarTolerance : kSampleTolerance;
@@ -346,6 +352,21 @@ ReportSection gatherLightChecks(const GatherMaker& make, glm::ivec2 size) {
                        .color = {{0.0f, {0.9f, 0.3f, 0.2f}}, {0.5f, {0.3f, 0.8f, 0.4f}}, {1.0f, {0.5f, 0.5f, 1.0f}}},
                        .unitDistance = waves.voxelSize()};
   ReportSection section{.title = "Gather: lights at samples", .text = kLightExplanation};
+  checkFrames(make, scene, kLitFrames, size, section);
+  return section;
+}
+
+ReportSection gatherEmissionChecks(const GatherMaker& make, glm::ivec2 size) {
+  const glm::ivec3 n(17, 14, 12);
+  Volume embers = makeVolume(n, shearedTransform(n), [](int x, int y, int z) { return 0.5 + 0.3 * std::sin(0.9 * x + 0.4 * z - 0.6 * y); });
+  embers.temperature = TemperatureGrid{.name = "embers", .values = ScalarBricks::make(n, [](glm::ivec3 voxel) {
+                                                           return float(1400.0 + 500.0 * std::cos(0.5 * voxel.x + 0.3 * voxel.y));
+                                                         })};
+  summariseValues(*embers.temperature);
+  ValidationScene scene{.name = "embers that fill the volume", .volume = embers, .classification = {}};
+  scene.classification = {.densityScale = automaticDensityScale(embers, 2.0), .albedo = glm::vec3(0.8f, 0.5f, 0.3f)};
+  scene.classification.emission = Emission{.strength = 0.25 * automaticEmissionStrength(embers, scene.classification, {})};
+  ReportSection section{.title = "Gather: emission at samples that are lit", .text = kLightExplanation};
   checkFrames(make, scene, kLitFrames, size, section);
   return section;
 }

@@ -32,5 +32,7 @@ ReportSection gatherChecks(const GatherMaker& make, const ValidationScene& scene
 
 /// Frames with lights at the samples, of a procedural volume that has no empty voxels: the light as it is stored, and the stages as above.
 ReportSection gatherLightChecks(const GatherMaker& make, glm::ivec2 size);
+/// The frames of gatherLightChecks() of voxels that emit light, too.
+ReportSection gatherEmissionChecks(const GatherMaker& make, glm::ivec2 size);
 
 }  // namespace freevoxels

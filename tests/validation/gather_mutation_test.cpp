@@ -180,5 +180,43 @@ TEST_P(GatherLightMutation, IsNoticedByTheChecksOfItsStageAndNoOthers) {
 INSTANTIATE_TEST_SUITE_P(Of, GatherLightMutation, testing::ValuesIn(kLightDefects),
                          [](const auto& defect) { return std::string(defect.param.name); });
 
+/// Says that blocks emit more than what is drawn.
+class OtherEmission : public GatherOutputs {
+ public:
+  OtherEmission(std::unique_ptr<GatherOutputs> made, double factor) : made_(std::move(made)), factor_(factor) {}
+  GatherStages frame(const Camera& camera, const FrameSettings& settings) override {
+    GatherStages stages = made_->frame(camera, settings);
+    for (GatherBlocks& blocks : stages.blocks)
+      for (glm::dvec3& emission : blocks.emission) emission *= factor_;
+    return stages;
+  }
+
+ private:
+  std::unique_ptr<GatherOutputs> made_;
+  double factor_;
+};
+
+using GatherEmissionMutation = DeviceTest;
+
+TEST_F(GatherEmissionMutation, IsNoticedByTheChecksOfBlocksAndOfTheSamplesThatReadThem) {
+  for (const double factor : {1.0, 1.02}) {
+    const GatherMaker make = [factor](const Volume& volume, const Classification& classification) {
+      return std::make_unique<OtherEmission>(deviceGather(device())(volume, classification), factor);
+    };
+    int ofBlocks = 0, ofSamples = 0;
+    for (const Check& check : gatherEmissionChecks(make, {40, 32}).checks) {
+      if (check.passed()) continue;
+      if (check.name.starts_with("gather blocks: emission"))
+        ++ofBlocks;
+      else if (check.name.starts_with("gather samples: C"))
+        ++ofSamples;
+      else
+        ADD_FAILURE() << check.name << ": " << check.figure << " at " << check.where;
+    }
+    EXPECT_EQ(ofBlocks, factor == 1.0 ? 0 : 5);
+    EXPECT_EQ(ofSamples, factor == 1.0 ? 0 : 5);
+  }
+}
+
 }  // namespace
 }  // namespace freevoxels::test
