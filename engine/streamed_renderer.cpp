@@ -15,6 +15,7 @@
 #include "engine/octree/volume_builder.h"
 #include "engine/splatting/splat_pass.h"
 #include "engine/storage/baked_box.h"
+#include "engine/volume/emission_light.h"
 #include "engine/vulkan/target_readback.h"
 
 namespace freevoxels {
@@ -26,9 +27,10 @@ using fvx::FvxFile;
 constexpr int kEdge = StreamedRenderer::kCubeEdge, kHalo = StreamedRenderer::kCubeHalo, kBrick = ScalarBricks::kEdge;
 static_assert(kEdge % fvx::kChunkEdge == 0 && kHalo % kBrick == 0);
 
-/// Whether the coarser levels of a file are those of the octree: means of extinctions, of one colour.
+/// Whether the coarser levels of a file are those of the octree: means of extinctions, of one colour. What a mean temperature emits is
+/// not the mean emission.
 bool hasOctree(const Volume& volume, const Classification& classification) {
-  return !classification.transferFunction && !volume.albedo;
+  return !classification.transferFunction && !volume.albedo && !classification.emission;
 }
 
 FrameSettings exactSettings(const FrameSettings& wanted, bool octree) {
@@ -74,15 +76,16 @@ struct StreamedLevel {
         }
   }
 
-  void prepareLights(const Device& device, const Lighting& lighting, std::vector<StageTime>& times, const Progress& progress);
+  void prepareLights(const Device& device, std::span<const Light> wanted, std::vector<StageTime>& times, const Progress& progress);
   void prepareAmbient(const Device& device, const Lighting& lighting, const RaySource& eye, std::vector<StageTime>& times,
                       const Progress& progress);
 };
 
 /// Keeps what was swept for lights that stand.
-void StreamedLevel::prepareLights(const Device& device, const Lighting& lighting, std::vector<StageTime>& times, const Progress& progress) {
+void StreamedLevel::prepareLights(const Device& device, std::span<const Light> wanted, std::vector<StageTime>& times,
+                                  const Progress& progress) {
   std::vector<std::unique_ptr<SweptLight>> before = std::exchange(lights, {});
-  for (const Light& light : lighting.lights) {
+  for (const Light& light : wanted) {
     const RaySource source = lightSource(light, outline.indexToWorld);
     const auto same = std::ranges::find_if(before, [&](const auto& swept) { return swept && swept->source() == source; });
     lights.push_back(same != before.end() ? std::move(*same) : std::make_unique<SweptLight>(device, baked, source, times, progress));
@@ -146,15 +149,22 @@ struct StreamedRenderer::State {
   std::vector<StageTime> times;
   std::vector<std::size_t> cubesRead;
 
+  /// An image with the light of some of the lights.
   struct Frame {
     const Camera& camera;
     const FrameSettings& settings;
+    const Classification& classification;
+    std::span<const Light> allLights;
+    std::size_t firstLight;  ///< of those of `settings` among all lights
     const Progress& progress;
     shader::GatherFrame lattice;  ///< of the whole volume
   };
 
+  void prepareEmissionLight(bool lit, const Progress& progress);
   StreamedLevel& levelAt(int above) { return levels.try_emplace(above, file, level + above, classification).first->second; }
-  Frame begin(const Camera& camera, const FrameSettings& settings, const Progress& progress);
+  Image draw(const Camera& camera, const FrameSettings& settings, std::span<const Light> allLights, std::size_t firstLight,
+             const Progress& progress);
+  shader::GatherFrame latticeOf(const Camera& camera, const FrameSettings& settings);
   shader::GatherFrame frameOf(const Frame& frame, const StreamedLevel& level, int above) const;
   /// What is drawn at a time.
   struct Cube {
@@ -168,17 +178,33 @@ struct StreamedRenderer::State {
   Image resolve(const Frame& frame);
 };
 
+/// Where the volume is lit, its emission lights it, too.
+void StreamedRenderer::State::prepareEmissionLight(bool lit, const Progress& progress) {
+  if (!classification.emission || lit == (classification.emissionLight != nullptr)) return;
+  const StageTimer timer(times, "light of emission");
+  classification.emissionLight = nullptr;
+  if (lit) {
+    const StreamedLevel& base = levelAt(0);
+    const glm::ivec3 dimensions = base.outline.dimensions;
+    EmissionCells cells(dimensions, base.outline.indexToWorld);
+    for (std::size_t i = 0; i < base.cubes.size(); ++i) {
+      if (progress) progress("reading emission", double(i) / double(base.cubes.size()));
+      const fvx::VoxelBox cube = cubeVoxels(base.cubes[i], dimensions);
+      cells.add(readBakedBox(*file, level, cube), cube.first, classification);
+    }
+    classification.emissionLight = std::make_shared<const EmissionLight>(cells);
+  }
+  levels.clear();  // which keep the classification
+}
+
 /// The lattice and the levels of a frame, as if all of the volume were in memory.
-StreamedRenderer::State::Frame StreamedRenderer::State::begin(const Camera& camera, const FrameSettings& settings, const Progress& progress) {
+shader::GatherFrame StreamedRenderer::State::latticeOf(const Camera& camera, const FrameSettings& settings) {
   const StreamedLevel& base = levelAt(0);
   FrameConstants constants = makeFrameConstants(device, base.onDevice, table, camera, settings);
   const int most = file->levels() - 1 - level;
   constants.detail.coarsest = std::min(constants.detail.coarsest, most);
   constants.detail.finest = std::min(constants.detail.finest, most);
-  return {.camera = camera,
-          .settings = settings,
-          .progress = progress,
-          .lattice = makeGatherFrame(base.onDevice, camera, settings, constants.detail, constants.hiddenTransmittance)};
+  return makeGatherFrame(base.onDevice, camera, settings, constants.detail, constants.hiddenTransmittance);
 }
 
 /// The frame of a level whose blocks take the place of voxels.
@@ -244,7 +270,7 @@ void StreamedRenderer::State::drawLevel(const Frame& frame, int above, std::span
   StreamedLevel& streamed = levelAt(above);
   if (frame.settings.lighting) {
     const RaySource eye = eyeSource(frame.camera, streamed.outline.indexToWorld);
-    streamed.prepareLights(device, *frame.settings.lighting, times, frame.progress);
+    streamed.prepareLights(device, frame.allLights, times, frame.progress);
     if (frame.settings.lighting->hasAmbient()) streamed.prepareAmbient(device, *frame.settings.lighting, eye, times, frame.progress);
   }
   const shader::GatherFrame whole = frameOf(frame, streamed, above);
@@ -263,13 +289,14 @@ void StreamedRenderer::State::drawCube(const Frame& frame, const StreamedLevel& 
     const StageTimer timer(times, "read cubes");
     volume = readBakedBox(*file, streamed.baked.level, box);
   }
-  const BuiltVolume built = buildVolume(device, volume, classification, times);
-  const SurroundingLight light{
-      .dimensions = streamed.outline.dimensions,
-      .first = box.first,
-      .ambient = streamed.ambient ? &*streamed.ambient : nullptr,
-      .codes = [&](int number, const GatherVolume& inBox) { return codesOf(*streamed.lights[std::size_t(number)], inBox, box.first / kBrick); }};
-  GatherVolume inBox(device, volume, classification, built, times, &light);
+  const BuiltVolume built = buildVolume(device, volume, frame.classification, times);
+  const SurroundingLight light{.dimensions = streamed.outline.dimensions,
+                               .first = box.first,
+                               .ambient = streamed.ambient ? &*streamed.ambient : nullptr,
+                               .codes = [&](int number, const GatherVolume& inBox) {
+                                 return codesOf(*streamed.lights[frame.firstLight + std::size_t(number)], inBox, box.first / kBrick);
+                               }};
+  GatherVolume inBox(device, volume, frame.classification, built, times, &light);
   FrameConstants constants = makeFrameConstants(device, built.volume, table, frame.camera, frame.settings);
   constants.detail.finest = constants.detail.coarsest = 0;
   const GatherVolume::Shading shading{.frame = constants,
@@ -319,18 +346,12 @@ Image StreamedRenderer::State::resolve(const Frame& frame) {
           .depth = frame.settings.depth ? distanceReadback.read<float>() : std::vector<float>()};
 }
 
-std::optional<std::string> StreamedRenderer::whyNot(const FvxFile& file, const Classification& classification, const FrameSettings& settings) {
-  const Volume& volume = file.description().volume;
+std::optional<std::string> StreamedRenderer::whyNot(const FvxFile& file, const FrameSettings& settings) {
   if (!drawsByGathering(settings)) return "splats are drawn of the whole volume";
-  if (classification.emission) return "emission lights the whole volume";
-  if (classification.transferFunction && !classification.isPost(volume))
-    return fmt::format("{} needs the whole volume", Parameter("classification", "pre"));
   if (!settings.lighting) return {};
   const Lighting& lighting = *settings.lighting;
   if (lightAttenuationFor(settings) == LightAttenuation::Table) return "shadows from the table need the whole volume";
-  if (lighting.lights.size() > std::size_t(shader::kMaxSampleLights))
-    return fmt::format("more than {} lights need the whole volume", shader::kMaxSampleLights);
-  if (lighting.hasAmbient() && ambientCellEdge(volume.dimensions, lighting.phaseG != 0.0) > kEdge)
+  if (lighting.hasAmbient() && ambientCellEdge(file.description().volume.dimensions, lighting.phaseG != 0.0) > kEdge)
     return "the volume is too long for ambient light with a phase function";
   return {};
 }
@@ -341,28 +362,61 @@ StreamedRenderer::StreamedRenderer(const Device& device, std::shared_ptr<const F
 
 StreamedRenderer::~StreamedRenderer() = default;
 
+Image StreamedRenderer::State::draw(const Camera& camera, const FrameSettings& settings, std::span<const Light> allLights,
+                                    std::size_t firstLight, const Progress& progress) {
+  // What emits is drawn with the first of the lights.
+  Classification dark = classification;
+  dark.emission.reset();
+  dark.emissionLight = nullptr;
+  if (classification.emission) dark.order = ClassificationOrder::Pre;
+  const Frame frame{.camera = camera,
+                    .settings = settings,
+                    .classification = firstLight == 0 ? classification : dark,
+                    .allLights = allLights,
+                    .firstLight = firstLight,
+                    .progress = progress,
+                    .lattice = latticeOf(camera, settings)};
+  cubesRead.assign(std::size_t(frame.lattice.coarsest) + 1, 0);
+  if (!gather) gather.emplace(device);
+  {
+    Commands commands(device);
+    gather->recordClear(commands, frame.lattice);
+    commands.submitAndWait();
+  }
+  std::vector<std::vector<Cube>> levelCubes(cubesRead.size());
+  std::size_t last = 0;
+  for (int above = frame.lattice.finest; above <= frame.lattice.coarsest; ++above) {
+    levelCubes[std::size_t(above)] = cubesOf(frame, above);
+    if (!levelCubes[std::size_t(above)].empty()) last = std::size_t(above);
+  }
+  for (std::size_t above = 0; above < levelCubes.size(); ++above) drawLevel(frame, int(above), levelCubes[above], above == last);
+  return resolve(frame);
+}
+
 Image StreamedRenderer::render(const Camera& camera, const FrameSettings& wanted, const Progress& progress) {
   State& state = *state_;
   checkCamera(camera);
   checkFrameFits(state.device, wanted);
   state.times.clear();
-  const FrameSettings settings = exactSettings(wanted, hasOctree(state.levelAt(0).outline, state.classification));
-  const State::Frame frame = state.begin(camera, settings, progress);
-  state.cubesRead.assign(std::size_t(frame.lattice.coarsest) + 1, 0);
-  if (!state.gather) state.gather.emplace(state.device);
-  {
-    Commands commands(state.device);
-    state.gather->recordClear(commands, frame.lattice);
-    commands.submitAndWait();
+  state.prepareEmissionLight(wanted.lighting.has_value(), progress);
+  FrameSettings settings = exactSettings(wanted, hasOctree(state.levelAt(0).outline, state.classification));
+  const std::vector<Light> lights = settings.lighting ? settings.lighting->lights : std::vector<Light>();
+  const std::span<const Light> all(lights);
+  constexpr std::size_t kAtOnce = shader::kMaxSampleLights;
+  if (all.size() > kAtOnce) settings.lighting->lights.assign(all.begin(), all.begin() + kAtOnce);
+  Image image = state.draw(camera, settings, all, 0, progress);
+  if (all.size() <= kAtOnce) return image;
+  // Light adds up. The alphas are the same.
+  settings.depth = false;
+  settings.lighting->ambient = glm::dvec3(0.0);
+  settings.lighting->environment = nullptr;
+  for (std::size_t first = kAtOnce; first < all.size(); first += kAtOnce) {
+    const std::span<const Light> some = all.subspan(first, std::min(kAtOnce, all.size() - first));
+    settings.lighting->lights.assign(some.begin(), some.end());
+    const Image more = state.draw(camera, settings, all, first, progress);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] += glm::vec4(glm::vec3(more.pixels[i]), 0.0f);
   }
-  std::vector<std::vector<State::Cube>> levels(state.cubesRead.size());
-  std::size_t last = 0;
-  for (int above = frame.lattice.finest; above <= frame.lattice.coarsest; ++above) {
-    levels[std::size_t(above)] = state.cubesOf(frame, above);
-    if (!levels[std::size_t(above)].empty()) last = std::size_t(above);
-  }
-  for (std::size_t above = 0; above < levels.size(); ++above) state.drawLevel(frame, int(above), levels[above], above == last);
-  return state.resolve(frame);
+  return image;
 }
 
 std::vector<StageTime> StreamedRenderer::timings() const { return state_->times; }

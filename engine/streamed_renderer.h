@@ -22,7 +22,7 @@ class StreamedRenderer : public FrameRenderer {
   static constexpr int kCubeEdge = 64, kCubeHalo = 8;
 
   /// Why frames of a file cannot be drawn cube by cube, as a clause; nothing if they can.
-  static std::optional<std::string> whyNot(const fvx::FvxFile& file, const Classification& classification, const FrameSettings& settings);
+  static std::optional<std::string> whyNot(const fvx::FvxFile& file, const FrameSettings& settings);
 
   /// `level` of the file takes the place of the volume. Frames must be such that whyNot() has no reason.
   StreamedRenderer(const Device& device, std::shared_ptr<const fvx::FvxFile> file, int level, const Classification& classification,

@@ -30,22 +30,21 @@ constexpr int kMaxPlanes = 8, kMinPlanes = 2;  ///< that are swept at a time
 /// What a sweep looks up of a voxel: its extinction per world unit, or its scalar in intervals of the transfer function's table.
 class VoxelValues {
  public:
-  explicit VoxelValues(const BakedLevel& level) : scale_(float(level.classification.densityScale)) {
-    if (!level.classification.transferFunction) return;
+  explicit VoxelValues(const BakedLevel& level) : classification_(level.classification) {
     const Volume& volume = level.file->description().volume;
-    table_.emplace(*level.classification.transferFunction, volume.minimum, volume.maximum);
+    if (classification_.isPost(volume)) table_.emplace(*classification_.transferFunction, volume.minimum, volume.maximum);
   }
   bool areScalars() const { return table_.has_value(); }
   float outside() const { return areScalars() ? -1.0f : 0.0f; }
   const TransferTable& table() const { return *table_; }
   float at(float scalar) const {
-    if (!areScalars()) return std::min(std::max(scalar, 0.0f) * scale_, float(kMaximumExtinction));
+    if (!areScalars()) return float(classify(classification_, scalar).extinction);
     const std::uint16_t code = table_->code(scalar);
     return code == 0 ? -1.0f : (float(code) - 1.0f) * (float(shader::kTransferIntervals) / float(shader::kScalarCodes));
   }
 
  private:
-  float scale_;
+  const Classification& classification_;
   std::optional<TransferTable> table_;
 };
 

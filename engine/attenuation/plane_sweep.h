@@ -20,7 +20,7 @@
 
 namespace freevoxels {
 
-/// A level of a baked file and how it is classified. Without a transfer function, or by one after interpolation.
+/// A level of a baked file and how it is classified.
 struct BakedLevel {
   std::shared_ptr<const fvx::FvxFile> file;
   int level = 0;

@@ -14,10 +14,11 @@ namespace freevoxels {
 
 namespace {
 
-/// The light that the volume's own emission throws on it, where it is lit.
+/// The light that the volume's own emission throws on it, where it is lit. The outline of a baked volume has no voxels; who draws it in
+/// pieces sums up their light.
 void makeEmissionLight(Scene& scene) {
   scene.classification.emissionLight = nullptr;
-  if (scene.classification.emission && scene.lighting)
+  if (scene.classification.emission && scene.lighting && !scene.volume->scalars.bricks().empty())
     scene.classification.emissionLight = std::make_shared<const EmissionLight>(*scene.volume, scene.classification);
 }
 

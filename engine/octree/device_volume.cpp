@@ -60,13 +60,13 @@ DeviceVolume outlineOnDevice(const Volume& volume, const Classification& classif
           .indexToWorld = volume.indexToWorld,
           .albedo = classification.albedo,
           .hasColors = volume.albedo.has_value() || classification.transferFunction.has_value(),
+          .emissionUnit = brightestSource(classification, volume) / kBrightest,
           .voxelSize = volume.voxelSize()};
 }
 
 DeviceVolume makeDeviceVolume(const Device& device, const Volume& volume,
                               const Classification& classification) {
   DeviceVolume result = outlineOnDevice(volume, classification);
-  result.emissionUnit = brightestSource(classification, volume) / kBrightest;
   const std::uint64_t words = result.hierarchy.paddedBlocks() / shader::kBlocksPerWord;
   result.occupancy = Buffer(device, words * sizeof(shader::OccupancyWord), MemoryUse::Device, "occupancy",
                             VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);

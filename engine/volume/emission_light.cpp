@@ -17,21 +17,6 @@ constexpr std::size_t kMaxSources = 128;
 /// of a sphere of the same volume and emission.
 const double kCore2 = std::pow(3.0 / (4.0 * std::numbers::pi), 2.0 / 3.0) / 3.0;
 
-struct Cell {
-  double extinction = 0.0;     // mean
-  glm::dvec3 power{0.0};       // emission times the cell's volume
-};
-
-struct EmissionCells {
-  glm::ivec3 size{0};
-  int edge = 1;  // voxels
-  std::vector<Cell> values;
-
-  std::size_t index(glm::ivec3 cell) const {
-    return std::size_t(cell.x) + std::size_t(size.x) * (std::size_t(cell.y) + std::size_t(size.y) * std::size_t(cell.z));
-  }
-};
-
 struct Source {
   glm::dvec3 place{0.0};  // cells
   glm::dvec3 power{0.0};
@@ -40,42 +25,17 @@ struct Source {
 
 double luminance(const glm::dvec3& color) { return glm::dot(color, glm::dvec3(0.2126, 0.7152, 0.0722)); }
 
-EmissionCells cellsOf(const Volume& volume, const Classification& classification) {
-  const glm::ivec3 n = volume.dimensions;
-  EmissionCells cells;
-  cells.edge = (std::max({n.x, n.y, n.z}) + kMaxCells - 1) / kMaxCells;
-  cells.size = (n + cells.edge - 1) / cells.edge;
-  cells.values.resize(std::size_t(cells.size.x) * std::size_t(cells.size.y) * std::size_t(cells.size.z));
-  const double share = 1.0 / (double(cells.edge) * cells.edge * cells.edge);
-  const double voxel = std::abs(glm::determinant(glm::dmat3(volume.indexToWorld)));
-  tbb::parallel_for(0, cells.size.z, [&](int plane) {
-    std::vector<float> scalars(std::size_t(n.x)), temperatures(std::size_t(n.x));
-    for (int z = plane * cells.edge; z < std::min((plane + 1) * cells.edge, n.z); ++z)
-      for (int y = 0; y < n.y; ++y) {
-        volume.scalars.copyRow(y, z, scalars);
-        volume.temperature->values.copyRow(y, z, temperatures);
-        Cell* const row = &cells.values[cells.index({0, y / cells.edge, plane})];
-        for (int x = 0; x < n.x; ++x) {
-          Cell& cell = row[x / cells.edge];
-          cell.extinction += share * classify(classification, scalars[std::size_t(x)]).extinction;
-          cell.power += voxel * emittedLight(*classification.emission, temperatures[std::size_t(x)]);
-        }
-      }
-  });
-  return cells;
-}
-
 /// Joins the cells to sources: one for each cube of 1, 2, 4, ... cells along an edge, the smallest that gives
 /// at most kMaxSources sources.
-std::vector<Source> sourcesOf(const EmissionCells& cells, double cellEdge) {
+std::vector<Source> sourcesOf(const EmissionCells& cells) {
   for (int group = 1;; group *= 2) {
-    const glm::ivec3 groups = (cells.size + group - 1) / group;
+    const glm::ivec3 groups = (cells.size() + group - 1) / group;
     std::vector<Source> sums(std::size_t(groups.x) * std::size_t(groups.y) * std::size_t(groups.z));
     glm::ivec3 cell;
-    for (cell.z = 0; cell.z < cells.size.z; ++cell.z)
-      for (cell.y = 0; cell.y < cells.size.y; ++cell.y)
-        for (cell.x = 0; cell.x < cells.size.x; ++cell.x) {
-          const glm::dvec3& power = cells.values[cells.index(cell)].power;
+    for (cell.z = 0; cell.z < cells.size().z; ++cell.z)
+      for (cell.y = 0; cell.y < cells.size().y; ++cell.y)
+        for (cell.x = 0; cell.x < cells.size().x; ++cell.x) {
+          const glm::dvec3& power = cells.at(cell).power;
           if (power == glm::dvec3(0.0)) continue;
           const glm::ivec3 at = cell / group;
           Source& sum = sums[std::size_t(at.x) + std::size_t(groups.x) * (std::size_t(at.y) + std::size_t(groups.y) * std::size_t(at.z))];
@@ -86,7 +46,7 @@ std::vector<Source> sourcesOf(const EmissionCells& cells, double cellEdge) {
     if (sums.size() > kMaxSources && groups != glm::ivec3(1)) continue;
     for (Source& source : sums) {
       source.place /= luminance(source.power);
-      source.core2 = kCore2 * group * group * cellEdge * cellEdge;
+      source.core2 = kCore2 * group * group * cells.cellEdge() * cells.cellEdge();
     }
     return sums;
   }
@@ -98,23 +58,58 @@ double depthBetween(const EmissionCells& cells, const glm::dvec3& from, const gl
   double sum = 0.0;
   for (int i = 0; i < steps; ++i) {
     const glm::dvec3 place = glm::mix(from, to, (i + 0.5) / steps);
-    sum += cells.values[cells.index(glm::clamp(glm::ivec3(glm::round(place)), glm::ivec3(0), cells.size - 1))].extinction;
+    sum += cells.at(glm::clamp(glm::ivec3(glm::round(place)), glm::ivec3(0), cells.size() - 1)).extinction;
   }
   return sum * length / steps;
 }
 
 }  // namespace
 
-EmissionLight::EmissionLight(const Volume& volume, const Classification& classification) {
-  if (!(brightestLight(classification, volume) > 0.0)) return;
-  const EmissionCells cells = cellsOf(volume, classification);
-  cells_ = cells.size;
-  const glm::dmat4 scaled = glm::dmat4(glm::dvec4(cells.edge, 0, 0, 0), glm::dvec4(0, cells.edge, 0, 0),
-                                       glm::dvec4(0, 0, cells.edge, 0), glm::dvec4(glm::dvec3(0.5 * (cells.edge - 1)), 1));
-  const glm::dmat4 cellsToWorld = volume.indexToWorld * scaled;
+EmissionCells::EmissionCells(glm::ivec3 dimensions, const glm::dmat4& indexToWorld)
+    : indexToWorld_(indexToWorld),
+      voxelSize_(Volume{.indexToWorld = indexToWorld}.voxelSize()),
+      edge_((std::max({dimensions.x, dimensions.y, dimensions.z}) + kMaxCells - 1) / kMaxCells),
+      size_((dimensions + edge_ - 1) / edge_),
+      values_(std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z)) {}
+
+glm::dmat4 EmissionCells::cellsToWorld() const {
+  return indexToWorld_ * glm::dmat4(glm::dvec4(edge_, 0, 0, 0), glm::dvec4(0, edge_, 0, 0), glm::dvec4(0, 0, edge_, 0),
+                                    glm::dvec4(glm::dvec3(0.5 * (edge_ - 1)), 1));
+}
+
+void EmissionCells::add(const Volume& part, glm::ivec3 first, const Classification& classification) {
+  const glm::ivec3 end = first + part.dimensions;
+  const double share = 1.0 / (double(edge_) * edge_ * edge_);
+  const double voxel = std::abs(glm::determinant(glm::dmat3(indexToWorld_)));
+  tbb::parallel_for(first.z / edge_, (end.z + edge_ - 1) / edge_, [&](int plane) {
+    std::vector<float> scalars(std::size_t(part.dimensions.x)), temperatures(scalars.size());
+    for (int z = std::max(plane * edge_, first.z); z < std::min((plane + 1) * edge_, end.z); ++z)
+      for (int y = first.y; y < end.y; ++y) {
+        part.scalars.copyRow(y - first.y, z - first.z, scalars);
+        part.temperature->values.copyRow(y - first.y, z - first.z, temperatures);
+        Cell* const row = &values_[index({0, y / edge_, plane})];
+        for (int x = first.x; x < end.x; ++x) {
+          Cell& cell = row[x / edge_];
+          cell.extinction += share * classify(classification, scalars[std::size_t(x - first.x)]).extinction;
+          cell.power += voxel * emittedLight(*classification.emission, temperatures[std::size_t(x - first.x)]);
+        }
+      }
+  });
+}
+
+EmissionLight::EmissionLight(const Volume& volume, const Classification& classification)
+    : EmissionLight([&] {
+        EmissionCells cells(volume.dimensions, volume.indexToWorld);
+        if (brightestLight(classification, volume) > 0.0) cells.add(volume, glm::ivec3(0), classification);
+        return cells;
+      }()) {}
+
+EmissionLight::EmissionLight(const EmissionCells& cells) : cells_(cells.size()) {
+  const glm::dmat4 cellsToWorld = cells.cellsToWorld();
   worldToCells_ = glm::inverse(cellsToWorld);
-  const std::vector<Source> sources = sourcesOf(cells, cells.edge * volume.voxelSize());
-  radiance_.resize(cells.values.size());
+  const std::vector<Source> sources = sourcesOf(cells);
+  if (sources.empty()) return;
+  radiance_.resize(std::size_t(cells_.x) * std::size_t(cells_.y) * std::size_t(cells_.z));
   const glm::dmat3 linear(cellsToWorld);
   tbb::parallel_for(0, cells_.z, [&](int z) {
     for (int y = 0; y < cells_.y; ++y)

@@ -11,11 +11,40 @@
 
 namespace freevoxels {
 
+/// What a volume's voxels emit and absorb, in cubes of voxels of which there are few, summed up part by part.
+class EmissionCells {
+ public:
+  struct Cell {
+    double extinction = 0.0;  ///< mean
+    glm::dvec3 power{0.0};    ///< emission times the cell's volume
+  };
+
+  EmissionCells(glm::ivec3 dimensions, const glm::dmat4& indexToWorld);
+  /// Adds the voxels of a box of the volume, which begins at voxel `first` of it.
+  void add(const Volume& part, glm::ivec3 first, const Classification& classification);
+
+  glm::ivec3 size() const { return size_; }
+  double cellEdge() const { return edge_ * voxelSize_; }  ///< world length
+  glm::dmat4 cellsToWorld() const;
+  std::size_t index(glm::ivec3 cell) const {
+    return std::size_t(cell.x) + std::size_t(size_.x) * (std::size_t(cell.y) + std::size_t(size_.y) * std::size_t(cell.z));
+  }
+  const Cell& at(glm::ivec3 cell) const { return values_[index(cell)]; }
+
+ private:
+  glm::dmat4 indexToWorld_;
+  double voxelSize_;
+  int edge_;  ///< voxels
+  glm::ivec3 size_;
+  std::vector<Cell> values_;  ///< x fastest
+};
+
 class EmissionLight {
  public:
   /// Computes the light of all cells; 0 if nothing is emitted. `classification.emissionLight` is ignored.
   /// This is slow: it reads all voxels and marches from every cell with extinction to every source.
   EmissionLight(const Volume& volume, const Classification& classification);
+  explicit EmissionLight(const EmissionCells& cells);
 
   /// The radiance that arrives at a position in world space, averaged over all directions, linear Rec.709,
   /// interpolated between cells.
