@@ -12,7 +12,7 @@
 layout(local_size_x = kBrickQuadsThreads) in;
 layout(scalar, push_constant) uniform Push { AmbientCodesPush push; };
 layout(binding = 0) uniform utextureBuffer brickCells;  // position of each brick's first block, in blocks: x, y, z
-layout(scalar, binding = 1) readonly buffer CellLight { float light[]; };
+layout(binding = 1) uniform textureBuffer light;  // of the cells
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Codes { uint pairs[]; };
 
 float lightAt(ivec3 block) {
@@ -24,8 +24,8 @@ float lightAt(ivec3 block) {
     const ivec3 cell = clamp(ivec3(low) + upper, ivec3(0), push.cells - 1);
     const vec3 shares = mix(1.0 - upperShare, upperShare, vec3(upper));
     const int place = cell.x + push.cells.x * (cell.y + push.cells.y * cell.z);
-    float part = light[place + push.firstLight];
-    if (push.firstWeight >= 0) part /= light[place + push.firstWeight];
+    float part = texelFetch(light, place + push.firstLight).x;
+    if (push.firstWeight >= 0) part /= texelFetch(light, place + push.firstWeight).x;
     sum += shares.x * shares.y * shares.z * part;
   }
   return sum;

@@ -4,6 +4,7 @@
 // it continues at the opposite side with the line that enters there, so that all lines are marched and every
 // cell is visited once.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
 #include "gather_interface.h"
 #include "phase_function.glsl"
 
@@ -12,9 +13,9 @@ layout(constant_id = 1) const bool kPhase = false;  // whether the light is weig
 
 layout(local_size_x = kAmbientThreads) in;
 layout(scalar, push_constant) uniform Push { AmbientSweepPush push; };
-layout(scalar, binding = 0) readonly buffer Extinctions { float extinctions[]; };
+layout(binding = 0) uniform textureBuffer extinctions;
 // The channels one after the other; with kPhase followed by the sum of weights.
-layout(scalar, binding = 1) buffer CellLight { float light[]; };
+layout(binding = 1, r32f) uniform imageBuffer light;
 
 // The weight of an octave of scattering, relative to isotropic scattering.
 float phaseAt(ivec3 cell, float g) {
@@ -24,6 +25,8 @@ float phaseAt(ivec3 cell, float g) {
   if (length2 == 0.0) return 1.0;
   return 4.0 * kPi * phaseFunction(g, normalize(push.cellToWorld * vec3(push.step)), towards * inversesqrt(length2));
 }
+
+void add(int place, float part) { imageStore(light, place, imageLoad(light, place) + part); }
 
 void main() {
   const int number = int(gl_LocalInvocationID.x + kAmbientThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x));
@@ -38,7 +41,7 @@ void main() {
   float depth = 0.0;  // optical depth in front of the cell
   for (int k = 0; k < count; ++k) {
     const int place = side.x * strides[axes.x] + side.y * strides[axes.y] + plane * strides[axes.z];
-    const float own = extinctions[place] * push.stepLength, middle = depth + 0.5 * own;
+    const float own = texelFetch(extinctions, place).x * push.stepLength, middle = depth + 0.5 * own;
     ivec3 cell;
     cell[axes.x] = side.x;
     cell[axes.y] = side.y;
@@ -51,8 +54,8 @@ void main() {
       weights += weight;
       scale *= push.octaveScale;
     }
-    [[unroll]] for (int c = 0; c < kChannels; ++c) light[place + c * ofChannel] += push.share[c] * sums[c];
-    if (kPhase) light[place + kChannels * ofChannel] += push.weight * weights;
+    [[unroll]] for (int c = 0; c < kChannels; ++c) add(place + c * ofChannel, push.share[c] * sums[c]);
+    if (kPhase) add(place + kChannels * ofChannel, push.weight * weights);
     depth += own;
     plane += step.z;
     side += step.xy;

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "embedded/ambient_sweep.h"
 
@@ -74,9 +75,7 @@ AmbientPass::AmbientPass(const Device& device, const Volume& volume, const Class
 AmbientPass::AmbientPass(const Device& device, glm::ivec3 dimensions, const glm::dmat4& indexToWorld, int edge,
                          std::span<const float> extinctions)
     : device_(device), indexToWorld_(indexToWorld), edge_(edge), cells_((dimensions + edge_ - 1) / edge_) {
-  const auto bytes = std::as_bytes(extinctions);
-  extinction_ = Buffer(device, bytes.size(), MemoryUse::Device, "extinctions of cells");
-  upload(device, extinction_, bytes);
+  std::tie(extinction_, extinctionTexels_) = uploadTexels(device, std::as_bytes(extinctions), VK_FORMAT_R32_SFLOAT, "extinctions of cells");
 }
 
 int AmbientPass::channelCount(const Lighting& lighting) {
@@ -109,11 +108,15 @@ bool AmbientPass::record(Commands& commands, const Lighting& lighting, const Ray
   eye_ = eye;
 
   const VkDeviceSize bytes = extinction_.bytes() * VkDeviceSize(channels + (hasPhase ? 1 : 0));
-  if (light_.bytes() != bytes) light_ = Buffer(device_, bytes, MemoryUse::Device, "ambient light of cells");
+  if (light_.bytes() != bytes) {
+    light_ = Buffer(device_, bytes, MemoryUse::Device, "ambient light of cells",
+                    VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
+    lightTexels_ = TexelView(device_, light_, VK_FORMAT_R32_SFLOAT);
+  }
   pipeline_ = makeComputePipeline(device_, shaders::ambient_sweep, {std::uint32_t(channels), hasPhase ? 1u : 0u});
   commands.beginPass("ambient sweep");
   commands.clear(light_);
-  const std::array<Binding, 2> bindings{&extinction_, &light_};
+  const std::array<Binding, 2> bindings{&extinctionTexels_, &lightTexels_};
   for (int i = 0; i < directionCount(kDirections); ++i) {
     const glm::ivec3 step = -directionCell(kDirections, i);
     const shader::AmbientSweepPush push{

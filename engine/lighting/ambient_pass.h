@@ -19,7 +19,7 @@ namespace freevoxels {
 /// Largest numbers of cells, without and with a phase function. Ambient light is smooth, so that cells may be
 /// cubes of 2, 4, ... voxels along an edge. With a phase function every view has its own sweeps, which have
 /// fewer cells.
-inline constexpr std::uint64_t kMaxAmbientCells = 4u << 20, kMaxPhaseCells = 1u << 19;
+inline constexpr std::uint64_t kMaxAmbientCells = 1u << 20, kMaxPhaseCells = 1u << 19;
 int ambientCellEdge(glm::ivec3 dimensions, bool hasPhase);
 
 /// The mean extinction, per world unit, of each cell, x fastest. The part of a cell beyond the volume counts
@@ -47,7 +47,7 @@ class AmbientPass {
 
   /// float: the fraction of the unshadowed light that reaches each cell, channel by channel; with a phase
   /// function followed by the weights to divide by.
-  const Buffer& light() const { return light_; }
+  const TexelView& light() const { return lightTexels_; }
   bool hasWeights() const { return like_.phaseG != 0.0; }
   glm::ivec3 cells() const { return cells_; }
   int edge() const { return edge_; }
@@ -59,6 +59,7 @@ class AmbientPass {
   glm::ivec3 cells_;
   Buffer extinction_;  ///< float: cellExtinctions()
   Buffer light_;
+  TexelView extinctionTexels_, lightTexels_;
   Pipeline pipeline_;
   std::vector<glm::dvec3> parts_;  ///< the unshadowed light by direction from which `light_` was made
   Lighting like_;                  ///< the tint, phase function and octaves from which `light_` was made

@@ -9,12 +9,13 @@ namespace freevoxels {
 namespace {
 
 TEST(AmbientCells, AreNoMoreThanThereMayBe) {
-  EXPECT_EQ(ambientCellEdge({128, 128, 128}, false), 1);
-  EXPECT_EQ(ambientCellEdge({256, 256, 256}, false), 2);
-  EXPECT_EQ(ambientCellEdge({128, 128, 128}, true), 2);
-  EXPECT_EQ(ambientCellEdge({512, 512, 512}, false), 4);
-  EXPECT_EQ(ambientCellEdge({455, 602, 493}, false), 4);
-  EXPECT_EQ(ambientCellEdge({2, 3, 4'000'000}, false), 2);
+  EXPECT_EQ(ambientCellEdge({100, 100, 100}, false), 1);
+  EXPECT_EQ(ambientCellEdge({128, 128, 128}, false), 2);
+  EXPECT_EQ(ambientCellEdge({200, 200, 200}, false), 2);
+  EXPECT_EQ(ambientCellEdge({100, 100, 100}, true), 2);
+  EXPECT_EQ(ambientCellEdge({512, 512, 512}, false), 8);
+  EXPECT_EQ(ambientCellEdge({455, 602, 493}, false), 8);
+  EXPECT_EQ(ambientCellEdge({2, 3, 4'000'000}, false), 4);
 }
 
 /// Beyond the box, and where there is no data, cells are empty.
