@@ -289,7 +289,7 @@ void StreamedRenderer::State::drawCube(const Frame& frame, const StreamedLevel& 
     const StageTimer timer(times, "read cubes");
     volume = readBakedBox(*file, streamed.baked.level, box);
   }
-  const BuiltVolume built = buildVolume(device, volume, frame.classification, times);
+  const BuiltVolume built = buildVolume(device, volume, frame.classification, times, {}, BuiltLevels::Voxels);
   const SurroundingLight light{.dimensions = streamed.outline.dimensions,
                                .first = box.first,
                                .ambient = streamed.ambient ? &*streamed.ambient : nullptr,

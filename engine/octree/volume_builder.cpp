@@ -52,11 +52,12 @@ void makeStores(const Device& device, DeviceVolume& volume) {
 class BlockBuilder {
  public:
   BlockBuilder(const Device& device, const Volume& volume, const Classification& classification, BuiltVolume& built,
-               std::vector<StageTime>& times, const Progress& progress)
+               std::vector<StageTime>& times, const Progress& progress, BuiltLevels levels)
       : device_(device),
         times_(times),
         progress_(progress),
         built_(built),
+        levels_(levels),
         bricks_(device, built_.volume, volume, classification) {}
 
   void run() {
@@ -75,7 +76,7 @@ class BlockBuilder {
     forEachBatch([&](Commands& commands, std::size_t batch) {
       occupancy.recordVoxels(commands, volume, bricks_, batch == 0);
     });
-    const auto levels = volume.hierarchy.levels.size();
+    const std::size_t levels = levels_ == BuiltLevels::All ? volume.hierarchy.levels.size() : 1;
     built_.lists.coarse.resize(levels - 1);
     const auto listOf = [&](std::size_t level) -> BlockList& {
       return level == 0 ? built_.visible : built_.lists.coarse[level - 1];
@@ -83,7 +84,7 @@ class BlockBuilder {
     std::vector<std::uint32_t> counts(levels);
     const Buffer totals(device_, levels * sizeof(std::uint32_t), MemoryUse::Device, "block counts");
     Commands counting(device_);
-    occupancy.recordBlocks(counting, volume);
+    if (levels > 1) occupancy.recordBlocks(counting, volume);
     for (std::size_t level = 0; level < levels; ++level)
       compaction.recordCount(counting, volume, int(level), listOf(level), totals);
     submit(counting);
@@ -95,14 +96,16 @@ class BlockBuilder {
     }
     submit(listing);
     built_.volume.stored.assign(counts.begin(), counts.end());
+    built_.volume.stored.resize(volume.hierarchy.levels.size(), 0);
   }
 
   /// Stores the medium of every occupied block.
   void store() {
     const DeviceVolume& volume = built_.volume;
     const PackPass pack(device_, volume);
-    const MediumLevels levels(device_, volume);
     forEachBatch([&](Commands& commands, std::size_t) { pack.record(commands, volume, bricks_); });
+    if (levels_ == BuiltLevels::Voxels) return;
+    const MediumLevels levels(device_, volume);
     Commands commands(device_);
     levels.record(commands, volume, built_.lists.coarse);
     submit(commands);
@@ -130,13 +133,14 @@ class BlockBuilder {
   std::vector<StageTime>& times_;
   const Progress& progress_;
   BuiltVolume& built_;
+  BuiltLevels levels_;
   DeviceBricks bricks_;
 };
 
 }  // namespace
 
 BuiltVolume buildVolume(const Device& device, const Volume& volume, const Classification& classification,
-                        std::vector<StageTime>& times, const Progress& progress) {
+                        std::vector<StageTime>& times, const Progress& progress, BuiltLevels levels) {
   checkBoxFits(device, HierarchyLayout(volume.dimensions));
   BuiltVolume built{.volume = makeDeviceVolume(device, volume, classification)};
   if (classification.isPost(volume)) {
@@ -149,15 +153,15 @@ BuiltVolume buildVolume(const Device& device, const Volume& volume, const Classi
       built.volume.lacksScalarBricks = true;
     }
   } else {
-    buildBlocks(device, volume, classification, built, times, progress);
+    buildBlocks(device, volume, classification, built, times, progress, levels);
   }
   return built;
 }
 
 void buildBlocks(const Device& device, const Volume& volume, const Classification& classification, BuiltVolume& built,
-                 std::vector<StageTime>& times, const Progress& progress) {
+                 std::vector<StageTime>& times, const Progress& progress, BuiltLevels levels) {
   try {
-    BlockBuilder(device, volume, classification, built, times, progress).run();
+    BlockBuilder(device, volume, classification, built, times, progress, levels).run();
   } catch (...) {
     built.volume.stored.clear();
     built.lists.coarse.clear();

@@ -27,16 +27,19 @@ struct BuiltVolume {
   bool hasBlocks() const { return !volume.stored.empty(); }
 };
 
+/// Which levels of the octree have blocks. With Voxels the levels above them are empty.
+enum class BuiltLevels { All, Voxels };
+
 /// Uploads the scalars if they are classified after interpolation, otherwise builds the blocks. Blocks until
 /// the device is done, and adds the times of its passes to `times`. Fails with ErrorKind::OutOfMemory, before
 /// allocating if the box is too large.
 BuiltVolume buildVolume(const Device& device, const Volume& volume, const Classification& classification,
-                        std::vector<StageTime>& times, const Progress& progress = {});
+                        std::vector<StageTime>& times, const Progress& progress = {}, BuiltLevels levels = BuiltLevels::All);
 
 /// Builds the classified voxels and blocks, their ranks and lists for a volume of which there are only
 /// scalars: lights, levels of detail, splats and the table need them. Blocks until the device is done. Fails
 /// with ErrorKind::OutOfMemory.
 void buildBlocks(const Device& device, const Volume& volume, const Classification& classification, BuiltVolume& built,
-                 std::vector<StageTime>& times, const Progress& progress = {});
+                 std::vector<StageTime>& times, const Progress& progress = {}, BuiltLevels levels = BuiltLevels::All);
 
 }  // namespace freevoxels
