@@ -11,6 +11,7 @@
 #include "engine/volume/occupied_count.h"
 #include "engine/volume/voxel_classifier.h"
 #include "shaders/frame_interface.h"
+#include "shaders/gather_interface.h"
 
 namespace freevoxels {
 
@@ -77,11 +78,15 @@ std::uint64_t planKeptQuadBytes(const Device& device) {
   return device.memoryBytes() / kOptionalDivisor;
 }
 
-std::uint64_t leastGatherBytes(std::uint64_t brickVoxels, glm::ivec3 dimensions, const glm::dmat4& indexToWorld, const Lighting* lighting) {
+std::uint64_t leastGatherBytes(std::uint64_t brickVoxels, glm::ivec3 dimensions, const glm::dmat4& indexToWorld, const Lighting* lighting,
+                               bool emits) {
   std::uint64_t quadBytes = sizeof(glm::uvec2), rays = 0;  // quads of extinctions
+  if (emits) quadBytes += sizeof(glm::uvec4);              // of emission
   if (lighting != nullptr) {
+    const bool perVoxel = lighting->lights.size() > std::size_t(shader::kMaxSampleLights);
+    if (perVoxel) quadBytes += 2 * sizeof(glm::uvec4);  // of source terms and their directions
     for (const Light& light : lighting->lights) {
-      quadBytes += sizeof(std::uint16_t) + sizeof(glm::uvec2);  // the code of the light, and quads of codes
+      if (!perVoxel) quadBytes += sizeof(std::uint16_t) + sizeof(glm::uvec2);  // the code of the light, and quads of codes
       rays += rayBytes(dimensions, lightSource(light, indexToWorld));
     }
   }

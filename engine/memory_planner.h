@@ -55,8 +55,9 @@ std::uint64_t leastMemory(const Device& device, const Volume& volume, const Clas
                           const FrameSettings& settings);
 
 /// Bytes of device memory that the gather of voxels takes at least. `brickVoxels` are the voxels of all bricks that are not empty;
-/// `lighting` is null without lights.
-std::uint64_t leastGatherBytes(std::uint64_t brickVoxels, glm::ivec3 dimensions, const glm::dmat4& indexToWorld, const Lighting* lighting);
+/// `lighting` is null without lights; `emits` says whether voxels emit light.
+std::uint64_t leastGatherBytes(std::uint64_t brickVoxels, glm::ivec3 dimensions, const glm::dmat4& indexToWorld, const Lighting* lighting,
+                               bool emits);
 
 /// To be thrown instead of `error`, which a volume or a frame failed with: where the device's memory is limited and is less than
 /// leastMemory, a sentence with that, so that a limit has to be raised once only; otherwise `error`.

@@ -142,7 +142,8 @@ struct StreamedRenderer::State {
   int level;
   Classification classification;
   TableSettings table;
-  std::map<int, StreamedLevel> levels;  ///< by level above `level`
+  std::shared_ptr<const EmissionLight> emissionLight;  ///< null until a frame is lit
+  std::map<int, StreamedLevel> levels;                 ///< by level above `level`
   std::optional<GatherPass> gather;
   TargetPool targetPool;
   TargetReadback colorReadback, distanceReadback;
@@ -181,19 +182,20 @@ struct StreamedRenderer::State {
 /// Where the volume is lit, its emission lights it, too.
 void StreamedRenderer::State::prepareEmissionLight(bool lit, const Progress& progress) {
   if (!classification.emission || lit == (classification.emissionLight != nullptr)) return;
-  const StageTimer timer(times, "light of emission");
-  classification.emissionLight = nullptr;
-  if (lit) {
+  if (lit && !emissionLight) {
+    const StageTimer timer(times, "light of emission");
     const StreamedLevel& base = levelAt(0);
     const glm::ivec3 dimensions = base.outline.dimensions;
     EmissionCells cells(dimensions, base.outline.indexToWorld);
-    for (std::size_t i = 0; i < base.cubes.size(); ++i) {
+    const bool shines = brightestLight(classification, base.outline) > 0.0;
+    for (std::size_t i = 0; shines && i < base.cubes.size(); ++i) {
       if (progress) progress("reading emission", double(i) / double(base.cubes.size()));
       const fvx::VoxelBox cube = cubeVoxels(base.cubes[i], dimensions);
       cells.add(readBakedBox(*file, level, cube), cube.first, classification);
     }
-    classification.emissionLight = std::make_shared<const EmissionLight>(cells);
+    emissionLight = std::make_shared<const EmissionLight>(cells);
   }
+  classification.emissionLight = lit ? emissionLight : nullptr;
   levels.clear();  // which keep the classification
 }
 
@@ -346,25 +348,9 @@ Image StreamedRenderer::State::resolve(const Frame& frame) {
           .depth = frame.settings.depth ? distanceReadback.read<float>() : std::vector<float>()};
 }
 
-std::optional<std::string> StreamedRenderer::whyNot(const FvxFile& file, const FrameSettings& settings) {
-  if (!drawsByGathering(settings)) return "splats are drawn of the whole volume";
-  if (!settings.lighting) return {};
-  const Lighting& lighting = *settings.lighting;
-  if (lightAttenuationFor(settings) == LightAttenuation::Table) return "shadows from the table need the whole volume";
-  if (lighting.hasAmbient() && ambientCellEdge(file.description().volume.dimensions, lighting.phaseG != 0.0) > kEdge)
-    return "the volume is too long for ambient light with a phase function";
-  return {};
-}
-
-StreamedRenderer::StreamedRenderer(const Device& device, std::shared_ptr<const FvxFile> file, int level, const Classification& classification,
-                                   const TableSettings& table)
-    : state_(new State{.device = device, .file = std::move(file), .level = level, .classification = classification, .table = table}) {}
-
-StreamedRenderer::~StreamedRenderer() = default;
-
 Image StreamedRenderer::State::draw(const Camera& camera, const FrameSettings& settings, std::span<const Light> allLights,
                                     std::size_t firstLight, const Progress& progress) {
-  // What emits is drawn with the first of the lights.
+  // Emission is drawn with the first of the lights. Without it the voxels would be classified after interpolation, if the order is Post.
   Classification dark = classification;
   dark.emission.reset();
   dark.emissionLight = nullptr;
@@ -376,14 +362,15 @@ Image StreamedRenderer::State::draw(const Camera& camera, const FrameSettings& s
                     .firstLight = firstLight,
                     .progress = progress,
                     .lattice = latticeOf(camera, settings)};
-  cubesRead.assign(std::size_t(frame.lattice.coarsest) + 1, 0);
+  const std::size_t levelCount = std::size_t(frame.lattice.coarsest) + 1;
+  cubesRead.resize(std::max(cubesRead.size(), levelCount), 0);
   if (!gather) gather.emplace(device);
   {
     Commands commands(device);
     gather->recordClear(commands, frame.lattice);
     commands.submitAndWait();
   }
-  std::vector<std::vector<Cube>> levelCubes(cubesRead.size());
+  std::vector<std::vector<Cube>> levelCubes(levelCount);
   std::size_t last = 0;
   for (int above = frame.lattice.finest; above <= frame.lattice.coarsest; ++above) {
     levelCubes[std::size_t(above)] = cubesOf(frame, above);
@@ -393,11 +380,28 @@ Image StreamedRenderer::State::draw(const Camera& camera, const FrameSettings& s
   return resolve(frame);
 }
 
+std::optional<std::string> StreamedRenderer::whyNot(const FvxFile& file, const FrameSettings& settings) {
+  if (!drawsByGathering(settings)) return "splats are drawn of the whole volume";
+  if (!settings.lighting) return {};
+  const Lighting& lighting = *settings.lighting;
+  if (lightAttenuationFor(settings) == LightAttenuation::Table) return "shadows from the table need the whole volume";
+  if (lighting.hasAmbient() && ambientCellEdge(file.description().volume.dimensions, lighting.phaseG != 0.0) > kEdge)
+    return "the volume is too large for the cells of ambient light";
+  return {};
+}
+
+StreamedRenderer::StreamedRenderer(const Device& device, std::shared_ptr<const FvxFile> file, int level, const Classification& classification,
+                                   const TableSettings& table)
+    : state_(new State{.device = device, .file = std::move(file), .level = level, .classification = classification, .table = table}) {}
+
+StreamedRenderer::~StreamedRenderer() = default;
+
 Image StreamedRenderer::render(const Camera& camera, const FrameSettings& wanted, const Progress& progress) {
   State& state = *state_;
   checkCamera(camera);
   checkFrameFits(state.device, wanted);
   state.times.clear();
+  state.cubesRead.clear();
   state.prepareEmissionLight(wanted.lighting.has_value(), progress);
   FrameSettings settings = exactSettings(wanted, hasOctree(state.levelAt(0).outline, state.classification));
   const std::vector<Light> lights = settings.lighting ? settings.lighting->lights : std::vector<Light>();
@@ -406,7 +410,7 @@ Image StreamedRenderer::render(const Camera& camera, const FrameSettings& wanted
   if (all.size() > kAtOnce) settings.lighting->lights.assign(all.begin(), all.begin() + kAtOnce);
   Image image = state.draw(camera, settings, all, 0, progress);
   if (all.size() <= kAtOnce) return image;
-  // Light adds up. The alphas are the same.
+  // Light adds up. Alpha does not depend on the lights.
   settings.depth = false;
   settings.lighting->ambient = glm::dvec3(0.0);
   settings.lighting->environment = nullptr;
@@ -426,9 +430,9 @@ const std::vector<std::size_t>& StreamedRenderer::cubesRead() const { return sta
 VolumeMemory StreamedRenderer::memory() const {
   const DeviceVolume& whole = state_->levelAt(0).onDevice;
   const HierarchyLayout hierarchy(glm::min(whole.layout.dimensions, kCubeEdge + 2 * kCubeHalo));
-  std::vector<std::uint64_t> blocks;
-  for (const GridLayout& level : hierarchy.levels) blocks.push_back(level.voxels());
-  VolumeMemory memory = volumeMemory(hierarchy, blocks, state_->table.directions, {.colors = whole.hasColors}, sweepStyle(state_->device));
+  std::vector<std::uint64_t> blocks(hierarchy.levels.size(), 0);
+  blocks.front() = hierarchy.levels.front().voxels();
+  VolumeMemory memory = volumeMemory(hierarchy, blocks, state_->table.directions, storedKinds(whole), sweepStyle(state_->device));
   memory.table = memory.sweep = memory.splats = 0;
   return memory;
 }

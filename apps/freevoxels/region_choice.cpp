@@ -15,7 +15,8 @@ std::uint64_t leastBytes(const PieceDrawing& pieces, int level) {
   for (const fvx::ChunkEntry& chunk : pieces.file->chunks(fvx::Channel::Scalars, level)) bricks += std::uint64_t(chunk.bricks());
   return leastGatherBytes(bricks * fvx::kBrickVoxels, pieces.file->dimensions(level),
                           fvx::levelToWorld(pieces.file->description().volume.indexToWorld, level),
-                          pieces.settings.lighting ? &*pieces.settings.lighting : nullptr);
+                          pieces.settings.lighting ? &*pieces.settings.lighting : nullptr,
+                          pieces.file->description().volume.temperature.has_value());
 }
 
 }  // namespace

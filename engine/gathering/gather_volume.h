@@ -49,7 +49,7 @@ class GatherVolume {
     std::uint64_t keptQuadBytes = 0;  ///< quads of other axes are kept for later frames up to so many bytes
   };
   /// Whether the transmittance of all lights is evaluated at the samples: for few lights from their rays, and
-  /// for ambient light. With more lights, shading is per voxel.
+  /// for ambient light. With more lights, or with shadows from the table, shading is per voxel.
   static bool lightsSamples(const Lighting* lighting);
   /// Allocates what the frame needs and adds the time of work on the host to `times`. Fails with
   /// ErrorKind::OutOfMemory.

@@ -59,8 +59,8 @@ struct LengthSquared {
 /// t reaches at most R |K0 - x K2| / (t - R |K2|) along x (boundsOf in splat_projection.glsl).
 double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions, const DetailRule& detail) {
   const glm::dmat3 rows = glm::transpose(toPixel);
-  // A widened footprint is larger by at most this: its rim where |D| changes by `step` of it, or less, in a pixel.
-  const double step = std::max(glm::length(rays.directionX), glm::length(rays.directionY)) * glm::length(rows[2]);
+  // A widened footprint reaches farther by at most `widened`. `step` bounds the relative change of |D| from pixel to pixel.
+  const double step = std::hypot(glm::length(rays.directionX), glm::length(rays.directionY)) * glm::length(rows[2]);
   const double flat = kFootprintRadius * kFootprintRadius / (1.0 - std::pow(kFootprintRadius * step, 2.0));
   if (flat < 0.0) return std::numeric_limits<double>::infinity();
   const double widened = step * flat + std::sqrt((1.0 + step * step * flat) * flat);

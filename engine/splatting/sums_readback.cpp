@@ -5,7 +5,7 @@ namespace freevoxels {
 namespace {
 
 /// World length per index length along the pixel's ray: the factor of the footprints that the shaders leave
-/// out (splat.frag).
+/// out (splat.frag). `pixel` counts from the middle of the image.
 double worldPerIndex(const shader::ResolvePush& rays, glm::dvec2 pixel) {
   const glm::dvec3 index =
       glm::dvec3(rays.ray) + pixel.x * glm::dvec3(rays.rayX) + pixel.y * glm::dvec3(rays.rayY);

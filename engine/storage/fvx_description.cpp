@@ -141,6 +141,7 @@ Volume readVolume(const Json& json) {
                                          .minimum = grid.at("minimum"),
                                          .maximum = grid.at("maximum")};
   }
+  if (volume.classification->emission && !volume.temperature) throw std::runtime_error("there is emission without temperatures");
   if (json.contains("albedo"))
     volume.albedo = AlbedoGrid{.name = json["albedo"].at("name"), .clippedVoxels = json["albedo"].at("clipped_voxels")};
   return volume;

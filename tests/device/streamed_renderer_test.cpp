@@ -75,11 +75,11 @@ TEST_F(StreamedRendererTest, FiresAreTheImageOfTheWholeVolumeAndOfTheirOwnLight)
   Classification classification{.densityScale = automaticDensityScale(volume, 2.0), .albedo = glm::vec3(0.8f)};
   classification.emission = Emission{.strength = automaticEmissionStrength(volume, classification, {})};
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.2, {});
-  for (const bool lit : {false, true}) {
+  StreamedRenderer streamed(device(), bake(volume, classification), 0, classification, {});
+  for (const bool lit : {false, true, false}) {
     FrameSettings settings = litSettings({{.place = {1.0, 0.7, 0.2}, .intensity = 0.5}});
     settings.lod = 0.0f;
     if (!lit) settings.lighting.reset();
-    StreamedRenderer streamed(device(), bake(volume, classification), 0, classification, {});
     const Image image = streamed.render(camera, settings);
     Classification whole = classification;
     if (lit) whole.emissionLight = std::make_shared<const EmissionLight>(volume, classification);
