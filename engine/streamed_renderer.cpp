@@ -6,15 +6,13 @@
 #include <span>
 #include <utility>
 
-#include "engine/attenuation/plane_sweep.h"
 #include "engine/core/error.h"
 #include "engine/core/parameter.h"
 #include "engine/gathering/gather_pass.h"
-#include "engine/lighting/ambient_pass.h"
-#include "engine/octree/device_volume.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/splatting/splat_pass.h"
 #include "engine/storage/baked_box.h"
+#include "engine/streamed_level.h"
 #include "engine/volume/emission_light.h"
 #include "engine/vulkan/target_readback.h"
 
@@ -25,7 +23,7 @@ namespace {
 using fvx::FvxFile;
 
 constexpr int kEdge = StreamedRenderer::kCubeEdge, kHalo = StreamedRenderer::kCubeHalo, kBrick = ScalarBricks::kEdge;
-static_assert(kEdge % fvx::kChunkEdge == 0 && kHalo % kBrick == 0);
+static_assert(kHalo % kBrick == 0);
 
 /// Whether the coarser levels of a file are those of the octree: means of extinctions, of one colour. What a mean temperature emits is
 /// not the mean emission.
@@ -42,84 +40,8 @@ FrameSettings exactSettings(const FrameSettings& wanted, bool octree) {
   return settings;
 }
 
-fvx::VoxelBox cubeVoxels(glm::ivec3 cell, glm::ivec3 dimensions) { return {cell * kEdge, glm::min((cell + 1) * kEdge, dimensions)}; }
-
 fvx::VoxelBox withHalo(const fvx::VoxelBox& cube, glm::ivec3 dimensions) {
   return {glm::max(cube.first - kHalo, 0), glm::min(cube.end + kHalo, dimensions)};
-}
-
-/// A level of the file as frames read it.
-struct StreamedLevel {
-  BakedLevel baked;
-  Volume outline;
-  DeviceVolume onDevice;
-  std::vector<glm::ivec3> cubes;      ///< in and beside which there are voxels with data
-  std::optional<AmbientPass> ambient;
-  std::vector<std::unique_ptr<SweptLight>> lights;
-
-  StreamedLevel(std::shared_ptr<const FvxFile> file, int level, const Classification& classification)
-      : baked{.file = std::move(file), .level = level, .classification = classification},
-        outline(bakedOutline(*baked.file, level)),
-        onDevice(outlineOnDevice(outline, classification)) {
-    const glm::ivec3 bricks = (outline.dimensions + kBrick - 1) / kBrick, cells = (outline.dimensions + kEdge - 1) / kEdge;
-    const std::vector<std::uint8_t> around = bricksAround(*baked.file, level);
-    std::vector<bool> isMet(std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z));
-    std::size_t i = 0;
-    for (glm::ivec3 brick(0); brick.z < bricks.z; ++brick.z)
-      for (brick.y = 0; brick.y < bricks.y; ++brick.y)
-        for (brick.x = 0; brick.x < bricks.x; ++brick.x, ++i) {
-          if (around[i] == 0) continue;
-          const glm::ivec3 cell = brick * kBrick / kEdge;
-          const auto number = std::size_t(cell.x) + std::size_t(cells.x) * (std::size_t(cell.y) + std::size_t(cells.y) * std::size_t(cell.z));
-          if (!isMet[number]) cubes.push_back(cell);
-          isMet[number] = true;
-        }
-  }
-
-  void prepareLights(const Device& device, std::span<const Light> wanted, std::vector<StageTime>& times, const Progress& progress);
-  void prepareAmbient(const Device& device, const Lighting& lighting, const RaySource& eye, std::vector<StageTime>& times,
-                      const Progress& progress);
-};
-
-/// Keeps what was swept for lights that stand.
-void StreamedLevel::prepareLights(const Device& device, std::span<const Light> wanted, std::vector<StageTime>& times,
-                                  const Progress& progress) {
-  std::vector<std::unique_ptr<SweptLight>> before = std::exchange(lights, {});
-  for (const Light& light : wanted) {
-    const RaySource source = lightSource(light, outline.indexToWorld);
-    const auto same = std::ranges::find_if(before, [&](const auto& swept) { return swept && swept->source() == source; });
-    lights.push_back(same != before.end() ? std::move(*same) : std::make_unique<SweptLight>(device, baked, source, times, progress));
-  }
-}
-
-void StreamedLevel::prepareAmbient(const Device& device, const Lighting& lighting, const RaySource& eye, std::vector<StageTime>& times,
-                                   const Progress& progress) {
-  const glm::ivec3 dimensions = outline.dimensions;
-  const int edge = ambientCellEdge(dimensions, lighting.phaseG != 0.0);
-  FV_CHECK_EQ(kEdge % edge, 0);
-  if (!ambient || ambient->edge() != edge) {
-    const StageTimer timer(times, "ambient cells");
-    ambient.reset();
-    const glm::ivec3 cells = (dimensions + edge - 1) / edge;
-    std::vector<float> extinctions(std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z), 0.0f);
-    for (std::size_t i = 0; i < cubes.size(); ++i) {
-      if (progress) progress("reading ambient cells", double(i) / double(cubes.size()));
-      const fvx::VoxelBox cube = cubeVoxels(cubes[i], dimensions);
-      const Volume volume = readBakedBox(*baked.file, baked.level, cube);
-      const std::vector<float> part = cellExtinctions(volume, baked.classification, edge);
-      const glm::ivec3 size = (cube.extent() + edge - 1) / edge, first = cube.first / edge;
-      for (int z = 0; z < size.z; ++z)
-        for (int y = 0; y < size.y; ++y)
-          std::copy_n(part.begin() + std::ptrdiff_t(size.x * (y + size.y * z)), size.x,
-                      extinctions.begin() + std::ptrdiff_t(first.x) +
-                          std::ptrdiff_t(cells.x) * (first.y + y + std::ptrdiff_t(cells.y) * (first.z + z)));
-    }
-    ambient.emplace(device, dimensions, outline.indexToWorld, edge, extinctions);
-  }
-  Commands commands(device);
-  if (!ambient->record(commands, lighting, eye)) return;
-  commands.submitAndWait(progress);
-  addTimes(times, commands.times());
 }
 
 /// How far a cube is behind the eye's, in cubes: rays meet cubes in ascending order.

@@ -11,6 +11,7 @@
 
 #include "engine/frame_renderer.h"
 #include "engine/storage/baked_volume.h"
+#include "engine/streamed_level.h"
 #include "engine/volume/classification.h"
 
 namespace freevoxels {
@@ -19,7 +20,7 @@ class StreamedRenderer : public FrameRenderer {
  public:
   /// Cubes have this number of voxels along an edge, and are read with this number of voxels around them: enough for the light of surfaces,
   /// and whole bricks.
-  static constexpr int kCubeEdge = 64, kCubeHalo = 8;
+  static constexpr int kCubeEdge = kStreamedCubeEdge, kCubeHalo = 8;
 
   /// Why frames of a file cannot be drawn cube by cube, as a clause; nothing if they can.
   static std::optional<std::string> whyNot(const fvx::FvxFile& file, const FrameSettings& settings);

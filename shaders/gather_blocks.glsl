@@ -5,15 +5,19 @@
 #include "gather_surfaces.glsl"
 #include "packed_light.glsl"
 
+vec3 sumOf(uvec4 packed, vec4 weights) {
+  vec3 sum = vec3(0.0);
+  [[unroll]] for (int i = 0; i < 4; ++i) sum += weights[i] * unpackLight(packed[i]);
+  return sum;
+}
+
 // The sum of a quad's source terms.
 vec3 sourceAt(int quad, uvec4 packed, vec4 weights, vec3 toEye) {
   if (kTowards) {
     const uvec4 towards = extraQuad(quad);
     [[unroll]] for (int i = 0; i < 4; ++i) weights[i] *= 1.0 + dot(unpackSnorm4x8(towards[i]).xyz, toEye);
   }
-  vec3 source = vec3(0.0);
-  [[unroll]] for (int i = 0; i < 4; ++i) source += weights[i] * unpackLight(packed[i]);
-  return source;
+  return sumOf(packed, weights);
 }
 
 // The fraction of a slice's tent that is in front of the eye, if the slice is `ahead` slices in front of it.
@@ -47,14 +51,6 @@ void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
   addSegment(sums, medium, ray.layer * fractionInFront(ahead), ahead, lit, ray.toEye);
 }
 
-// The interpolated source term of the light that blocks emit.
-vec3 emissionAt(int quad, vec4 weights) {
-  const uvec4 packed = extraQuad(quad);
-  vec3 emission = vec3(0.0);
-  [[unroll]] for (int i = 0; i < 4; ++i) emission += weights[i] * unpackLight(packed[i]);
-  return emission;
-}
-
 // For classified blocks that are lit at samples: the values on a slice.
 SliceValues blockValuesAt(Slices level, Ray ray, int slice, bool within) {
   vec4 weights;
@@ -65,7 +61,7 @@ SliceValues blockValuesAt(Slices level, Ray ray, int slice, bool within) {
   found.depths = depthsTowardsLights(quad, weights);
   found.ambient = ambientAt(quad, weights);
   continueDepths(found.depths, found.ambient, level, position);
-  found.emission = kEmits && within ? emissionAt(quad, weights) : vec3(0.0);
+  found.emission = kEmits && within ? sumOf(extraQuad(quad), weights) : vec3(0.0);
   found.coverage = found.medium.a > 0.0 || (kEmits && found.emission != vec3(0.0)) ? 1.0 : 0.0;
   found.gradient = vec3(0.0);
   found.hasGradient = false;

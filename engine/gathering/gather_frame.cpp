@@ -15,24 +15,13 @@ constexpr double kSamplesPerVoxel = 2.0;
 /// A lattice that would hardly be coarser than the pixels is that of the pixels, which needs no upsampling.
 constexpr double kMinPitch = 1.15;
 
-/// The pixels' rays, with pixel positions relative to the image's middle.
-struct CentredRays {
-  CentredRays(const PixelRays& rays, glm::ivec2 size)
-      : originX(rays.originX), originY(rays.originY), directionX(rays.directionX), directionY(rays.directionY) {
-    const glm::dvec2 middle = 0.5 * glm::dvec2(size);
-    origin = rays.origin + middle.x * originX + middle.y * originY;
-    direction = rays.direction + middle.x * directionX + middle.y * directionY;
-  }
-  glm::dvec3 origin, originX, originY, direction, directionX, directionY;
-};
-
 std::array<int, 2> sidesOf(int axis) {
   return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
 }
 
 /// Distance in pixels between neighbouring voxels of a slice at the middle of the image, the smaller one of
 /// the slice's two axes; for a perspective camera times the distance from the eye plane.
-double pixelsPerVoxel(const CentredRays& rays, const glm::dmat3& toPixel) {
+double pixelsPerVoxel(const PixelRays& rays, const glm::dmat3& toPixel) {
   const std::array<int, 2> sides = sidesOf(majorAxis(rays.direction));
   return std::min(glm::length(glm::dvec2(toPixel[sides[0]])), glm::length(glm::dvec2(toPixel[sides[1]])));
 }
@@ -40,7 +29,7 @@ double pixelsPerVoxel(const CentredRays& rays, const glm::dmat3& toPixel) {
 /// The distance from the eye plane for which the lattice is made: the middle of the volume; or, if the camera
 /// is near to it or inside, most of the distance to its farthest corner, since nearer voxels are sampled more
 /// finely anyway.
-double referenceDistance(const CentredRays& rays, glm::dvec3 viewAxis, glm::ivec3 dimensions) {
+double referenceDistance(const PixelRays& rays, glm::dvec3 viewAxis, glm::ivec3 dimensions) {
   double middle = 0.0, farthest = 0.0;
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 voxel = glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2) * glm::dvec3(dimensions - 1);
@@ -51,8 +40,7 @@ double referenceDistance(const CentredRays& rays, glm::dvec3 viewAxis, glm::ivec
   return std::max(middle, 0.75 * farthest);
 }
 
-shader::GatherAxis gatherAxis(const CentredRays& rays, const glm::dmat3& toPixel, int axis, double middlePlane,
-                              bool orthographic) {
+shader::GatherAxis gatherAxis(const PixelRays& rays, const glm::dmat3& toPixel, int axis, double middlePlane) {
   const auto affine = [&](const glm::dvec3& at, const glm::dvec3& x, const glm::dvec3& y, int component) {
     return glm::dvec3(at[component], x[component], y[component]);
   };
@@ -76,7 +64,7 @@ shader::GatherAxis gatherAxis(const CentredRays& rays, const glm::dmat3& toPixel
         start.z * along.x + start.x * along.z + toPlane.z * slope.x + toPlane.x * slope.z);
   }
   result.tilt = glm::dvec2(toPixel[axis]);
-  result.tiltDepth = orthographic ? 0.0f : float(toPixel[axis].z);
+  result.tiltDepth = rays.orthographic ? 0.0f : float(toPixel[axis].z);
   return result;
 }
 
@@ -134,16 +122,15 @@ void setSlices(shader::GatherAxis& axis, int axisIndex, int sign, const Hierarch
 
 /// The range of pixel positions, relative to the image's middle, in which the volume is visible; the whole
 /// image plane if the eye is in or near the volume's planes.
-SeenRectangle seenRectangle(const CentredRays& rays, const glm::dmat3& toPixel, glm::ivec3 dimensions,
-                                        bool orthographic) {
+SeenRectangle seenRectangle(const PixelRays& rays, const glm::dmat3& toPixel, glm::ivec3 dimensions) {
   constexpr double kAll = 1e9;
   SeenRectangle seen{glm::dvec2(kAll), glm::dvec2(-kAll)};
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
     // Interpolated slices reach one voxel beyond the outermost centres.
     const glm::dvec3 pixel = toPixel * (side * glm::dvec3(dimensions + 1) - 1.0 - rays.origin);
-    if (!orthographic && !(pixel.z > 1e-6)) return {glm::dvec2(-kAll), glm::dvec2(kAll)};
-    const glm::dvec2 position = orthographic ? glm::dvec2(pixel) : glm::dvec2(pixel) / pixel.z;
+    if (!rays.orthographic && !(pixel.z > 1e-6)) return {glm::dvec2(-kAll), glm::dvec2(kAll)};
+    const glm::dvec2 position = rays.orthographic ? glm::dvec2(pixel) : glm::dvec2(pixel) / pixel.z;
     seen = {glm::min(seen[0], position), glm::max(seen[1], position)};
   }
   return {seen[0] - 1.0, seen[1] + 1.0};
@@ -178,10 +165,9 @@ bool someRayHasAxis(const shader::GatherFrame& frame, int axis) {
 std::optional<SampleRectangle> samplesThatSee(const DeviceVolume& volume, const Camera& camera, const shader::GatherFrame& frame,
                                               glm::ivec3 begin, glm::ivec3 end) {
   constexpr double kMargin = 2.0;  // samples
-  const CentredRays rays(pixelRays(camera, frame.size, volume.indexToWorld), frame.size);
+  const PixelRays rays = pixelRays(camera, frame.size, volume.indexToWorld).countedFrom(0.5 * glm::dvec2(frame.size));
   const bool orthographic = frame.orthographic != 0;
-  const glm::dmat3 toPixel = glm::inverse(orthographic ? glm::dmat3(rays.originX, rays.originY, rays.direction)
-                                                       : glm::dmat3(rays.directionX, rays.directionY, rays.direction));
+  const glm::dmat3 toPixel = rays.indexToPixel();
   glm::dvec2 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
   int behind = 0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -202,11 +188,9 @@ std::optional<SampleRectangle> samplesThatSee(const DeviceVolume& volume, const 
 
 shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& camera, const FrameSettings& settings,
                                     const DetailRule& detail, double endTransmittance) {
-  const PixelRays pixels = pixelRays(camera, settings.size, volume.indexToWorld);
-  const CentredRays rays(pixels, settings.size);
-  const bool orthographic = pixels.orthographic;
-  const glm::dmat3 toPixel = glm::inverse(orthographic ? glm::dmat3(rays.originX, rays.originY, rays.direction)
-                                                       : glm::dmat3(rays.directionX, rays.directionY, rays.direction));
+  const PixelRays rays = pixelRays(camera, settings.size, volume.indexToWorld).countedFrom(0.5 * glm::dvec2(settings.size));
+  const bool orthographic = rays.orthographic;
+  const glm::dmat3 toPixel = rays.indexToPixel();
   const glm::dmat3 linear(volume.indexToWorld);
   const glm::ivec3 dimensions = volume.layout.dimensions;
   const double voxel = pixelsPerVoxel(rays, toPixel);
@@ -226,7 +210,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
                             .endTransmittance = float(endTransmittance),
                             .orthographic = orthographic ? 1 : 0,
                             .mainAxis = majorAxis(rays.direction)};
-  const SeenRectangle seen = seenRectangle(rays, toPixel, dimensions, orthographic);
+  const SeenRectangle seen = seenRectangle(rays, toPixel, dimensions);
   frame.seenLow = seen[0];
   frame.seenHigh = seen[1];
   const bool coarse = pitch > kMinPitch;
@@ -240,7 +224,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   const glm::dvec2 half = 0.5 * glm::dvec2(settings.size) + 2.0 * double(frame.pitch);
   const SeenRectangle seenInImage{glm::clamp(seen[0], -half, half), glm::clamp(seen[1], -half, half)};
   for (int axis = 0; axis < 3; ++axis) {
-    frame.axes[axis] = gatherAxis(rays, toPixel, axis, 0.5 * (dimensions[axis] - 1), orthographic);
+    frame.axes[axis] = gatherAxis(rays, toPixel, axis, 0.5 * (dimensions[axis] - 1));
     for (const int sign : {-1, 1})
       setSlices(frame.axes[axis], axis, sign, volume.hierarchy, slabs, seenInImage, orthographic);
   }

@@ -201,6 +201,10 @@ PixelRays PixelRays::countedFrom(glm::dvec2 position) const {
   return moved;
 }
 
+glm::dmat3 PixelRays::indexToPixel() const {
+  return glm::inverse(orthographic ? glm::dmat3(originX, originY, direction) : glm::dmat3(directionX, directionY, direction));
+}
+
 PixelRays pixelRays(const Camera& camera, glm::ivec2 imageSize, const glm::dmat4& indexToWorld) {
   const glm::dmat4 worldToIndex = glm::inverse(indexToWorld);
   const glm::dmat3 linear(worldToIndex);

@@ -67,6 +67,8 @@ struct PixelRays {
 
   /// The same rays with (x, y) counted from `position`. From the middle of the image no large terms cancel in 32-bit floats.
   PixelRays countedFrom(glm::dvec2 position) const;
+  /// From an index position relative to the origin to (x t, y t, t), orthographic (x, y, t).
+  glm::dmat3 indexToPixel() const;
 };
 
 /// The source of the lines of sight: the eye, or for an orthographic camera the direction towards it.

@@ -20,12 +20,6 @@ static_assert(shader::kLookupExact == int(AttenuationLookup::Exact));
 static_assert(shader::kCompositeAdditive == int(Composite::Additive));
 static_assert(shader::kCompositeSorted == int(Composite::Sorted));
 
-/// From an index offset to PixelRays' (x t, y t, t), orthographic (x, y, t).
-glm::dmat3 indexToPixel(const PixelRays& rays) {
-  return rays.orthographic ? glm::inverse(glm::dmat3(rays.originX, rays.originY, rays.direction))
-                           : glm::inverse(glm::dmat3(rays.directionX, rays.directionY, rays.direction));
-}
-
 /// Image positions of the box's corners, and the range of their distances from the eye plane.
 struct ProjectedBox {
   glm::dvec2 low{std::numeric_limits<double>::max()}, high{std::numeric_limits<double>::lowest()};
@@ -61,9 +55,9 @@ double largestHalfExtent(const glm::dmat3& toPixel, const PixelRays& rays, glm::
   const glm::dmat3 rows = glm::transpose(toPixel);
   // A widened footprint reaches farther by at most `widened`. `step` bounds the relative change of |D| from pixel to pixel.
   const double step = std::hypot(glm::length(rays.directionX), glm::length(rays.directionY)) * glm::length(rows[2]);
-  const double flat = kFootprintRadius * kFootprintRadius / (1.0 - std::pow(kFootprintRadius * step, 2.0));
-  if (flat < 0.0) return std::numeric_limits<double>::infinity();
-  const double widened = step * flat + std::sqrt((1.0 + step * step * flat) * flat);
+  const double leastConic = 1.0 / (kFootprintRadius * kFootprintRadius) - step * step;  // of boundsOf's matrix, for |D| = 1
+  if (leastConic <= 0.0) return std::numeric_limits<double>::infinity();
+  const double widened = step / leastConic + std::sqrt((1.0 + step * step / leastConic) / leastConic);
   if (rays.orthographic)
     return kFootprintRadius * Block{.level = detail.coarsest}.edge() *
                std::max(glm::length(rows[0]), glm::length(rows[1])) +
@@ -106,7 +100,7 @@ void setCovered(FrameConstants& frame, const ProjectedBox& box, double reach, gl
 
 shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& table, const Camera& camera, const FrameSettings& settings,
                               const PixelRays& rays) {
-  const glm::dmat3 toPixel = indexToPixel(rays);
+  const glm::dmat3 toPixel = rays.indexToPixel();
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
   const glm::dvec3 eyeToMiddle = middle - rays.origin;
   const bool sorted = settings.composite == Composite::Sorted;
@@ -150,7 +144,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                                   const TableSettings& table, const Camera& camera,
                                   const FrameSettings& settings) {
   const PixelRays rays = pixelRays(camera, settings.size, volume.indexToWorld);
-  const glm::dmat3 toPixel = indexToPixel(rays);
+  const glm::dmat3 toPixel = rays.indexToPixel();
   const glm::dvec2 imageMiddle = 0.5 * glm::dvec2(settings.size);
   const PixelRays fromMiddle = rays.countedFrom(imageMiddle);
   const glm::dmat3 linear(volume.indexToWorld);

@@ -13,10 +13,8 @@ namespace {
 constexpr double kFootprintMargin = kFootprintRadius + 0.5;
 
 std::array<glm::dvec4, 5> imagePlanes(glm::dvec3 middle, const PixelRays& rays, glm::ivec2 size) {
-  const glm::dmat3 basis = rays.orthographic ? glm::dmat3(rays.originX, rays.originY, rays.direction)
-                                             : glm::dmat3(rays.directionX, rays.directionY, rays.direction);
   // Rows of the affine map from a position to (x t, y t, t), orthographic (x, y, t), and to 1.
-  const glm::dmat3 rows = glm::transpose(glm::inverse(basis));
+  const glm::dmat3 rows = glm::transpose(rays.indexToPixel());
   const auto row = [&](int i) { return glm::dvec4(rows[i], glm::dot(rows[i], middle - rays.origin)); };
   const glm::dvec4 one = rays.orthographic ? glm::dvec4(0.0, 0.0, 0.0, 1.0) : row(2);
   std::array<glm::dvec4, 5> planes{row(0) + kFootprintMargin * one, (size.x + kFootprintMargin) * one - row(0),

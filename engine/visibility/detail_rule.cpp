@@ -51,9 +51,7 @@ bool DetailRule::isSmall(const Block& block) const {
 
 DetailRule detailRule(const HierarchyLayout& hierarchy, const PixelRays& rays, glm::ivec2 imageSize,
                       double lod) {
-  const glm::dmat3 basis = rays.orthographic ? glm::dmat3(rays.originX, rays.originY, rays.direction)
-                                             : glm::dmat3(rays.directionX, rays.directionY, rays.direction);
-  const glm::dmat3 rows = glm::transpose(glm::inverse(basis));
+  const glm::dmat3 rows = glm::transpose(rays.indexToPixel());
   const double pixels = pixelsPerEdge(rows, rays, imageSize);
   DetailRule rule{.viewAxis = rows[2], .eye = rays.origin};
   if (rays.orthographic) {

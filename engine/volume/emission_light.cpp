@@ -67,10 +67,13 @@ double depthBetween(const EmissionCells& cells, const glm::dvec3& from, const gl
 
 EmissionCells::EmissionCells(glm::ivec3 dimensions, const glm::dmat4& indexToWorld)
     : indexToWorld_(indexToWorld),
-      voxelSize_(Volume{.indexToWorld = indexToWorld}.voxelSize()),
       edge_((std::max({dimensions.x, dimensions.y, dimensions.z}) + kMaxCells - 1) / kMaxCells),
       size_((dimensions + edge_ - 1) / edge_),
       values_(std::size_t(size_.x) * std::size_t(size_.y) * std::size_t(size_.z)) {}
+
+double EmissionCells::cellEdge() const {
+  return std::cbrt(std::abs(glm::determinant(glm::dmat3(cellsToWorld()))));
+}
 
 glm::dmat4 EmissionCells::cellsToWorld() const {
   return indexToWorld_ * glm::dmat4(glm::dvec4(edge_, 0, 0, 0), glm::dvec4(0, edge_, 0, 0), glm::dvec4(0, 0, edge_, 0),

@@ -24,7 +24,8 @@ class EmissionCells {
   void add(const Volume& part, glm::ivec3 first, const Classification& classification);
 
   glm::ivec3 size() const { return size_; }
-  double cellEdge() const { return edge_ * voxelSize_; }  ///< world length
+  /// Edge of a cube with a cell's volume, world units.
+  double cellEdge() const;
   glm::dmat4 cellsToWorld() const;
   std::size_t index(glm::ivec3 cell) const {
     return std::size_t(cell.x) + std::size_t(size_.x) * (std::size_t(cell.y) + std::size_t(size_.y) * std::size_t(cell.z));
@@ -33,7 +34,6 @@ class EmissionCells {
 
  private:
   glm::dmat4 indexToWorld_;
-  double voxelSize_;
   int edge_;  ///< voxels
   glm::ivec3 size_;
   std::vector<Cell> values_;  ///< x fastest
