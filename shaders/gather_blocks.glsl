@@ -68,15 +68,21 @@ SliceValues blockValuesAt(Slices level, Ray ray, int slice, bool within) {
   return found;
 }
 
+// The mean light that leaves a stretch, of what is emitted along it. The halves have the values of their slices, as layers have without
+// lights: flames often end where smoke begins, so that the product of the means would be too dark. `stretch` is in units of 1 / extinction.
+vec3 leavingEmission(SliceValues last, SliceValues found, float stretch) {
+  const float near = 0.5 * stretch * last.medium.a, far = 0.5 * stretch * found.medium.a;
+  return 0.5 * (meanTransmittance(near) * last.emission + exp(-near) * meanTransmittance(far) * found.emission);
+}
+
 // For classified blocks that are lit at samples: the stretch from the previous slice. The depth towards a
 // light changes along it as the depth towards the eye does, since both are integrals of the same extinction.
 void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
   SliceValues found = blockValuesAt(level, ray, within ? slice : slice - int(ray.direction), within);
   const int brick = ownBrick;
   const vec4 medium = 0.5 * (last.medium + found.medium);
-  const vec3 emission = kEmits ? 0.5 * (last.emission + found.emission) : vec3(0.0);
   if (kParts || kRegion) {
-    if (brick == 0 || (medium == vec4(0.0) && emission == vec3(0.0))) {
+    if (brick == 0 || (medium == vec4(0.0) && (!kEmits || last.emission + found.emission == vec3(0.0)))) {
       last = found;
       return;
     }
@@ -106,8 +112,9 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray 
       lightFrom(lit, outsideOf(level, ray, float(slice) - 0.5 * ray.direction, -gradient));
     }
   }
-  lit.emission = emission;
-  addSegment(sums, medium, ray.layer * clamp(ahead, 0.0, 1.0), ahead - 0.5, lit, ray.toEye);
+  const float stretch = ray.layer * clamp(ahead, 0.0, 1.0);
+  if (kEmits) lit.emission = leavingEmission(last, found, stretch);
+  addSegment(sums, medium, stretch, ahead - 0.5, lit, ray.toEye);
   last = found;
 }
 

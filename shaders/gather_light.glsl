@@ -17,7 +17,7 @@ struct SegmentLight {
   vec3 normal;          // outward unit normal of a surface there, in world space
   float surface;        // fraction of the light that is reflected as by a surface, 0..1
   vec4 outside;         // optical depths towards the lights from a point outside of the surface
-  vec3 emission;        // source term of the light that the segment emits; only with kEmits
+  vec3 emission;        // source term of the light that leaves the segment, of what it emits; only with kEmits
 };
 
 // What a surface adds to the sum of lightOf(). A surface that faces the light is not shadowed by its
@@ -80,7 +80,7 @@ void addSegment(inout Sums sums, vec4 medium, float segmentLength, float ahead, 
       if (i < kLights) leaving += lightOf(i, lit, depth, toEye);
   }
   vec3 source = leaving * medium.rgb;
-  if (kEmits) source += own * lit.emission;
+  if (kEmits) source += lit.emission;
   sums.color += sums.transmittance * segmentLength * source;
   sums.distance += (sums.transmittance - rest) * max(ahead, 0.0);
   sums.transmittance = rest;

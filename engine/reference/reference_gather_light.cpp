@@ -232,14 +232,13 @@ void ReferenceGather::addLit(GatherSums& sums, double& transmittance, glm::dvec4
   const double depth = medium.a * length;
   const glm::dvec3 toEye = -glm::normalize(linear_ * ray.direction);
   if (length > 0.0) {
-    sums.color +=
-        transmittance * length * (leaving(stretch, depth, toEye) * glm::dvec3(medium) + meanTransmittance(depth) * stretch.emission);
+    sums.color += transmittance * length * (leaving(stretch, depth, toEye) * glm::dvec3(medium) + stretch.emission);
   }
   sums.distance += transmittance * -std::expm1(-depth) * std::max(distance, 0.0);
   transmittance *= std::exp(-depth);
 }
 
-/// From slice to slice: source term and extinction are the means of both, depths change linearly.
+/// From slice to slice: source term and extinction are the means of both, depths change linearly. The halves emit what their slices do.
 void ReferenceGather::marchLitBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab, const GatherBlocks& blocks,
                                      const GatherLight& light) const {
   const int end = dimensionsOf(slab)[slab.axis];
@@ -252,7 +251,7 @@ void ReferenceGather::marchLitBlocks(GatherSums& sums, double& transmittance, co
     const glm::dvec4 medium = within ? blockAt(ray, slab, slice, blocks) : glm::dvec4(0.0), mean = 0.5 * (lastMedium + medium);
     const glm::dvec3 emission = within ? emissionAt(ray, slab, slice, blocks) : glm::dvec3(0.0);
     const Arriving found = within ? arrivingAt(light, ray, slab, slice) : last;
-    Stretch stretch{.begin = last, .end = found, .emission = 0.5 * (lastEmission + emission)};
+    Stretch stretch{.begin = last, .end = found};
     if (number == 0) {
       stretch.begin = found;
       for (double& depth : stretch.begin.depths) depth = std::max(depth - slab.layer(ray) * mean.a, 0.0);
@@ -267,6 +266,8 @@ void ReferenceGather::marchLitBlocks(GatherSums& sums, double& transmittance, co
       lightFromOutside({&stretch, 1}, light, ray, slab, slice - 0.5 * slab.sign, -gradient);
     }
     const double length = std::clamp(slab.ahead(ray, slice), 0.0, 1.0) * slab.layer(ray);
+    const double near = 0.5 * length * lastMedium.a, far = 0.5 * length * medium.a;
+    stretch.emission = 0.5 * (meanTransmittance(near) * lastEmission + std::exp(-near) * meanTransmittance(far) * emission);
     addLit(sums, transmittance, mean, length, slab.distance(ray, slice - 0.5 * slab.sign), stretch, ray);
     lastMedium = medium;
     lastEmission = emission;

@@ -84,7 +84,7 @@ struct ReferenceGather::Stretch {
   double surface = 0.0;            ///< share of light that is reflected as by a surface
   glm::dvec3 normal{0.0};          ///< of the surface, outwards, in world space
   std::array<double, 4> outside{};  ///< depths towards the lights from outside of the surface
-  glm::dvec3 emission{0.0};         ///< radiance that it emits per world unit
+  glm::dvec3 emission{0.0};         ///< radiance that leaves it, of what it emits, per world unit
 };
 
 }  // namespace freevoxels

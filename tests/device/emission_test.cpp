@@ -192,6 +192,17 @@ TEST_F(EmissionTest, CullingLeavesALampInSmokeThere) {
   EXPECT_GT(expected.pixels[32 * 64 + 32].r, 1.5f);
 }
 
+/// Lights are evaluated along stretches between slices, emission alone in layers around them.
+TEST_F(EmissionTest, AFaintLightLeavesEmissionAsItIs) {
+  const Volume volume = hotVolume(true, {19, 23, 17});
+  Renderer renderer(device(), volume, hot(volume, 1.0f), {});
+  const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
+  FrameSettings settings{.size = {64, 64}, .lighting = Lighting{}};
+  const Image alone = renderer.render(camera, settings);
+  settings.lighting = Lighting{.lights = {{.place = {0.3, 1.0, 0.4}, .intensity = 1e-9}}};
+  EXPECT_GE(psnr(renderer.render(camera, settings), alone), 65.0);
+}
+
 TEST_F(EmissionTest, AlbedoGridsMatchTheReference) {
   Volume volume = randomVolume({11, 14, 9}, shearedTransform({11, 14, 9}), 0.6, 1.0);
   volume.albedo = AlbedoGrid{.name = "Cd", .values = {}};
