@@ -9,27 +9,74 @@ layout(constant_id = 1) const int kStepX = 1;  // step of the march: 1 or -1
 
 layout(constant_id = 2) const bool kOfPart = false;  // as in attenuation_sweep.comp
 
+// Whether the threads of a workgroup load and store a tile of their rows together, so that neighbouring threads access neighbouring quads.
+layout(constant_id = 3) const bool kTiled = false;
+
+const int kTileQuads = 8;
+const int kTilePitch = kTileQuads + 1;  // in which the quads of a column are in different banks
+
 layout(local_size_x = kSweepThreads) in;
 layout(scalar, push_constant) uniform Push { SweepPush push; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer EntryDepths { float values[]; };
 layout(binding = 0) uniform textureBuffer extinction;
 
-void main() {
-  const int row = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kSweepThreads);
-  if (row >= push.lineCount) return;
-  const int quads = push.rowPitch / 4;
+shared vec4 tile[kTiled ? kSweepThreads * kTilePitch : 1];  // by row: extinctions, then depths
+
+// The depths in front of the four voxels of a quad. Adds the quad's own to the row's depth.
+vec4 pass(vec4 sigma, inout float depth) {
+  vec4 depths;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    const int c = kStepX > 0 ? i : 3 - i;
+    depths[c] = depth;
+    depth += sigma[c] * push.stepLength;
+  }
+  return depths;
+}
+
+vec4 loadQuad(int quad) { return texelFetch(extinction, quad - push.slab.firstQuad); }
+
+void marchRow(int row, int quads, float depth) {
   const int first = push.marchStart / 4 + row * quads;
-  // Padding before the first voxel adds nothing.
-  float depth = kOfPart ? EntryDepths(push.entry.depths).values[push.entry.rowFace + row] : 0.0;
   for (int i = 0; i < quads; ++i) {
     const int quad = first + (kStepX > 0 ? i : quads - 1 - i);
-    const vec4 sigma = texelFetch(extinction, quad - push.slab.firstQuad);
-    vec4 depths;
-    [[unroll]] for (int i4 = 0; i4 < 4; ++i4) {
-      const int c = kStepX > 0 ? i4 : 3 - i4;
-      depths[c] = depth;
-      depth += sigma[c] * push.stepLength;
-    }
-    storeCodes(quad, depths);
+    storeCodes(quad, pass(loadQuad(quad), depth));
   }
+}
+
+// The quad of the volume at a place of the tile, which begins at a row and a column of it; negative if there is none.
+int quadAt(ivec2 begin, int quads, int place) {
+  const int row = begin.x + place / kTileQuads, column = begin.y + place % kTileQuads;
+  return row < push.lineCount && column >= 0 && column < quads ? push.marchStart / 4 + row * quads + column : -1;
+}
+
+void marchTiles(int firstRow, int thread, int quads, float depth) {
+  for (int passed = 0; passed < quads; passed += kTileQuads) {
+    const ivec2 begin = ivec2(firstRow, kStepX > 0 ? passed : quads - passed - kTileQuads);
+    for (int place = thread; place < kSweepThreads * kTileQuads; place += kSweepThreads) {
+      const int quad = quadAt(begin, quads, place);
+      tile[place / kTileQuads * kTilePitch + place % kTileQuads] = quad < 0 ? vec4(0.0) : loadQuad(quad);
+    }
+    barrier();
+    for (int i = 0; i < kTileQuads; ++i) {
+      const int place = thread * kTilePitch + (kStepX > 0 ? i : kTileQuads - 1 - i);
+      tile[place] = pass(tile[place], depth);
+    }
+    barrier();
+    for (int place = thread; place < kSweepThreads * kTileQuads; place += kSweepThreads) {
+      const int quad = quadAt(begin, quads, place);
+      if (quad >= 0) storeCodes(quad, tile[place / kTileQuads * kTilePitch + place % kTileQuads]);
+    }
+    barrier();
+  }
+}
+
+void main() {
+  const int row = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kSweepThreads);
+  const bool isRow = row < push.lineCount;
+  // Padding before the first voxel adds nothing.
+  const float depth = kOfPart && isRow ? EntryDepths(push.entry.depths).values[push.entry.rowFace + row] : 0.0;
+  if (kTiled)
+    marchTiles(row - int(gl_LocalInvocationIndex), int(gl_LocalInvocationIndex), push.rowPitch / 4, depth);
+  else if (isRow)
+    marchRow(row, push.rowPitch / 4, depth);
 }

@@ -183,7 +183,7 @@ AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& se
                           {code, std::uint32_t(style.voxelsPerThread), std::uint32_t(step), std::uint32_t(ofParts)});
   for (int step : {-1, 1})
     rows_[step > 0 ? 1 : 0] = makeComputePipeline(device, shaders::attenuation_sweep_x,
-                                                {code, std::uint32_t(step), std::uint32_t(ofParts)});
+                                                  {code, std::uint32_t(step), std::uint32_t(ofParts), std::uint32_t(style.tiledRows)});
   if (settings.directions == DirectionSet::Directions98)
     halves_.emplace(device, settings.code, style.voxelsPerThread);
 }

@@ -48,7 +48,7 @@ int linesPerThread(int voxelsPerThread, int stepX) {
 SweepStyle sweepStyleOf(bool cpu) {
   // For a CPU: all sweeps of a slab but the first find it in the cache.
   if (cpu) return {.voxelsPerThread = 16, .slabBytes = std::uint64_t(4) << 20};
-  return {.voxelsPerThread = 4, .slabBytes = std::uint64_t(256) << 20};
+  return {.voxelsPerThread = 4, .tiledRows = true, .slabBytes = std::uint64_t(256) << 20};
 }
 
 SweepPlan planSweep(const GridLayout& layout, DirectionSet directions, const SweepStyle& style,

@@ -40,8 +40,8 @@ struct SweepPlan {
 /// The parameters that are fastest on a kind of device.
 struct SweepStyle {
   int voxelsPerThread = 0;
-  std::uint64_t slabBytes =
-      0;  ///< preferred bytes of a slab's extinction; more if a few planes need more
+  bool tiledRows = false;       ///< whether threads that march along x load and store their rows together
+  std::uint64_t slabBytes = 0;  ///< preferred bytes of a slab's extinction; more if a few planes need more
   std::uint64_t mostSlabBytes = std::numeric_limits<std::uint64_t>::max();  ///< upper bound of what can be bound
 };
 SweepStyle sweepStyleOf(bool cpu);

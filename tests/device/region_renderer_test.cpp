@@ -95,8 +95,9 @@ TEST_F(RegionRendererTest, CpuAndGpuSweepARegionToTheSameTableInSlabsAndAtOnce) 
   const BuiltVolume built = buildVolume(device(), region.volume, kThin, times);
   const DeviceEntryDepths depths(device(), region.volume.dimensions, region.depths);
   std::vector<Table> tables;
-  for (const SweepStyle style : {SweepStyle{.voxelsPerThread = 16, .slabBytes = 1 << 24}, SweepStyle{.voxelsPerThread = 4, .slabBytes = 1 << 24},
-                                 SweepStyle{.voxelsPerThread = 4, .slabBytes = 0, .mostSlabBytes = 0}}) {
+  for (const SweepStyle style :
+       {SweepStyle{.voxelsPerThread = 16, .slabBytes = 1 << 24}, SweepStyle{.voxelsPerThread = 4, .tiledRows = true, .slabBytes = 1 << 24},
+        SweepStyle{.voxelsPerThread = 4, .tiledRows = true, .slabBytes = 0, .mostSlabBytes = 0}}) {
     AttenuationSweep sweep(device(), {}, style, true);
     const AttenuationTable table = makeTable(device(), built.volume, {});
     Commands commands(device());

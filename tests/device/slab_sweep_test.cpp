@@ -33,7 +33,7 @@ TEST_F(SlabSweepTest, SlabsComeToTheSameTableBitForBit) {
     const TableSettings settings{.directions = set};
     AttenuationSweep whole(device(), settings);
     AttenuationSweep ofCpu(device(), settings, {.voxelsPerThread = 16, .slabBytes = 0, .mostSlabBytes = 0});
-    AttenuationSweep ofGpu(device(), settings, {.voxelsPerThread = 4, .slabBytes = 0, .mostSlabBytes = 0});
+    AttenuationSweep ofGpu(device(), settings, {.voxelsPerThread = 4, .tiledRows = true, .slabBytes = 0, .mostSlabBytes = 0});
     for (const glm::ivec3 size : {glm::ivec3(37, 23, 43), glm::ivec3(5, 1, 64), glm::ivec3(20, 33, 17)}) {
       std::vector<StageTime> times;
       const BuiltVolume built = buildVolume(device(), randomVolume(size, shearedTransform(size), 0.6, 8.0),
