@@ -13,19 +13,17 @@ layout(scalar, binding = 0) buffer Occupancy { OccupancyWord occupancy[]; };
 layout(scalar, binding = 1) readonly buffer GroupOffsets { uint groupOffsets[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Blocks { uint values[]; };
 
-shared uint counts[kOccupancyThreads];
+#define COUNT_THREADS kOccupancyThreads
+#include "count_before.glsl"
 
 void main() {
   const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
   const uint thread = gl_LocalInvocationIndex;
   const uint word = group * kOccupancyThreads + thread;
   uint mask = word < push.wordCount ? occupancy[push.firstWord + word].mask : 0;
-  counts[thread] = bitCount(mask);
-  barrier();
-
+  uint offset = countBefore(thread, bitCount(mask));
   if (word >= push.wordCount) return;
-  uint offset = groupOffsets[group];
-  for (uint i = 0; i < thread; ++i) offset += counts[i];
+  offset += groupOffsets[group];
   occupancy[push.firstWord + word].before = offset;
   for (; mask != 0; mask &= mask - 1)
     Blocks(push.blocks).values[offset++] = (push.firstWord + word) * kBlocksPerWord + uint(findLSB(mask));

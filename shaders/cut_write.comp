@@ -9,19 +9,17 @@ layout(scalar, binding = 2) readonly buffer Masks { uint masks[]; };
 layout(scalar, binding = 3) readonly buffer GroupOffsets { uint groupOffsets[]; };
 layout(scalar, binding = 4) writeonly buffer Drawn { uint drawn[]; };
 
-shared uint counts[kCutThreads];
+#define COUNT_THREADS kCutThreads
+#include "count_before.glsl"
 
 void main() {
   const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
   const uint thread = gl_LocalInvocationIndex;
   const uint first = (group * kCutThreads + thread) * kCutSlotsPerThread;
   uint mask = first < push.slotCount ? masks[(push.firstGroup + group) * kCutThreads + thread] : 0;
-  counts[thread] = bitCount(mask);
-  barrier();
-
+  uint offset = countBefore(thread, bitCount(mask));
   if (mask == 0) return;
-  uint offset = groupOffsets[push.firstOffset + group];
-  for (uint i = 0; i < thread; ++i) offset += counts[i];
+  offset += groupOffsets[push.firstOffset + group];
   for (; mask != 0; mask &= mask - 1)
     drawn[offset++] = blockAddress(frame.levels[push.level], cellOfSlot(first + uint(findLSB(mask))));
 }
