@@ -49,7 +49,7 @@ const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progres
   if (!largestDepths.empty()) return *table;
   TableLevels pass(device, tableSettings);
   Commands commands(device);
-  pass.record(commands, built.volume, built.lists.coarse, *table);
+  pass.record(commands, built.volume, built.lists.steps, *table);
   commands.submitAndWait(progress);
   addTimes(frameTimes, commands.times());
   try {

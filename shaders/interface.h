@@ -112,6 +112,20 @@ struct BlockLevel {
   ivec3 dimensions;
 };
 
+// The step to a level of the octree from the one below.
+struct LevelStep {
+  BlockLevel child, parent;
+  uvec2 parents;     // device address of the parents' indices, ascending
+  uint parentCount;  // blocks of the parent level that hold anything
+  uint parentWords;  // occupancy words of the parent level
+  int childEdge;     // voxels along a child's edge
+};
+
+// The levels that a dispatch computes: `first` to `end` - 1.
+struct LevelRange {
+  int first, end;
+};
+
 // Device addresses of the medium of occupied blocks (engine/octree/device_volume.h); 0 if it does not exist.
 struct BlockStores {
   uvec2 extinction, emission, colors, blockColors;
@@ -208,21 +222,17 @@ struct RaySweepPush {
 
 // medium_level.comp
 struct MediumLevelPush {
-  BlockLevel child, parent;
   BlockStores stores;
+  LevelRange levels;
   ivec3 voxels;        // the volume's dimensions
-  int childEdge;       // voxels along a child's edge
-  uint parentCount;    // blocks of the parent level that hold anything
-  float childLength;   // world length of a child's edge
+  float voxelLength;   // world length of a voxel's edge
   uint firstColor;     // rank of the first block with a colour: of level 1
 };
 
 // table_level.comp
 struct TableLevelPush {
-  BlockLevel child, parent;
+  LevelRange levels;
   ivec3 voxels;
-  int childEdge;
-  uint parentCount;    // blocks of the parent level that hold anything
   uint firstDirection, directionCount;  // in the order of directions.h
 };
 
@@ -285,8 +295,7 @@ struct ExpandPush {
 
 // occupied_blocks.comp
 struct OccupiedBlocksPush {
-  BlockLevel child, parent;
-  uint wordCount;    // occupancy words of the parent level
+  LevelRange levels;
 };
 
 // compact_count.comp, compact_scan.comp, compact_write.comp

@@ -2,30 +2,36 @@
 // Marks the occupied blocks of a level of the octree, from the level below; a thread for each word of blocks.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
-#include "blocks.glsl"
+
+layout(constant_id = 0) const bool kSeveral = false;
+#define LEVEL_STEPS_BINDING 1
+#include "level_steps.glsl"
 
 layout(local_size_x = kOccupancyThreads) in;
 layout(scalar, push_constant) uniform Push { OccupiedBlocksPush push; };
-layout(scalar, binding = 0) buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 0) coherent buffer Occupancy { OccupancyWord occupancy[]; };
 
 // Two children that are neighbours in x are in the same word, because rows begin at even indices.
 bool isOccupied(ivec3 cell) {
   for (int row = 0; row < 4; ++row) {
     const ivec3 child = 2 * cell + ivec3(0, row & 1, row >> 1);
-    if (any(greaterThanEqual(child, push.child.dimensions))) continue;
-    const uint address = blockAddress(push.child, child);
+    if (any(greaterThanEqual(child, current.child.dimensions))) continue;
+    const uint address = blockAddress(current.child, child);
     if ((occupancy[address / kBlocksPerWord].mask >> (address % kBlocksPerWord) & 3u) != 0) return true;
   }
   return false;
 }
 
-void main() {
-  const uint word = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kOccupancyThreads;
-  if (word >= push.wordCount) return;
+uint partCount() { return current.parentWords; }
+
+void makePart(uint word) {
+  const BlockLevel parent = current.parent;
   uint mask = 0;
   for (uint i = 0; i < kBlocksPerWord; ++i) {
-    const ivec3 cell = cellAt(push.parent, push.parent.first + kBlocksPerWord * word + i);
-    if (all(lessThan(cell, push.parent.dimensions)) && isOccupied(cell)) mask |= 1u << i;
+    const ivec3 cell = cellAt(parent, parent.first + kBlocksPerWord * word + i);
+    if (all(lessThan(cell, parent.dimensions)) && isOccupied(cell)) mask |= 1u << i;
   }
-  occupancy[push.parent.first / kBlocksPerWord + word].mask = mask;
+  occupancy[parent.first / kBlocksPerWord + word].mask = mask;
 }
+
+void main() { takeSteps(push.levels, kOccupancyThreads); }

@@ -1,5 +1,5 @@
 // The values of occupied blocks by rank (engine/octree/device_volume.h), at device addresses, as devices bind buffers only up to a
-// size. STORES is an expression for the BlockStores.
+// size. Parameters: STORES, an expression for the BlockStores; STORES_ACCESS, coherent where invocations read what others wrote.
 #ifndef STORES_GLSL
 #define STORES_GLSL
 #extension GL_EXT_buffer_reference : require
@@ -9,9 +9,13 @@
 #error "Define STORES, an expression for the BlockStores, before including stores.glsl."
 #endif
 
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FloatStore { float values[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer WordStore { uint values[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) buffer PairStore { uvec2 values[]; };
+#ifndef STORES_ACCESS
+#define STORES_ACCESS
+#endif
+
+layout(buffer_reference, scalar, buffer_reference_align = 4) STORES_ACCESS buffer FloatStore { float values[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) STORES_ACCESS buffer WordStore { uint values[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) STORES_ACCESS buffer PairStore { uvec2 values[]; };
 
 float storedExtinction(uint rank) { return FloatStore(STORES.extinction).values[rank]; }
 uint storedEmission(uint rank) { return WordStore(STORES.emission).values[rank]; }

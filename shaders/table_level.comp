@@ -10,24 +10,25 @@
 #extension GL_KHR_memory_scope_semantics : require
 #include "interface.h"
 #include "attenuation_code.glsl"
-#include "blocks.glsl"
 #include "rank.glsl"
 
 layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const int kFilter = kFilterGeometric;
 layout(constant_id = 2) const bool kFromVoxels = false;  // whether the children are voxels, whose codes are their own bounds
 layout(constant_id = 3) const uint kPerThread = kDirectionsPerLevelPass;  // directions a thread, in its layer of workgroups
+layout(constant_id = 4) const bool kSeveral = false;
 
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { TableLevelPush push; };
 // By direction, the code of the most opaque voxel; for linear8 255 minus it.
 layout(scalar, binding = 0) buffer Darkest { uint maxCodePerDirection[]; };
 layout(binding = 1) uniform utextureBuffer occupancy;  // an OccupancyWord a texel
-layout(scalar, binding = 2) readonly buffer Parents { uint parents[]; };
-// A direction's codes and bounds, read and written.
+#define LEVEL_STEPS_BINDING 2
+#include "level_steps.glsl"
+// A direction's codes and bounds, read and written. With kSeveral they are read as bytes, as texels may be out of date.
 #define PLANE(i)                                           \
   layout(binding = 3 + i) uniform utextureBuffer read##i; \
-  layout(scalar, binding = 3 + kDirectionsPerLevelPass + i) writeonly buffer Plane##i { uint8_t bytes[]; } plane##i;
+  layout(scalar, binding = 3 + kDirectionsPerLevelPass + i) coherent buffer Plane##i { uint8_t bytes[]; } plane##i;
 #define FOR_EACH_DIRECTION(F) F(0) F(1) F(2) F(3) F(4) F(5) F(6) F(7) F(8) F(9) F(10) F(11) F(12)
 FOR_EACH_DIRECTION(PLANE)
 
@@ -55,20 +56,20 @@ float voxels[8];
 
 // No children for ranks beyond the level's last block.
 void findChildren(uint block) {
-  const ivec3 cell = cellAt(push.parent, parents[min(block, push.parentCount - 1)]);
+  const ivec3 cell = parentCell(min(block, current.parentCount - 1));
   [[unroll]] for (int row = 0; row < 4; ++row) {
     const ivec3 child = 2 * cell + ivec3(0, row & 1, row >> 1);
-    const bool exists = block < push.parentCount && all(lessThan(child, push.child.dimensions));
+    const bool exists = block < current.parentCount && all(lessThan(child, current.child.dimensions));
     // Two neighbours in x are in the same word.
-    const uint address = exists ? blockAddress(push.child, child) : 0;
+    const uint address = exists ? blockAddress(current.child, child) : 0;
     const uvec2 word = texelFetch(occupancy, int(address / kBlocksPerWord)).xy;
     const int bit = int(address % kBlocksPerWord);
-    const ivec3 inside = extentInside(child, push.childEdge, push.voxels);
-    uint rank = push.child.firstRank + rankIn(word, bit);
+    const ivec3 inside = extentInside(child, current.childEdge, push.voxels);
+    uint rank = current.child.firstRank + rankIn(word, bit);
     [[unroll]] for (int x = 0; x < 2; ++x) {
       const bool holds = exists && (word.x >> (bit + x) & 1u) != 0;
-      const int width = min(push.voxels.x - (child.x + x) * push.childEdge, push.childEdge);
-      ranks[2 * row + x] = holds ? rank : push.child.firstRank;
+      const int width = min(push.voxels.x - (child.x + x) * current.childEdge, current.childEdge);
+      ranks[2 * row + x] = holds ? rank : current.child.firstRank;
       voxels[2 * row + x] = !holds ? 0.0 : kFromVoxels ? 1.0 : float(width) * float(inside.y) * float(inside.z);
       rank += holds ? 1 : 0;
     }
@@ -79,19 +80,15 @@ struct Parent {
   uint code, bound, maxCodePerDirection;
 };
 
-uint boundOfChild(utextureBuffer bytes, uint code, uint rank) {
-  if (kFromVoxels) return code;
-  return unpackBound(texelFetch(bytes, int(boundOf(push.child, rank))).x, boundInByte(push.child, rank));
-}
-
-Parent parentOf(utextureBuffer bytes) {
+// From the codes of the children, and the bytes that have their bounds.
+Parent parentOf(uint codes[8], uint boundBytes[8]) {
   float sum = 0.0, all = 0.0;
   uint used = 0;
   Parent parent = Parent(0, kDarkest, 0);
   [[unroll]] for (int child = 0; child < 8; ++child) {
     const bool holds = voxels[child] > 0.0;
-    const uint code = texelFetch(bytes, int(ranks[child])).x;
-    const uint bound = boundOfChild(bytes, code, ranks[child]);
+    const uint code = codes[child];
+    const uint bound = kFromVoxels ? code : unpackBound(boundBytes[child], boundInByte(current.child, ranks[child]));
     sum += voxels[child] * filtered(code);
     all += voxels[child];
     used |= holds ? code : 0;
@@ -117,24 +114,30 @@ void takeDarkest(uint direction, uint code) {
 uint bounds[kDirectionsPerLevelPass];
 uint deepest[kDirectionsPerLevelPass];
 
+#define BYTE(i, place) (kSeveral ? uint(plane##i.bytes[place]) : texelFetch(read##i, int(place)).x)
 #define BEGIN(i) bounds[i] = deepest[i] = 0;
-#define MAKE(i)                                                                                           \
-  if (isWanted(i)) {                                                                                      \
-    const Parent parent = parentOf(read##i);                                                              \
-    if (block < push.parentCount) plane##i.bytes[push.parent.firstRank + block] = uint8_t(parent.code);   \
-    bounds[i] |= packBound(kCode, parent.bound) << (4 * (block - first));                                 \
-    deepest[i] = max(deepest[i], parent.maxCodePerDirection);                                                         \
+#define MAKE(i)                                                                                              \
+  if (isWanted(i)) {                                                                                         \
+    uint codes[8], boundBytes[8];                                                                            \
+    [[unroll]] for (int child = 0; child < 8; ++child) {                                                     \
+      codes[child] = BYTE(i, ranks[child]);                                                                  \
+      boundBytes[child] = kFromVoxels ? 0 : BYTE(i, boundOf(current.child, ranks[child]));                   \
+    }                                                                                                        \
+    const Parent parent = parentOf(codes, boundBytes);                                                       \
+    if (block < current.parentCount) plane##i.bytes[current.parent.firstRank + block] = uint8_t(parent.code); \
+    bounds[i] |= packBound(kCode, parent.bound) << (4 * (block - first));                                    \
+    deepest[i] = max(deepest[i], parent.maxCodePerDirection);                                                \
   }
-#define END(i)                                                                                            \
-  if (isWanted(i)) {                                                                                      \
-    plane##i.bytes[push.parent.firstBound + first / kBoundBlocks] = uint8_t(bounds[i]);                   \
-    if (kFromVoxels) takeDarkest(push.firstDirection + i, deepest[i]);                                    \
+#define END(i)                                                                                               \
+  if (isWanted(i)) {                                                                                         \
+    plane##i.bytes[current.parent.firstBound + first / kBoundBlocks] = uint8_t(bounds[i]);                   \
+    if (kFromVoxels) takeDarkest(push.firstDirection + i, deepest[i]);                                       \
   }
 
-void main() {
-  const uint first =
-      kBoundBlocks * (gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kLevelThreads);
-  if (first >= push.parentCount) return;
+uint partCount() { return (current.parentCount + kBoundBlocks - 1) / kBoundBlocks; }
+
+void makePart(uint part) {
+  const uint first = kBoundBlocks * part;
   FOR_EACH_DIRECTION(BEGIN)
   [[dont_unroll]] for (uint block = first; block < first + kBoundBlocks; ++block) {
     findChildren(block);
@@ -142,3 +145,5 @@ void main() {
   }
   FOR_EACH_DIRECTION(END)
 }
+
+void main() { takeSteps(push.levels, kLevelThreads); }

@@ -106,7 +106,7 @@ Result octree(const Device& device, std::string_view name, AttenuationCode code,
   const BuiltVolume onDevice = built(device, volume);
   const AttenuationTable table = makeTable(device, onDevice.volume, {.code = code});
   AttenuationSweep sweep(device, table.settings);
-  const MediumLevels medium(device, onDevice.volume);
+  const MediumLevels medium(device, onDevice.volume, levelDispatches(device));
   TableLevels levels(device, table.settings);
   double sweeps = std::numeric_limits<double>::max();
   const double time = least(runs, [&] {
@@ -114,8 +114,8 @@ Result octree(const Device& device, std::string_view name, AttenuationCode code,
     sweep.record(before, onDevice.volume, table);
     before.submitAndWait();
     sweeps = std::min(sweeps, total(before));
-    medium.record(commands, onDevice.volume, onDevice.lists.coarse);
-    levels.record(commands, onDevice.volume, onDevice.lists.coarse, table);
+    medium.record(commands, onDevice.volume, onDevice.lists.steps);
+    levels.record(commands, onDevice.volume, onDevice.lists.steps, table);
     commands.submitAndWait();
     return total(commands);
   });
@@ -259,10 +259,11 @@ Result compaction(const Device& device, int resolution, int runs) {
   const Buffer totals(device, sizeof(std::uint32_t), MemoryUse::Device, "block counts");
   const CompactionPass pass(device);
   pass.allocate(list, onDevice.volume.stored.front());
+  const std::array<BlockList*, 1> lists{&list};
   const double time = least(runs, [&] {
     Commands commands(device);
-    pass.recordCount(commands, onDevice.volume, 0, list, totals);
-    pass.recordList(commands, onDevice.volume, 0, list);
+    pass.recordCounts(commands, onDevice.volume, lists, totals);
+    pass.recordLists(commands, onDevice.volume, lists);
     commands.submitAndWait();
     return total(commands);
   });

@@ -7,8 +7,8 @@
 #include <span>
 
 #include "engine/attenuation/attenuation_table.h"
-#include "engine/octree/block_list.h"
 #include "engine/octree/device_volume.h"
+#include "engine/octree/level_steps.h"
 #include "engine/vulkan/commands.h"
 
 namespace freevoxels {
@@ -17,19 +17,22 @@ namespace freevoxels {
 /// occupancy. A thread of a CPU device computes all directions of a dispatch.
 constexpr std::uint32_t kDirectionsPerGpuThread = 4;
 
-/// COMPUTE table_level.comp: the attenuation table and its bounds; a dispatch a level and
-/// kDirectionsPerLevelPass directions.
+/// COMPUTE table_level.comp: the attenuation table and its bounds; dispatches for kDirectionsPerLevelPass directions.
 class TableLevels {
  public:
   TableLevels(const Device& device, const TableSettings& settings);
-  TableLevels(const Device& device, const TableSettings& settings, std::uint32_t directionsPerThread);
-  /// All work that was submitted before must be complete.
-  void record(Commands& commands, const DeviceVolume& volume, std::span<const BlockList> coarse,
-              const AttenuationTable& table) const;
+  TableLevels(const Device& device, const TableSettings& settings, std::uint32_t directionsPerThread, LevelDispatches dispatches);
+  /// All work that was submitted before must be complete. `steps` is of uploadLevelSteps(), with the lists.
+  void record(Commands& commands, const DeviceVolume& volume, const Buffer& steps, const AttenuationTable& table) const;
 
  private:
-  std::uint32_t perThread_;            ///< directions a thread; a dispatch has as many layers of workgroups as it needs
-  std::array<Pipeline, 2> pipelines_;  ///< for children that are blocks; for children that are voxels
+  void recordDirections(Commands& commands, const DeviceVolume& volume, const Buffer& steps, const AttenuationTable& table,
+                        shader::LevelRange levels, std::size_t first) const;
+
+  std::uint32_t perThread_;  ///< directions a thread; a dispatch has as many layers of workgroups as it needs
+  LevelDispatches dispatches_;
+  Pipeline fromVoxels_, fromBlocks_;
+  Pipeline several_;  ///< for several levels, if they are joined
 };
 
 }  // namespace freevoxels

@@ -28,6 +28,11 @@ std::uint64_t threadsOf(const shader::CompactPush& push) {
   return std::uint64_t(push.groupCount) * shader::kOccupancyThreads;
 }
 
+/// Where BlockList::groupOffsets has the number of a level's occupied blocks, in bytes.
+VkDeviceSize totalAt(const shader::CompactPush& push) {
+  return VkDeviceSize(push.groupCount) * sizeof(std::uint32_t);
+}
+
 }  // namespace
 
 shader::ChunkArguments drawArguments(std::uint32_t first, std::uint32_t count) {
@@ -48,21 +53,27 @@ CompactionPass::CompactionPass(const Device& device)
       scan_(makeComputePipeline(device, shaders::compact_scan)),
       write_(makeComputePipeline(device, shaders::compact_write)) {}
 
-void CompactionPass::recordCount(Commands& commands, const DeviceVolume& volume, int level, BlockList& list,
-                                 const Buffer& totals) const {
-  const shader::CompactPush push = pushOf(volume, level);
-  const VkDeviceSize totalAt = VkDeviceSize(push.groupCount) * sizeof(std::uint32_t);
-  if (list.groupOffsets.bytes() == 0)
-    list.groupOffsets = Buffer(device_, totalAt + sizeof(std::uint32_t), MemoryUse::Device, "block group offsets");
-  const std::array<Binding, 2> count{&volume.occupancy, &list.groupOffsets};
-  const std::array<Binding, 2> scan{&list.groupOffsets, &totals};  // of no chunks, so that the second is not written
+void CompactionPass::recordCounts(Commands& commands, const DeviceVolume& volume, std::span<BlockList* const> levels,
+                                  const Buffer& totals) const {
   commands.beginPass("block lists");
-  commands.dispatchLinear(count_, count, push, threadsOf(push));
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    const shader::CompactPush push = pushOf(volume, int(level));
+    Buffer& offsets = levels[level]->groupOffsets;
+    if (offsets.bytes() == 0) offsets = Buffer(device_, totalAt(push) + sizeof(std::uint32_t), MemoryUse::Device, "block group offsets");
+    const std::array<Binding, 2> bindings{&volume.occupancy, &offsets};
+    commands.dispatchLinear(count_, bindings, push, threadsOf(push));
+  }
   commands.barrier(kComputeStage, kComputeStage);
-  commands.dispatchLinear(scan_, scan, push, shader::kScanThreads);
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    const std::array<Binding, 2> bindings{&levels[level]->groupOffsets, &totals};  // of no chunks, so that the second is not written
+    commands.dispatchLinear(scan_, bindings, pushOf(volume, int(level)), shader::kScanThreads);
+  }
   commands.barrier(kComputeStage, kComputeStage | VK_PIPELINE_STAGE_2_TRANSFER_BIT);
-  commands.copy(list.groupOffsets, totals,
-                {.srcOffset = totalAt, .dstOffset = VkDeviceSize(level) * sizeof(std::uint32_t), .size = sizeof(std::uint32_t)});
+  for (std::size_t level = 0; level < levels.size(); ++level)
+    commands.copy(levels[level]->groupOffsets, totals,
+                  {.srcOffset = totalAt(pushOf(volume, int(level))),
+                   .dstOffset = VkDeviceSize(level) * sizeof(std::uint32_t),
+                   .size = sizeof(std::uint32_t)});
 }
 
 void CompactionPass::allocate(BlockList& list, std::uint64_t count) const {
@@ -78,12 +89,14 @@ void CompactionPass::allocate(BlockList& list, std::uint64_t count) const {
   upload(device_, list.chunks, std::as_bytes(std::span(chunks)));
 }
 
-void CompactionPass::recordList(Commands& commands, const DeviceVolume& volume, int level, const BlockList& list) const {
-  shader::CompactPush push = pushOf(volume, level);
-  push.blocks = addressWords(list.indices.address());
-  const std::array<Binding, 2> write{&volume.occupancy, &list.groupOffsets};
+void CompactionPass::recordLists(Commands& commands, const DeviceVolume& volume, std::span<BlockList* const> levels) const {
   commands.beginPass("block lists");
-  commands.dispatchLinear(write_, write, push, threadsOf(push));
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    shader::CompactPush push = pushOf(volume, int(level));
+    push.blocks = addressWords(levels[level]->indices.address());
+    const std::array<Binding, 2> bindings{&volume.occupancy, &levels[level]->groupOffsets};
+    commands.dispatchLinear(write_, bindings, push, threadsOf(push));
+  }
   commands.barrier(kComputeStage, kComputeStage);
 }
 

@@ -2,6 +2,7 @@
 // Lists of the occupied blocks of a level of the octree, in ascending order, made on the device. Level 0 has the voxels.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "engine/octree/device_volume.h"
@@ -26,12 +27,12 @@ class CompactionPass {
  public:
   explicit CompactionPass(const Device& device);
 
-  /// Records counting a level's occupied blocks. `list` gets groupOffsets, and `totals` the count at index `level`.
-  void recordCount(Commands& commands, const DeviceVolume& volume, int level, BlockList& list, const Buffer& totals) const;
+  /// Records counting the occupied blocks of the levels 0, 1, ... Their lists get groupOffsets, and `totals` the counts, by level.
+  void recordCounts(Commands& commands, const DeviceVolume& volume, std::span<BlockList* const> levels, const Buffer& totals) const;
   /// Allocates a list of `count` blocks, with the arguments of its draw chunks. Fails with ErrorKind::OutOfMemory.
   void allocate(BlockList& list, std::uint64_t count) const;
-  /// Records listing and ranking the blocks that recordCount counted, after allocate().
-  void recordList(Commands& commands, const DeviceVolume& volume, int level, const BlockList& list) const;
+  /// Records listing and ranking the blocks that recordCounts() counted, after allocate().
+  void recordLists(Commands& commands, const DeviceVolume& volume, std::span<BlockList* const> levels) const;
 
  private:
   const Device& device_;

@@ -13,34 +13,30 @@ namespace {
 
 static_assert(shader::kRowAlignment % 2 == 0);  // two children in a row are in the same occupancy word
 
-shader::MediumLevelPush mediumPush(const DeviceVolume& volume, int level) {
-  const int childEdge = Block{.level = level - 1}.edge();
-  return {.child = volume.onDevice(level - 1),
-          .parent = volume.onDevice(level),
-          .stores = volume.stores(),
-          .voxels = volume.layout.dimensions,
-          .childEdge = childEdge,
-          .parentCount = std::uint32_t(volume.stored[std::size_t(level)]),
-          .childLength = float(volume.voxelSize * childEdge),
-          .firstColor = volume.firstRank(1)};
-}
-
 }  // namespace
 
-MediumLevels::MediumLevels(const Device& device, const DeviceVolume& volume) {
-  const std::uint32_t colors = volume.hasColors, emission = volume.hasEmission();
-  for (const std::uint32_t fromVoxels : {0u, 1u})
-    pipelines_[fromVoxels] =
-        makeComputePipeline(device, shaders::medium_level, {colors, fromVoxels, emission});
+MediumLevels::MediumLevels(const Device& device, const DeviceVolume& volume, LevelDispatches dispatches) : dispatches_(dispatches) {
+  const auto pipeline = [&](bool fromVoxels, bool several) {
+    return makeComputePipeline(device, shaders::medium_level, {volume.hasColors, fromVoxels, volume.hasEmission(), several});
+  };
+  fromVoxels_ = pipeline(true, false);
+  fromBlocks_ = pipeline(false, false);
+  if (dispatches == LevelDispatches::Joined) several_ = pipeline(false, true);
 }
 
-void MediumLevels::record(Commands& commands, const DeviceVolume& volume,
-                          std::span<const BlockList> coarse) const {
+void MediumLevels::record(Commands& commands, const DeviceVolume& volume, const Buffer& steps) const {
   commands.beginPass("octree");
-  for (int level = 1; level <= volume.hierarchy.top(); ++level) {
-    const shader::MediumLevelPush push = mediumPush(volume, level);
-    const std::array<Binding, 2> bindings{&volume.occupancy, &coarse[std::size_t(level) - 1].indices};
-    commands.dispatchLinear(pipelines_[level == 1 ? 1 : 0], bindings, push, push.parentCount);
+  for (const shader::LevelRange levels : levelRanges(volume.hierarchy, dispatches_)) {
+    const shader::MediumLevelPush push{.stores = volume.stores(),
+                                       .levels = levels,
+                                       .voxels = volume.layout.dimensions,
+                                       .voxelLength = float(volume.voxelSize),
+                                       .firstColor = volume.firstRank(1)};
+    const std::array<Binding, 2> bindings{&volume.occupancy, &steps};
+    commands.dispatchLinear(isSeveral(levels)   ? several_
+                            : levels.first == 1 ? fromVoxels_
+                                                : fromBlocks_,
+                            bindings, push, isSeveral(levels) ? 1 : volume.stored[std::size_t(levels.first)]);
     commands.barrier(kComputeStage, kComputeStage);
   }
 }

@@ -11,20 +11,22 @@
 #include "engine/octree/block_list.h"
 #include "engine/octree/device_volume.h"
 #include "engine/octree/level_data.h"
+#include "engine/octree/level_steps.h"
 #include "engine/vulkan/commands.h"
 
 namespace freevoxels {
 
-/// COMPUTE medium_level.comp: extinction, emission, and colours if there is more than one; a dispatch a
-/// level.
+/// COMPUTE medium_level.comp: extinction, emission, and colours if there is more than one.
 class MediumLevels {
  public:
-  MediumLevels(const Device& device, const DeviceVolume& volume);
-  /// `coarse` lists the blocks of levels 1, 2, ...
-  void record(Commands& commands, const DeviceVolume& volume, std::span<const BlockList> coarse) const;
+  MediumLevels(const Device& device, const DeviceVolume& volume, LevelDispatches dispatches);
+  /// `steps` is of uploadLevelSteps(), with the lists.
+  void record(Commands& commands, const DeviceVolume& volume, const Buffer& steps) const;
 
  private:
-  std::array<Pipeline, 2> pipelines_;  ///< for children that are blocks; for children that are voxels
+  LevelDispatches dispatches_;
+  Pipeline fromVoxels_, fromBlocks_;
+  Pipeline several_;  ///< for several levels, if they are joined
 };
 
 /// Extinction, colours and emission of a level, without its table. Reads back.

@@ -16,9 +16,12 @@ constexpr int kQuad = 4;  // number of voxels of a row that an invocation of exp
 
 }  // namespace
 
-OccupancyPass::OccupancyPass(const Device& device, bool emission)
-    : voxels_(makeComputePipeline(device, shaders::occupied_voxels, {emission ? 1u : 0u})),
-      blocks_(makeComputePipeline(device, shaders::occupied_blocks)) {}
+OccupancyPass::OccupancyPass(const Device& device, bool emission, LevelDispatches dispatches)
+    : dispatches_(dispatches),
+      voxels_(makeComputePipeline(device, shaders::occupied_voxels, {emission ? 1u : 0u})),
+      blocks_(makeComputePipeline(device, shaders::occupied_blocks, {false})) {
+  if (dispatches == LevelDispatches::Joined) several_ = makeComputePipeline(device, shaders::occupied_blocks, {true});
+}
 
 void OccupancyPass::recordVoxels(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks,
                                  bool first) const {
@@ -30,14 +33,12 @@ void OccupancyPass::recordVoxels(Commands& commands, const DeviceVolume& volume,
   commands.barrier(kComputeStage, kComputeStage);
 }
 
-void OccupancyPass::recordBlocks(Commands& commands, const DeviceVolume& volume) const {
+void OccupancyPass::recordBlocks(Commands& commands, const DeviceVolume& volume, const Buffer& steps) const {
   commands.beginPass("occupancy");
-  for (int level = 1; level <= volume.hierarchy.top(); ++level) {
-    const shader::OccupiedBlocksPush push{.child = volume.onDevice(level - 1),
-                                          .parent = volume.onDevice(level),
-                                          .wordCount = std::uint32_t(volume.hierarchy.words(level))};
-    const std::array<Binding, 1> occupancy{&volume.occupancy};
-    commands.dispatchLinear(blocks_, occupancy, push, push.wordCount);
+  for (const shader::LevelRange levels : levelRanges(volume.hierarchy, dispatches_)) {
+    const std::array<Binding, 2> bindings{&volume.occupancy, &steps};
+    commands.dispatchLinear(isSeveral(levels) ? several_ : blocks_, bindings, shader::OccupiedBlocksPush{levels},
+                            isSeveral(levels) ? 1 : volume.hierarchy.words(levels.first));
     commands.barrier(kComputeStage, kComputeStage);
   }
 }

@@ -6,6 +6,7 @@
 
 #include "engine/octree/device_bricks.h"
 #include "engine/octree/device_volume.h"
+#include "engine/octree/level_steps.h"
 #include "engine/vulkan/commands.h"
 
 namespace freevoxels {
@@ -15,15 +16,17 @@ namespace freevoxels {
 class OccupancyPass {
  public:
   /// `emission` says whether the volume emits light.
-  OccupancyPass(const Device& device, bool emission);
+  OccupancyPass(const Device& device, bool emission, LevelDispatches dispatches);
   /// Marks the voxels of a batch of bricks; the first batch clears the masks.
   void recordVoxels(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks,
                     bool first) const;
-  /// Marks the blocks, after the voxels of all batches.
-  void recordBlocks(Commands& commands, const DeviceVolume& volume) const;
+  /// Marks the blocks, after the voxels of all batches. `steps` is of uploadLevelSteps().
+  void recordBlocks(Commands& commands, const DeviceVolume& volume, const Buffer& steps) const;
 
  private:
+  LevelDispatches dispatches_;
   Pipeline voxels_, blocks_;
+  Pipeline several_;  ///< for several levels, if they are joined
 };
 
 /// COMPUTE expand_voxels.comp: expands the extinction of the occupied voxels of a slab or a box to a dense

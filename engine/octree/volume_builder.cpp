@@ -71,32 +71,33 @@ class BlockBuilder {
   /// Finds the occupied blocks of all levels, lists them and ranks them.
   void findOccupancy() {
     const DeviceVolume& volume = built_.volume;
-    const OccupancyPass occupancy(device_, volume.hasEmission());
+    const OccupancyPass occupancy(device_, volume.hasEmission(), levelDispatches(device_));
     const CompactionPass compaction(device_);
     forEachBatch([&](Commands& commands, std::size_t batch) {
       occupancy.recordVoxels(commands, volume, bricks_, batch == 0);
     });
     const std::size_t levels = levels_ == BuiltLevels::All ? volume.hierarchy.levels.size() : 1;
     built_.lists.coarse.resize(levels - 1);
-    const auto listOf = [&](std::size_t level) -> BlockList& {
-      return level == 0 ? built_.visible : built_.lists.coarse[level - 1];
-    };
+    std::vector<BlockList*> lists{&built_.visible};
+    for (BlockList& list : built_.lists.coarse) lists.push_back(&list);
     std::vector<std::uint32_t> counts(levels);
     const Buffer totals(device_, levels * sizeof(std::uint32_t), MemoryUse::Device, "block counts");
     Commands counting(device_);
-    if (levels > 1) occupancy.recordBlocks(counting, volume);
-    for (std::size_t level = 0; level < levels; ++level)
-      compaction.recordCount(counting, volume, int(level), listOf(level), totals);
+    if (levels > 1) {
+      built_.lists.steps = makeLevelSteps(device_);
+      uploadLevelSteps(device_, built_.lists.steps, volume, {});
+      occupancy.recordBlocks(counting, volume, built_.lists.steps);
+    }
+    compaction.recordCounts(counting, volume, lists, totals);
     submit(counting);
     download(device_, totals, std::as_writable_bytes(std::span(counts)));
+    for (std::size_t level = 0; level < levels; ++level) compaction.allocate(*lists[level], counts[level]);
     Commands listing(device_);
-    for (std::size_t level = 0; level < levels; ++level) {
-      compaction.allocate(listOf(level), counts[level]);
-      compaction.recordList(listing, volume, int(level), listOf(level));
-    }
+    compaction.recordLists(listing, volume, lists);
     submit(listing);
     built_.volume.stored.assign(counts.begin(), counts.end());
     built_.volume.stored.resize(volume.hierarchy.levels.size(), 0);
+    if (levels > 1) uploadLevelSteps(device_, built_.lists.steps, volume, built_.lists.coarse);
   }
 
   /// Stores the medium of every occupied block.
@@ -105,9 +106,9 @@ class BlockBuilder {
     const PackPass pack(device_, volume);
     forEachBatch([&](Commands& commands, std::size_t) { pack.record(commands, volume, bricks_); });
     if (levels_ == BuiltLevels::Voxels) return;
-    const MediumLevels levels(device_, volume);
+    const MediumLevels levels(device_, volume, levelDispatches(device_));
     Commands commands(device_);
-    levels.record(commands, volume, built_.lists.coarse);
+    levels.record(commands, volume, built_.lists.steps);
     submit(commands);
   }
 
@@ -164,7 +165,7 @@ void buildBlocks(const Device& device, const Volume& volume, const Classificatio
     BlockBuilder(device, volume, classification, built, times, progress, levels).run();
   } catch (...) {
     built.volume.stored.clear();
-    built.lists.coarse.clear();
+    built.lists = {};
     throw;
   }
 }

@@ -12,6 +12,7 @@ namespace freevoxels {
 /// The occupied blocks of every level. Those of level 0 are BuiltVolume::visible.
 struct LevelLists {
   std::vector<BlockList> coarse;  ///< of levels 1, 2, ...
+  Buffer steps;                   ///< uploadLevelSteps() of them
 
   const BlockList& of(int level, const BlockList& voxels) const {
     return level == 0 ? voxels : coarse[std::size_t(level) - 1];

@@ -272,13 +272,12 @@ TEST_F(HierarchyTest, TablesAreTheSameHoweverManyDirectionsAThreadHas) {
     const TableSettings settings{.directions = set};
     std::vector<StageTime> times;
     const BuiltVolume built = buildVolume(device(), volume, {.densityScale = 1.0}, times);
-    const auto levelsOf = [&](std::uint32_t directionsPerThread) {
+    const auto levelsOf = [&](std::uint32_t directionsPerThread, LevelDispatches dispatches) {
       const AttenuationTable table = makeTable(device(), built.volume, settings);
       AttenuationSweep sweep(device(), settings);
       Commands commands(device());
       sweep.record(commands, built.volume, table);
-      TableLevels(device(), settings, directionsPerThread)
-          .record(commands, built.volume, built.lists.coarse, table);
+      TableLevels(device(), settings, directionsPerThread, dispatches).record(commands, built.volume, built.lists.steps, table);
       commands.submitAndWait();
       std::vector<std::vector<std::vector<std::uint8_t>>> levels;
       for (int level = 1; level <= built.volume.hierarchy.top(); ++level) {
@@ -287,7 +286,8 @@ TEST_F(HierarchyTest, TablesAreTheSameHoweverManyDirectionsAThreadHas) {
       }
       return std::pair(levels, downloadLargestDepths(device(), table));
     };
-    EXPECT_TRUE(levelsOf(shader::kDirectionsPerLevelPass) == levelsOf(kDirectionsPerGpuThread))
+    EXPECT_TRUE(levelsOf(shader::kDirectionsPerLevelPass, LevelDispatches::Single) ==
+                levelsOf(kDirectionsPerGpuThread, LevelDispatches::Joined))
         << directionCount(set);
   }
 }

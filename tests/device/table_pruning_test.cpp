@@ -43,7 +43,7 @@ class SeenRunsTest : public DeviceTest {
       Commands commands(device());
       sweep.record(commands, built.volume, table);
       TableLevels levels(device(), settings);
-      levels.record(commands, built.volume, built.lists.coarse, table);
+      levels.record(commands, built.volume, built.lists.steps, table);
       commands.submitAndWait();
     }
     /// Codes and bounds of all levels.
