@@ -1,5 +1,5 @@
 #version 460
-// The attenuation table for the directions +x and -x: Subr et al. 2007, Section 3.1, Eq. 5. A thread a row.
+// The attenuation table for the directions +x and -x: Subr et al. 2007, Section 3.1, Eq. 5. A thread sums up a row.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
@@ -13,7 +13,7 @@ layout(constant_id = 2) const bool kOfPart = false;  // as in attenuation_sweep.
 layout(constant_id = 3) const bool kTiled = false;
 
 const int kTileQuads = 8;
-const int kTilePitch = kTileQuads + 1;  // in which the quads of a column are in different banks
+const int kTilePitch = kTileQuads + 1;  // odd, so that the quads of a column are in different banks of shared memory
 
 layout(local_size_x = kSweepThreads) in;
 layout(scalar, push_constant) uniform Push { SweepPush push; };
@@ -23,7 +23,7 @@ layout(binding = 0) uniform textureBuffer extinction;
 shared vec4 tile[kTiled ? kSweepThreads * kTilePitch : 1];  // by row: extinctions, then depths
 
 // The depths in front of the four voxels of a quad. Adds the quad's own to the row's depth.
-vec4 pass(vec4 sigma, inout float depth) {
+vec4 depthsBefore(vec4 sigma, inout float depth) {
   vec4 depths;
   [[unroll]] for (int i = 0; i < 4; ++i) {
     const int c = kStepX > 0 ? i : 3 - i;
@@ -39,7 +39,7 @@ void marchRow(int row, int quads, float depth) {
   const int first = push.marchStart / 4 + row * quads;
   for (int i = 0; i < quads; ++i) {
     const int quad = first + (kStepX > 0 ? i : quads - 1 - i);
-    storeCodes(quad, pass(loadQuad(quad), depth));
+    storeCodes(quad, depthsBefore(loadQuad(quad), depth));
   }
 }
 
@@ -59,7 +59,7 @@ void marchTiles(int firstRow, int thread, int quads, float depth) {
     barrier();
     for (int i = 0; i < kTileQuads; ++i) {
       const int place = thread * kTilePitch + (kStepX > 0 ? i : kTileQuads - 1 - i);
-      tile[place] = pass(tile[place], depth);
+      tile[place] = depthsBefore(tile[place], depth);
     }
     barrier();
     for (int place = thread; place < kSweepThreads * kTileQuads; place += kSweepThreads) {

@@ -1,4 +1,4 @@
-// The sum of what the threads of a workgroup before a thread count. Parameter: COUNT_THREADS, the number of threads.
+// The exclusive prefix sum of one count per thread of a workgroup. Parameter: COUNT_THREADS, the number of threads.
 #ifndef COUNT_BEFORE_GLSL
 #define COUNT_BEFORE_GLSL
 

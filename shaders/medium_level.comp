@@ -1,5 +1,5 @@
 #version 460
-// Computes a level of the octree from the one below, a thread for each occupied block: extinction is the mean
+// Computes levels of the octree, each from the one below; a part is an occupied block. Extinction is the mean
 // over the voxels inside the volume, which conserves optical depth; colour is the mean weighted by the
 // children's opacities; emission is a mean like extinction.
 #extension GL_GOOGLE_include_directive : require
@@ -10,15 +10,14 @@
 layout(constant_id = 0) const bool kColors = false;      // whether there is more than one colour
 layout(constant_id = 1) const bool kFromVoxels = false;  // whether the children are voxels
 layout(constant_id = 2) const bool kEmits = false;
-layout(constant_id = 3) const bool kSeveral = false;
 
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { MediumLevelPush push; };
 #define LEVEL_STEPS_BINDING 1
 #define OCCUPANCY_BINDING 0
 #define STORES push.stores
-#define STORES_ACCESS coherent
 #include "level_steps.glsl"
+#define STORES_ACCESS LEVEL_ACCESS
 #include "stored_block.glsl"
 
 vec3 childColor(uint rank) {
@@ -58,4 +57,4 @@ void makePart(uint i) {
     PairStore(push.stores.blockColors).values[rank - push.firstColor] = packColor(opacity > 0.0 ? color / opacity : vec3(0.0));
 }
 
-void main() { takeSteps(push.levels, kLevelThreads); }
+void main() { computeLevels(push.levels, kLevelThreads); }

@@ -1,15 +1,14 @@
 #version 460
-// Marks the occupied blocks of a level of the octree, from the level below; a thread for each word of blocks.
+// Marks the occupied blocks of levels of the octree, each from the level below; a part is a word of blocks.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 
-layout(constant_id = 0) const bool kSeveral = false;
 #define LEVEL_STEPS_BINDING 1
 #include "level_steps.glsl"
 
 layout(local_size_x = kOccupancyThreads) in;
 layout(scalar, push_constant) uniform Push { OccupiedBlocksPush push; };
-layout(scalar, binding = 0) coherent buffer Occupancy { OccupancyWord occupancy[]; };
+layout(scalar, binding = 0) LEVEL_ACCESS buffer Occupancy { OccupancyWord occupancy[]; };
 
 // Two children that are neighbours in x are in the same word, because rows begin at even indices.
 bool isOccupied(ivec3 cell) {
@@ -34,4 +33,4 @@ void makePart(uint word) {
   occupancy[parent.first / kBlocksPerWord + word].mask = mask;
 }
 
-void main() { takeSteps(push.levels, kOccupancyThreads); }
+void main() { computeLevels(push.levels, kOccupancyThreads); }

@@ -1,5 +1,5 @@
 #version 460
-// Computes a level of the octree's attenuation table from the one below, for a few directions; a thread for
+// Computes levels of the octree's attenuation table, each from the one below, for a few directions; a part is
 // kBoundBlocks occupied blocks: Subr et al. 2007, Section 3.2, Eq. 7. The geometric mean of transmittances is
 // the mean of optical depths. Only occupied children count, weighted by their numbers of voxels inside the
 // volume.
@@ -16,7 +16,6 @@ layout(constant_id = 0) const int kCode = kCodeDepth8;
 layout(constant_id = 1) const int kFilter = kFilterGeometric;
 layout(constant_id = 2) const bool kFromVoxels = false;  // whether the children are voxels, whose codes are their own bounds
 layout(constant_id = 3) const uint kPerThread = kDirectionsPerLevelPass;  // directions a thread, in its layer of workgroups
-layout(constant_id = 4) const bool kSeveral = false;
 
 layout(local_size_x = kLevelThreads) in;
 layout(scalar, push_constant) uniform Push { TableLevelPush push; };
@@ -25,10 +24,10 @@ layout(scalar, binding = 0) buffer Darkest { uint maxCodePerDirection[]; };
 layout(binding = 1) uniform utextureBuffer occupancy;  // an OccupancyWord a texel
 #define LEVEL_STEPS_BINDING 2
 #include "level_steps.glsl"
-// A direction's codes and bounds, read and written. With kSeveral they are read as bytes, as texels may be out of date.
+// A direction's codes and bounds, read and written. With kJoined they are read as bytes, as texels may be out of date.
 #define PLANE(i)                                           \
   layout(binding = 3 + i) uniform utextureBuffer read##i; \
-  layout(scalar, binding = 3 + kDirectionsPerLevelPass + i) coherent buffer Plane##i { uint8_t bytes[]; } plane##i;
+  layout(scalar, binding = 3 + kDirectionsPerLevelPass + i) LEVEL_ACCESS buffer Plane##i { uint8_t bytes[]; } plane##i;
 #define FOR_EACH_DIRECTION(F) F(0) F(1) F(2) F(3) F(4) F(5) F(6) F(7) F(8) F(9) F(10) F(11) F(12)
 FOR_EACH_DIRECTION(PLANE)
 
@@ -114,7 +113,7 @@ void takeDarkest(uint direction, uint code) {
 uint bounds[kDirectionsPerLevelPass];
 uint deepest[kDirectionsPerLevelPass];
 
-#define BYTE(i, place) (kSeveral ? uint(plane##i.bytes[place]) : texelFetch(read##i, int(place)).x)
+#define BYTE(i, place) (kJoined ? uint(plane##i.bytes[place]) : texelFetch(read##i, int(place)).x)
 #define BEGIN(i) bounds[i] = deepest[i] = 0;
 #define MAKE(i)                                                                                              \
   if (isWanted(i)) {                                                                                         \
@@ -146,4 +145,4 @@ void makePart(uint part) {
   FOR_EACH_DIRECTION(END)
 }
 
-void main() { takeSteps(push.levels, kLevelThreads); }
+void main() { computeLevels(push.levels, kLevelThreads); }

@@ -4,12 +4,14 @@
 #include <vector>
 
 #include "embedded/table_level.h"
+#include "embedded/table_level_joined.h"
 
 namespace freevoxels {
 
 namespace {
 
 static_assert(shader::kFilterGeometric == int(HierarchyFilter::Geometric));
+static_assert(shader::kRowAlignment % 2 == 0);  // two children in a row are in the same occupancy word
 static_assert(shader::kFilterArithmetic == int(HierarchyFilter::Arithmetic));
 
 }  // namespace
@@ -18,20 +20,19 @@ TableLevels::TableLevels(const Device& device, const TableSettings& settings)
     : TableLevels(device, settings, device.isCpu() ? shader::kDirectionsPerLevelPass : kDirectionsPerGpuThread, levelDispatches(device)) {}
 
 TableLevels::TableLevels(const Device& device, const TableSettings& settings, std::uint32_t directionsPerThread, LevelDispatches dispatches)
-    : perThread_(directionsPerThread), dispatches_(dispatches) {
-  const auto pipeline = [&](bool fromVoxels, bool several) {
-    return makeComputePipeline(device, shaders::table_level,
-                               {std::uint32_t(settings.code), std::uint32_t(settings.filter), fromVoxels, perThread_, several});
+    : perThread_(directionsPerThread), pipelines_{.dispatches = dispatches} {
+  const auto pipeline = [&](const Shader& shader, bool fromVoxels) {
+    return makeComputePipeline(device, shader, {std::uint32_t(settings.code), std::uint32_t(settings.filter), fromVoxels, perThread_});
   };
-  fromVoxels_ = pipeline(true, false);
-  fromBlocks_ = pipeline(false, false);
-  if (dispatches == LevelDispatches::Joined) several_ = pipeline(false, true);
+  pipelines_.fromVoxels = pipeline(shaders::table_level, true);
+  pipelines_.fromBlocks = pipeline(shaders::table_level, false);
+  if (dispatches == LevelDispatches::Joined) pipelines_.joined = pipeline(shaders::table_level_joined, false);
 }
 
 void TableLevels::record(Commands& commands, const DeviceVolume& volume, const Buffer& steps, const AttenuationTable& table) const {
   commands.beginPass("octree table");
   commands.clear(table.maxCodePerDirection);
-  for (const shader::LevelRange levels : levelRanges(volume.hierarchy, dispatches_)) {
+  for (const shader::LevelRange levels : levelRanges(volume.hierarchy, pipelines_.dispatches)) {
     for (std::size_t first = 0; first < table.planes.size(); first += shader::kDirectionsPerLevelPass)
       recordDirections(commands, volume, steps, table, levels, first);
     commands.barrier(kComputeStage, kComputeStage);
@@ -50,10 +51,8 @@ void TableLevels::recordDirections(Commands& commands, const DeviceVolume& volum
   // The last group may have fewer directions. Its other bindings are not read.
   for (std::size_t i = 0; i < kGroup; ++i) bindings.emplace_back(&table.planeTexels[std::min(first + i, directions - 1)]);
   for (std::size_t i = 0; i < kGroup; ++i) bindings.emplace_back(&table.planes[std::min(first + i, directions - 1)]);
-  commands.dispatchLinear(isSeveral(levels)   ? several_
-                          : levels.first == 1 ? fromVoxels_
-                                              : fromBlocks_,
-                          bindings, push, isSeveral(levels) ? 1 : boundBytes(volume.stored[std::size_t(levels.first)]),
+  commands.dispatchLinear(pipelines_.of(levels), bindings, push,
+                          LevelPipelines::threads(levels, boundBytes(volume.stored[std::size_t(levels.first)])),
                           (push.directionCount + perThread_ - 1) / perThread_);
 }
 

@@ -2,9 +2,8 @@
 // The attenuation table of the octree levels above the voxels, each computed from the level below: Subr et al. 2007, Section 3.2,
 // Eq. 7.
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <span>
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/octree/device_volume.h"
@@ -17,12 +16,12 @@ namespace freevoxels {
 /// occupancy. A thread of a CPU device computes all directions of a dispatch.
 constexpr std::uint32_t kDirectionsPerGpuThread = 4;
 
-/// COMPUTE table_level.comp: the attenuation table and its bounds; dispatches for kDirectionsPerLevelPass directions.
+/// COMPUTE table_level.comp: the attenuation table and its bounds. A dispatch has up to kDirectionsPerLevelPass directions.
 class TableLevels {
  public:
   TableLevels(const Device& device, const TableSettings& settings);
   TableLevels(const Device& device, const TableSettings& settings, std::uint32_t directionsPerThread, LevelDispatches dispatches);
-  /// All work that was submitted before must be complete. `steps` is of uploadLevelSteps(), with the lists.
+  /// All work that was submitted before must be complete. uploadLevelSteps() has filled `steps` after the blocks were listed.
   void record(Commands& commands, const DeviceVolume& volume, const Buffer& steps, const AttenuationTable& table) const;
 
  private:
@@ -30,9 +29,7 @@ class TableLevels {
                         shader::LevelRange levels, std::size_t first) const;
 
   std::uint32_t perThread_;  ///< directions a thread; a dispatch has as many layers of workgroups as it needs
-  LevelDispatches dispatches_;
-  Pipeline fromVoxels_, fromBlocks_;
-  Pipeline several_;  ///< for several levels, if they are joined
+  LevelPipelines pipelines_;
 };
 
 }  // namespace freevoxels

@@ -1,11 +1,13 @@
 #pragma once
 // The steps by which the octree is built from the voxels upwards: each computes a level from the one below.
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "engine/octree/block_list.h"
 #include "engine/octree/device_volume.h"
+#include "engine/vulkan/pipeline.h"
 
 namespace freevoxels {
 
@@ -22,10 +24,17 @@ LevelDispatches levelDispatches(const Device& device);
 /// The levels of each dispatch, from fine to coarse; all those above the voxels.
 std::vector<shader::LevelRange> levelRanges(const HierarchyLayout& hierarchy, LevelDispatches dispatches);
 
-/// Whether a dispatch needs a pipeline for several levels, which has one workgroup in each layer.
-inline bool isSeveral(shader::LevelRange levels) {
-  return levels.end - levels.first > 1;
-}
+/// The pipelines of a pass that computes levels.
+struct LevelPipelines {
+  LevelDispatches dispatches = LevelDispatches::Single;
+  Pipeline fromVoxels, fromBlocks;  ///< for one level
+  Pipeline joined;                  ///< for several levels, one workgroup in each layer; only with LevelDispatches::Joined
+
+  static bool isJoined(shader::LevelRange levels) { return levels.end - levels.first > 1; }
+  const Pipeline& of(shader::LevelRange levels) const { return isJoined(levels) ? joined : levels.first == 1 ? fromVoxels : fromBlocks; }
+  /// The threads to dispatch for levels of which the first has `parts` parts, a thread each.
+  static std::uint64_t threads(shader::LevelRange levels, std::uint64_t parts) { return isJoined(levels) ? 1 : parts; }
+};
 
 /// A uniform buffer for uploadLevelSteps().
 Buffer makeLevelSteps(const Device& device);

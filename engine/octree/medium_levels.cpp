@@ -1,42 +1,36 @@
 #include "engine/octree/medium_levels.h"
 
-#include <algorithm>
+#include <array>
 #include <glm/gtc/packing.hpp>
 
 #include "embedded/medium_level.h"
+#include "embedded/medium_level_joined.h"
 #include "engine/octree/occupancy.h"
 #include "engine/volume/packed_light.h"
 
 namespace freevoxels {
 
-namespace {
-
-static_assert(shader::kRowAlignment % 2 == 0);  // two children in a row are in the same occupancy word
-
-}  // namespace
-
-MediumLevels::MediumLevels(const Device& device, const DeviceVolume& volume, LevelDispatches dispatches) : dispatches_(dispatches) {
-  const auto pipeline = [&](bool fromVoxels, bool several) {
-    return makeComputePipeline(device, shaders::medium_level, {volume.hasColors, fromVoxels, volume.hasEmission(), several});
+MediumLevels::MediumLevels(const Device& device, const DeviceVolume& volume, LevelDispatches dispatches)
+    : pipelines_{.dispatches = dispatches} {
+  const auto pipeline = [&](const Shader& shader, bool fromVoxels) {
+    return makeComputePipeline(device, shader, {volume.hasColors, fromVoxels, volume.hasEmission()});
   };
-  fromVoxels_ = pipeline(true, false);
-  fromBlocks_ = pipeline(false, false);
-  if (dispatches == LevelDispatches::Joined) several_ = pipeline(false, true);
+  pipelines_.fromVoxels = pipeline(shaders::medium_level, true);
+  pipelines_.fromBlocks = pipeline(shaders::medium_level, false);
+  if (dispatches == LevelDispatches::Joined) pipelines_.joined = pipeline(shaders::medium_level_joined, false);
 }
 
 void MediumLevels::record(Commands& commands, const DeviceVolume& volume, const Buffer& steps) const {
   commands.beginPass("octree");
-  for (const shader::LevelRange levels : levelRanges(volume.hierarchy, dispatches_)) {
+  for (const shader::LevelRange levels : levelRanges(volume.hierarchy, pipelines_.dispatches)) {
     const shader::MediumLevelPush push{.stores = volume.stores(),
                                        .levels = levels,
                                        .voxels = volume.layout.dimensions,
                                        .voxelLength = float(volume.voxelSize),
                                        .firstColor = volume.firstRank(1)};
     const std::array<Binding, 2> bindings{&volume.occupancy, &steps};
-    commands.dispatchLinear(isSeveral(levels)   ? several_
-                            : levels.first == 1 ? fromVoxels_
-                                                : fromBlocks_,
-                            bindings, push, isSeveral(levels) ? 1 : volume.stored[std::size_t(levels.first)]);
+    commands.dispatchLinear(pipelines_.of(levels), bindings, push,
+                            LevelPipelines::threads(levels, volume.stored[std::size_t(levels.first)]));
     commands.barrier(kComputeStage, kComputeStage);
   }
 }

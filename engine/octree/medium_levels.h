@@ -2,13 +2,6 @@
 // Extinction, colour and emission of the octree levels above the voxels, each computed from the level below: Subr et al. 2007,
 // Section 3.2.
 
-#include <algorithm>
-#include <array>
-#include <cstdint>
-#include <span>
-#include <vector>
-
-#include "engine/octree/block_list.h"
 #include "engine/octree/device_volume.h"
 #include "engine/octree/level_data.h"
 #include "engine/octree/level_steps.h"
@@ -20,13 +13,11 @@ namespace freevoxels {
 class MediumLevels {
  public:
   MediumLevels(const Device& device, const DeviceVolume& volume, LevelDispatches dispatches);
-  /// `steps` is of uploadLevelSteps(), with the lists.
+  /// uploadLevelSteps() has filled `steps` after the blocks were listed.
   void record(Commands& commands, const DeviceVolume& volume, const Buffer& steps) const;
 
  private:
-  LevelDispatches dispatches_;
-  Pipeline fromVoxels_, fromBlocks_;
-  Pipeline several_;  ///< for several levels, if they are joined
+  LevelPipelines pipelines_;
 };
 
 /// Extinction, colours and emission of a level, without its table. Reads back.

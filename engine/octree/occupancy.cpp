@@ -5,6 +5,7 @@
 
 #include "embedded/expand_voxels.h"
 #include "embedded/occupied_blocks.h"
+#include "embedded/occupied_blocks_joined.h"
 #include "embedded/occupied_voxels.h"
 #include "engine/core/error.h"
 
@@ -17,10 +18,9 @@ constexpr int kQuad = 4;  // number of voxels of a row that an invocation of exp
 }  // namespace
 
 OccupancyPass::OccupancyPass(const Device& device, bool emission, LevelDispatches dispatches)
-    : dispatches_(dispatches),
-      voxels_(makeComputePipeline(device, shaders::occupied_voxels, {emission ? 1u : 0u})),
-      blocks_(makeComputePipeline(device, shaders::occupied_blocks, {false})) {
-  if (dispatches == LevelDispatches::Joined) several_ = makeComputePipeline(device, shaders::occupied_blocks, {true});
+    : voxels_(makeComputePipeline(device, shaders::occupied_voxels, {emission ? 1u : 0u})), blocks_{.dispatches = dispatches} {
+  blocks_.fromVoxels = blocks_.fromBlocks = makeComputePipeline(device, shaders::occupied_blocks);
+  if (dispatches == LevelDispatches::Joined) blocks_.joined = makeComputePipeline(device, shaders::occupied_blocks_joined);
 }
 
 void OccupancyPass::recordVoxels(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks,
@@ -35,10 +35,10 @@ void OccupancyPass::recordVoxels(Commands& commands, const DeviceVolume& volume,
 
 void OccupancyPass::recordBlocks(Commands& commands, const DeviceVolume& volume, const Buffer& steps) const {
   commands.beginPass("occupancy");
-  for (const shader::LevelRange levels : levelRanges(volume.hierarchy, dispatches_)) {
+  for (const shader::LevelRange levels : levelRanges(volume.hierarchy, blocks_.dispatches)) {
     const std::array<Binding, 2> bindings{&volume.occupancy, &steps};
-    commands.dispatchLinear(isSeveral(levels) ? several_ : blocks_, bindings, shader::OccupiedBlocksPush{levels},
-                            isSeveral(levels) ? 1 : volume.hierarchy.words(levels.first));
+    commands.dispatchLinear(blocks_.of(levels), bindings, shader::OccupiedBlocksPush{levels},
+                            LevelPipelines::threads(levels, volume.hierarchy.words(levels.first)));
     commands.barrier(kComputeStage, kComputeStage);
   }
 }

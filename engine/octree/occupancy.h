@@ -20,13 +20,12 @@ class OccupancyPass {
   /// Marks the voxels of a batch of bricks; the first batch clears the masks.
   void recordVoxels(Commands& commands, const DeviceVolume& volume, const DeviceBricks& bricks,
                     bool first) const;
-  /// Marks the blocks, after the voxels of all batches. `steps` is of uploadLevelSteps().
+  /// Marks the blocks, after the voxels of all batches. uploadLevelSteps() has filled `steps`; lists are not needed.
   void recordBlocks(Commands& commands, const DeviceVolume& volume, const Buffer& steps) const;
 
  private:
-  LevelDispatches dispatches_;
-  Pipeline voxels_, blocks_;
-  Pipeline several_;  ///< for several levels, if they are joined
+  Pipeline voxels_;
+  LevelPipelines blocks_;
 };
 
 /// COMPUTE expand_voxels.comp: expands the extinction of the occupied voxels of a slab or a box to a dense

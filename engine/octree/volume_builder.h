@@ -12,7 +12,7 @@ namespace freevoxels {
 /// The occupied blocks of every level. Those of level 0 are BuiltVolume::visible.
 struct LevelLists {
   std::vector<BlockList> coarse;  ///< of levels 1, 2, ...
-  Buffer steps;                   ///< uploadLevelSteps() of them
+  Buffer steps;                   ///< filled by uploadLevelSteps(); none if there is only level 0
 
   const BlockList& of(int level, const BlockList& voxels) const {
     return level == 0 ? voxels : coarse[std::size_t(level) - 1];

@@ -276,6 +276,8 @@ TEST_F(HierarchyTest, TablesAreTheSameHoweverManyDirectionsAThreadHas) {
       const AttenuationTable table = makeTable(device(), built.volume, settings);
       AttenuationSweep sweep(device(), settings);
       Commands commands(device());
+      commands.beginPass("clear");
+      for (const Buffer& plane : table.planes) commands.clear(plane);  // which may have the memory of an earlier table
       sweep.record(commands, built.volume, table);
       TableLevels(device(), settings, directionsPerThread, dispatches).record(commands, built.volume, built.lists.steps, table);
       commands.submitAndWait();

@@ -1,5 +1,9 @@
 // The small levels at the top of the octree, which GPUs compute in one dispatch: against a dispatch for each.
 
+#include <algorithm>
+#include <array>
+#include <vector>
+
 #include "engine/octree/level_steps.h"
 #include "engine/octree/medium_levels.h"
 #include "engine/octree/occupancy.h"
@@ -67,6 +71,7 @@ TEST_F(LevelStepsTest, SmallLevelsAreOneRangeOnGpus) {
 TEST_F(LevelStepsTest, OneDispatchMarksTheBlocksThatSingleOnesMark) {
   const BuiltVolume built = buildFire();
   const int first = levelRanges(built.volume.hierarchy, LevelDispatches::Joined).back().first;
+  ASSERT_LT(first, built.volume.hierarchy.top());
   const auto expected = wordsOf(built.volume.occupancy);
   clearFrom(built.volume.occupancy,
             built.volume.hierarchy.first[std::size_t(first)] / shader::kBlocksPerWord * sizeof(shader::OccupancyWord));

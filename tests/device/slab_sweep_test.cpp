@@ -20,6 +20,8 @@ class SlabSweepTest : public DeviceTest {
                                                         AttenuationSweep& sweep) {
     const AttenuationTable table = makeTable(device(), built.volume, settings);
     Commands commands(device());
+    commands.beginPass("clear");
+    for (const Buffer& plane : table.planes) commands.clear(plane);  // which may have the memory of an earlier table
     sweep.record(commands, built.volume, table);
     commands.submitAndWait();
     return downloadTable(device(), built.volume, table);
