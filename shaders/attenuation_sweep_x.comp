@@ -43,6 +43,9 @@ void marchRow(int row, int quads, float depth) {
   }
 }
 
+// Where the tile has a place, counted row by row.
+int slotOf(int place) { return place / kTileQuads * kTilePitch + place % kTileQuads; }
+
 // The quad of the volume at a place of the tile, which begins at a row and a column of it; negative if there is none.
 int quadAt(ivec2 begin, int quads, int place) {
   const int row = begin.x + place / kTileQuads, column = begin.y + place % kTileQuads;
@@ -54,7 +57,7 @@ void marchTiles(int firstRow, int thread, int quads, float depth) {
     const ivec2 begin = ivec2(firstRow, kStepX > 0 ? passed : quads - passed - kTileQuads);
     for (int place = thread; place < kSweepThreads * kTileQuads; place += kSweepThreads) {
       const int quad = quadAt(begin, quads, place);
-      tile[place / kTileQuads * kTilePitch + place % kTileQuads] = quad < 0 ? vec4(0.0) : loadQuad(quad);
+      tile[slotOf(place)] = quad < 0 ? vec4(0.0) : loadQuad(quad);
     }
     barrier();
     for (int i = 0; i < kTileQuads; ++i) {
@@ -64,7 +67,7 @@ void marchTiles(int firstRow, int thread, int quads, float depth) {
     barrier();
     for (int place = thread; place < kSweepThreads * kTileQuads; place += kSweepThreads) {
       const int quad = quadAt(begin, quads, place);
-      if (quad >= 0) storeCodes(quad, tile[place / kTileQuads * kTilePitch + place % kTileQuads]);
+      if (quad >= 0) storeCodes(quad, tile[slotOf(place)]);
     }
     barrier();
   }

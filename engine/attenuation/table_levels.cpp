@@ -11,8 +11,8 @@ namespace freevoxels {
 namespace {
 
 static_assert(shader::kFilterGeometric == int(HierarchyFilter::Geometric));
-static_assert(shader::kRowAlignment % 2 == 0);  // two children in a row are in the same occupancy word
 static_assert(shader::kFilterArithmetic == int(HierarchyFilter::Arithmetic));
+static_assert(shader::kRowAlignment % 2 == 0);  // two children in a row are in the same occupancy word
 
 }  // namespace
 
