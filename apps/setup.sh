@@ -20,9 +20,10 @@ packages=(
   help2man man-db # man pages, and their test
   libgtest-dev xvfb xdotool python3-openvdb
 )
-# Only freevoxels-mpi, and so all, needs Open MPI, which brings 38 packages.
+# Only freevoxels-mpi, and so all, needs Open MPI, which brings 38 packages; the fuzzers alone need Clang.
 for target in "$@"; do
   case $target in freevoxels-mpi | all) packages+=(libopenmpi-dev) ;; esac
+  case $target in all) packages+=(clang libclang-rt-14-dev) ;; esac
 done
 
 say() { echo "setup: $*"; }

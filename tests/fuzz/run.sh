@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Fuzzes the readers of files, each for so many seconds: needs Clang (apt-get install clang).
+# Fuzzes the readers of files, all at the same time, for so many seconds: needs Clang, which apps/setup.sh all installs.
 #   bash tests/fuzz/run.sh SECONDS [vdb|exr|png|json|fvx]...     3600 for an hour each
 # The tests replay the seeds with a hundred mutations each, without Clang and without sanitizers.
 # What was found is kept in build-fuzz/corpus and begins the next run; a file that fails is in build-fuzz/failures.
@@ -15,13 +15,22 @@ cmake -S "$here" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ >/dev/null
 cmake --build "$build"
 mkdir -p "$build/failures"
 "$build/seeds" "$build/seeds-made"
+
+declare -A runs
 for kind in "${kinds[@]}"; do
   mkdir -p "$build/corpus/$kind"
   echo "fuzz: $kind for $seconds s"
-  status=0
   "$build/${kind}_fuzz" -max_total_time="$seconds" -max_len=65536 -timeout=20 -rss_limit_mb=4096 -print_final_stats=1 \
-    -artifact_prefix="$build/failures/$kind-" "$build/corpus/$kind" "$build/seeds-made/$kind" >"$build/$kind.log" 2>&1 || status=$?
-  grep -E "^stat::|ERROR|SUMMARY|runtime error|DONE|Test unit" "$build/$kind.log" || true
-  [ "$status" -eq 0 ] || { echo "fuzz: $kind FAILED, see $build/$kind.log and $build/failures"; exit 1; }
+    -artifact_prefix="$build/failures/$kind-" "$build/corpus/$kind" "$build/seeds-made/$kind" >"$build/$kind.log" 2>&1 &
+  runs[$kind]=$!
 done
+failed=0
+for kind in "${kinds[@]}"; do
+  status=0
+  wait "${runs[$kind]}" || status=$?
+  echo "fuzz: $kind"
+  grep -E "^stat::|ERROR|SUMMARY|runtime error|DONE|Test unit" "$build/$kind.log" || true
+  [ "$status" -eq 0 ] || { failed=1; echo "fuzz: $kind FAILED, see $build/$kind.log and $build/failures"; }
+done
+[ "$failed" -eq 0 ] || exit 1
 echo "fuzz: PASSED"
