@@ -3,8 +3,9 @@
 // The order of the passes. What is in brackets runs only if the frame needs it and it is not kept from an earlier one; what is before a bar
 // is submitted on its own.
 //   gathered:  [blocks and octree] | [attenuation sweeps, table levels] | [light rays] | [shaded blocks, light depths, gradients, quads] |
-//              gather, stencil, upsampling and resolve
-//   splatted:  [blocks and octree] | [attenuation sweeps, table levels] | [light rays] | [depth sort], [cut], eye rays and splats in chunks,
+//              gather, stencil, resampling and resolve
+//   splatted:  [blocks and octree] | [attenuation sweeps, table levels] | [light rays] | [depth sort], [cut], eye rays and splats in
+//   chunks,
 //              [cut of deferred blocks, their splats], resolve
 
 #include <algorithm>

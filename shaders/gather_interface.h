@@ -37,11 +37,13 @@ FV_CONSTANT int kScalarCodes = 65534;
 // Variance in squared voxels of the footprint's radial kernel along one axis. A slice's bilinear tent has it across the slice and none
 // along its normal, so that it is too narrow where it is seen obliquely (engine/docs/gather.md).
 FV_CONSTANT float kFootprintVariance = 0.1624f;
-// Factor of the missing variance for the stencil of 3x3 samples that restores it, tuned against the oracle on an opaque head and thin
-// shells; it exceeds 1 because the stencil is coarse.
-FV_CONSTANT float kStencilStrength = 1.2f;
 // Largest variance that the stencil adds, in squares of the pitch: beyond it the middle weight would be nearly 0.
 FV_CONSTANT float kMaxVariance = 0.8f;
+// Samples in front of the first row and column of pixels: the first pixel's middle is sample kLatticeMargin.
+FV_CONSTANT int kLatticeMargin = 1;
+// Samples along an axis of the image of which a pixel is made: those that Catmull-Rom interpolation reads anywhere in the pixel, for a
+// pitch of at least half a pixel.
+FV_CONSTANT int kResampleTaps = 6;
 // Least transmittance that the stencil distinguishes from 0.
 FV_CONSTANT float kMinTransmittance = 1e-6f;
 
@@ -132,7 +134,6 @@ struct GatherFrame {
   ivec2 size;             // of the image, pixels
   vec2 firstSample;       // position of sample (0, 0), pixels from the image's middle
   float pitch;            // pixels between neighbouring samples
-  float pixelsPerVoxel;   // at distance 1, or orthographic anywhere
   float extinctionUnit;   // extinction per world unit of a stored 1
   float sourceUnit;       // radiance of a source term that equals the stored extinction
   vec3 color;             // source term over extinction, if all blocks have the same

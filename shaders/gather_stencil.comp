@@ -1,16 +1,14 @@
 #version 460
 // Restores the round footprint of the lattice's sums: a slice's tent is as wide as a splat's kernel across
 // the slice, but seen obliquely it is narrower along the tilt. A stencil of 3x3 samples adds the missing
-// variance, at the mean distance of what the sample shows. Voxels smaller than a pixel are widened to a
-// pixel, as footprints are.
+// variance, at the mean distance of what the sample shows.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "gather_ray.glsl"
-#include "gather_resolve.glsl"
 #include "mean_distance.glsl"
+#include "opacity.glsl"
 
-layout(constant_id = 1) const bool kDirect = false;  // whether the lattice is that of the pixels, so that the image is written
-layout(constant_id = 2) const bool kScalars = false;  // whether voxels are classified after interpolation
+layout(constant_id = 0) const bool kScalars = false;  // whether voxels are classified after interpolation
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 layout(binding = 1) uniform textureBuffer colorEnergy;  // C, E
@@ -28,10 +26,7 @@ vec3 missingCovariance(vec3 position, float distance) {
   const int axis = marchAxis(position, alongAxes(position));
   const float scale = frame.orthographic != 0 ? 1.0 : 1.0 / distance;
   const vec2 tilt = (frame.axes[axis].tilt - position.yz * frame.axes[axis].tiltDepth) * scale;
-  const float pixels = frame.pixelsPerVoxel * scale;
-  const float widening = kFootprintVariance * max(1.0 - pixels * pixels, 0.0);
-  const vec3 covariance =
-      kStencilStrength * kFootprintVariance * vec3(tilt.x * tilt.x, tilt.x * tilt.y, tilt.y * tilt.y) + vec3(widening, 0.0, widening);
+  const vec3 covariance = kFootprintVariance * vec3(tilt.x * tilt.x, tilt.x * tilt.y, tilt.y * tilt.y);
   const vec3 inLattice = covariance / (frame.pitch * frame.pitch);
   return inLattice * min(kMaxVariance / max(inLattice.x + inLattice.z, 1e-20), 1.0);
 }
@@ -65,18 +60,14 @@ void main() {
   MeanDistance mean = kNoDistance;
   [[unroll]] for (int i = 0; i < 9; ++i) {
     color += weights[i] * colors[i];
-    depth -= weights[i] * log(max(1.0 - colors[i].a, kMinTransmittance));
+    depth += weights[i] * opticalDepthOf(min(colors[i].a, 1.0 - kMinTransmittance));
     addSample(mean, weights[i], colors[i].a, weighted[i]);
   }
   distance = distancesOf(mean, color.a);
   if (!kScalars && color.a > kMinTransmittance) {
-    const float scale = (1.0 - exp(-max(depth, 0.0))) / color.a;
+    const float scale = opacityOf(max(depth, 0.0)) / color.a;
     color *= scale;
     distance *= scale;
-  }
-  if (kDirect) {
-    resolvePixel(index, color, distance);
-    return;
   }
   const int place = index.x + index.y * frame.samples.x;
   imageStore(colorEnergyOut, place, color);

@@ -10,10 +10,12 @@ namespace freevoxels {
 
 namespace {
 
-/// Least number of lattice samples per voxel at the reference distance.
+/// Lattice samples per voxel along an axis of the image, at the reference distance.
 constexpr double kSamplesPerVoxel = 2.0;
-/// A lattice that would hardly be coarser than the pixels is that of the pixels, which needs no upsampling.
-constexpr double kMinPitch = 1.15;
+/// Least distance between samples in pixels: what is smaller is averaged by four rays a pixel.
+constexpr double kMinPitch = 0.5;
+/// Number of samples, of 1.6 GiB of sums, from which on the least distance is up to a pixel.
+constexpr double kMaxSamples = 1 << 25;
 
 std::array<int, 2> sidesOf(int axis) {
   return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
@@ -196,7 +198,10 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   const double voxel = pixelsPerVoxel(rays, toPixel);
   const glm::dvec3 viewAxis = glm::transpose(toPixel)[2];
   const double distance = orthographic ? 1.0 : referenceDistance(rays, viewAxis, dimensions);
-  const double pitch = voxel / (kSamplesPerVoxel * std::max(distance, 1e-300));
+  const glm::dvec2 size(settings.size);
+  const double least = std::clamp(std::sqrt(size.x * size.y / kMaxSamples), kMinPitch, 1.0);
+  // At least a few samples, however near the volume is.
+  const double pitch = std::clamp(voxel / (kSamplesPerVoxel * std::max(distance, 1e-300)), least, std::max(size.x, size.y));
 
   // Seen obliquely, the blocks at a slice's near end become small long after those of its far end: a level may come in slice by
   // slice only after the rule calls all of its blocks small.
@@ -206,18 +211,15 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   shader::GatherFrame frame{.finest = slabs.finest,
                             .coarsest = detail.coarsest,
                             .size = settings.size,
-                            .pixelsPerVoxel = float(voxel),
+                            .pitch = float(pitch),
                             .endTransmittance = float(endTransmittance),
                             .orthographic = orthographic ? 1 : 0,
                             .mainAxis = majorAxis(rays.direction)};
   const SeenRectangle seen = seenRectangle(rays, toPixel, dimensions);
   frame.seenLow = seen[0];
   frame.seenHigh = seen[1];
-  const bool coarse = pitch > kMinPitch;
-  // At least a few samples, however near the volume is.
-  frame.pitch = coarse ? float(std::min(pitch, double(std::max(settings.size.x, settings.size.y)))) : 1.0f;
-  frame.samples = coarse ? sampleCount(settings.size, double(frame.pitch)) : settings.size;
-  frame.firstSample = -0.5f * glm::vec2(settings.size) + 0.5f - (coarse ? frame.pitch : 0.0f);
+  frame.samples = sampleCount(settings.size, double(frame.pitch));
+  frame.firstSample = -0.5f * glm::vec2(settings.size) + 0.5f - float(shader::kLatticeMargin) * frame.pitch;
   frame.worldRay[0] = linear * rays.direction;
   frame.worldRay[1] = linear * rays.directionX;
   frame.worldRay[2] = linear * rays.directionY;

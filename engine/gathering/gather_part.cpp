@@ -53,7 +53,6 @@ SampleLattice latticeOf(const shader::GatherFrame& frame, bool scalars, bool dep
                         .pitch = double(frame.pitch),
                         .first = frame.firstSample,
                         .mainAxis = frame.mainAxis,
-                        .pixelsPerVoxel = double(frame.pixelsPerVoxel),
                         .orthographic = frame.orthographic != 0,
                         .scalars = scalars,
                         .depth = depth,

@@ -21,8 +21,8 @@
 #include "embedded/gather_pre_unlit.h"
 #include "embedded/gather_pre_unlit_parts.h"
 #include "embedded/gather_pre_unlit_region.h"
+#include "embedded/gather_resample.h"
 #include "embedded/gather_stencil.h"
-#include "embedded/gather_upsample.h"
 #include "engine/vulkan/commands.h"
 
 namespace freevoxels {
@@ -51,11 +51,6 @@ Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, 
                               std::uint32_t(volume.octaves()), volume.isTinted(), volume.hasEmissionApart()});
 }
 
-/// Bindings of the stencil and of the upsampling.
-Pipeline makeImagePass(const Device& device, const Shader& code, bool withDistance, bool second, bool third = false) {
-  return makeComputePipeline(device, code, {withDistance, second, third});
-}
-
 }  // namespace
 
 GatherPass::GatherPass(const Device& device)
@@ -81,17 +76,14 @@ void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
 
 void GatherPass::setLattice(const shader::GatherFrame& frame) {
   lattice_ = {.samples = frame.samples, .pitch = double(frame.pitch), .first = frame.firstSample};
-  direct_ = lattice_.isPixels(frame.size);
 }
 
 void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
   setLattice(frame);
   const std::uint64_t samples = std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y);
   makeRoom(gathered_, samples);
-  if (!direct_) {
-    makeRoom(smoothed_, samples);
-    makeRoom(rows_, std::uint64_t(frame.size.x) * std::uint64_t(frame.samples.y));
-  }
+  makeRoom(smoothed_, samples);
+  makeRoom(rows_, std::uint64_t(frame.size.x) * std::uint64_t(frame.samples.y));
   commands.update(frame_, frame);
 }
 
@@ -142,29 +134,23 @@ void GatherPass::recordRegion(Commands& commands, const GatherVolume& volume, co
   commands.barrier(kComputeStage, kComputeStage);
 }
 
-std::vector<Binding> GatherPass::imageBindings(const Sums& from, const Sums& to, const FrameTargets& targets) const {
-  return {&frame_,
-          &from.colorEnergyTexels,
-          &from.distanceTexels,
-          &to.colorEnergyTexels,
-          &to.distanceTexels,
-          &targets.colorEnergy,
-          targets.distance.exists() ? &targets.distance : &targets.colorEnergy};
+std::vector<Binding> GatherPass::sumBindings(const Sums& from, const Sums& to) const {
+  return {&frame_, &from.colorEnergyTexels, &from.distanceTexels, &to.colorEnergyTexels, &to.distanceTexels};
 }
 
-void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
-  const Pipeline stencil =
-      makeImagePass(device_, shaders::gather_stencil, targets.distance.exists(), direct_, scalars);
-  commands.dispatch(stencil, imageBindings(gathered_, direct_ ? gathered_ : smoothed_, targets), glm::ivec3(frame.samples, 1));
+void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars) {
+  commands.dispatch(makeComputePipeline(device_, shaders::gather_stencil, {scalars}), sumBindings(gathered_, smoothed_),
+                    glm::ivec3(frame.samples, 1));
   commands.barrier(kComputeStage, kComputeStage);
 }
 
-void GatherPass::recordUpsampling(Commands& commands, const shader::GatherFrame& frame, const FrameTargets& targets) {
-  if (direct_) return;
+void GatherPass::recordResampling(Commands& commands, const shader::GatherFrame& frame, const FrameTargets& targets) {
+  const bool withDistance = targets.distance.exists();
   for (const bool alongY : {false, true}) {
-    const Pipeline upsample =
-        makeImagePass(device_, shaders::gather_upsample, targets.distance.exists(), alongY);
-    commands.dispatch(upsample, imageBindings(alongY ? rows_ : smoothed_, alongY ? gathered_ : rows_, targets),
+    std::vector<Binding> bindings = sumBindings(alongY ? rows_ : smoothed_, alongY ? gathered_ : rows_);
+    bindings.emplace_back(&targets.colorEnergy);
+    bindings.emplace_back(withDistance ? &targets.distance : &targets.colorEnergy);
+    commands.dispatch(makeComputePipeline(device_, shaders::gather_resample, {withDistance, alongY}), bindings,
                       {frame.size.x, alongY ? frame.size.y : frame.samples.y, 1});
     commands.barrier(kComputeStage, kComputeStage);
   }
@@ -188,8 +174,8 @@ void GatherPass::recordPixels(Commands& commands, const shader::GatherFrame& fra
   commands.beginPass("gather image");
   for (const RenderTarget* target : targets.all())
     commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kComputeStage, kComputeStage);
-  recordStencil(commands, frame, scalars, targets);
-  recordUpsampling(commands, frame, targets);
+  recordStencil(commands, frame, scalars);
+  recordResampling(commands, frame, targets);
   commands.barrier(kComputeStage, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
 }
 
@@ -203,10 +189,6 @@ std::vector<GatherSums> GatherPass::download(const Sums& sums) const {
   for (std::size_t i = 0; i < count; ++i)
     result.push_back({.color = glm::dvec3(colorEnergy[i]), .energy = double(colorEnergy[i].a), .distance = double(distances[i])});
   return result;
-}
-
-std::vector<GatherSums> GatherPass::downloadSmoothed() const {
-  return direct_ ? std::vector<GatherSums>() : download(smoothed_);
 }
 
 }  // namespace freevoxels

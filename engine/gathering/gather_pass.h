@@ -1,7 +1,7 @@
 #pragma once
 // Draws a frame by gathering: samples of a lattice on the image march through the slices of blocks across
-// their major axis, a stencil restores the round footprint of splats, and the sums are interpolated at the
-// pixels. The transmittance to the eye is computed along each sample's ray: Subr et al. 2007, Section 2.1,
+// their major axis, a stencil restores the round footprint of splats, and the sums are interpolated and averaged
+// over pixels. The transmittance to the eye is computed along each sample's ray: Subr et al. 2007, Section 2.1,
 // Eq. 4, without an attenuation table.
 
 #include "engine/gathering/gather_frame.h"
@@ -11,7 +11,7 @@
 
 namespace freevoxels {
 
-/// COMPUTE gather.comp, gather_stencil.comp and gather_upsample.comp: premultiplied RGBA in `targets.colorEnergy` and the
+/// COMPUTE gather.comp, gather_stencil.comp and gather_resample.comp: premultiplied RGBA in `targets.colorEnergy` and the
 /// mean distance in `targets.distance`, if that exists. Leaves the targets in layout GENERAL, visible to transfer.
 class GatherPass {
  public:
@@ -26,7 +26,7 @@ class GatherPass {
   /// The targets have to be in layout GENERAL.
   void begin(Commands& commands, const shader::GatherFrame& frame);
   void recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
-  void recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
+  void recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars);
   /// The sums of the bricks of a part, in fixed point, instead of those of all samples. `frame.part` is filled in.
   void recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
                   const TexelView& skips);
@@ -36,13 +36,12 @@ class GatherPass {
   void recordRegion(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
   /// The image in `targets`, as record() leaves it; `frame` is that of the whole volume.
   void recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
-  /// Does nothing if the lattice is that of the pixels.
-  void recordUpsampling(Commands& commands, const shader::GatherFrame& frame, const FrameTargets& targets);
+  void recordResampling(Commands& commands, const shader::GatherFrame& frame, const FrameTargets& targets);
 
   /// The lattice and the sums of the last frame; for validation and tests. The downloads wait.
   const GatherLattice& lattice() const { return lattice_; }
   std::vector<GatherSums> downloadGathered() const { return download(gathered_); }
-  std::vector<GatherSums> downloadSmoothed() const;
+  std::vector<GatherSums> downloadSmoothed() const { return download(smoothed_); }
 
  private:
   /// C and E (four floats), and the sum of e times distance, of every sample.
@@ -56,11 +55,10 @@ class GatherPass {
                        const TexelView& skips, glm::ivec2 extent, Extent marched);
   void recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
   std::vector<GatherSums> download(const Sums& sums) const;
-  std::vector<Binding> imageBindings(const Sums& from, const Sums& to, const FrameTargets& targets) const;
+  std::vector<Binding> sumBindings(const Sums& from, const Sums& to) const;
 
   const Device& device_;
   GatherLattice lattice_;  ///< of the last frame
-  bool direct_ = false;    ///< whether that was the lattice of the pixels
   Buffer frame_;  ///< shader::GatherFrame
   Sums gathered_, smoothed_, rows_;
 };

@@ -20,9 +20,6 @@ struct GatherLattice {
   glm::ivec2 samples{0};
   double pitch = 1.0;      ///< pixels between neighbouring samples
   glm::dvec2 first{0.0};   ///< position of sample (0, 0), pixels from the image's middle
-
-  /// Whether every pixel is a sample of its own, so that nothing is interpolated.
-  bool isPixels(glm::ivec2 size) const { return pitch == 1.0 && samples == size; }
 };
 
 /// The sums of one sample.
@@ -57,7 +54,7 @@ struct GatherStages {
   std::vector<GatherBlocks> blocks;     ///< by level, for the same levels
   std::vector<GatherLight> light;       ///< by level; empty where the frame reads none
   std::vector<GatherSums> gathered;     ///< at the samples, x fastest
-  std::vector<GatherSums> smoothed;     ///< after the stencil; empty where the lattice is that of the pixels
+  std::vector<GatherSums> smoothed;     ///< after the stencil
   Image image;
 };
 

@@ -58,10 +58,8 @@ glm::dvec3 missingCovariance(const SampleLattice& lattice, glm::dvec2 position, 
   const SampleLattice::Axis& axis = lattice.axes[std::size_t(marchAxis(lattice, position))];
   const double scale = lattice.orthographic ? 1.0 : 1.0 / distance;
   const glm::dvec2 tilt = scale * (axis.tilt - axis.tiltDepth * position);
-  const double pixels = scale * lattice.pixelsPerVoxel, widening = std::max(1.0 - pixels * pixels, 0.0);
-  const glm::dvec3 covariance = double(kFootprintVariance) / (lattice.pitch * lattice.pitch) *
-                                (double(kStencilStrength) * glm::dvec3(tilt.x * tilt.x, tilt.x * tilt.y, tilt.y * tilt.y) +
-                                 glm::dvec3(widening, 0.0, widening));
+  const glm::dvec3 covariance =
+      double(kFootprintVariance) / (lattice.pitch * lattice.pitch) * glm::dvec3(tilt.x * tilt.x, tilt.x * tilt.y, tilt.y * tilt.y);
   return covariance * std::min(double(kMaxVariance) / std::max(covariance.x + covariance.z, 1e-20), 1.0);
 }
 
@@ -92,13 +90,19 @@ LatticeSample stencilAt(const SampleLattice& lattice, const std::vector<LatticeS
   return {scale * result.color, scale * result.distance};
 }
 
-std::array<double, 4> catmullRom(double x) {
-  return {0.5 * x * (-1.0 + x * (2.0 - x)), 0.5 * (2.0 + x * x * (-5.0 + 3.0 * x)), 0.5 * x * (1.0 + x * (4.0 - 3.0 * x)),
-          0.5 * x * x * (-1.0 + x)};
+/// The weight of a sample at distance x from a position.
+double catmullRom(double x) {
+  x = std::abs(x);
+  return x < 1.0 ? 1.0 + x * x * (1.5 * x - 2.5) : x < 2.0 ? 2.0 + x * (-4.0 + x * (2.5 - 0.5 * x)) : 0.0;
+}
+
+/// The weight of a sample at distance x from the middle of a pixel, of half a width of `half` samples: Simpson's rule.
+double pixelWeight(double x, double half) {
+  return (catmullRom(x - half) + 4.0 * catmullRom(x) + catmullRom(x + half)) / 6.0;
 }
 
 /// Samples along one side of the image become pixels. `from` is the size of `samples`.
-std::vector<LatticeSample> upsampled(const SampleLattice& lattice, const std::vector<LatticeSample>& samples, glm::ivec2 from, int side,
+std::vector<LatticeSample> resampled(const SampleLattice& lattice, const std::vector<LatticeSample>& samples, glm::ivec2 from, int side,
                                      int pixels) {
   glm::ivec2 to = from;
   to[side] = pixels;
@@ -107,16 +111,14 @@ std::vector<LatticeSample> upsampled(const SampleLattice& lattice, const std::ve
   tbb::parallel_for(0, to.y, [&](int y) {
     for (int x = 0; x < to.x; ++x) {
       glm::ivec2 place(x, y);
-      const double position = (place[side] + 0.5 - 0.5 * pixels - lattice.first[side]) / lattice.pitch;
-      const double low = std::clamp(std::floor(position), 1.0, double(lattice.samples[side] - 3));
-      const std::array<double, 4> weights = catmullRom(position - low);
-      place[side] = int(low) - 1;
-      std::size_t next = std::size_t(place.x) + std::size_t(from.x) * std::size_t(place.y);
+      const double position = place[side] / lattice.pitch + kLatticeMargin;
+      const int low = int(std::floor(position)) - kResampleTaps / 2 + 1;
+      place[side] = 0;
+      const std::size_t start = std::size_t(place.x) + std::size_t(from.x) * std::size_t(place.y);
       WeightedSamples sum;
-      for (const double weight : weights) {
-        sum.add(weight, samples[next]);
-        next += step;
-      }
+      for (int i = low; i < low + kResampleTaps; ++i)
+        sum.add(pixelWeight(position - i, 0.5 / lattice.pitch),
+                samples[start + step * std::size_t(std::clamp(i, 0, lattice.samples[side] - 1))]);
       result[std::size_t(x) + std::size_t(to.x) * std::size_t(y)] = sum.sum();
     }
   });
@@ -131,8 +133,7 @@ void visitNumbers(Lattice& lattice, const Visit& visit) {
     for (int i = 0; i < 3; ++i) visit(axis.along[i]);
     visit(axis.tilt.x), visit(axis.tilt.y), visit(axis.tiltDepth);
   }
-  visit(lattice.mainAxis), visit(lattice.pixelsPerVoxel), visit(lattice.orthographic), visit(lattice.scalars),
-      visit(lattice.depth);
+  visit(lattice.mainAxis), visit(lattice.orthographic), visit(lattice.scalars), visit(lattice.depth);
   for (auto* corner : {&lattice.seenLow, &lattice.seenHigh}) visit(corner->x), visit(corner->y);
 }
 
@@ -167,10 +168,8 @@ Image resolveLattice(const SampleLattice& lattice, glm::ivec2 size, const std::v
     for (int x = 0; x < lattice.samples.x; ++x)
       pixels[std::size_t(x) + std::size_t(lattice.samples.x) * std::size_t(y)] = stencilAt(lattice, samples, {x, y});
   });
-  if (!lattice.isPixels(size)) {
-    pixels = upsampled(lattice, pixels, lattice.samples, 0, size.x);
-    pixels = upsampled(lattice, pixels, {size.x, lattice.samples.y}, 1, size.y);
-  }
+  pixels = resampled(lattice, pixels, lattice.samples, 0, size.x);
+  pixels = resampled(lattice, pixels, {size.x, lattice.samples.y}, 1, size.y);
   Image image{.size = size};
   for (const LatticeSample& pixel : pixels) {
     const double alpha = std::clamp(pixel.color.a, 0.0, 1.0);

@@ -23,16 +23,13 @@ struct SampleLattice {
     bool operator==(const Axis&) const = default;
   };
   std::array<Axis, 3> axes{};
-  int mainAxis = 2;                ///< along which rays march, except for those with less than kMinAlong of their direction along it
-  double pixelsPerVoxel = 1.0;     ///< at distance 1; orthographic: anywhere
+  int mainAxis = 2;  ///< along which rays march, except for those with less than kMinAlong of their direction along it
   bool orthographic = false;
   bool scalars = false;            ///< whether voxels are classified after interpolation
   bool depth = false;              ///< whether the image has depth
   glm::dvec2 seenLow{0.0}, seenHigh{0.0};  ///< range of positions in which the volume is visible
 
   bool operator==(const SampleLattice&) const = default;
-  /// Whether every pixel is a sample of its own, so that nothing is interpolated.
-  bool isPixels(glm::ivec2 size) const { return pitch == 1.0 && samples == size; }
 };
 
 /// The lattice as one line of text, from which latticeOf makes an equal one.
@@ -46,8 +43,8 @@ struct LatticeSample {
   double distance = 0.0;
 };
 
-/// What gather_stencil.comp and gather_upsample.comp compute, in double precision on the host: restores the round footprint of voxels
-/// and interpolates the samples at the pixels. `samples` are those of the whole lattice, x fastest.
+/// What gather_stencil.comp and gather_resample.comp compute, in double precision on the host: restores the round footprint of voxels,
+/// and interpolates the samples and averages them over pixels. `samples` are those of the whole lattice, x fastest.
 Image resolveLattice(const SampleLattice& lattice, glm::ivec2 size, const std::vector<LatticeSample>& samples);
 
 }  // namespace freevoxels

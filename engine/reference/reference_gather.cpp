@@ -14,7 +14,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kSamplesPerVoxel = 2.0, kMinPitch = 1.15;
+constexpr double kSamplesPerVoxel = 2.0, kMinPitch = 0.5;
 /// For a camera near the volume the lattice is made for this part of the distance to the farthest corner.
 constexpr double kNearReference = 0.75;
 /// A ray marches along the main axis if its component along it is at least this part of its largest
@@ -85,7 +85,7 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
                                              : glm::dmat3(rays_.directionX, rays_.directionY, middle.direction));
   mainAxis_ = majorAxis(middle.direction);
   const std::array<int, 2> sides = sidesOf(mainAxis_);
-  pixelsPerVoxel_ = std::min(glm::length(glm::dvec2(toPixel_[sides[0]])), glm::length(glm::dvec2(toPixel_[sides[1]])));
+  const double voxel = std::min(glm::length(glm::dvec2(toPixel_[sides[0]])), glm::length(glm::dvec2(toPixel_[sides[1]])));
 
   double mean = 0.0, farthest = 0.0;
   for (const glm::dvec3& corner : cornersOf(glm::dvec3(0.0), glm::dvec3(volume.dimensions - 1))) {
@@ -94,13 +94,10 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
     farthest = std::max(farthest, distance);
   }
   const double reference = rays_.orthographic ? 1.0 : std::max(mean, kNearReference * farthest);
-  const double pitch = std::min(pixelsPerVoxel_ / (kSamplesPerVoxel * reference), double(std::max(size_.x, size_.y)));
-  lattice_ = {.samples = size_, .pitch = 1.0, .first = 0.5 - middle_};
-  if (pitch > kMinPitch) {
-    lattice_.pitch = double(float(pitch));  // the value by which the device's samples are placed
-    lattice_.samples = glm::ivec2(glm::floor(glm::dvec2(size_ - 1) / lattice_.pitch)) + 4;
-    lattice_.first -= lattice_.pitch;
-  }
+  const double pitch = std::clamp(voxel / (kSamplesPerVoxel * reference), kMinPitch, double(std::max(size_.x, size_.y)));
+  lattice_.pitch = double(float(pitch));  // the value by which the device's samples are placed
+  lattice_.samples = glm::ivec2(glm::floor(glm::dvec2(size_ - 1) / lattice_.pitch)) + 4;
+  lattice_.first = 0.5 - middle_ - lattice_.pitch;
 
   constexpr double kEverywhere = 1e9;
   seenLow_ = glm::dvec2(kEverywhere);
@@ -277,27 +274,30 @@ void ReferenceGather::marchScalars(GatherSums& sums, double& transmittance, cons
   }
 }
 
+GatherSums ReferenceGather::sumsAt(glm::dvec2 position, std::span<const GatherBlocks> blocks, std::span<const GatherLight> light) const {
+  const Ray ray = rayThrough(position);
+  const int axis = axisOf(position, ray);
+  GatherSums sums;
+  double transmittance = 1.0;
+  for (int level = detail_.finest; level <= detail_.coarsest; ++level) {
+    const Slab slab = slabOf(ray, axis, level);
+    const GatherLight* lit = lighting_ ? &light[std::size_t(level)] : nullptr;
+    if (level == 0 && hasScalars())
+      marchScalars(sums, transmittance, ray, slab, lit);
+    else if (lit != nullptr)
+      marchLitBlocks(sums, transmittance, ray, slab, blocks[std::size_t(level)], *lit);
+    else
+      marchBlocks(sums, transmittance, ray, slab, blocks[std::size_t(level)]);
+  }
+  sums.energy = 1.0 - transmittance;
+  return sums;
+}
+
 std::vector<GatherSums> ReferenceGather::samples(std::span<const GatherBlocks> blocks, std::span<const GatherLight> light) const {
   std::vector<GatherSums> result(std::size_t(lattice_.samples.x) * std::size_t(lattice_.samples.y));
   tbb::parallel_for(0, lattice_.samples.y, [&](int y) {
-    for (int x = 0; x < lattice_.samples.x; ++x) {
-      const glm::dvec2 position = positionOf({x, y});
-      const Ray ray = rayThrough(position);
-      const int axis = axisOf(position, ray);
-      GatherSums& sums = result[std::size_t(x) + std::size_t(lattice_.samples.x) * std::size_t(y)];
-      double transmittance = 1.0;
-      for (int level = detail_.finest; level <= detail_.coarsest; ++level) {
-        const Slab slab = slabOf(ray, axis, level);
-        const GatherLight* lit = lighting_ ? &light[std::size_t(level)] : nullptr;
-        if (level == 0 && hasScalars())
-          marchScalars(sums, transmittance, ray, slab, lit);
-        else if (lit != nullptr)
-          marchLitBlocks(sums, transmittance, ray, slab, blocks[std::size_t(level)], *lit);
-        else
-          marchBlocks(sums, transmittance, ray, slab, blocks[std::size_t(level)]);
-      }
-      sums.energy = 1.0 - transmittance;
-    }
+    for (int x = 0; x < lattice_.samples.x; ++x)
+      result[std::size_t(x) + std::size_t(lattice_.samples.x) * std::size_t(y)] = sumsAt(positionOf({x, y}), blocks, light);
   });
   return result;
 }

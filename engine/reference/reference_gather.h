@@ -47,6 +47,9 @@ class ReferenceGather {
 
   /// Marches the ray of every sample. `blocks` and `light` are indexed by level; without lighting `light` is not read.
   std::vector<GatherSums> samples(std::span<const GatherBlocks> blocks, std::span<const GatherLight> light) const;
+  /// Marches the ray at a position on the image, in pixels from its middle.
+  GatherSums sumsAt(glm::dvec2 position, std::span<const GatherBlocks> blocks, std::span<const GatherLight> light) const;
+  glm::dvec2 positionOf(glm::ivec2 sample) const { return lattice_.first + lattice_.pitch * glm::dvec2(sample); }
   /// The scalars of all voxels, in intervals of the transfer function's table, for volumes whose voxels all have data.
   std::vector<double> scalars() const;
   /// Restores the round footprint.
@@ -101,10 +104,9 @@ class ReferenceGather {
   glm::dvec4 mediumAt(double scalar) const;
   glm::dvec4 integralUpTo(double scalar) const;
   glm::dvec4 meanBetween(double from, double to) const;
-  glm::dvec2 positionOf(glm::ivec2 sample) const { return lattice_.first + lattice_.pitch * glm::dvec2(sample); }
   glm::dvec3 missingCovariance(glm::dvec2 position, double distance) const;
   GatherSums smoothedAt(const std::vector<GatherSums>& samples, glm::ivec2 sample) const;
-  std::vector<GatherSums> interpolated(const std::vector<GatherSums>& from, glm::ivec2 fromSize, int side) const;
+  std::vector<GatherSums> resampled(const std::vector<GatherSums>& from, glm::ivec2 fromSize, int side) const;
 
   const Volume& volume_;
   std::optional<Lighting> lighting_;
@@ -116,7 +118,6 @@ class ReferenceGather {
   glm::dmat3 toPixel_;  ///< index offset -> (x t, y t, t), orthographic (x, y, t), with x and y from the image's middle
   DetailRule detail_;
   int mainAxis_ = 0;
-  double pixelsPerVoxel_ = 1.0;  ///< for a perspective camera times the distance
   GatherLattice lattice_;
   glm::dvec2 seenLow_, seenHigh_;
   std::optional<TransferTable> table_;

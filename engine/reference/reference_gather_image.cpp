@@ -14,8 +14,6 @@ namespace {
 /// Variance in squared voxels of a splat's round kernel along one axis. A slice's tent has it across the
 /// slice.
 constexpr double kKernelVariance = 0.1624;
-/// Factor by which the coarse stencil exceeds the missing variance.
-constexpr double kStrength = 1.2;
 constexpr double kMaxVariance = 0.8;  ///< largest variance that a stencil of 3x3 samples can add, in squares of the pitch
 constexpr double kMinTransmittance = 1e-6;
 constexpr double kUnknown = -1.0;
@@ -43,25 +41,28 @@ class WeightedSum {
   double nearest_ = std::numeric_limits<double>::max(), farthest_ = 0.0;
 };
 
-/// Catmull-Rom weights of the samples at -1, 0, 1 and 2.
-std::array<double, 4> cubicWeights(double x) {
-  const double x2 = x * x, x3 = x2 * x;
-  return {-0.5 * x + x2 - 0.5 * x3, 1.0 - 2.5 * x2 + 1.5 * x3, 0.5 * x + 2.0 * x2 - 1.5 * x3, -0.5 * x2 + 0.5 * x3};
+/// Adds Catmull-Rom weights at `position` of the samples from `first` on, times `factor`.
+void addCubicWeights(std::array<double, 6>& weights, int first, double position, double factor) {
+  const int low = int(std::floor(position));
+  const double x = position - low, x2 = x * x, x3 = x2 * x;
+  const std::array<double, 4> cubic{-0.5 * x + x2 - 0.5 * x3, 1.0 - 2.5 * x2 + 1.5 * x3, 0.5 * x + 2.0 * x2 - 1.5 * x3,
+                                    -0.5 * x2 + 0.5 * x3};
+  // At most one sample from `position` on, whose fraction is then 0, the first or last of the four is not among the six; its weight is 0.
+  for (int i = 0; i < 4; ++i)
+    if (const int place = low - 1 + i - first; place >= 0 && place < 6) weights[std::size_t(place)] += factor * cubic[std::size_t(i)];
 }
 
 }  // namespace
 
 /// The missing covariance (xx, xy, yy) in squares of the pitch: a tent seen obliquely lacks the kernel's
-/// variance along the image of the axis, and voxels that are smaller than a pixel are widened to it.
+/// variance along the image of the axis.
 glm::dvec3 ReferenceGather::missingCovariance(glm::dvec2 position, double distance) const {
   const int axis = axisOf(position, rayThrough(position));
   const double scale = rays_.orthographic ? 1.0 : 1.0 / distance;
   const glm::dvec3 step = toPixel_[axis];
   const glm::dvec2 tilt = scale * (glm::dvec2(step) - (rays_.orthographic ? 0.0 : step.z) * position);
-  const double pixels = scale * pixelsPerVoxel_, widening = std::max(1.0 - pixels * pixels, 0.0);
   const double perSquare = kKernelVariance / (lattice_.pitch * lattice_.pitch);
-  const glm::dvec3 covariance =
-      perSquare * (kStrength * glm::dvec3(tilt.x * tilt.x, tilt.x * tilt.y, tilt.y * tilt.y) + glm::dvec3(widening, 0.0, widening));
+  const glm::dvec3 covariance = perSquare * glm::dvec3(tilt.x * tilt.x, tilt.x * tilt.y, tilt.y * tilt.y);
   const double sum = covariance.x + covariance.z;
   return sum > kMaxVariance ? kMaxVariance / sum * covariance : covariance;
 }
@@ -106,20 +107,22 @@ std::vector<GatherSums> ReferenceGather::smoothed(const std::vector<GatherSums>&
   return result;
 }
 
-/// Interpolates rows or columns of samples to those of pixels.
-std::vector<GatherSums> ReferenceGather::interpolated(const std::vector<GatherSums>& from, glm::ivec2 fromSize, int side) const {
+/// Makes rows or columns of pixels of those of samples: the mean over a pixel, by Simpson's rule, of the interpolation.
+std::vector<GatherSums> ReferenceGather::resampled(const std::vector<GatherSums>& from, glm::ivec2 fromSize, int side) const {
   glm::ivec2 size = fromSize;
   size[side] = size_[side];
   std::vector<GatherSums> result;
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x) {
       glm::ivec2 place(x, y);
-      const double position = (place[side] + 0.5 - middle_[side] - lattice_.first[side]) / lattice_.pitch;
-      const int low = std::clamp(int(std::floor(position)), 1, lattice_.samples[side] - 3);
-      const std::array<double, 4> weights = cubicWeights(position - low);
+      const double position = place[side] / lattice_.pitch + 1.0;  // the lattice begins one sample before the first pixel
+      const int first = int(std::floor(position)) - 2;
+      std::array<double, 6> weights{};
+      for (const int end : {-1, 0, 1})
+        addCubicWeights(weights, first, position + 0.5 * end / lattice_.pitch, end == 0 ? 4.0 / 6.0 : 1.0 / 6.0);
       WeightedSum sum;
-      for (int i = 0; i < 4; ++i) {
-        place[side] = low - 1 + i;
+      for (int i = 0; i < 6; ++i) {
+        place[side] = std::clamp(first + i, 0, lattice_.samples[side] - 1);
         sum.add(weights[std::size_t(i)], from[std::size_t(place.x) + std::size_t(fromSize.x) * std::size_t(place.y)]);
       }
       result.push_back(sum.result());
@@ -128,11 +131,8 @@ std::vector<GatherSums> ReferenceGather::interpolated(const std::vector<GatherSu
 }
 
 Image ReferenceGather::image(const std::vector<GatherSums>& smoothed) const {
-  std::vector<GatherSums> pixels = smoothed;
-  if (!lattice_.isPixels(size_)) {
-    pixels = interpolated(pixels, lattice_.samples, 0);
-    pixels = interpolated(pixels, {size_.x, lattice_.samples.y}, 1);
-  }
+  const std::vector<GatherSums> rows = resampled(smoothed, lattice_.samples, 0);
+  const std::vector<GatherSums> pixels = resampled(rows, {size_.x, lattice_.samples.y}, 1);
   Image image;
   image.size = size_;
   for (const GatherSums& pixel : pixels) {

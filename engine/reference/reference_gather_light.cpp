@@ -204,7 +204,7 @@ glm::dvec3 ReferenceGather::leaving(const Stretch& stretch, double depth, glm::d
     const glm::dvec3 apart = light.atInfinity ? light.place : linear_ * (lights_[l].place - stretch.position);
     const double nearest2 = kNearestLight2 * volume_.voxelSize() * volume_.voxelSize();
     const double distance2 = light.atInfinity ? 1.0 : std::max(glm::dot(apart, apart), nearest2);
-    const glm::dvec3 toLight = light.atInfinity ? glm::normalize(apart) : apart / std::sqrt(distance2);
+    const glm::dvec3 toLight = apart / std::max(glm::length(apart), 1e-15);
     const double begin = stretch.begin.depths[l], change = stretch.end.depths[l] - begin;
     if (lighting_->isTinted() && begin + std::max(change, 0.0) >= kUnknownDepth) continue;
     const bool facing = glm::dot(stretch.normal, toLight) > 0.0;

@@ -21,7 +21,7 @@ class MemoryLimit : public CommandTest {
 }  // namespace
 
 TEST_F(MemoryLimit, IsKeptOrTheRunSaysWhatItNeeds) {
-  const std::string command = "render procedural:cloud --unlit --resolution 72 --size 200x150 --quiet --timings @t.json @";
+  const std::string command = "render procedural:cloud --unlit --draw gather --resolution 72 --size 200x150 --quiet --timings @t.json @";
   expectSuccess(run(command + "free.exr"));
   const std::uint64_t free = devicePeak();
   int refused = 0, drawn = 0;

@@ -2,8 +2,11 @@
 
 #include <cmath>
 
+#include "engine/gathering/gather_stages.h"
+#include "engine/renderer_stages.h"
 #include "engine/validation/quality_scenes.h"
 #include "engine/volume/voxel_classifier.h"
+#include "shaders/gather_interface.h"
 #include "tests/device/gather_fixture.h"
 
 namespace freevoxels {
@@ -35,7 +38,8 @@ TEST_F(GatherTest, MatchesTheSumAlongAnAxis) {
   classification.order = ClassificationOrder::Pre;
   Renderer renderer(device(), volume, classification, {});
   const glm::ivec2 size(n.x, n.y);
-  const Image image = renderer.render(alongZ(volume, size, 1.0), gathering(size));
+  const GatherStages stages = RendererStages(renderer).renderGatherStages(alongZ(volume, size, 1.0), gathering(size));
+  ASSERT_EQ(stages.lattice.pitch, 0.5);
   const std::vector<double> extinction = referenceExtinction(volume, classification);
   const VoxelClassifier classifier(classification, volume);
   const double layer = glm::length(glm::dvec3(volume.indexToWorld[2]));
@@ -47,8 +51,9 @@ TEST_F(GatherTest, MatchesTheSumAlongAnAxis) {
         const glm::dvec3 color(classifier.at({x, y, z}).color);
         sum += (1.0 - sum.a) * opacity * glm::dvec4(color, 1.0);
       }
-      const glm::vec4 pixel = image.pixels[std::size_t(x + size.x * (n.y - 1 - y))];
-      for (int c = 0; c < 4; ++c) EXPECT_NEAR(pixel[c], sum[c], 2e-3) << x << ' ' << y << ' ' << c;
+      const glm::ivec2 sample = shader::kLatticeMargin + 2 * glm::ivec2(x, n.y - 1 - y);  // in the middle of a pixel and a voxel
+      const GatherSums& sums = stages.gathered[std::size_t(sample.x + stages.lattice.samples.x * sample.y)];
+      for (int c = 0; c < 4; ++c) EXPECT_NEAR(c < 3 ? sums.color[c] : sums.energy, sum[c], 2e-3) << x << ' ' << y << ' ' << c;
     }
 }
 

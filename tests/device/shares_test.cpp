@@ -167,7 +167,6 @@ TEST_F(SharesTest, HostResolvesALatticeAsTheDeviceDoes) {
     settings.size *= 4;
     const GatherStages stages = RendererStages(renderer).renderGatherStages(scene.camera, settings);
     const SampleLattice lattice = *renderer.renderShares(scene.camera, settings, {0, kShares}).lattice;
-    EXPECT_FALSE(lattice.isPixels(settings.size));
     std::vector<LatticeSample> samples;
     for (const GatherSums& sum : stages.gathered) samples.push_back({{sum.color, sum.energy}, sum.distance});
     const Image image = resolveLattice(lattice, settings.size, samples);
@@ -230,7 +229,7 @@ TEST_F(SharesTest, OpaqueAndEmptyVolumesResolveAsTheyAre) {
   const Camera camera = framingCamera(opaque, 35.0, 25.0, 1.0, {});
   Renderer ofOpaque(device(), opaque, {}, {}), ofEmpty(device(), empty, {}, {});
   for (const Draw draw : {Draw::Splats, Draw::Gather}) {
-    const FrameSettings settings{.size = {32, 32}, .draw = draw};
+    const FrameSettings settings{.size = {32, 32}, .draw = draw, .cullThreshold = 0.0f};
     const Image image = resolveSums(ofOpaque.renderShares(camera, settings, {}), true);
     EXPECT_NEAR(image.pixels[32 * 16 + 16].a, 1.0f, 2e-6f);  // the stencil knows no less transmittance than 1e-6
     EXPECT_LE(largestPixelDifference(image, ofOpaque.render(camera, settings)), draw == Draw::Splats ? 1e-4 : 0.02);

@@ -9,7 +9,7 @@ namespace freevoxels {
 namespace {
 
 SampleLattice lattice() {
-  SampleLattice lattice{.samples = {12, 10}, .pitch = 1.7, .first = {-9.3, -7.1}, .pixelsPerVoxel = 3.25, .depth = true};
+  SampleLattice lattice{.samples = {12, 10}, .pitch = 1.7, .first = {-9.3, -7.1}, .depth = true};
   lattice.axes[0] = {{0.1, 1.0 / 3.0, -0.2}, {0.5, -0.25}, 1e-9};
   lattice.axes[2] = {{1.0, 0.0, 0.01}, {2.0, 1.5}, -0.125};
   lattice.seenLow = {-1e9, -4.0};

@@ -62,12 +62,11 @@ void shadeThickerBlocks(SteppedGather& gather) {
 void leaveTheStencilOut(SteppedGather& gather) {
   gather.alterStencil = [](shader::GatherFrame& frame) {
     for (shader::GatherAxis& axis : frame.axes) axis.tilt = glm::vec2(axis.tiltDepth = 0.0f);
-    frame.pixelsPerVoxel = 1e9f;
   };
 }
 
-void shiftTheLattice(SteppedGather& gather) {
-  gather.alterUpsampling = [](shader::GatherFrame& frame) { frame.firstSample.x += 0.1f * frame.pitch; };
+void widenTheLattice(SteppedGather& gather) {
+  gather.alterResampling = [](shader::GatherFrame& frame) { frame.pitch *= 1.01f; };
 }
 
 struct GatherDefect {
@@ -84,7 +83,7 @@ constexpr GatherDefect kGatherDefects[] = {
     {"ASliceSkipped", "gather samples", skipTheFirstSlice}, {"ALevelsBorderCountedTwice", "gather samples", countALevelsBorderTwice},
     {"WeightsSwapped", "gather samples", swapWeights},      {"RaysEndTooEarly", "gather samples", endRaysTooEarly},
     {"BlocksThicker", "gather blocks", shadeThickerBlocks}, {"StencilLeftOut", "gather stencil", leaveTheStencilOut},
-    {"LatticeShifted", "gather image", shiftTheLattice},
+    {"LatticeWider", "gather image", widenTheLattice},
 };
 
 class GatherMutation : public DeviceTest, public testing::WithParamInterface<GatherDefect> {

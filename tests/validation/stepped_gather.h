@@ -27,7 +27,7 @@ struct SteppedGather : GatherOutputs {
   std::function<void(const Device&, BuiltVolume&)> alterMedium;
   std::function<void(const Device&, const GatherVolume::Quads&)> alterQuads;
   /// Called with the frame before one pass reads it.
-  std::function<void(shader::GatherFrame&)> alterSamples, alterStencil, alterUpsampling;
+  std::function<void(shader::GatherFrame&)> alterSamples, alterStencil, alterResampling;
 
   SteppedGather(const Device& on, const Volume& of, const Classification& how)
       : device(on), source(of), classification(how), built(buildVolume(on, of, how, times)), pass(on) {}
@@ -68,10 +68,8 @@ struct SteppedGather : GatherOutputs {
       });
     };
     step(alterSamples, [&](Commands& commands, const shader::GatherFrame& f) { pass.recordSamples(commands, *volume, f); });
-    step(alterStencil, [&](Commands& commands, const shader::GatherFrame& f) {
-      pass.recordStencil(commands, f, volume->hasScalars(), targets);
-    });
-    step(alterUpsampling, [&](Commands& commands, const shader::GatherFrame& f) { pass.recordUpsampling(commands, f, targets); });
+    step(alterStencil, [&](Commands& commands, const shader::GatherFrame& f) { pass.recordStencil(commands, f, volume->hasScalars()); });
+    step(alterResampling, [&](Commands& commands, const shader::GatherFrame& f) { pass.recordResampling(commands, f, targets); });
     GatherStages stages = downloadGatherStages(device, built, *volume, pass);
     stages.lattice = {.samples = rays.samples, .pitch = double(rays.pitch), .first = rays.firstSample};
     for (std::size_t level = 0; level < stages.medium.size() && level < medium.size(); ++level)

@@ -1,6 +1,6 @@
 #version 460
-// Interpolates the lattice's sums at the pixels by Catmull-Rom along one axis of the image: first along x, to
-// rows of the lattice with the image's width, then along y into the image.
+// Makes pixels of the lattice's sums along one axis of the image: first along x, to rows of the lattice with the image's width, then along
+// y into the image. A pixel is the mean over its width of the Catmull-Rom interpolation, by Simpson's rule.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "catmull_rom.glsl"
@@ -21,18 +21,20 @@ void main() {
   const ivec2 extent = ivec2(frame.size.x, kAlongY ? frame.size.y : frame.samples.y);
   if (any(greaterThanEqual(index, extent))) return;
   const int axis = kAlongY ? 1 : 0;
-  const float position = (float(index[axis]) + 0.5 - 0.5 * float(frame.size[axis]) - frame.firstSample[axis]) / frame.pitch;
-  const float low = clamp(floor(position), 1.0, float(frame.samples[axis] - 3));
-  const vec4 weights = cubicWeights(position - low);
+  const float position = float(index[axis]) / frame.pitch + float(kLatticeMargin);
+  const float halfPixel = 0.5 / frame.pitch;
+  const int low = int(floor(position)) - kResampleTaps / 2 + 1;
   const int row = kAlongY ? frame.size.x : 1;
-  int place = kAlongY ? index.x + (int(low) - 1) * row : int(low) - 1 + index.y * frame.samples.x;
+  const int start = kAlongY ? index.x : index.y * frame.samples.x;
   vec4 color = vec4(0.0);
   MeanDistance mean = kNoDistance;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
+  [[unroll]] for (int i = 0; i < kResampleTaps; ++i) {
+    const float offset = position - float(low + i);
+    const float weight = (cubicKernel(offset - halfPixel) + 4.0 * cubicKernel(offset) + cubicKernel(offset + halfPixel)) / 6.0;
+    const int place = start + clamp(low + i, 0, frame.samples[axis] - 1) * row;
     const vec4 texel = texelFetch(colorEnergy, place);
-    color += weights[i] * texel;
-    if (kWithDistance) addSample(mean, weights[i], texel.a, texelFetch(distances, place).x);
-    place += row;
+    color += weight * texel;
+    if (kWithDistance) addSample(mean, weight, texel.a, texelFetch(distances, place).x);
   }
   const float distance = distancesOf(mean, color.a);
   if (kAlongY) {
