@@ -21,15 +21,16 @@ void main() {
   const ivec2 extent = ivec2(frame.size.x, kAlongY ? frame.size.y : frame.samples.y);
   if (any(greaterThanEqual(index, extent))) return;
   const int axis = kAlongY ? 1 : 0;
-  const float position = float(index[axis]) / frame.pitch + float(kLatticeMargin);
   const float halfPixel = 0.5 / frame.pitch;
-  const int low = int(floor(position)) - kResampleTaps / 2 + 1;
+  const float before = floor(float(index[axis]) / frame.pitch);  // samples between the first pixel and this one
+  const float position = (float(index[axis]) - before * frame.pitch) / frame.pitch + float(kResampleTaps / 2 - 1);
+  const int low = int(before) + kLatticeMargin - kResampleTaps / 2 + 1;
   const int row = kAlongY ? frame.size.x : 1;
   const int start = kAlongY ? index.x : index.y * frame.samples.x;
   vec4 color = vec4(0.0);
   MeanDistance mean = kNoDistance;
   [[unroll]] for (int i = 0; i < kResampleTaps; ++i) {
-    const float offset = position - float(low + i);
+    const float offset = position - float(i);
     const float weight = (cubicKernel(offset - halfPixel) + 4.0 * cubicKernel(offset) + cubicKernel(offset + halfPixel)) / 6.0;
     const int place = start + clamp(low + i, 0, frame.samples[axis] - 1) * row;
     const vec4 texel = texelFetch(colorEnergy, place);

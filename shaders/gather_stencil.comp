@@ -1,14 +1,12 @@
 #version 460
 // Restores the round footprint of the lattice's sums: a slice's tent is as wide as a splat's kernel across
 // the slice, but seen obliquely it is narrower along the tilt. A stencil of 3x3 samples adds the missing
-// variance, at the mean distance of what the sample shows.
+// variance, at the mean distance of what the sample shows. Not for interpolated scalars, which have no footprints.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "gather_ray.glsl"
 #include "mean_distance.glsl"
 #include "opacity.glsl"
-
-layout(constant_id = 0) const bool kScalars = false;  // whether voxels are classified after interpolation
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 layout(binding = 1) uniform textureBuffer colorEnergy;  // C, E
@@ -53,8 +51,6 @@ void main() {
   const float weights[9] = float[9](cross, 0.5 * covariance.z, -cross, 0.5 * covariance.x, 1.0 - covariance.x - covariance.z,
                                     0.5 * covariance.x, -cross, 0.5 * covariance.z, cross);
   // Footprints add up optical depths, so the stencil is applied to these; E, and with it the colour, follow.
-  // For interpolated scalars it is applied to E: mean depths would widen opaque parts by a quarter of a
-  // voxel.
   vec4 color = vec4(0.0);
   float depth = 0.0;
   MeanDistance mean = kNoDistance;
@@ -64,7 +60,7 @@ void main() {
     addSample(mean, weights[i], colors[i].a, weighted[i]);
   }
   distance = distancesOf(mean, color.a);
-  if (!kScalars && color.a > kMinTransmittance) {
+  if (color.a > kMinTransmittance) {
     const float scale = opacityOf(max(depth, 0.0)) / color.a;
     color *= scale;
     distance *= scale;

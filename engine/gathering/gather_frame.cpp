@@ -11,9 +11,11 @@ namespace freevoxels {
 namespace {
 
 /// Lattice samples per voxel along an axis of the image, at the reference distance.
-constexpr double kSamplesPerVoxel = 2.0;
+constexpr double kSamplesPerVoxel = 2.4;
 /// Least distance between samples in pixels: what is smaller is averaged by four rays a pixel.
 constexpr double kMinPitch = 0.5;
+/// Distances between samples are multiples of this part of a pixel, so that their positions are exact in 32 bits.
+constexpr double kPitchUnits = 1024.0;
 /// Number of samples, of 1.6 GiB of sums, from which on the least distance is up to a pixel.
 constexpr double kMaxSamples = 1 << 25;
 
@@ -21,11 +23,13 @@ std::array<int, 2> sidesOf(int axis) {
   return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
 }
 
-/// Distance in pixels between neighbouring voxels of a slice at the middle of the image, the smaller one of
-/// the slice's two axes; for a perspective camera times the distance from the eye plane.
-double pixelsPerVoxel(const PixelRays& rays, const glm::dmat3& toPixel) {
+/// Edge of a voxel in pixels, seen from straight in front: the smaller one of a slice's two axes; for a perspective camera times the
+/// distance from the eye plane. Obliquely it is shorter, but then the next slice shows beside it: with this measure, quality hardly depends
+/// on the view.
+double pixelsPerVoxel(const PixelRays& rays, const glm::dmat3& linear) {
   const std::array<int, 2> sides = sidesOf(majorAxis(rays.direction));
-  return std::min(glm::length(glm::dvec2(toPixel[sides[0]])), glm::length(glm::dvec2(toPixel[sides[1]])));
+  return std::min(glm::length(linear[sides[0]]), glm::length(linear[sides[1]])) /
+         glm::length(linear * (rays.orthographic ? rays.originX : rays.directionX));
 }
 
 /// The distance from the eye plane for which the lattice is made: the middle of the volume; or, if the camera
@@ -195,13 +199,14 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   const glm::dmat3 toPixel = rays.indexToPixel();
   const glm::dmat3 linear(volume.indexToWorld);
   const glm::ivec3 dimensions = volume.layout.dimensions;
-  const double voxel = pixelsPerVoxel(rays, toPixel);
+  const double voxel = pixelsPerVoxel(rays, linear);
   const glm::dvec3 viewAxis = glm::transpose(toPixel)[2];
   const double distance = orthographic ? 1.0 : referenceDistance(rays, viewAxis, dimensions);
   const glm::dvec2 size(settings.size);
   const double least = std::clamp(std::sqrt(size.x * size.y / kMaxSamples), kMinPitch, 1.0);
   // At least a few samples, however near the volume is.
-  const double pitch = std::clamp(voxel / (kSamplesPerVoxel * std::max(distance, 1e-300)), least, std::max(size.x, size.y));
+  const double wanted = std::clamp(voxel / (kSamplesPerVoxel * std::max(distance, 1e-300)), least, std::max(size.x, size.y));
+  const double pitch = std::round(wanted * kPitchUnits) / kPitchUnits;
 
   // Seen obliquely, the blocks at a slice's near end become small long after those of its far end: a level may come in slice by
   // slice only after the rule calls all of its blocks small.

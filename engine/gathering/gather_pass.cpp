@@ -51,6 +51,10 @@ Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, 
                               std::uint32_t(volume.octaves()), volume.isTinted(), volume.hasEmissionApart()});
 }
 
+std::uint64_t sampleCount(const shader::GatherFrame& frame) {
+  return std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y);
+}
+
 }  // namespace
 
 GatherPass::GatherPass(const Device& device)
@@ -80,10 +84,7 @@ void GatherPass::setLattice(const shader::GatherFrame& frame) {
 
 void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
   setLattice(frame);
-  const std::uint64_t samples = std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y);
-  makeRoom(gathered_, samples);
-  makeRoom(smoothed_, samples);
-  makeRoom(rows_, std::uint64_t(frame.size.x) * std::uint64_t(frame.samples.y));
+  makeRoom(gathered_, sampleCount(frame));
   commands.update(frame_, frame);
 }
 
@@ -122,7 +123,7 @@ void GatherPass::recordPart(Commands& commands, const GatherVolume& volume, cons
 }
 
 void GatherPass::recordClear(Commands& commands, const shader::GatherFrame& frame) {
-  makeRoom(gathered_, std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y));
+  makeRoom(gathered_, sampleCount(frame));
   commands.clear(gathered_.colorEnergy);
   commands.clear(gathered_.distances);
 }
@@ -138,16 +139,19 @@ std::vector<Binding> GatherPass::sumBindings(const Sums& from, const Sums& to) c
   return {&frame_, &from.colorEnergyTexels, &from.distanceTexels, &to.colorEnergyTexels, &to.distanceTexels};
 }
 
-void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars) {
-  commands.dispatch(makeComputePipeline(device_, shaders::gather_stencil, {scalars}), sumBindings(gathered_, smoothed_),
+void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& frame) {
+  makeRoom(smoothed_, sampleCount(frame));
+  commands.dispatch(makeComputePipeline(device_, shaders::gather_stencil, {}), sumBindings(gathered_, smoothed_),
                     glm::ivec3(frame.samples, 1));
   commands.barrier(kComputeStage, kComputeStage);
 }
 
-void GatherPass::recordResampling(Commands& commands, const shader::GatherFrame& frame, const FrameTargets& targets) {
+void GatherPass::recordResampling(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
   const bool withDistance = targets.distance.exists();
+  const Sums& samples = scalars ? gathered_ : smoothed_;
+  makeRoom(rows_, std::uint64_t(frame.size.x) * std::uint64_t(frame.samples.y));
   for (const bool alongY : {false, true}) {
-    std::vector<Binding> bindings = sumBindings(alongY ? rows_ : smoothed_, alongY ? gathered_ : rows_);
+    std::vector<Binding> bindings = sumBindings(alongY ? rows_ : samples, alongY ? samples : rows_);
     bindings.emplace_back(&targets.colorEnergy);
     bindings.emplace_back(withDistance ? &targets.distance : &targets.colorEnergy);
     commands.dispatch(makeComputePipeline(device_, shaders::gather_resample, {withDistance, alongY}), bindings,
@@ -174,8 +178,8 @@ void GatherPass::recordPixels(Commands& commands, const shader::GatherFrame& fra
   commands.beginPass("gather image");
   for (const RenderTarget* target : targets.all())
     commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kComputeStage, kComputeStage);
-  recordStencil(commands, frame, scalars);
-  recordResampling(commands, frame, targets);
+  if (!scalars) recordStencil(commands, frame);
+  recordResampling(commands, frame, scalars, targets);
   commands.barrier(kComputeStage, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 // Draws a frame by gathering: samples of a lattice on the image march through the slices of blocks across
-// their major axis, a stencil restores the round footprint of splats, and the sums are interpolated and averaged
+// their major axis, a stencil restores the round footprint of classified voxels, and the sums are interpolated and averaged
 // over pixels. The transmittance to the eye is computed along each sample's ray: Subr et al. 2007, Section 2.1,
 // Eq. 4, without an attenuation table.
 
@@ -26,7 +26,7 @@ class GatherPass {
   /// The targets have to be in layout GENERAL.
   void begin(Commands& commands, const shader::GatherFrame& frame);
   void recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
-  void recordStencil(Commands& commands, const shader::GatherFrame& frame, bool scalars);
+  void recordStencil(Commands& commands, const shader::GatherFrame& frame);
   /// The sums of the bricks of a part, in fixed point, instead of those of all samples. `frame.part` is filled in.
   void recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
                   const TexelView& skips);
@@ -36,7 +36,7 @@ class GatherPass {
   void recordRegion(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
   /// The image in `targets`, as record() leaves it; `frame` is that of the whole volume.
   void recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
-  void recordResampling(Commands& commands, const shader::GatherFrame& frame, const FrameTargets& targets);
+  void recordResampling(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
 
   /// The lattice and the sums of the last frame; for validation and tests. The downloads wait.
   const GatherLattice& lattice() const { return lattice_; }

@@ -11,7 +11,7 @@ GatherStages downloadGatherStages(const Device& device, const BuiltVolume& built
                       .blocks = volume.downloadBlocks(),
                       .light = volume.downloadLight(),
                       .gathered = pass.downloadGathered(),
-                      .smoothed = pass.downloadSmoothed(),
+                      .smoothed = volume.hasScalars() ? std::vector<GatherSums>() : pass.downloadSmoothed(),
                       .image = {}};
   for (std::size_t level = 0; level < stages.blocks.size(); ++level)
     stages.medium.push_back(stages.blocks[level].exists() ? downloadMedium(device, built.volume, int(level)) : LevelData());

@@ -54,7 +54,7 @@ struct GatherStages {
   std::vector<GatherBlocks> blocks;     ///< by level, for the same levels
   std::vector<GatherLight> light;       ///< by level; empty where the frame reads none
   std::vector<GatherSums> gathered;     ///< at the samples, x fastest
-  std::vector<GatherSums> smoothed;     ///< after the stencil
+  std::vector<GatherSums> smoothed;     ///< after the stencil, which scalars do not have
   Image image;
 };
 

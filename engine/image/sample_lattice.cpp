@@ -84,8 +84,8 @@ LatticeSample stencilAt(const SampleLattice& lattice, const std::vector<LatticeS
     depth -= weights[i] * std::log(std::max(1.0 - around[i]->color.a, double(kMinTransmittance)));
   }
   LatticeSample result = sum.sum();
-  if (lattice.scalars || result.color.a <= double(kMinTransmittance)) return result;
-  // Footprints add up optical depths; interpolated scalars have none of their own.
+  // Footprints add up optical depths.
+  if (result.color.a <= double(kMinTransmittance)) return result;
   const double scale = -std::expm1(-std::max(depth, 0.0)) / result.color.a;
   return {scale * result.color, scale * result.distance};
 }
@@ -163,11 +163,12 @@ SampleLattice latticeOf(const std::string& text) {
 
 Image resolveLattice(const SampleLattice& lattice, glm::ivec2 size, const std::vector<LatticeSample>& samples) {
   FV_CHECK_EQ(samples.size(), std::size_t(lattice.samples.x) * std::size_t(lattice.samples.y));
-  std::vector<LatticeSample> pixels(samples.size());
-  tbb::parallel_for(0, lattice.samples.y, [&](int y) {
-    for (int x = 0; x < lattice.samples.x; ++x)
-      pixels[std::size_t(x) + std::size_t(lattice.samples.x) * std::size_t(y)] = stencilAt(lattice, samples, {x, y});
-  });
+  std::vector<LatticeSample> pixels = samples;
+  if (!lattice.scalars)
+    tbb::parallel_for(0, lattice.samples.y, [&](int y) {
+      for (int x = 0; x < lattice.samples.x; ++x)
+        pixels[std::size_t(x) + std::size_t(lattice.samples.x) * std::size_t(y)] = stencilAt(lattice, samples, {x, y});
+    });
   pixels = resampled(lattice, pixels, lattice.samples, 0, size.x);
   pixels = resampled(lattice, pixels, {size.x, lattice.samples.y}, 1, size.y);
   Image image{.size = size};

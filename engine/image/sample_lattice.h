@@ -43,8 +43,8 @@ struct LatticeSample {
   double distance = 0.0;
 };
 
-/// What gather_stencil.comp and gather_resample.comp compute, in double precision on the host: restores the round footprint of voxels,
-/// and interpolates the samples and averages them over pixels. `samples` are those of the whole lattice, x fastest.
+/// What gather_stencil.comp and gather_resample.comp compute, in double precision on the host: restores the round footprint of classified
+/// voxels, and interpolates the samples and averages them over pixels. `samples` are those of the whole lattice, x fastest.
 Image resolveLattice(const SampleLattice& lattice, glm::ivec2 size, const std::vector<LatticeSample>& samples);
 
 }  // namespace freevoxels

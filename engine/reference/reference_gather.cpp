@@ -14,7 +14,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kSamplesPerVoxel = 2.0, kMinPitch = 0.5;
+constexpr double kSamplesPerVoxel = 2.4, kMinPitch = 0.5;
 /// For a camera near the volume the lattice is made for this part of the distance to the farthest corner.
 constexpr double kNearReference = 0.75;
 /// A ray marches along the main axis if its component along it is at least this part of its largest
@@ -85,7 +85,8 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
                                              : glm::dmat3(rays_.directionX, rays_.directionY, middle.direction));
   mainAxis_ = majorAxis(middle.direction);
   const std::array<int, 2> sides = sidesOf(mainAxis_);
-  const double voxel = std::min(glm::length(glm::dvec2(toPixel_[sides[0]])), glm::length(glm::dvec2(toPixel_[sides[1]])));
+  const double voxel = std::min(glm::length(linear_[sides[0]]), glm::length(linear_[sides[1]])) /
+                       glm::length(linear_ * (rays_.orthographic ? rays_.originX : rays_.directionX));  // seen from straight in front
 
   double mean = 0.0, farthest = 0.0;
   for (const glm::dvec3& corner : cornersOf(glm::dvec3(0.0), glm::dvec3(volume.dimensions - 1))) {
@@ -95,7 +96,7 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
   }
   const double reference = rays_.orthographic ? 1.0 : std::max(mean, kNearReference * farthest);
   const double pitch = std::clamp(voxel / (kSamplesPerVoxel * reference), kMinPitch, double(std::max(size_.x, size_.y)));
-  lattice_.pitch = double(float(pitch));  // the value by which the device's samples are placed
+  lattice_.pitch = std::round(pitch * 1024.0) / 1024.0;  // so that the device's samples have the same positions
   lattice_.samples = glm::ivec2(glm::floor(glm::dvec2(size_ - 1) / lattice_.pitch)) + 4;
   lattice_.first = 0.5 - middle_ - lattice_.pitch;
 

@@ -52,7 +52,7 @@ class ReferenceGather {
   glm::dvec2 positionOf(glm::ivec2 sample) const { return lattice_.first + lattice_.pitch * glm::dvec2(sample); }
   /// The scalars of all voxels, in intervals of the transfer function's table, for volumes whose voxels all have data.
   std::vector<double> scalars() const;
-  /// Restores the round footprint.
+  /// Restores the round footprint, which interpolated scalars do not have.
   std::vector<GatherSums> smoothed(const std::vector<GatherSums>& samples) const;
   /// Interpolates smoothed samples at the pixels and resolves. Image::depth is always computed.
   Image image(const std::vector<GatherSums>& smoothed) const;

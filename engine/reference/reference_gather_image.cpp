@@ -47,7 +47,7 @@ void addCubicWeights(std::array<double, 6>& weights, int first, double position,
   const double x = position - low, x2 = x * x, x3 = x2 * x;
   const std::array<double, 4> cubic{-0.5 * x + x2 - 0.5 * x3, 1.0 - 2.5 * x2 + 1.5 * x3, 0.5 * x + 2.0 * x2 - 1.5 * x3,
                                     -0.5 * x2 + 0.5 * x3};
-  // At most one sample from `position` on, whose fraction is then 0, the first or last of the four is not among the six; its weight is 0.
+  // If the position is that of a sample, the first or the last of the four may be beyond the six; its weight is 0.
   for (int i = 0; i < 4; ++i)
     if (const int place = low - 1 + i - first; place >= 0 && place < 6) weights[std::size_t(place)] += factor * cubic[std::size_t(i)];
 }
@@ -94,13 +94,14 @@ GatherSums ReferenceGather::smoothedAt(const std::vector<GatherSums>& samples, g
       depth -= weight * std::log(std::max(1.0 - neighbour(x, y).energy, kMinTransmittance));
     }
   GatherSums result = sum.result();
-  // Footprints add up optical depths; scalars are interpolated as they are.
-  if (hasScalars() || result.energy <= kMinTransmittance) return result;
+  // Footprints add up optical depths.
+  if (result.energy <= kMinTransmittance) return result;
   const double scale = -std::expm1(-std::max(depth, 0.0)) / result.energy;
   return {.color = scale * result.color, .energy = scale * result.energy, .distance = scale * result.distance};
 }
 
 std::vector<GatherSums> ReferenceGather::smoothed(const std::vector<GatherSums>& samples) const {
+  if (hasScalars()) return samples;
   std::vector<GatherSums> result;
   for (int y = 0; y < lattice_.samples.y; ++y)
     for (int x = 0; x < lattice_.samples.x; ++x) result.push_back(smoothedAt(samples, {x, y}));

@@ -68,8 +68,11 @@ struct SteppedGather : GatherOutputs {
       });
     };
     step(alterSamples, [&](Commands& commands, const shader::GatherFrame& f) { pass.recordSamples(commands, *volume, f); });
-    step(alterStencil, [&](Commands& commands, const shader::GatherFrame& f) { pass.recordStencil(commands, f, volume->hasScalars()); });
-    step(alterResampling, [&](Commands& commands, const shader::GatherFrame& f) { pass.recordResampling(commands, f, targets); });
+    step(alterStencil, [&](Commands& commands, const shader::GatherFrame& f) {
+      if (!volume->hasScalars()) pass.recordStencil(commands, f);
+    });
+    step(alterResampling,
+         [&](Commands& commands, const shader::GatherFrame& f) { pass.recordResampling(commands, f, volume->hasScalars(), targets); });
     GatherStages stages = downloadGatherStages(device, built, *volume, pass);
     stages.lattice = {.samples = rays.samples, .pitch = double(rays.pitch), .first = rays.firstSample};
     for (std::size_t level = 0; level < stages.medium.size() && level < medium.size(); ++level)
