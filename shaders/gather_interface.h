@@ -44,6 +44,8 @@ FV_CONSTANT int kLatticeMargin = 1;
 // Samples along an axis of the image of which a pixel is made: those that Catmull-Rom interpolation reads anywhere in the pixel, for a
 // pitch of at least half a pixel.
 FV_CONSTANT int kResampleTaps = 6;
+// Samples of less energy, which may be no more than rounding, do not widen the range of mean distances around them.
+FV_CONSTANT float kMinRangeEnergy = 1e-6f;
 // Least transmittance that the stencil distinguishes from 0.
 FV_CONSTANT float kMinTransmittance = 1e-6f;
 

@@ -3,6 +3,7 @@
 // the samples' own distances. A negative sum marks a sample without a distance.
 #ifndef MEAN_DISTANCE_GLSL
 #define MEAN_DISTANCE_GLSL
+#include "gather_interface.h"
 
 struct MeanDistance {
   float sum;        // of weight times e times distance
@@ -13,8 +14,9 @@ const MeanDistance kNoDistance = MeanDistance(0.0, 3e38, 0.0);
 
 void addSample(inout MeanDistance mean, float weight, float energy, float distances) {
   if (energy <= 0.0 || distances < 0.0) return;
-  const float distance = distances / energy;
   mean.sum += weight * distances;
+  if (energy < kMinRangeEnergy) return;
+  const float distance = distances / energy;
   mean.low = min(mean.low, distance);
   mean.high = max(mean.high, distance);
 }

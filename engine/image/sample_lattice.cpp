@@ -26,8 +26,9 @@ class WeightedSamples {
   void add(double weight, const LatticeSample& sample) {
     sum_.color += weight * sample.color;
     if (sample.color.a <= 0.0 || sample.distance < 0.0) return;
-    const double distance = sample.distance / sample.color.a;
     sum_.distance += weight * sample.distance;
+    if (sample.color.a < double(kMinRangeEnergy)) return;
+    const double distance = sample.distance / sample.color.a;
     low_ = std::min(low_, distance);
     high_ = std::max(high_, distance);
   }

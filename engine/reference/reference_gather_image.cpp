@@ -16,6 +16,7 @@ namespace {
 constexpr double kKernelVariance = 0.1624;
 constexpr double kMaxVariance = 0.8;  ///< largest variance that a stencil of 3x3 samples can add, in squares of the pitch
 constexpr double kMinTransmittance = 1e-6;
+constexpr double kNegligible = 1e-6;  ///< energy of samples that do not widen the range of mean distances
 constexpr double kUnknown = -1.0;
 
 /// Adds samples with weights of both signs. The mean distance of the result stays between those of the samples.
@@ -26,6 +27,7 @@ class WeightedSum {
     sum_.energy += weight * sample.energy;
     if (!(sample.energy > 0.0) || sample.distance < 0.0) return;
     sum_.distance += weight * sample.distance;
+    if (sample.energy < kNegligible) return;
     nearest_ = std::min(nearest_, sample.distance / sample.energy);
     farthest_ = std::max(farthest_, sample.distance / sample.energy);
   }

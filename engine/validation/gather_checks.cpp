@@ -37,7 +37,7 @@ constexpr double kImageTolerance = 1e-5, kDistanceTolerance = 1e-4;
 constexpr double kScalarTolerance = 3e-3;
 /// At which rays end where their early end is checked.
 constexpr float kEndTransmittance = 0.5f;
-/// An error in a sample counts relative to the sample, but to no less than this part of the largest.
+/// An error in a sample or in a pixel's distance counts relative to that, but to no less than this part of the largest.
 constexpr double kFloor = 5e-2;
 constexpr double kBeside = 1e-5;     ///< distance of rays beside a sample's, as a part of the image's width
 constexpr double kMinEnergy = 1e-3;  ///< of samples and pixels whose distance is compared
@@ -258,10 +258,16 @@ std::vector<GatherSums> comparedSamples(const ReferenceGather& reference, const 
 void checkImage(const Image& image, const Image& reference, const std::string& stage, const char* frame,
                 std::vector<Check>& checks) {
   checks.push_back(largestDifference(image, reference).atMost(kImageTolerance, fmt::format("{}: RGBA, {}", stage, frame)));
-  MaxError worst;
+  const auto isCompared = [&](std::size_t i) { return reference.pixels[i].a >= float(kMinEnergy); };
+  double farthest = 0.0;
   for (std::size_t i = 0; i < image.depth.size(); ++i)
-    if (reference.pixels[i].a >= float(kMinEnergy))
-      worst.take(relativeDifference(double(image.depth[i]), double(reference.depth[i])), [&] { return pixelText(image.size, i); });
+    if (isCompared(i)) farthest = std::max(farthest, double(reference.depth[i]));
+  MaxError worst;
+  for (std::size_t i = 0; i < image.depth.size(); ++i) {
+    const double found = image.depth[i], expected = reference.depth[i];
+    if (isCompared(i) && found != expected)
+      worst.take(std::abs(found - expected) / std::max(expected, kFloor * farthest), [&] { return pixelText(image.size, i); });
+  }
   checks.push_back(worst.atMost(kDistanceTolerance, fmt::format("{}: distance, {}", stage, frame), "relative"));
 }
 

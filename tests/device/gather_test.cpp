@@ -1,5 +1,6 @@
 // Frames by gathering: against closed forms, a plain sum on the CPU and the oracle, and what must not happen.
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/gathering/gather_stages.h"
@@ -169,13 +170,13 @@ TEST_F(GatherTest, CoarseLevelsLookLikeVoxels) {
   EXPECT_GE(psnr(renderer.render(camera, settings), voxels), 45.0);
 }
 
-/// Past 45 degrees rays march along another axis.
+/// Past 45 degrees rays march along another axis. Beyond 60 dB, an error of a thousandth, nothing is seen of a step.
 TEST_F(GatherTest, ATurntableShowsNoStepWhereTheAxisChanges) {
   const Scene scene = cloud(32);
   std::vector<Camera> cameras;
   for (const double azimuth : {43.0, 44.0, 44.9, 45.1, 46.0, 47.0}) cameras.push_back(framingCamera(scene.volume, azimuth, 10.0, 1.0, {}));
   const std::vector<double> found = qualities(scene, cameras, 64);
-  for (std::size_t i = 1; i < found.size(); ++i) EXPECT_NEAR(found[i], found[i - 1], 0.5) << "frame " << i;
+  for (std::size_t i = 1; i < found.size(); ++i) EXPECT_NEAR(std::min(found[i], 60.0), std::min(found[i - 1], 60.0), 0.5) << "frame " << i;
 }
 
 /// The octree's next level comes in slice by slice, over several per cent of the distance, and not at once.

@@ -98,7 +98,7 @@ class GatherMutation : public DeviceTest, public testing::WithParamInterface<Gat
   static ReportSection checks(const GatherMaker& make, SceneColor color) {
     const glm::ivec3 size(13, 10, 9);
     const Volume volume = randomVolume(size, shearedTransform(size), 0.6, 1.0);
-    return gatherChecks(make, makeValidationScene(volume, color, 100), {40, 32});
+    return gatherChecks(make, makeValidationScene(volume, color, 100), {28, 22});
   }
 };
 
