@@ -30,8 +30,8 @@ QualityResult imageQuality(const StageMaker& make, const QualityScene& scene, co
 /// The largest step between neighbours of a series of at least two points. `where` is the x of the earlier of the two.
 Check largestJump(const std::vector<glm::dvec2>& series, double tolerance, std::string name);
 
-/// A quarter of a turn in `frames` steps at elevation 10 from one distance: PSNR of the first method, whose frames may differ by 1 dB
-/// from their neighbours, of the others with goals for every view, and of sorted blending.
+/// A quarter of a turn in `frames` steps at elevation 10 from one distance: PSNR of the first method, whose RMS error may differ by a
+/// thousandth from frame to frame, of the others with goals for every view, and of sorted blending.
 ReportSection turntableQuality(const StageMaker& make, const QualityScene& scene, int frames, int imageEdge);
 
 }  // namespace freevoxels
