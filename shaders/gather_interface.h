@@ -41,8 +41,10 @@ FV_CONSTANT float kFootprintVariance = 0.1624f;
 FV_CONSTANT float kMaxVariance = 0.8f;
 // Samples in front of the first row and column of pixels: the first pixel's middle is sample kLatticeMargin.
 FV_CONSTANT int kLatticeMargin = 1;
-// Samples along an axis of the image of which a pixel is made: those that Catmull-Rom interpolation reads anywhere in the pixel, for a
-// pitch of at least half a pixel.
+// Least distance between samples in pixels: what is smaller is averaged by four rays a pixel and those on its borders.
+FV_CONSTANT float kMinPitch = 0.5f;
+// Samples along an axis of the image of which a pixel is made: those that Catmull-Rom interpolation reads anywhere in the pixel, as the
+// pitch is at least kMinPitch.
 FV_CONSTANT int kResampleTaps = 6;
 // Samples of less energy, which may be no more than rounding, do not widen the range of mean distances around them.
 FV_CONSTANT float kMinRangeEnergy = 1e-6f;

@@ -12,12 +12,11 @@ namespace {
 
 /// Lattice samples per voxel along an axis of the image, at the reference distance.
 constexpr double kSamplesPerVoxel = 2.4;
-/// Least distance between samples in pixels: what is smaller is averaged by four rays a pixel.
-constexpr double kMinPitch = 0.5;
 /// Distances between samples are multiples of this part of a pixel, so that their positions are exact in 32 bits.
 constexpr double kPitchUnits = 1024.0;
-/// Number of samples, of 1.6 GiB of sums, from which on the least distance is up to a pixel.
-constexpr double kMaxSamples = 1 << 25;
+/// Images of more pixels than a quarter of the first number have fewer than four samples a pixel, so that the sums of these samples take
+/// 0.9 GiB; images of more pixels than the second one have fewer samples than pixels, so that texel buffers can hold them.
+constexpr double kManySamples = 1 << 24, kMostSamples = 1 << 26;
 
 std::array<int, 2> sidesOf(int axis) {
   return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
@@ -143,7 +142,7 @@ SeenRectangle seenRectangle(const PixelRays& rays, const glm::dmat3& toPixel, gl
 }
 
 glm::ivec2 sampleCount(glm::ivec2 size, double pitch) {
-  return glm::ivec2(glm::floor(glm::dvec2(size - 1) / pitch)) + 4;
+  return glm::ivec2(glm::floor(glm::dvec2(size - 1) / pitch)) + 2 * shader::kLatticeMargin + 2;
 }
 
 }  // namespace
@@ -203,7 +202,8 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   const glm::dvec3 viewAxis = glm::transpose(toPixel)[2];
   const double distance = orthographic ? 1.0 : referenceDistance(rays, viewAxis, dimensions);
   const glm::dvec2 size(settings.size);
-  const double least = std::clamp(std::sqrt(size.x * size.y / kMaxSamples), kMinPitch, 1.0);
+  const double least = std::max(std::clamp(std::sqrt(size.x * size.y / kManySamples), double(shader::kMinPitch), 1.0),
+                                std::sqrt(size.x * size.y / kMostSamples));
   // At least a few samples, however near the volume is.
   const double wanted = std::clamp(voxel / (kSamplesPerVoxel * std::max(distance, 1e-300)), least, std::max(size.x, size.y));
   const double pitch = std::round(wanted * kPitchUnits) / kPitchUnits;

@@ -91,6 +91,15 @@ LatticeSample stencilAt(const SampleLattice& lattice, const std::vector<LatticeS
   return {scale * result.color, scale * result.distance};
 }
 
+std::vector<LatticeSample> stencilled(const SampleLattice& lattice, const std::vector<LatticeSample>& samples) {
+  std::vector<LatticeSample> result(samples.size());
+  tbb::parallel_for(0, lattice.samples.y, [&](int y) {
+    for (int x = 0; x < lattice.samples.x; ++x)
+      result[std::size_t(x) + std::size_t(lattice.samples.x) * std::size_t(y)] = stencilAt(lattice, samples, {x, y});
+  });
+  return result;
+}
+
 /// The weight of a sample at distance x from a position.
 double catmullRom(double x) {
   x = std::abs(x);
@@ -155,23 +164,19 @@ SampleLattice latticeOf(const std::string& text) {
     isValid = isValid && words >> value && std::isfinite(value) && std::abs(value) < 2e9;
     number = std::remove_reference_t<decltype(number)>(isValid ? value : 0.0);
   });
-  isValid = isValid && glm::all(glm::greaterThan(lattice.samples, glm::ivec2(3))) &&
-            glm::all(glm::lessThan(lattice.samples, glm::ivec2(kMaxSamples))) && lattice.pitch > 0.0 && lattice.mainAxis >= 0 &&
-            lattice.mainAxis < 3;
+  std::string rest;
+  isValid = isValid && !(words >> rest) && glm::all(glm::greaterThan(lattice.samples, glm::ivec2(3))) &&
+            glm::all(glm::lessThan(lattice.samples, glm::ivec2(kMaxSamples))) && lattice.pitch >= double(kMinPitch) &&
+            lattice.mainAxis >= 0 && lattice.mainAxis < 3;
   if (!isValid) throw std::invalid_argument("its lattice of samples is damaged");
   return lattice;
 }
 
-Image resolveLattice(const SampleLattice& lattice, glm::ivec2 size, const std::vector<LatticeSample>& samples) {
+Image resolveLattice(const SampleLattice& lattice, glm::ivec2 size, std::vector<LatticeSample> samples) {
   FV_CHECK_EQ(samples.size(), std::size_t(lattice.samples.x) * std::size_t(lattice.samples.y));
-  std::vector<LatticeSample> pixels = samples;
-  if (!lattice.scalars)
-    tbb::parallel_for(0, lattice.samples.y, [&](int y) {
-      for (int x = 0; x < lattice.samples.x; ++x)
-        pixels[std::size_t(x) + std::size_t(lattice.samples.x) * std::size_t(y)] = stencilAt(lattice, samples, {x, y});
-    });
-  pixels = resampled(lattice, pixels, lattice.samples, 0, size.x);
-  pixels = resampled(lattice, pixels, {size.x, lattice.samples.y}, 1, size.y);
+  if (!lattice.scalars) samples = stencilled(lattice, samples);
+  samples = resampled(lattice, samples, lattice.samples, 0, size.x);
+  const std::vector<LatticeSample> pixels = resampled(lattice, samples, {size.x, lattice.samples.y}, 1, size.y);
   Image image{.size = size};
   for (const LatticeSample& pixel : pixels) {
     const double alpha = std::clamp(pixel.color.a, 0.0, 1.0);

@@ -45,6 +45,6 @@ struct LatticeSample {
 
 /// What gather_stencil.comp and gather_resample.comp compute, in double precision on the host: restores the round footprint of classified
 /// voxels, and interpolates the samples and averages them over pixels. `samples` are those of the whole lattice, x fastest.
-Image resolveLattice(const SampleLattice& lattice, glm::ivec2 size, const std::vector<LatticeSample>& samples);
+Image resolveLattice(const SampleLattice& lattice, glm::ivec2 size, std::vector<LatticeSample> samples);
 
 }  // namespace freevoxels

@@ -14,7 +14,8 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kSamplesPerVoxel = 2.4, kMinPitch = 0.5;
+constexpr double kSamplesPerVoxel = 2.4;
+constexpr double kMinPitch = 0.5;  // of images of up to 4 million pixels; larger ones are not compared
 /// For a camera near the volume the lattice is made for this part of the distance to the farthest corner.
 constexpr double kNearReference = 0.75;
 /// A ray marches along the main axis if its component along it is at least this part of its largest

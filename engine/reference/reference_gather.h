@@ -54,7 +54,7 @@ class ReferenceGather {
   std::vector<double> scalars() const;
   /// Restores the round footprint, which interpolated scalars do not have.
   std::vector<GatherSums> smoothed(const std::vector<GatherSums>& samples) const;
-  /// Interpolates smoothed samples at the pixels and resolves. Image::depth is always computed.
+  /// Interpolates smoothed samples, averages them over pixels and resolves. Image::depth is always computed.
   Image image(const std::vector<GatherSums>& smoothed) const;
 
  private:

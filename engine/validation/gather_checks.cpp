@@ -11,6 +11,7 @@
 #include "engine/reference/reference_gather.h"
 #include "engine/reference/reference_hierarchy.h"
 #include "engine/renderer_stages.h"
+#include "engine/validation/gather_sample_checks.h"
 #include "engine/validation/homogeneous_box.h"
 #include "engine/validation/max_error.h"
 #include "engine/validation/stage_frames.h"
@@ -37,11 +38,6 @@ constexpr double kImageTolerance = 1e-5, kDistanceTolerance = 1e-4;
 constexpr double kScalarTolerance = 3e-3;
 /// At which rays end where their early end is checked.
 constexpr float kEndTransmittance = 0.5f;
-/// An error in a sample or in a pixel's distance counts relative to that, but to no less than this part of the largest.
-constexpr double kFloor = 5e-2;
-constexpr double kBeside = 1e-5;     ///< distance of rays beside a sample's, as a part of the image's width
-constexpr double kMinEnergy = 1e-3;  ///< of samples and pixels whose distance is compared
-
 enum class View { Framed, Orthographic, Inside, Wide, Near };
 enum class Light { None, FromBehind, AllKinds, Surfaces };
 
@@ -114,31 +110,6 @@ Camera cameraOf(const Volume& volume, View view, double aspect) {
     camera.verticalFov = 60.0;
   }
   return camera;
-}
-
-/// A sum of samples, of which a small energy of the reference leaves the distance out.
-struct Channel {
-  const char* name;
-  glm::dvec3 (*of)(const GatherSums&, double energy);
-};
-constexpr std::array<Channel, 3> kChannels{{{"C", [](const GatherSums& s, double) { return s.color; }},
-                                            {"E", [](const GatherSums& s, double) { return glm::dvec3(s.energy); }},
-                                            {"sum of e z", [](const GatherSums& s, double energy) {
-                                               const bool known = s.distance >= 0.0 && energy >= kMinEnergy;
-                                               return glm::dvec3(known ? s.distance : 0.0);
-                                             }}}};
-
-double largestOf(const Channel& channel, const std::vector<GatherSums>& sums) {
-  double largest = 0.0;
-  for (const GatherSums& s : sums) largest = std::max(largest, largestComponent(channel.of(s, s.energy)));
-  return largest;
-}
-
-/// Relative to the reference's sum, or to a part of the largest.
-double errorOf(const Channel& channel, const GatherSums& sums, const GatherSums& reference, double largest) {
-  const glm::dvec3 expected = channel.of(reference, reference.energy);
-  const double difference = largestComponent(glm::abs(channel.of(sums, reference.energy) - expected));
-  return difference == 0.0 ? 0.0 : difference / std::max(largestComponent(expected), kFloor * largest);
 }
 
 Check checkLattice(const GatherLattice& lattice, const GatherLattice& reference, const char* frame) {
@@ -217,56 +188,19 @@ void checkLight(const GatherStages& stages, const ValidationScene& scene, const 
     checks.push_back(gradient.atMost(kGradientTolerance, fmt::format("gather light: gradients, {}", frame), "relative"));
 }
 
-std::string sampleText(glm::ivec2 samples, std::size_t i) {
-  return fmt::format("sample ({}, {})", int(i) % samples.x, int(i) / samples.x);
-}
-
-Check checkSums(const std::vector<GatherSums>& sums, const std::vector<GatherSums>& reference, const Channel& channel,
-                glm::ivec2 samples, double tolerance, const std::string& name) {
-  FV_CHECK_EQ(sums.size(), reference.size());
-  const double largest = largestOf(channel, reference);
-  MaxError worst;
-  for (std::size_t i = 0; i < sums.size(); ++i)
-    worst.take(errorOf(channel, sums[i], reference[i], largest), [&] { return sampleText(samples, i); });
-  return worst.atMost(tolerance, name, "relative");
-}
-
-/// The reference's samples, for comparison with the device's. A ray may be where its sums jump: where it meets a slice on the border
-/// between quads, whose interpolation is continued for half a slice. Positions of 32 bits are then on either side of it, so a sample may be
-/// that of a ray beside it, a hundred thousandth of the image's width away.
-std::vector<GatherSums> comparedSamples(const ReferenceGather& reference, const GatherStages& stages, double tolerance, glm::ivec2 size) {
-  std::vector<GatherSums> samples = reference.samples(stages.blocks, stages.light);
-  if (stages.gathered.size() != samples.size()) return samples;
-  std::array<double, kChannels.size()> largest;
-  for (std::size_t c = 0; c < kChannels.size(); ++c) largest[c] = largestOf(kChannels[c], samples);
-  const auto worst = [&](std::size_t i, const GatherSums& sums) {
-    double error = 0.0;
-    for (std::size_t c = 0; c < kChannels.size(); ++c) error = std::max(error, errorOf(kChannels[c], stages.gathered[i], sums, largest[c]));
-    return error;
-  };
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (worst(i, samples[i]) <= tolerance) continue;
-    const glm::ivec2 sample(int(i) % stages.lattice.samples.x, int(i) / stages.lattice.samples.x);
-    for (const glm::dvec2 way : {glm::dvec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
-      const GatherSums beside = reference.sumsAt(reference.positionOf(sample) + kBeside * size.x * way, stages.blocks, stages.light);
-      if (worst(i, beside) <= tolerance) samples[i] = beside;
-    }
-  }
-  return samples;
-}
-
 void checkImage(const Image& image, const Image& reference, const std::string& stage, const char* frame,
                 std::vector<Check>& checks) {
   checks.push_back(largestDifference(image, reference).atMost(kImageTolerance, fmt::format("{}: RGBA, {}", stage, frame)));
-  const auto isCompared = [&](std::size_t i) { return reference.pixels[i].a >= float(kMinEnergy); };
+  const auto isCompared = [&](std::size_t i) { return reference.pixels[i].a >= float(kMinComparedEnergy); };
   double farthest = 0.0;
   for (std::size_t i = 0; i < image.depth.size(); ++i)
-    if (isCompared(i)) farthest = std::max(farthest, double(reference.depth[i]));
+    if (isCompared(i) && std::isfinite(reference.depth[i])) farthest = std::max(farthest, double(reference.depth[i]));
   MaxError worst;
   for (std::size_t i = 0; i < image.depth.size(); ++i) {
     const double found = image.depth[i], expected = reference.depth[i];
     if (isCompared(i) && found != expected)
-      worst.take(std::abs(found - expected) / std::max(expected, kFloor * farthest), [&] { return pixelText(image.size, i); });
+      worst.take(std::isfinite(expected) ? std::abs(found - expected) / std::max(expected, kErrorFloor * farthest) : expected,
+                 [&] { return pixelText(image.size, i); });
   }
   checks.push_back(worst.atMost(kDistanceTolerance, fmt::format("{}: distance, {}", stage, frame), "relative"));
 }
@@ -280,7 +214,7 @@ Check checkEnd(GatherOutputs& device, const Camera& camera, const FrameSettings&
   MaxError worst;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const double expected = samples[i].energy, energy = stages.gathered[i].energy;
-    double difference = std::abs(energy - expected) / std::max(expected, kFloor);
+    double difference = std::abs(energy - expected) / std::max(expected, kErrorFloor);
     // Volumes that shine have rays of a lower transmittance: what is behind them may be brighter than 1.
     const bool ends = 1.0 - expected < kEndTransmittance * (1.0 - tolerance) && !shines;
     const bool mayEnd = 1.0 - expected < kEndTransmittance * (1.0 + tolerance);
@@ -309,14 +243,10 @@ void checkFrame(GatherOutputs& device, const ValidationScene& scene, const Class
   if (settings.lighting) checkLight(stages, scene, reference, *settings.lighting, frame.name, section.checks);
   const double tolerance = reference.hasScalars() ? kScalarTolerance : kSampleTolerance;
   const std::vector<GatherSums> samples = comparedSamples(reference, stages, tolerance, size);
-  for (const Channel& channel : kChannels)
-    section.checks.push_back(checkSums(stages.gathered, samples, channel, stages.lattice.samples, tolerance,
-                                       fmt::format("gather samples: {}, {}", channel.name, frame.name)));
+  checkSums(stages.gathered, samples, stages.lattice.samples, tolerance, "gather samples", frame.name, section.checks);
   if (!reference.hasScalars()) {
     const std::vector<GatherSums> smoothed = reference.smoothed(stages.gathered);
-    for (const Channel& channel : kChannels)
-      section.checks.push_back(checkSums(stages.smoothed, smoothed, channel, stages.lattice.samples, kStencilTolerance,
-                                         fmt::format("gather stencil: {}, {}", channel.name, frame.name)));
+    checkSums(stages.smoothed, smoothed, stages.lattice.samples, kStencilTolerance, "gather stencil", frame.name, section.checks);
   }
   checkImage(stages.image, reference.image(reference.hasScalars() ? stages.gathered : stages.smoothed), "gather image", frame.name,
              section.checks);

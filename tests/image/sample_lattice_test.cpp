@@ -23,7 +23,10 @@ TEST(SampleLattice, TextMakesAnEqualLattice) {
 
 TEST(SampleLattice, DamagedTextsAreRefused) {
   const std::string text = latticeText(lattice());
-  for (const std::string& damaged : {std::string(), text.substr(0, text.size() / 2), "x" + text, "-3" + text, "1e9" + text})
+  SampleLattice tooFine = lattice();
+  tooFine.pitch = 1e-3;
+  for (const std::string& damaged :
+       {std::string(), text.substr(0, text.size() / 2), "x" + text, "-3" + text, "1e9" + text, text + " 1", latticeText(tooFine)})
     EXPECT_THROW(latticeOf(damaged), std::invalid_argument) << damaged;
 }
 
