@@ -1,7 +1,8 @@
 #version 460
 // Restores the round footprint of the lattice's sums: a slice's tent is as wide as a splat's kernel across
 // the slice, but seen obliquely it is narrower along the tilt. A stencil of 3x3 samples adds the missing
-// variance, at the mean distance of what the sample shows. Not for interpolated scalars, which have no footprints.
+// variance, at the mean distance of what the sample shows. It is not applied to interpolated scalars, which
+// have no footprints.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "gather_ray.glsl"

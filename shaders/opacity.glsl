@@ -1,4 +1,4 @@
-// Opacity of an optical depth and the other way round, accurate for small values, too.
+// 1 - exp(-x) and its inverse, -log(1 - opacity), accurate for small values.
 #ifndef OPACITY_GLSL
 #define OPACITY_GLSL
 

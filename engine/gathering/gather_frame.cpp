@@ -14,9 +14,10 @@ namespace {
 constexpr double kSamplesPerVoxel = 2.4;
 /// Distances between samples are multiples of this part of a pixel, so that their positions are exact in 32 bits.
 constexpr double kPitchUnits = 1024.0;
-/// Images of more pixels than a quarter of the first number have fewer than four samples a pixel, so that the sums of these samples take
-/// 0.9 GiB; images of more pixels than the second one have fewer samples than pixels, so that texel buffers can hold them.
-constexpr double kManySamples = 1 << 24, kMostSamples = 1 << 26;
+/// Larger images have no more samples than this as long as that is one a pixel. Their sums take 0.9 GiB.
+constexpr double kManySamples = 1 << 24;
+/// No image has more samples than this, which a texel buffer can hold.
+constexpr double kMostSamples = 1 << 26;
 
 std::array<int, 2> sidesOf(int axis) {
   return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};

@@ -51,7 +51,7 @@ Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, 
                               std::uint32_t(volume.octaves()), volume.isTinted(), volume.hasEmissionApart()});
 }
 
-std::uint64_t sampleCount(const shader::GatherFrame& frame) {
+std::uint64_t latticeSize(const shader::GatherFrame& frame) {
   return std::uint64_t(frame.samples.x) * std::uint64_t(frame.samples.y);
 }
 
@@ -84,7 +84,7 @@ void GatherPass::setLattice(const shader::GatherFrame& frame) {
 
 void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
   setLattice(frame);
-  makeRoom(gathered_, sampleCount(frame));
+  makeRoom(gathered_, latticeSize(frame));
   commands.update(frame_, frame);
 }
 
@@ -123,7 +123,7 @@ void GatherPass::recordPart(Commands& commands, const GatherVolume& volume, cons
 }
 
 void GatherPass::recordClear(Commands& commands, const shader::GatherFrame& frame) {
-  makeRoom(gathered_, sampleCount(frame));
+  makeRoom(gathered_, latticeSize(frame));
   commands.clear(gathered_.colorEnergy);
   commands.clear(gathered_.distances);
 }
@@ -140,7 +140,7 @@ std::vector<Binding> GatherPass::sumBindings(const Sums& from, const Sums& to) c
 }
 
 void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& frame) {
-  makeRoom(smoothed_, sampleCount(frame));
+  makeRoom(smoothed_, latticeSize(frame));
   commands.dispatch(makeComputePipeline(device_, shaders::gather_stencil, {}), sumBindings(gathered_, smoothed_),
                     glm::ivec3(frame.samples, 1));
   commands.barrier(kComputeStage, kComputeStage);
