@@ -219,7 +219,7 @@ Renderer::State::Gathering Renderer::State::prepareGather(const Camera& camera, 
   prepareVolume({.frame = constants,
                  .table = read,
                  .lighting = settings.lighting ? &*settings.lighting : nullptr,
-                 .lights = settings.lighting ? &lights->lights() : nullptr,
+                 .lights = settings.lighting ? &*lights : nullptr,
                  .axes = {someRayHasAxis(frame.lattice, 0), someRayHasAxis(frame.lattice, 1), someRayHasAxis(frame.lattice, 2)},
                  .keptQuadBytes = planKeptQuadBytes(device)},
                 marched, progress);

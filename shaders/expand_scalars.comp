@@ -4,20 +4,14 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
-#include "gather_interface.h"
+#include "code_bricks.glsl"
 
 layout(local_size_x = kExpandTile, local_size_y = kExpandTile) in;
 layout(scalar, push_constant) uniform Push { ExpandScalarsPush push; };
 layout(scalar, binding = 0) writeonly buffer BoxScalars { vec4 boxScalars[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Words { uint values[]; };
 
 float scalarAt(ivec3 voxel) {
-  if (any(lessThan(voxel, ivec3(0))) || any(greaterThanEqual(voxel, push.dimensions))) return -1.0;
-  const ivec3 place = voxel + push.corner;
-  const ivec3 cell = place / kBrickEdge, local = place % kBrickEdge;
-  const uint brick = Words(push.bricks).values[cell.x + push.cells.x * (cell.y + push.cells.y * cell.z)];
-  const uint index = ((brick * kBrickEdge + local.z) * kBrickEdge + local.y) * kBrickEdge + local.x;
-  const uint code = bitfieldExtract(Words(push.codes).values[index / 2], int(index % 2) * 16, 16);
+  const uint code = codeAt(push.scalars, push.dimensions, voxel);
   return code == 0 ? -1.0 : (float(code) - 1.0) * (float(kTransferIntervals) / float(kScalarCodes));
 }
 

@@ -10,9 +10,7 @@ namespace freevoxels::shader {
 
 FV_CONSTANT int kGatherTile = 8;          // samples along the edge of a workgroup of the passes over the lattice
 FV_CONSTANT int kShadeThreads = 64;      // of a workgroup of shade_blocks.comp
-// The gather reads blocks in bricks of 8^3, which are cells of the octree this number of levels above the
-// blocks.
-FV_CONSTANT int kBrickLevels = 3;
+// The gather reads blocks of all levels in bricks of 8^3.
 FV_CONSTANT int kGatherBrickEdge = 1 << kBrickLevels;
 FV_CONSTANT int kGatherBrickBlocks = kGatherBrickEdge * kGatherBrickEdge * kGatherBrickEdge;
 // Rays skip empty cells, which are this number of levels above the blocks. As many slices are tested together
@@ -160,21 +158,19 @@ struct ShadePush {
   int emissionApart;  // 1 if emission is kept apart from the source term
 };
 
-// expand_scalars.comp
-struct ExpandScalarsPush {
-  ivec3 first;       // first voxel, whose x is a multiple of 4; may be outside of the volume
-  ivec3 extent;      // in quads along x
-  ivec3 dimensions;  // of the volume
-  ivec3 corner;      // position of the volume's first voxel in its brick of scalars
-  ivec3 cells;       // number of bricks of scalars along the axes
-  uvec2 bricks, codes;  // device addresses of the bricks' numbers by cell, and of 16 bits a voxel
-};
-
 // Codes of 16 bits a block, in bricks: of scalars, or of depths towards a light.
 struct CodeBricks {
   uvec2 numbers, codes;  // device addresses of the bricks' numbers by cell (0 is the empty brick) and of the codes
   ivec3 corner;          // position of the first block in its brick
   ivec3 cells;           // number of bricks along the axes
+};
+
+// expand_scalars.comp
+struct ExpandScalarsPush {
+  ivec3 first;       // first voxel, whose x is a multiple of 4; may be outside of the volume
+  ivec3 extent;      // in quads along x
+  ivec3 dimensions;  // of the volume
+  CodeBricks scalars;
 };
 
 // surface_gradients.comp
@@ -196,8 +192,8 @@ struct LightDepthsPush {
   int edge;          // of a block, voxels
   ivec3 voxels;      // the volume's dimensions
   mat3 indexToWorld; // linear part
-  uvec2 extinction;  // device addresses: by rank, and of the depths, 16 bits a block in bricks, x fastest
-  uvec2 depths;
+  uvec2 extinction;  // device addresses: by rank; of the depths, 16 bits a block in bricks, x fastest; and of the depths along rays
+  uvec2 depths, rays;
 };
 
 // light_planes.comp: the planes slab.begin to slab.end - 1 of a face of a light's rays.

@@ -20,8 +20,9 @@ using uint = std::uint32_t;
 // texels of four voxels: 16 voxels a thread are fastest on lavapipe, 4 on GPUs.
 FV_CONSTANT int kRowAlignment = 16;
 
-// Voxels along the edge of a brick, the unit in which the host stores and uploads scalars.
-FV_CONSTANT int kBrickEdge = 8;
+// Bricks of 8^3 voxels are cells of the octree this number of levels above the voxels. The host stores and uploads scalars in bricks.
+FV_CONSTANT int kBrickLevels = 3;
+FV_CONSTANT int kBrickEdge = 1 << kBrickLevels;
 
 // Blocks of an occupancy word, and of an invocation of the passes over all blocks.
 FV_CONSTANT int kBlocksPerWord = 32;

@@ -8,13 +8,15 @@
 #include "gather_interface.h"
 #include "blocks.glsl"
 #include "rank.glsl"
-#include "ray_lookup.glsl"
 
 // Whether rays hold depths of positions (scalars), or those in front of layers.
 layout(constant_id = 0) const bool kScalars = false;
+layout(constant_id = 2) const bool kVoxels = false;  // whether blocks are voxels
 
 layout(local_size_x = kBrickQuadsThreads) in;
 layout(scalar, push_constant) uniform Push { LightDepthsPush push; };
+#define RAY_DEPTHS_BINDING 3
+#include "ray_lookup.glsl"
 layout(binding = 0) uniform utextureBuffer brickCells;  // position of each brick's first block, in blocks: x, y, z
 layout(binding = 1) uniform utextureBuffer occupancy;   // OccupancyWord
 layout(scalar, binding = 2) readonly buffer Lights { Light lights[]; };
@@ -49,10 +51,13 @@ float depthOf(ivec3 cell) {
   const vec3 size = abs(toLight);
   const vec3 layer = toLight / max(size.x, max(size.y, size.z));
   const FaceRays fan = lights[push.light].fans[fanIndex(-toLight)];
-  if (kScalars && push.edge == 1) return depthUpTo(fan, center + layer);
-  const float found = extent[fan.axis] % 2 == 1
-                          ? depthUpTo(fan, center)
-                          : 0.5 * (depthUpTo(fan, center + 0.5 * layer) + depthUpTo(fan, center - 0.5 * layer));
+  if (kVoxels && kScalars) return depthUpTo(fan, center + layer);
+  float found;
+  if (kVoxels)
+    found = depthUpTo(fan, center);
+  else
+    found = extent[fan.axis] % 2 == 1 ? depthUpTo(fan, center)
+                                      : 0.5 * (depthUpTo(fan, center + 0.5 * layer) + depthUpTo(fan, center - 0.5 * layer));
   return kScalars ? found : found + 0.5 * extinctionOf(cell) * length(push.indexToWorld * layer);
 }
 

@@ -11,6 +11,17 @@
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RayDepths { uint pairs[]; };
 
+// The codes of a ray on a pair of planes. On lavapipe, texels are much faster than addresses.
+#ifdef RAY_DEPTHS_BINDING
+layout(constant_id = 1) const bool kRayTexels = true;  // whether all depths of the source are within the range of texels
+layout(binding = RAY_DEPTHS_BINDING) uniform utextureBuffer rayDepths;
+uint rayCodes(uvec2 pair, uint ray) {
+  return kRayTexels ? texelFetch(rayDepths, int((pair.x - push.rays.x) / 4 + ray)).x : RayDepths(pair).pairs[ray];
+}
+#else
+uint rayCodes(uvec2 pair, uint ray) { return RayDepths(pair).pairs[ray]; }
+#endif
+
 // `fromSource` is the direction from the source to the position.
 int fanIndex(vec3 fromSource) {
   const int axis = majorAxis(fromSource);
@@ -51,13 +62,13 @@ vec3 rayDepth(FaceRays fan, vec3 position) {
   const float apart = at.apart;
   const uint row = uint(fan.rayCount.x);
   uint first = at.first;
-  RayDepths depths = RayDepths(pairAddress(fan, plane / 2));
+  const uvec2 pair = pairAddress(fan, plane / 2);
   const vec4 weightsX = cubicWeights(w.x), slopesX = cubicSlopes(w.x);
   const vec4 weightsY = cubicWeights(w.y), slopesY = cubicSlopes(w.y);
   vec3 sum = vec3(0.0);
   [[unroll]] for (int j = 0; j < 4; ++j) {
     vec4 line;
-    [[unroll]] for (int i = 0; i < 4; ++i) line[i] = unpackUnorm2x16(depths.pairs[first + i])[at.odd];
+    [[unroll]] for (int i = 0; i < 4; ++i) line[i] = unpackUnorm2x16(rayCodes(pair, first + i))[at.odd];
     line *= line * kOpaqueDepth;
     const float value = dot(line, weightsX);
     sum += vec3(value * weightsY[j], vec2(dot(line, slopesX) * weightsY[j], value * slopesY[j]) / apart);
@@ -74,10 +85,10 @@ float rayTransmittance(FaceRays fan, vec3 position) {
   if (plane < 0) return 1.0;
   const int kept = min(plane, fan.planeCount - 1);
   const RayPlace at = rayPlace(fan, position, kept);
-  RayDepths depths = RayDepths(pairAddress(fan, kept / 2));
+  const uvec2 pair = pairAddress(fan, kept / 2);
   vec4 inner;
   [[unroll]] for (int i = 0; i < 4; ++i)
-    inner[i] = unpackUnorm2x16(depths.pairs[at.first + 1 + (i & 1) + uint(fan.rayCount.x) * (1 + (i >> 1))])[at.odd];
+    inner[i] = unpackUnorm2x16(rayCodes(pair, at.first + 1 + (i & 1) + uint(fan.rayCount.x) * (1 + (i >> 1))))[at.odd];
   inner *= inner * kOpaqueDepth;
   const float range = max(max(inner.x, inner.y), max(inner.z, inner.w)) - min(min(inner.x, inner.y), min(inner.z, inner.w));
   const vec2 x = vec2(1.0 - at.within.x, at.within.x);

@@ -39,31 +39,48 @@ float valueAt(ivec3 cell) {
   return Extinctions(push.extinction).values[push.level.firstRank + rankIn(word, bit)];
 }
 
-// A block without data has the value of its neighbour.
-vec3 gradientOf(int middle) {
-  const float here = values[middle];
-  if (here == kNoData) return vec3(0.0);
-  vec3 sum = vec3(0.0);
-  for (int z = -1; z <= 1; ++z)
-    for (int y = -1; y <= 1; ++y)
-      for (int x = -1; x <= 1; ++x) {
-        const float found = values[middle + x + kEdge * (y + kEdge * z)];
-        const float value = found == kNoData ? here : found;
-        const vec3 weights = 2.0 - abs(vec3(x, y, z));
-        sum += value * vec3(x, y, z) * weights.yzx * weights.zxy;
-      }
-  return sum / 32.0;
+// Sums over the 3x3 blocks of a column across x: smoothed along y and z, y's derivative, z's derivative; and the same of the blocks' presence.
+struct Column {
+  vec3 values, present;
+  float middle;
+};
+
+Column columnAt(int middle) {
+  Column column = Column(vec3(0.0), vec3(0.0), values[middle]);
+  [[unroll]] for (int z = -1; z <= 1; ++z)
+    [[unroll]] for (int y = -1; y <= 1; ++y) {
+      const float found = values[middle + kEdge * (y + kEdge * z)];
+      const vec3 weights = vec3((2 - abs(y)) * (2 - abs(z)), y * (2 - abs(z)), z * (2 - abs(y)));
+      if (found == kNoData) continue;
+      column.values += found * weights;
+      column.present += weights;
+    }
+  return column;
+}
+
+// In place of blocks without data, the middle one's value counts.
+vec3 gradientOf(Column before, Column here, Column after) {
+  if (here.middle == kNoData) return vec3(0.0);
+  const vec3 change = vec3(after.values.x - before.values.x, before.values.yz + 2.0 * here.values.yz + after.values.yz);
+  const vec3 present = vec3(after.present.x - before.present.x, before.present.yz + 2.0 * here.present.yz + after.present.yz);
+  return (change - here.middle * present) / 32.0;
 }
 
 void main() {
   const uint brick = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
   if (brick >= push.count) return;
-  const ivec3 first = ivec3(texelFetch(brickCells, int(push.firstBrick + brick)).xyz);
+  const ivec3 corner = ivec3(texelFetch(brickCells, int(push.firstBrick + brick)).xyz);
   for (int i = int(gl_LocalInvocationIndex); i < kEdge * kEdge * kEdge; i += kBrickQuadsThreads)
-    values[i] = valueAt(first + ivec3(i % kEdge, i / kEdge % kEdge, i / (kEdge * kEdge)) - 1);
+    values[i] = valueAt(corner + ivec3(i % kEdge, i / kEdge % kEdge, i / (kEdge * kEdge)) - 1);
   barrier();
   const int row = int(gl_LocalInvocationIndex), y = row % kGatherBrickEdge, z = row / kGatherBrickEdge;
   const uint block = (push.firstBrick + brick) * kGatherBrickBlocks + row * kGatherBrickEdge;
-  for (int x = 0; x < kGatherBrickEdge; ++x)
-    Gradients(push.gradients).values[block + x] = packGradient(gradientOf(x + 1 + kEdge * (y + 1 + kEdge * (z + 1))));
+  const int first = kEdge * (y + 1 + kEdge * (z + 1));
+  Column before = columnAt(first), here = columnAt(first + 1);
+  for (int x = 0; x < kGatherBrickEdge; ++x) {
+    const Column after = columnAt(first + x + 2);
+    Gradients(push.gradients).values[block + x] = packGradient(gradientOf(before, here, after));
+    before = here;
+    here = after;
+  }
 }

@@ -131,7 +131,11 @@ void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source, std::uin
     buffer = Buffer(device_, bytes, MemoryUse::Device, name, usage);
     return true;
   };
-  grow(depths_, room.depths, "ray depths");
+  if (grow(depths_, room.depths, "ray depths", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT)) {
+    depthTexels_.reset();
+    if (room.depths / sizeof(std::uint32_t) <= device_.limits().maxTexelBufferElements)
+      depthTexels_.emplace(device_, depths_, VK_FORMAT_R32_UINT);
+  }
   grow(carried_, room.carried, "ray depths between slabs");
   if (grow(slab_, room.slab, "extinction around rays", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT))
     slabTexels_ = TexelView(device_, slab_, VK_FORMAT_R32_SFLOAT);
@@ -139,15 +143,9 @@ void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source, std::uin
 
 /// Expands the extinction of a box of voxels from the scalars.
 void RaySweep::recordScalars(Commands& commands, const DeviceVolume& volume, glm::ivec3 first, glm::ivec3 extent) const {
-  const DeviceScalars& scalars = *volume.scalarBricks;
   const glm::ivec3 quads(extent.x / kQuad, extent.y, extent.z);
-  const shader::ExpandScalarsPush push{.first = first,
-                                       .extent = quads,
-                                       .dimensions = volume.layout.dimensions,
-                                       .corner = scalars.corner,
-                                       .cells = scalars.cells,
-                                       .bricks = addressWords(scalars.brickNumbers.address()),
-                                       .codes = addressWords(scalars.codes.address())};
+  const shader::ExpandScalarsPush push{
+      .first = first, .extent = quads, .dimensions = volume.layout.dimensions, .scalars = volume.scalarBricks->onDevice()};
   const std::array<Binding, 1> bindings{&slab_};
   commands.dispatch(expandScalars_, bindings, push, quads);
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);

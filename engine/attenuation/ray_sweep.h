@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "engine/octree/device_volume.h"
 #include "engine/octree/occupancy.h"
@@ -37,6 +38,9 @@ class RaySweep {
   /// The rays of the last source, for look-ups, at index 2 axis + (direction > 0). Parallel rays have one
   /// face, which is stored in all six places, so that a look-up need not choose it with the same rounding.
   const std::array<shader::FaceRays, 6>& fans() const { return fans_; }
+  /// The depths of all faces, and their texels if the device can view so many.
+  const Buffer& depths() const { return depths_; }
+  const std::optional<TexelView>& depthTexels() const { return depthTexels_; }
   /// Sweeps and copies the depths to the host, for validation. Blocks until the device is done.
   RayCodes sweep(const DeviceVolume& volume, const RaySource& source);
 
@@ -54,6 +58,7 @@ class RaySweep {
   TexelView slabTexels_;
   Buffer carried_;  ///< float, by ray: optical depth between slabs
   Buffer depths_;  ///< uint: codes of planes 2k and 2k + 1, by face, k and ray
+  std::optional<TexelView> depthTexels_;
   std::array<shader::FaceRays, 6> fans_{};
 };
 

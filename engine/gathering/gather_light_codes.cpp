@@ -86,10 +86,13 @@ void GatherVolume::recordLightCodes(Commands& commands, const Shading& shading) 
 
 void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading, int level) {
   const DeviceVolume& volume = built_.volume;
-  const Pipeline pass = makeComputePipeline(device_, shaders::light_depths, {hasScalars()});
-  const std::array<Binding, 3> bindings{&brickCellTexels_, &volume.occupancyTexels, shading.lights};
   const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
   for (int light = 0; light < sampleLights(); ++light) {
+    const RaySweep& rays = shading.lights->rays(light);
+    const std::optional<TexelView>& texels = rays.depthTexels();
+    const Pipeline pass = makeComputePipeline(device_, shaders::light_depths, {hasScalars(), texels.has_value(), level == 0});
+    const std::array<Binding, 4> bindings{&brickCellTexels_, &volume.occupancyTexels, &shading.lights->lights(),
+                                          texels ? &*texels : &brickCellTexels_};
     const shader::LightDepthsPush push{.level = volume.onDevice(level),
                                        .firstBrick = first,
                                        .count = count,
@@ -98,7 +101,8 @@ void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading,
                                        .voxels = volume.layout.dimensions,
                                        .indexToWorld = glm::dmat3(volume.indexToWorld),
                                        .extinction = addressWords(volume.extinction.address()),
-                                       .depths = addressWords(lightCodes_[std::size_t(light)].address())};
+                                       .depths = addressWords(lightCodes_[std::size_t(light)].address()),
+                                       .rays = addressWords(rays.depths().address())};
     commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
   }
 }
@@ -128,7 +132,9 @@ void GatherVolume::recordGradients(Commands& commands) {
   if (!lacksLevels(gradientLevels_)) return;
   if (gradients_.bytes() == 0) {
     const std::uint64_t blocks = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks;
-    gradients_ = Buffer(device_, blocks * sizeof(std::uint32_t), MemoryUse::Device, "gradients of surfaces");
+    gradients_ = Buffer(device_, blocks * sizeof(std::uint32_t), MemoryUse::Device, "gradients of surfaces",
+                        VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+    if (!inPieces()) gradientTexels_ = TexelView(device_, gradients_, VK_FORMAT_R32_UINT);
   }
   commands.beginPass("surface gradients");
   if (gradientLevels_ == 0) commands.clear(gradients_);  // of the empty brick

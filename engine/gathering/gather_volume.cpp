@@ -131,8 +131,8 @@ void GatherVolume::shade(Commands& commands, const Shading& shading, int level) 
   if (count == 0) return;
   const Buffer& anyBuffer = frame_;
   const bool lightOnly = level == 0 && hasScalars();
-  const std::array<Binding, 4> bindings{&frame_, shading.table != nullptr ? &shading.table->planeAddresses : &anyBuffer,
-                                        &volume.occupancy, shading.lights != nullptr ? shading.lights : &anyBuffer};
+  const std::array<Binding, 4> bindings{&frame_, shading.table != nullptr ? &shading.table->planeAddresses : &anyBuffer, &volume.occupancy,
+                                        shading.lights != nullptr ? &shading.lights->lights() : &anyBuffer};
   const shader::ShadePush push{.blocks = addressWords(built_.lists.of(level, built_.visible).indices.address()),
                                .sources = addressWords(sources_.address()),
                                .extra = addressWords(extras_.address()),
@@ -279,11 +279,7 @@ void GatherVolume::record(Commands& commands, const Shading& shading) {
 
 std::optional<shader::CodeBricks> GatherVolume::scalarCodes(int level) const {
   if (!hasScalars() || level != 0) return {};
-  const DeviceScalars& scalars = *built_.volume.scalarBricks;
-  return shader::CodeBricks{.numbers = addressWords(scalars.brickNumbers.address()),
-                            .codes = addressWords(scalars.codes.address()),
-                            .corner = scalars.corner,
-                            .cells = scalars.cells};
+  return built_.volume.scalarBricks->onDevice();
 }
 
 void GatherVolume::recordQuads(Commands& commands, int axis) {

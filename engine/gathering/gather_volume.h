@@ -12,6 +12,7 @@
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/gathering/gather_stages.h"
 #include "engine/lighting/ambient_pass.h"
+#include "engine/lighting/light_pass.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/splatting/splat_pass.h"
 #include "engine/volume/coarse_cells.h"
@@ -44,7 +45,7 @@ class GatherVolume {
     const FrameConstants& frame;
     const AttenuationTable* table;  ///< null if no light needs it
     const Lighting* lighting;
-    const Buffer* lights;  ///< shader::Light
+    const LightPass* lights;   ///< prepared for the frame; null without lights
     std::array<bool, 3> axes;  ///< axes along which rays march
     std::uint64_t keptQuadBytes = 0;  ///< quads of other axes are kept for later frames up to so many bytes
   };
@@ -111,6 +112,8 @@ class GatherVolume {
   bool hasSurfaces() const { return sampleLights() > 0 && lighting_->surface > 0.0; }
   /// Whether quads are in more than one piece, of shader::kPieceBricksLog2 each.
   bool inPieces() const { return bricksPerPiece_ < firstBricks_.back(); }
+  /// Packed gradients of blocks; arbitrary texels without surfaces, and if quads are in more than one piece.
+  const TexelView& gradients() const { return gradientTexels_.handle() == VK_NULL_HANDLE ? brickNumberTexels_ : gradientTexels_; }
   /// TransferTable::texels(); arbitrary texels without scalars.
   const TexelView& transferTable() const;
 
@@ -175,6 +178,7 @@ class GatherVolume {
   std::array<Buffer, shader::kMaxLightSlots> lightCodes_;
   std::uint32_t lightLevels_ = 0;
   Buffer gradients_;  ///< 4 bytes a block, in bricks; empty until surfaces are lit at samples
+  TexelView gradientTexels_;  ///< of gradients_, unless quads are in more than one piece
   std::uint32_t gradientLevels_ = 0;
 };
 

@@ -35,6 +35,8 @@ class LightPass {
                                 const Progress& progress);
   /// shader::Light of each light of the last frame.
   const Buffer& lights() const { return lights_; }
+  /// The rays of a light of the last frame, with LightAttenuation::Exact.
+  const RaySweep& rays(int light) const { return rays_[std::size_t(light)]; }
 
  private:
   std::vector<shader::Light> place(Commands& commands, const DeviceVolume& volume, DirectionSet set,

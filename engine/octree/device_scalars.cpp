@@ -42,4 +42,8 @@ DeviceScalars uploadScalars(const Device& device, const Volume& volume, const Tr
   return result;
 }
 
+shader::CodeBricks DeviceScalars::onDevice() const {
+  return {.numbers = addressWords(brickNumbers.address()), .codes = addressWords(codes.address()), .corner = corner, .cells = cells};
+}
+
 }  // namespace freevoxels

@@ -6,6 +6,7 @@
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 #include "engine/vulkan/buffer.h"
+#include "shaders/gather_interface.h"
 
 namespace freevoxels {
 
@@ -17,6 +18,8 @@ struct DeviceScalars {
   TexelView tableTexels;
   glm::ivec3 cells{0};   ///< number of bricks along the axes
   glm::ivec3 corner{0};  ///< position of the box's voxel (0,0,0) in its brick
+
+  shader::CodeBricks onDevice() const;
 };
 
 /// Uploads the scalars and the table. Extinctions in the table are per world unit, times `extinctionScale`.
