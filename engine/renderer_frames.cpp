@@ -179,7 +179,7 @@ void Renderer::State::prepareVolume(const GatherVolume::Shading& shading, Gather
   try {
     if (!gatherVolume) gatherVolume.emplace(device, hostVolume, classification, built, frameTimes);
     gatherVolume->prepare(shading, frameTimes);
-    GatherPass::compileAhead(device, *gatherVolume, shading.axes, marched);
+    GatherPass::compileAhead(device, *gatherVolume, shading.axes, shading.frame.detail.coarsest > 0, marched);
     Commands commands(device);
     gatherVolume->record(commands, shading);
     if (commands.empty()) return;

@@ -54,7 +54,27 @@ ivec2 slicesInRegion(Slices level, Ray ray) {
   return ivec2(floor(range.x), ceil(range.y));
 }
 
-// Branches on constants are nested, so that the compiler removes them.
+SliceValues sliceValuesAt(Slices level, Ray ray, int slice, bool scalars) {
+  if (kScalars) {
+    if (scalars) return scalarValuesAt(level, ray.origin + ray.slope * float(slice), slice, 0.5 * ray.direction * ray.slope, ray.toEye);
+  }
+  return blockValuesAt(level, ray, slice, true);
+}
+
+// Adds the stretch to the next one of the slices up to `final` whose scalars add anything, unless `left` becomes `rest` before. Light is
+// computed only for what adds, in a loop of its own, because lavapipe executes a branch even if no lane takes it.
+void addNextScalars(inout Sums sums, inout SliceValues last, inout int slice, inout int left, Slices level, Ray ray, int rest, int final) {
+  Stretch stretch;
+  do {
+    stretch = scalarStretch(last, level, ray, slice, slice != final + int(ray.direction));
+    slice += int(ray.direction);
+    --left;
+    if (!stretch.adds) last = stretch.end;
+  } while (kLeavesLoops && left > rest && !stretch.adds);
+  if (stretch.adds) addScalarStretch(sums, last, stretch, level, ray);
+}
+
+// Adds a slice of blocks, or the stretch up to it.
 void addBlocks(inout Sums sums, inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
   if (kSampled)
     addBlockStretch(sums, last, level, ray, slice, within);
@@ -62,22 +82,17 @@ void addBlocks(inout Sums sums, inout SliceValues last, Slices level, Ray ray, i
     addSlice(sums, level, ray, slice);
 }
 
-void addAt(inout Sums sums, inout SliceValues last, Slices level, Ray ray, int slice, bool within, bool scalars) {
+// Branches on constants are nested, so that the compiler removes them.
+void addNext(inout Sums sums, inout SliceValues last, inout int slice, inout int left, Slices level, Ray ray, int rest, int final, bool scalars) {
   if (kScalars) {
-    if (scalars)
-      addStretch(sums, last, level, ray, slice, within);
-    else
-      addBlocks(sums, last, level, ray, slice, within);
-  } else {
-    addBlocks(sums, last, level, ray, slice, within);
+    if (scalars) {
+      addNextScalars(sums, last, slice, left, level, ray, rest, final);
+      return;
+    }
   }
-}
-
-SliceValues sliceValuesAt(Slices level, Ray ray, int slice, bool scalars) {
-  if (kScalars) {
-    if (scalars) return scalarValuesAt(level, ray.origin + ray.slope * float(slice), slice, 0.5 * ray.direction * ray.slope, ray.toEye);
-  }
-  return blockValuesAt(level, ray, slice, true);
+  addBlocks(sums, last, level, ray, slice, slice != final + int(ray.direction));
+  slice += int(ray.direction);
+  --left;
 }
 
 // For scalars one more slice is marched, which ends the last stretch.
@@ -88,7 +103,8 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransm
   int left = slices.y - slices.x + 1;
   if (left <= 0) return;
   const int begin = slice;
-  if (scalars || kSampled) ++left;
+  const bool stretches = scalars || kSampled;
+  if (stretches) ++left;
   SliceValues last = emptySliceValues();
   if (kRegion) {
     const ivec2 own = slicesInRegion(level, ray);
@@ -97,7 +113,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransm
     // And the slice that ends the last stretch.
     left = min(left - before, (direction > 0 ? own.y - slice : slice - own.x) + 2);
     if (left <= 0) return;
-    if ((scalars || kSampled) && slice != begin) last = sliceValuesAt(level, ray, slice - direction, scalars);
+    if (stretches && slice != begin) last = sliceValuesAt(level, ray, slice - direction, scalars);
   }
   // The loops test their conditions at the end: lavapipe executes the body of other loops once more, masked.
   do {
@@ -106,8 +122,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransm
       empty = emptyGroups(level, ray, slice, kParts || last.coverage > 0.0 ? 1 : 0) * ray.group;
       if (empty > 0) {
         last.coverage = 0.0;
-        last.hasGradient = false;
-        last.depths = last.arriving = vec4(-1.0);
+        last.hasGradient = last.hasLight = false;
         last.medium = vec4(0.0);
         last.emission = vec3(0.0);
       }
@@ -116,15 +131,10 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransm
     } while (empty > 0 && left > 0);
     if (left > 0) {
       // Slices in front that hold only bricks of other parts were skipped: `last` is out of date.
-      if (kParts && (scalars || kSampled) && slice != begin) {
-        const int before = slice - direction;
-        last = sliceValuesAt(level, ray, before, scalars);
-      }
+      if (kParts && stretches && slice != begin) last = sliceValuesAt(level, ray, slice - direction, scalars);
       const int rest = left - min(left, ray.group);
       do {
-        addAt(sums, last, level, ray, slice, slice != final + direction, scalars);
-        slice += direction;
-        --left;
+        addNext(sums, last, slice, left, level, ray, rest, final, scalars);
       } while (left > rest);
     }
   } while (left > 0 && (kParts || sums.transmittance > endTransmittance));
@@ -150,6 +160,37 @@ Slices slicesOf(int levelIndex) {
   return slices;
 }
 
+// A sample's ray, in voxels.
+struct Line {
+  vec3 world;    // along it, in world space
+  float along;   // component along the axis
+  vec2 slope;    // on the sides, for each slice
+  vec2 middle;   // position on the sides, on the volume's middle plane
+  float eye;     // start of the ray, in slices
+};
+
+// Adds a level of the volume to the sums, and what it adds to the distance to `distanceSum`.
+void marchLevel(inout Sums sums, inout float distanceSum, Line line, int levelIndex, bool scalars) {
+  // In blocks of the level, the centre of whose first is at half an edge minus half a voxel.
+  const float edge = float(1 << levelIndex);
+  const Slices level = slicesOf(levelIndex);
+  Ray ray;
+  ray.origin = (line.middle + line.slope * (0.5 * edge - 0.5 - frame.axes[kAxis].middlePlane) + 0.5) / edge - 0.5;
+  ray.slope = line.slope;
+  ray.direction = line.along > 0.0 ? 1.0 : -1.0;
+  ray.group = max(abs(line.slope.x), abs(line.slope.y)) > 1.0 ? kObliqueGroup : kSkipGroup;
+  ray.eye = (line.eye + 0.5) / edge - 0.5;
+  ray.layer = length(line.world) / abs(line.along) * edge * frame.extinctionUnit;
+  ray.toEye = -normalize(line.world);
+  ray.edge = edge;
+  ray.perSlice = edge / abs(line.along);
+  const ivec2 slices = slicesOnRay(level, ray, frame.axes[kAxis].slices[line.along > 0.0 ? 1 : 0][levelIndex]);
+  sums.distance = 0.0;
+  if (kParts || sums.transmittance > frame.endTransmittance) march(sums, level, ray, slices, frame.endTransmittance, scalars);
+  distanceSum += ray.perSlice * sums.distance;
+  if (kParts) endBrick(sums, ray);
+}
+
 void main() {
   ivec2 index = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(index, kParts ? frame.part.extent : kRegion ? frame.region.extent : frame.samples))) return;
@@ -159,12 +200,12 @@ void main() {
   const vec3 components = alongAxes(position);
   if (marchAxis(position, components) != kAxis) return;
 
-  const float along = components[kAxis];
-  const vec3 world = frame.worldRay[0] * position.x + frame.worldRay[1] * position.y + frame.worldRay[2] * position.z;
-  const vec2 slope = vec2(dot(frame.axes[kAxis].slope[0], position), dot(frame.axes[kAxis].slope[1], position)) / along;
-  const vec2 middle = vec2(dot(frame.axes[kAxis].middle[0], position), dot(frame.axes[kAxis].middle[1], position)) / along;
-  const float middlePlane = frame.axes[kAxis].middlePlane;
-  const float eye = dot(frame.axes[kAxis].eye, position);
+  Line line;
+  line.along = components[kAxis];
+  line.world = frame.worldRay[0] * position.x + frame.worldRay[1] * position.y + frame.worldRay[2] * position.z;
+  line.slope = vec2(dot(frame.axes[kAxis].slope[0], position), dot(frame.axes[kAxis].slope[1], position)) / line.along;
+  line.middle = vec2(dot(frame.axes[kAxis].middle[0], position), dot(frame.axes[kAxis].middle[1], position)) / line.along;
+  line.eye = dot(frame.axes[kAxis].eye, position);
   Sums sums = Sums(vec3(0.0), 0.0, 1.0, 0.0, 1.0, 0);
   if (kParts)
     [[unroll]] for (int c = 0; c < 6; ++c) partSums[c] = uvec2(0);
@@ -177,26 +218,14 @@ void main() {
   sums.transmittance -= before.a;
   distanceSum = imageLoad(distances, sampleIndex).x;
 #endif
-  for (int levelIndex = frame.finest; levelIndex <= frame.coarsest; ++levelIndex) {
-    // In blocks of the level, the centre of whose first is at half an edge minus half a voxel.
-    const float edge = float(1 << levelIndex);
-    const Slices level = slicesOf(levelIndex);
-    Ray ray;
-    ray.origin = (middle + slope * (0.5 * edge - 0.5 - middlePlane) + 0.5) / edge - 0.5;
-    ray.slope = slope;
-    ray.direction = along > 0.0 ? 1.0 : -1.0;
-    ray.group = max(abs(slope.x), abs(slope.y)) > 1.0 ? kObliqueGroup : kSkipGroup;
-    ray.eye = (eye + 0.5) / edge - 0.5;
-    ray.layer = length(world) / abs(along) * edge * frame.extinctionUnit;
-    ray.toEye = -normalize(world);
-    ray.edge = edge;
-    ray.perSlice = edge / abs(along);
-    const ivec2 slices = slicesOnRay(level, ray, frame.axes[kAxis].slices[along > 0.0 ? 1 : 0][levelIndex]);
-    sums.distance = 0.0;
-    if (kParts || sums.transmittance > frame.endTransmittance) march(sums, level, ray, slices, frame.endTransmittance, kScalars && levelIndex == 0);
-    distanceSum += ray.perSlice * sums.distance;
-    if (kParts) endBrick(sums, ray);
+  // Scalars are marched apart from the levels of blocks behind them, so that neither loop has the code of the other: lavapipe executes
+  // branches that no lane takes.
+  if (kScalars) {
+    if (frame.finest == 0) marchLevel(sums, distanceSum, line, 0, true);
   }
+  if (!kScalars || kLevels)
+    for (int level = max(frame.finest, kScalars ? 1 : 0); level <= frame.coarsest; ++level)
+      marchLevel(sums, distanceSum, line, level, false);
   if (kParts) {
     storePart(index - frame.part.first);
     return;

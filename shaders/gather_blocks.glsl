@@ -63,6 +63,7 @@ SliceValues blockValuesAt(Slices level, Ray ray, int slice, bool within) {
   continueDepths(found.depths, found.ambient, level, position);
   found.emission = kEmits && within ? sumOf(extraQuad(quad), weights) : vec3(0.0);
   found.coverage = found.medium.a > 0.0 || (kEmits && found.emission != vec3(0.0)) ? 1.0 : 0.0;
+  found.hasLight = true;
   found.gradient = vec3(0.0);
   found.hasGradient = false;
   return found;
@@ -91,7 +92,7 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray 
   const float ahead = (float(slice) - ray.eye) * ray.direction;
   SegmentLight lit;
   const int before = slice - int(ray.direction);
-  if (last.depths.x < 0.0) {  // as slices without blocks were skipped
+  if (!last.hasLight) {  // as slices without blocks were skipped
     last.depths = max(found.depths - ray.layer * medium.a, vec4(0.0));
     last.ambient = found.ambient;
   }

@@ -21,6 +21,11 @@ layout(constant_id = 6) const int kAmbient = 0;       // channels of ambient lig
 layout(constant_id = 7) const int kOctaves = 1;       // orders of scattering
 layout(constant_id = 8) const bool kTinted = false;   // whether the extinction differs between the colours of light
 layout(constant_id = 9) const bool kEmits = false;    // whether blocks that are lit at samples emit light, too
+layout(constant_id = 10) const bool kLevels = true;   // whether levels of blocks are marched behind scalars
+
+// Whether a lane may leave a loop before others do and then use what it computed there. On lavapipe it has the values of the loop's last
+// turn, which are computed from its own variables once more; but loads from addresses, with kPieces, give 0 to lanes that have left.
+const bool kLeavesLoops = !kPieces;
 
 layout(binding = 1) uniform utextureBuffer brickNumbers;     // with kParts, bricks of the part have kOwnBrick
 // Each quad has two neighbours along the first side, at this position and at the next one along the second
@@ -48,6 +53,7 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Med
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Gradients { uint values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SourcePiece { uvec4 values[]; };
 layout(binding = 8) uniform utextureBuffer skipCells;
+layout(binding = 16) uniform utextureBuffer gradientTexels;  // packed gradients of blocks, in bricks; not with kPieces
 
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
@@ -93,8 +99,8 @@ bool partFits = true;
 // The brick of the last quad if it belongs to the part, otherwise 0; with kRegion 1 if the quad is in the cube.
 int ownBrick = 0;
 
-// The values of a ray on a slice, for the stretch to the next slice. blockValuesAt() sets coverage, medium, emission, depths, ambient and the
-// gradient only; scalarValuesAt() sets all of them.
+// The values of a ray on a slice, for the stretch to the next slice. blockValuesAt() sets coverage, medium, emission and the light that
+// arrives; scalarValuesAt() sets all others but emission.
 struct SliceValues {
   float coverage;  // share of the weights that voxels with data have, 0..1; if it is 0 the other values are undefined
   float scalar;    // in intervals of the transfer function's table
@@ -106,10 +112,18 @@ struct SliceValues {
   vec3 light;      // relative to that of a source term of 1
   vec2 change;     // change of the scalar per voxel along the sides
   vec3 gradient;   // gradient of the scalar, or of the extinction, per block in index space
-  bool hasGradient;
-  vec4 depths;     // optical depths towards the lights, for scalars from a layer further on; negative if unknown
-  vec4 arriving;   // for scalars, optical depths towards the lights; negative if not computed
+  vec4 depths;     // optical depths towards the lights
   vec3 ambient;    // optical depths that ambient light has passed, by channel
+  bool hasGradient, hasLight;  // whether `gradient`, and `depths` and `ambient`, are known
+};
+
+// The stretch of a ray between two slices of scalars.
+struct Stretch {
+  SliceValues end;  // on the second of them
+  int slice;        // the second of them
+  vec4 near, far;   // extinction times colour and extinction of its halves
+  int brick;        // ownBrick on the second slice
+  bool adds;        // whether it adds anything to the sums
 };
 
 SliceValues emptySliceValues() {
@@ -118,8 +132,8 @@ SliceValues emptySliceValues() {
   nothing.integral = nothing.medium = vec4(0.0);
   nothing.light = nothing.gradient = nothing.ambient = nothing.emission = vec3(0.0);
   nothing.change = vec2(0.0);
-  nothing.hasGradient = false;
-  nothing.depths = nothing.arriving = vec4(-1.0);
+  nothing.hasGradient = nothing.hasLight = false;
+  nothing.depths = vec4(0.0);
   return nothing;
 }
 
@@ -127,6 +141,10 @@ SliceValues emptySliceValues() {
 uvec2 mediumQuad(int quad) {
   if (!kPieces) return texelFetch(mediumQuads, quad).xy;
   return MediumPiece(frame.axes[kAxis].mediumPieces[quad >> kPieceLog2]).values[quad & kPieceMask];
+}
+
+uint packedGradient(int block) {
+  return kPieces ? Gradients(frame.gradients).values[block] : texelFetch(gradientTexels, block).x;
 }
 
 uvec4 sourceQuad(int quad) {

@@ -13,11 +13,6 @@ SliceValues scalarValuesAt(Slices level, vec2 position, int slice, vec2 halfStep
   const uvec2 pairs = mediumQuad(quad);
   const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
   SliceValues found;
-  if (kSampled) {
-    found.depths = depthsTowardsLights(quad, weights);
-    found.ambient = ambientAt(quad, weights);
-    continueDepths(found.depths, found.ambient, level, position);
-  }
   [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = codes[i] != 0 ? weights[i] : 0.0;
   found.coverage = weights.x + weights.y + weights.z + weights.w;
   // Beyond the sides of the volume a quad has weights for two of its blocks only.
@@ -33,9 +28,9 @@ SliceValues scalarValuesAt(Slices level, vec2 position, int slice, vec2 halfStep
   found.behind = found.scalar + even - odd;
   found.change = whole ? change : vec2(0.0);
   tableAt(found.scalar, found.integral, found.medium);
-  found.arriving = vec4(-1.0);
-  found.gradient = vec3(0.0);
-  found.hasGradient = false;
+  found.gradient = found.ambient = vec3(0.0);
+  found.depths = vec4(0.0);
+  found.hasGradient = found.hasLight = false;
   found.light = vec3(1.0);
   if (kLit) {
     // Voxels that are not occupied have no light; that of the others counts.
@@ -65,8 +60,7 @@ vec2 scalarNear(Slices level, vec3 position) {
 
 // Adds to the depths towards lights, which are known from a layer further on, the depths up to there. Where
 // little is visible, the extinction is taken as constant on this path.
-vec4 depthsAt(Slices level, SliceValues at, vec3 position, bool shows) {
-  vec4 depths = at.depths;
+void addLayerTowards(inout vec4 depths, Slices level, SliceValues at, vec3 position, bool shows) {
   [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i) {
     if (i >= kLights) continue;
     vec3 toLight = frame.lights[i].across;
@@ -87,7 +81,34 @@ vec4 depthsAt(Slices level, SliceValues at, vec3 position, bool shows) {
                                           : meanBetween(at.scalar, at.integral, at.medium, next.x, integral, medium).a;
     depths[i] += layer * 0.5 * (at.coverage + next.y) * mean;
   }
-  return depths;
+}
+
+// Finds the light that reaches the ends of a stretch. The first end has its own already if another stretch ended there.
+void findLight(inout SliceValues last, inout SliceValues found, Slices level, Ray ray, int slice, bool shows) {
+  const int before = slice - int(ray.direction);
+  const bool enters = before < 0 || before >= level.count, leaves = slice < 0 || slice >= level.count;
+  bool first = !last.hasLight && !enters, again, begun = false;
+  do {
+    const int there = first ? before : clamp(slice, 0, level.count - 1);
+    const vec2 position = ray.origin + ray.slope * float(there);
+    vec4 weights;
+    const int quad = quadAt(level, position, there, weights);
+    vec4 depths = depthsTowardsLights(quad, weights);
+    vec3 ambient = ambientAt(quad, weights);
+    continueDepths(depths, ambient, level, position);
+    SliceValues at = found;
+    if (first) at = last;
+    addLayerTowards(depths, level, at, voxelPosition(ray, float(there)), shows);
+    at.depths = depths;
+    at.ambient = ambient;
+    if (first) last = at; else found = at;
+    again = kLeavesLoops ? first : !begun;
+    first = false;
+    begun = true;
+  } while (again);
+  if (leaves) found.depths = depthsBeyond(slice, last.depths);
+  if (enters) last.depths = depthsBeyond(before, found.depths);
+  last.hasLight = found.hasLight = true;
 }
 
 // The relative change of the extinction from a scalar less `reach` to that plus `reach`, relative to the
@@ -99,79 +120,88 @@ float changeAcross(float scalar, float reach) {
   return (above.a - below.a) / max(max(above.a, below.a), 1e-20);
 }
 
-// Lights the two halves of a stretch. `first` and `second` are the values at its ends; where an end has no data, those of the other end.
-// `shown` is the stretch's share of the pixel's alpha.
-void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout SliceValues last, inout SliceValues found, SliceValues first,
-                  SliceValues second, float nearExtinction, float farExtinction, float shown, Slices level, Ray ray, int slice) {
-  const float nearPart = nearExtinction + farExtinction > 0.0 ? nearExtinction / (nearExtinction + farExtinction) : 0.5;
-  nearLit.ambientChange = (second.ambient - first.ambient) * nearPart;
-  nearLit.ambientBegin = first.ambient;
-  farLit.ambientChange = second.ambient - first.ambient - nearLit.ambientChange;
-  farLit.ambientBegin = first.ambient + nearLit.ambientChange;
+// The values at the ends of a stretch; where an end has no data, those of the other end.
+void endsOf(out SliceValues first, out SliceValues second, SliceValues last, SliceValues found) {
+  first = last;
+  second = found;
+  if (last.coverage == 0.0) first = found;
+  if (found.coverage == 0.0) second = last;
+}
+
+// Lights the two halves of a stretch. `shown` is the stretch's share of the pixel's alpha.
+void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout SliceValues last, inout SliceValues found, float nearExtinction,
+                  float farExtinction, float shown, Slices level, Ray ray, int slice) {
   nearLit.position = farLit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
+  vec3 outwards = vec3(0.0);
+  bool shows = shown > kMinShaded;
   if (kSurfaces) {
     nearLit.surface = farLit.surface = 0.0;
     if (shown > 2.0 * kMinShaded) {
       findGradients(last, found, level, ray, slice);
+      SliceValues first, second;
+      endsOf(first, second, last, found);
       const vec3 nearGradient = mix(last.gradient, found.gradient, 0.25), farGradient = mix(last.gradient, found.gradient, 0.75);
       const float nearChange = changeAcross(mix(first.scalar, second.scalar, 0.25), length(nearGradient));
       const float farChange = changeAcross(mix(first.scalar, second.scalar, 0.75), length(farGradient));
       setSurface(nearLit, nearGradient, -nearChange);
       setSurface(farLit, farGradient, -farChange);
-      const vec3 outwards = -sign(nearChange + farChange) * (nearGradient + farGradient);
-      const Outside outside = outsideOf(level, ray, float(slice) - 0.5 * ray.direction, outwards);
-      lightFrom(nearLit, outside);
-      lightFrom(farLit, outside);
+      outwards = -sign(nearChange + farChange) * (nearGradient + farGradient);
     }
+    shows = shows && min(nearLit.surface, farLit.surface) < kMostlySurface;
   }
+  findLight(last, found, level, ray, slice, shows);
   // Along a stretch the depth towards a light changes as the depth towards the eye does, since both are
   // integrals of the same extinction.
-  if (kLights > 0 && nearExtinction + farExtinction > 0.0) {
-    const int before = slice - int(ray.direction);
-    const bool enters = before < 0 || before >= level.count, leaves = slice < 0 || slice >= level.count;
-    if (last.depths.x < 0.0 && !enters) {
-      vec4 weights;
-      last.depths = depthsTowardsLights(quadAt(level, ray.origin + ray.slope * float(before), before, weights), weights);
-    }
-    bool shows = shown > kMinShaded;
-    if (kSurfaces) shows = shows && min(nearLit.surface, farLit.surface) < kMostlySurface;
-    if (last.arriving.x < 0.0 && !enters) last.arriving = depthsAt(level, last, voxelPosition(ray, float(before)), shows);
-    found.arriving = leaves ? depthsBeyond(slice, last.arriving) : depthsAt(level, found, voxelPosition(ray, float(slice)), shows);
-    if (enters) last.arriving = depthsBeyond(before, found.arriving);
-    nearLit.begin = last.arriving;
-    nearLit.change = (found.arriving - last.arriving) * nearExtinction / (nearExtinction + farExtinction);
-    farLit.begin = nearLit.begin + nearLit.change;
-    farLit.change = found.arriving - farLit.begin;
+  const float nearPart = nearExtinction / (nearExtinction + farExtinction);
+  SliceValues first, second;
+  endsOf(first, second, last, found);
+  nearLit.ambientBegin = first.ambient;
+  nearLit.ambientChange = (second.ambient - first.ambient) * nearPart;
+  farLit.ambientBegin = first.ambient + nearLit.ambientChange;
+  farLit.ambientChange = second.ambient - first.ambient - nearLit.ambientChange;
+  nearLit.begin = last.depths;
+  nearLit.change = (found.depths - last.depths) * nearPart;
+  farLit.begin = nearLit.begin + nearLit.change;
+  farLit.change = found.depths - farLit.begin;
+  if (kSurfaces && shown > 2.0 * kMinShaded) {
+    const Outside outside = outsideOf(level, ray, float(slice) - 0.5 * ray.direction, outwards);
+    lightFrom(nearLit, outside);
+    lightFrom(farLit, outside);
   }
 }
 
-// Scalars change linearly from a slice to the middle of the stretch and on to the next slice, so that integrals of the
-// transfer function give the means. In the middle both slices' functions count half. A slice that is not `within` the level's
-// slices has no data.
-void addStretch(inout Sums sums, inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
+// The stretch from the previous slice to this one. Scalars change linearly from a slice to the middle of the stretch and on to the next
+// slice, so that integrals of the transfer function give the means. In the middle both slices' functions count half. A slice that is not
+// `within` the level's slices has no data.
+Stretch scalarStretch(inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
+  Stretch stretch;
+  stretch.slice = slice;
   const int there = within ? slice : slice - int(ray.direction);
   SliceValues found = scalarValuesAt(level, ray.origin + ray.slope * float(there), there, 0.5 * ray.direction * ray.slope, ray.toEye);
-  const int brick = ownBrick;
+  stretch.brick = ownBrick;
   if (!within) found.coverage = 0.0;
-  const float coverage = 0.5 * (last.coverage + found.coverage);
-  SliceValues first = last, second = found;
-  if (last.coverage == 0.0) first = found;
-  if (found.coverage == 0.0) second = last;
+  SliceValues first, second;
+  endsOf(first, second, last, found);
   const bool both = last.coverage > 0.0 && found.coverage > 0.0;
   const float middle = both ? clamp(0.5 * (first.ahead + second.behind), 0.0, float(kTransferIntervals)) : first.scalar;
   vec4 integral, medium;
   tableAt(middle, integral, medium);
-  vec4 near = meanBetween(first.scalar, first.integral, first.medium, middle, integral, medium);
-  vec4 far = meanBetween(middle, integral, medium, second.scalar, second.integral, second.medium);
-  if (kParts || kRegion) {
-    if (brick == 0 || coverage == 0.0 || near.a + far.a == 0.0) {
-      last = found;
-      return;
-    }
-  }
+  stretch.near = meanBetween(first.scalar, first.integral, first.medium, middle, integral, medium);
+  stretch.far = meanBetween(middle, integral, medium, second.scalar, second.integral, second.medium);
+  stretch.adds = last.coverage + found.coverage > 0.0 && stretch.near.a + stretch.far.a > 0.0;
+  if (kParts || kRegion) stretch.adds = stretch.adds && stretch.brick != 0;
+  stretch.end = found;
+  return stretch;
+}
+
+void addScalarStretch(inout Sums sums, inout SliceValues last, Stretch stretch, Slices level, Ray ray) {
+  SliceValues found = stretch.end, first, second;
+  endsOf(first, second, last, found);
+  const int slice = stretch.slice;
+  vec4 near = stretch.near, far = stretch.far;
   if (kParts) {
-    enterBrick(sums, ray, brick, float(slice) - ray.direction);
-    last.arriving = vec4(-1.0);  // as it may have been computed for another brick, less exactly
+    enterBrick(sums, ray, stretch.brick, float(slice) - ray.direction);
+    last.hasLight = false;  // as it may have been computed for another brick, less exactly
   }
   if (kLit) {
     near.rgb *= mix(first.light, second.light, 0.25);
@@ -182,7 +212,7 @@ void addStretch(inout Sums sums, inout SliceValues last, Slices level, Ray ray, 
   const float farLayer = ray.layer * mix(last.coverage, found.coverage, 0.75);
   const float shown = sums.transmittance * (nearLayer * near.a + farLayer * far.a);
   SegmentLight nearLit, farLit;
-  if (kSampled) lightStretch(nearLit, farLit, last, found, first, second, near.a, far.a, shown, level, ray, slice);
+  if (kSampled) lightStretch(nearLit, farLit, last, found, near.a, far.a, shown, level, ray, slice);
   addSegment(sums, near, nearLayer * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75, nearLit, ray.toEye);
   addSegment(sums, far, farLayer * clamp(ahead, 0.0, 0.5), ahead - 0.25, farLit, ray.toEye);
   last = found;

@@ -24,18 +24,25 @@ vec3 gradientAt(Slices level, vec2 position, int slice) {
     block[kSideA] = inBrick.x;
     block[kSideB] = inBrick.y;
     const int index = ((brick << kBrickLevels | block.z) << kBrickLevels | block.y) << kBrickLevels | block.x;
-    gradient += weights[i] * unpackGradient(Gradients(frame.gradients).values[index]);
+    gradient += weights[i] * unpackGradient(packedGradient(index));
   }
   return gradient;
 }
 
-// The mean of both ends of a stretch.
+// Finds the gradients at the ends of a stretch. The first end has its own already if another stretch ended there.
 void findGradients(inout SliceValues last, inout SliceValues found, Slices level, Ray ray, int slice) {
-  for (int i = last.hasGradient ? 1 : 0; i < 2; ++i) {
-    const int at = clamp(i == 1 ? slice : slice - int(ray.direction), 0, level.count - 1);
+  bool first = !last.hasGradient, again, begun = false;
+  do {
+    const int at = clamp(first ? slice - int(ray.direction) : slice, 0, level.count - 1);
     const vec3 gradient = gradientAt(level, ray.origin + ray.slope * float(at), at);
-    if (i == 1) found.gradient = gradient; else last.gradient = gradient;
-  }
+    if (first)
+      last.gradient = gradient;
+    else
+      found.gradient = gradient;
+    again = kLeavesLoops ? first : !begun;
+    first = false;
+    begun = true;
+  } while (again);
   last.hasGradient = found.hasGradient = true;
 }
 

@@ -44,11 +44,12 @@ const std::array<const Shader*, 3>& gatherShaders(const GatherVolume& volume) {
   return kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : sampled ? 1 : 0];
 }
 
-Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, const Shader& shader) {
-  return makeComputePipeline(device, shader,
-                             {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.isLit(), volume.inPieces(),
-                              std::uint32_t(volume.sampleLights()), std::uint32_t(volume.ambientChannels()),
-                              std::uint32_t(volume.octaves()), volume.isTinted(), volume.hasEmissionApart()});
+Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, bool levels, const Shader& shader) {
+  return makeComputePipeline(
+      device, shader,
+      {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.isLit(), volume.inPieces(),
+       std::uint32_t(volume.sampleLights()), std::uint32_t(volume.ambientChannels()), std::uint32_t(volume.octaves()), volume.isTinted(),
+       volume.hasEmissionApart(), levels && volume.hasScalars()});
 }
 
 std::uint64_t latticeSize(const shader::GatherFrame& frame) {
@@ -61,9 +62,10 @@ GatherPass::GatherPass(const Device& device)
     : device_(device), frame_(device, sizeof(shader::GatherFrame), MemoryUse::Device, "gather frame",
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT) {}
 
-void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, Extent marched) {
+void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels,
+                              Extent marched) {
   for (int axis = 0; axis < 3; ++axis)
-    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, *gatherShaders(volume)[std::size_t(marched)]);
+    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, levels, *gatherShaders(volume)[std::size_t(marched)]);
 }
 
 void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
@@ -104,7 +106,8 @@ void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume,
                                   &volume.transferTable(),
                                   &skips};
     for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
-    commands.dispatch(makeGather(device_, axis, volume, shader), bindings, glm::ivec3(extent, 1));
+    bindings.emplace_back(&volume.gradients());
+    commands.dispatch(makeGather(device_, axis, volume, frame.coarsest > 0, shader), bindings, glm::ivec3(extent, 1));
   }
 }
 

@@ -17,8 +17,9 @@ class GatherPass {
  public:
   explicit GatherPass(const Device& device);
   enum class Extent { Whole, Part, Region };  ///< what of the volume is marched
-  /// Has the pipelines that march rays along the given axes compiled. The volume is prepared for the frame.
-  static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, Extent marched);
+  /// Has the pipelines that march rays along the given axes compiled. The volume is prepared for the frame. `levels` says whether the frame
+  /// has levels of detail above voxels.
+  static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels, Extent marched);
   void record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
               const FrameTargets& targets);
 

@@ -319,7 +319,7 @@ std::array<ReferenceGather::Stretch, 2> ReferenceGather::lightStretch(const Gath
   halves[1].end.ambient = ambientEnd;
   for (Stretch& half : halves) half.position = place(slice - 0.5 * slab.sign);
   if (lighting_->surface > 0.0 && shown > 2.0 * kMinShown) lightSurfaces(halves, light, ray, slab, slice, first.value, second.value);
-  if (sum <= 0.0) {
+  if (sum <= 0.0 || last.coverage + found.coverage == 0.0) {
     lastArriving.reset();
     return halves;
   }

@@ -74,6 +74,8 @@ class Device {
   /// Valid bits of the queue's timestamps.
   std::uint32_t timestampBits() const { return timestampBits_; }
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
+  /// From now on the device has texel buffers of at most so many texels, so that small volumes are stored as large ones are; for tests.
+  void limitTexels(std::uint32_t texels) { properties_.limits.maxTexelBufferElements = std::min(limits().maxTexelBufferElements, texels); }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
   VkDeviceSize maximumAllocation() const { return maximumAllocation_; }
   /// Bytes of the largest buffer that can be bound as a storage buffer and as a texel buffer with texels of

@@ -208,6 +208,22 @@ TEST_F(GatherLightTest, ChangedLightFromEverywhereIsFoundAgain) {
   EXPECT_TRUE(renderer.render(camera, settings).pixels == half.pixels);
 }
 
+/// Of volumes with more voxels than a texel buffer can have, quads, gradients and rays are read by their addresses.
+TEST_F(GatherLightTest, MoreVoxelsThanTexelsGiveTheSameImage) {
+  Device limited(instance(), "");
+  limited.limitTexels(1 << 16);
+  const QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 48, makeProcedural("head", 48));
+  const Camera camera = framingCamera(head.volume, 35.0, 25.0, 1.0, {});
+  FrameSettings settings = gathering({96, 96});
+  settings.lighting = Lighting{.lights = {{.place = {1.0, 0.2, 0.5}}}, .ambient = glm::dvec3(0.1), .surface = 1.0};
+  for (const ClassificationOrder order : {ClassificationOrder::Pre, ClassificationOrder::Post}) {
+    Classification classification = head.classification;
+    classification.order = order;
+    Renderer texels(device(), head.volume, classification, {}), addresses(limited, head.volume, classification, {});
+    EXPECT_GT(psnr(addresses.render(camera, settings), texels.render(camera, settings)), 100.0);
+  }
+}
+
 /// What was shaded for one light or for none is not shown with another.
 TEST_F(GatherLightTest, ChangedLightsAreShadedAgain) {
   const Volume volume = makeProcedural("cloud", 32);
