@@ -36,13 +36,35 @@ struct Pair {
   uvec2 source, extra;
 };
 
-Pair pairAt(ivec3 first) {
+// The bricks of codes of the pairs of a row, which has at most two along its side.
+struct CodeRow {
+  int firstCell;     // position of the first ones along the side
+  uvec2 near, far;
+};
+
+CodeRow codeRowFrom(ivec3 cell) {
+  CodeRow row;
+  row.firstCell = (cell[kSideA] + push.codes.corner[kSideA]) >> kBrickLevels;
+  [[unroll]] for (int i = 0; i < 2; ++i) {
+    row.near[i] = codeBrick(push.codes, push.level.dimensions, cell);
+    ivec3 last = cell;
+    last[kSideA] = min(cell[kSideA] + kGatherBrickEdge, push.level.dimensions[kSideA] - 1);
+    row.far[i] = codeBrick(push.codes, push.level.dimensions, last);
+    ++cell[kSideB];
+  }
+  return row;
+}
+
+Pair pairAt(ivec3 first, CodeRow row) {
   Pair pair = Pair(uvec2(0), uvec2(0), uvec2(0));
   [[unroll]] for (int i = 0; i < 2; ++i) {
     ivec3 cell = first;
     cell[kSideB] += i;
     const bool inside = all(lessThan(cell, push.level.dimensions));
-    if (kCodes) pair.medium[i] = codeAt(push.codes, push.level.dimensions, cell);
+    if (kCodes) {
+      const bool isNear = (cell[kSideA] + push.codes.corner[kSideA]) >> kBrickLevels == row.firstCell;
+      pair.medium[i] = codeIn(push.codes, inside ? isNear ? row.near[i] : row.far[i] : 0, cell);
+    }
     if (kCodes && !kColored) continue;
     const int address = inside ? int(blockAddress(push.level, cell)) : 0;
     const uvec2 word = texelFetch(occupancy, address >> 5).xy;
@@ -66,10 +88,12 @@ void main() {
   cell[kAxis] += slice;
   cell[kSideB] += row;
   uint quad = push.firstQuad + brick * kGatherBrickBlocks + slice + (row << (2 * kBrickLevels));
-  Pair pair = pairAt(cell);
+  CodeRow codes;
+  if (kCodes) codes = codeRowFrom(cell);
+  Pair pair = pairAt(cell, codes);
   for (int i = 0; i < kGatherBrickEdge; ++i) {
     ++cell[kSideA];
-    const Pair next = pairAt(cell);
+    const Pair next = pairAt(cell, codes);
     MediumQuads(push.medium).values[quad] = pair.medium | next.medium << 16;
     if (kColored) SourceQuads(push.source).values[quad] = uvec4(pair.source.x, next.source.x, pair.source.y, next.source.y);
     if (kExtra) SourceQuads(push.extra).values[quad] = uvec4(pair.extra.x, next.extra.x, pair.extra.y, next.extra.y);

@@ -7,14 +7,20 @@
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer CodeWords { uint values[]; };
 
-// The code of a block, 0 without data. Blocks beyond the volume have no data.
-uint codeAt(CodeBricks bricks, ivec3 dimensions, ivec3 block) {
-  const ivec3 place = block + bricks.corner;
-  const ivec3 cell = place >> kBrickLevels, local = place & (kBrickEdge - 1);  // lavapipe divides by powers of two slowly
-  const bool inside = all(greaterThanEqual(block, ivec3(0))) && all(lessThan(block, dimensions));
-  const uint brick = inside ? CodeWords(bricks.numbers).values[cell.x + bricks.cells.x * (cell.y + bricks.cells.y * cell.z)] : 0;
-  const uint index = inside ? ((brick << kBrickLevels | local.z) << kBrickLevels | local.y) << kBrickLevels | local.x : 0;
+// The number of the brick that has a block; blocks beyond the volume are in the empty brick.
+uint codeBrick(CodeBricks bricks, ivec3 dimensions, ivec3 block) {
+  if (any(lessThan(block, ivec3(0))) || any(greaterThanEqual(block, dimensions))) return 0;
+  const ivec3 cell = (block + bricks.corner) >> kBrickLevels;  // lavapipe divides by powers of two slowly
+  return CodeWords(bricks.numbers).values[cell.x + bricks.cells.x * (cell.y + bricks.cells.y * cell.z)];
+}
+
+uint codeIn(CodeBricks bricks, uint brick, ivec3 block) {
+  const ivec3 local = (block + bricks.corner) & (kBrickEdge - 1);
+  const uint index = ((brick << kBrickLevels | local.z) << kBrickLevels | local.y) << kBrickLevels | local.x;
   return bitfieldExtract(CodeWords(bricks.codes).values[index >> 1], int(index & 1u) * 16, 16);
 }
+
+// The code of a block, 0 without data.
+uint codeAt(CodeBricks bricks, ivec3 dimensions, ivec3 block) { return codeIn(bricks, codeBrick(bricks, dimensions, block), block); }
 
 #endif
