@@ -36,10 +36,10 @@ struct Pair {
   uvec2 source, extra;
 };
 
-// The bricks of codes of the pairs of a row, which has at most two along its side.
+// A row of quads needs two rows of blocks, neighbours along the second side. Along the first side each meets at most two bricks of codes.
 struct CodeRow {
-  int firstCell;     // position of the first ones along the side
-  uvec2 near, far;
+  int firstCell;    // position of the first brick along the first side
+  uvec2 near, far;  // numbers of the first and the second brick, by row
 };
 
 CodeRow codeRowFrom(ivec3 cell) {

@@ -61,8 +61,8 @@ SliceValues sliceValuesAt(Slices level, Ray ray, int slice, bool scalars) {
   return blockValuesAt(level, ray, slice, true);
 }
 
-// Adds the stretch to the next one of the slices up to `final` whose scalars add anything, unless `left` becomes `rest` before. Light is
-// computed only for what adds, in a loop of its own, because lavapipe executes a branch even if no lane takes it.
+// Moves on to the next stretch whose scalars add something, or until `left` is `rest`, and adds it; without kLeavesLoops by one stretch. The
+// search is a loop of its own, so that stretches that add nothing are not lit: lavapipe executes a branch even if no lane takes it.
 void addNextScalars(inout Sums sums, inout SliceValues last, inout int slice, inout int left, Slices level, Ray ray, int rest, int final) {
   Stretch stretch;
   do {
@@ -83,7 +83,8 @@ void addBlocks(inout Sums sums, inout SliceValues last, Slices level, Ray ray, i
 }
 
 // Branches on constants are nested, so that the compiler removes them.
-void addNext(inout Sums sums, inout SliceValues last, inout int slice, inout int left, Slices level, Ray ray, int rest, int final, bool scalars) {
+void addNext(inout Sums sums, inout SliceValues last, inout int slice, inout int left, Slices level, Ray ray, int rest, int final,
+             bool scalars) {
   if (kScalars) {
     if (scalars) {
       addNextScalars(sums, last, slice, left, level, ray, rest, final);
@@ -95,7 +96,7 @@ void addNext(inout Sums sums, inout SliceValues last, inout int slice, inout int
   --left;
 }
 
-// For scalars one more slice is marched, which ends the last stretch.
+// Where stretches between slices are added, one more slice is marched, which ends the last of them.
 void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransmittance, bool scalars) {
   const int direction = int(ray.direction);
   const int final = direction > 0 ? slices.y : slices.x;

@@ -192,7 +192,8 @@ struct LightDepthsPush {
   int edge;          // of a block, voxels
   ivec3 voxels;      // the volume's dimensions
   mat3 indexToWorld; // linear part
-  uvec2 extinction;  // device addresses: by rank; of the depths, 16 bits a block in bricks, x fastest; and of the depths along rays
+  uvec2 extinction;  // device addresses: of extinctions by rank; of the depths, 16 bits a block in bricks, x fastest; of all rays of the
+                     // light
   uvec2 depths, rays;
 };
 
@@ -251,6 +252,8 @@ struct BrickQuadsPush {
 #ifdef __cplusplus
 static_assert(sizeof(GatherFrame) <= 16384);
 static_assert(sizeof(SurfaceGradientsPush) <= 128);
+static_assert(sizeof(LightDepthsPush) <= 128);
+static_assert(sizeof(BrickQuadsPush) <= 128);
 }  // namespace freevoxels::shader
 #endif
 #endif

@@ -99,8 +99,8 @@ bool partFits = true;
 // The brick of the last quad if it belongs to the part, otherwise 0; with kRegion 1 if the quad is in the cube.
 int ownBrick = 0;
 
-// The values of a ray on a slice, for the stretch to the next slice. blockValuesAt() sets coverage, medium, emission and the light that
-// arrives; scalarValuesAt() sets all others but emission.
+// The values of a ray on a slice, for the stretch to the next slice. blockValuesAt() sets coverage, medium, emission, depths, ambient and the
+// gradient; scalarValuesAt() sets all but emission, and leaves light and gradient to be found later (hasLight, hasGradient).
 struct SliceValues {
   float coverage;  // share of the weights that voxels with data have, 0..1; if it is 0 the other values are undefined
   float scalar;    // in intervals of the transfer function's table
@@ -110,7 +110,6 @@ struct SliceValues {
   vec4 medium;     // extinction times colour and extinction at the scalar
   vec3 emission;   // source term of the light that blocks emit, with kEmits
   vec3 light;      // relative to that of a source term of 1
-  vec2 change;     // change of the scalar per voxel along the sides
   vec3 gradient;   // gradient of the scalar, or of the extinction, per block in index space
   vec4 depths;     // optical depths towards the lights
   vec3 ambient;    // optical depths that ambient light has passed, by channel
@@ -131,7 +130,6 @@ SliceValues emptySliceValues() {
   nothing.coverage = nothing.scalar = nothing.ahead = nothing.behind = 0.0;
   nothing.integral = nothing.medium = vec4(0.0);
   nothing.light = nothing.gradient = nothing.ambient = nothing.emission = vec3(0.0);
-  nothing.change = vec2(0.0);
   nothing.hasGradient = nothing.hasLight = false;
   nothing.depths = vec4(0.0);
   return nothing;

@@ -26,7 +26,6 @@ SliceValues scalarValuesAt(Slices level, vec2 position, int slice, vec2 halfStep
   const float even = whole ? halfStep.x * halfStep.y * twist : 0.0, odd = whole ? dot(halfStep, change) : 0.0;
   found.ahead = found.scalar + even + odd;
   found.behind = found.scalar + even - odd;
-  found.change = whole ? change : vec2(0.0);
   tableAt(found.scalar, found.integral, found.medium);
   found.gradient = found.ambient = vec3(0.0);
   found.depths = vec4(0.0);
@@ -173,7 +172,7 @@ void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout Slice
 // The stretch from the previous slice to this one. Scalars change linearly from a slice to the middle of the stretch and on to the next
 // slice, so that integrals of the transfer function give the means. In the middle both slices' functions count half. A slice that is not
 // `within` the level's slices has no data.
-Stretch scalarStretch(inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
+Stretch scalarStretch(SliceValues last, Slices level, Ray ray, int slice, bool within) {
   Stretch stretch;
   stretch.slice = slice;
   const int there = within ? slice : slice - int(ray.direction);

@@ -54,8 +54,7 @@ vec3 normalOf(vec3 gradient) {
 // `decrease` is the decrease of the extinction along a gradient, from one block before to one block behind,
 // relative to the larger of the two.
 void setSurface(inout SegmentLight lit, vec3 gradient, float decrease) {
-  const vec3 normal = frame.gradientToWorld * (sign(decrease) * gradient);
-  lit.normal = normal * inversesqrt(max(dot(normal, normal), 1e-30));
+  lit.normal = normalOf(sign(decrease) * gradient);
   lit.surface = frame.surface * min(2.0 * abs(decrease), 1.0);
 }
 

@@ -11,7 +11,8 @@
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer RayDepths { uint pairs[]; };
 
-// The codes of a ray on a pair of planes. On lavapipe, texels are much faster than addresses.
+// The codes of a ray on a pair of planes. On lavapipe, texels are much faster than addresses: a shader that binds the depths of the source's
+// rays as texels defines RAY_DEPTHS_BINDING, and has their address in push.rays.
 #ifdef RAY_DEPTHS_BINDING
 layout(constant_id = 1) const bool kRayTexels = true;  // whether all depths of the source are within the range of texels
 layout(binding = RAY_DEPTHS_BINDING) uniform utextureBuffer rayDepths;

@@ -133,7 +133,9 @@ void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source, std::uin
   };
   if (grow(depths_, room.depths, "ray depths", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT)) {
     depthTexels_.reset();
-    if (room.depths / sizeof(std::uint32_t) <= device_.limits().maxTexelBufferElements)
+    // Shaders find texels by 32 bits of the addresses.
+    if (room.depths / sizeof(std::uint32_t) <= device_.limits().maxTexelBufferElements &&
+        room.depths <= std::numeric_limits<std::uint32_t>::max())
       depthTexels_.emplace(device_, depths_, VK_FORMAT_R32_UINT);
   }
   grow(carried_, room.carried, "ray depths between slabs");

@@ -10,6 +10,7 @@
 #include "embedded/surface_gradients.h"
 #include "engine/core/error.h"
 #include "engine/gathering/gather_volume.h"
+#include "engine/lighting/light_pass.h"
 #include "engine/vulkan/commands.h"
 
 namespace freevoxels {

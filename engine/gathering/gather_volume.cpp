@@ -11,6 +11,7 @@
 #include "embedded/shade_blocks_lit.h"
 #include "embedded/shade_blocks_unlit.h"
 #include "engine/core/error.h"
+#include "engine/lighting/light_pass.h"
 #include "engine/octree/occupancy.h"
 #include "engine/volume/packed_light.h"
 #include "engine/vulkan/buffer.h"
@@ -56,8 +57,8 @@ GatherVolume::GatherVolume(const Device& device, const Volume& volume, const Cla
   makeBricks(times);
   const std::uint32_t bricks = firstBricks_.back();
   const std::uint64_t quads = std::uint64_t(bricks) * shader::kGatherBrickBlocks;
-  const bool inOne = quads <= device.limits().maxTexelBufferElements && quads * sizeof(glm::uvec4) <= device.maximumAllocation();
-  bricksPerPiece_ = inOne ? bricks : 1u << shader::kPieceBricksLog2;
+  inPieces_ = quads > device.limits().maxTexelBufferElements || quads * sizeof(glm::uvec4) > device.maximumAllocation();
+  bricksPerPiece_ = inPieces_ ? 1u << shader::kPieceBricksLog2 : bricks;
   if (bricks > std::uint64_t(bricksPerPiece_) * shader::kMaxPieces)
     fail(ErrorKind::OutOfMemory, "the gather needs {} quads of voxels, more than the {} that it can number: use {}", quads,
          std::uint64_t(bricksPerPiece_) * shader::kMaxPieces * shader::kGatherBrickBlocks, Parameter("draw", "splats"));
@@ -236,7 +237,7 @@ GatherVolume::QuadStore GatherVolume::makeStore(bool needed, std::uint64_t quadB
     const std::uint64_t quads = std::uint64_t(std::min(bricksPerPiece_, bricks - first)) * shader::kGatherBrickBlocks;
     store.pieces.emplace_back(device_, (needed ? quads : 1) * quadBytes, MemoryUse::Device, name, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
   }
-  store.texels = TexelView(device_, store.pieces.front(), format);
+  store.texels = TexelView(device_, store.pieces.front(), format, inPieces_ ? quadBytes : VK_WHOLE_SIZE);
   return store;
 }
 

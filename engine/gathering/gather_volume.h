@@ -12,7 +12,6 @@
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/gathering/gather_stages.h"
 #include "engine/lighting/ambient_pass.h"
-#include "engine/lighting/light_pass.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/splatting/splat_pass.h"
 #include "engine/volume/coarse_cells.h"
@@ -21,6 +20,7 @@
 namespace freevoxels {
 
 class GatherVolume;
+class LightPass;
 
 /// What reaches a box from the lights of the volume of which it is a part.
 struct SurroundingLight {
@@ -59,7 +59,7 @@ class GatherVolume {
   /// called after prepare() with the same arguments.
   void record(Commands& commands, const Shading& shading);
 
-  /// An array of quads in one or more pieces, with texels if it is one piece.
+  /// An array of quads in one or more pieces, with texels unless it is read in pieces.
   struct QuadStore {
     std::vector<Buffer> pieces;
     TexelView texels;
@@ -110,9 +110,9 @@ class GatherVolume {
   bool isTinted() const { return lighting_ && lighting_->tint != glm::dvec3(1.0); }
   /// Whether surfaces are lit at samples.
   bool hasSurfaces() const { return sampleLights() > 0 && lighting_->surface > 0.0; }
-  /// Whether quads are in more than one piece, of shader::kPieceBricksLog2 each.
-  bool inPieces() const { return bricksPerPiece_ < firstBricks_.back(); }
-  /// Packed gradients of blocks; arbitrary texels without surfaces, and if quads are in more than one piece.
+  /// Whether quads are read by address, in pieces of shader::kPieceBricksLog2, because a texel buffer or an allocation cannot hold all.
+  bool inPieces() const { return inPieces_; }
+  /// Packed gradients of blocks; arbitrary texels without surfaces, and if quads are in pieces.
   const TexelView& gradients() const { return gradientTexels_.handle() == VK_NULL_HANDLE ? brickNumberTexels_ : gradientTexels_; }
   /// TransferTable::texels(); arbitrary texels without scalars.
   const TexelView& transferTable() const;
@@ -162,6 +162,7 @@ class GatherVolume {
   BrickCells cells_;
   std::vector<shader::GatherLevel> levels_;
   std::vector<std::uint32_t> firstBricks_;  ///< first brick of each level, and the total number
+  bool inPieces_ = false;
   std::uint32_t bricksPerPiece_ = 0;
   std::array<Quads, 3> quads_;
   // What the source terms were made for:
@@ -178,7 +179,7 @@ class GatherVolume {
   std::array<Buffer, shader::kMaxLightSlots> lightCodes_;
   std::uint32_t lightLevels_ = 0;
   Buffer gradients_;  ///< 4 bytes a block, in bricks; empty until surfaces are lit at samples
-  TexelView gradientTexels_;  ///< of gradients_, unless quads are in more than one piece
+  TexelView gradientTexels_;  ///< of gradients_, unless quads are in pieces
   std::uint32_t gradientLevels_ = 0;
 };
 

@@ -82,11 +82,9 @@ Buffer::Buffer(const Device& device, VkDeviceSize bytes, MemoryUse use, const ch
   address_ = vkGetBufferDeviceAddress(device.handle(), &address);
 }
 
-TexelView::TexelView(const Device& device, const Buffer& buffer, VkFormat format) {
-  const VkBufferViewCreateInfo info{.sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO,
-                                    .buffer = buffer.handle(),
-                                    .format = format,
-                                    .range = VK_WHOLE_SIZE};
+TexelView::TexelView(const Device& device, const Buffer& buffer, VkFormat format, VkDeviceSize bytes) {
+  const VkBufferViewCreateInfo info{
+      .sType = VK_STRUCTURE_TYPE_BUFFER_VIEW_CREATE_INFO, .buffer = buffer.handle(), .format = format, .range = bytes};
   VkBufferView view = VK_NULL_HANDLE;
   VK_CHECK(vkCreateBufferView(device.handle(), &info, nullptr, &view));
   view_ = OwnedBufferView(device.handle(), view);

@@ -97,7 +97,8 @@ class TexelView {
  public:
   TexelView() = default;
   /// The buffer needs VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT.
-  TexelView(const Device& device, const Buffer& buffer, VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT);
+  TexelView(const Device& device, const Buffer& buffer, VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT,
+            VkDeviceSize bytes = VK_WHOLE_SIZE);
   VkBufferView handle() const { return view_.get(); }
 
  private:
