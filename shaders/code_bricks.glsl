@@ -23,4 +23,10 @@ uint codeIn(CodeBricks bricks, uint brick, ivec3 block) {
 // The code of a block, 0 without data.
 uint codeAt(CodeBricks bricks, ivec3 dimensions, ivec3 block) { return codeIn(bricks, codeBrick(bricks, dimensions, block), block); }
 
+// The scalar of a code, in intervals of the transfer function's table; kNoScalar without data.
+const float kNoScalar = -1.0;
+float scalarOfCode(uint code) {
+  return code == 0 ? kNoScalar : (float(code) - 1.0) * (float(kTransferIntervals) / float(kScalarCodes));
+}
+
 #endif

@@ -10,16 +10,11 @@ layout(local_size_x = kExpandTile, local_size_y = kExpandTile) in;
 layout(scalar, push_constant) uniform Push { ExpandScalarsPush push; };
 layout(scalar, binding = 0) writeonly buffer BoxScalars { vec4 boxScalars[]; };
 
-float scalarAt(ivec3 voxel) {
-  const uint code = codeAt(push.scalars, push.dimensions, voxel);
-  return code == 0 ? -1.0 : (float(code) - 1.0) * (float(kTransferIntervals) / float(kScalarCodes));
-}
-
 void main() {
   const ivec3 place = ivec3(gl_GlobalInvocationID);
   if (any(greaterThanEqual(place, push.extent))) return;
   const ivec3 voxel = push.first + ivec3(4 * place.x, place.yz);
   vec4 quad;
-  [[unroll]] for (int i = 0; i < 4; ++i) quad[i] = scalarAt(voxel + ivec3(i, 0, 0));
+  [[unroll]] for (int i = 0; i < 4; ++i) quad[i] = scalarOfCode(codeAt(push.scalars, push.dimensions, voxel + ivec3(i, 0, 0)));
   boxScalars[place.x + push.extent.x * (place.y + push.extent.y * place.z)] = quad;
 }

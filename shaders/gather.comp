@@ -161,9 +161,9 @@ Slices slicesOf(int levelIndex) {
   return slices;
 }
 
-// A sample's ray, in voxels.
-struct Line {
-  vec3 world;    // along it, in world space
+// The ray of a sample, the same for all levels, in voxels.
+struct SampleRay {
+  vec3 world;    // direction in world space
   float along;   // component along the axis
   vec2 slope;    // on the sides, for each slice
   vec2 middle;   // position on the sides, on the volume's middle plane
@@ -171,21 +171,21 @@ struct Line {
 };
 
 // Adds a level of the volume to the sums, and what it adds to the distance to `distanceSum`.
-void marchLevel(inout Sums sums, inout float distanceSum, Line line, int levelIndex, bool scalars) {
+void marchLevel(inout Sums sums, inout float distanceSum, SampleRay sampleRay, int levelIndex, bool scalars) {
   // In blocks of the level, the centre of whose first is at half an edge minus half a voxel.
   const float edge = float(1 << levelIndex);
   const Slices level = slicesOf(levelIndex);
   Ray ray;
-  ray.origin = (line.middle + line.slope * (0.5 * edge - 0.5 - frame.axes[kAxis].middlePlane) + 0.5) / edge - 0.5;
-  ray.slope = line.slope;
-  ray.direction = line.along > 0.0 ? 1.0 : -1.0;
-  ray.group = max(abs(line.slope.x), abs(line.slope.y)) > 1.0 ? kObliqueGroup : kSkipGroup;
-  ray.eye = (line.eye + 0.5) / edge - 0.5;
-  ray.layer = length(line.world) / abs(line.along) * edge * frame.extinctionUnit;
-  ray.toEye = -normalize(line.world);
+  ray.origin = (sampleRay.middle + sampleRay.slope * (0.5 * edge - 0.5 - frame.axes[kAxis].middlePlane) + 0.5) / edge - 0.5;
+  ray.slope = sampleRay.slope;
+  ray.direction = sampleRay.along > 0.0 ? 1.0 : -1.0;
+  ray.group = max(abs(sampleRay.slope.x), abs(sampleRay.slope.y)) > 1.0 ? kObliqueGroup : kSkipGroup;
+  ray.eye = (sampleRay.eye + 0.5) / edge - 0.5;
+  ray.layer = length(sampleRay.world) / abs(sampleRay.along) * edge * frame.extinctionUnit;
+  ray.toEye = -normalize(sampleRay.world);
   ray.edge = edge;
-  ray.perSlice = edge / abs(line.along);
-  const ivec2 slices = slicesOnRay(level, ray, frame.axes[kAxis].slices[line.along > 0.0 ? 1 : 0][levelIndex]);
+  ray.perSlice = edge / abs(sampleRay.along);
+  const ivec2 slices = slicesOnRay(level, ray, frame.axes[kAxis].slices[sampleRay.along > 0.0 ? 1 : 0][levelIndex]);
   sums.distance = 0.0;
   if (kParts || sums.transmittance > frame.endTransmittance) march(sums, level, ray, slices, frame.endTransmittance, scalars);
   distanceSum += ray.perSlice * sums.distance;
@@ -201,12 +201,12 @@ void main() {
   const vec3 components = alongAxes(position);
   if (marchAxis(position, components) != kAxis) return;
 
-  Line line;
-  line.along = components[kAxis];
-  line.world = frame.worldRay[0] * position.x + frame.worldRay[1] * position.y + frame.worldRay[2] * position.z;
-  line.slope = vec2(dot(frame.axes[kAxis].slope[0], position), dot(frame.axes[kAxis].slope[1], position)) / line.along;
-  line.middle = vec2(dot(frame.axes[kAxis].middle[0], position), dot(frame.axes[kAxis].middle[1], position)) / line.along;
-  line.eye = dot(frame.axes[kAxis].eye, position);
+  SampleRay sampleRay;
+  sampleRay.along = components[kAxis];
+  sampleRay.world = frame.worldRay[0] * position.x + frame.worldRay[1] * position.y + frame.worldRay[2] * position.z;
+  sampleRay.slope = vec2(dot(frame.axes[kAxis].slope[0], position), dot(frame.axes[kAxis].slope[1], position)) / sampleRay.along;
+  sampleRay.middle = vec2(dot(frame.axes[kAxis].middle[0], position), dot(frame.axes[kAxis].middle[1], position)) / sampleRay.along;
+  sampleRay.eye = dot(frame.axes[kAxis].eye, position);
   Sums sums = Sums(vec3(0.0), 0.0, 1.0, 0.0, 1.0, 0);
   if (kParts)
     [[unroll]] for (int c = 0; c < 6; ++c) partSums[c] = uvec2(0);
@@ -222,11 +222,11 @@ void main() {
   // Scalars are marched apart from the levels of blocks behind them, so that neither loop has the code of the other: lavapipe executes
   // branches that no lane takes.
   if (kScalars) {
-    if (frame.finest == 0) marchLevel(sums, distanceSum, line, 0, true);
+    if (frame.finest == 0) marchLevel(sums, distanceSum, sampleRay, 0, true);
   }
   if (!kScalars || kLevels)
     for (int level = max(frame.finest, kScalars ? 1 : 0); level <= frame.coarsest; ++level)
-      marchLevel(sums, distanceSum, line, level, false);
+      marchLevel(sums, distanceSum, sampleRay, level, false);
   if (kParts) {
     storePart(index - frame.part.first);
     return;

@@ -23,8 +23,9 @@ layout(constant_id = 8) const bool kTinted = false;   // whether the extinction 
 layout(constant_id = 9) const bool kEmits = false;    // whether blocks that are lit at samples emit light, too
 layout(constant_id = 10) const bool kLevels = true;   // whether levels of blocks are marched behind scalars
 
-// Whether a lane may leave a loop before others do and then use what it computed there. On lavapipe it has the values of the loop's last
-// turn, which are computed from its own variables once more; but loads from addresses, with kPieces, give 0 to lanes that have left.
+// Whether some lanes of a vector may leave a loop before others and use afterwards what they computed in it. Lavapipe gives such lanes the
+// results of the last iteration, which repeats their own one: that is right unless it loads from addresses (kPieces), because those loads
+// return 0 for lanes that have left.
 const bool kLeavesLoops = !kPieces;
 
 layout(binding = 1) uniform utextureBuffer brickNumbers;     // with kParts, bricks of the part have kOwnBrick

@@ -23,14 +23,10 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Ext
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Gradients { uint values[]; };
 
 const int kEdge = kGatherBrickEdge + 2;
-const float kNoData = -1.0;
 shared float values[kEdge * kEdge * kEdge];  // of the brick and one block around it
 
 float valueAt(ivec3 cell) {
-  if (kScalars) {
-    const uint code = codeAt(push.scalars, push.level.dimensions, cell);
-    return code == 0 ? kNoData : (float(code) - 1.0) * (float(kTransferIntervals) / float(kScalarCodes));
-  }
+  if (kScalars) return scalarOfCode(codeAt(push.scalars, push.level.dimensions, cell));
   if (any(lessThan(cell, ivec3(0))) || any(greaterThanEqual(cell, push.level.dimensions))) return 0.0;
   const uint address = blockAddress(push.level, cell);
   const uvec2 word = texelFetch(occupancy, int(address / kBlocksPerWord)).xy;
@@ -51,7 +47,7 @@ Column columnAt(int middle) {
     [[unroll]] for (int y = -1; y <= 1; ++y) {
       const float found = values[middle + kEdge * (y + kEdge * z)];
       const vec3 weights = vec3((2 - abs(y)) * (2 - abs(z)), y * (2 - abs(z)), z * (2 - abs(y)));
-      if (found == kNoData) continue;
+      if (found == kNoScalar) continue;
       column.values += found * weights;
       column.present += weights;
     }
@@ -60,7 +56,7 @@ Column columnAt(int middle) {
 
 // In place of blocks without data, the middle one's value counts.
 vec3 gradientOf(Column before, Column here, Column after) {
-  if (here.middle == kNoData) return vec3(0.0);
+  if (here.middle == kNoScalar) return vec3(0.0);
   const vec3 change = vec3(after.values.x - before.values.x, before.values.yz + 2.0 * here.values.yz + after.values.yz);
   const vec3 present = vec3(after.present.x - before.present.x, before.present.yz + 2.0 * here.present.yz + after.present.yz);
   return (change - here.middle * present) / 32.0;
