@@ -38,7 +38,7 @@ constexpr int kQuickQuality = 48;  ///< voxels along an edge for comparisons wit
 constexpr int kQuickQualityImage = 96, kWholeQualityImage = 160, kLargeQualityImage = 256;
 /// Least resolution with goals: in coarser volumes structures have the size of a voxel.
 constexpr int kMinResolutionWithGoals = kLarge;
-constexpr int kQuickLightImage = 64;
+constexpr int kQuickLightImage = 48;
 constexpr glm::ivec2 kGatherLightImage{40, 32};
 constexpr int kQuickSky = 24;  ///< voxels along an edge for skies, for which the oracle is slow
 constexpr int kDetailResolution = kMedium;

@@ -45,7 +45,7 @@ constexpr std::array<QualityView, 2> kLeakingViews{{{0, 0}, {35, 25}}};
 /// Figure 7: a head in soft tissue, the light beside and above; and a smaller one for the oracle, whose
 /// shadow rays take their time.
 constexpr int kLitHeadEdge = 64, kJudgedHeadEdge = 32;
-const glm::ivec2 kLitImage(192), kJudgedImage(64);
+const glm::ivec2 kLitImage(192), kJudgedImage(48);
 constexpr QualityView kLitView{30, 8};
 const glm::dvec3 kToLight(-1.0, 0.8, 0.35), kRed(1.0, 0.12, 0.06);
 constexpr double kLitIntensity = 2.0 * kDefaultIrradiance;

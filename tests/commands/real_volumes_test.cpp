@@ -46,7 +46,7 @@ TEST_F(RealVolumes, FiresShine) {
     const auto draw = [&](const char* command) {
       Arguments arguments{command, (kData / name).string(), (folder / "a.png").string()};
       // No ambient light, which takes the oracle minutes; a pixel is about half a voxel.
-      for (const char* word : {"--size", "40x40", "--quiet", "--background", "0,0,0", "--emission", "--light", "direction=0.3,1,0.4"})
+      for (const char* word : {"--size", "32x32", "--quiet", "--background", "0,0,0", "--emission", "--light", "direction=0.3,1,0.4"})
         arguments.emplace_back(word);
       expectSuccess(runFreevoxels(arguments));
       return readPng(folder / "a.png");
