@@ -11,6 +11,8 @@
 #include "gather_scalars.glsl"
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleList { SampleListHead head; uint samples[]; };
+layout(push_constant, scalar) uniform Push { SamplesPush push; };
 
 // The number of groups of ray.group slices, starting at `slice` in the ray's direction, that are empty; 0 if
 // the first, or the `before` slices in front of it, may not be.
@@ -192,8 +194,19 @@ void marchLevel(inout Sums sums, inout float distanceSum, SampleRay sampleRay, i
   if (kParts) endBrick(sums, ray);
 }
 
+// The sample of this thread; beyond the lattice if there is none.
+ivec2 sampleOfThread() {
+  if (push.step != 0) return push.step * ivec2(gl_GlobalInvocationID.xy);
+  const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * uint(push.groupsOfARow);
+  const uint number = group * uint(kGatherTile * kGatherTile) + gl_LocalInvocationIndex;
+  SampleList list = SampleList(push.list);
+  if (number >= list.head.count) return frame.samples;
+  const int place = int(list.samples[number]);
+  return ivec2(place % frame.samples.x, place / frame.samples.x);
+}
+
 void main() {
-  ivec2 index = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 index = sampleOfThread();
   if (any(greaterThanEqual(index, kParts ? frame.part.extent : kRegion ? frame.region.extent : frame.samples))) return;
   if (kParts) index += frame.part.first;
   if (kRegion) index += frame.region.corner;

@@ -115,6 +115,20 @@ struct GatherRegion {
   int isLast;             // 1 if the sums are then complete
 };
 
+// In front of a list of the places in the lattice of samples that are marched: the size of its indirect dispatch, whose rows of workgroups
+// have all the same length, and the number of samples.
+struct SampleListHead {
+  uint groupsOfARow, rows, layers;
+  uint count;
+};
+
+// Which samples of the lattice a dispatch of gather.comp marches.
+struct SamplesPush {
+  uvec2 list;        // device address of the list that is marched if `step` is 0
+  int step;          // otherwise every `step`-th sample along both axes is
+  int groupsOfARow;  // as in the list's head
+};
+
 struct GatherFrame {
   GatherPart part;        // only where the dispatch is specialised for parts
   GatherRegion region;    // only where it is specialised for regions
@@ -136,6 +150,7 @@ struct GatherFrame {
   ivec2 size;             // of the image, pixels
   vec2 firstSample;       // position of sample (0, 0), pixels from the image's middle
   float pitch;            // pixels between neighbouring samples
+  float sampleTolerance;  // largest roughness of coarse samples between which others are interpolated (gather_roughness.comp); 0 for none
   float extinctionUnit;   // extinction per world unit of a stored 1
   float sourceUnit;       // radiance of a source term that equals the stored extinction
   vec3 color;             // source term over extinction, if all blocks have the same

@@ -142,8 +142,9 @@ SeenRectangle seenRectangle(const PixelRays& rays, const glm::dmat3& toPixel, gl
   return {seen[0] - 1.0, seen[1] + 1.0};
 }
 
+/// Odd, so that every second sample is on each border of the lattice.
 glm::ivec2 sampleCount(glm::ivec2 size, double pitch) {
-  return glm::ivec2(glm::floor(glm::dvec2(size - 1) / pitch)) + 2 * shader::kLatticeMargin + 2;
+  return (glm::ivec2(glm::floor(glm::dvec2(size - 1) / pitch)) + 2 * shader::kLatticeMargin + 2) | 1;
 }
 
 }  // namespace
@@ -218,6 +219,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
                             .coarsest = detail.coarsest,
                             .size = settings.size,
                             .pitch = float(pitch),
+                            .sampleTolerance = settings.depth ? 0.0f : settings.sampleTolerance,
                             .endTransmittance = float(endTransmittance),
                             .orthographic = orthographic ? 1 : 0,
                             .mainAxis = majorAxis(rays.direction)};

@@ -21,7 +21,9 @@
 #include "embedded/gather_pre_unlit.h"
 #include "embedded/gather_pre_unlit_parts.h"
 #include "embedded/gather_pre_unlit_region.h"
+#include "embedded/gather_refine.h"
 #include "embedded/gather_resample.h"
+#include "embedded/gather_roughness.h"
 #include "embedded/gather_stencil.h"
 #include "engine/vulkan/commands.h"
 
@@ -90,8 +92,8 @@ void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
   commands.update(frame_, frame);
 }
 
-void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
-                                 const TexelView& numbers, const TexelView& skips, glm::ivec2 extent, Extent marched) {
+void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
+                                 const TexelView& skips, glm::ivec2 extent, Extent marched, const shader::SamplesPush& samples) {
   const Shader& shader = *gatherShaders(volume)[std::size_t(marched)];
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
@@ -107,13 +109,51 @@ void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume,
                                   &skips};
     for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
     bindings.emplace_back(&volume.gradients());
-    commands.dispatch(makeGather(device_, axis, volume, frame.coarsest > 0, shader), bindings, glm::ivec3(extent, 1));
+    const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, shader);
+    if (samples.step == 0)
+      commands.dispatchIndirect(pipeline, bindings, samples, adaptive_.list, 0);
+    else
+      commands.dispatch(pipeline, bindings, samples, glm::ivec3(extent, 1));
   }
 }
 
 void GatherPass::recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
-  dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), frame.samples, Extent::Whole);
+  if (frame.sampleTolerance > 0.0f)
+    recordAdaptive(commands, volume, frame);
+  else
+    dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), frame.samples, Extent::Whole);
   commands.barrier(kComputeStage, kComputeStage);
+}
+
+void GatherPass::makeAdaptiveRoom(std::uint64_t coarse) {
+  if (adaptive_.roughness.bytes() >= coarse * sizeof(float)) return;
+  adaptive_ = {};  // free the old buffers before allocating the new ones
+  adaptive_.roughness = Buffer(device_, coarse * sizeof(float), MemoryUse::Device, "lattice roughness",
+                               VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
+  adaptive_.roughnessTexels = TexelView(device_, adaptive_.roughness, VK_FORMAT_R32_SFLOAT);
+  adaptive_.list = Buffer(device_, sizeof(shader::SampleListHead) + 3 * coarse * sizeof(std::uint32_t), MemoryUse::Device, "rough samples",
+                          VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+}
+
+/// Marches the coarse samples, and of the others those that are not interpolated. The list has no order: results do not depend on it.
+void GatherPass::recordAdaptive(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
+  const glm::ivec2 coarse = (frame.samples + 1) / 2;
+  makeAdaptiveRoom(std::uint64_t(coarse.x) * std::uint64_t(coarse.y));
+  const int groupsOfARow = (coarse.x + shader::kGatherTile - 1) / shader::kGatherTile;
+  commands.update(adaptive_.list, shader::SampleListHead{.groupsOfARow = std::uint32_t(groupsOfARow), .layers = 1});
+  dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), coarse, Extent::Whole, {.step = 2});
+  commands.barrier(kComputeStage, kComputeStage);
+
+  const glm::ivec3 threads(coarse, 1);
+  const std::array<Binding, 3> rough{&frame_, &gathered_.colorEnergyTexels, &adaptive_.roughnessTexels};
+  commands.dispatch(makeComputePipeline(device_, shaders::gather_roughness, {}), rough, threads);
+  commands.barrier(kComputeStage, kComputeStage);
+  std::vector<Binding> refined = sumBindings(gathered_, gathered_);
+  refined.emplace_back(&adaptive_.roughnessTexels);
+  const shader::SamplesPush listed{.list = addressWords(adaptive_.list.address()), .step = 0, .groupsOfARow = groupsOfARow};
+  commands.dispatch(makeComputePipeline(device_, shaders::gather_refine, {}), refined, listed, threads);
+  commands.barrier(kComputeStage, kComputeStage | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
+  dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), glm::ivec2(0), Extent::Whole, listed);
 }
 
 void GatherPass::recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,

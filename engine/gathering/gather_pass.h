@@ -11,8 +11,9 @@
 
 namespace freevoxels {
 
-/// COMPUTE gather.comp, gather_stencil.comp and gather_resample.comp: premultiplied RGBA in `targets.colorEnergy` and the
-/// mean distance in `targets.distance`, if that exists. Leaves the targets in layout GENERAL, visible to transfer.
+/// COMPUTE gather.comp, gather_roughness.comp, gather_refine.comp, gather_stencil.comp and gather_resample.comp: premultiplied RGBA in
+/// `targets.colorEnergy` and the mean distance in `targets.distance`, if that exists. Leaves the targets in layout GENERAL, visible to
+/// transfer.
 class GatherPass {
  public:
   explicit GatherPass(const Device& device);
@@ -50,10 +51,18 @@ class GatherPass {
     Buffer colorEnergy, distances;
     TexelView colorEnergyTexels, distanceTexels;
   };
+  /// The coarse samples' roughness, and the list of the samples to be marched besides them.
+  struct Adaptive {
+    Buffer roughness, list;
+    TexelView roughnessTexels;
+  };
   void setLattice(const shader::GatherFrame& frame);
+  void makeAdaptiveRoom(std::uint64_t coarse);
+  void recordAdaptive(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
   void makeRoom(Sums& sums, std::uint64_t samples);
+  /// `extent` is that of the samples that are dispatched, unless they are listed.
   void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
-                       const TexelView& skips, glm::ivec2 extent, Extent marched);
+                       const TexelView& skips, glm::ivec2 extent, Extent marched, const shader::SamplesPush& samples = {.step = 1});
   void recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
   std::vector<GatherSums> download(const Sums& sums) const;
   std::vector<Binding> sumBindings(const Sums& from, const Sums& to) const;
@@ -62,6 +71,7 @@ class GatherPass {
   GatherLattice lattice_;  ///< of the last frame
   Buffer frame_;  ///< shader::GatherFrame
   Sums gathered_, smoothed_, rows_;
+  Adaptive adaptive_;
 };
 
 }  // namespace freevoxels

@@ -32,7 +32,7 @@ constexpr std::int64_t kMaximumPixels = std::int64_t(1) << 30;
 
 /// Compression level, 1 to 9. Rendered images are at most a tenth larger than with libpng's default 6, in
 /// half the time.
-constexpr int kCompressionLevel = 4;
+constexpr int kCompressionLevel = 2;
 
 /// Receives the next bytes of the file; may throw.
 using Sink = std::function<void(const std::uint8_t* bytes, std::size_t count)>;

@@ -79,6 +79,9 @@ class Commands {
   void dispatchIndirect(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
                         const Buffer& arguments, VkDeviceSize offset) {
     bind(pipeline, bindings, &push, sizeof(Push));
+    // Mesa 22.3's lavapipe adds the first workgroup of the last direct dispatch, which may have been a part of one, to those of an indirect
+    // one.
+    vkCmdDispatch(buffer_, 0, 0, 0);
     vkCmdDispatchIndirect(buffer_, arguments.handle(), offset);
   }
   void bind(const Pipeline& pipeline, std::span<const Binding> bindings, const void* push,

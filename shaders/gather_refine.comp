@@ -1,0 +1,73 @@
+#version 460
+// Lists the samples of rough cells, which are to be marched, and interpolates those of the others. A cell is rough if one of its
+// coarse samples is.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
+#extension GL_EXT_scalar_block_layout : require
+#include "gather_adaptive.glsl"
+
+layout(binding = 1) uniform textureBuffer colorEnergy;  // C, E
+layout(binding = 2) uniform textureBuffer distances;    // sum of e times distance
+layout(binding = 3, rgba32f) writeonly uniform imageBuffer colorEnergyOut;
+layout(binding = 4, r32f) writeonly uniform imageBuffer distancesOut;
+layout(binding = 5) uniform textureBuffer roughness;
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleList { SampleListHead head; uint samples[]; };
+layout(push_constant, scalar) uniform Push { SamplesPush push; };
+
+bool isRough(ivec2 cell) {
+  const int row = coarseExtent().x;
+  float largest = 0.0;
+  [[unroll]] for (int i = 0; i < 4; ++i) {
+    const ivec2 at = cell + ivec2(i & 1, i >> 1);
+    largest = max(largest, texelFetch(roughness, at.x + at.y * row).x);
+  }
+  return largest > frame.sampleTolerance;
+}
+
+// Catmull-Rom interpolation in the middle between b and c.
+vec4 middle(vec4 a, vec4 b, vec4 c, vec4 d) { return (9.0 * (b + c) - a - d) / 16.0; }
+
+void setSample(int place, vec4 color, float distance) {
+  imageStore(colorEnergyOut, place, max(color, vec4(0.0)));
+  imageStore(distancesOut, place, vec4(distance));
+}
+
+void interpolate(ivec2 cell, int first) {
+  vec4 columns[4];  // rows of the cell's surroundings, in the middle along x
+  vec4 left[4];     // of the first column
+  [[unroll]] for (int j = 0; j < 4; ++j) {
+    vec4 row[4];
+    [[unroll]] for (int i = 0; i < 4; ++i) row[i] = texelFetch(colorEnergy, placeOfCoarse(cell + ivec2(i, j) - 1));
+    columns[j] = middle(row[0], row[1], row[2], row[3]);
+    left[j] = row[1];
+  }
+  float near[4];
+  [[unroll]] for (int i = 0; i < 4; ++i) near[i] = texelFetch(distances, placeOfCoarse(cell + ivec2(i & 1, i >> 1))).x;
+  setSample(first + 1, columns[1], 0.5 * (near[0] + near[1]));
+  setSample(first + frame.samples.x, middle(left[0], left[1], left[2], left[3]), 0.5 * (near[0] + near[2]));
+  setSample(first + frame.samples.x + 1, middle(columns[0], columns[1], columns[2], columns[3]),
+            0.25 * (near[0] + near[1] + near[2] + near[3]));
+}
+
+void listSample(SampleList list, int place) {
+  const uint number = atomicAdd(list.head.count, 1u), row = uint(push.groupsOfARow * kGatherTile * kGatherTile);
+  list.samples[number] = uint(place);
+  if (number % row == 0u) atomicMax(list.head.rows, number / row + 1u);
+}
+
+// Cells of the last column and row have only the samples in the lattice.
+void main() {
+  const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(cell, coarseExtent()))) return;
+  const bvec2 inside = lessThan(cell, coarseExtent() - 1);
+  const int first = placeOfCoarse(cell);
+  if (all(inside) && !isRough(cell)) {
+    interpolate(cell, first);
+    return;
+  }
+  SampleList list = SampleList(push.list);
+  if (inside.x) listSample(list, first + 1);
+  if (inside.y) listSample(list, first + frame.samples.x);
+  if (all(inside)) listSample(list, first + frame.samples.x + 1);
+}
