@@ -28,26 +28,31 @@ bool isRough(ivec2 cell) {
 // Catmull-Rom interpolation in the middle between b and c.
 vec4 middle(vec4 a, vec4 b, vec4 c, vec4 d) { return (9.0 * (b + c) - a - d) / 16.0; }
 
-void setSample(int place, vec4 color, float distance) {
-  imageStore(colorEnergyOut, place, max(color, vec4(0.0)));
-  imageStore(distancesOut, place, vec4(distance));
+// `around` has the sums of E and of e times distance of the coarse samples nearest to this one, whose mean distance it takes. Between samples
+// without energy there is none.
+void setSample(int place, vec4 color, vec2 around) {
+  const vec4 seen = around.x > 0.0 ? max(color, vec4(0.0)) : vec4(0.0);
+  imageStore(colorEnergyOut, place, seen);
+  imageStore(distancesOut, place, vec4(seen.a * around.y / max(around.x, 1e-30)));
 }
 
 void interpolate(ivec2 cell, int first) {
   vec4 columns[4];  // rows of the cell's surroundings, in the middle along x
   vec4 left[4];     // of the first column
+  vec2 corners[4];  // E and the sum of e times distance
   [[unroll]] for (int j = 0; j < 4; ++j) {
     vec4 row[4];
     [[unroll]] for (int i = 0; i < 4; ++i) row[i] = texelFetch(colorEnergy, placeOfCoarse(cell + ivec2(i, j) - 1));
     columns[j] = middle(row[0], row[1], row[2], row[3]);
     left[j] = row[1];
+    if (j == 1 || j == 2)
+      [[unroll]] for (int i = 0; i < 2; ++i)
+        corners[2 * (j - 1) + i] = vec2(row[1 + i].a, texelFetch(distances, placeOfCoarse(cell + ivec2(i, j - 1))).x);
   }
-  float near[4];
-  [[unroll]] for (int i = 0; i < 4; ++i) near[i] = texelFetch(distances, placeOfCoarse(cell + ivec2(i & 1, i >> 1))).x;
-  setSample(first + 1, columns[1], 0.5 * (near[0] + near[1]));
-  setSample(first + frame.samples.x, middle(left[0], left[1], left[2], left[3]), 0.5 * (near[0] + near[2]));
+  setSample(first + 1, columns[1], corners[0] + corners[1]);
+  setSample(first + frame.samples.x, middle(left[0], left[1], left[2], left[3]), corners[0] + corners[2]);
   setSample(first + frame.samples.x + 1, middle(columns[0], columns[1], columns[2], columns[3]),
-            0.25 * (near[0] + near[1] + near[2] + near[3]));
+            corners[0] + corners[1] + corners[2] + corners[3]);
 }
 
 void listSample(SampleList list, int place) {

@@ -219,7 +219,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
                             .coarsest = detail.coarsest,
                             .size = settings.size,
                             .pitch = float(pitch),
-                            .sampleTolerance = settings.depth ? 0.0f : settings.sampleTolerance,
+                            .sampleTolerance = settings.sampleTolerance,
                             .endTransmittance = float(endTransmittance),
                             .orthographic = orthographic ? 1 : 0,
                             .mainAxis = majorAxis(rays.direction)};

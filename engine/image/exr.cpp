@@ -33,8 +33,7 @@ constexpr std::array<const char*, 4> kColorChannels = {"R", "G", "B", "A"};
 constexpr float kLargestHalf = 65504.0f;
 constexpr std::size_t kPixelsATask = 1 << 14;
 
-/// Compression level, 1 to 9. Files are at most a tenth larger than with OpenEXR's default 4, in two thirds
-/// of the time.
+/// Compression level, 1 to 9. Files are 4 to 8 % larger than with level 3, in nine tenths of the time.
 constexpr int kZipLevel = 1;
 
 Imf::Header makeHeader(const Image& image, const ExrOptions& options) {

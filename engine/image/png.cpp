@@ -30,8 +30,7 @@ namespace {
 
 constexpr std::int64_t kMaximumPixels = std::int64_t(1) << 30;
 
-/// Compression level, 1 to 9. Rendered images are at most a tenth larger than with libpng's default 6, in
-/// half the time.
+/// Compression level, 1 to 9. Rendered images are a quarter larger than with level 4, in two thirds of the time.
 constexpr int kCompressionLevel = 2;
 
 /// Receives the next bytes of the file; may throw.

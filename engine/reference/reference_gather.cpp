@@ -98,7 +98,7 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
   const double reference = rays_.orthographic ? 1.0 : std::max(mean, kNearReference * farthest);
   const double pitch = std::clamp(voxel / (kSamplesPerVoxel * reference), kMinPitch, double(std::max(size_.x, size_.y)));
   lattice_.pitch = std::round(pitch * 1024.0) / 1024.0;  // so that the device's samples have the same positions
-  lattice_.samples = glm::ivec2(glm::floor(glm::dvec2(size_ - 1) / lattice_.pitch)) + 4;
+  lattice_.samples = (glm::ivec2(glm::floor(glm::dvec2(size_ - 1) / lattice_.pitch)) + 4) | 1;  // odd
   lattice_.first = 0.5 - middle_ - lattice_.pitch;
 
   constexpr double kEverywhere = 1e9;

@@ -286,7 +286,6 @@ TEST_F(GatherTest, RaysBetweenSmoothOnesAreInterpolatedWithoutATrace) {
     Renderer renderer(device(), volume, classification, {});
     const Camera camera = framingCamera(volume, 35.0, 25.0, 4.0 / 3.0, {});
     FrameSettings settings = gathering(size);
-    settings.depth = false;
     const Image adaptive = renderer.render(camera, settings);
     settings.sampleTolerance = 1e-30f;
     const Image listed = renderer.render(camera, settings);
