@@ -28,12 +28,13 @@ bool isRough(ivec2 cell) {
 // Catmull-Rom interpolation in the middle between b and c.
 vec4 middle(vec4 a, vec4 b, vec4 c, vec4 d) { return (9.0 * (b + c) - a - d) / 16.0; }
 
-// `around` has the sums of E and of e times distance of the coarse samples nearest to this one, whose mean distance it takes. Between samples
-// without energy there is none.
+// `around` has the sums of E and of e times distance of the coarse samples nearest to this one, whose mean distance it takes. Where they have no
+// E, as in flames without smoke, it has none either.
 void setSample(int place, vec4 color, vec2 around) {
-  const vec4 seen = around.x > 0.0 ? max(color, vec4(0.0)) : vec4(0.0);
-  imageStore(colorEnergyOut, place, seen);
-  imageStore(distancesOut, place, vec4(seen.a * around.y / max(around.x, 1e-30)));
+  color = max(color, vec4(0.0));
+  if (around.x <= 0.0) color.a = 0.0;
+  imageStore(colorEnergyOut, place, color);
+  imageStore(distancesOut, place, vec4(color.a * around.y / max(around.x, 1e-30)));
 }
 
 void interpolate(ivec2 cell, int first) {

@@ -12,6 +12,9 @@ namespace {
 
 /// Lattice samples per voxel along an axis of the image, at the reference distance.
 constexpr double kSamplesPerVoxel = 2.4;
+/// Largest distance of coarse samples in voxels at the reference distance: adaptive sampling needs them to meet every voxel, which is two
+/// wide.
+constexpr double kCoarseVoxels = 1.25;
 /// Distances between samples are multiples of this part of a pixel, so that their positions are exact in 32 bits.
 constexpr double kPitchUnits = 1024.0;
 /// Larger images have no more samples than this as long as that is one a pixel. Their sums take 0.9 GiB.
@@ -209,6 +212,8 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   // At least a few samples, however near the volume is.
   const double wanted = std::clamp(voxel / (kSamplesPerVoxel * std::max(distance, 1e-300)), least, std::max(size.x, size.y));
   const double pitch = std::round(wanted * kPitchUnits) / kPitchUnits;
+  // Coarse samples, two pitches apart, would miss single voxels that are much smaller.
+  const bool adapts = 2.0 * pitch * distance <= kCoarseVoxels * voxel;
 
   // Seen obliquely, the blocks at a slice's near end become small long after those of its far end: a level may come in slice by
   // slice only after the rule calls all of its blocks small.
@@ -219,7 +224,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
                             .coarsest = detail.coarsest,
                             .size = settings.size,
                             .pitch = float(pitch),
-                            .sampleTolerance = settings.sampleTolerance,
+                            .sampleTolerance = adapts ? settings.sampleTolerance : 0.0f,
                             .endTransmittance = float(endTransmittance),
                             .orthographic = orthographic ? 1 : 0,
                             .mainAxis = majorAxis(rays.direction)};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <utility>
 
 #include "embedded/gather_post_lit.h"
 #include "embedded/gather_post_lit_parts.h"
@@ -128,11 +129,13 @@ void GatherPass::recordSamples(Commands& commands, const GatherVolume& volume, c
 void GatherPass::makeAdaptiveRoom(std::uint64_t coarse) {
   if (adaptive_.roughness.bytes() >= coarse * sizeof(float)) return;
   adaptive_ = {};  // free the old buffers before allocating the new ones
-  adaptive_.roughness = Buffer(device_, coarse * sizeof(float), MemoryUse::Device, "lattice roughness",
-                               VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
-  adaptive_.roughnessTexels = TexelView(device_, adaptive_.roughness, VK_FORMAT_R32_SFLOAT);
-  adaptive_.list = Buffer(device_, sizeof(shader::SampleListHead) + 3 * coarse * sizeof(std::uint32_t), MemoryUse::Device, "rough samples",
-                          VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  Adaptive made;
+  made.roughness = Buffer(device_, coarse * sizeof(float), MemoryUse::Device, "lattice roughness",
+                          VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
+  made.roughnessTexels = TexelView(device_, made.roughness, VK_FORMAT_R32_SFLOAT);
+  made.list = Buffer(device_, sizeof(shader::SampleListHead) + 3 * coarse * sizeof(std::uint32_t), MemoryUse::Device, "rough samples",
+                     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  adaptive_ = std::move(made);
 }
 
 /// Marches the coarse samples, and of the others those that are not interpolated. The list has no order: results do not depend on it.
@@ -144,6 +147,8 @@ void GatherPass::recordAdaptive(Commands& commands, const GatherVolume& volume, 
   dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), coarse, Extent::Whole, {.step = 2});
   commands.barrier(kComputeStage, kComputeStage);
 
+  // Passes of their own: what a workgroup of them takes is not what one of the march takes.
+  commands.beginPass("gather refinement");
   const glm::ivec3 threads(coarse, 1);
   const std::array<Binding, 3> rough{&frame_, &gathered_.colorEnergyTexels, &adaptive_.roughnessTexels};
   commands.dispatch(makeComputePipeline(device_, shaders::gather_roughness, {}), rough, threads);
@@ -153,6 +158,7 @@ void GatherPass::recordAdaptive(Commands& commands, const GatherVolume& volume, 
   const shader::SamplesPush listed{.list = addressWords(adaptive_.list.address()), .step = 0, .groupsOfARow = groupsOfARow};
   commands.dispatch(makeComputePipeline(device_, shaders::gather_refine, {}), refined, listed, threads);
   commands.barrier(kComputeStage, kComputeStage | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
+  commands.beginPass("gather rough rays");
   dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), glm::ivec2(0), Extent::Whole, listed);
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "engine/gathering/gather_stages.h"
 #include "engine/renderer_stages.h"
@@ -275,27 +274,27 @@ TEST_F(GatherTest, IsTheSameToTheBitEveryTime) {
   EXPECT_TRUE(image.pixels == second.render(camera, settings).pixels);
 }
 
-/// A cloud of blocks, and of interpolated scalars with a surface, both larger on the image than a slice of dispatched work.
+/// Blocks of a cloud, interpolated scalars of a head, and flames without smoke, which have no energy.
 TEST_F(GatherTest, RaysBetweenSmoothOnesAreInterpolatedWithoutATrace) {
-  const glm::ivec2 size(400, 300);
-  for (const char* name : {"cloud", "head"}) {
+  const auto check = [](const char* name, const Classification& classification) {
     SCOPED_TRACE(name);
     const Volume volume = makeProcedural(name, 64);
-    Classification classification = coloured(volume, 0.2f);
-    if (std::string_view(name) == "cloud") classification = {.densityScale = 10.0};
     Renderer renderer(device(), volume, classification, {});
     const Camera camera = framingCamera(volume, 35.0, 25.0, 4.0 / 3.0, {});
-    FrameSettings settings = gathering(size);
+    FrameSettings settings = gathering({400, 300});
     const Image adaptive = renderer.render(camera, settings);
     settings.sampleTolerance = 1e-30f;
     const Image listed = renderer.render(camera, settings);
     settings.sampleTolerance = 0.0f;
     const Image whole = renderer.render(camera, settings);
-    EXPECT_EQ(std::ranges::count_if(whole.pixels, [](glm::vec4 pixel) { return pixel.a > 0.5f; }) > 1000, true);
+    EXPECT_GT(std::ranges::count_if(whole.pixels, [](glm::vec4 pixel) { return pixel.r > 0.1f; }), 1000);
     EXPECT_GE(compareImages(adaptive, whole).psnr, 60.0);
     EXPECT_NE(adaptive.pixels, whole.pixels);
     EXPECT_GE(compareImages(listed, whole).psnr, 130.0);
-  }
+  };
+  check("cloud", {.densityScale = 10.0});
+  check("head", coloured(makeProcedural("head", 64), 0.2f));
+  check("fire", {.densityScale = 0.0, .emission = Emission{.strength = 5.0}});
 }
 
 TEST_F(GatherTest, NothingIsDrawnOfAnEmptyVolume) {
