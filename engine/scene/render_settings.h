@@ -54,7 +54,7 @@ struct FrameSettings {
   std::uint64_t mostRayBytes = std::numeric_limits<std::uint64_t>::max();
   bool depth = false;  ///< whether to compute Image::depth
   /// With the gather: the roughness up to which rays are interpolated from rays twice as far apart (gather_roughness.comp); 0 marches
-  /// every ray.
+  /// every ray, as do parts, cubes and images of voxels smaller than 0.8 pixels.
   float sampleTolerance = 1.0f / 16.0f;
   /// If empty, every voxel sends out its colour without lighting. Lights are looked up in the table
   /// bilinearly, or by the nearest direction with AttenuationLookup::Nearest.

@@ -2,8 +2,8 @@
 // Records, submits and times GPU work. A recording is submitted once, in slices.
 //
 // A slice is a command buffer with about kSliceMilliseconds of work, estimated from the last time that passes of the same
-// names ran. A dispatch that takes longer than a slice is divided into ranges of workgroups. submitAndWait() submits a slice
-// when the one before it is complete, so that other threads (a window) can use the device in between, and so that work can
+// names ran. A dispatch that takes longer than a slice is divided into ranges of workgroups; an indirect one is not. submitAndWait()
+// submits a slice when the one before it is complete, so that other threads (a window) can use the device in between, and so that work can
 // be abandoned soon.
 
 #include <functional>
@@ -79,8 +79,7 @@ class Commands {
   void dispatchIndirect(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
                         const Buffer& arguments, VkDeviceSize offset) {
     bind(pipeline, bindings, &push, sizeof(Push));
-    // Mesa 22.3's lavapipe adds the first workgroup of the last direct dispatch, which may have been a part of one, to those of an indirect
-    // one.
+    // Mesa 22.3's lavapipe would begin at the base workgroup of the last vkCmdDispatchBase.
     vkCmdDispatch(buffer_, 0, 0, 0);
     vkCmdDispatchIndirect(buffer_, arguments.handle(), offset);
   }
