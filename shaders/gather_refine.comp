@@ -38,21 +38,21 @@ void setSample(int place, vec4 color, vec2 around) {
 }
 
 void interpolate(ivec2 cell, int first) {
-  vec4 columns[4];  // rows of the cell's surroundings, in the middle along x
-  vec4 left[4];     // of the first column
-  vec2 corners[4];  // E and the sum of e times distance
+  // Of the four rows of coarse samples around the cell: the value in the middle of the cell along x, and the sample at the cell's begin.
+  vec4 middles[4], begins[4];
+  vec2 corners[4];  // of the cell: E and the sum of e times distance
   [[unroll]] for (int j = 0; j < 4; ++j) {
     vec4 row[4];
     [[unroll]] for (int i = 0; i < 4; ++i) row[i] = texelFetch(colorEnergy, placeOfCoarse(cell + ivec2(i, j) - 1));
-    columns[j] = middle(row[0], row[1], row[2], row[3]);
-    left[j] = row[1];
+    middles[j] = middle(row[0], row[1], row[2], row[3]);
+    begins[j] = row[1];
     if (j == 1 || j == 2)
       [[unroll]] for (int i = 0; i < 2; ++i)
         corners[2 * (j - 1) + i] = vec2(row[1 + i].a, texelFetch(distances, placeOfCoarse(cell + ivec2(i, j - 1))).x);
   }
-  setSample(first + 1, columns[1], corners[0] + corners[1]);
-  setSample(first + frame.samples.x, middle(left[0], left[1], left[2], left[3]), corners[0] + corners[2]);
-  setSample(first + frame.samples.x + 1, middle(columns[0], columns[1], columns[2], columns[3]),
+  setSample(first + 1, middles[1], corners[0] + corners[1]);
+  setSample(first + frame.samples.x, middle(begins[0], begins[1], begins[2], begins[3]), corners[0] + corners[2]);
+  setSample(first + frame.samples.x + 1, middle(middles[0], middles[1], middles[2], middles[3]),
             corners[0] + corners[1] + corners[2] + corners[3]);
 }
 

@@ -12,8 +12,8 @@ namespace {
 
 /// Lattice samples per voxel along an axis of the image, at the reference distance.
 constexpr double kSamplesPerVoxel = 2.4;
-/// Largest distance of coarse samples in voxels at the reference distance: adaptive sampling needs them to meet every voxel, which is two
-/// wide.
+/// Largest distance between coarse samples of adaptive sampling, in voxels at the reference distance: less than 2, the width of a voxel's
+/// tent, so that they meet every voxel.
 constexpr double kCoarseVoxels = 1.25;
 /// Distances between samples are multiples of this part of a pixel, so that their positions are exact in 32 bits.
 constexpr double kPitchUnits = 1024.0;

@@ -76,11 +76,12 @@ void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
   constexpr VkBufferUsageFlags kUsage =
       VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
   sums = {};  // free the old buffers before allocating the new ones
-  sums.colorEnergy =
-      Buffer(device_, samples * sizeof(glm::vec4), MemoryUse::Device, "lattice C and E", kUsage);
-  sums.distances = Buffer(device_, samples * sizeof(float), MemoryUse::Device, "lattice distance", kUsage);
-  sums.colorEnergyTexels = TexelView(device_, sums.colorEnergy);
-  sums.distanceTexels = TexelView(device_, sums.distances, VK_FORMAT_R32_SFLOAT);
+  Sums made;  // so that a failure leaves nothing incomplete
+  made.colorEnergy = Buffer(device_, samples * sizeof(glm::vec4), MemoryUse::Device, "lattice C and E", kUsage);
+  made.distances = Buffer(device_, samples * sizeof(float), MemoryUse::Device, "lattice distance", kUsage);
+  made.colorEnergyTexels = TexelView(device_, made.colorEnergy);
+  made.distanceTexels = TexelView(device_, made.distances, VK_FORMAT_R32_SFLOAT);
+  sums = std::move(made);
 }
 
 void GatherPass::setLattice(const shader::GatherFrame& frame) {
