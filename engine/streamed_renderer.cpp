@@ -140,6 +140,8 @@ shader::GatherFrame StreamedRenderer::State::frameOf(const Frame& frame, const S
   result.mainAxis = frame.lattice.mainAxis;
   result.seenLow = frame.lattice.seenLow;
   result.seenHigh = frame.lattice.seenHigh;
+  result.firstSeen = frame.lattice.firstSeen;
+  result.seenExtent = frame.lattice.seenExtent;
   for (int axis = 0; axis < 3; ++axis)
     for (int sign = 0; sign < 2; ++sign) result.axes[axis].slices[sign][0] = frame.lattice.axes[axis].slices[sign][above];
   return result;
@@ -248,8 +250,8 @@ void StreamedRenderer::State::drawCube(const Frame& frame, const StreamedLevel& 
   if (!isLast) return;
   // Completes the sums of all samples, with a cube that holds nothing.
   gatherFrame.region.end = gatherFrame.region.begin;
-  gatherFrame.region.corner = glm::ivec2(0);
-  gatherFrame.region.extent = gatherFrame.samples;
+  gatherFrame.region.corner = gatherFrame.firstSeen;
+  gatherFrame.region.extent = gatherFrame.seenExtent;
   gatherFrame.region.isLast = 1;
   Commands completing(device);
   march(completing);

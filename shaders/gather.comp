@@ -194,22 +194,21 @@ void marchLevel(inout Sums sums, inout float distanceSum, SampleRay sampleRay, i
   if (kParts) endBrick(sums, ray);
 }
 
-// The sample of this thread; beyond the lattice if there is none.
+// The sample of this thread, relative to the first one of those that are marched; beyond them if there is none.
 ivec2 sampleOfThread() {
   if (push.step != 0) return push.step * ivec2(gl_GlobalInvocationID.xy);
-  const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * uint(push.groupsOfARow);
+  const uint group = gl_WorkGroupID.x + (gl_WorkGroupID.y + uint(push.firstRow)) * uint(push.groupsOfARow);
   const uint number = group * uint(kGatherTile * kGatherTile) + gl_LocalInvocationIndex;
   SampleList list = SampleList(push.list);
-  if (number >= list.head.count) return frame.samples;
+  if (number >= list.head.count) return frame.seenExtent;
   const int place = int(list.samples[number]);
-  return ivec2(place % frame.samples.x, place / frame.samples.x);
+  return ivec2(place % frame.samples.x, place / frame.samples.x) - frame.firstSeen;
 }
 
 void main() {
   ivec2 index = sampleOfThread();
-  if (any(greaterThanEqual(index, kParts ? frame.part.extent : kRegion ? frame.region.extent : frame.samples))) return;
-  if (kParts) index += frame.part.first;
-  if (kRegion) index += frame.region.corner;
+  if (any(greaterThanEqual(index, kRegion ? frame.region.extent : frame.seenExtent))) return;
+  index += kRegion ? frame.region.corner : frame.firstSeen;
   const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);
   const vec3 components = alongAxes(position);
   if (marchAxis(position, components) != kAxis) return;
@@ -241,7 +240,7 @@ void main() {
     for (int level = max(frame.finest, kScalars ? 1 : 0); level <= frame.coarsest; ++level)
       marchLevel(sums, distanceSum, sampleRay, level, false);
   if (kParts) {
-    storePart(index - frame.part.first);
+    storePart(index - frame.firstSeen);
     return;
   }
   // A ray that ended early becomes opaque: what lies behind its end is taken to have the mean colour of what lies in front.

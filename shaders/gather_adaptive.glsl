@@ -8,13 +8,10 @@
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 
-// Coarse samples of the lattice, whose numbers of samples are odd.
-ivec2 coarseExtent() { return (frame.samples + 1) / 2; }
+// Coarse samples among those that are stored, whose numbers along both axes are odd.
+ivec2 coarseExtent() { return (frame.seenExtent + 1) / 2; }
 
-// Of a coarse sample, or of the nearest one in the lattice.
-int placeOfCoarse(ivec2 coarse) {
-  const ivec2 inside = 2 * clamp(coarse, ivec2(0), coarseExtent() - 1);
-  return inside.x + inside.y * frame.samples.x;
-}
+// Of a coarse sample, or of the nearest one that is stored.
+int placeOfCoarse(ivec2 coarse) { return placeOfSample(frame.firstSeen + 2 * coarse); }
 
 #endif

@@ -41,9 +41,10 @@ FV_CONSTANT float kMaxVariance = 0.8f;
 FV_CONSTANT int kLatticeMargin = 1;
 // Least distance between samples in pixels: what is smaller is averaged by four rays a pixel and those on its borders.
 FV_CONSTANT float kMinPitch = 0.5f;
-// Samples along an axis of the image of which a pixel is made: those that Catmull-Rom interpolation reads anywhere in the pixel, as the
-// pitch is at least kMinPitch.
+// Samples along an axis of the image of which a pixel is made: those that Catmull-Rom interpolation reads anywhere in the pixel, with a
+// pitch of at least kMinPitch, and of at least one pixel.
 FV_CONSTANT int kResampleTaps = 6;
+FV_CONSTANT int kSparseResampleTaps = 5;
 // Samples of less energy, which may be no more than rounding, do not widen the range of mean distances around them.
 FV_CONSTANT float kMinRangeEnergy = 1e-6f;
 // Least transmittance that the stencil distinguishes from 0.
@@ -100,8 +101,7 @@ struct SampleLight {
 // transmittance of the eye's rays (ray_sweep.comp) in front of it, and added in fixed point.
 struct GatherPart {
   FaceRays fans[6];      // the eye's rays; depths up to the planes for voxels that are classified after interpolation, otherwise in front of layers
-  ivec2 first, extent;   // the rectangle of the lattice that has sums
-  uvec2 sums;            // device address of the sums: [channel][sample of the rectangle], low word and high word
+  uvec2 sums;            // device address of the sums: [channel][sample that is seen], low word and high word
   uvec2 overflow;        // device address of a word that becomes 1 if a sum is beyond its range
   int colorDigits, energyDigits, depthDigits, distanceDigits;  // behind the binary point
 };
@@ -115,10 +115,17 @@ struct GatherRegion {
   int isLast;             // 1 if the sums are then complete
 };
 
-// In front of a list of the places in the lattice of samples that are marched: the size of its indirect dispatch, whose rows of workgroups
-// have all the same length, and the number of samples.
+// Ranges of the list of samples that are marched: a dispatch each, so that a frame can be abandoned between them.
+FV_CONSTANT int kSampleRanges = 8;
+
+struct DispatchSize {
+  uint x, y, z;  // workgroups
+};
+
+// In front of a list of the places in the lattice of samples that are marched: the sizes of the indirect dispatches of its ranges, whose
+// rows of workgroups have all the same length, and the number of samples.
 struct SampleListHead {
-  uint groupsOfARow, rows, layers;
+  DispatchSize ranges[kSampleRanges];
   uint count;
 };
 
@@ -126,7 +133,9 @@ struct SampleListHead {
 struct SamplesPush {
   uvec2 list;        // device address of the list that is marched if `step` is 0
   int step;          // otherwise every `step`-th sample along both axes is
-  int groupsOfARow;  // as in the list's head
+  int groupsOfARow;  // of workgroups, in the list
+  int rowsOfARange;
+  int firstRow;  // of the range that is marched
 };
 
 struct GatherFrame {
@@ -151,6 +160,7 @@ struct GatherFrame {
   vec2 firstSample;       // position of sample (0, 0), pixels from the image's middle
   float pitch;            // pixels between neighbouring samples
   float sampleTolerance;  // largest roughness of coarse samples between which others are interpolated (gather_roughness.comp); 0 for none
+  float distanceTolerance;  // largest second difference of coarse samples' distances for interpolation, world units
   float extinctionUnit;   // extinction per world unit of a stored 1
   float sourceUnit;       // radiance of a source term that equals the stored extinction
   vec3 color;             // source term over extinction, if all blocks have the same
@@ -158,6 +168,10 @@ struct GatherFrame {
   int orthographic;
   int mainAxis;           // the major axis of the ray in the image's middle
   vec2 seenLow, seenHigh; // range of pixel positions of the rays that meet the volume
+  // The rectangle of samples outside of which all sums are 0, and are neither marched nor stored: `firstSeen` is even and `seenExtent` odd,
+  // so that coarse samples are on its borders.
+  ivec2 firstSeen, seenExtent;
+  ivec2 firstPixel, pixelExtent;  // the rectangle of pixels outside of which the image is empty
 };
 
 // shade_blocks.comp

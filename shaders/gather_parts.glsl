@@ -47,7 +47,7 @@ void enterBrick(inout Sums sums, Ray ray, int brick, float slice) {
 }
 
 void storePart(ivec2 index) {
-  const int sampleIndex = index.x + frame.part.extent.x * index.y, samples = frame.part.extent.x * frame.part.extent.y;
+  const int sampleIndex = index.x + frame.seenExtent.x * index.y, samples = frame.seenExtent.x * frame.seenExtent.y;
   PartSums sums = PartSums(frame.part.sums);
   [[unroll]] for (int c = 0; c < 6; ++c)
     sums.values[c * samples + sampleIndex] = partSums[c];

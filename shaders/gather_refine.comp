@@ -57,12 +57,14 @@ void interpolate(ivec2 cell, int first) {
 }
 
 void listSample(SampleList list, int place) {
-  const uint number = atomicAdd(list.head.count, 1u), row = uint(push.groupsOfARow * kGatherTile * kGatherTile);
+  const uint number = atomicAdd(list.head.count, 1u), samplesOfARow = uint(push.groupsOfARow * kGatherTile * kGatherTile);
   list.samples[number] = uint(place);
-  if (number % row == 0u) atomicMax(list.head.rows, number / row + 1u);
+  if (number % samplesOfARow != 0u) return;
+  const uint row = number / samplesOfARow, rows = uint(push.rowsOfARange);
+  atomicMax(list.head.ranges[row / rows].y, row % rows + 1u);
 }
 
-// Cells of the last column and row have only the samples in the lattice.
+// Cells of the last column and row have only the samples that are stored.
 void main() {
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(cell, coarseExtent()))) return;

@@ -9,6 +9,7 @@
 #include "mean_distance.glsl"
 
 layout(constant_id = 1) const bool kAlongY = false;
+layout(constant_id = 2) const int kTaps = kResampleTaps;
 
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 layout(binding = 1) uniform textureBuffer colorEnergy;  // C, E
@@ -16,26 +17,39 @@ layout(binding = 2) uniform textureBuffer distances;    // sum of e times distan
 layout(binding = 3, rgba32f) writeonly uniform imageBuffer colorEnergyOut;
 layout(binding = 4, r32f) writeonly uniform imageBuffer distancesOut;
 
-void main() {
-  const ivec2 index = ivec2(gl_GlobalInvocationID.xy);
-  const ivec2 extent = ivec2(frame.size.x, kAlongY ? frame.size.y : frame.samples.y);
-  if (any(greaterThanEqual(index, extent))) return;
-  const int axis = kAlongY ? 1 : 0;
+// Weights of kTaps samples, of which the first is returned.
+int weightsOf(int pixel, out float weights[kTaps]) {
   const float halfPixel = 0.5 / frame.pitch;
-  const float before = floor(float(index[axis]) / frame.pitch);  // samples between the first pixel and this one
-  const float position = (float(index[axis]) - before * frame.pitch) / frame.pitch + float(kResampleTaps / 2 - 1);
-  const int low = int(before) + kLatticeMargin - kResampleTaps / 2 + 1;
+  const float before = floor(float(pixel) / frame.pitch);  // samples between the first pixel and this one
+  const float middle = (float(pixel) - before * frame.pitch) / frame.pitch, lowest = floor(middle - halfPixel);
+  [[unroll]] for (int i = 0; i < kTaps; ++i) weights[i] = 0.0;
+  [[unroll]] for (int k = -1; k <= 1; ++k) {
+    const float position = middle + float(k) * halfPixel, low = floor(position);
+    const vec4 cubic = cubicWeights(position - low) * (k == 0 ? 4.0 / 6.0 : 1.0 / 6.0);
+    [[unroll]] for (int shift = 0; shift <= kTaps - 4; ++shift) {
+      const vec4 shifted = low - lowest == float(shift) ? cubic : vec4(0.0);
+      [[unroll]] for (int i = 0; i < 4; ++i) weights[shift + i] += shifted[i];
+    }
+  }
+  return int(before + lowest) + kLatticeMargin - 1;
+}
+
+void main() {
+  ivec2 index = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(index, kAlongY ? frame.pixelExtent : ivec2(frame.pixelExtent.x, frame.seenExtent.y)))) return;
+  index += kAlongY ? frame.firstPixel : ivec2(frame.firstPixel.x, frame.firstSeen.y);
+  const int axis = kAlongY ? 1 : 0;
+  float weights[kTaps];
+  const int first = weightsOf(index[axis], weights), last = frame.firstSeen[axis] + frame.seenExtent[axis] - 1;
   const int row = kAlongY ? frame.size.x : 1;
   const int start = kAlongY ? index.x : index.y * frame.samples.x;
   vec4 color = vec4(0.0);
   MeanDistance mean = kNoDistance;
-  [[unroll]] for (int i = 0; i < kResampleTaps; ++i) {
-    const float offset = position - float(i);
-    const float weight = (cubicKernel(offset - halfPixel) + 4.0 * cubicKernel(offset) + cubicKernel(offset + halfPixel)) / 6.0;
-    const int place = start + clamp(low + i, 0, frame.samples[axis] - 1) * row;
+  [[unroll]] for (int i = 0; i < kTaps; ++i) {
+    const int place = start + clamp(first + i, frame.firstSeen[axis], last) * row;
     const vec4 texel = texelFetch(colorEnergy, place);
-    color += weight * texel;
-    if (kWithDistance) addSample(mean, weight, texel.a, texelFetch(distances, place).x);
+    color += weights[i] * texel;
+    if (kWithDistance) addSample(mean, weights[i], texel.a, texelFetch(distances, place).x);
   }
   const float distance = distancesOf(mean, color.a);
   if (kAlongY) {

@@ -15,11 +15,6 @@ layout(binding = 2) uniform textureBuffer distances;    // sum of e times distan
 layout(binding = 3, rgba32f) writeonly uniform imageBuffer colorEnergyOut;
 layout(binding = 4, r32f) writeonly uniform imageBuffer distancesOut;
 
-int placeOf(ivec2 index) {
-  const ivec2 inside = clamp(index, ivec2(0), frame.samples - 1);
-  return inside.x + inside.y * frame.samples.x;
-}
-
 // The covariance (xx, xy, yy) that the sums lack, in squares of the lattice's pitch.
 vec3 missingCovariance(vec3 position, float distance) {
   const int axis = marchAxis(position, alongAxes(position));
@@ -31,12 +26,12 @@ vec3 missingCovariance(vec3 position, float distance) {
 }
 
 void main() {
-  const ivec2 index = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(index, frame.samples))) return;
+  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), frame.seenExtent))) return;
+  const ivec2 index = frame.firstSeen + ivec2(gl_GlobalInvocationID.xy);
   vec4 colors[9];
   float weighted[9];
   [[unroll]] for (int i = 0; i < 9; ++i) {
-    const int place = placeOf(index + ivec2(i % 3 - 1, i / 3 - 1));
+    const int place = placeOfSample(index + ivec2(i % 3 - 1, i / 3 - 1));
     colors[i] = texelFetch(colorEnergy, place);
     weighted[i] = texelFetch(distances, place).x;
   }
@@ -66,7 +61,7 @@ void main() {
     color *= scale;
     distance *= scale;
   }
-  const int place = index.x + index.y * frame.samples.x;
+  const int place = placeOfSample(index);
   imageStore(colorEnergyOut, place, color);
   imageStore(distancesOut, place, vec4(distance));
 }

@@ -15,6 +15,8 @@ constexpr double kSamplesPerVoxel = 2.4;
 /// Largest distance between coarse samples of adaptive sampling, in voxels at the reference distance: less than 2, the width of a voxel's
 /// tent, so that they meet every voxel.
 constexpr double kCoarseVoxels = 1.25;
+/// Largest second difference of coarse samples' distances for interpolation, in voxels: its error is an eighth of that.
+constexpr double kSmoothVoxels = 2.0;
 /// Distances between samples are multiples of this part of a pixel, so that their positions are exact in 32 bits.
 constexpr double kPitchUnits = 1024.0;
 /// Larger images have no more samples than this as long as that is one a pixel. Their sums take 0.9 GiB.
@@ -150,6 +152,27 @@ glm::ivec2 sampleCount(glm::ivec2 size, double pitch) {
   return (glm::ivec2(glm::floor(glm::dvec2(size - 1) / pitch)) + 2 * shader::kLatticeMargin + 2) | 1;
 }
 
+/// Fills in the rectangles of samples and of pixels outside of which nothing is seen.
+void setSeen(shader::GatherFrame& frame) {
+  constexpr double kMargin = 3.0;       // samples: at least one without any light, however `seenLow` is rounded, and one for the stencil
+  constexpr double kPixelMargin = 4.0;  // samples: the stencil's reach and the interpolation's
+  constexpr double kMostPixels = 0.75;  // of the image: to fill all of it first takes as long as to compute a quarter
+  const double pitch = double(frame.pitch);
+  const glm::dvec2 low = (glm::dvec2(frame.seenLow) - glm::dvec2(frame.firstSample)) / pitch;
+  const glm::dvec2 high = (glm::dvec2(frame.seenHigh) - glm::dvec2(frame.firstSample)) / pitch;
+  const glm::dvec2 lastSample(frame.samples - 1), lastPixel(frame.size - 1);
+  frame.firstSeen = glm::ivec2(glm::clamp(glm::floor(low) - kMargin, glm::dvec2(0.0), lastSample)) & ~1;
+  frame.seenExtent =
+      ((glm::ivec2(glm::clamp(glm::ceil(high) + kMargin, glm::dvec2(frame.firstSeen), lastSample)) + 1) & ~1) - frame.firstSeen + 1;
+  const auto pixelAt = [&](glm::dvec2 sample) { return (sample - double(shader::kLatticeMargin)) * pitch; };
+  frame.firstPixel = glm::ivec2(glm::clamp(glm::floor(pixelAt(low - kPixelMargin)) - 1.0, glm::dvec2(0.0), lastPixel));
+  frame.pixelExtent =
+      glm::ivec2(glm::clamp(glm::ceil(pixelAt(high + kPixelMargin)) + 1.0, glm::dvec2(frame.firstPixel), lastPixel)) - frame.firstPixel + 1;
+  if (double(frame.pixelExtent.x) * frame.pixelExtent.y <= kMostPixels * double(frame.size.x) * frame.size.y) return;
+  frame.firstPixel = glm::ivec2(0);
+  frame.pixelExtent = frame.size;
+}
+
 }  // namespace
 
 /// Tests a grid of rays, with a margin for the rays in between.
@@ -225,6 +248,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
                             .size = settings.size,
                             .pitch = float(pitch),
                             .sampleTolerance = adapts ? settings.sampleTolerance : 0.0f,
+                            .distanceTolerance = float(kSmoothVoxels * volume.voxelSize),
                             .endTransmittance = float(endTransmittance),
                             .orthographic = orthographic ? 1 : 0,
                             .mainAxis = majorAxis(rays.direction)};
@@ -233,6 +257,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   frame.seenHigh = seen[1];
   frame.samples = sampleCount(settings.size, double(frame.pitch));
   frame.firstSample = -0.5f * glm::vec2(settings.size) + 0.5f - float(shader::kLatticeMargin) * frame.pitch;
+  setSeen(frame);
   frame.worldRay[0] = linear * rays.direction;
   frame.worldRay[1] = linear * rays.directionX;
   frame.worldRay[2] = linear * rays.directionY;

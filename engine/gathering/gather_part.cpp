@@ -19,8 +19,6 @@ namespace {
 constexpr int kMaxBricksLog2 = 12, kDepthDigits = 62 - 4 - kMaxBricksLog2;
 constexpr int kMaxChunkLevels = 2;  ///< a chunk has at most 2^this bricks along an edge
 constexpr std::uint64_t kChunksPerShare = 4;
-/// Samples around the image of the volume that its interpolation reaches.
-constexpr float kMargin = 2.0f;
 
 template <typename Visit>
 void forEachCell(glm::ivec3 size, const Visit& visit) {
@@ -120,19 +118,14 @@ void GatherPartPass::record(Commands& commands, GatherPass& gather, const Gather
   layout_.channels = kSumChannels;
   layout_.method = "gather, " + layout_.method;
   layout_.digits[std::size_t(SumChannel::OpticalDepth)] = kDepthDigits;
-  // Beyond the seen positions all sums are 0.
-  const glm::vec2 last = glm::vec2(frame.samples - 1);
-  const auto sampleAt = [&](glm::vec2 position) { return (position - frame.firstSample) / frame.pitch; };
-  layout_.first = glm::ivec2(glm::clamp(glm::floor(sampleAt(frame.seenLow)) - kMargin, glm::vec2(0.0f), last));
-  layout_.extent = glm::ivec2(glm::clamp(glm::ceil(sampleAt(frame.seenHigh)) + kMargin, glm::vec2(layout_.first), last)) - layout_.first + 1;
+  layout_.first = frame.firstSeen;
+  layout_.extent = frame.seenExtent;
   makeRoom();
 
   rays_.record(commands, onDevice, eye, volume.hasScalars());
   shader::GatherFrame whole = frame;
   const auto digits = [&](SumChannel channel) { return layout_.digits[std::size_t(channel)]; };
-  whole.part = {.first = layout_.first,
-                .extent = layout_.extent,
-                .sums = addressWords(sums_.address()),
+  whole.part = {.sums = addressWords(sums_.address()),
                 .overflow = addressWords(overflow_.address()),
                 .colorDigits = digits(SumChannel::Red),
                 .energyDigits = digits(SumChannel::Energy),

@@ -1,6 +1,7 @@
 #include "engine/gathering/gather_pass.h"
 
 #include <algorithm>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -86,6 +87,7 @@ void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
 
 void GatherPass::setLattice(const shader::GatherFrame& frame) {
   lattice_ = {.samples = frame.samples, .pitch = double(frame.pitch), .first = frame.firstSample};
+  seen_ = {.first = frame.firstSeen, .extent = frame.seenExtent};
 }
 
 void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
@@ -112,10 +114,16 @@ void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume,
     for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
     bindings.emplace_back(&volume.gradients());
     const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, shader);
-    if (samples.step == 0)
-      commands.dispatchIndirect(pipeline, bindings, samples, adaptive_.list, 0);
-    else
+    if (samples.step != 0) {
       commands.dispatch(pipeline, bindings, samples, glm::ivec3(extent, 1));
+      continue;
+    }
+    shader::SamplesPush range = samples;
+    for (int i = 0; i < shader::kSampleRanges; ++i) {
+      range.firstRow = i * samples.rowsOfARange;
+      commands.dispatchIndirect(pipeline, bindings, range, adaptive_.list, std::uint64_t(i) * sizeof(shader::DispatchSize),
+                                std::uint64_t(samples.rowsOfARange) * std::uint64_t(samples.groupsOfARow));
+    }
   }
 }
 
@@ -123,7 +131,7 @@ void GatherPass::recordSamples(Commands& commands, const GatherVolume& volume, c
   if (frame.sampleTolerance > 0.0f)
     recordAdaptive(commands, volume, frame);
   else
-    dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), frame.samples, Extent::Whole);
+    dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), frame.seenExtent, Extent::Whole);
   commands.barrier(kComputeStage, kComputeStage);
 }
 
@@ -141,22 +149,29 @@ void GatherPass::makeAdaptiveRoom(std::uint64_t coarse) {
 
 /// Marches the coarse samples, and of the others those that are not interpolated. The list has no order: results do not depend on it.
 void GatherPass::recordAdaptive(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
-  const glm::ivec2 coarse = (frame.samples + 1) / 2;
+  const glm::ivec2 coarse = (frame.seenExtent + 1) / 2;
   makeAdaptiveRoom(std::uint64_t(coarse.x) * std::uint64_t(coarse.y));
   const int groupsOfARow = (coarse.x + shader::kGatherTile - 1) / shader::kGatherTile;
-  commands.update(adaptive_.list, shader::SampleListHead{.groupsOfARow = std::uint32_t(groupsOfARow), .layers = 1});
+  const int samplesOfARow = groupsOfARow * shader::kGatherTile * shader::kGatherTile;
+  const int rows = (3 * coarse.x * coarse.y + samplesOfARow - 1) / samplesOfARow;
+  shader::SampleListHead empty{};
+  std::ranges::fill(empty.ranges, shader::DispatchSize{.x = std::uint32_t(groupsOfARow), .y = 0, .z = 1});
+  commands.update(adaptive_.list, empty);
   dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), coarse, Extent::Whole, {.step = 2});
   commands.barrier(kComputeStage, kComputeStage);
 
   // Passes of their own: what a workgroup of them takes is not what one of the march takes.
   commands.beginPass("gather refinement");
   const glm::ivec3 threads(coarse, 1);
-  const std::array<Binding, 3> rough{&frame_, &gathered_.colorEnergyTexels, &adaptive_.roughnessTexels};
+  const std::array<Binding, 4> rough{&frame_, &gathered_.colorEnergyTexels, &gathered_.distanceTexels, &adaptive_.roughnessTexels};
   commands.dispatch(makeComputePipeline(device_, shaders::gather_roughness, {}), rough, threads);
   commands.barrier(kComputeStage, kComputeStage);
   std::vector<Binding> refined = sumBindings(gathered_, gathered_);
   refined.emplace_back(&adaptive_.roughnessTexels);
-  const shader::SamplesPush listed{.list = addressWords(adaptive_.list.address()), .step = 0, .groupsOfARow = groupsOfARow};
+  const shader::SamplesPush listed{.list = addressWords(adaptive_.list.address()),
+                                   .step = 0,
+                                   .groupsOfARow = groupsOfARow,
+                                   .rowsOfARange = (rows + shader::kSampleRanges - 1) / shader::kSampleRanges};
   commands.dispatch(makeComputePipeline(device_, shaders::gather_refine, {}), refined, listed, threads);
   commands.barrier(kComputeStage, kComputeStage | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
   commands.beginPass("gather rough rays");
@@ -169,7 +184,7 @@ void GatherPass::recordPart(Commands& commands, const GatherVolume& volume, cons
   makeRoom(gathered_, 1);  // a binding needs a buffer
   commands.beginPass("gather");
   commands.update(frame_, frame);
-  dispatchSamples(commands, volume, frame, numbers, skips, frame.part.extent, Extent::Part);
+  dispatchSamples(commands, volume, frame, numbers, skips, frame.seenExtent, Extent::Part);
 }
 
 void GatherPass::recordClear(Commands& commands, const shader::GatherFrame& frame) {
@@ -192,20 +207,21 @@ std::vector<Binding> GatherPass::sumBindings(const Sums& from, const Sums& to) c
 void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& frame) {
   makeRoom(smoothed_, latticeSize(frame));
   commands.dispatch(makeComputePipeline(device_, shaders::gather_stencil, {}), sumBindings(gathered_, smoothed_),
-                    glm::ivec3(frame.samples, 1));
+                    glm::ivec3(frame.seenExtent, 1));
   commands.barrier(kComputeStage, kComputeStage);
 }
 
 void GatherPass::recordResampling(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
   const bool withDistance = targets.distance.exists();
   const Sums& samples = scalars ? gathered_ : smoothed_;
+  const auto taps = std::uint32_t(frame.pitch >= 1.0f ? shader::kSparseResampleTaps : shader::kResampleTaps);
   makeRoom(rows_, std::uint64_t(frame.size.x) * std::uint64_t(frame.samples.y));
   for (const bool alongY : {false, true}) {
     std::vector<Binding> bindings = sumBindings(alongY ? rows_ : samples, alongY ? samples : rows_);
     bindings.emplace_back(&targets.colorEnergy);
     bindings.emplace_back(withDistance ? &targets.distance : &targets.colorEnergy);
-    commands.dispatch(makeComputePipeline(device_, shaders::gather_resample, {withDistance, alongY}), bindings,
-                      {frame.size.x, alongY ? frame.size.y : frame.samples.y, 1});
+    commands.dispatch(makeComputePipeline(device_, shaders::gather_resample, {withDistance, alongY, taps}), bindings,
+                      {frame.pixelExtent.x, alongY ? frame.pixelExtent.y : frame.seenExtent.y, 1});
     commands.barrier(kComputeStage, kComputeStage);
   }
 }
@@ -226,8 +242,13 @@ void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& fram
 /// The image of the gathered samples.
 void GatherPass::recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
   commands.beginPass("gather image");
-  for (const RenderTarget* target : targets.all())
-    commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kComputeStage, kComputeStage);
+  // Pixels that do not see the volume are empty, without a distance.
+  for (const RenderTarget* target : targets.all()) {
+    if (frame.pixelExtent == frame.size)
+      commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kComputeStage, kComputeStage);
+    else
+      commands.fill(*target, target == &targets.distance ? std::numeric_limits<float>::infinity() : 0.0f);
+  }
   if (!scalars) recordStencil(commands, frame);
   recordResampling(commands, frame, scalars, targets);
   commands.barrier(kComputeStage, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
@@ -239,9 +260,12 @@ std::vector<GatherSums> GatherPass::download(const Sums& sums) const {
   std::vector<float> distances(count);
   freevoxels::download(device_, sums.colorEnergy, std::as_writable_bytes(std::span(colorEnergy)));
   freevoxels::download(device_, sums.distances, std::as_writable_bytes(std::span(distances)));
-  std::vector<GatherSums> result;
-  for (std::size_t i = 0; i < count; ++i)
-    result.push_back({.color = glm::dvec3(colorEnergy[i]), .energy = double(colorEnergy[i].a), .distance = double(distances[i])});
+  std::vector<GatherSums> result(count);
+  for (int y = seen_.first.y; y < seen_.first.y + seen_.extent.y; ++y)
+    for (int x = seen_.first.x; x < seen_.first.x + seen_.extent.x; ++x) {
+      const std::size_t i = std::size_t(x) + std::size_t(y) * std::size_t(lattice_.samples.x);
+      result[i] = {.color = glm::dvec3(colorEnergy[i]), .energy = double(colorEnergy[i].a), .distance = double(distances[i])};
+    }
   return result;
 }
 

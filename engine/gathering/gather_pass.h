@@ -69,6 +69,7 @@ class GatherPass {
 
   const Device& device_;
   GatherLattice lattice_;  ///< of the last frame
+  SampleRectangle seen_;   ///< of the last frame: outside of it sums are 0 and not stored
   Buffer frame_;  ///< shader::GatherFrame
   Sums gathered_, smoothed_, rows_;
   Adaptive adaptive_;

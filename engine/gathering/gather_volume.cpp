@@ -75,7 +75,7 @@ void GatherVolume::makeBricks(std::vector<StageTime>& times) {
   std::vector<Cells> met, around{spread(cells, 0, 1)};  // by level, starting above the finest
   for (int level = finest; level <= top; ++level) {
     met.push_back(spread(cells, 0, 1));
-    around.push_back(spread(coarserCells(spread(cells, -1, 0)), 0, 1));
+    around.push_back(coarserCells(spread(cells, -1, 1)));
     cells = coarserCells(cells);
   }
 

@@ -178,6 +178,17 @@ void Commands::dispatchInvocations(const Pipeline& pipeline, const std::function
   dispatchGroups(bindAll, {std::uint32_t(std::min(groups, kRow)), std::uint32_t(rows), layers}, rows > 1 ? 1 : 0);
 }
 
+/// Begins a slice if so many workgroups of the current pass are expected not to fit into this one.
+void Commands::expectGroups(std::uint64_t count) {
+  const double cost = double(count) * device_.queue().costOf(pass_, device_.isCpu() ? kUnknownCpuCost : kUnknownGpuCost);
+  if (sliceMilliseconds_ > 0.0 && sliceMilliseconds_ + cost > kSliceMilliseconds && mayDivide()) {
+    nextSlice();
+    beginSpan(pass_);
+  }
+  sliceMilliseconds_ += cost;
+  if (!passes_.empty()) passes_.back().units += double(count);
+}
+
 /// Divides the dispatch along `axis` into slices if it is expected to take longer than one.
 void Commands::dispatchGroups(const std::function<void()>& bindAll, glm::uvec3 groups, int axis) {
   const std::uint64_t count = std::uint64_t(groups.x) * groups.y * groups.z;
@@ -199,6 +210,15 @@ void Commands::dispatchGroups(const std::function<void()>& bindAll, glm::uvec3 g
     sliceMilliseconds_ += cost / parts;
   }
   if (!passes_.empty()) passes_.back().units += double(count);
+}
+
+void Commands::fill(const RenderTarget& target, float value) {
+  transition(target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+             VK_PIPELINE_STAGE_2_TRANSFER_BIT);
+  const VkClearColorValue color{.float32 = {value, value, value, value}};
+  const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+  vkCmdClearColorImage(buffer_, target.handle(), VK_IMAGE_LAYOUT_GENERAL, &color, 1, &whole);
+  barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
 }
 
 void Commands::copy(const Buffer& from, const Buffer& to, VkBufferCopy region) {

@@ -75,9 +75,12 @@ class Commands {
                       std::uint64_t count, std::uint32_t layers = 1) {
     dispatchInvocations(pipeline, [&] { bind(pipeline, bindings, &push, sizeof(Push)); }, count, layers);
   }
+  /// The numbers of workgroups are in `arguments`. If their largest product is given, the dispatch is expected to take as many times the
+  /// mean of such a dispatch of the pass before, and may begin a slice; it is not divided.
   template <typename Push>
-  void dispatchIndirect(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push,
-                        const Buffer& arguments, VkDeviceSize offset) {
+  void dispatchIndirect(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push, const Buffer& arguments,
+                        VkDeviceSize offset, std::uint64_t mostGroups = 0) {
+    if (mostGroups > 0) expectGroups(mostGroups);
     bind(pipeline, bindings, &push, sizeof(Push));
     // Mesa 22.3's lavapipe would begin at the base workgroup of the last vkCmdDispatchBase.
     vkCmdDispatch(buffer_, 0, 0, 0);
@@ -98,6 +101,8 @@ class Commands {
     vkCmdFillBuffer(buffer_, buffer.handle(), 0, VK_WHOLE_SIZE, 0);
     barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   }
+  /// Records filling all channels of a target in any layout with `value`, and leaves it in GENERAL, visible to compute shaders.
+  void fill(const RenderTarget& target, float value);
   void copy(const Buffer& from, const Buffer& to, VkBufferCopy region);
   /// Copies a target, which must be in layout GENERAL and visible to the transfer stage, and stays in that
   /// layout.
@@ -134,6 +139,7 @@ class Commands {
   void dispatchInvocations(const Pipeline& pipeline, const std::function<void()>& bindAll, std::uint64_t count,
                            std::uint32_t layers);
   void dispatchGroups(const std::function<void()>& bindAll, glm::uvec3 groups, int axis);
+  void expectGroups(std::uint64_t count);
   void beginSlice();
   void endSlice();
   void nextSlice();

@@ -297,6 +297,25 @@ TEST_F(GatherTest, RaysBetweenSmoothOnesAreInterpolatedWithoutATrace) {
   check("fire", {.densityScale = 0.0, .emission = Emission{.strength = 5.0}});
 }
 
+TEST_F(GatherTest, InterpolatedRaysKeepTheEdgesOfDepthBetweenSurfacesOfTheSameColour) {
+  const glm::ivec3 size(24, 24, 24);
+  const Volume steps = makeVolume(size, cubeTransform(size), [](int x, int y, int z) { return (x + y < 24 ? z < 20 : z < 8) ? 1.0 : 0.0; });
+  Renderer renderer(device(), steps, {.densityScale = 2000.0}, {});
+  const Camera camera = alongZ(steps, {96, 96}, 4.0);
+  FrameSettings settings = gathering({96, 96});
+  settings.depth = true;
+  const Image adaptive = renderer.render(camera, settings);
+  settings.sampleTolerance = 0.0f;
+  const Image whole = renderer.render(camera, settings);
+  const auto [nearest, farthest] = std::ranges::minmax(whole.depth);
+  const float voxel = float(glm::length(glm::dvec3(steps.indexToWorld[0])));
+  EXPECT_GT(std::ranges::count_if(whole.depth, [&](float depth) { return depth > nearest + 8.0f * voxel; }), 1000);
+  for (std::size_t i = 0; i < whole.depth.size(); ++i)
+    if (std::isfinite(whole.depth[i]) || std::isfinite(adaptive.depth[i])) {
+      EXPECT_NEAR(adaptive.depth[i], whole.depth[i], 0.25f * voxel) << "pixel " << i % 96 << ", " << i / 96;
+    }
+}
+
 TEST_F(GatherTest, NothingIsDrawnOfAnEmptyVolume) {
   const Volume empty = makeVolume({9, 9, 9}, cubeTransform({9, 9, 9}), [](int, int, int) { return 0.0; });
   Renderer renderer(device(), empty, {.densityScale = 1.0}, {});
