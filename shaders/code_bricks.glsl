@@ -14,10 +14,22 @@ uint codeBrick(CodeBricks bricks, ivec3 dimensions, ivec3 block) {
   return CodeWords(bricks.numbers).values[cell.x + bricks.cells.x * (cell.y + bricks.cells.y * cell.z)];
 }
 
-uint codeIn(CodeBricks bricks, uint brick, ivec3 block) {
+// The place of a block's code.
+uint codePlace(CodeBricks bricks, uint brick, ivec3 block) {
   const ivec3 local = (block + bricks.corner) & (kBrickEdge - 1);
-  const uint index = ((brick << kBrickLevels | local.z) << kBrickLevels | local.y) << kBrickLevels | local.x;
-  return bitfieldExtract(CodeWords(bricks.codes).values[index >> 1], int(index & 1u) * 16, 16);
+  return ((brick << kBrickLevels | local.z) << kBrickLevels | local.y) << kBrickLevels | local.x;
+}
+
+uint codeIn(CodeBricks bricks, uint brick, ivec3 block) {
+  const uint place = codePlace(bricks, brick, block);
+  return bitfieldExtract(CodeWords(bricks.codes).values[place >> 1], int(place & 1u) * 16, 16);
+}
+
+// The codes of four blocks, in pairs from low to high bits; the first block's position in its brick along x is a multiple of 4.
+uvec2 codePairs(CodeBricks bricks, uint brick, ivec3 first) {
+  const uint word = codePlace(bricks, brick, first) >> 1;
+  CodeWords words = CodeWords(bricks.codes);
+  return uvec2(words.values[word], words.values[word + 1]);
 }
 
 // The code of a block, 0 without data.

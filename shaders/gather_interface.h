@@ -196,7 +196,7 @@ struct CodeBricks {
 
 // expand_scalars.comp
 struct ExpandScalarsPush {
-  ivec3 first;       // first voxel, whose x is a multiple of 4; may be outside of the volume
+  ivec3 first;       // first voxel, whose position in its brick along x is a multiple of 4; may be outside of the volume
   ivec3 extent;      // in quads along x
   ivec3 dimensions;  // of the volume
   CodeBricks scalars;

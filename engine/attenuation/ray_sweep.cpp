@@ -25,6 +25,9 @@ constexpr int kQuad = 4;  // number of voxels of a row that an invocation of Exp
 /// Rounds up to a multiple of a quad, negative numbers too.
 int quadsUp(int voxels) { return (voxels + kQuad - 1) & -kQuad; }
 
+/// The position in its quad of the volume's first voxel: quads of scalars do not cross the borders of bricks.
+int shiftOfQuads(const DeviceVolume& volume, bool scalars) { return scalars ? volume.scalarBricks->corner.x % kQuad : 0; }
+
 /// A part of the volume, with a border of empty voxels or quads on the sides of a face.
 struct SlabBox {
   glm::ivec3 first, extent;
@@ -36,15 +39,15 @@ struct SlabBox {
 
 /// The box of the planes `begin` to `end` - 1 of a face, rounded up to an even number, and of the plane
 /// before them.
-SlabBox slabBox(const FaceRays& fan, glm::ivec3 dimensions, int begin, int end) {
-  SlabBox box{.first = glm::ivec3(-kQuad, -1, -1),
-              .extent = {quadsUp(dimensions.x) + 2 * kQuad, dimensions.y + 2, dimensions.z + 2}};
+SlabBox slabBox(const FaceRays& fan, glm::ivec3 dimensions, int begin, int end, int shift) {
+  SlabBox box{.first = glm::ivec3(-kQuad - shift, -1, -1),
+              .extent = {quadsUp(dimensions.x + shift) + 2 * kQuad, dimensions.y + 2, dimensions.z + 2}};
   const int near = fan.firstPlane + fan.direction * (begin - 1);
   const int far = fan.firstPlane + fan.direction * (end + end % 2 - 1);
   int low = std::min(near, far), high = std::max(near, far) + 1;
   if (fan.axis == 0) {
-    low = quadsUp(low - kQuad + 1);
-    high = quadsUp(high);
+    low = quadsUp(low + shift - kQuad + 1) - shift;
+    high = quadsUp(high + shift) - shift;
   }
   box.first[fan.axis] = low;
   box.extent[fan.axis] = high - low;
@@ -79,7 +82,7 @@ RayRoom roomFor(const std::array<FaceRays, 6>& fans, glm::ivec3 dimensions) {
     const int planes = planesPerSlab(fan, dimensions);
     for (int begin = 0; begin < fan.planeCount; begin += planes) {
       const int end = std::min(begin + planes, fan.planeCount);
-      room.slab = std::max(room.slab, slabBox(fan, dimensions, begin, end).bytes());
+      for (int shift = 0; shift < kQuad; ++shift) room.slab = std::max(room.slab, slabBox(fan, dimensions, begin, end, shift).bytes());
     }
   }
   return room;
@@ -162,7 +165,7 @@ void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const F
   const int planes = planesPerSlab(fan, dimensions);
   for (int begin = 0; begin < fan.planeCount; begin += planes) {
     const int end = std::min(begin + planes, fan.planeCount);
-    const SlabBox box = slabBox(fan, dimensions, begin, end);
+    const SlabBox box = slabBox(fan, dimensions, begin, end, shiftOfQuads(volume, scalars));
     if (scalars)
       recordScalars(commands, volume, box.first, box.extent);
     else
