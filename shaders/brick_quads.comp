@@ -79,6 +79,32 @@ Pair pairAt(ivec3 first, CodeRow row) {
   return pair;
 }
 
+// The quads of a row along x: their rows of two codes are words, or the ends of two words.
+void storeCodeQuads(ivec3 cell, CodeRow row, uint quad) {
+  const int place = cell.x + push.codes.corner.x, odd = place & 1;
+  uint words[2][kGatherBrickEdge / 2 + 1];
+  [[unroll]] for (int i = 0; i < 2; ++i) {
+    ivec3 block = cell;
+    block[kSideB] += i;
+    block.x -= odd;
+    const bool inside = block[kSideB] < push.level.dimensions[kSideB] && block[kAxis] < push.level.dimensions[kAxis];
+    [[unroll]] for (int j = 0; j <= kGatherBrickEdge / 2; ++j) {
+      const bool isNear = (place - odd + 2 * j) >> kBrickLevels == row.firstCell;
+      words[i][j] = codeWord(push.codes, inside ? isNear ? row.near[i] : row.far[i] : 0, block);
+      block.x += 2;
+    }
+  }
+  const int count = push.level.dimensions.x - cell.x;  // of blocks inside the volume
+  [[unroll]] for (int k = 0; k < kGatherBrickEdge; ++k) {
+    uvec2 rows;
+    [[unroll]] for (int i = 0; i < 2; ++i) {
+      const uint across = words[i][k / 2] >> 16 | words[i][k / 2 + 1] << 16;
+      rows[i] = (k & 1) == odd ? words[i][(k + 1) / 2] : across;
+    }
+    MediumQuads(push.medium).values[quad + k * kGatherBrickEdge] = rows & (k + 1 < count ? 0xffffffffu : k < count ? 0xffffu : 0u);
+  }
+}
+
 // A workgroup a brick, a thread a row of quads along the first side.
 void main() {
   const uint brick = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
@@ -90,6 +116,10 @@ void main() {
   uint quad = push.firstQuad + brick * kGatherBrickBlocks + slice + (row << (2 * kBrickLevels));
   CodeRow codes;
   if (kCodes) codes = codeRowFrom(cell);
+  if (kCodes && !kColored && kSideA == 0) {
+    storeCodeQuads(cell, codes, quad);
+    return;
+  }
   Pair pair = pairAt(cell, codes);
   for (int i = 0; i < kGatherBrickEdge; ++i) {
     ++cell[kSideA];

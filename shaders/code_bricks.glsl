@@ -20,9 +20,11 @@ uint codePlace(CodeBricks bricks, uint brick, ivec3 block) {
   return ((brick << kBrickLevels | local.z) << kBrickLevels | local.y) << kBrickLevels | local.x;
 }
 
+// The word with a block's code: in the low bits if the block's position in its brick along x is even.
+uint codeWord(CodeBricks bricks, uint brick, ivec3 block) { return CodeWords(bricks.codes).values[codePlace(bricks, brick, block) >> 1]; }
+
 uint codeIn(CodeBricks bricks, uint brick, ivec3 block) {
-  const uint place = codePlace(bricks, brick, block);
-  return bitfieldExtract(CodeWords(bricks.codes).values[place >> 1], int(place & 1u) * 16, 16);
+  return bitfieldExtract(codeWord(bricks, brick, block), ((block.x + bricks.corner.x) & 1) * 16, 16);
 }
 
 // The codes of four blocks, in pairs from low to high bits; the first block's position in its brick along x is a multiple of 4.
