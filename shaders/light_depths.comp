@@ -12,6 +12,7 @@
 // Whether rays hold depths of positions (scalars), or those in front of layers.
 layout(constant_id = 0) const bool kScalars = false;
 layout(constant_id = 2) const bool kVoxels = false;  // whether blocks are voxels
+layout(constant_id = 3) const bool kRows = false;    // whether rays are parallel and planes along x, so that voxels of a row share rays
 
 layout(local_size_x = kBrickQuadsThreads) in;
 layout(scalar, push_constant) uniform Push { LightDepthsPush push; };
@@ -61,6 +62,52 @@ float depthOf(ivec3 cell) {
   return kScalars ? found : found + 0.5 * extinctionOf(cell) * length(push.indexToWorld * layer);
 }
 
+uint packDepths(vec2 depths) { return packUnorm2x16(sqrt(clamp(depths / kOpaqueDepth, 0.0, 1.0))); }
+
+// The depth of four rays of a plane, `stride` apart, times their weights.
+float weightedDepth(uvec2 planes, int odd, uint ray, uint stride, vec4 weights) {
+  const uint last = uint(lights[push.light].fans[0].rayCount.x * lights[push.light].fans[0].rayCount.y) - 1;
+  vec4 roots;
+  [[unroll]] for (int i = 0; i < 4; ++i) roots[i] = unpackUnorm2x16(rayCodes(planes, min(ray + i * stride, last)))[odd];
+  return kOpaqueDepth * dot(roots * roots, weights);
+}
+
+// With kRows: the depths of a row of voxels. Neighbours are at most two rays apart, so that of the four rays along x between which a voxel
+// lies, two at least are those of the voxel before it; each stands for four across x, which have the same weights for the whole row.
+void storeRow(ivec3 first, uint pair) {
+  const FaceRays fan = lights[push.light].fans[0];
+  const ivec3 end = push.level.dimensions - 1, cell = min(first, end);
+  const vec3 toLight = lights[push.light].place, size = abs(toLight);
+  const vec3 layer = toLight / max(size.x, max(size.y, size.z));
+  const vec3 position = vec3(cell) + (kScalars ? layer : vec3(0.0));
+  const int plane = (int(round(position[fan.axis])) - fan.firstPlane) * fan.direction;
+  const int kept = clamp(plane, 0, fan.planeCount - 1);
+  const RayPlace at = rayPlace(fan, position, kept);
+  const bool xFirst = fan.axis == 2;  // whether x is the first one of the face's sides
+  const uint rayRow = uint(fan.rayCount.x), alongX = xFirst ? 1 : rayRow, across = xFirst ? rayRow : 1;
+  const vec4 weights = cubicWeights(xFirst ? at.within.y : at.within.x);
+  const uvec2 planes = pairAddress(fan, kept / 2);
+  const float ownLayer = kScalars ? 0.0 : 0.5 * length(push.indexToWorld * layer);
+  vec4 near;  // the depths around the voxel, along x
+  [[unroll]] for (int i = 0; i < 4; ++i) near[i] = weightedDepth(planes, at.odd, at.first + i * alongX, across, weights);
+  uint next = at.first + 4 * alongX;
+  float within = xFirst ? at.within.x : at.within.y, before = 0.0;
+  for (int x = 0; x < kGatherBrickEdge; ++x) {
+    const bool isFirst = x == 0;
+    const vec2 further = vec2(weightedDepth(planes, at.odd, next, across, weights), weightedDepth(planes, at.odd, next + alongX, across, weights));
+    if (!isFirst && first.x + x <= end.x) within += 1.0 / at.apart;
+    const int moves = clamp(int(within), 0, 2);
+    if (moves == 1) near = vec4(near.yzw, further.x);
+    if (moves == 2) near = vec4(near.zw, further);
+    within -= float(moves);
+    next += moves * alongX;
+    float depth = plane < 0 ? 0.0 : max(dot(near, cubicWeights(min(within, 1.0))), 0.0);
+    if (!kScalars) depth += extinctionOf(min(first + ivec3(x, 0, 0), end)) * ownLayer;
+    if ((x & 1) == 1) LightDepths(push.depths).pairs[pair + x / 2] = packDepths(vec2(before, depth));
+    before = depth;
+  }
+}
+
 void main() {
   const uint brick = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
   if (brick >= push.count) return;
@@ -68,8 +115,10 @@ void main() {
   const ivec3 first = ivec3(texelFetch(brickCells, int(push.firstBrick + brick)).xyz) +
                       ivec3(0, row % kGatherBrickEdge, row / kGatherBrickEdge);
   const uint pair = ((push.firstBrick + brick) * kGatherBrickBlocks + row * kGatherBrickEdge) / 2;
-  for (int x = 0; x < kGatherBrickEdge; x += 2) {
-    const vec2 depths = vec2(depthOf(first + ivec3(x, 0, 0)), depthOf(first + ivec3(x + 1, 0, 0)));
-    LightDepths(push.depths).pairs[pair + x / 2] = packUnorm2x16(sqrt(clamp(depths / kOpaqueDepth, 0.0, 1.0)));
+  if (kRows) {
+    storeRow(first, pair);
+    return;
   }
+  for (int x = 0; x < kGatherBrickEdge; x += 2)
+    LightDepths(push.depths).pairs[pair + x / 2] = packDepths(vec2(depthOf(first + ivec3(x, 0, 0)), depthOf(first + ivec3(x + 1, 0, 0))));
 }

@@ -91,7 +91,8 @@ void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading,
   for (int light = 0; light < sampleLights(); ++light) {
     const RaySweep& rays = shading.lights->rays(light);
     const std::optional<TexelView>& texels = rays.depthTexels();
-    const Pipeline pass = makeComputePipeline(device_, shaders::light_depths, {hasScalars(), texels.has_value(), level == 0});
+    const bool rows = level == 0 && sampled_[std::size_t(light)].atInfinity && rays.fans()[0].axis != 0;
+    const Pipeline pass = makeComputePipeline(device_, shaders::light_depths, {hasScalars(), texels.has_value(), level == 0, rows});
     const std::array<Binding, 4> bindings{&brickCellTexels_, &volume.occupancyTexels, &shading.lights->lights(),
                                           texels ? &*texels : &brickCellTexels_};
     const shader::LightDepthsPush push{.level = volume.onDevice(level),
