@@ -25,9 +25,7 @@ GatherStages RendererStages::renderGatherStages(const Camera& camera, const Fram
   checkCamera(camera);
   checkFrameFits(state_.device, settings);
   Commands commands(state_.device);
-  FrameSettings whole = settings;
-  whole.sampleTolerance = 0.0f;
-  const std::shared_ptr<const FrameTargets> targets = state_.recordImage(commands, camera, whole, {});
+  const std::shared_ptr<const FrameTargets> targets = state_.recordImage(commands, camera, settings, {});
   commands.submitAndWait();
   addTimes(state_.frameTimes, commands.times());
   GatherStages stages = downloadGatherStages(state_.device, state_.built, *state_.gatherVolume, *state_.gather);

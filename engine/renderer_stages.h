@@ -38,7 +38,7 @@ class RendererStages {
   /// The sums of every pixel, top row first, which render() resolves. `settings.composite` must not be Sorted. Sums of the parts of a
   /// volume add up to those of the whole; therefore no hidden blocks are left out.
   std::vector<SplatSums> renderSums(const Camera& camera, const FrameSettings& settings) const;
-  /// What Renderer::render makes by gathering, with the stages before the image; every ray is marched. `settings.draw` must be Gather.
+  /// What Renderer::render makes by gathering, with the stages before the image. `settings.draw` must be Gather.
   GatherStages renderGatherStages(const Camera& camera, const FrameSettings& settings) const;
 
  private:

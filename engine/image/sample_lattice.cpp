@@ -118,15 +118,16 @@ std::vector<LatticeSample> resampled(const SampleLattice& lattice, const std::ve
   to[side] = pixels;
   std::vector<LatticeSample> result(std::size_t(to.x) * std::size_t(to.y));
   const std::size_t step = side == 0 ? 1 : std::size_t(from.x);
+  const int taps = lattice.pitch >= 1.0 ? kSparseResampleTaps : kResampleTaps;
   tbb::parallel_for(0, to.y, [&](int y) {
     for (int x = 0; x < to.x; ++x) {
       glm::ivec2 place(x, y);
       const double position = place[side] / lattice.pitch + kLatticeMargin;
-      const int low = int(std::floor(position)) - kResampleTaps / 2 + 1;
+      const int low = int(std::floor(position - 0.5 / lattice.pitch)) - 1;
       place[side] = 0;
       const std::size_t start = std::size_t(place.x) + std::size_t(from.x) * std::size_t(place.y);
       WeightedSamples sum;
-      for (int i = low; i < low + kResampleTaps; ++i)
+      for (int i = low; i < low + taps; ++i)
         sum.add(pixelWeight(position - i, 0.5 / lattice.pitch),
                 samples[start + step * std::size_t(std::clamp(i, 0, lattice.samples[side] - 1))]);
       result[std::size_t(x) + std::size_t(to.x) * std::size_t(y)] = sum.sum();

@@ -15,6 +15,7 @@ namespace freevoxels {
 namespace {
 
 constexpr double kSamplesPerVoxel = 2.4;
+constexpr double kCoarseVoxels = 1.25;  ///< largest distance between coarse samples of adaptive sampling
 constexpr double kMinPitch = 0.5;  // of images of up to 4 million pixels; larger ones are not compared
 /// For a camera near the volume the lattice is made for this part of the distance to the farthest corner.
 constexpr double kNearReference = 0.75;
@@ -98,6 +99,7 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
   const double reference = rays_.orthographic ? 1.0 : std::max(mean, kNearReference * farthest);
   const double pitch = std::clamp(voxel / (kSamplesPerVoxel * reference), kMinPitch, double(std::max(size_.x, size_.y)));
   lattice_.pitch = std::round(pitch * 1024.0) / 1024.0;  // so that the device's samples have the same positions
+  adapts_ = 2.0 * lattice_.pitch * reference <= kCoarseVoxels * voxel;
   lattice_.samples = (glm::ivec2(glm::floor(glm::dvec2(size_ - 1) / lattice_.pitch)) + 4) | 1;  // odd
   lattice_.first = 0.5 - middle_ - lattice_.pitch;
 

@@ -40,6 +40,8 @@ class ReferenceGather {
                   const FrameSettings& settings);
 
   const GatherLattice& lattice() const { return lattice_; }
+  /// Whether coarse samples are near enough to each other for adaptive sampling (reference_refinement.h).
+  bool adapts() const { return adapts_; }
   /// The levels of the octree that the frame reads.
   const DetailRule& detail() const { return detail_; }
   /// Whether voxels are classified after interpolation; the blocks of level 0 are then not read.
@@ -119,6 +121,7 @@ class ReferenceGather {
   DetailRule detail_;
   int mainAxis_ = 0;
   GatherLattice lattice_;
+  bool adapts_ = false;
   glm::dvec2 seenLow_, seenHigh_;
   std::optional<TransferTable> table_;
   std::vector<glm::vec4> texels_;  ///< texels of the transfer table, per world unit

@@ -114,17 +114,18 @@ std::vector<GatherSums> ReferenceGather::smoothed(const std::vector<GatherSums>&
 std::vector<GatherSums> ReferenceGather::resampled(const std::vector<GatherSums>& from, glm::ivec2 fromSize, int side) const {
   glm::ivec2 size = fromSize;
   size[side] = size_[side];
+  const int taps = lattice_.pitch >= 1.0 ? 5 : 6;  // whose distances limit that of the pixel
   std::vector<GatherSums> result;
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x) {
       glm::ivec2 place(x, y);
       const double position = place[side] / lattice_.pitch + 1.0;  // the lattice begins one sample before the first pixel
-      const int first = int(std::floor(position)) - 2;
+      const int first = int(std::floor(position - 0.5 / lattice_.pitch)) - 1;
       std::array<double, 6> weights{};
       for (const int end : {-1, 0, 1})
         addCubicWeights(weights, first, position + 0.5 * end / lattice_.pitch, end == 0 ? 4.0 / 6.0 : 1.0 / 6.0);
       WeightedSum sum;
-      for (int i = 0; i < 6; ++i) {
+      for (int i = 0; i < taps; ++i) {
         place[side] = std::clamp(first + i, 0, lattice_.samples[side] - 1);
         sum.add(weights[std::size_t(i)], from[std::size_t(place.x) + std::size_t(fromSize.x) * std::size_t(place.y)]);
       }

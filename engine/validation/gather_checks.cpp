@@ -10,6 +10,7 @@
 #include "engine/image/metrics.h"
 #include "engine/reference/reference_gather.h"
 #include "engine/reference/reference_hierarchy.h"
+#include "engine/reference/reference_refinement.h"
 #include "engine/renderer_stages.h"
 #include "engine/validation/gather_sample_checks.h"
 #include "engine/validation/homogeneous_box.h"
@@ -36,6 +37,11 @@ constexpr double kImageTolerance = 1e-5, kDistanceTolerance = 1e-4;
 /// The tolerance of scalars, which may round to the next interval of the transfer function's table, or to more or less than the least change
 /// whose mean is an integral.
 constexpr double kScalarTolerance = 3e-3;
+/// Within this part of the tolerance the device may find a cell rough or smooth.
+constexpr double kRoughnessBand = 1e-3;
+/// Second difference of distances, in voxels, that is as rough as the tolerance.
+constexpr double kRoughVoxels = 2.0;
+constexpr double kRefinementTolerance = 1e-4;
 /// At which rays end where their early end is checked.
 constexpr float kEndTransmittance = 0.5f;
 enum class View { Framed, Orthographic, Inside, Wide, Near };
@@ -225,6 +231,34 @@ Check checkEnd(GatherOutputs& device, const Camera& camera, const FrameSettings&
   return worst.atMost(tolerance, fmt::format("gather samples: E with rays that end early, {}", frame), "relative");
 }
 
+/// Adaptive sampling with a tolerance that half of the coarse samples exceed. `samples` are all marched.
+void checkRefinement(GatherOutputs& device, const Camera& camera, const FrameSettings& whole, double voxelSize, const GatherStages& all,
+                     const char* frame, std::vector<Check>& checks) {
+  const glm::ivec2 extent = all.lattice.samples;
+  const ReferenceRefinement reference(all.gathered, extent);
+  std::vector<double> rough;
+  for (const ReferenceRoughness& roughness : reference.roughness())
+    if (roughness.color > 0.0) rough.push_back(roughness.color);
+  if (rough.empty()) return;
+  std::ranges::nth_element(rough, rough.begin() + std::ptrdiff_t(rough.size() / 2));
+  FrameSettings settings = whole;
+  settings.sampleTolerance = float(rough[rough.size() / 2]);
+  const GatherStages adaptive = device.frame(camera, settings);
+  const double tolerance = double(settings.sampleTolerance), band = kRoughnessBand * tolerance;
+  std::vector<GatherSums> expected = all.gathered;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const glm::ivec2 sample(int(i) % extent.x, int(i) / extent.x);
+    const std::optional<double> found = reference.roughnessOfCell(sample, tolerance, kRoughVoxels * voxelSize);
+    if (!found || *found > tolerance + band) continue;
+    const GatherSums between = reference.interpolated(sample);
+    const auto apart = [&](const GatherSums& sums) {
+      return glm::length(glm::dvec4(sums.color - adaptive.gathered[i].color, sums.energy - adaptive.gathered[i].energy));
+    };
+    if (*found < tolerance - band || apart(between) < apart(expected[i])) expected[i] = between;
+  }
+  checkSums(adaptive.gathered, expected, extent, kRefinementTolerance, "gather refinement", frame, checks);
+}
+
 void checkFrame(GatherOutputs& device, const ValidationScene& scene, const Classification& classification, const Frame& frame,
                 glm::ivec2 size, ReportSection& section) {
   const FrameSettings settings{.size = size,
@@ -233,6 +267,7 @@ void checkFrame(GatherOutputs& device, const ValidationScene& scene, const Class
                                .lod = frame.lod,
                                .cullThreshold = 0.0f,
                                .depth = true,
+                               .sampleTolerance = 0.0f,
                                .lighting = lightingOf(scene.volume, frame.light)};
   const Camera camera = cameraOf(scene.volume, frame.view, double(size.x) / size.y);
   const GatherStages stages = device.frame(camera, settings);
@@ -244,6 +279,7 @@ void checkFrame(GatherOutputs& device, const ValidationScene& scene, const Class
   const double tolerance = reference.hasScalars() ? kScalarTolerance : kSampleTolerance;
   const std::vector<GatherSums> samples = comparedSamples(reference, stages, tolerance, size);
   checkSums(stages.gathered, samples, stages.lattice.samples, tolerance, "gather samples", frame.name, section.checks);
+  if (reference.adapts()) checkRefinement(device, camera, settings, scene.volume.voxelSize(), stages, frame.name, section.checks);
   if (!reference.hasScalars()) {
     const std::vector<GatherSums> smoothed = reference.smoothed(stages.gathered);
     checkSums(stages.smoothed, smoothed, stages.lattice.samples, kStencilTolerance, "gather stencil", frame.name, section.checks);
@@ -259,7 +295,9 @@ constexpr const char* kExplanation =
     "Every stage of the gather on the device against a double-precision version on the CPU that is given what the device made "
     "in the stage before: blocks as they are stored, the sums of the lattice's samples, the sums after the stencil, and the "
     "image. Sums are relative to the sample's own, or to 5 % of the largest where that is more. Rays go on to the end of the "
-    "volume, but for the check of their early end, where they are to end at a transmittance of a half.";
+    "volume, but for the check of their early end, where they are to end at a transmittance of a half. All of them are marched, but for "
+    "the "
+    "check of adaptive sampling, whose tolerance half of the coarse samples exceed.";
 
 constexpr const char* kLightExplanation =
     "As above, with lights whose depths are interpolated at the samples, in a volume without empty voxels: where rays skip empty blocks "

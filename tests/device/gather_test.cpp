@@ -39,7 +39,9 @@ TEST_F(GatherTest, MatchesTheSumAlongAnAxis) {
   classification.order = ClassificationOrder::Pre;
   Renderer renderer(device(), volume, classification, {});
   const glm::ivec2 size(n.x, n.y);
-  const GatherStages stages = RendererStages(renderer).renderGatherStages(alongZ(volume, size, 1.0), gathering(size));
+  FrameSettings settings = gathering(size);
+  settings.sampleTolerance = 0.0f;
+  const GatherStages stages = RendererStages(renderer).renderGatherStages(alongZ(volume, size, 1.0), settings);
   ASSERT_EQ(stages.lattice.pitch, 0.5);
   const std::vector<double> extinction = referenceExtinction(volume, classification);
   const VoxelClassifier classifier(classification, volume);

@@ -32,13 +32,14 @@ void countALevelsBorderTwice(SteppedGather& gather) {
   };
 }
 
-/// Swaps the two neighbours of a sample along the first side.
+/// Swaps the two neighbours of a sample along the first side, inside the volume.
 void swapWeights(SteppedGather& gather) {
   gather.alterQuads = [](const Device& device, const GatherVolume::Quads& quads) {
     const Buffer& buffer = quads.medium.pieces.front();
     std::vector<std::uint32_t> pairs(buffer.bytes() / sizeof(std::uint32_t));
     download(device, buffer, std::as_writable_bytes(std::span(pairs)));
-    for (std::uint32_t& pair : pairs) pair = std::rotl(pair, 16);
+    for (std::uint32_t& pair : pairs)
+      if ((pair & 0xffffu) != 0 && pair >> 16 != 0) pair = std::rotl(pair, 16);
     upload(device, buffer, std::as_bytes(std::span(pairs)));
   };
 }
@@ -65,6 +66,15 @@ void leaveTheStencilOut(SteppedGather& gather) {
   };
 }
 
+void interpolateBetweenRougherSamples(SteppedGather& gather) {
+  gather.alterSamples = [](shader::GatherFrame& frame) { frame.sampleTolerance *= 1.5f; };
+}
+
+/// Slopes of distances that are interpolated well are rough.
+void marchBetweenSmoothDistances(SteppedGather& gather) {
+  gather.alterSamples = [](shader::GatherFrame& frame) { frame.distanceTolerance *= 0.1f; };
+}
+
 void widenTheLattice(SteppedGather& gather) {
   gather.alterResampling = [](shader::GatherFrame& frame) { frame.pitch *= 1.01f; };
 }
@@ -80,10 +90,15 @@ void PrintTo(const GatherDefect& defect, std::ostream* stream) {
 }
 
 constexpr GatherDefect kGatherDefects[] = {
-    {"ASliceSkipped", "gather samples", skipTheFirstSlice}, {"ALevelsBorderCountedTwice", "gather samples", countALevelsBorderTwice},
-    {"WeightsSwapped", "gather samples", swapWeights},      {"RaysEndTooEarly", "gather samples", endRaysTooEarly},
-    {"BlocksThicker", "gather blocks", shadeThickerBlocks}, {"StencilLeftOut", "gather stencil", leaveTheStencilOut},
+    {"ASliceSkipped", "gather samples", skipTheFirstSlice},
+    {"ALevelsBorderCountedTwice", "gather samples", countALevelsBorderTwice},
+    {"WeightsSwapped", "gather samples", swapWeights},
+    {"RaysEndTooEarly", "gather samples", endRaysTooEarly},
+    {"BlocksThicker", "gather blocks", shadeThickerBlocks},
+    {"StencilLeftOut", "gather stencil", leaveTheStencilOut},
     {"LatticeWider", "gather image", widenTheLattice},
+    {"RougherInterpolated", "gather refinement", interpolateBetweenRougherSamples},
+    {"SmoothDistancesMarched", "gather refinement", marchBetweenSmoothDistances},
 };
 
 class GatherMutation : public DeviceTest, public testing::WithParamInterface<GatherDefect> {

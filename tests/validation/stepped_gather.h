@@ -35,7 +35,6 @@ struct SteppedGather : GatherOutputs {
   GatherStages frame(const Camera& camera, const FrameSettings& wanted) override {
     FrameSettings settings = wanted;
     settings.attenuation = AttenuationLookup::Exact;
-    settings.sampleTolerance = 0.0f;
     if (settings.lod > 0.0f && !built.hasBlocks()) buildBlocks(device, source, classification, built, times);
     FrameConstants constants = makeFrameConstants(device, built.volume, {}, camera, settings);
     shader::GatherFrame rays = makeGatherFrame(built.volume, camera, settings, constants.detail, constants.hiddenTransmittance);
