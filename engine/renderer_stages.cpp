@@ -24,6 +24,11 @@ GatherStages RendererStages::renderGatherStages(const Camera& camera, const Fram
   FV_CHECK_EQ(int(settings.draw), int(Draw::Gather));
   checkCamera(camera);
   checkFrameFits(state_.device, settings);
+  if (state_.gather) {
+    Commands clearing(state_.device);
+    state_.gather->recordClear(clearing);
+    clearing.submitAndWait();
+  }
   Commands commands(state_.device);
   const std::shared_ptr<const FrameTargets> targets = state_.recordImage(commands, camera, settings, {});
   commands.submitAndWait();

@@ -11,10 +11,4 @@ vec4 cubicSlopes(float x) {
   return 0.5 * vec4(-1.0 + x * (4.0 - 3.0 * x), x * (-10.0 + 9.0 * x), 1.0 + x * (8.0 - 9.0 * x), x * (-2.0 + 3.0 * x));
 }
 
-// The weight of a sample at distance x from the position.
-float cubicKernel(float x) {
-  x = abs(x);
-  return x < 1.0 ? 1.0 + x * x * (1.5 * x - 2.5) : x < 2.0 ? 2.0 + x * (-4.0 + x * (2.5 - 0.5 * x)) : 0.0;
-}
-
 #endif

@@ -41,8 +41,8 @@ FV_CONSTANT float kMaxVariance = 0.8f;
 FV_CONSTANT int kLatticeMargin = 1;
 // Least distance between samples in pixels: what is smaller is averaged by four rays a pixel and those on its borders.
 FV_CONSTANT float kMinPitch = 0.5f;
-// Samples along an axis of the image of which a pixel is made: those that Catmull-Rom interpolation reads anywhere in the pixel, with a
-// pitch of at least kMinPitch, and of at least one pixel.
+// Samples along an axis of the image of which a pixel is made: those that Catmull-Rom interpolation reads anywhere in the pixel. Six are
+// enough for any pitch, which is at least kMinPitch, five for one of at least a pixel.
 FV_CONSTANT int kResampleTaps = 6;
 FV_CONSTANT int kSparseResampleTaps = 5;
 // Samples of less energy, which may be no more than rounding, do not widen the range of mean distances around them.

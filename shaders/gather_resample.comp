@@ -17,14 +17,15 @@ layout(binding = 2) uniform textureBuffer distances;    // sum of e times distan
 layout(binding = 3, rgba32f) writeonly uniform imageBuffer colorEnergyOut;
 layout(binding = 4, r32f) writeonly uniform imageBuffer distancesOut;
 
-// Weights of kTaps samples, of which the first is returned.
+// Sets the weights of kTaps samples, and returns the index of the first one.
 int weightsOf(int pixel, out float weights[kTaps]) {
   const float halfPixel = 0.5 / frame.pitch;
   const float before = floor(float(pixel) / frame.pitch);  // samples between the first pixel and this one
   const float middle = (float(pixel) - before * frame.pitch) / frame.pitch, lowest = floor(middle - halfPixel);
   [[unroll]] for (int i = 0; i < kTaps; ++i) weights[i] = 0.0;
   [[unroll]] for (int k = -1; k <= 1; ++k) {
-    const float position = middle + float(k) * halfPixel, low = floor(position);
+    // At most that of the last weights, whatever a division rounds to: the interpolation is continuous.
+    const float position = middle + float(k) * halfPixel, low = min(floor(position), lowest + float(kTaps - 4));
     const vec4 cubic = cubicWeights(position - low) * (k == 0 ? 4.0 / 6.0 : 1.0 / 6.0);
     [[unroll]] for (int shift = 0; shift <= kTaps - 4; ++shift) {
       const vec4 shifted = low - lowest == float(shift) ? cubic : vec4(0.0);

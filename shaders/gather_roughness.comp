@@ -1,7 +1,7 @@
 #version 460
-// The roughness at each coarse sample: the largest fourth difference of C and E along its row and its column of coarse samples, to which the
-// error of interpolation by cubics is proportional. It is relative to the square root of the values, since a display shows the same error
-// more clearly in dark parts. Distances, which are interpolated linearly, count with their second difference, in proportion to the alpha
+// The roughness at each coarse sample: the largest fourth difference of C and E along its row and its column of coarse samples, to which
+// the error of interpolation by cubics is proportional. It is relative to the square root of the values, since a display shows the same
+// error more clearly in dark parts. Distances, which are interpolated linearly, count with their second difference, in proportion to the alpha
 // that has them: surfaces of the same colour one behind the other have edges in images of depth.
 #extension GL_GOOGLE_include_directive : require
 #include "gather_adaptive.glsl"

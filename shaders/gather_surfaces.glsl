@@ -5,7 +5,7 @@
 #include "packed_gradient.glsl"
 
 const float kMinShaded = 1.0 / 512.0;  // least share of a pixel for which the normal of a surface is computed
-const float kOutside = 2.5;               // blocks from a surface at which the light that reaches it is looked up
+const float kOutside = 2.5;            // blocks from a surface at which the light that reaches it is looked up
 
 // The gradient at a position on a slice; beyond the volume that of its border.
 vec3 gradientAt(Slices level, vec2 position, int slice) {
@@ -66,7 +66,9 @@ struct Outside {
 };
 
 Outside outsideOf(Slices level, Ray ray, float slice, vec3 outwards) {
-  const vec3 offset = kOutside * outwards * inversesqrt(max(dot(outwards, outwards), 1e-30));
+  // Less on rays that move by more than a block a slice, so that the place is in the bricks, which reach a cell beyond occupied ones.
+  const float outside = kOutside - 0.5 * max(max(abs(ray.slope.x), abs(ray.slope.y)) - 1.0, 0.0);
+  const vec3 offset = outside * outwards * inversesqrt(max(dot(outwards, outwards), 1e-30));
   const vec2 position = ray.origin + ray.slope * slice + vec2(offset[kSideA], offset[kSideB]);
   vec4 weights;
   const int quad = quadAt(level, position, clamp(int(floor(slice + offset[kAxis] + 0.5)), 0, level.count - 1), weights);

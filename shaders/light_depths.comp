@@ -12,7 +12,7 @@
 // Whether rays hold depths of positions (scalars), or those in front of layers.
 layout(constant_id = 0) const bool kScalars = false;
 layout(constant_id = 2) const bool kVoxels = false;  // whether blocks are voxels
-layout(constant_id = 3) const bool kRows = false;    // whether rays are parallel and planes along x, so that voxels of a row share rays
+layout(constant_id = 3) const bool kRows = false;    // whether rays are parallel and their planes contain the x axis, so that voxels of a row share rays
 
 layout(local_size_x = kBrickQuadsThreads) in;
 layout(scalar, push_constant) uniform Push { LightDepthsPush push; };
@@ -47,8 +47,10 @@ float depthOf(ivec3 cell) {
   const ivec3 extent = extentInside(cell, push.edge, push.voxels);
   const vec3 center = vec3(cell * push.edge) + 0.5 * vec3(extent - 1);
   vec3 toLight = lights[push.light].place;
-  if (lights[push.light].atInfinity == 0) toLight -= center - 0.5 * vec3(push.voxels - 1);
-  if (dot(toLight, toLight) < kAtSource * kAtSource) toLight = vec3(0.0, 0.0, 1.0);
+  if (lights[push.light].atInfinity == 0) {
+    toLight -= center - 0.5 * vec3(push.voxels - 1);
+    if (dot(toLight, toLight) < kAtSource * kAtSource) toLight = vec3(0.0, 0.0, 1.0);
+  }
   const vec3 size = abs(toLight);
   const vec3 layer = toLight / max(size.x, max(size.y, size.z));
   const FaceRays fan = lights[push.light].fans[fanIndex(-toLight)];
@@ -64,9 +66,8 @@ float depthOf(ivec3 cell) {
 
 uint packDepths(vec2 depths) { return packUnorm2x16(sqrt(clamp(depths / kOpaqueDepth, 0.0, 1.0))); }
 
-// The depth of four rays of a plane, `stride` apart, times their weights.
-float weightedDepth(uvec2 planes, int odd, uint ray, uint stride, vec4 weights) {
-  const uint last = uint(lights[push.light].fans[0].rayCount.x * lights[push.light].fans[0].rayCount.y) - 1;
+// The depth of four rays of a plane, `stride` apart, times their weights. `last` is the plane's last ray.
+float weightedDepth(uvec2 planes, int odd, uint ray, uint last, uint stride, vec4 weights) {
   vec4 roots;
   [[unroll]] for (int i = 0; i < 4; ++i) roots[i] = unpackUnorm2x16(rayCodes(planes, min(ray + i * stride, last)))[odd];
   return kOpaqueDepth * dot(roots * roots, weights);
@@ -84,18 +85,18 @@ void storeRow(ivec3 first, uint pair) {
   const int kept = clamp(plane, 0, fan.planeCount - 1);
   const RayPlace at = rayPlace(fan, position, kept);
   const bool xFirst = fan.axis == 2;  // whether x is the first one of the face's sides
-  const uint rayRow = uint(fan.rayCount.x), alongX = xFirst ? 1 : rayRow, across = xFirst ? rayRow : 1;
+  const uint last = uint(fan.rayCount.x * fan.rayCount.y) - 1, rayRow = uint(fan.rayCount.x), alongX = xFirst ? 1 : rayRow, across = xFirst ? rayRow : 1;
   const vec4 weights = cubicWeights(xFirst ? at.within.y : at.within.x);
   const uvec2 planes = pairAddress(fan, kept / 2);
   const float ownLayer = kScalars ? 0.0 : 0.5 * length(push.indexToWorld * layer);
   vec4 near;  // the depths around the voxel, along x
-  [[unroll]] for (int i = 0; i < 4; ++i) near[i] = weightedDepth(planes, at.odd, at.first + i * alongX, across, weights);
+  [[unroll]] for (int i = 0; i < 4; ++i) near[i] = weightedDepth(planes, at.odd, at.first + i * alongX, last, across, weights);
   uint next = at.first + 4 * alongX;
   float within = xFirst ? at.within.x : at.within.y, before = 0.0;
   for (int x = 0; x < kGatherBrickEdge; ++x) {
-    const bool isFirst = x == 0;
-    const vec2 further = vec2(weightedDepth(planes, at.odd, next, across, weights), weightedDepth(planes, at.odd, next + alongX, across, weights));
-    if (!isFirst && first.x + x <= end.x) within += 1.0 / at.apart;
+    const vec2 further = vec2(weightedDepth(planes, at.odd, next, last, across, weights),
+                              weightedDepth(planes, at.odd, next + alongX, last, across, weights));
+    if (x > 0 && first.x + x <= end.x) within += 1.0 / at.apart;
     const int moves = clamp(int(within), 0, 2);
     if (moves == 1) near = vec4(near.yzw, further.x);
     if (moves == 2) near = vec4(near.zw, further);

@@ -162,10 +162,10 @@ void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const F
   // Extinctions of the transfer table are in another unit.
   const double unit = scalars ? 1.0 / (kStoredDepth * volume.voxelSize) : 1.0;
   const int sideA = (fan.axis + 1) % 3, sideB = (fan.axis + 2) % 3;
-  const int planes = planesPerSlab(fan, dimensions);
+  const int planes = planesPerSlab(fan, dimensions), shift = shiftOfQuads(volume, scalars);
   for (int begin = 0; begin < fan.planeCount; begin += planes) {
     const int end = std::min(begin + planes, fan.planeCount);
-    const SlabBox box = slabBox(fan, dimensions, begin, end, shiftOfQuads(volume, scalars));
+    const SlabBox box = slabBox(fan, dimensions, begin, end, shift);
     if (scalars)
       recordScalars(commands, volume, box.first, box.extent);
     else

@@ -15,7 +15,8 @@ constexpr double kSamplesPerVoxel = 2.4;
 /// Largest distance between coarse samples of adaptive sampling, in voxels at the reference distance: less than 2, the width of a voxel's
 /// tent, so that they meet every voxel.
 constexpr double kCoarseVoxels = 1.25;
-/// Largest second difference of coarse samples' distances for interpolation, in voxels: its error is an eighth of that.
+/// Largest second difference of coarse samples' distances for interpolation, in voxels: its error is an eighth of that on a smooth surface,
+/// and up to a half at an edge.
 constexpr double kSmoothVoxels = 2.0;
 /// Distances between samples are multiples of this part of a pixel, so that their positions are exact in 32 bits.
 constexpr double kPitchUnits = 1024.0;
@@ -131,15 +132,16 @@ void setSlices(shader::GatherAxis& axis, int axisIndex, int sign, const Hierarch
   }
 }
 
-/// The range of pixel positions, relative to the image's middle, in which the volume is visible; the whole
-/// image plane if the eye is in or near the volume's planes.
-SeenRectangle seenRectangle(const PixelRays& rays, const glm::dmat3& toPixel, glm::ivec3 dimensions) {
+/// The range of pixel positions, relative to the image's middle, in which blocks of this edge in voxels are visible; the whole image plane
+/// if the eye is in or near the volume's planes.
+SeenRectangle seenRectangle(const PixelRays& rays, const glm::dmat3& toPixel, glm::ivec3 dimensions, int edge) {
   constexpr double kAll = 1e9;
+  // Interpolated slices reach one block beyond the outermost centres.
+  const glm::dvec3 begin(-0.5 - 0.5 * edge), end = glm::dvec3((dimensions + edge - 1) / edge * edge) - 0.5 + 0.5 * edge;
   SeenRectangle seen{glm::dvec2(kAll), glm::dvec2(-kAll)};
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
-    // Interpolated slices reach one voxel beyond the outermost centres.
-    const glm::dvec3 pixel = toPixel * (side * glm::dvec3(dimensions + 1) - 1.0 - rays.origin);
+    const glm::dvec3 pixel = toPixel * (glm::mix(begin, end, side) - rays.origin);
     if (!rays.orthographic && !(pixel.z > 1e-6)) return {glm::dvec2(-kAll), glm::dvec2(kAll)};
     const glm::dvec2 position = rays.orthographic ? glm::dvec2(pixel) : glm::dvec2(pixel) / pixel.z;
     seen = {glm::min(seen[0], position), glm::max(seen[1], position)};
@@ -152,14 +154,14 @@ glm::ivec2 sampleCount(glm::ivec2 size, double pitch) {
   return (glm::ivec2(glm::floor(glm::dvec2(size - 1) / pitch)) + 2 * shader::kLatticeMargin + 2) | 1;
 }
 
-/// Fills in the rectangles of samples and of pixels outside of which nothing is seen.
-void setSeen(shader::GatherFrame& frame) {
+/// Fills in the rectangles of samples and of pixels outside of which nothing is seen. `seen` is that of the coarsest blocks.
+void setSeen(shader::GatherFrame& frame, const SeenRectangle& seen) {
   constexpr double kMargin = 3.0;       // samples: at least one without any light, however `seenLow` is rounded, and one for the stencil
   constexpr double kPixelMargin = 4.0;  // samples: the stencil's reach and the interpolation's
   constexpr double kMostPixels = 0.75;  // of the image: to fill all of it first takes as long as to compute a quarter
   const double pitch = double(frame.pitch);
-  const glm::dvec2 low = (glm::dvec2(frame.seenLow) - glm::dvec2(frame.firstSample)) / pitch;
-  const glm::dvec2 high = (glm::dvec2(frame.seenHigh) - glm::dvec2(frame.firstSample)) / pitch;
+  const glm::dvec2 low = (seen[0] - glm::dvec2(frame.firstSample)) / pitch;
+  const glm::dvec2 high = (seen[1] - glm::dvec2(frame.firstSample)) / pitch;
   const glm::dvec2 lastSample(frame.samples - 1), lastPixel(frame.size - 1);
   frame.firstSeen = glm::ivec2(glm::clamp(glm::floor(low) - kMargin, glm::dvec2(0.0), lastSample)) & ~1;
   frame.seenExtent =
@@ -212,10 +214,10 @@ std::optional<SampleRectangle> samplesThatSee(const DeviceVolume& volume, const 
     high = glm::max(high, position);
   }
   if (behind == 8) return {};
-  if (behind > 0) return SampleRectangle{.first = glm::ivec2(0), .extent = frame.samples};
-  const glm::dvec2 last(frame.samples - 1);
-  if (glm::any(glm::lessThan(high + kMargin, glm::dvec2(0.0))) || glm::any(glm::greaterThan(low - kMargin, last))) return {};
-  const glm::ivec2 first(glm::clamp(glm::floor(low) - kMargin, glm::dvec2(0.0), last));
+  if (behind > 0) return SampleRectangle{.first = frame.firstSeen, .extent = frame.seenExtent};
+  const glm::dvec2 begun(frame.firstSeen), last(frame.firstSeen + frame.seenExtent - 1);
+  if (glm::any(glm::lessThan(high + kMargin, begun)) || glm::any(glm::greaterThan(low - kMargin, last))) return {};
+  const glm::ivec2 first(glm::clamp(glm::floor(low) - kMargin, begun, last));
   return SampleRectangle{.first = first, .extent = glm::ivec2(glm::clamp(glm::ceil(high) + kMargin, glm::dvec2(first), last)) - first + 1};
 }
 
@@ -252,12 +254,12 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
                             .endTransmittance = float(endTransmittance),
                             .orthographic = orthographic ? 1 : 0,
                             .mainAxis = majorAxis(rays.direction)};
-  const SeenRectangle seen = seenRectangle(rays, toPixel, dimensions);
+  const SeenRectangle seen = seenRectangle(rays, toPixel, dimensions, 1);
   frame.seenLow = seen[0];
   frame.seenHigh = seen[1];
   frame.samples = sampleCount(settings.size, double(frame.pitch));
   frame.firstSample = -0.5f * glm::vec2(settings.size) + 0.5f - float(shader::kLatticeMargin) * frame.pitch;
-  setSeen(frame);
+  setSeen(frame, seenRectangle(rays, toPixel, dimensions, 1 << detail.coarsest));
   frame.worldRay[0] = linear * rays.direction;
   frame.worldRay[1] = linear * rays.directionX;
   frame.worldRay[2] = linear * rays.directionY;

@@ -189,6 +189,11 @@ void GatherPass::recordPart(Commands& commands, const GatherVolume& volume, cons
 
 void GatherPass::recordClear(Commands& commands, const shader::GatherFrame& frame) {
   makeRoom(gathered_, latticeSize(frame));
+  recordClear(commands);
+}
+
+void GatherPass::recordClear(Commands& commands) {
+  if (gathered_.colorEnergy.bytes() == 0) return;
   commands.clear(gathered_.colorEnergy);
   commands.clear(gathered_.distances);
 }

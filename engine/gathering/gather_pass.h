@@ -35,6 +35,8 @@ class GatherPass {
   /// The sums of a volume that is on the device region by region: first recordClear, then recordRegion for one after the other, in the order
   /// in which rays meet them, and with `frame.region.isLast` for the last one. `frame.region` is filled in. Then recordImage.
   void recordClear(Commands& commands, const shader::GatherFrame& frame);
+  /// Sets what there is of an earlier frame's sums to 0, so that validation notices samples that are left out.
+  void recordClear(Commands& commands);
   void recordRegion(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
   /// The image in `targets`, as record() leaves it; `frame` is that of the whole volume.
   void recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);

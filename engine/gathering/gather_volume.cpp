@@ -66,7 +66,7 @@ GatherVolume::GatherVolume(const Device& device, const Volume& volume, const Cla
 
 /// Finds the cells of the octree that are bricks, and those that rays skip. A position in a cell stays for
 /// one more edge in that cell and its next neighbours along the positive axes, so these decide. The light of
-/// a surface is looked up up to two blocks outside of it, so bricks extend one cell farther.
+/// a surface is looked up 2.5 blocks outside of it, so bricks extend one cell farther, on all sides.
 void GatherVolume::makeBricks(std::vector<StageTime>& times) {
   const StageTimer timer(times, "bricks");
   const HierarchyLayout& hierarchy = built_.volume.hierarchy;

@@ -180,7 +180,9 @@ void ReferenceGather::setSurface(Stretch& stretch, glm::dvec3 gradient, double d
 /// Lights surfaces from a point that is outside of them.
 void ReferenceGather::lightFromOutside(std::span<Stretch> stretches, const GatherLight& light, const Ray& ray, const Slab& slab,
                                        double slice, glm::dvec3 outwards) const {
-  const glm::dvec3 offset = glm::length(outwards) > 1e-15 ? kOutside * glm::normalize(outwards) : glm::dvec3(0.0);
+  const glm::dvec2 slope = glm::abs(slab.position(ray, 1.0) - slab.position(ray, 0.0));
+  const double distance = kOutside - 0.5 * std::max(std::max(slope.x, slope.y) - 1.0, 0.0);
+  const glm::dvec3 offset = glm::length(outwards) > 1e-15 ? distance * glm::normalize(outwards) : glm::dvec3(0.0);
   const int at = std::clamp(int(std::floor(slice + offset[slab.axis] + 0.5)), 0, dimensionsOf(slab)[slab.axis] - 1);
   const Arriving outside = storedAt(light, slab, slab.position(ray, slice) + onSides(offset, slab.axis), at);
   for (Stretch& stretch : stretches) {

@@ -55,17 +55,15 @@ struct Frame {
   Composite composite = Composite::Normalised;
   Light light = Light::None;
 };
-constexpr std::array<Frame, 8> kFrames{{{"perspective"},
-                                        {.name = "orthographic, additive", .view = View::Orthographic, .composite = Composite::Additive},
-                                        {.name = "eye inside", .view = View::Inside},
-                                        {.name = "rays along several axes", .view = View::Wide},
-                                        {.name = "levels of detail", .view = View::Near, .lod = 8.0f},
-                                        {.name = "classified after", .order = ClassificationOrder::Post},
-                                        {.name = "classified after, eye inside", .order = ClassificationOrder::Post, .view = View::Inside},
-                                        {.name = "classified after, levels of detail",
-                                         .order = ClassificationOrder::Post,
-                                         .view = View::Near,
-                                         .lod = 8.0f}}};
+constexpr std::array<Frame, 8> kFrames{
+    {{"perspective"},
+     {.name = "orthographic, additive", .view = View::Orthographic, .composite = Composite::Additive},
+     {.name = "eye inside", .view = View::Inside},
+     {.name = "rays along several axes", .view = View::Wide},
+     {.name = "levels of detail", .view = View::Near, .lod = 8.0f},
+     {.name = "classified after", .order = ClassificationOrder::Post},
+     {.name = "classified after, eye inside", .order = ClassificationOrder::Post, .view = View::Inside},
+     {.name = "classified after, levels of detail", .order = ClassificationOrder::Post, .view = View::Near, .lod = 8.0f}}};
 
 constexpr std::array<Frame, 9> kLitFrames{
     {{.name = "lit from behind", .light = Light::FromBehind},
@@ -231,7 +229,7 @@ Check checkEnd(GatherOutputs& device, const Camera& camera, const FrameSettings&
   return worst.atMost(tolerance, fmt::format("gather samples: E with rays that end early, {}", frame), "relative");
 }
 
-/// Adaptive sampling with a tolerance that half of the coarse samples exceed. `samples` are all marched.
+/// Adaptive sampling with the median roughness of C and E as the tolerance. All samples of `all` are marched.
 void checkRefinement(GatherOutputs& device, const Camera& camera, const FrameSettings& whole, double voxelSize, const GatherStages& all,
                      const char* frame, std::vector<Check>& checks) {
   const glm::ivec2 extent = all.lattice.samples;
@@ -295,9 +293,8 @@ constexpr const char* kExplanation =
     "Every stage of the gather on the device against a double-precision version on the CPU that is given what the device made "
     "in the stage before: blocks as they are stored, the sums of the lattice's samples, the sums after the stencil, and the "
     "image. Sums are relative to the sample's own, or to 5 % of the largest where that is more. Rays go on to the end of the "
-    "volume, but for the check of their early end, where they are to end at a transmittance of a half. All of them are marched, but for "
-    "the "
-    "check of adaptive sampling, whose tolerance half of the coarse samples exceed.";
+    "volume, but for the check of their early end, where they are to end at a transmittance of a half. All of them are marched, "
+    "but for the check of adaptive sampling, whose tolerance is the median roughness.";
 
 constexpr const char* kLightExplanation =
     "As above, with lights whose depths are interpolated at the samples, in a volume without empty voxels: where rays skip empty blocks "

@@ -75,8 +75,8 @@ class Commands {
                       std::uint64_t count, std::uint32_t layers = 1) {
     dispatchInvocations(pipeline, [&] { bind(pipeline, bindings, &push, sizeof(Push)); }, count, layers);
   }
-  /// The numbers of workgroups are in `arguments`. If their largest product is given, the dispatch is expected to take as many times the
-  /// mean of such a dispatch of the pass before, and may begin a slice; it is not divided.
+  /// The numbers of workgroups are in `arguments`. If `mostGroups`, the largest number of them, is given, the dispatch is expected to take
+  /// that many times what such a workgroup of the pass took last time, and may begin a slice; it is not divided.
   template <typename Push>
   void dispatchIndirect(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push, const Buffer& arguments,
                         VkDeviceSize offset, std::uint64_t mostGroups = 0) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/gathering/gather_stages.h"
+#include "engine/reference/reference_gather.h"
 #include "engine/renderer_stages.h"
 #include "engine/validation/quality_scenes.h"
 #include "engine/volume/voxel_classifier.h"
@@ -173,6 +174,24 @@ TEST_F(GatherTest, CoarseLevelsLookLikeVoxels) {
 }
 
 /// Past 45 degrees rays march along another axis. Beyond 60 dB, an error of a thousandth, nothing is seen of a step.
+TEST_F(GatherTest, CoarseBlocksAreWholeBeyondTheVolume) {
+  const glm::ivec3 size(64, 64, 64);
+  const Volume box = makeVolume(size, cubeTransform(size), [](int, int, int) { return 1.0; });
+  const Classification classification{.densityScale = 2.0};
+  const Camera camera = alongZ(box, {96, 96}, 0.5);
+  FrameSettings settings = gathering({96, 96});
+  settings.lod = 16.0f;
+  Renderer renderer(device(), box, classification, {});
+  const GatherStages stages = RendererStages(renderer).renderGatherStages(camera, settings);
+  const ReferenceGather reference(box, classification, camera, settings);
+  ASSERT_GE(reference.detail().coarsest, 4);
+  const std::vector<GatherSums> samples = reference.samples(stages.blocks, stages.light);
+  ASSERT_EQ(stages.gathered.size(), samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i) EXPECT_NEAR(stages.gathered[i].energy, samples[i].energy, 1e-4) << "sample " << i;
+  const Image image = reference.image(reference.smoothed(samples));
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) EXPECT_NEAR(stages.image.pixels[i].a, image.pixels[i].a, 1e-4) << "pixel " << i;
+}
+
 TEST_F(GatherTest, ATurntableShowsNoStepWhereTheAxisChanges) {
   const Scene scene = cloud(32);
   std::vector<Camera> cameras;

@@ -67,7 +67,10 @@ struct SteppedGather : GatherOutputs {
         record(commands, altered);
       });
     };
-    step(alterSamples, [&](Commands& commands, const shader::GatherFrame& f) { pass.recordSamples(commands, *volume, f); });
+    step(alterSamples, [&](Commands& commands, const shader::GatherFrame& f) {
+      pass.recordClear(commands);
+      pass.recordSamples(commands, *volume, f);
+    });
     step(alterStencil, [&](Commands& commands, const shader::GatherFrame& f) {
       if (!volume->hasScalars()) pass.recordStencil(commands, f);
     });
