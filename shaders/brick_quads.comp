@@ -94,14 +94,14 @@ void storeCodeQuads(ivec3 cell, CodeRow row, uint quad) {
       block.x += 2;
     }
   }
-  const int count = push.level.dimensions.x - cell.x;  // of blocks inside the volume
+  const int inside = push.level.dimensions.x - cell.x;  // the number of blocks that are not beyond the volume
   [[unroll]] for (int k = 0; k < kGatherBrickEdge; ++k) {
     uvec2 rows;
     [[unroll]] for (int i = 0; i < 2; ++i) {
       const uint across = words[i][k / 2] >> 16 | words[i][k / 2 + 1] << 16;
       rows[i] = (k & 1) == odd ? words[i][(k + 1) / 2] : across;
     }
-    MediumQuads(push.medium).values[quad + k * kGatherBrickEdge] = rows & (k + 1 < count ? 0xffffffffu : k < count ? 0xffffu : 0u);
+    MediumQuads(push.medium).values[quad + k * kGatherBrickEdge] = rows & (k + 1 < inside ? 0xffffffffu : k < inside ? 0xffffu : 0u);
   }
 }
 

@@ -11,7 +11,7 @@ layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 // Coarse samples among those that are stored, whose numbers along both axes are odd.
 ivec2 coarseExtent() { return (frame.seenExtent + 1) / 2; }
 
-// Of a coarse sample, or of the nearest one that is stored.
+// The place in the lattice's sums of a coarse sample, or of the nearest one that is stored.
 int placeOfCoarse(ivec2 coarse) { return placeOfSample(frame.firstSeen + 2 * coarse); }
 
 #endif

@@ -133,9 +133,9 @@ struct SampleListHead {
 struct SamplesPush {
   uvec2 list;        // device address of the list that is marched if `step` is 0
   int step;          // otherwise every `step`-th sample along both axes is
-  int groupsOfARow;  // of workgroups, in the list
-  int rowsOfARange;
-  int firstRow;  // of the range that is marched
+  int groupsOfARow;  // length of a row of workgroups in the list
+  int rowsOfARange;  // number of rows of workgroups in each range of the list
+  int firstRow;      // first row of the range that is marched
 };
 
 struct GatherFrame {

@@ -28,8 +28,8 @@ bool isRough(ivec2 cell) {
 // Catmull-Rom interpolation in the middle between b and c.
 vec4 middle(vec4 a, vec4 b, vec4 c, vec4 d) { return (9.0 * (b + c) - a - d) / 16.0; }
 
-// `around` has the sums of E and of e times distance of the coarse samples nearest to this one, whose mean distance it takes. Where they have no
-// E, as in flames without smoke, it has none either.
+// `around` has the sums of E and of e times distance of the coarse samples nearest to this one, whose mean distance it takes. Where they
+// have no E, as in flames without smoke, it has none either.
 void setSample(int place, vec4 color, vec2 around) {
   color = max(color, vec4(0.0));
   if (around.x <= 0.0) color.a = 0.0;
@@ -38,9 +38,9 @@ void setSample(int place, vec4 color, vec2 around) {
 }
 
 void interpolate(ivec2 cell, int first) {
-  // Of the four rows of coarse samples around the cell: the value in the middle of the cell along x, and the sample at the cell's begin.
+  // Each of the four rows of coarse samples around the cell has a value in the middle of the cell along x, and a sample at its begin.
   vec4 middles[4], begins[4];
-  vec2 corners[4];  // of the cell: E and the sum of e times distance
+  vec2 corners[4];  // E, and the sum of e times distance, at the cell's corners
   [[unroll]] for (int j = 0; j < 4; ++j) {
     vec4 row[4];
     [[unroll]] for (int i = 0; i < 4; ++i) row[i] = texelFetch(colorEnergy, placeOfCoarse(cell + ivec2(i, j) - 1));

@@ -37,8 +37,11 @@ constexpr double kImageTolerance = 1e-5, kDistanceTolerance = 1e-4;
 /// The tolerance of scalars, which may round to the next interval of the transfer function's table, or to more or less than the least change
 /// whose mean is an integral.
 constexpr double kScalarTolerance = 3e-3;
-/// Within this part of the tolerance the device may find a cell rough or smooth.
-constexpr double kRoughnessBand = 1e-3;
+/// Within this part of the tolerance and 16 rounding errors of 24 bits, of which a fourth difference has as many, the device may find a
+/// cell rough or smooth.
+constexpr double kRoughnessBand = 1e-3, kRoughnessRounding = 16.0 / double(1 << 23);
+/// Least tolerance for the check of adaptive sampling: that of a homogeneous volume would be no more than rounding.
+constexpr double kLeastRoughness = 1e-4;
 /// Second difference of distances, in voxels, that is as rough as the tolerance.
 constexpr double kRoughVoxels = 2.0;
 constexpr double kRefinementTolerance = 1e-4;
@@ -229,7 +232,7 @@ Check checkEnd(GatherOutputs& device, const Camera& camera, const FrameSettings&
   return worst.atMost(tolerance, fmt::format("gather samples: E with rays that end early, {}", frame), "relative");
 }
 
-/// Adaptive sampling with the median roughness of C and E as the tolerance. All samples of `all` are marched.
+/// Adaptive sampling with the median roughness of C and E as the tolerance, or kLeastRoughness. All samples of `all` are marched.
 void checkRefinement(GatherOutputs& device, const Camera& camera, const FrameSettings& whole, double voxelSize, const GatherStages& all,
                      const char* frame, std::vector<Check>& checks) {
   const glm::ivec2 extent = all.lattice.samples;
@@ -240,9 +243,9 @@ void checkRefinement(GatherOutputs& device, const Camera& camera, const FrameSet
   if (rough.empty()) return;
   std::ranges::nth_element(rough, rough.begin() + std::ptrdiff_t(rough.size() / 2));
   FrameSettings settings = whole;
-  settings.sampleTolerance = float(rough[rough.size() / 2]);
+  settings.sampleTolerance = float(std::max(rough[rough.size() / 2], kLeastRoughness));
   const GatherStages adaptive = device.frame(camera, settings);
-  const double tolerance = double(settings.sampleTolerance), band = kRoughnessBand * tolerance;
+  const double tolerance = double(settings.sampleTolerance), band = kRoughnessBand * tolerance + kRoughnessRounding;
   std::vector<GatherSums> expected = all.gathered;
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const glm::ivec2 sample(int(i) % extent.x, int(i) / extent.x);
@@ -250,7 +253,8 @@ void checkRefinement(GatherOutputs& device, const Camera& camera, const FrameSet
     if (!found || *found > tolerance + band) continue;
     const GatherSums between = reference.interpolated(sample);
     const auto apart = [&](const GatherSums& sums) {
-      return glm::length(glm::dvec4(sums.color - adaptive.gathered[i].color, sums.energy - adaptive.gathered[i].energy));
+      const GatherSums& drawn = adaptive.gathered[i];
+      return glm::length(sums.color - drawn.color) + std::abs(sums.energy - drawn.energy) + std::abs(sums.distance - drawn.distance);
     };
     if (*found < tolerance - band || apart(between) < apart(expected[i])) expected[i] = between;
   }

@@ -178,21 +178,28 @@ void Commands::dispatchInvocations(const Pipeline& pipeline, const std::function
   dispatchGroups(bindAll, {std::uint32_t(std::min(groups, kRow)), std::uint32_t(rows), layers}, rows > 1 ? 1 : 0);
 }
 
-/// Begins a slice if so many workgroups of the current pass are expected not to fit into this one.
-void Commands::expectGroups(std::uint64_t count) {
-  const double cost = double(count) * device_.queue().costOf(pass_, device_.isCpu() ? kUnknownCpuCost : kUnknownGpuCost);
-  if (sliceMilliseconds_ > 0.0 && sliceMilliseconds_ + cost > kSliceMilliseconds && mayDivide()) {
+/// The device time that so many workgroups of the current pass are expected to take.
+double Commands::expectedMilliseconds(std::uint64_t groups) const {
+  return double(groups) * device_.queue().costOf(pass_, device_.isCpu() ? kUnknownCpuCost : kUnknownGpuCost);
+}
+
+/// Begins a slice if work of the current pass is expected not to fit into this one.
+void Commands::makeRoomInSlice(double milliseconds) {
+  if (sliceMilliseconds_ > 0.0 && sliceMilliseconds_ + milliseconds > kSliceMilliseconds && mayDivide()) {
     nextSlice();
     beginSpan(pass_);
   }
-  sliceMilliseconds_ += cost;
-  if (!passes_.empty()) passes_.back().units += double(count);
+  sliceMilliseconds_ += milliseconds;
+}
+
+void Commands::countGroups(std::uint64_t groups) {
+  if (!passes_.empty()) passes_.back().units += double(groups);
 }
 
 /// Divides the dispatch along `axis` into slices if it is expected to take longer than one.
 void Commands::dispatchGroups(const std::function<void()>& bindAll, glm::uvec3 groups, int axis) {
   const std::uint64_t count = std::uint64_t(groups.x) * groups.y * groups.z;
-  const double cost = double(count) * device_.queue().costOf(pass_, device_.isCpu() ? kUnknownCpuCost : kUnknownGpuCost);
+  const double cost = expectedMilliseconds(count);
   std::uint32_t parts = 1;
   if (sliceMilliseconds_ + cost > kSliceMilliseconds && mayDivide())
     parts = std::uint32_t(std::min(std::ceil(cost / kSliceMilliseconds), double(groups[axis])));
@@ -201,15 +208,11 @@ void Commands::dispatchGroups(const std::function<void()>& bindAll, glm::uvec3 g
     glm::uvec3 base(0), size = groups;
     base[axis] = boundary(part);
     size[axis] = boundary(part + 1) - base[axis];
-    if (sliceMilliseconds_ > 0.0 && sliceMilliseconds_ + cost / parts > kSliceMilliseconds && mayDivide()) {
-      nextSlice();
-      beginSpan(pass_);
-    }
+    makeRoomInSlice(cost / parts);
     bindAll();
     vkCmdDispatchBase(buffer_, base.x, base.y, base.z, size.x, size.y, size.z);
-    sliceMilliseconds_ += cost / parts;
   }
-  if (!passes_.empty()) passes_.back().units += double(count);
+  countGroups(count);
 }
 
 void Commands::fill(const RenderTarget& target, float value) {

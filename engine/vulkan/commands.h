@@ -80,7 +80,10 @@ class Commands {
   template <typename Push>
   void dispatchIndirect(const Pipeline& pipeline, std::span<const Binding> bindings, const Push& push, const Buffer& arguments,
                         VkDeviceSize offset, std::uint64_t mostGroups = 0) {
-    if (mostGroups > 0) expectGroups(mostGroups);
+    if (mostGroups > 0) {
+      makeRoomInSlice(expectedMilliseconds(mostGroups));
+      countGroups(mostGroups);
+    }
     bind(pipeline, bindings, &push, sizeof(Push));
     // Mesa 22.3's lavapipe would begin at the base workgroup of the last vkCmdDispatchBase.
     vkCmdDispatch(buffer_, 0, 0, 0);
@@ -139,7 +142,9 @@ class Commands {
   void dispatchInvocations(const Pipeline& pipeline, const std::function<void()>& bindAll, std::uint64_t count,
                            std::uint32_t layers);
   void dispatchGroups(const std::function<void()>& bindAll, glm::uvec3 groups, int axis);
-  void expectGroups(std::uint64_t count);
+  double expectedMilliseconds(std::uint64_t groups) const;
+  void makeRoomInSlice(double milliseconds);
+  void countGroups(std::uint64_t groups);
   void beginSlice();
   void endSlice();
   void nextSlice();
