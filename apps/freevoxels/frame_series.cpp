@@ -87,7 +87,7 @@ void FrameSeries::drawVolumes(std::span<const FrameJob> jobs) {
   VolumesAhead volumes(inputs, [this, limits, turn](const std::string& input) {
     // A baked volume is read no finer than the frames need, and not at all if they are drawn piece by piece.
     const SceneDescription scene = options_.sceneOf(input);
-    const int level = scene.finestLevelNeeded(turn);
+    const int level = scene.finestLevelNeeded(scene.input.baked().get(), turn);
     if (!isFilm_ && needsPieces(options_, limits, pieceDrawing(options_, scene, turn), level)) return std::shared_ptr<const Volume>();
     return std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level));
   });
@@ -138,7 +138,7 @@ void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<co
   const std::size_t drawnBefore = progress_.drawn;
   const std::optional<Scene> referenceBefore = reference_;
   bool inPieces = !volume;
-  for (int level = scene.finestLevelNeeded(int(jobs.size()));;) {
+  for (int level = scene.finestLevelNeeded(pieces.file.get(), int(jobs.size()));;) {
     try {
       return inPieces ? drawPieces(pieces, level, jobs) : drawWhole(std::move(volume), pieces, jobs);
     } catch (const Error& error) {

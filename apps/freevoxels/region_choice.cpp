@@ -30,7 +30,7 @@ PieceDrawing pieceDrawing(const RenderOptions& options, const SceneDescription& 
   result.settings = options.frameSettings();
   result.settings.lighting = view.lighting;
   if (!options.drawsShares()) {
-    const std::optional<std::string> reason = scene.isAsBaked(*view.volume, view.classification)
+    const std::optional<std::string> reason = isAsBaked(*view.volume, view.classification)
                                                   ? StreamedRenderer::whyNot(*result.file, result.settings)
                                                   : "another transfer function than the baked one needs all scalars";
     if (!reason) {

@@ -16,11 +16,9 @@ namespace {
 constexpr std::string_view kProceduralPrefix = "procedural:";
 
 Volume openBaked(const std::shared_ptr<const fvx::FvxFile>& file, std::uint64_t maximumVoxels, int level) {
-  const int fitting = finestLevel(*file, maximumVoxels);
-  Volume volume = readBaked(file, std::max(fitting, level));
-  if (fitting > level)
-    volume.warnings.push_back(fmt::format("{} is opened at 1/{} of its resolution: the {} voxels of its box are more than the {} that fit",
-                                          file->path().string(), 1 << fitting, resolutionText(file->dimensions(0)), maximumVoxels));
+  std::vector<std::string> warnings;
+  Volume volume = readBaked(file, levelThatFits(*file, level, maximumVoxels, warnings));
+  volume.warnings = std::move(warnings);
   return volume;
 }
 
@@ -46,6 +44,14 @@ std::string resolutionText(glm::ivec3 dimensions) {
 std::optional<std::string> proceduralName(const std::string& input) {
   if (!input.starts_with(kProceduralPrefix)) return std::nullopt;
   return input.substr(kProceduralPrefix.size());
+}
+
+int levelThatFits(const fvx::FvxFile& file, int level, std::uint64_t maximumVoxels, std::vector<std::string>& warnings) {
+  const int fitting = finestLevel(file, maximumVoxels);
+  if (fitting > level)
+    warnings.push_back(fmt::format("{} is opened at 1/{} of its resolution: the {} voxels of its box are more than the {} that fit",
+                                   file.path().string(), 1 << fitting, resolutionText(file.dimensions(0)), maximumVoxels));
+  return std::max(fitting, level);
 }
 
 Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolution, std::uint64_t maximumVoxels) {

@@ -100,16 +100,15 @@ Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level) cons
   return input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.albedoGrid}, level);
 }
 
-int SceneDescription::finestLevelNeeded(int frameCount) const {
-  const std::shared_ptr<const fvx::FvxFile> baked = input.baked();
-  if (!baked) return 0;
-  const Volume outline = bakedOutline(*baked);
+int SceneDescription::finestLevelNeeded(const fvx::FvxFile* file, int frameCount) const {
+  if (file == nullptr) return 0;
+  const Volume outline = bakedOutline(*file);
   const Classification classified = resolveClassification(outline);
   if (classified.transferFunction) return 0;
   FrameSettings frame;
   method.apply(frame);
   const HierarchyLayout hierarchy(outline.dimensions);
-  int level = baked->levels() - 1;
+  int level = file->levels() - 1;
   for (const Camera& one : cameras(outline, classified, frameCount)) {
     const PixelRays rays = pixelRays(one, camera.size, outline.indexToWorld);
     level = std::min(level, detailRule(hierarchy, rays, camera.size, double(frame.lod)).finest);
@@ -118,19 +117,8 @@ int SceneDescription::finestLevelNeeded(int frameCount) const {
   return std::max(level - 1, 0);
 }
 
-bool SceneDescription::isAsBaked(const Volume& volume, const Classification& classified) const {
-  // Another density scale leaves the content as it is; a transfer function does not.
-  return volume.classification &&
-         (volume.classificationIsFixed || (!classified.transferFunction && !volume.classification->transferFunction));
-}
-
 std::vector<Camera> SceneDescription::cameras(const Volume& volume, const Classification& classified, int frameCount) const {
-  const auto content = [&] {
-    if (!isAsBaked(volume, classified)) return contentOf(volume, classified);
-    const std::shared_ptr<const fvx::FvxFile> baked = input.baked();
-    return subjectOf(baked->content(), baked->description().volume);
-  };
-  return camera.resolve(volume.up, content, frameCount);
+  return camera.resolve(volume.up, [&] { return contentOf(volume, classified); }, frameCount);
 }
 
 Scene SceneDescription::resolve(std::shared_ptr<const Volume> volume) const {

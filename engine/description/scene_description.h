@@ -224,12 +224,10 @@ struct SceneDescription {
   void check() const;
   /// Reads the volume, with the grids that other fields need; of a baked one an octree level, which other volumes do not have.
   Volume readVolume(std::uint64_t maximumVoxels, int level = 0) const;
-  /// The level of a baked volume that frames need: one finer than the finest of which anything is drawn. 0 of other volumes, and
-  /// where the levels are of scalars that are classified by a transfer function.
-  int finestLevelNeeded(int frameCount) const;
-  /// Whether what is seen of a baked volume is what its file says, as its classification is the baked one or differs in density alone.
-  bool isAsBaked(const Volume& volume, const Classification& classification) const;
-  /// As CameraDescription::resolve; a baked volume's content is read from its file, so that it does not depend on the level.
+  /// The level of a baked volume that frames need: one finer than the finest of which anything is drawn. 0 where the levels are of
+  /// scalars that are classified by a transfer function, and without a file.
+  int finestLevelNeeded(const fvx::FvxFile* file, int frameCount) const;
+  /// As CameraDescription::resolve.
   std::vector<Camera> cameras(const Volume& volume, const Classification& classification, int frameCount = 1) const;
   /// Reads the other files and resolves everything.
   Scene resolve(std::shared_ptr<const Volume> volume) const;
@@ -258,6 +256,10 @@ std::string resolutionText(glm::ivec3 dimensions);
 
 /// NAME of "procedural:NAME"; nothing for a file.
 std::optional<std::string> proceduralName(const std::string& input);
+
+/// `level` of a baked volume, or, with a warning, the finest one whose box has at most `maximumVoxels` voxels if that is coarser. Fails
+/// as finestLevel does.
+int levelThatFits(const fvx::FvxFile& file, int level, std::uint64_t maximumVoxels, std::vector<std::string>& warnings);
 
 /// Calls makeProcedural, but fails with ErrorKind::OutOfMemory before allocating if the volume exceeds `maximumVoxels` or this
 /// machine's memory.

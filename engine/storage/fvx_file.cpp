@@ -67,7 +67,7 @@ FvxFile::FvxFile(const fs::path& file) : path_(file) {
   description_ = parseDescription({reinterpret_cast<const char*>(description.data()), description.size()}, file);
   const std::span<const std::byte> provenance = required(SectionKind::Provenance, "provenance");
   provenance_ = {reinterpret_cast<const char*>(provenance.data()), provenance.size()};
-  content_ = readContent();
+  description_.volume.content = std::make_shared<const Subject>(subjectOf(readContent(), description_.volume));
   dimensions_ = levelDimensions(description_.volume.dimensions);
   chunks_.resize(dimensions_.size());
   for (int level = 0; level < levels(); ++level)

@@ -33,7 +33,6 @@ class FvxFile {
   const Header& header() const { return *reinterpret_cast<const Header*>(map_.data()); }
   std::span<const Section> sections() const { return std::span(header().sections).first(header().sectionCount); }
   const Description& description() const { return description_; }
-  const ContentCells& content() const { return content_; }
   std::string_view provenance() const { return provenance_; }
   bool hasChannel(Channel channel) const { return description_.encodings[std::size_t(channel)].has_value(); }
 
@@ -82,7 +81,6 @@ class FvxFile {
   std::filesystem::path path_;
   boost::iostreams::mapped_file_source map_;
   Description description_;
-  ContentCells content_{.cells = Cells(glm::ivec3(0))};
   std::string_view provenance_;
   std::vector<glm::ivec3> dimensions_;
   std::vector<std::array<std::span<const ChunkEntry>, kChannels>> chunks_;

@@ -84,6 +84,7 @@ Volume clippedVolume(const Volume& volume, const VoxelBox& box) {
   const glm::ivec3 low = glm::max(box.first, glm::ivec3(0)), high = glm::min(box.last, volume.dimensions - 1);
   for (int axis = 0; axis < 3; ++axis) FV_CHECK_LE(low[axis], high[axis]);
   Volume part = volume;
+  part.content = nullptr;
   part.scalars = volume.scalars.cropped(low, high);
   if (volume.temperature) {
     part.temperature->values = volume.temperature->values.cropped(low, high);
@@ -104,6 +105,7 @@ Volume clippedVolume(const Volume& volume, const VoxelBox& box) {
 Volume clippedVolume(const Volume& volume, const ClipPlane& plane) {
   const VoxelDistance distance(volume.indexToWorld, plane);
   Volume part = volume;
+  part.content = nullptr;
   const auto clip = [&](ScalarBricks& bricks) { bricks = clippedBricks(bricks, distance); };
   clip(part.scalars);
   if (part.temperature) {

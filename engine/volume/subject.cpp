@@ -28,7 +28,14 @@ ContentCells contentCells(const Volume& volume, const Classification& classifica
   return {.cells = metCells(volume, classification, edge, kMinDensity * volume.maximum), .edge = double(edge)};
 }
 
+bool isAsBaked(const Volume& volume, const Classification& classification) {
+  // Another density scale leaves the content as it is; a transfer function does not.
+  return volume.classification &&
+         (volume.classificationIsFixed || (!classification.transferFunction && !volume.classification->transferFunction));
+}
+
 Subject contentOf(const Volume& volume, const Classification& classification) {
+  if (volume.content && isAsBaked(volume, classification)) return *volume.content;
   return subjectOf(contentCells(volume, classification), volume);
 }
 

@@ -33,7 +33,10 @@ ContentCells contentCells(const Volume& volume, const Classification& classifica
 /// The cells in which something is seen; the whole box where there are none. Of `volume` the box is read, not the values.
 Subject subjectOf(const ContentCells& content, const Volume& volume);
 
-/// The same for the cells of a volume.
+/// Whether what is seen of a volume is what its file says, as its classification is that of the file or differs in density alone.
+bool isAsBaked(const Volume& volume, const Classification& classification);
+
+/// What is seen of a volume: what its file says where it is as baked, otherwise what the volume's own cells hold.
 Subject contentOf(const Volume& volume, const Classification& classification);
 
 }  // namespace freevoxels

@@ -14,6 +14,7 @@
 namespace freevoxels {
 
 struct Classification;
+struct Subject;
 
 /// Temperatures in addition to a volume's scalars.
 struct TemperatureGrid {
@@ -57,6 +58,9 @@ struct Volume {
   std::shared_ptr<const Classification> classification;
   /// The values are as exact as `classification` needs them, and not exact enough for another one.
   bool classificationIsFixed = false;
+  /// What is seen with `classification`, as the volume's file says, so that every level of detail is framed alike (subject.h); null
+  /// where the voxels of this volume are to be asked.
+  std::shared_ptr<const Subject> content;
 
   std::size_t voxelCount() const {
     return std::size_t(dimensions.x) * std::size_t(dimensions.y) * std::size_t(dimensions.z);

@@ -231,15 +231,38 @@ TEST(BakedVolume, PartsOfAnOpenVdbFileMakeTheSameFileAsTheWhole) {
   EXPECT_TRUE(test::readBytes(folder / "whole.fvx") == test::readBytes(folder / "parts.fvx"));
 }
 
-TEST(BakedVolume, WhatIsSeenIsInTheFileWhateverTheLevel) {
+TEST(BakedVolume, WhatIsSeenTravelsWithEveryLevel) {
   const test::TemporaryFolder folder;
-  const Volume volume = test::smoothVolume();
-  bakeVolume(folder / "a.fvx", volume, kDense, {});
-  const FvxFile file(folder / "a.fvx");
-  const Subject stored = subjectOf(file.content(), file.description().volume), found = contentOf(volume, kDense);
-  EXPECT_EQ(stored.points, found.points);
-  EXPECT_EQ(stored.centre, found.centre);
-  EXPECT_EQ(bakedOutline(file, 2).dimensions, glm::ivec3(18, 11, 10));
+  // Boxes that end with a group of 4 voxels, a brick, a chunk, and elsewhere.
+  for (const glm::ivec3 dimensions : {glm::ivec3(70, 41, 37), {4, 4, 4}, {8, 16, 9}, {32, 64, 31}, {33, 7, 65}, {2, 1, 40}}) {
+    const Volume volume = test::smoothVolume(dimensions);
+    const Subject found = contentOf(volume, kDense);
+    bakeVolume(folder / "a.fvx", volume, kDense, {});
+    const auto file = std::make_shared<const FvxFile>(folder / "a.fvx");
+    for (int level = 0; level < file->levels(); ++level)
+      for (const Volume& read : {readBaked(file, level), bakedOutline(*file, level)}) {
+        const Subject subject = contentOf(read, {.densityScale = 7.0});
+        EXPECT_EQ(subject.points, found.points) << level;
+        EXPECT_EQ(subject.centre, found.centre) << level;
+      }
+  }
+}
+
+/// How far along x something is seen.
+double farthestX(const Volume& volume, const Classification& classification) {
+  double farthest = -1e9;
+  for (const glm::dvec3& point : contentOf(volume, classification).points) farthest = std::max(farthest, point.x);
+  return farthest;
+}
+
+TEST(BakedVolume, WhatIsSeenOfAPartOrOtherwiseClassifiedIsFoundInTheVoxels) {
+  const test::TemporaryFolder folder;
+  const Volume whole = test::bakedAndRead(folder / "a.fvx", test::smoothVolume(), kDense, {.keepScalars = true});
+  const double farthest = farthestX(whole, kDense);
+  EXPECT_LT(farthestX(clippedVolume(whole, VoxelBox{{3, 4, 5}, {20, 20, 20}}), kDense), farthest);
+  const ClipPlane plane{.point = glm::dvec3(whole.indexToWorld * glm::dvec4(10.0, 0.0, 0.0, 1.0))};
+  EXPECT_LT(farthestX(clippedVolume(whole, plane), kDense), farthest);
+  EXPECT_NE(contentOf(whole, banded()).points, contentOf(whole, kDense).points);
 }
 
 /// Bytes of a file that are in memory.
