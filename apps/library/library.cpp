@@ -92,7 +92,7 @@ struct Context::State {
 };
 
 struct Volume::State {
-  std::shared_ptr<const freevoxels::Volume> volume;
+  std::shared_ptr<const SharedVolume> volume;
 };
 
 struct Frame::State {
@@ -159,29 +159,29 @@ Volume Volume::open(const std::filesystem::path& file, std::string_view scene) {
 Volume Volume::copy(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement) {
   return translated([&] {
     return Volume(std::make_shared<const State>(
-        std::make_shared<const freevoxels::Volume>(volumeOf(values, dimensions, placement))));
+        std::make_shared<const SharedVolume>(volumeOf(values, dimensions, placement))));
   });
 }
 
 std::array<int, 3> Volume::dimensions() const {
-  const glm::ivec3 size = state_->volume->dimensions;
+  const glm::ivec3 size = state_->volume->describe().dimensions;
   return {size.x, size.y, size.z};
 }
 
 std::uint64_t Volume::activeVoxels() const {
-  return state_->volume->activeVoxels;
+  return state_->volume->describe().activeVoxels;
 }
 
 std::pair<float, float> Volume::range() const {
-  return {state_->volume->minimum, state_->volume->maximum};
+  return {state_->volume->describe().minimum, state_->volume->describe().maximum};
 }
 
 std::string Volume::source() const {
-  return state_->volume->source;
+  return state_->volume->describe().source;
 }
 
 std::vector<std::string> Volume::warnings() const {
-  std::vector<std::string> warnings = warningsOf(*state_->volume, false);
+  std::vector<std::string> warnings = warningsOf(state_->volume->describe(), false);
   for (std::string& warning : warnings) warning = withSceneKeys(warning);
   return warnings;
 }

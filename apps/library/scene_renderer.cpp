@@ -23,7 +23,7 @@ KeywordOptions::Sections sections(bool ofFile, bool choosesDevice) {
 
 }  // namespace
 
-std::shared_ptr<const Volume> openVolume(const std::string& file, const Json& keywords, const std::shared_ptr<DeviceContext>& context) {
+std::shared_ptr<const SharedVolume> openVolume(const std::string& file, const Json& keywords, const std::shared_ptr<DeviceContext>& context) {
   Json named = keywords;
   if (!file.empty()) named["volume"] = file;
   const KeywordOptions options({named}, sections(true, !context));
@@ -31,7 +31,9 @@ std::shared_ptr<const Volume> openVolume(const std::string& file, const Json& ke
     fail(ErrorKind::Usage, "there is no volume to open: name a file or procedural:NAME, or give a scene with a {}", Parameter("volume"));
   options.scene.check();
   const std::shared_ptr<DeviceContext> used = context ? context : sharedContext(options.device);
-  return std::make_shared<const Volume>(options.scene.readVolume(maximumVoxels(*used->device)));
+  const std::uint64_t most = maximumVoxels(*used->device);
+  if (auto baked = options.scene.input.baked()) return std::make_shared<const SharedVolume>(std::move(baked), most);
+  return std::make_shared<const SharedVolume>(options.scene.readVolume(most));
 }
 
 void saveImage(const std::string& file, const Image& image, const Json& keywords) {
@@ -58,7 +60,7 @@ void saveScene(const std::filesystem::path& file, const Json& keywords) {
   writeScene(file, options.scene);
 }
 
-SceneRenderer::SceneRenderer(std::shared_ptr<const Volume> volume, Json keywords, std::shared_ptr<DeviceContext> context)
+SceneRenderer::SceneRenderer(std::shared_ptr<const SharedVolume> volume, Json keywords, std::shared_ptr<DeviceContext> context)
     : volume_(std::move(volume)),
       keywords_(std::move(keywords)),
       choosesDevice_(!context),
@@ -72,25 +74,35 @@ std::unique_ptr<const KeywordOptions> SceneRenderer::read(const Json& more) cons
   return options;
 }
 
-/// Makes renderer_ anew if the options need another one. The context's mutex is held.
+/// Makes renderer_ anew if the options need another one.
 FrameSettings SceneRenderer::prepare(const KeywordOptions& options, bool depth, const Progress& progress) {
   FrameSettings settings{.size = options.scene.camera.size, .depth = depth};
   options.scene.method.apply(settings);
   checkFrameFits(*context_->device, settings);
-  scene_.volume = volume_;
+  const int level = volume_->levelFor(options.scene);
+  if (!scene_.volume || level != level_) {
+    renderer_ = nullptr;  // which refers to the volume
+    scene_.volume = nullptr;
+    scene_.volume = volume_->read(level);
+    level_ = level;
+  }
   const std::string classification = textOf(options.scene, {"classification", "emission"});
   if (!renderer_ || classification != classification_) {
-    scene_.classification = options.scene.resolveClassification(*volume_);
+    scene_.classification = options.scene.resolveClassification(*scene_.volume);
     classification_ = classification;
   }
   options.scene.resolveView(scene_);
   settings.lighting = scene_.lighting;
-  const std::string text = rendererText(options.scene, scene_);
-  if (renderer_ && text == rendererText_) return settings;
-  renderer_ = nullptr;  // so that the device never holds two
-  renderer_ = std::make_unique<Renderer>(*context_->device, *volume_, scene_.classification, options.scene.method.table(), progress);
-  rendererText_ = text;
+  makeRenderer(options, progress);
   return settings;
+}
+
+void SceneRenderer::makeRenderer(const KeywordOptions& options, const Progress& progress) {
+  const std::string text = rendererText(options.scene, scene_);
+  if (renderer_ && text == rendererText_) return;
+  renderer_ = nullptr;  // so that the device never holds two
+  renderer_ = std::make_unique<Renderer>(*context_->device, *scene_.volume, scene_.classification, options.scene.method.table(), progress);
+  rendererText_ = text;
 }
 
 Image SceneRenderer::render(const KeywordOptions& options, bool depth, const Progress& progress) {

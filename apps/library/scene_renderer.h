@@ -5,9 +5,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "apps/library/device_context.h"
 #include "apps/library/keyword_options.h"
+#include "apps/library/shared_volume.h"
 #include "engine/renderer.h"
 
 namespace freevoxels {
@@ -15,9 +17,9 @@ namespace freevoxels {
 /// Reads a file or makes "procedural:NAME", at most as large as the device of `context` can hold; if it is null, that of the
 /// keywords. `keywords` are the grid, the resolution and the scene of later frames, which decides what other grids are needed.
 /// Without a file it is the volume of the scene.
-/// Fails as readVdb does.
-std::shared_ptr<const Volume> openVolume(const std::string& file, const nlohmann::json& keywords,
-                                         const std::shared_ptr<DeviceContext>& context = nullptr);
+/// Fails as readVdb does, and for a baked file as FvxFile does.
+std::shared_ptr<const SharedVolume> openVolume(const std::string& file, const nlohmann::json& keywords,
+                                               const std::shared_ptr<DeviceContext>& context = nullptr);
 
 /// Writes an image as `freevoxels render` does. `keywords` are options of the section "output".
 void saveImage(const std::string& file, const Image& image, const nlohmann::json& keywords);
@@ -32,7 +34,7 @@ class SceneRenderer {
  public:
   /// `keywords` (KeywordOptions) hold for every frame. The table is made for the first frame that needs it. If `context` is
   /// null, the keywords choose the device, which is opened here.
-  SceneRenderer(std::shared_ptr<const Volume> volume, nlohmann::json keywords, std::shared_ptr<DeviceContext> context = nullptr);
+  SceneRenderer(std::shared_ptr<const SharedVolume> volume, nlohmann::json keywords, std::shared_ptr<DeviceContext> context = nullptr);
 
   /// Reads the options of a frame: the renderer's keywords, overridden by `more`.
   std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more) const;
@@ -48,11 +50,15 @@ class SceneRenderer {
 
  private:
   FrameSettings prepare(const KeywordOptions& options, bool depth, const Progress& progress);
+  void makeRenderer(const KeywordOptions& options, const Progress& progress);
 
-  const std::shared_ptr<const Volume> volume_;
+  const std::shared_ptr<const SharedVolume> volume_;
   const nlohmann::json keywords_;
   const bool choosesDevice_;  ///< whether the keywords choose the device
   const std::shared_ptr<DeviceContext> context_;
+
+  // While context_->mutex is held:
+  int level_ = 0;               ///< of scene_.volume, if that is not null
   Scene scene_;                 ///< scene of the last frame
   std::string classification_;  ///< the fields of which scene_.classification was made
   std::string rendererText_;    ///< rendererText for which renderer_ was made

@@ -28,7 +28,9 @@ using Triple = std::array<double, 3>;
 using Matrix = std::array<std::array<double, 4>, 4>;
 
 struct PythonVolume {
-  std::shared_ptr<const Volume> volume;
+  std::shared_ptr<const SharedVolume> volume;
+
+  const Volume& describe() const { return volume->describe(); }
 };
 
 glm::dmat4 placementOf(const std::variant<double, Triple>& spacing, const Triple& origin, const std::optional<Matrix>& transform) {
@@ -52,7 +54,7 @@ PythonVolume volumeFromArray(const py::array& array, const std::variant<double, 
   const ArrayPlacement place{placementOf(spacing, origin, transform), noData};
   Volume volume = volumeOfArray(array, temperature, place);
   warnInPython(volume);
-  return {std::make_shared<const Volume>(std::move(volume))};
+  return {std::make_shared<const SharedVolume>(std::move(volume))};
 }
 
 PythonVolume volumeFromFile(const std::optional<std::filesystem::path>& file, const py::kwargs& keywords) {
@@ -62,7 +64,7 @@ PythonVolume volumeFromFile(const std::optional<std::filesystem::path>& file, co
     const py::gil_scoped_release withoutGil;
     opened.volume = openVolume(file ? file->string() : "", options);
   }
-  warnInPython(*opened.volume);
+  warnInPython(opened.describe());
   return opened;
 }
 
@@ -128,20 +130,21 @@ void addVolume(py::module_& module) {
            "the same shape, for emission.")
       .def_static("open", &volumeFromFile, "file"_a = py::none(),
                   "Reads an OpenVDB file, or makes 'procedural:NAME'; without a file the volume of a scene. Options: grid, resolution, and those of a frame, of which\n"
-                  "emission=True, temperature_grid and albedo_grid add grids to read.")
+                  "emission=True, temperature_grid and albedo_grid add grids to read. Of a baked volume (.fvx) a level of detail is read\n"
+                  "when a frame needs it.")
       .def_property_readonly("shape", [](const PythonVolume& v) {
-        const glm::ivec3 size = v.volume->dimensions;
+        const glm::ivec3 size = v.describe().dimensions;
         return py::make_tuple(size.z, size.y, size.x);
       }, "Voxels along z, y and x.")
-      .def_property_readonly("range", [](const PythonVolume& v) { return std::pair(v.volume->minimum, v.volume->maximum); },
+      .def_property_readonly("range", [](const PythonVolume& v) { return std::pair(v.describe().minimum, v.describe().maximum); },
                              "The least and the largest value of the voxels that hold data.")
-      .def_property_readonly("active_voxels", [](const PythonVolume& v) { return v.volume->activeVoxels; },
+      .def_property_readonly("active_voxels", [](const PythonVolume& v) { return v.describe().activeVoxels; },
                              "How many voxels hold data.")
       .def_property_readonly("origin", [](const PythonVolume& v) {
-        const glm::dvec3 origin(v.volume->indexToWorld[3]);
+        const glm::dvec3 origin(v.describe().indexToWorld[3]);
         return py::make_tuple(origin.x, origin.y, origin.z);
       }, "World position (x, y, z) of the centre of voxel [0, 0, 0].")
-      .def_property_readonly("source", [](const PythonVolume& v) { return v.volume->source; }, "File and grid, for messages.");
+      .def_property_readonly("source", [](const PythonVolume& v) { return v.describe().source; }, "File and grid, for messages.");
 }
 
 void addRenderer(py::module_& module) {

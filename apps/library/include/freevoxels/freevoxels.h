@@ -102,12 +102,13 @@ struct Placement {
   std::array<double, 3> origin{0.0, 0.0, 0.0};   ///< world position of the centre of voxel (0, 0, 0)
 };
 
-/// A volume in memory. Copies share its data.
+/// A volume in memory, or a baked file that is open. Copies share its data.
 class FREEVOXELS_API Volume {
  public:
   /// Reads an OpenVDB file, or makes "procedural:NAME"; if `file` is empty, that of the scene's key "volume". `scene` names the grid and
   /// the resolution, and has the keys of later frames: emission, temperature-grid and albedo-grid decide which further grids are
-  /// read. Throws if the device cannot hold the volume, except that a baked volume is opened at a lower resolution instead.
+  /// read. Throws if the device cannot hold the volume, except that a baked volume is opened at a lower resolution instead. The values
+  /// of a baked volume are read when it is drawn, from the level of detail that the frame needs; its file must not be changed meanwhile.
   static Volume open(const Context& context, const std::filesystem::path& file, std::string_view scene = "{}");
   /// For the device of the keys "device" and "memory-limit", which is opened.
   static Volume open(const std::filesystem::path& file, std::string_view scene = "{}");

@@ -1,0 +1,72 @@
+// Baked volumes through the installed interface: the command line's images.
+
+#include <fmt/format.h>
+#include <freevoxels/freevoxels.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "tests/temporary_folder.h"
+
+namespace freevoxels {
+namespace {
+
+/// The program, in a folder of its own.
+class BakedTest : public ::testing::Test {
+ protected:
+  void run(const std::string& arguments) const {
+    const std::string command = fmt::format("cd '{}' && '{}' {} --quiet", folder_.path().string(), FREEVOXELS_PROGRAM, arguments);
+    EXPECT_EQ(std::system(command.c_str()), 0) << command;
+  }
+  std::string commandsImage(const std::string& arguments) const {
+    run("render " + arguments + " theirs.png");
+    return test::readBytes(folder_ / "theirs.png");
+  }
+  std::string saved(const v1::Image& image) const {
+    v1::save(folder_ / "ours.png", image);
+    return test::readBytes(folder_ / "ours.png");
+  }
+
+  const test::TemporaryFolder folder_;
+};
+
+TEST_F(BakedTest, ImagesAreThoseOfTheCommandLine) {
+  // Boxes that end with a group of 4 voxels, a brick, a chunk, and elsewhere.
+  for (const char* bake : {"4x12x8", "16x8x24 --keep-scalars", "33x32x31 --density-scale 30 --compress", "64x72x40"}) {
+    run(fmt::format("bake procedural:cloud a.fvx --resolution {}", bake));
+    const v1::Volume volume = v1::Volume::open(folder_ / "a.fvx");
+    for (const int size : {12, 96})
+      EXPECT_TRUE(saved(v1::Renderer(volume, fmt::format(R"({{"size": {}}})", size)).render()) ==
+                  commandsImage(fmt::format("a.fvx --size {}", size)))
+          << bake << " " << size;
+  }
+}
+
+TEST_F(BakedTest, ARendererReadsTheLevelOfDetailThatEachFrameNeeds) {
+  run("bake procedural:cloud a.fvx --resolution 72x70x65");
+  const v1::Volume volume = v1::Volume::open(folder_ / "a.fvx");
+  EXPECT_EQ(volume.dimensions()[0] / 36, 1) << "of the finest level, whatever is drawn";
+  v1::Renderer shared(volume);
+  for (const int size : {200, 10, 40, 200}) {
+    const std::string scene = fmt::format(R"({{"size": {}}})", size);
+    EXPECT_TRUE(saved(shared.render(scene)) == commandsImage(fmt::format("a.fvx --size {}", size))) << size;
+  }
+}
+
+TEST_F(BakedTest, ADamagedChunkIsNamedWhenItIsDrawn) {
+  run("bake procedural:cloud a.fvx --resolution 40");
+  std::string bytes = test::readBytes(folder_ / "a.fvx");
+  bytes[bytes.size() / 2] = char(bytes[bytes.size() / 2] ^ 0x55);
+  test::writeBytes(folder_ / "b.fvx", bytes);
+  try {
+    v1::Renderer(v1::Volume::open(folder_ / "b.fvx"), R"({"size": 200})").render();
+    ADD_FAILURE() << "was drawn";
+  } catch (const v1::Error& error) {
+    EXPECT_EQ(error.kind(), v1::ErrorKind::Input);
+    EXPECT_NE(std::string(error.what()).find("b.fvx"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace freevoxels
