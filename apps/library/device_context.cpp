@@ -1,14 +1,41 @@
 #include "apps/library/device_context.h"
 
 #include <map>
+#include <mutex>
 #include <utility>
 
 #include "engine/core/error.h"
 
 namespace freevoxels {
 
+namespace {
+
+/// Whether this thread is in a validation log.
+thread_local bool isInsideLog = false;
+
+struct InsideLog {
+  InsideLog() { isInsideLog = true; }
+  ~InsideLog() { isInsideLog = false; }
+};
+
+/// `log` where the calls are noted; null where `log` is.
+ValidationLog noted(const ValidationLog& log) {
+  refuseInsideValidationLog();
+  if (log == nullptr) return nullptr;
+  return [log](std::string_view message) {
+    const InsideLog inside;
+    log(message);
+  };
+}
+
+}  // namespace
+
+void refuseInsideValidationLog() {
+  if (isInsideLog) fail(ErrorKind::Usage, "nothing can be drawn or opened in a function that logs Vulkan's validation: do it afterwards");
+}
+
 DeviceContext::DeviceContext(const DeviceOptions& options, const ValidationLog& log)
-    : isAdopted(false), instance(log != nullptr, log), device(options.open(instance)) {}
+    : isAdopted(false), instance(log != nullptr, noted(log)), device(options.open(instance)) {}
 
 DeviceContext::DeviceContext(VkInstance adoptedInstance, const AdoptedDevice& adopted, const DeviceOptions& options)
     : isAdopted(true), instance(adoptedInstance), device(options.adopt(instance, adopted)) {}
@@ -19,6 +46,7 @@ void DeviceContext::checkValidation() const {
 }
 
 std::shared_ptr<DeviceContext> sharedContext(const DeviceOptions& options) {
+  refuseInsideValidationLog();
   static std::mutex opening;
   const std::lock_guard lock(opening);
   // Never destroyed, because Python or static objects may release the last renderer after Vulkan's own static

@@ -2,9 +2,9 @@
 // The Vulkan devices that renderers share.
 
 #include <memory>
-#include <mutex>
 
 #include "apps/freevoxels/device_options.h"
+#include "apps/library/drawing_turns.h"
 #include "engine/vulkan/device.h"
 
 namespace freevoxels {
@@ -22,8 +22,12 @@ struct DeviceContext {
   const bool isAdopted;  ///< whether `device` is the caller's
   const Instance instance;
   const std::unique_ptr<const Device> device;
-  std::mutex mutex;  ///< is held while a frame is drawn
+  DrawingTurns turns;  ///< is held while a frame is drawn
 };
+
+/// Fails with ErrorKind::Usage in a function that is given the messages of the validation layers. Such a function runs in the middle of
+/// a call of Vulkan, whose locks it would wait for.
+void refuseInsideValidationLog();
 
 /// The context for these options. It is opened by the first call and kept until the process ends. Any thread
 /// may call this. Fails with ErrorKind::Device.

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <utility>
 
+#include "engine/core/error.h"
 #include "engine/vulkan/queue.h"
 
 namespace freevoxels {
@@ -15,6 +16,9 @@ void SubmittedFrame::run() {
     if (cancelled_) throw FrameCancelled();
   };
   try {
+    // The renderer takes the turn itself, but would not see that the frame is cancelled while it waits.
+    if (!context_->turns.lockUnless([this] { return cancelled_.load(); })) throw FrameCancelled();
+    const std::lock_guard turn(context_->turns, std::adopt_lock);
     throwIfCancelled();
     targets_ = draw_([&](std::string_view stage, double fraction) {
       throwIfCancelled();
@@ -36,7 +40,16 @@ bool SubmittedFrame::ready() const {
 }
 
 void SubmittedFrame::wait() const {
+  refuseInsideValidationLog();
+  if (!ready() && DrawingTurns::anyIsHeldByThisThread())
+    fail(ErrorKind::Usage, "a frame that is not complete cannot be waited for in a progress function, as frames are drawn one after another: "
+                           "wait for it afterwards");
   done_.get();
+}
+
+void SubmittedFrame::cancel() {
+  cancelled_ = true;
+  DrawingTurns::wake();
 }
 
 const FrameTargets& SubmittedFrame::targets() const {

@@ -28,13 +28,14 @@ class SubmittedFrame {
   /// `draw` draws the frame and calls the progress function that it is given, which also calls `progress`.
   SubmittedFrame(std::shared_ptr<DeviceContext> context, Draw draw, Progress progress);
 
-  /// Draws the frame, unless it is cancelled.
+  /// Waits for the frame's turn and draws it, unless it is cancelled.
   void run();
 
   bool ready() const;
-  /// Waits until the frame is drawn. Throws what `draw` threw, or FrameCancelled.
+  /// Waits until the frame is drawn. Throws what `draw` threw, or FrameCancelled. Fails with ErrorKind::Usage in a progress
+  /// function, where the frame might never come to its turn.
   void wait() const;
-  void cancel() { cancelled_ = true; }
+  void cancel();
 
   /// Waits. The images of the frame, complete and in layout GENERAL. The renderer draws no other frame into them as long as this
   /// object exists.

@@ -60,6 +60,24 @@ void saveScene(const std::filesystem::path& file, const Json& keywords) {
   writeScene(file, options.scene);
 }
 
+/// The turn of a frame on the device, for as long as this object exists.
+class SceneRenderer::Turn {
+ public:
+  explicit Turn(SceneRenderer& renderer) : renderer_(renderer), lock_(renderer.context_->turns) {
+    if (renderer.isDrawing_)
+      fail(ErrorKind::Usage, "a renderer cannot draw a frame in the progress function of another of its frames: use a second renderer, "
+                             "or draw it afterwards");
+    renderer_.isDrawing_ = true;
+  }
+  ~Turn() { renderer_.isDrawing_ = false; }
+  Turn(const Turn&) = delete;
+  Turn& operator=(const Turn&) = delete;
+
+ private:
+  SceneRenderer& renderer_;
+  const std::lock_guard<DrawingTurns> lock_;
+};
+
 SceneRenderer::SceneRenderer(std::shared_ptr<const SharedVolume> volume, Json keywords, std::shared_ptr<DeviceContext> context)
     : volume_(std::move(volume)),
       keywords_(std::move(keywords)),
@@ -105,25 +123,34 @@ void SceneRenderer::makeRenderer(const KeywordOptions& options, const Progress& 
   rendererText_ = text;
 }
 
+void SceneRenderer::complete() {
+  context_->checkValidation();
+  std::vector<StageTime> times = renderer_->timings();
+  const std::lock_guard lock(timingsMutex_);
+  timings_ = std::move(times);
+}
+
 Image SceneRenderer::render(const KeywordOptions& options, bool depth, const Progress& progress) {
-  const std::lock_guard lock(context_->mutex);
+  refuseInsideValidationLog();
+  const Turn turn(*this);
   const FrameSettings settings = prepare(options, depth, progress);
   Image image = renderer_->render(scene_.camera, settings, progress);
-  context_->checkValidation();
+  complete();
   return image;
 }
 
 std::shared_ptr<const FrameTargets> SceneRenderer::renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress) {
-  const std::lock_guard lock(context_->mutex);
+  refuseInsideValidationLog();
+  const Turn turn(*this);
   const FrameSettings settings = prepare(options, depth, progress);
   std::shared_ptr<const FrameTargets> targets = renderer_->renderOnDevice(scene_.camera, settings, progress);
-  context_->checkValidation();
+  complete();
   return targets;
 }
 
 std::vector<StageTime> SceneRenderer::timings() const {
-  const std::lock_guard lock(context_->mutex);
-  return renderer_ ? renderer_->timings() : std::vector<StageTime>{};
+  const std::lock_guard lock(timingsMutex_);
+  return timings_;
 }
 
 }  // namespace freevoxels

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -29,7 +30,8 @@ nlohmann::json loadScene(const std::filesystem::path& file);
 /// Writes keywords as a scene file, with names of files relative to its folder.
 void saveScene(const std::filesystem::path& file, const nlohmann::json& keywords);
 
-/// Any thread may call the member functions; the frames of one device are drawn one after another.
+/// Any thread may call the member functions; the frames of one device are drawn one after another. A progress function may call them
+/// too, except that it cannot draw with the renderer that calls it: ErrorKind::Usage.
 class SceneRenderer {
  public:
   /// `keywords` (KeywordOptions) hold for every frame. The table is made for the first frame that needs it. If `context` is
@@ -44,25 +46,31 @@ class SceneRenderer {
   /// The same frame, which stays on the device, complete.
   std::shared_ptr<const FrameTargets> renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress);
 
-  /// Stage times of the last frame and of the data from which it was drawn.
+  /// Stage times of the last complete frame and of the data from which it was drawn. Does not wait for a frame that is being drawn.
   std::vector<StageTime> timings() const;
   const std::shared_ptr<DeviceContext>& context() const { return context_; }
 
  private:
+  class Turn;
   FrameSettings prepare(const KeywordOptions& options, bool depth, const Progress& progress);
   void makeRenderer(const KeywordOptions& options, const Progress& progress);
+  void complete();
 
   const std::shared_ptr<const SharedVolume> volume_;
   const nlohmann::json keywords_;
   const bool choosesDevice_;  ///< whether the keywords choose the device
   const std::shared_ptr<DeviceContext> context_;
 
-  // While context_->mutex is held:
+  // While context_->turns is held:
+  bool isDrawing_ = false;
   int level_ = 0;               ///< of scene_.volume, if that is not null
   Scene scene_;                 ///< scene of the last frame
   std::string classification_;  ///< the fields of which scene_.classification was made
   std::string rendererText_;    ///< rendererText for which renderer_ was made
   std::unique_ptr<Renderer> renderer_;
+
+  mutable std::mutex timingsMutex_;  ///< guards timings_
+  std::vector<StageTime> timings_;
 };
 
 }  // namespace freevoxels

@@ -69,7 +69,9 @@ PythonVolume volumeFromFile(const std::optional<std::filesystem::path>& file, co
 }
 
 std::unique_ptr<SceneRenderer> makeRenderer(const PythonVolume& volume, const py::kwargs& keywords) {
-  return std::make_unique<SceneRenderer>(volume.volume, jsonOf(keywords));
+  Json options = jsonOf(keywords);
+  const py::gil_scoped_release withoutGil;  // which another thread may need that opens the device
+  return std::make_unique<SceneRenderer>(volume.volume, std::move(options));
 }
 
 py::object render(SceneRenderer& renderer, const py::object& progress, bool depth, const py::kwargs& keywords) {
@@ -158,8 +160,8 @@ void addRenderer(py::module_& module) {
            "Returns float32 (height, width, 4): linear red, green and blue, multiplied by alpha, and alpha; row 0 is the top.\n"
            "With depth=True returns (image, depth), the latter float32 (height, width): mean distance along the viewing axis\n"
            "of what is seen, infinite where there is nothing. progress(stage, fraction) is called about every 50 ms of work;\n"
-           "an exception that it raises abandons the frame. Options given here hold for this frame.")
-      .def_property_readonly("timings", &timingsOf, "List of (stage, milliseconds) of the last frame and of the data from which it was drawn.")
+           "an exception that it raises abandons the frame. It may draw with other renderers. Options given here hold for this frame.")
+      .def_property_readonly("timings", &timingsOf, "List of (stage, milliseconds) of the last complete frame and of the data from which it was drawn.")
       .def_property_readonly("device", [](const SceneRenderer& r) { return r.context()->device->description().name; }, "Name of the Vulkan device.");
 }
 

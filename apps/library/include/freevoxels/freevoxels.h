@@ -66,7 +66,9 @@ class FREEVOXELS_API Error : public std::runtime_error {
 
 /// Called about every 50 ms with the name of a stage and the fraction of the work that is done, 0..1: by the thread that called
 /// render(), or, for a submitted frame, by a thread of the renderer. An exception that it throws cancels the work and is passed on
-/// to the caller.
+/// to the caller. It may call functions of this library, also draw with another renderer, whose frame it then waits for. ErrorKind::Usage is
+/// thrown by what might never end: drawing with the renderer that calls it, and waiting for a submitted frame that is not complete. It must
+/// not destroy the renderer that calls it.
 using Progress = std::function<void(std::string_view stage, double fraction)>;
 
 struct ContextOptions {
@@ -74,7 +76,8 @@ struct ContextOptions {
   /// CPU device.
   std::string device;
   int memoryLimit = 0;  ///< MiB of device memory that may be allocated; 0: all
-  /// If set, the Vulkan validation layers are on and their messages are passed to it, by any thread. For debugging.
+  /// If set, the Vulkan validation layers are on and their messages are passed to it, by any thread, in the middle of a call of Vulkan:
+  /// nothing can be drawn or opened there. For debugging.
   std::function<void(std::string_view message)> validationLog;
 };
 
@@ -184,7 +187,7 @@ class FREEVOXELS_API Renderer {
   /// for errors of `scene`; Frame::wait() throws those of drawing.
   Frame submit(std::string_view scene = "{}", bool withDepth = false, Progress progress = {});
 
-  /// Stages and milliseconds of the last frame and of the data from which it was drawn. Waits for a frame that is being drawn.
+  /// Stages and milliseconds of the last complete frame and of the data from which it was drawn. Waits for nothing.
   std::vector<std::pair<std::string, double>> timings() const;
   /// The name of the Vulkan device.
   std::string device() const;
