@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/core/error.h"
+#include "engine/core/json_file.h"
 #include "engine/core/nearest_name.h"
 #include "engine/description/scene_json.h"
 #include "engine/description/text_values.h"
@@ -71,7 +72,7 @@ bool Reader::giveOther(const std::string& name, const Json& value) {
   const bool isDevice = std::ranges::find(kDeviceKeys, name) != kDeviceKeys.end();
   if (!isDevice && name != "scene") return false;
   if (!uses(isDevice ? "device" : "scene")) fail(ErrorKind::Usage, "{} has no effect here: leave it out", Parameter(name));
-  const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  const std::string text = value.is_string() ? value.get<std::string>() : inQuotes(value);
   if (name == "scene" && sceneFile_.empty()) sceneFile_ = text;
   if (name == "device" && !options_.device.selector) options_.device.selector = text;
   if (name == "memory-limit" && !options_.device.memoryLimit) {

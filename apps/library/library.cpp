@@ -11,6 +11,7 @@
 #include "apps/library/include/freevoxels/vulkan.h"
 #include "apps/library/scene_renderer.h"
 #include "engine/core/error.h"
+#include "engine/core/json_file.h"
 #include "engine/volume/volume_of_scalars.h"
 #include "engine/vulkan/device_requirements.h"
 
@@ -53,7 +54,11 @@ auto translated(const Work& work) {
 }
 
 Json parseScene(std::string_view text) {
-  Json scene = Json::parse(text, nullptr, false);
+  const auto refuseDeep = [](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepestJson) fail(freevoxels::ErrorKind::Usage, "a scene is nested at most {} deep, and this one is deeper", kDeepestJson);
+    return true;
+  };
+  Json scene = Json::parse(text, refuseDeep, false);
   if (!scene.is_object()) fail(freevoxels::ErrorKind::Usage, "a scene is a JSON object, as '{{\"size\": [800, 600]}}', not '{}'", text);
   return scene;
 }

@@ -146,7 +146,7 @@ void addVolume(py::module_& module) {
         const glm::dvec3 origin(v.describe().indexToWorld[3]);
         return py::make_tuple(origin.x, origin.y, origin.z);
       }, "World position (x, y, z) of the centre of voxel [0, 0, 0].")
-      .def_property_readonly("source", [](const PythonVolume& v) { return v.describe().source; }, "File and grid, for messages.");
+      .def_property_readonly("source", [](const PythonVolume& v) { return fileNameOf(v.describe().source); }, "File and grid, for messages.");
 }
 
 void addRenderer(py::module_& module) {
@@ -183,7 +183,7 @@ py::object renderOnce(const py::object& source, const py::object& progress, bool
     py::dict ofVolume;
     ofFrame = py::kwargs();
     for (const auto& [key, value] : keywords) {
-      const bool ofVolumeAlone = isOfVolume(key.cast<std::string>(), isFile);
+      const bool ofVolumeAlone = isOfVolume(keywordText(key), isFile);
       if (isFile || ofVolumeAlone) ofVolume[key] = value;
       if (!ofVolumeAlone) ofFrame[key] = value;
     }

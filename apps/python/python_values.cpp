@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/description/scene_description.h"
@@ -25,6 +27,13 @@ py::array adopt(std::vector<Value>& values, std::vector<py::ssize_t> shape) {
   return py::array(py::dtype::of<float>(), std::move(shape), data, owner);
 }
 
+/// Text for people: bytes that are no UTF-8, as file names may have them, become \\xff.
+py::str messageOf(std::string_view text) {
+  PyObject* const decoded = PyUnicode_DecodeUTF8(text.data(), py::ssize_t(text.size()), "backslashreplace");
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
+}
+
 /// Needs no lock, because the GIL lets only one message through at a time.
 class PythonLog : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
  protected:
@@ -35,7 +44,7 @@ class PythonLog : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
                               : message.level == spdlog::level::info ? "info"
                                                                      : "debug";
     const py::object logger = py::module_::import("logging").attr("getLogger")("freevoxels");
-    logger.attr(level)("%s", std::string(message.payload.data(), message.payload.size()));
+    logger.attr(level)("%s", messageOf({message.payload.data(), message.payload.size()}));
   }
   void flush_() override {}
 };
@@ -63,45 +72,129 @@ std::string withKeywords(std::string_view text) {
   });
 }
 
+/// Whether a value is of a class of a module, or registered as one.
+bool isOf(py::handle value, const char* module, const char* name) {
+  return py::isinstance(value, py::module_::import(module).attr(name));
+}
+
+/// Reads the value of one keyword. Values are others' objects, which may be anything and call anything.
+class ValueReader {
+ public:
+  explicit ValueReader(std::string keyword) : keyword_(std::move(keyword)) {}
+  /// `place` is the keyword, with the keys of dictionaries that lead to the value; `depth` counts what is around it.
+  Json read(py::handle value, const std::string& place, int depth) const;
+
+ private:
+  static constexpr int kDeepest = 16;
+  static Json readWhole(py::handle value, const std::string& place);
+  static Json readReal(py::handle value, const std::string& place);
+  static std::string readText(const py::object& text, const std::string& place);
+  Json readMapping(py::handle value, const std::string& place, int depth) const;
+
+  const std::string keyword_;
+};
+
+Json ValueReader::readWhole(py::handle value, const std::string& place) {
+  int overflow = 0;
+  const long long number = PyLong_AsLongLongAndOverflow(value.ptr(), &overflow);
+  if (overflow != 0) fail(ErrorKind::Input, "{} takes no whole number of more than 64 bits: write it as a float", Parameter(place));
+  if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+  return std::int64_t(number);
+}
+
+Json ValueReader::readReal(py::handle value, const std::string& place) {
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+  if (!std::isfinite(number)) fail(ErrorKind::Input, "{} takes finite numbers, not {}", Parameter(place), number);
+  return number;
+}
+
+/// Text as UTF-8; of file names that are not, which Python has as surrogates or as bytes, the bytes.
+std::string ValueReader::readText(const py::object& text, const std::string& place) {
+  if (PyBytes_Check(text.ptr()) != 0) return py::reinterpret_borrow<py::bytes>(text);
+  Py_ssize_t size = 0;
+  if (const char* const characters = PyUnicode_AsUTF8AndSize(text.ptr(), &size); characters != nullptr) return {characters, std::size_t(size)};
+  PyErr_Clear();
+  const auto bytes = py::reinterpret_steal<py::object>(PyUnicode_EncodeFSDefault(text.ptr()));
+  if (bytes) return py::reinterpret_borrow<py::bytes>(bytes);
+  PyErr_Clear();
+  fail(ErrorKind::Input, "{} is text with characters that Unicode does not have", Parameter(place));
+}
+
+Json ValueReader::readMapping(py::handle value, const std::string& place, int depth) const {
+  Json object = Json::object();
+  const py::list items(value.attr("items")());  // of its own, as what is read may change the mapping
+  for (const py::handle item : items) {
+    const auto pair = py::reinterpret_borrow<py::tuple>(item);
+    const py::object key = pair[0], one = pair[1];
+    if (!py::isinstance<py::str>(key)) fail(ErrorKind::Input, "{} takes keys that are text, not {}", Parameter(place), typeName(key));
+    const std::string name = readText(key, place);
+    if (!one.is_none()) object[name] = read(one, place + "." + name, depth + 1);
+  }
+  return object;
+}
+
+Json ValueReader::read(py::handle value, const std::string& place, int depth) const {
+  if (depth > kDeepest)
+    fail(ErrorKind::Input, "{} holds something that contains itself, or is nested more than {} deep", Parameter(keyword_), kDeepest);
+  if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
+  if (py::isinstance<py::int_>(value)) return readWhole(value, place);
+  if (py::isinstance<py::float_>(value) || isOf(value, "numbers", "Real")) {
+    if (isOf(value, "numbers", "Integral")) return readWhole(py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr())), place);
+    return readReal(value, place);
+  }
+  if (py::isinstance<py::str>(value)) return readText(py::reinterpret_borrow<py::object>(value), place);
+  if (py::hasattr(value, "__fspath__")) {
+    const auto path = py::reinterpret_steal<py::object>(PyOS_FSPath(value.ptr()));
+    if (!path) throw py::error_already_set();
+    return readText(path, place);
+  }
+  if (py::hasattr(value, "tolist")) return read(value.attr("tolist")(), place, depth + 1);
+  if (isOf(value, "collections.abc", "Mapping")) return readMapping(value, place, depth);
+  const bool isBytes = PyBytes_Check(value.ptr()) != 0 || PyByteArray_Check(value.ptr()) != 0;
+  if (!isBytes && isOf(value, "collections.abc", "Sequence")) {
+    Json list = Json::array();
+    for (const py::handle one : value) list.push_back(read(one, place, depth + 1));
+    return list;
+  }
+  fail(ErrorKind::Input, "{} takes numbers, text, lists and dictionaries, not {}", Parameter(place), typeName(value));
+}
+
 /// Sets Python's current exception.
 void raise(const Error& error) {
   py::list parameters;
   for (const std::string& parameter : error.parameters()) parameters.append(keyword(parameter));
   const py::handle type = exceptionClasses[std::size_t(error.kind())];
-  const py::object exception = type(withKeywords(error.text()));
+  const py::object exception = type(messageOf(withKeywords(error.text())));
   exception.attr("parameters") = py::tuple(parameters);
   PyErr_SetObject(type.ptr(), exception.ptr());
 }
 
 }  // namespace
 
-Json jsonOf(py::handle value, const std::string& name) {
-  if (py::isinstance<py::bool_>(value)) return value.cast<bool>();
-  if (py::isinstance<py::int_>(value)) return value.cast<std::int64_t>();
-  if (py::isinstance<py::float_>(value)) return value.cast<double>();
-  if (py::isinstance<py::str>(value)) return value.cast<std::string>();
-  if (py::hasattr(value, "__fspath__")) return py::str(value.attr("__fspath__")()).cast<std::string>();
-  if (py::hasattr(value, "tolist")) return jsonOf(value.attr("tolist")(), name);
-  if (py::isinstance<py::dict>(value)) {
-    Json object = Json::object();
-    for (const auto& [key, one] : py::cast<py::dict>(value))
-      if (!one.is_none()) object[py::str(key).cast<std::string>()] = jsonOf(one, name);
-    return object;
-  }
-  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
-    Json list = Json::array();
-    for (const py::handle one : value) list.push_back(jsonOf(one, name));
-    return list;
-  }
-  fail(ErrorKind::Input, "'{}' takes numbers, text, lists and dictionaries, not {}", name,
-       py::str(py::type::of(value).attr("__name__")).cast<std::string>());
+std::string keywordText(py::handle keyword) {
+  Py_ssize_t size = 0;
+  if (const char* const characters = PyUnicode_AsUTF8AndSize(keyword.ptr(), &size); characters != nullptr) return {characters, std::size_t(size)};
+  PyErr_Clear();
+  fail(ErrorKind::Usage, "there is no option whose name has characters that Unicode does not have");
+}
+
+std::string typeName(py::handle value) {
+  return value.is_none() ? "None" : py::str(py::type::of(value).attr("__name__")).cast<std::string>();
+}
+
+py::str fileNameOf(std::string_view text) {
+  PyObject* const decoded = PyUnicode_DecodeUTF8(text.data(), py::ssize_t(text.size()), "surrogateescape");
+  if (decoded == nullptr) throw py::error_already_set();
+  return py::reinterpret_steal<py::str>(decoded);
 }
 
 py::object pythonOf(const Json& value) {
   if (value.is_boolean()) return py::bool_(value.get<bool>());
+  if (value.is_number_unsigned()) return py::int_(value.get<std::uint64_t>());
   if (value.is_number_integer()) return py::int_(value.get<std::int64_t>());
   if (value.is_number()) return py::float_(value.get<double>());
-  if (value.is_string()) return py::str(value.get<std::string>());
+  if (value.is_string()) return fileNameOf(value.get<std::string>());
   if (value.is_object()) {
     py::dict object;
     for (const auto& [key, one] : value.items()) object[py::str(key)] = pythonOf(one);
@@ -115,8 +208,8 @@ py::object pythonOf(const Json& value) {
 Json jsonOf(const py::kwargs& keywords) {
   Json object = Json::object();
   for (const auto& [key, value] : keywords) {
-    const auto name = key.cast<std::string>();
-    if (!value.is_none()) object[name] = jsonOf(value, name);
+    const std::string name = keywordText(key);
+    if (!value.is_none()) object[name] = ValueReader(name).read(value, name, 0);
   }
   return object;
 }

@@ -11,13 +11,17 @@
 
 namespace freevoxels {
 
-/// Converts bool, int, float, str, path, dict, list, tuple, and objects with tolist() such as NumPy's arrays
-/// and numbers. Fails with ErrorKind::Input for others; the sentence calls the value `name`.
-nlohmann::json jsonOf(pybind11::handle value, const std::string& name);
+/// Converts keyword arguments: bools, finite numbers, text, paths, mappings and sequences of them, and objects with tolist() such as
+/// NumPy's arrays. None is left out. Fails with ErrorKind::Input for others; the sentence names the keyword.
+nlohmann::json jsonOf(const pybind11::kwargs& keywords);
 /// The inverse, for JSON that was read from a file.
 pybind11::object pythonOf(const nlohmann::json& value);
-/// Converts keyword arguments; None is left out.
-nlohmann::json jsonOf(const pybind11::kwargs& keywords);
+/// Text that may be a file name: bytes that are no UTF-8 become surrogates, as os.fsdecode() has them.
+pybind11::str fileNameOf(std::string_view text);
+/// The name of a keyword argument. Fails with ErrorKind::Usage for what is no Unicode text.
+std::string keywordText(pybind11::handle keyword);
+/// The name of a value's type, for messages.
+std::string typeName(pybind11::handle value);
 
 /// Returns a progress function that calls `callback(stage, fraction)` with the GIL, unless it is None, and
 /// lets Ctrl-C interrupt the work. An exception of either cancels the work. `callback` must outlive the

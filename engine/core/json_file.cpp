@@ -25,10 +25,11 @@ std::string parseReason(const Json::parse_error& error) {
   return reason;
 }
 
-/// A parser callback that fails for repeated keys. Without it the parser silently keeps the last value.
+/// A parser callback that fails for repeated keys, of which the parser by itself keeps the last value, and for deep nesting.
 Json::parser_callback_t refuseRepeatedKeys(std::string_view kind, std::string_view name) {
   return [kind, name, seen = std::vector<std::set<Json>>()](int depth, Json::parse_event_t event,
                                                             Json& parsed) mutable {
+    if (depth > kDeepestJson) fail(ErrorKind::Input, "{} '{}' is nested more than {} deep", kind, name, kDeepestJson);
     const auto inside = std::size_t(depth) + (event == Json::parse_event_t::object_start ? 1 : 0);
     seen.resize(std::max(seen.size(), inside + 1));
     if (event == Json::parse_event_t::object_start) seen[inside].clear();

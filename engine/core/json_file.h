@@ -9,8 +9,11 @@
 
 namespace freevoxels {
 
-/// Reads a file. Messages call it `kind`, such as "transfer function". A repeated key of an object is an
-/// error.
+/// How deep values may be nested. Copying, printing and freeing them takes stack for each level.
+inline constexpr int kDeepestJson = 64;
+
+/// Reads a file. Messages call it `kind`, such as "transfer function". A repeated key of an object is an error, as is deeper nesting than
+/// kDeepestJson.
 nlohmann::json readJson(std::string_view kind, const std::filesystem::path& file);
 
 /// Parses `text`, which messages call `name`, in the same way.

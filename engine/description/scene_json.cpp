@@ -71,7 +71,7 @@ std::string fieldText(const SceneField& field, const Json& value, const fs::path
   if (!field.isFile() && isNumbers(value)) return numbersText(field, value);
   if (value.is_object() && field.kind == Kind::Keys)
     if (const std::string text = keysText(field, value); !text.empty()) return text;
-  if (value.is_object() && field.kind == Kind::File) return value.dump();
+  if (value.is_object() && field.kind == Kind::File) return value.dump(-1, ' ', false, Json::error_handler_t::replace);
   fail(ErrorKind::Input, "{} takes {}, not {}", name, field.form, inQuotes(value));
 }
 
@@ -92,7 +92,7 @@ Json jsonOf(const SceneField& field, const std::string& text, const std::optiona
   if (field.kind == Kind::Flag || field.kind == Kind::Switch) return text == "true";
   if (text.empty()) return true;
   if (field.isFile()) {
-    if (isInlineJson(text)) return Json::parse(text);
+    if (isInlineJson(text)) return parseJson(field.name, "inline", text);
     return folder && !isNoPath(text) ? fs::proximate(text, *folder).string() : text;
   }
   if (field.kind == Kind::Name) return text;

@@ -148,6 +148,16 @@ TEST(SceneJson, WrongFilesAreRefusedByFileAndKey) {
   expect(R"({"output": {"aov": "z"}})", "aov takes depth, position, normal and transmittance");
 }
 
+TEST(SceneJson, DeepNestingIsRefused) {
+  const TemporaryFolder folder;
+  for (const int depth : {65, 1000, 1000000})
+    for (const bool isComplete : {true, false}) {
+      const std::string deep = std::string(std::size_t(depth), '[') + (isComplete ? std::string(std::size_t(depth), ']') : "");
+      writeBytes(folder / "s.json", R"({"camera": {"orbit": )" + deep + "}}");
+      expectRefusal([&] { readScene(folder / "s.json"); }, ErrorKind::Input, {(folder / "s.json").string(), "nested more than 64 deep"});
+    }
+}
+
 TEST(SceneJson, AFieldOfAStrongerSourceReplacesWhatItExcludesAndStandsFor) {
   const auto replaces = [](const char* stronger, const char* field) {
     return isReplaced(sceneField(field), {&sceneField(stronger)});

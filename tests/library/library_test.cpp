@@ -118,6 +118,8 @@ TEST(Library, ErrorsNameWhatIsWrong) {
   const auto render = [](const char* scene) { return [scene] { v1::Renderer(cloud(), scene).render(); }; };
   expectError(Usage, R"("densty-scale"; did you mean "density-scale")", render(R"({"densty-scale": 1})"), {"densty-scale", "density-scale"});
   expectError(Usage, "a scene is a JSON object", render("[1, 2]"));
+  const std::string deep = R"({"orbit": )" + std::string(100000, '[') + std::string(100000, ']') + "}";
+  expectError(Usage, "nested at most 64 deep", render(deep.c_str()));
   expectError(Usage, R"("orbit" and "camera-position" exclude each other)", render(R"({"orbit": [1, 2], "camera-position": [1, 2, 3]})"),
               {"orbit", "camera-position"});
   expectError(Usage, R"("exposure" has no effect here)", render(R"({"exposure": 1})"), {"exposure"});
