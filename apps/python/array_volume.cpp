@@ -1,10 +1,15 @@
 #include "apps/python/array_volume.h"
 
+#include <algorithm>
 #include <cmath>
+#include <concepts>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 #include <limits>
+#include <utility>
+#include <variant>
 
+#include "apps/python/python_values.h"
 #include "engine/core/error.h"
 #include "engine/volume/volume_of_scalars.h"
 
@@ -17,6 +22,12 @@ namespace py = pybind11;
 struct Half {
   std::uint16_t bits;
   explicit operator float() const { return glm::unpackHalf1x16(bits); }
+};
+
+/// A bool of NumPy.
+struct Flag {
+  std::uint8_t value;
+  explicit operator float() const { return float(value); }
 };
 
 /// The parts of an array that are read without the GIL, while its owner holds a reference.
@@ -46,39 +57,108 @@ Source sourceOf(const py::array& array) {
           {array.shape(2), array.shape(1), array.shape(0)}};
 }
 
-template <typename Value>
-ScalarBricks bricksOf(const Source& source, std::optional<double> noData) {
-  const float absent = noData ? float(*noData) : std::numeric_limits<float>::quiet_NaN();
-  const py::gil_scoped_release withoutGil;
-  return ScalarBricks::make(source.dimensions, [&](glm::ivec3 voxel) {
-    const glm::i64vec3 offset = glm::i64vec3(voxel) * source.strides;
-    Value value;
-    std::memcpy(&value, source.data + offset.x + offset.y + offset.z, sizeof value);
-    const float scalar = float(value);
-    return std::isnan(scalar) || scalar == absent ? kInactiveVoxel : scalar;
-  });
+/// The number that marks voxels without data, as exact as Python has it.
+struct Marker {
+  double real = 0.0;
+  std::optional<std::variant<std::int64_t, std::uint64_t>> whole;  ///< if it is a whole number of at most 64 bits
+};
+
+/// Whether a call of Python's interface has failed; forgets why.
+bool hasFailed() {
+  const bool failed = PyErr_Occurred() != nullptr;
+  PyErr_Clear();
+  return failed;
 }
 
-ScalarBricks readArray(const py::array& array, std::optional<double> noData) {
-  const Source source = sourceOf(array);
+Marker markerOf(const py::object& number) {
+  const Parameter name("no-data");
+  Marker marker{.real = PyFloat_AsDouble(number.ptr())};
+  const bool isReal = !hasFailed();
+  py::object whole = py::reinterpret_steal<py::object>(PyIndex_Check(number.ptr()) != 0 ? PyNumber_Index(number.ptr()) : nullptr);
+  if (hasFailed()) whole = py::object();
+  if (!isReal && whole) fail(ErrorKind::Input, "{} is a whole number that is too large: leave it out", name);
+  if (!isReal) fail(ErrorKind::Input, "{} takes a number, not {}", name, typeName(number));
+  if (!whole && std::isfinite(marker.real) && marker.real == std::floor(marker.real))
+    whole = py::reinterpret_steal<py::object>(PyLong_FromDouble(marker.real));
+  if (!whole) return marker;
+  if (const long long value = PyLong_AsLongLong(whole.ptr()); !hasFailed())
+    marker.whole = std::int64_t(value);
+  else if (const unsigned long long large = PyLong_AsUnsignedLongLong(whole.ptr()); !hasFailed())
+    marker.whole = std::uint64_t(large);
+  return marker;
+}
+
+// The value of a type that a marker means: numbers are rounded to types of floating point, as astype() rounds them. Nothing where it means
+// none.
+
+template <std::integral Value>
+std::optional<Value> valueOf(const Marker& marker, Value) {
+  if (!marker.whole) return std::nullopt;
+  return std::visit([](auto whole) { return std::in_range<Value>(whole) ? std::optional(Value(whole)) : std::nullopt; }, *marker.whole);
+}
+
+std::optional<std::uint8_t> valueOf(const Marker& marker, Flag) {
+  const std::optional<std::uint8_t> value = valueOf(marker, std::uint8_t());
+  return value && *value <= 1 ? value : std::nullopt;
+}
+
+std::optional<double> valueOf(const Marker& marker, double) {
+  return marker.real;
+}
+
+std::optional<double> valueOf(const Marker& marker, float) {
+  return double(float(marker.real));
+}
+
+std::optional<double> valueOf(const Marker& marker, Half) {
+  if (!std::isfinite(marker.real) || marker.real == 0.0) return marker.real;
+  constexpr int kSmallestExponent = -14, kFractionBits = 10;
+  constexpr double kLargest = 65504.0;
+  const double step = std::ldexp(1.0, std::max(std::ilogb(marker.real), kSmallestExponent) - kFractionBits);
+  const double rounded = std::nearbyint(marker.real / step) * step;
+  return std::abs(rounded) <= kLargest ? rounded : std::copysign(std::numeric_limits<double>::infinity(), rounded);
+}
+
+// What such a value is compared with.
+
+template <std::integral Value>
+Value comparable(Value value) {
+  return value;
+}
+std::uint8_t comparable(Flag value) {
+  return value.value;
+}
+double comparable(double value) {
+  return value;
+}
+double comparable(float value) {
+  return double(value);
+}
+double comparable(Half value) {
+  return double(float(value));
+}
+
+/// Calls `work` with a value of the array's type.
+template <typename Work>
+auto withTypeOf(const py::array& array, const Work& work) {
   const py::dtype type = array.dtype();
   if (type.byteorder() != '>')  // the supported machines are little-endian
     switch (type.kind()) {
-      case 'b': return bricksOf<std::uint8_t>(source, noData);
+      case 'b': return work(Flag());
       case 'u':
-        if (type.itemsize() == 1) return bricksOf<std::uint8_t>(source, noData);
-        if (type.itemsize() == 2) return bricksOf<std::uint16_t>(source, noData);
-        if (type.itemsize() == 4) return bricksOf<std::uint32_t>(source, noData);
-        return bricksOf<std::uint64_t>(source, noData);
+        if (type.itemsize() == 1) return work(std::uint8_t());
+        if (type.itemsize() == 2) return work(std::uint16_t());
+        if (type.itemsize() == 4) return work(std::uint32_t());
+        return work(std::uint64_t());
       case 'i':
-        if (type.itemsize() == 1) return bricksOf<std::int8_t>(source, noData);
-        if (type.itemsize() == 2) return bricksOf<std::int16_t>(source, noData);
-        if (type.itemsize() == 4) return bricksOf<std::int32_t>(source, noData);
-        return bricksOf<std::int64_t>(source, noData);
+        if (type.itemsize() == 1) return work(std::int8_t());
+        if (type.itemsize() == 2) return work(std::int16_t());
+        if (type.itemsize() == 4) return work(std::int32_t());
+        return work(std::int64_t());
       case 'f':
-        if (type.itemsize() == 2) return bricksOf<Half>(source, noData);
-        if (type.itemsize() == 4) return bricksOf<float>(source, noData);
-        if (type.itemsize() == 8) return bricksOf<double>(source, noData);
+        if (type.itemsize() == 2) return work(Half());
+        if (type.itemsize() == 4) return work(float());
+        if (type.itemsize() == 8) return work(double());
         break;
       default: break;
     }
@@ -86,13 +166,40 @@ ScalarBricks readArray(const py::array& array, std::optional<double> noData) {
        py::str(type.attr("name")).cast<std::string>());
 }
 
+/// Whether values of the array can be equal to the marker. NaN marks nothing in whole numbers, and need not.
+bool canHold(const py::array& array, const Marker& marker) {
+  return std::isnan(marker.real) || withTypeOf(array, [&](auto value) { return valueOf(marker, value).has_value(); });
+}
+
+ScalarBricks readArray(const py::array& array, const std::optional<Marker>& marker) {
+  const Source source = sourceOf(array);
+  return withTypeOf(array, [&](auto typed) {
+    using Value = decltype(typed);
+    using Comparable = decltype(comparable(typed));
+    const std::optional<Comparable> absent = marker ? valueOf(*marker, typed) : std::nullopt;
+    const py::gil_scoped_release withoutGil;
+    return ScalarBricks::make(source.dimensions, [&](glm::ivec3 voxel) {
+      const glm::i64vec3 offset = glm::i64vec3(voxel) * source.strides;
+      Value value;
+      std::memcpy(&value, source.data + offset.x + offset.y + offset.z, sizeof value);
+      const float scalar = float(value);
+      return std::isnan(scalar) || (absent && comparable(value) == *absent) ? kInactiveVoxel : scalar;
+    });
+  });
+}
+
 }  // namespace
 
 Volume volumeOfArray(const py::array& scalars, const std::optional<py::array>& temperature,
                      const ArrayPlacement& placement) {
-  Volume volume = volumeOfScalars(readArray(scalars, placement.noData), placement.indexToWorld);
+  std::optional<Marker> noData;
+  if (!placement.noData.is_none()) noData = markerOf(placement.noData);
+  if (noData && !canHold(scalars, *noData) && !(temperature && canHold(*temperature, *noData)))
+    fail(ErrorKind::Input, "{} is {}, which no {} can be: leave it out, or give a value that the array can hold", Parameter("no-data"),
+         noData->real, py::str(scalars.dtype().attr("name")).cast<std::string>());
+  Volume volume = volumeOfScalars(readArray(scalars, noData), placement.indexToWorld);
   if (!temperature) return volume;
-  volume.temperature = TemperatureGrid{.name = "temperature", .values = readArray(*temperature, placement.noData)};
+  volume.temperature = TemperatureGrid{.name = "temperature", .values = readArray(*temperature, noData)};
   if (volume.temperature->values.dimensions() != volume.dimensions)
     fail(ErrorKind::Input, "the temperatures have the shape {}, and the array has {}: they must be the same",
          shapeText(*temperature), shapeText(scalars));

@@ -49,7 +49,7 @@ glm::dmat4 placementOf(const std::variant<double, Triple>& spacing, const Triple
 }
 
 PythonVolume volumeFromArray(const py::array& array, const std::variant<double, Triple>& spacing, const Triple& origin,
-                             const std::optional<Matrix>& transform, std::optional<double> noData,
+                             const std::optional<Matrix>& transform, const py::object& noData,
                              const std::optional<py::array>& temperature) {
   const ArrayPlacement place{placementOf(spacing, origin, transform), noData};
   Volume volume = volumeOfArray(array, temperature, place);
@@ -128,8 +128,8 @@ void addVolume(py::module_& module) {
            "transform"_a = py::none(), "no_data"_a = py::none(), "temperature"_a = py::none(),
            "Copies an array of real numbers with axes (z, y, x). spacing: world units between voxels, one number or along\n"
            "(x, y, z). origin: where the centre of voxel [0, 0, 0] is. transform: instead of both, a 4x4 affine matrix from\n"
-           "(x, y, z, 1) in voxels to the world. NaN, and values equal to no_data, hold no data. temperature: an array of\n"
-           "the same shape, for emission.")
+           "(x, y, z, 1) in voxels to the world. NaN, and values equal to no_data in the array's own type, hold no data.\n"
+           "temperature: an array of the same shape, for emission.")
       .def_static("open", &volumeFromFile, "file"_a = py::none(),
                   "Reads an OpenVDB file, or makes 'procedural:NAME'; without a file the volume of a scene. Options: grid, resolution, and those of a frame, of which\n"
                   "emission=True, temperature_grid and albedo_grid add grids to read. Of a baked volume (.fvx) a level of detail is read\n"

@@ -1,10 +1,11 @@
-"""Values of keywords of all kinds: what they mean, or one sentence that names the keyword."""
+"""Values of keywords and of arrays of all kinds: what they mean, or one sentence that names the keyword."""
 
 import array
 import collections
 import decimal
 import enum
 import fractions
+import logging
 import os
 import pathlib
 import types
@@ -13,6 +14,7 @@ import unittest
 import freevoxels
 import numpy as np
 
+logging.getLogger("freevoxels").setLevel(logging.ERROR)  # infinite values are meant
 BOX = np.arange(6 * 7 * 5, dtype="float32").reshape(6, 7, 5) / 210
 SMALL = dict(size=(8, 6))
 
@@ -133,6 +135,89 @@ class KeywordTest(unittest.TestCase):
         self.refused(freevoxels.Error, "device", device={"a": os.fsdecode(b"\xff")})
         with self.assertRaisesRegex(freevoxels.InputError, r"\\xff"):
             freevoxels.Volume.open(os.fsdecode(b"/none/\xff.vdb"))
+
+
+class NoDataTest(unittest.TestCase):
+    def voxels(self, values, no_data, dtype, **more):
+        """How many of `values`, at the places of a box that fills no brick, are voxels with data."""
+        box = np.resize(np.array(values, dtype), (3, 9, 5))
+        count = {value: int(np.count_nonzero(box == value)) for value in np.unique(box)}
+        volume = freevoxels.Volume(box, no_data=no_data, **more)
+        return volume.active_voxels, count, box.size
+
+    def expect_removed(self, values, no_data, dtype, removed):
+        active, count, size = self.voxels(values, no_data, dtype)
+        gone = sum(count[np.array(value, dtype)[()]] for value in removed)
+        self.assertEqual(active, size - gone, f"{no_data!r} of {dtype}")
+
+    def test_whole_numbers_are_compared_exactly(self):
+        for kind in ("i4", "i8", "u4", "u8"):
+            values = [16777215, 16777216, 16777217]
+            for value in values:
+                for no_data in (value, float(value), np.int64(value), np.float64(value), np.array(value)):
+                    self.expect_removed(values, no_data, kind, [value])
+        for kind, value in (("i8", 2**62 + 1), ("u8", 2**64 - 2), ("i8", -(2**63))):
+            self.expect_removed([value, value + 1, 5], value, kind, [value])
+            self.expect_removed([value, value + 1, 5], value + 1, kind, [value + 1])
+        for kind, value in (("u1", 255), ("i1", -128), ("u2", 65535), ("i2", -32768), ("u1", 0), ("?", True), ("?", False)):
+            self.expect_removed([value, 0, 1], value, kind, [value])
+        self.expect_removed([0, 1, 2], True, "u1", [1])
+
+    def test_floats_are_compared_after_rounding_to_the_type_of_the_array(self):
+        for kind in ("f2", "f4", "f8"):
+            for no_data in (-9999, -9999.0, np.float16(-9999), np.float32(-9999), np.int32(-9999), 0.1, -9988, 9996, 5e-8, 1e-320, 65519.9, -1, 0):
+                with np.errstate(all="ignore"):
+                    stored = np.array(no_data).astype(kind)[()]
+                    below, above = np.nextafter(stored, np.array(-7e4, kind)[()]), np.nextafter(stored, np.array(7e4, kind)[()])
+                self.expect_removed([stored, below, above, 1], no_data, kind, [stored])
+        self.expect_removed([1.0, 1.0 + 2**-52, 3.0], 1.0, "f8", [1.0])
+        self.expect_removed([0.1, 0.5], np.float32(0.1), "f8", [])  # the float of 32 bits is another number
+
+    def test_infinities_and_numbers_beyond_the_type_are_what_astype_makes_of_them(self):
+        for no_data, kind in ((np.inf, "f4"), (-np.inf, "f8"), (1e300, "f4"), (-99999, "f2"), (65520, "f2"), (1e39, "f4")):
+            with np.errstate(all="ignore"):
+                stored = np.array(float(no_data)).astype(kind)[()]
+            self.assertTrue(np.isinf(stored))
+            self.expect_removed([stored, 1, 2], no_data, kind, [stored])
+        self.expect_removed([1e300, 2e300, 1], 1e300, "f8", [1e300])
+
+    def test_nan_is_no_data_in_any_case(self):
+        for no_data in (np.nan, np.float32("nan"), None):
+            for kind in ("f2", "f4", "f8"):
+                box = np.ones((3, 9, 5), kind)
+                box[1] = np.nan
+                self.assertEqual(freevoxels.Volume(box, no_data=no_data).active_voxels, 90)
+            self.expect_removed([1, 2, 3], no_data, "u1", [])
+            self.expect_removed([1, 2, 3], no_data, "i8", [])
+
+    def test_all_voxels_of_bricks_are_compared(self):
+        # Boxes that end with a group of 4 voxels, a brick, a chunk, and elsewhere, strided and reversed.
+        for shape in ((4, 4, 4), (8, 16, 8), (32, 9, 33), (2, 7, 5)):
+            whole = np.ones(tuple(2 * n for n in shape), "i4")
+            box = whole[::2, ::-2, 1::2]
+            box[..., 0] = box[0] = -1
+            self.assertEqual(freevoxels.Volume(box, no_data=-1).active_voxels, np.count_nonzero(box == 1))
+
+    def test_what_no_voxel_can_be_is_refused(self):
+        for kind, no_data, text in (("u1", -9999, "-9999"), ("u1", 256, "256"), ("i2", 1.5, "1.5"), ("i8", 2**63, "9.22"), ("u8", -1, "-1"),
+                                    ("?", 2, "2"), ("i4", np.inf, "inf")):
+            with self.assertRaisesRegex(freevoxels.InputError, f"'no_data' is {text}.*, which no {np.dtype(kind).name} can be: leave it out") as caught:
+                freevoxels.Volume(np.ones((3, 4, 5), kind), no_data=no_data)
+            self.assertEqual(caught.exception.parameters, ("no_data",))
+        for value, name in (("0", "str"), (b"0", "bytes"), ([0], "list"), (1j, "complex"), (np.array([0, 1]), "ndarray"), (object(), "object")):
+            with self.assertRaisesRegex(freevoxels.InputError, f"'no_data' takes a number, not {name}"):
+                freevoxels.Volume(np.ones((3, 4, 5)), no_data=value)
+        with self.assertRaisesRegex(freevoxels.InputError, "'no_data' is a whole number that is too large"):
+            freevoxels.Volume(np.ones((3, 4, 5)), no_data=10**400)
+
+    def test_temperatures_are_compared_in_their_own_type(self):
+        box, heat = np.ones((3, 9, 5), "f4"), np.full((3, 9, 5), 1000, "u2")
+        box[0] = -9999
+        self.assertEqual(freevoxels.Volume(box, no_data=-9999, temperature=heat).active_voxels, 90)
+        heat[1] = 65535
+        freevoxels.Volume(np.ones((3, 9, 5), "u1"), no_data=65535, temperature=heat)
+        with self.assertRaisesRegex(freevoxels.InputError, "no uint8 can be"):
+            freevoxels.Volume(np.ones((3, 9, 5), "u1"), no_data=-1, temperature=heat)
 
 
 if __name__ == "__main__":
