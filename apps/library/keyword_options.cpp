@@ -16,6 +16,8 @@ namespace {
 using Json = nlohmann::json;
 
 const std::vector<std::string> kDeviceKeys{"device", "memory-limit"};
+/// Options of `freevoxels render` that are no fields of a scene.
+const std::vector<std::string> kCommandLineKeys{"share", "sums", "color-parts", "fixed-view", "out-dir", "format", "save-scene", "timings"};
 
 /// The name of the field that a keyword means: "density-scale" for "density_scale".
 std::string nameOf(std::string keyword) {
@@ -49,6 +51,8 @@ class Reader {
 };
 
 void Reader::refuse(const std::string& section, const std::string& name) const {
+  if (section.empty() && std::ranges::find(kCommandLineKeys, name) != kCommandLineKeys.end())
+    fail(ErrorKind::Usage, "{} is an option of the command line alone: leave it out", Parameter(name));
   std::vector<std::string> known;
   for (const SceneField& field : sceneFields()) {
     if (uses(field.section)) known.push_back(field.name);

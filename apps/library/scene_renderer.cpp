@@ -2,6 +2,7 @@
 
 #include "apps/freevoxels/output_options.h"
 #include "apps/freevoxels/program.h"
+#include "apps/freevoxels/sequence.h"
 #include "engine/core/error.h"
 #include "engine/description/scene_fields.h"
 #include "engine/description/scene_json.h"
@@ -21,15 +22,25 @@ KeywordOptions::Sections sections(bool ofFile, bool choosesDevice) {
   return names;
 }
 
+/// Fails where a turn is asked for. The key in a section belongs to a whole scene, of which a frame is drawn.
+void refuseTurn(const Json& keywords) {
+  if (keywords.contains("frames"))
+    fail(ErrorKind::Usage, "{} is of turntables, which the command line alone draws: draw a frame for each {}", Parameter("frames"),
+         Parameter("orbit"));
+}
+
 }  // namespace
 
 std::shared_ptr<const SharedVolume> openVolume(const std::string& file, const Json& keywords, const std::shared_ptr<DeviceContext>& context) {
+  refuseTurn(keywords);
   Json named = keywords;
   if (!file.empty()) named["volume"] = file;
   const KeywordOptions options({named}, sections(true, !context));
   if (options.scene.input.volume.empty())
     fail(ErrorKind::Usage, "there is no volume to open: name a file or procedural:NAME, or give a scene with a {}", Parameter("volume"));
   options.scene.check();
+  if (const std::string& volume = options.scene.input.volume; isPattern(volume))
+    fail(ErrorKind::Usage, "'{}' is a sequence, which the command line alone draws: open one of its files", volume);
   const std::shared_ptr<DeviceContext> used = context ? context : sharedContext(options.device);
   const std::uint64_t most = maximumVoxels(*used->device);
   if (auto baked = options.scene.input.baked()) return std::make_shared<const SharedVolume>(std::move(baked), most);
@@ -87,6 +98,7 @@ SceneRenderer::SceneRenderer(std::shared_ptr<const SharedVolume> volume, Json ke
 }
 
 std::unique_ptr<const KeywordOptions> SceneRenderer::read(const Json& more) const {
+  for (const Json* given : {&more, &keywords_}) refuseTurn(*given);
   auto options = std::make_unique<KeywordOptions>(std::vector{more, keywords_}, sections(false, choosesDevice_));
   options->scene.check();
   return options;

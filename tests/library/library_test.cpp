@@ -122,6 +122,10 @@ TEST(Library, ErrorsNameWhatIsWrong) {
   expectError(Usage, "nested at most 64 deep", render(deep.c_str()));
   expectError(Usage, R"("orbit" and "camera-position" exclude each other)", render(R"({"orbit": [1, 2], "camera-position": [1, 2, 3]})"),
               {"orbit", "camera-position"});
+  expectError(Usage, R"("frames" is of turntables, which the command line alone draws)", render(R"({"frames": 3})"), {"frames", "orbit"});
+  expectError(Usage, R"("share" is an option of the command line alone)", render(R"({"share": "0/2"})"), {"share"});
+  expectError(Usage, "'s_##.vdb' is a sequence, which the command line alone draws", [] { v1::Volume::open("s_##.vdb"); });
+  EXPECT_EQ(v1::Renderer(cloud(), R"({"camera": {"frames": 3, "size": 8}})").render().width, 8) << "of a whole scene, a frame";
   expectError(Usage, R"("exposure" has no effect here)", render(R"({"exposure": 1})"), {"exposure"});
   expectError(Usage, R"(the camera stands at its look-at point; change "camera-position" or "look-at")",
               render(R"({"camera-position": [1, 2, 3], "look-at": [1, 2, 3]})"), {"camera-position", "look-at"});

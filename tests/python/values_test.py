@@ -28,7 +28,8 @@ class Listed:
 
 class KeywordTest(unittest.TestCase):
     def expect_image(self, expected, **options):
-        np.testing.assert_array_equal(freevoxels.render(BOX, **{**SMALL, **options}), freevoxels.render(BOX, **{**SMALL, **expected}), str(options))
+        image = freevoxels.render(BOX, **{**SMALL, **options})
+        np.testing.assert_array_equal(image, freevoxels.render(BOX, **{**SMALL, **expected}), str(options))
 
     def refused(self, kind, sentence, **options):
         with self.assertRaisesRegex(kind, sentence) as caught:
@@ -43,16 +44,19 @@ class KeywordTest(unittest.TestCase):
         inner["orbit"] = inner
         both["orbit"] = [both]
         sentence = "'{}' holds something that contains itself, or is nested more than 16 deep"
-        for name, value in (("orbit", itself), ("orbit", (itself,)), ("orbit", [1, itself]), ("camera", inner), ("camera", {"orbit": itself}),
-                            ("camera", both), ("light", [{"direction": itself}])):
+        for name, value in (("orbit", itself), ("orbit", (itself,)), ("orbit", [1, itself]), ("camera", inner),
+                            ("camera", {"orbit": itself}), ("camera", both), ("light", [{"direction": itself}])):
             self.assertEqual(self.refused(freevoxels.InputError, sentence.format(name), **{name: value}).parameters, (name,))
         again = Listed(None)
         again.tolist = lambda: again
         self.refused(freevoxels.InputError, sentence.format("orbit"), orbit=again)
-        for save in (lambda: freevoxels.save_scene("none.json", camera=inner), lambda: freevoxels.save("none.png", np.zeros((2, 2, 4)), background=itself),
-                     lambda: freevoxels.Volume.open("procedural:cloud", clip_box=itself), lambda: freevoxels.Renderer(freevoxels.Volume(BOX), up=itself)):
+        image, volume = np.zeros((2, 2, 4)), freevoxels.Volume(BOX)
+        for call in (lambda: freevoxels.save_scene("none.json", camera=inner),
+                     lambda: freevoxels.save("none.png", image, background=itself),
+                     lambda: freevoxels.Volume.open("procedural:cloud", clip_box=itself),
+                     lambda: freevoxels.Renderer(volume, up=itself)):
             with self.assertRaisesRegex(freevoxels.InputError, "contains itself"):
-                save()
+                call()
 
     def test_depth_is_limited(self):
         value = 1
@@ -75,8 +79,8 @@ class KeywordTest(unittest.TestCase):
         self.expect_image({"density_scale": 1e18}, density_scale=10**18)
 
     def test_numbers_of_all_kinds_are_numbers(self):
-        for three in (3, 3.0, np.int8(3), np.uint64(3), np.float16(3), np.float64(3), np.longdouble(3), np.array(3), np.array(3.0), np.array([3]),
-                      fractions.Fraction(6, 2), enum.IntEnum("Number", {"THREE": 3}).THREE, "3"):
+        for three in (3, 3.0, np.int8(3), np.uint64(3), np.float16(3), np.float64(3), np.longdouble(3), np.array(3),
+                      np.array(3.0), np.array([3]), fractions.Fraction(6, 2), enum.IntEnum("Number", {"THREE": 3}).THREE, "3"):
             self.expect_image({"density_scale": 3}, density_scale=three)
         for yes in (True, np.True_, np.array(True)):
             self.expect_image({"unlit": True}, unlit=yes)
@@ -94,14 +98,15 @@ class KeywordTest(unittest.TestCase):
         for pair in ((1, 2), [1, 2], range(1, 3), np.array([1, 2]), np.array([1, 2], object), collections.deque([1, 2]), Pair([1, 2]),
                      array.array("f", [1, 2]), memoryview(array.array("d", [1, 2])), collections.namedtuple("P", "a b")(1, 2), "1,2"):
             self.expect_image({"orbit": (1, 2)}, orbit=pair)
-        for mapping in (types.MappingProxyType({"orbit": (1, 2)}), collections.OrderedDict(orbit=(1, 2)), collections.UserDict(orbit=(1, 2)),
-                        collections.ChainMap({"orbit": (1, 2)}), {"orbit": (1, 2), "fov": None}):
+        for mapping in (types.MappingProxyType({"orbit": (1, 2)}), collections.OrderedDict(orbit=(1, 2)),
+                        collections.UserDict(orbit=(1, 2)), collections.ChainMap({"orbit": (1, 2)}), {"orbit": (1, 2), "fov": None}):
             self.expect_image({"orbit": (1, 2)}, camera=mapping)
         self.expect_image({}, orbit=None, camera=None, lights=None)
 
     def test_other_values_are_named(self):
-        for value, name in ((3 + 1j, "complex"), (np.complex64(3), "complex"), (b"3", "bytes"), (bytearray(b"3"), "bytearray"), ({1, 2}, "set"),
-                            ((x for x in (1, 2)), "generator"), (decimal.Decimal(3), "Decimal"), (object(), "object"), (len, "builtin_function_or_method"),
+        for value, name in ((3 + 1j, "complex"), (np.complex64(3), "complex"), (b"3", "bytes"), (bytearray(b"3"), "bytearray"),
+                            ({1, 2}, "set"), ((x for x in (1, 2)), "generator"), (decimal.Decimal(3), "Decimal"), (object(), "object"),
+                            (len, "builtin_function_or_method"),
                             (np.datetime64("2020-01-01"), "date"), ([1, None], "None"), (np.ma.masked_equal([1, 2], 2), "None"),
                             (np.array([b"1", b"2"]), "bytes"), (slice(1), "slice"), (Ellipsis, "ellipsis")):
             self.refused(freevoxels.InputError, f"'orbit' takes numbers, text, lists and dictionaries, not {name}", orbit=value)
@@ -125,7 +130,8 @@ class KeywordTest(unittest.TestCase):
         freevoxels.render(BOX, lights=lights, **SMALL)
 
     def test_texts_that_are_not_unicode_are_file_names_or_refused(self):
-        for name in (os.fsdecode(b"/none/\xff.exr"), pathlib.Path(os.fsdecode(b"/none/\xff.exr")), type("P", (), {"__fspath__": lambda self: b"/none/\xff.exr"})()):
+        of_bytes = type("OfBytes", (), {"__fspath__": lambda self: b"/none/\xff.exr"})
+        for name in (os.fsdecode(b"/none/\xff.exr"), pathlib.Path(os.fsdecode(b"/none/\xff.exr")), of_bytes()):
             error = self.refused(freevoxels.InputError, "there is no such file", environment=name)
             self.assertIn(r"/none/\xff.exr", str(error))
         self.refused(freevoxels.InputError, "'environment' is text with characters that Unicode does not have", environment="\ud800")
@@ -165,7 +171,8 @@ class NoDataTest(unittest.TestCase):
 
     def test_floats_are_compared_after_rounding_to_the_type_of_the_array(self):
         for kind in ("f2", "f4", "f8"):
-            for no_data in (-9999, -9999.0, np.float16(-9999), np.float32(-9999), np.int32(-9999), 0.1, -9988, 9996, 5e-8, 1e-320, 65519.9, -1, 0):
+            for no_data in (-9999, -9999.0, np.float16(-9999), np.float32(-9999), np.int32(-9999), 0.1, -9988, 9996, 5e-8, 1e-320, 65519.9,
+                            -1, 0):
                 with np.errstate(all="ignore"):
                     stored = np.array(no_data).astype(kind)[()]
                     below, above = np.nextafter(stored, np.array(-7e4, kind)[()]), np.nextafter(stored, np.array(7e4, kind)[()])
@@ -201,10 +208,12 @@ class NoDataTest(unittest.TestCase):
     def test_what_no_voxel_can_be_is_refused(self):
         for kind, no_data, text in (("u1", -9999, "-9999"), ("u1", 256, "256"), ("i2", 1.5, "1.5"), ("i8", 2**63, "9.22"), ("u8", -1, "-1"),
                                     ("?", 2, "2"), ("i4", np.inf, "inf")):
-            with self.assertRaisesRegex(freevoxels.InputError, f"'no_data' is {text}.*, which no {np.dtype(kind).name} can be: leave it out") as caught:
+            sentence = f"'no_data' is {text}.*, which no {np.dtype(kind).name} can be: leave it out"
+            with self.assertRaisesRegex(freevoxels.InputError, sentence) as caught:
                 freevoxels.Volume(np.ones((3, 4, 5), kind), no_data=no_data)
             self.assertEqual(caught.exception.parameters, ("no_data",))
-        for value, name in (("0", "str"), (b"0", "bytes"), ([0], "list"), (1j, "complex"), (np.array([0, 1]), "ndarray"), (object(), "object")):
+        for value, name in (("0", "str"), (b"0", "bytes"), ([0], "list"), (1j, "complex"), (np.array([0, 1]), "ndarray"),
+                            (object(), "object")):
             with self.assertRaisesRegex(freevoxels.InputError, f"'no_data' takes a number, not {name}"):
                 freevoxels.Volume(np.ones((3, 4, 5)), no_data=value)
         with self.assertRaisesRegex(freevoxels.InputError, "'no_data' is a whole number that is too large"):

@@ -1,0 +1,139 @@
+"""Draws every case of cases.json with the command line and with the Python module, and compares the bits of what they write. What one of
+them cannot draw it refuses, with the sentence of the table."""
+
+import concurrent.futures
+import fnmatch
+import itertools
+import json
+import logging
+import pathlib
+import re
+import shutil
+import tempfile
+import unittest
+
+import freevoxels
+import numpy as np
+from drivers import CommandLine, Module, Refused, run
+
+TABLE = json.loads(pathlib.Path(__file__).with_name("cases.json").read_text())
+logging.getLogger("freevoxels").setLevel(logging.ERROR)
+
+
+def blob(shape):
+    """A soft ball with a dent."""
+    z, y, x = np.meshgrid(*[np.linspace(-1, 1, n, dtype="float32") for n in shape], indexing="ij")
+    return np.maximum(1 - np.sqrt(x * x + y * y + z * z) + 0.3 * np.sin(5 * x), 0).astype("float32")
+
+
+def grid_of(name, shape):
+    import pyopenvdb
+
+    density = np.ascontiguousarray(blob(shape).transpose(2, 1, 0))
+    if name == "surface":
+        return pyopenvdb.createLevelSetSphere(radius=min(shape) / 2, center=[n / 2 for n in shape[::-1]], voxelSize=1.0)
+    if name == "paint":
+        grid, values = pyopenvdb.Vec3SGrid(), np.stack([density, 1 - density, 0.5 + 0 * density], axis=-1).clip(0, 1)
+    else:
+        grid, values = pyopenvdb.FloatGrid(), {"smoke": density, "heat": 2500 * density**2}[name]
+    grid.copyFromArray(values)
+    return grid
+
+
+def write(file, kind):
+    if file.suffix == ".exr":
+        image = np.ones((*kind["shape"], 4), "float32")
+        image[..., :3] = np.random.default_rng(1).random((*kind["shape"], 3))
+        return freevoxels.save(file, image)
+    import pyopenvdb
+
+    grids = []
+    for name in kind["grids"]:
+        grids.append(grid_of(name, kind["shape"]))
+        grids[-1].name = name
+    pyopenvdb.write(str(file), grids)
+
+
+def cases():
+    """The cases of all groups, by name: every volume with all options, or, "in turn", each of the options with the next volume."""
+    for group, parts in TABLE["groups"].items():
+        volumes, options = parts["volumes"], parts["options"]
+        pairs = zip(itertools.cycle(volumes), options) if parts.get("in turn") else itertools.product(volumes, options)
+        for (volume, chosen), output in itertools.product(pairs, parts.get("outputs", [{}])):
+            given = {**TABLE["volumes"][volume], **TABLE["common"], **chosen}
+            case = {key: parts[key] for key in ("command", "names", "forms", "python", "refused") if key in parts}
+            yield f"{group}: {volume} {chosen} {output}", {**case, "volume": given.pop("volume"), "options": given, "output": output}
+
+
+class MatrixTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = pathlib.Path(tempfile.mkdtemp())
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.files = cls.folder / "files"
+        cls.files.mkdir()
+        for name, kind in TABLE["files"]["written"].items():
+            write(cls.files / name, kind)
+        for command, *words in TABLE["files"]["made"]:
+            run([command, *(str(cls.files / word) if word.endswith((".vdb", ".fvx")) else word for word in words), "--quiet"])
+
+    def outcome(self, driver, number, case):
+        """What a driver draws, or the sentence with which it refuses."""
+        folder = self.folder / f"{number}_{type(driver).__name__}"
+        folder.mkdir()
+        try:
+            return driver.draw(case, folder)
+        except Refused as refused:
+            return str(refused)
+
+    def expect_refused(self, driver, sentence, outcome):
+        expected = driver.spelled(sentence)
+        self.assertIsInstance(outcome, str, f"{type(driver).__name__} draws what it should refuse: {expected}")
+        agrees = fnmatch.fnmatchcase(outcome, expected.replace("[", "[[]"))
+        self.assertTrue(agrees, f"{type(driver).__name__} says\n  {outcome}\nnot\n  {expected}")
+
+    def expect_same(self, theirs, ours):
+        self.assertIsInstance(theirs, dict, theirs)
+        self.assertIsInstance(ours, dict, ours)
+        self.assertEqual(list(ours), list(theirs))
+        for name, file in theirs.items():
+            if isinstance(file, bytes):
+                self.assertTrue(file == ours[name], f"{name} has other bytes")
+                continue
+            self.assertEqual(list(ours[name]), list(file))
+            self.assertGreater(file["A"].max(), 0.02, "nothing is seen")
+            for channel, values in file.items():
+                np.testing.assert_array_equal(ours[name][channel], values, f"{name} {channel}")
+
+    def check(self, case, theirs, ours):
+        command, module = CommandLine(self.files), Module(self.files)
+        if sentence := case.get("refused"):
+            self.expect_refused(command, sentence, theirs)
+            return self.expect_refused(module, sentence, ours)
+        self.assertIsInstance(theirs, dict, theirs)
+        self.assertTrue(theirs, "nothing is written")
+        if refusal := case.get("python"):
+            return self.expect_refused(module, refusal.removeprefix("refused: "), ours)
+        self.expect_same(theirs, ours)
+
+    def test_every_option_is_in_the_table(self):
+        keys = pathlib.Path(__file__).parents[2] / "apps" / "scenes" / "README.md"
+        listed = set(re.findall(r"^\| `([\w-]+)` \|", keys.read_text(), re.MULTILINE))
+        self.assertGreater(len(listed), 50)
+        used = {name for _, case in cases() for name in (*case["options"], *case["output"])}
+        implied = {"volume", "float", "lights"}  # of the drivers; `lights` is `light` as files have it
+        self.assertEqual(listed - used - implied, set())
+
+    def test_command_line_and_module_agree(self):
+        table = list(cases())
+        self.assertEqual(len(table), len(dict(table)), "a case is there twice")
+        with concurrent.futures.ThreadPoolExecutor(1) as elsewhere:
+            drawn = [elsewhere.submit(self.outcome, CommandLine(self.files), number, case) for number, (name, case) in enumerate(table)]
+            for number, (name, case) in enumerate(table):
+                ours = self.outcome(Module(self.files), number, case)
+                with self.subTest(name):
+                    self.check(case, drawn[number].result(), ours)
+
+
+if __name__ == "__main__":
+    unittest.main()
