@@ -224,6 +224,7 @@ DeferredInterrupts::DeferredInterrupts() {
   if (deferring.count++ > 0) return;
   struct sigaction defer {};
   defer.sa_handler = deferSignal;
+  defer.sa_flags = SA_RESTART;  // of calls that write, on file systems where signals interrupt these
   for (std::size_t i = 0; i < kDeferred.size(); ++i) sigaction(kDeferred[i], &defer, &deferring.before[i]);
 }
 

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "engine/core/random_access_file.h"
 #include "engine/core/system_error.h"
 
 namespace freevoxels {
@@ -32,12 +33,8 @@ void Spool::flush() {
 }
 
 void Spool::readAt(std::uint64_t offset, std::span<std::byte> bytes) const {
-  while (!bytes.empty()) {
-    const ssize_t count = pread(fileno(file_), bytes.data(), bytes.size(), off_t(offset));
-    if (count <= 0) throwSystemError();
-    offset += std::uint64_t(count);
-    bytes = bytes.subspan(std::size_t(count));
-  }
+  if (freevoxels::readAt(fileno(file_), offset, bytes) == bytes.size()) return;
+  throw std::system_error(EIO, std::generic_category());  // it is shorter than what was written to it
 }
 
 }  // namespace freevoxels

@@ -6,7 +6,7 @@
 
 namespace freevoxels {
 
-/// Throws errno as std::system_error; EIO where errno is 0, as after a read that ended early.
+/// Throws errno, which the call that failed has set, as std::system_error; EIO where a library lost it.
 [[noreturn]] inline void throwSystemError() {
   throw std::system_error(errno != 0 ? errno : EIO, std::generic_category());
 }
