@@ -13,7 +13,7 @@ packages=(
   libglm-dev libfmt-dev libspdlog-dev nlohmann-json3-dev libcli11-dev
   libopenexr-dev libpng-dev libjpeg62-turbo-dev
   libglfw3-dev libimgui-dev fonts-dejavu-core
-  libopenvdb-dev libtbb-dev libboost-iostreams-dev # OpenVDB's headers and CMake module need the last, too
+  libopenvdb-dev libtbb-dev libboost-iostreams-dev # OpenVDB's headers and CMake module need the last
   liblog4cplus-dev # turns the messages of OpenVDB off
   libxxhash-dev libzstd-dev
   pybind11-dev python3-pybind11 python3-dev python3-numpy # the Python module

@@ -8,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/input_file.h"
+#include "engine/core/printable.h"
 
 namespace freevoxels {
 
@@ -16,13 +17,14 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-/// The parser's message without its error code and on one line.
+/// The parser's message without its error code, on one line of limited length: it repeats what it does not understand.
 std::string parseReason(const Json::parse_error& error) {
+  constexpr std::size_t kLongest = 300;
   std::string reason = error.what();
   if (const std::size_t end = reason.find("] "); end != std::string::npos) reason.erase(0, end + 2);
   std::replace_if(
       reason.begin(), reason.end(), [](unsigned char c) { return c < 32; }, ' ');
-  return reason;
+  return printablePart(reason, kLongest);
 }
 
 /// A parser callback that fails for repeated keys, of which the parser by itself keeps the last value, and for deep nesting.
@@ -62,6 +64,21 @@ nlohmann::json readJson(std::string_view kind, const fs::path& file) {
 
 std::string inQuotes(const nlohmann::json& value) {
   return value.dump(-1, ' ', true, Json::error_handler_t::replace);
+}
+
+nlohmann::json parseJsonQuietly(std::string_view text) {
+  struct TooDeep {};
+  const auto refuseDeep = [](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepestJson) throw TooDeep();
+    return true;
+  };
+  try {
+    return Json::parse(text, refuseDeep, false);
+  } catch (const TooDeep&) {
+    return Json(Json::value_t::discarded);
+  } catch (const Json::exception&) {  // of a number that is too large
+    return Json(Json::value_t::discarded);
+  }
 }
 
 }  // namespace freevoxels

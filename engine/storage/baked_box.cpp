@@ -1,15 +1,13 @@
 #include "engine/storage/baked_box.h"
 
-#include <sys/mman.h>
 #include <tbb/parallel_for.h>
 
-#include <algorithm>
-#include <cstdint>
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 #include <vector>
 
 #include "engine/storage/baked_volume.h"
+#include "engine/storage/chunk_reader.h"
 
 namespace freevoxels {
 
@@ -47,16 +45,6 @@ std::vector<ChunkPart> chunksOf(const FvxFile& file, Channel channel, int level,
   return chunks;
 }
 
-/// What was read of a chunk no longer counts as this process's memory. It stays in the system's cache, from which whoever reads the same
-/// pages gets them again.
-void release(const FvxFile& file, const ChunkEntry& chunk) {
-  constexpr std::uintptr_t kAround = 1 << 16;  // Linux maps aligned pieces of this size around a page that is read
-  const std::uintptr_t map = reinterpret_cast<std::uintptr_t>(&file.header()), begin = map + chunk.offset;
-  const std::uintptr_t first = std::max(begin / kAround * kAround, map);
-  const std::uintptr_t end = std::min((begin + chunk.storedBytes + kAround - 1) / kAround * kAround, map + file.header().fileBytes);
-  madvise(reinterpret_cast<void*>(first), end - first, MADV_DONTNEED);
-}
-
 /// One set of bricks for each value of a voxel.
 std::vector<ScalarBricks> readChannel(const FvxFile& file, Channel channel, int level, const fvx::VoxelBox& box) {
   const std::vector<ChunkPart> chunks = chunksOf(file, channel, level, box);
@@ -68,16 +56,14 @@ std::vector<ScalarBricks> readChannel(const FvxFile& file, Channel channel, int 
     for (const ChunkPart& stored : chunks)
       for (const auto& [number, cell] : stored.bricks) values.makeBrick(cell);
   }
-  const fvx::Encoding& encoding = *file.description().encodings[std::size_t(channel)];
-  const fvx::Decoder decoder(encoding);
-  const std::size_t brickBytes = fvx::kBrickVoxels * encoding.bytesPerValue();
+  const fvx::ChunkReader reader(file, channel, level);
   tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t i) {
-    std::vector<std::byte> unpacked;
-    const std::span<const std::byte> bytes = file.read(channel, *chunks[i].chunk, unpacked);
-    for (const auto& [number, cell] : chunks[i].bricks)
-      for (std::size_t component = 0; component < result.size(); ++component)
-        decoder.decode(bytes.subspan((number * result.size() + component) * brickBytes, brickBytes), result[component].makeBrick(cell));
-    release(file, *chunks[i].chunk);
+    const auto& wanted = chunks[i].bricks;
+    std::size_t next = 0;  // of the wanted ones, which are in the order in which bricks are read
+    reader.read(*chunks[i].chunk, [&](std::size_t number, std::size_t component) -> ScalarBricks::Brick* {
+      while (next < wanted.size() && wanted[next].first < number) ++next;
+      return next < wanted.size() && wanted[next].first == number ? &result[component].makeBrick(wanted[next].second) : nullptr;
+    });
   });
   return result;
 }

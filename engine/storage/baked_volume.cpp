@@ -9,6 +9,7 @@
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
 #include "engine/octree/device_volume.h"
+#include "engine/storage/chunk_reader.h"
 #include "engine/storage/fvx_writer.h"
 #include "engine/storage/hilbert.h"
 #include "engine/volume/transfer_table.h"
@@ -53,12 +54,12 @@ fvx::Encodings encodingsOf(const Volume& volume, glm::vec2 range, const Classifi
 /// Fills a brick that begins at a voxel of the box. Returns false if none of its voxels has a value.
 bool copyBrick(const ScalarBricks& scalars, glm::ivec3 first, float* values) {
   constexpr int n = ScalarBricks::kEdge;
-  if (scalars.corner() == glm::ivec3(0)) {
+  const glm::ivec3 end = glm::min(scalars.dimensions() - first, n);
+  if (scalars.corner() == glm::ivec3(0) && end == glm::ivec3(n)) {
     const ScalarBricks::Brick* const brick = scalars.brickAt(first / n);
     if (brick != nullptr) std::ranges::copy(*brick, values);
     return brick != nullptr;
   }
-  const glm::ivec3 end = glm::min(scalars.dimensions() - first, n);
   bool any = false;
   for (glm::ivec3 v(0); v.z < end.z; ++v.z)
     for (v.y = 0; v.y < end.y; ++v.y)
@@ -155,46 +156,21 @@ struct BrickPlaces {
   }
 };
 
-/// Whether all bricks are consecutive in the mapped file, as floats.
-bool isInPlace(const FvxFile& file, Channel channel, std::span<const ChunkEntry> chunks) {
-  if (file.description().encodings[std::size_t(channel)]->kind != EncodingKind::Float32 || chunks.empty()) return false;
-  std::uint64_t next = chunks.front().offset;
-  return fvx::valuesPerVoxel(channel) == 1 && std::ranges::all_of(chunks, [&](const ChunkEntry& chunk) {
-    return chunk.codec == fvx::Codec::None && chunk.offset == std::exchange(next, chunk.offset + chunk.storedBytes);
-  });
-}
-
 /// One set of bricks for each value of a voxel.
-std::vector<ScalarBricks> readChannel(const std::shared_ptr<const FvxFile>& file, Channel channel, int level) {
-  const std::span<const ChunkEntry> chunks = file->chunks(channel, level);
-  BrickPlaces places(chunks);
-  const glm::ivec3 dimensions = file->dimensions(level);
+std::vector<ScalarBricks> readChannel(const FvxFile& file, Channel channel, int level) {
+  const std::span<const ChunkEntry> chunks = file.chunks(channel, level);
+  const BrickPlaces places(chunks);
   const std::size_t count = places.cells.size(), components = std::size_t(fvx::valuesPerVoxel(channel));
-  if (isInPlace(*file, channel, chunks)) {
-    std::vector<std::span<const std::byte>> bytes(chunks.size());
-    tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t i) {
-      std::vector<std::byte> unused;
-      bytes[i] = file->read(channel, chunks[i], unused);
-    });
-    const std::span bricks(reinterpret_cast<const ScalarBricks::Brick*>(bytes.front().data()), count);
-    return {ScalarBricks::inPlace(dimensions, std::move(places.cells), bricks, file)};
-  }
-  const fvx::Encoding& encoding = *file->description().encodings[std::size_t(channel)];
-  const fvx::Decoder decoder(encoding);
-  std::vector<std::vector<ScalarBricks::Brick>> bricks(components, std::vector<ScalarBricks::Brick>(count));
+  const fvx::ChunkReader reader(file, channel, level);
+  std::vector<ScalarBricks::Bricks> bricks(components);
+  for (ScalarBricks::Bricks& values : bricks) values.resize(count);
   tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t i) {
-    std::vector<std::byte> unpacked;
-    std::span<const std::byte> bytes = file->read(channel, chunks[i], unpacked);
-    const std::size_t brickBytes = fvx::kBrickVoxels * encoding.bytesPerValue();
-    for (std::size_t brick = 0; brick < std::size_t(chunks[i].bricks()); ++brick)
-      for (std::size_t component = 0; component < components; ++component) {
-        decoder.decode(bytes.first(brickBytes), bricks[component][places.first[i] + brick]);
-        bytes = bytes.subspan(brickBytes);
-      }
+    if (components == 1) return reader.readAll(chunks[i], std::span(bricks.front()).subspan(places.first[i], std::size_t(chunks[i].bricks())));
+    reader.read(chunks[i], [&](std::size_t number, std::size_t component) { return &bricks[component][places.first[i] + number]; });
   });
   std::vector<ScalarBricks> result;
-  for (std::vector<ScalarBricks::Brick>& values : bricks)
-    result.push_back(ScalarBricks::of(dimensions, places.cells, std::move(values)));
+  for (ScalarBricks::Bricks& values : bricks)
+    result.push_back(ScalarBricks::of(file.dimensions(level), places.cells, std::move(values)));
   return result;
 }
 
@@ -215,32 +191,23 @@ void makeCoarse(Volume& volume, const FvxFile& file, int level) {
 
 /// Copies the chunks of a region into a box with its halo, one set of bricks for each value of a voxel.
 std::vector<ScalarBricks> readRegionChunks(const FvxFile& file, Channel channel, const fvx::RegionEntry& region, const fvx::VoxelBox& box) {
-  constexpr int n = ScalarBricks::kEdge, m = fvx::kChunkEdge / n;
+  constexpr int n = ScalarBricks::kEdge;
   const int level = int(region.level), components = fvx::valuesPerVoxel(channel);
   const glm::ivec3 corner = box.first % n, firstCell = box.first / n;
   std::vector<ScalarBricks> result(std::size_t(components), ScalarBricks(box.extent(), corner));
-  const fvx::Encoding& encoding = *file.description().encodings[std::size_t(channel)];
-  const fvx::Decoder decoder(encoding);
-  const std::size_t brickBytes = fvx::kBrickVoxels * encoding.bytesPerValue();
-  std::vector<std::byte> unpacked;
+  const fvx::ChunkReader reader(file, channel, level);
   for (int child = 0; child < 8; ++child) {
     const glm::ivec3 cell = 2 * region.cell + glm::ivec3(child & 1, child >> 1 & 1, child >> 2);
     const ChunkEntry* const chunk = file.find(channel, level, cell);
     if (chunk == nullptr) continue;
-    std::span<const std::byte> bytes = file.read(channel, *chunk, unpacked);
-    for (int brick = 0; brick < fvx::kChunkBricks; ++brick) {
-      if ((chunk->brickMask >> brick & 1u) == 0) continue;
-      for (ScalarBricks& values : result) {
-        decoder.decode(bytes.first(brickBytes), values.makeBrick(cell * m + glm::ivec3(brick % m, brick / m % m, brick / (m * m)) - firstCell));
-        bytes = bytes.subspan(brickBytes);
-      }
-    }
+    const BrickPlaces places(std::span(chunk, 1));
+    reader.read(*chunk, [&](std::size_t number, std::size_t component) { return &result[component].makeBrick(places.cells[number] - firstCell); });
   }
   return result;
 }
 
-Volume readLevel(const std::shared_ptr<const FvxFile>& file, int level) {
-  Volume volume = bakedOutline(*file, level);
+Volume readLevel(const FvxFile& file, int level) {
+  Volume volume = bakedOutline(file, level);
   volume.scalars = std::move(readChannel(file, Channel::Scalars, level).front());
   if (volume.temperature) volume.temperature->values = std::move(readChannel(file, Channel::Temperature, level).front());
   if (volume.albedo) std::ranges::move(readChannel(file, Channel::Albedo, level), volume.albedo->values.begin());
@@ -268,16 +235,14 @@ void encodeInTurn(std::span<const glm::ivec3> cells, const ChunkSource& chunk, c
 }  // namespace
 
 StreamedVolume partsStream(const VdbParts& parts, const Classification& classification) {
-  StreamedVolume stream{.outline = parts.outline(),
-                        .content = contentCells(parts.sample(), classification),
-                        .range = {parts.outline().minimum, parts.outline().maximum},
-                        .chunk = [&parts](glm::ivec3 cell) {
-                          ChunkValues chunk = chunkOf(parts.read(cell * fvx::kChunkEdge, fvx::kChunkEdge), glm::ivec3(0));
-                          chunk.cell = cell;
-                          return chunk;
-                        }};
-  stream.content.edge *= double(parts.outline().dimensions.x) / double(parts.sample().dimensions.x);
-  return stream;
+  return {.outline = parts.outline(),
+          .content = contentCellsOf(parts.outline().dimensions, parts.sample(), classification),
+          .range = {parts.outline().minimum, parts.outline().maximum},
+          .chunk = [&parts](glm::ivec3 cell) {
+            ChunkValues chunk = chunkOf(parts.read(cell * fvx::kChunkEdge, fvx::kChunkEdge), glm::ivec3(0));
+            chunk.cell = cell;
+            return chunk;
+          }};
 }
 
 void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volume, const Classification& classification,
@@ -332,7 +297,7 @@ Volume bakedOutline(const FvxFile& file, int level) {
 Volume readBaked(const std::shared_ptr<const FvxFile>& file, int level) {
   FV_CHECK_LT(level, file->levels());
   try {
-    return readLevel(file, level);
+    return readLevel(*file, level);
   } catch (const std::bad_alloc&) {
     fail(ErrorKind::OutOfMemory, "not enough memory for level {} of '{}'; free some", level, file->path().string());
   }

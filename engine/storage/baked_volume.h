@@ -60,9 +60,8 @@ void bakeVolume(const std::filesystem::path& file, const Volume& volume, const C
                 const BakeSettings& settings, const Progress& progress = {}, const BakeTeam& team = {});
 
 /// Reads a level of a baked file: the voxels, or for a level above 0 blocks of 2^level voxels along each
-/// axis, each their mean, at the same place in the world. Every chunk that is read is verified first. Values
-/// that are stored as floats without compression are used in place and keep the file mapped. Fails with
-/// ErrorKind::Input if a chunk is damaged.
+/// axis, each their mean, at the same place in the world. Every chunk that is read is verified first, and the file is not needed
+/// afterwards. Fails with ErrorKind::Input if a chunk is damaged.
 Volume readBaked(const std::shared_ptr<const fvx::FvxFile>& file, int level = 0);
 
 /// A region of a level with its halo, as a volume of its own, and what its table is swept from.

@@ -1,9 +1,13 @@
 #include "engine/storage/fvx_description.h"
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/json_file.h"
+#include "engine/core/printable.h"
 
 namespace freevoxels::fvx {
 
@@ -12,15 +16,56 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::array<const char*, kChannels> kChannelNames{"scalars", "temperature", "albedo"};
+constexpr double kLargestFloat = std::numeric_limits<float>::max(), kLargestDouble = std::numeric_limits<double>::max();
 
 template <typename Vector>
 Json triple(const Vector& v) {
   return {v.x, v.y, v.z};
 }
 
-template <typename Value>
-glm::vec<3, Value> readTriple(const Json& json) {
-  return {json.at(0).get<Value>(), json.at(1).get<Value>(), json.at(2).get<Value>()};
+[[noreturn]] void refuse(const char* what) {
+  throw std::runtime_error(fmt::format("{} is impossible", what));
+}
+
+/// A number that is an integer between two others.
+template <typename Integer>
+Integer integer(const Json& json, Integer low, Integer high, const char* what) {
+  const bool fits = json.is_number_unsigned() ? std::cmp_less_equal(json.get<std::uint64_t>(), high) && std::cmp_greater_equal(json.get<std::uint64_t>(), low)
+                                              : json.is_number_integer() && std::cmp_less_equal(json.get<std::int64_t>(), high) &&
+                                                    std::cmp_greater_equal(json.get<std::int64_t>(), low);
+  if (!fits) refuse(what);
+  return json.get<Integer>();
+}
+
+std::uint64_t count(const Json& json, std::uint64_t most, const char* what) {
+  return integer<std::uint64_t>(json, 0, most, what);
+}
+
+/// A finite number in a range.
+double number(const Json& json, double low, double high, const char* what) {
+  const double value = json.get<double>();
+  if (!(value >= low && value <= high)) refuse(what);
+  return value;
+}
+
+/// A number that a float holds.
+float real(const Json& json, const char* what) {
+  return float(number(json, -kLargestFloat, kLargestFloat, what));
+}
+
+/// The numbers of a list of `value(element)`.
+template <glm::length_t N, typename Value>
+auto vectorOf(const Json& json, const Value& value, const char* what) {
+  if (!json.is_array() || json.size() != std::size_t(N)) refuse(what);
+  glm::vec<N, decltype(value(json))> result;
+  for (glm::length_t i = 0; i < N; ++i) result[i] = value(json[std::size_t(i)]);
+  return result;
+}
+
+/// For messages: one line without control characters.
+std::string text(const Json& json) {
+  constexpr std::size_t kLongest = 200;
+  return printablePart(json.get_ref<const std::string&>(), kLongest);
 }
 
 Json functionJson(const TransferFunction& function) {
@@ -30,14 +75,30 @@ Json functionJson(const TransferFunction& function) {
   return json;
 }
 
+/// Points over scalars that do not descend, each with N values between 0 and 1.
+template <glm::length_t N, typename Point>
+std::vector<Point> readPoints(const Json& json, const char* what) {
+  if (!json.is_array() || json.empty()) refuse(what);
+  std::vector<Point> points;
+  for (const Json& point : json) {
+    if (!point.is_array() || point.size() != 1 + std::size_t(N)) refuse(what);
+    const float scalar = real(point[0], what);
+    if (!points.empty() && scalar < points.back().scalar) refuse(what);
+    glm::vec<N, float> values;
+    for (glm::length_t i = 0; i < N; ++i) values[i] = float(number(point[1 + std::size_t(i)], 0.0, 1.0, what));
+    if constexpr (N == 1)
+      points.push_back({scalar, values[0]});
+    else
+      points.push_back({scalar, values});
+  }
+  return points;
+}
+
 TransferFunction readFunction(const Json& json) {
   TransferFunction function;
-  function.unitDistance = json.at("unit_distance");
-  for (const Json& point : json.at("opacity")) function.opacity.push_back({point.at(0), point.at(1)});
-  for (const Json& point : json.at("color"))
-    function.color.push_back({point.at(0), {point.at(1).get<float>(), point.at(2).get<float>(), point.at(3).get<float>()}});
-  if (function.opacity.empty() || function.color.empty() || !(function.unitDistance > 0.0))
-    throw std::runtime_error("its transfer function is empty");
+  function.opacity = readPoints<1, TransferFunction::OpacityPoint>(json.at("opacity"), "the opacity of its transfer function");
+  function.color = readPoints<3, TransferFunction::ColorPoint>(json.at("color"), "the colour of its transfer function");
+  function.unitDistance = number(json.at("unit_distance"), std::numeric_limits<double>::min(), kLargestFloat, "unit_distance");
   return function;
 }
 
@@ -59,17 +120,20 @@ Json classificationJson(const Volume& volume) {
 
 Classification readClassification(const Json& json) {
   Classification classification;
-  classification.densityScale = json.at("density_scale");
-  classification.albedo = readTriple<float>(json.at("albedo"));
+  classification.densityScale = number(json.at("density_scale"), 0.0, kLargestDouble, "density_scale");
+  classification.albedo =
+      vectorOf<3>(json.at("albedo"), [](const Json& component) { return float(number(component, 0.0, 1.0, "albedo")); }, "albedo");
   if (json.contains("transfer_function")) {
     classification.transferFunction = readFunction(json["transfer_function"]);
-    classification.order = json.at("order") == "pre" ? ClassificationOrder::Pre : ClassificationOrder::Post;
+    const std::string order = json.at("order");
+    if (order != "pre" && order != "post") refuse("order");
+    classification.order = order == "pre" ? ClassificationOrder::Pre : ClassificationOrder::Post;
   }
   if (json.contains("emission")) {
     const Json& emission = json["emission"];
-    classification.emission = Emission{.strength = emission.at("strength"),
-                                       .temperatureScale = emission.at("temperature_scale"),
-                                       .temperatureOffset = emission.at("temperature_offset")};
+    classification.emission = Emission{.strength = number(emission.at("strength"), 0.0, kLargestDouble, "strength"),
+                                       .temperatureScale = number(emission.at("temperature_scale"), -kLargestDouble, kLargestDouble, "temperature_scale"),
+                                       .temperatureOffset = number(emission.at("temperature_offset"), -kLargestDouble, kLargestDouble, "temperature_offset")};
   }
   return classification;
 }
@@ -88,62 +152,86 @@ Json encodingsJson(const Encodings& encodings) {
 
 /// Channels of later minor versions are skipped.
 Encodings readEncodings(const Json& json) {
+  if (!json.is_array()) refuse("channels");
   Encodings encodings;
   for (const Json& channel : json) {
-    const std::size_t number = channel.at("number");
-    if (number >= encodings.size()) continue;
+    const auto place = count(channel.at("number"), std::numeric_limits<std::uint64_t>::max(), "number");
+    if (place >= encodings.size()) continue;
     const std::string name = channel.at("encoding");
     const auto known = std::ranges::find(kEncodingNames, name);
-    if (known == std::end(kEncodingNames)) throw std::runtime_error(fmt::format("encoding '{}' is unknown", name));
-    encodings[number] = Encoding{.kind = EncodingKind(known - std::begin(kEncodingNames)),
-                                 .scale = channel.at("scale"),
-                                 .offset = channel.at("offset")};
+    if (known == std::end(kEncodingNames)) throw std::runtime_error(fmt::format("encoding '{}' is unknown", text(name)));
+    if (encodings[place]) throw std::runtime_error("a channel is there twice");
+    encodings[place] = Encoding{.kind = EncodingKind(known - std::begin(kEncodingNames)),
+                                .scale = number(channel.at("scale"), 0.0, kLargestDouble, "scale"),
+                                .offset = number(channel.at("offset"), -kLargestFloat, kLargestFloat, "offset")};
   }
   if (!encodings[0]) throw std::runtime_error("it has no scalars");
   return encodings;
 }
 
+/// Affine, of voxels that have an extent along each axis in numbers that floats hold when they are squared.
 void readTransform(const Json& json, Volume& volume) {
-  for (int i = 0; i < 16; ++i) volume.indexToWorld[i / 4][i % 4] = json.at(std::size_t(i)).get<double>();
-  const double extent = std::abs(glm::determinant(glm::dmat3(volume.indexToWorld)));
-  if (!std::isfinite(extent) || !(extent > 0.0)) throw std::runtime_error("its voxels have no extent");
+  constexpr double kLargest = 1e15, kFlattest = 1e-9;  // world units; volume of a voxel relative to the box of its edge lengths
+  const auto refuseTransform = [] { throw std::runtime_error("its voxels have no extent, or one that is impossible"); };
+  if (!json.is_array() || json.size() != 16) refuseTransform();
+  for (int i = 0; i < 16; ++i) volume.indexToWorld[i / 4][i % 4] = number(json[std::size_t(i)], -kLargestDouble, kLargestDouble, "index_to_world");
+  const glm::dmat4& m = volume.indexToWorld;
+  double lengths = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = glm::length(glm::dvec3(m[axis]));
+    if (!(length < kLargest && length > 1.0 / kLargest) || m[axis][3] != 0.0) refuseTransform();
+    lengths *= length;
+  }
+  if (!(std::abs(glm::determinant(glm::dmat3(m))) > kFlattest * lengths)) refuseTransform();
+}
+
+void readBox(const Json& json, Volume& volume) {
+  constexpr int kLeast = std::numeric_limits<int>::min(), kMost = std::numeric_limits<int>::max();
+  const auto coordinate = [](int low, int high, const char* what) { return [=](const Json& value) { return integer(value, low, high, what); }; };
+  volume.dimensions = vectorOf<3>(json.at("dimensions"), coordinate(1, kLongestEdge, "an edge of its box"), "dimensions");
+  volume.indexOrigin = vectorOf<3>(json.at("index_origin"), coordinate(kLeast, kMost, "index_origin"), "index_origin");
+  if (glm::any(glm::greaterThan(volume.indexOrigin, kMost - (volume.dimensions - 1)))) refuse("index_origin");
 }
 
 void readCounts(const Json& json, Volume& volume) {
-  volume.activeVoxels = json.at("active_voxels");
-  volume.nanVoxels = json.at("nan_voxels");
-  volume.negativeVoxels = json.at("negative_voxels");
-  volume.minimum = json.at("minimum");
-  volume.maximum = json.at("maximum");
+  volume.activeVoxels = count(json.at("active_voxels"), volume.voxelCount(), "active_voxels");
+  volume.nanVoxels = count(json.at("nan_voxels"), volume.activeVoxels, "nan_voxels");
+  volume.negativeVoxels = count(json.at("negative_voxels"), volume.activeVoxels, "negative_voxels");
+  volume.minimum = real(json.at("minimum"), "minimum");
+  volume.maximum = real(json.at("maximum"), "maximum");
+  if (volume.minimum > volume.maximum) refuse("the range of its values");
+}
+
+TemperatureGrid readTemperature(const Json& json, std::uint64_t voxels) {
+  TemperatureGrid grid{.name = text(json.at("name")), .values = {}};
+  grid.activeVoxels = count(json.at("active_voxels"), voxels, "active_voxels of temperatures");
+  grid.nanVoxels = count(json.at("nan_voxels"), grid.activeVoxels, "nan_voxels of temperatures");
+  grid.minimum = real(json.at("minimum"), "minimum of temperatures");
+  grid.maximum = real(json.at("maximum"), "maximum of temperatures");
+  if (grid.minimum > grid.maximum) refuse("the range of its temperatures");
+  return grid;
 }
 
 Volume readVolume(const Json& json) {
   Volume volume;
-  volume.source = json.at("source");
-  volume.dimensions = readTriple<int>(json.at("dimensions"));
-  for (int axis = 0; axis < 3; ++axis)
-    if (volume.dimensions[axis] < 1 || volume.dimensions[axis] > kLongestEdge)
-      throw std::runtime_error(fmt::format("an edge of {} voxels is impossible", volume.dimensions[axis]));
-  volume.indexOrigin = readTriple<int>(json.at("index_origin"));
+  volume.source = text(json.at("source"));
+  readBox(json, volume);
   readTransform(json.at("index_to_world"), volume);
-  volume.up = readTriple<double>(json.at("up"));
-  volume.upReason = json.at("up_reason");
-  volume.isLevelSet = json.at("level_set");
+  volume.up = vectorOf<3>(json.at("up"), [](const Json& component) { return number(component, -kLargestFloat, kLargestFloat, "up"); }, "up");
+  if (!(glm::length(volume.up) > std::numeric_limits<float>::min())) refuse("up");
+  volume.upReason = text(json.at("up_reason"));
+  volume.isLevelSet = json.at("level_set").get<bool>();
   readCounts(json, volume);
   const Json& classification = json.at("classification");
   volume.classification = std::make_shared<const Classification>(readClassification(classification));
-  volume.classificationIsFixed = classification.at("fixed");
-  if (json.contains("temperature")) {
-    const Json& grid = json["temperature"];
-    volume.temperature = TemperatureGrid{.name = grid.at("name"),
-                                         .activeVoxels = grid.at("active_voxels"),
-                                         .nanVoxels = grid.at("nan_voxels"),
-                                         .minimum = grid.at("minimum"),
-                                         .maximum = grid.at("maximum")};
-  }
+  volume.classificationIsFixed = classification.at("fixed").get<bool>();
+  if (json.contains("temperature")) volume.temperature = readTemperature(json["temperature"], volume.voxelCount());
   if (volume.classification->emission && !volume.temperature) throw std::runtime_error("there is emission without temperatures");
-  if (json.contains("albedo"))
-    volume.albedo = AlbedoGrid{.name = json["albedo"].at("name"), .clippedVoxels = json["albedo"].at("clipped_voxels")};
+  if (json.contains("albedo")) {
+    const Json& albedo = json["albedo"];
+    constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();  // it counts voxels beyond the volume's box too
+    volume.albedo = AlbedoGrid{.name = text(albedo.at("name")), .values = {}, .clippedVoxels = count(albedo.at("clipped_voxels"), kMost, "clipped_voxels")};
+  }
   return volume;
 }
 
@@ -178,8 +266,8 @@ std::string toJson(const Description& description) {
 }
 
 Description parseDescription(std::string_view json, const std::filesystem::path& file) {
+  const Json root = parseJson("the description of", file.string(), json);
   try {
-    const Json root = Json::parse(json);
     Description description{.volume = readVolume(root), .encodings = readEncodings(root.at("channels"))};
     const Volume& volume = description.volume;
     if (volume.temperature.has_value() != description.encodings[std::size_t(Channel::Temperature)].has_value() ||
@@ -187,9 +275,23 @@ Description parseDescription(std::string_view json, const std::filesystem::path&
       throw std::runtime_error("its channels do not match its grids");
     return description;
   } catch (const std::exception& error) {
+    constexpr std::size_t kLongest = 200;
     fail(ErrorKind::Input, "'{}' cannot be read: its description does not say what it should ({}); bake it again", file.string(),
-         error.what());
+         printablePart(error.what(), kLongest));
   }
+}
+
+glm::vec2 Description::valueRange(Channel channel, int level) const {
+  if (channel == Channel::Albedo) return {0.0f, 1.0f};
+  if (channel == Channel::Temperature) return {volume.temperature->minimum, volume.temperature->maximum};
+  // In means of densities, voxels without data and negative ones are 0.
+  if (level > 0) return {std::min(volume.minimum, 0.0f), std::max(volume.maximum, 0.0f)};
+  return {volume.minimum, volume.maximum};
+}
+
+std::uint64_t Description::activeVoxels(Channel channel) const {
+  if (channel == Channel::Albedo) return std::numeric_limits<std::uint64_t>::max();  // which nobody counts
+  return channel == Channel::Temperature ? volume.temperature->activeVoxels : volume.activeVoxels;
 }
 
 }  // namespace freevoxels::fvx

@@ -30,10 +30,14 @@ struct Description {
     return std::size_t(kBrickVoxels) * std::size_t(valuesPerVoxel(channel)) *
            encodings[std::size_t(channel)]->bytesPerValue();
   }
+  /// The range in which all stored values of a level are.
+  glm::vec2 valueRange(Channel channel, int level) const;
+  /// The number of voxels of level 0 that have a value, at most.
+  std::uint64_t activeVoxels(Channel channel) const;
 };
 
 std::string toJson(const Description& description);
-/// Parses a description. Fails with ErrorKind::Input, naming `file`, if something is missing or impossible.
+/// Parses a description. Fails with ErrorKind::Input, naming `file`, if something is missing or impossible. Texts in it are made printable.
 Description parseDescription(std::string_view json, const std::filesystem::path& file);
 
 }  // namespace freevoxels::fvx

@@ -29,13 +29,17 @@ struct Encoding {
 /// bytesPerValue() for each value.
 void encode(const Encoding& encoding, std::span<const float> values, std::span<std::byte> bytes);
 
+/// Whether no value is NaN or infinite.
+bool areFinite(std::span<const float> values);
+
 class Decoder {
  public:
   explicit Decoder(const Encoding& encoding);
-  void decode(std::span<const std::byte> bytes, std::span<float> values) const;
+  /// Returns false if any value is NaN or infinite, which encode() stores of none.
+  [[nodiscard]] bool decode(std::span<const std::byte> bytes, std::span<float> values) const;
 
  private:
-  std::vector<float> values_;  ///< value of each 16-bit code; empty for Float32
+  std::vector<float> values_;  ///< value of each 16-bit code, NaN of those that encode() makes of none; empty for Float32
 };
 
 }  // namespace freevoxels::fvx

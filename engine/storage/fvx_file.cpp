@@ -1,16 +1,22 @@
 #include "engine/storage/fvx_file.h"
 
-#include <sys/mman.h>
 #include <tbb/parallel_for.h>
 #include <xxhash.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <tuple>
 
 #include "engine/core/error.h"
+#include "engine/core/json_file.h"
 #include "engine/storage/chunk_pyramid.h"
+#include "engine/storage/chunk_reader.h"
+#include "engine/storage/fvx_index.h"
 #include "engine/storage/hilbert.h"
 #include "engine/storage/plane_codec.h"
 
@@ -20,6 +26,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// That are hashed at a time.
+constexpr std::size_t kPieceBytes = std::size_t(1) << 20;
+
+class Hash {
+ public:
+  Hash() { XXH3_64bits_reset(state_.get()); }
+  void add(std::span<const std::byte> bytes) { XXH3_64bits_update(state_.get(), bytes.data(), bytes.size()); }
+  std::uint64_t value() const { return XXH3_64bits_digest(state_.get()); }
+
+ private:
+  std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> state_{XXH3_createState(), XXH3_freeState};
+};
+
 std::uint64_t hashOf(std::span<const std::byte> bytes) {
   return XXH3_64bits(bytes.data(), bytes.size());
 }
@@ -28,86 +47,122 @@ bool hasIdentifier(const void* bytes) {
   return std::memcmp(bytes, kIdentifier.data(), kIdentifier.size()) == 0;
 }
 
+[[noreturn]] void failToRead(const fs::path& file, const std::system_error& error) {
+  fail(ErrorKind::Input, "cannot read '{}': {}; check its name and its permissions", file.string(), error.code().message());
+}
+
+RandomAccessFile openFile(const fs::path& file) {
+  try {
+    return RandomAccessFile(file);
+  } catch (const std::system_error& error) {
+    failToRead(file, error);
+  }
+}
+
 }  // namespace
 
 bool isFvx(const fs::path& file) {
   if (file.extension() == ".fvx") return true;
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;  // opening a pipe would wait for somebody to write to it
   std::array<char, kIdentifier.size()> first{};
   std::ifstream stream(file, std::ios::binary);
   return stream.read(first.data(), first.size()) && hasIdentifier(first.data());
 }
 
 std::uint64_t hashOfFile(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> hash(XXH3_createState(), XXH3_freeState);
-  XXH3_64bits_reset(hash.get());
-  std::vector<char> piece(std::size_t(1) << 20);
-  do {
-    stream.read(piece.data(), std::streamsize(piece.size()));
-    XXH3_64bits_update(hash.get(), piece.data(), std::size_t(stream.gcount()));
-  } while (stream);
-  if (!stream.eof()) fail(ErrorKind::Input, "cannot read '{}'; check its name and its permissions", file.string());
-  return XXH3_64bits_digest(hash.get());
+  try {
+    const RandomAccessFile opened(file);
+    Hash hash;
+    std::vector<std::byte> piece(kPieceBytes);
+    std::uint64_t offset = 0;
+    for (std::size_t count = piece.size(); count == piece.size(); offset += count) {
+      count = opened.readAt(offset, piece);
+      hash.add(std::span(piece).first(count));
+    }
+    return hash.value();
+  } catch (const std::system_error& error) {
+    failToRead(file, error);
+  }
 }
 
-FvxFile::FvxFile(const fs::path& file) : path_(file) {
-  std::error_code error;
-  const std::uint64_t size = fs::file_size(file, error);
-  if (error) fail(ErrorKind::Input, "cannot read '{}': {}; check its name", file.string(), error.message());
-  if (size == 0) fail(ErrorKind::Input, "'{}' is empty; copy it again, or bake it again", file.string());
-  try {
-    map_.open(file.string());
-  } catch (const std::exception&) {
-    fail(ErrorKind::Input, "cannot read '{}': it cannot be mapped into memory; check its permissions", file.string());
-  }
-  // What is read is said exactly: the kernel's own guesses are of megabytes.
-  madvise(const_cast<char*>(map_.data()), size, MADV_RANDOM);
+FvxFile::FvxFile(const fs::path& file) : path_(file), file_(openFile(file)) {
+  if (file_.bytes() == 0) fail(ErrorKind::Input, "'{}' is empty; copy it again, or bake it again", file.string());
+  readHeader();
   checkHeader();
-  const std::span<const std::byte> description = required(SectionKind::Description, "description");
-  description_ = parseDescription({reinterpret_cast<const char*>(description.data()), description.size()}, file);
-  const std::span<const std::byte> provenance = required(SectionKind::Provenance, "provenance");
-  provenance_ = {reinterpret_cast<const char*>(provenance.data()), provenance.size()};
+  checkSections();
+  const std::vector<char> description = required(SectionKind::Description, "description");
+  description_ = parseDescription({description.data(), description.size()}, file);
+  const std::vector<char> provenance = required(SectionKind::Provenance, "provenance");
+  provenance_.assign(provenance.begin(), provenance.end());
+  if (parseJsonQuietly(provenance_).is_discarded()) failDamaged("its provenance is not valid JSON");
   description_.volume.content = std::make_shared<const Subject>(subjectOf(readContent(), description_.volume));
   dimensions_ = levelDimensions(description_.volume.dimensions);
-  chunks_.resize(dimensions_.size());
-  for (int level = 0; level < levels(); ++level)
-    for (std::size_t channel = 0; channel < kChannels; ++channel)
-      if (hasChannel(Channel(channel))) chunks_[std::size_t(level)][channel] = readIndex(Channel(channel), level);
+  for (std::size_t channel = 0; channel < kChannels; ++channel) readChannel(Channel(channel));
   readRegions();
 }
 
-std::span<const std::byte> FvxFile::bytes(std::uint64_t offset, std::uint64_t count) const {
-  const std::uint64_t first = offset / kPageBytes * kPageBytes;
-  madvise(const_cast<char*>(map_.data()) + first, offset + count - first, MADV_WILLNEED);
-  return std::as_bytes(std::span(map_.data() + offset, count));
-}
-
 void FvxFile::failDamaged(const std::string& what) const {
+  if (file_.hasChanged())
+    fail(ErrorKind::Input, "'{}' was overwritten or cut while it was in use; open it again, and give new files their names when they are complete",
+         path_.string());
   fail(ErrorKind::Input, "'{}' is damaged: {}; copy it again, or bake it again", path_.string(), what);
 }
 
+void FvxFile::readBytes(std::uint64_t offset, std::span<std::byte> bytes) const {
+  std::size_t count = 0;
+  try {
+    count = file_.readAt(offset, bytes);
+  } catch (const std::system_error& error) {
+    fail(ErrorKind::Input, "cannot read '{}': {}; check the disk or the network", path_.string(), error.code().message());
+  }
+  if (count != bytes.size()) failDamaged(fmt::format("it ends at byte {}", offset + count));
+}
+
+void FvxFile::readHeader() {
+  const auto bytes = std::as_writable_bytes(std::span(&header_, 1)).first(std::min<std::uint64_t>(sizeof(header_), file_.bytes()));
+  std::memset(static_cast<void*>(&header_), 0, sizeof(header_));
+  readBytes(0, bytes);
+}
+
 void FvxFile::checkHeader() const {
-  const std::uint64_t size = map_.size();
+  const std::uint64_t size = file_.bytes();
   const std::string name = path_.string();
-  if (size < kIdentifier.size() || !hasIdentifier(map_.data()))
+  if (size < kIdentifier.size() || !hasIdentifier(&header_))
     fail(ErrorKind::Input, "'{}' is no baked volume: it does not begin as one; 'freevoxels bake' makes them", name);
   if (size < sizeof(Header))
     fail(ErrorKind::Input, "'{}' is incomplete: it has {} bytes, and its header alone {}; copy it again", name, size, sizeof(Header));
-  if (header().byteOrderMark == kOtherByteOrderMark)
+  if (header_.byteOrderMark == kOtherByteOrderMark)
     fail(ErrorKind::Input, "'{}' cannot be read: it was written on a machine with the other byte order", name);
-  if (header().majorVersion != kMajorVersion)
+  if (header_.majorVersion != kMajorVersion)
     fail(ErrorKind::Input, "'{}' cannot be read: it has format {}.{}, and this program reads format {}; bake it again", name,
-         header().majorVersion, header().minorVersion, kMajorVersion);
-  Header unhashed = header();
+         header_.majorVersion, header_.minorVersion, kMajorVersion);
+  Header unhashed = header_;
   unhashed.hash = 0;
-  if (XXH3_64bits(&unhashed, sizeof(unhashed)) != header().hash) failDamaged("the checksum of its header is wrong");
-  if (size < header().fileBytes)
-    fail(ErrorKind::Input, "'{}' is incomplete: it has {} of {} bytes; copy it again", name, size, header().fileBytes);
-  if (size > header().fileBytes) failDamaged(fmt::format("it has {} bytes instead of {}", size, header().fileBytes));
-  if (header().byteOrderMark != kByteOrderMark || header().sectionCount > kMaxSections) failDamaged("its header is impossible");
-  for (const Section& section : sections())
-    if (section.offset % kPageBytes != 0 || section.offset > size || section.bytes > size - section.offset)
+  if (XXH3_64bits(&unhashed, sizeof(unhashed)) != header_.hash) failDamaged("the checksum of its header is wrong");
+  if (size < header_.fileBytes)
+    fail(ErrorKind::Input, "'{}' is incomplete: it has {} of {} bytes; copy it again", name, size, header_.fileBytes);
+  if (size > header_.fileBytes) failDamaged(fmt::format("it has {} bytes instead of {}", size, header_.fileBytes));
+  if (header_.byteOrderMark != kByteOrderMark || header_.sectionCount > kMaxSections) failDamaged("its header is impossible");
+}
+
+/// Sections of unknown kinds may lie anywhere in the file; those of known kinds have a place of their own.
+void FvxFile::checkSections() const {
+  std::vector<Section> known;
+  for (const Section& section : sections()) {
+    if (section.offset % kPageBytes != 0 || section.offset > file_.bytes() || section.bytes > file_.bytes() - section.offset)
       failDamaged("a section is not where it should be");
+    if (section.kind >= SectionKind::Description && section.kind <= SectionKind::Regions) known.push_back(section);
+  }
+  std::ranges::sort(known, {}, [](const Section& section) { return std::tuple(section.offset, section.bytes); });
+  std::uint64_t free = sizeof(Header);
+  for (const Section& section : known) {
+    if (section.bytes > 0 && section.offset < free) failDamaged("two sections are in the same place");
+    free = std::max(free, section.offset + section.bytes);
+  }
+  const auto what = [](const Section& section) { return std::tuple(section.kind, section.channel, section.level); };
+  std::ranges::sort(known, {}, what);
+  if (std::ranges::adjacent_find(known, {}, what) != known.end()) failDamaged("it has a section twice");
 }
 
 const Section* FvxFile::find(SectionKind kind, Channel channel, int level) const {
@@ -118,77 +173,129 @@ const Section* FvxFile::find(SectionKind kind, Channel channel, int level) const
   return found == all.end() ? nullptr : &*found;
 }
 
-std::span<const std::byte> FvxFile::checked(const Section& section) const {
-  const std::span<const std::byte> result = bytes(section.offset, section.bytes);
-  if (hashOf(result) != section.hash)
-    failDamaged(fmt::format("the checksum of a section (kind {}, level {}) is wrong", std::uint32_t(section.kind), section.level));
-  return result;
+void FvxFile::failSectionHash(const Section& section) const {
+  failDamaged(fmt::format("the checksum of a section (kind {}, level {}) is wrong", std::uint32_t(section.kind), section.level));
 }
 
-std::span<const std::byte> FvxFile::required(SectionKind kind, const char* name) const {
+void FvxFile::checkHash(const Section& section) const {
+  Hash hash;
+  std::vector<std::byte> piece(std::min<std::uint64_t>(kPieceBytes, section.bytes));
+  for (std::uint64_t done = 0; done < section.bytes; done += piece.size()) {
+    piece.resize(std::min<std::uint64_t>(piece.size(), section.bytes - done));
+    readBytes(section.offset + done, piece);
+    hash.add(piece);
+  }
+  if (hash.value() != section.hash) failSectionHash(section);
+}
+
+template <typename Value>
+std::vector<Value> FvxFile::valuesOf(const Section& section) const {
+  std::vector<Value> values(section.bytes / sizeof(Value));
+  if (section.bytes % sizeof(Value) != 0) failDamaged("an index ends in the middle of an entry");
+  const std::span<std::byte> bytes = std::as_writable_bytes(std::span(values));
+  readBytes(section.offset, bytes);
+  if (hashOf(bytes) != section.hash) failSectionHash(section);
+  return values;
+}
+
+std::vector<char> FvxFile::required(SectionKind kind, const char* name) const {
   const Section* const section = find(kind);
   if (section == nullptr) failDamaged(fmt::format("it has no {}", name));
-  return checked(*section);
+  return valuesOf<char>(*section);
 }
 
+/// Cells may be a little fewer or more than the volume's edge divided by theirs: those of a volume that is baked in parts are of a sample.
 ContentCells FvxFile::readContent() const {
-  const std::span<const std::byte> raw = required(SectionKind::ContentCells, "content cells");
+  const std::vector<char> raw = required(SectionKind::ContentCells, "content cells");
   ContentHeader header;
   if (raw.size() < sizeof(header)) failDamaged("its content cells are too short");
   std::memcpy(&header, raw.data(), sizeof(header));
   constexpr int kMaxCells = 1 << 10;
   const glm::ivec3 cells = header.cells;
-  const bool possible = glm::all(glm::greaterThan(cells, glm::ivec3(0))) && glm::all(glm::lessThan(cells, glm::ivec3(kMaxCells)));
+  bool possible = std::isfinite(header.edge) && header.edge > 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double expected = double(description_.volume.dimensions[axis]) / header.edge;
+    possible = possible && cells[axis] > 0 && cells[axis] < kMaxCells && cells[axis] <= 2.0 * expected + 2.0 && cells[axis] >= 0.5 * expected - 2.0;
+  }
   const std::uint64_t count = possible ? std::uint64_t(cells.x) * std::uint64_t(cells.y) * std::uint64_t(cells.z) : 0;
-  if (!possible || raw.size() != sizeof(header) + (count + 7) / 8 || !(header.edge > 0.0)) failDamaged("its content cells are impossible");
+  if (!possible || raw.size() != sizeof(header) + (count + 7) / 8) failDamaged("its content cells are impossible");
   ContentCells content{.cells = Cells(cells), .edge = header.edge};
   for (std::size_t i = 0; i < count; ++i)
-    content.cells.values[i] = std::uint8_t(std::to_integer<int>(raw[sizeof(header) + i / 8]) >> i % 8 & 1);
+    content.cells.values[i] = std::uint8_t(std::uint8_t(raw[sizeof(header) + i / 8]) >> i % 8 & 1);
   return content;
 }
 
-std::span<const ChunkEntry> FvxFile::readIndex(Channel channel, int level) const {
-  const Section* const index = find(SectionKind::ChunkIndex, channel, level);
-  const Section* const chunks = find(SectionKind::Chunks, channel, level);
-  if (index == nullptr || chunks == nullptr) failDamaged(fmt::format("it has no chunks of level {}", level));
-  const std::span<const std::byte> raw = checked(*index);
-  if (raw.size() % sizeof(ChunkEntry) != 0) failDamaged("the index of its chunks ends in the middle of one");
-  const std::span entries(reinterpret_cast<const ChunkEntry*>(raw.data()), raw.size() / sizeof(ChunkEntry));
-  for (const ChunkEntry& entry : entries) checkEntry(entry, *chunks, channel, level);
-  return entries;
+void FvxFile::readChannel(Channel channel) {
+  std::vector<std::vector<ChunkEntry>>& ofLevels = chunks_[std::size_t(channel)];
+  ofLevels.resize(dimensions_.size());
+  if (!hasChannel(channel)) return;
+  const auto refuse = [&](std::size_t level, const std::string& why) {
+    if (!why.empty()) failDamaged(fmt::format("in channel {}, level {}, {}", std::uint32_t(channel), level, why));
+  };
+  for (std::size_t level = 0; level < ofLevels.size(); ++level) {
+    const Section* const index = find(SectionKind::ChunkIndex, channel, int(level));
+    const Section* const chunks = find(SectionKind::Chunks, channel, int(level));
+    if (index == nullptr || chunks == nullptr) failDamaged(fmt::format("it has no chunks of level {}", level));
+    ofLevels[level] = valuesOf<ChunkEntry>(*index);
+    refuse(level, whyNotChunks(ofLevels[level], {.dimensions = dimensions_[level],
+                                                 .chunks = *chunks,
+                                                 .brickBytes = description_.brickBytes(channel),
+                                                 .range = description_.valueRange(channel, int(level))}));
+    if (level > 0) refuse(level, whyNotLevels(ofLevels[level - 1], ofLevels[level]));
+  }
+  std::uint64_t active = 0;
+  for (const ChunkEntry& chunk : ofLevels.front()) active += chunk.activeVoxels;
+  if (active > description_.activeVoxels(channel)) refuse(0, "the chunks count more voxels than the volume has");
 }
 
-void FvxFile::checkEntry(const ChunkEntry& entry, const Section& chunks, Channel channel, int level) const {
-  const glm::ivec3 cells = (dimensions(level) + kChunkEdge - 1) / kChunkEdge;
-  const bool inside = entry.offset >= chunks.offset && entry.offset - chunks.offset <= chunks.bytes &&
-                      entry.storedBytes <= chunks.bytes - (entry.offset - chunks.offset) && entry.offset % kChunkAlignment == 0;
-  const bool inBox = glm::all(glm::greaterThanEqual(entry.cell, glm::ivec3(0))) && glm::all(glm::lessThan(entry.cell, cells));
-  const std::uint64_t expected = std::uint64_t(entry.bricks()) * description_.brickBytes(channel);
-  const bool stored = entry.codec == Codec::None ? entry.storedBytes == entry.bytes : entry.codec == Codec::PlanesZstd;
-  if (!inside || !inBox || !stored || entry.bytes != expected)
-    failDamaged(fmt::format("the entry of chunk {},{},{} of level {} is impossible", entry.cell.x, entry.cell.y, entry.cell.z, level));
+void FvxFile::readRegions() {
+  regions_.resize(dimensions_.size());
+  const Section* const index = find(SectionKind::RegionIndex);
+  if (index == nullptr) return;
+  const Section* const regions = find(SectionKind::Regions);
+  const Classification& classification = *description_.volume.classification;
+  if (regions == nullptr || classification.transferFunction || classification.emission) failDamaged("the index of its regions belongs to none");
+  allRegions_ = valuesOf<RegionEntry>(*index);
+  const std::string why = whyNotRegions(allRegions_, *regions, dimensions_, chunks_[std::size_t(Channel::Scalars)],
+                                        *description_.encodings[std::size_t(Channel::Scalars)]);
+  if (!why.empty()) failDamaged(why);
+  std::span<const RegionEntry> rest(allRegions_);
+  for (std::size_t level = regions_.size(); level-- > 0;) {
+    const auto count = std::ranges::count(rest, std::uint32_t(level), &RegionEntry::level);
+    regions_[level] = rest.first(std::size_t(count));
+    rest = rest.subspan(std::size_t(count));
+  }
 }
 
-std::span<const std::byte> FvxFile::unpack(std::uint64_t offset, std::uint64_t storedBytes, std::uint64_t size, std::uint64_t hash,
-                                           Codec codec, std::size_t bytesPerValue, std::vector<std::byte>& unpacked,
-                                           const std::string& what) const {
-  const std::span<const std::byte> stored = bytes(offset, storedBytes);
-  if (hashOf(stored) != hash) failDamaged(fmt::format("the checksum of {} at byte {} is wrong", what, offset));
-  if (codec == Codec::None) return stored;
-  unpacked.resize(size);
-  if (!decompressPlanes(stored, bytesPerValue, unpacked)) failDamaged(fmt::format("the compressed bytes of {} at byte {} are wrong", what, offset));
-  return unpacked;
+template <typename Entry>
+void FvxFile::readStored(const Entry& entry, std::span<std::byte> bytes, const std::string& what) const {
+  FV_CHECK_EQ(bytes.size(), entry.storedBytes);
+  readBytes(entry.offset, bytes);
+  if (hashOf(bytes) != entry.hash) failDamaged(fmt::format("the checksum of {} at byte {} is wrong", what, entry.offset));
 }
 
-std::span<const std::byte> FvxFile::read(Channel channel, const ChunkEntry& chunk, std::vector<std::byte>& unpacked) const {
-  return unpack(chunk.offset, chunk.storedBytes, chunk.bytes, chunk.hash, chunk.codec,
-                description_.encodings[std::size_t(channel)]->bytesPerValue(), unpacked,
-                fmt::format("chunk {},{},{}", chunk.cell.x, chunk.cell.y, chunk.cell.z));
+template <typename Entry>
+std::span<const std::byte> FvxFile::unpack(const Entry& entry, std::size_t bytesPerValue, ReadBuffers& buffers, const std::string& what) const {
+  buffers.stored.resize(entry.storedBytes);
+  readStored(entry, std::span(buffers.stored), what);
+  if (entry.codec == Codec::None) return buffers.stored;
+  buffers.unpacked.resize(entry.bytes);
+  if (!decompressPlanes(buffers.stored, bytesPerValue, buffers.planes, buffers.unpacked))
+    failDamaged(fmt::format("the compressed bytes of {} at byte {} are wrong", what, entry.offset));
+  return buffers.unpacked;
+}
+
+std::span<const std::byte> FvxFile::read(Channel channel, const ChunkEntry& chunk, ReadBuffers& buffers) const {
+  return unpack(chunk, description_.encodings[std::size_t(channel)]->bytesPerValue(), buffers, nameOf(chunk));
+}
+
+void FvxFile::read(const ChunkEntry& chunk, std::span<std::byte> bytes) const {
+  readStored(chunk, bytes, nameOf(chunk));
 }
 
 const ChunkEntry* FvxFile::find(Channel channel, int level, glm::ivec3 cell) const {
   const std::span<const ChunkEntry> all = chunks(channel, level);
-  const int bits = hilbertBits((dimensions(level) + kChunkEdge - 1) / kChunkEdge);
+  const int bits = hilbertBits(chunkCells(dimensions(level)));
   const auto place = [&](glm::ivec3 c) { return hilbertIndex(glm::uvec3(c), bits); };
   const auto found = std::ranges::lower_bound(all, place(cell), {}, [&](const ChunkEntry& entry) { return place(entry.cell); });
   return found == all.end() || found->cell != cell ? nullptr : &*found;
@@ -205,65 +312,24 @@ std::uint64_t FvxFile::bytesToRead(const RegionEntry& region) const {
 }
 
 RegionSurroundings FvxFile::readRegion(const RegionEntry& region) const {
-  std::vector<std::byte> unpacked;
-  const std::span<const std::byte> bytes =
-      unpack(region.offset, region.storedBytes, region.bytes, region.hash, region.codec, sizeof(std::uint16_t), unpacked,
-             fmt::format("region {},{},{} of level {}", region.cell.x, region.cell.y, region.cell.z, region.level));
-  return decodeRegion(region.cell, dimensions(int(region.level)), region.parts, *description_.encodings[std::size_t(Channel::Scalars)], bytes);
-}
-
-void FvxFile::checkEntry(const RegionEntry& entry, const Section& regions) const {
-  const auto impossible = [&] {
-    failDamaged(fmt::format("the entry of region {},{},{} of level {} is impossible", entry.cell.x, entry.cell.y, entry.cell.z, entry.level));
-  };
-  if (entry.level >= dimensions_.size() || entry.parts >= 2 * kHaloPart) impossible();
-  const glm::ivec3 size = dimensions(int(entry.level)), cells = regionCells(size);
-  if (glm::any(glm::lessThan(entry.cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(entry.cell, cells))) impossible();
-  const std::uint64_t expected =
-      regionBytes(entry.cell, size, entry.parts, *description_.encodings[std::size_t(Channel::Scalars)]);
-  const bool inside = entry.offset >= regions.offset && entry.offset - regions.offset <= regions.bytes &&
-                      entry.storedBytes <= regions.bytes - (entry.offset - regions.offset) && entry.offset % kChunkAlignment == 0;
-  const bool stored = entry.codec == Codec::None ? entry.storedBytes == entry.bytes : entry.codec == Codec::PlanesZstd;
-  if (!inside || !stored || entry.bytes != expected) impossible();
-}
-
-void FvxFile::readRegions() {
-  regions_.resize(dimensions_.size());
-  const Section* const index = find(SectionKind::RegionIndex);
-  if (index == nullptr) return;
-  const Section* const regions = find(SectionKind::Regions);
-  const std::span<const std::byte> raw = checked(*index);
-  if (regions == nullptr || raw.size() % sizeof(RegionEntry) != 0) failDamaged("the index of its regions does not fit them");
-  const std::span entries(reinterpret_cast<const RegionEntry*>(raw.data()), raw.size() / sizeof(RegionEntry));
-  for (std::size_t first = 0, end = 0; first < entries.size(); first = end) {
-    for (end = first; end < entries.size() && entries[end].level == entries[first].level; ++end) checkEntry(entries[end], *regions);
-    std::span<const RegionEntry>& ofLevel = regions_[entries[first].level];
-    if (!ofLevel.empty()) failDamaged("the index of its regions is out of order");
-    ofLevel = entries.subspan(first, end - first);
-  }
-  for (int level = 0; level < levels(); ++level) {
-    std::size_t next = 0;
-    for (const ChunkEntry& chunk : chunks(Channel::Scalars, level)) {
-      const glm::ivec3 region = chunk.cell * kChunkEdge / kRegionEdge;
-      const std::span<const RegionEntry> known = regions_[std::size_t(level)];
-      if (next < known.size() && known[next].cell == region) ++next;
-      if (next == 0 || known[next - 1].cell != region) failDamaged(fmt::format("a region of level {} is missing in the index", level));
-    }
-  }
+  ReadBuffers buffers;
+  const std::string name = fmt::format("region {},{},{} of level {}", region.cell.x, region.cell.y, region.cell.z, region.level);
+  const std::span<const std::byte> bytes = unpack(region, sizeof(std::uint16_t), buffers, name);
+  std::optional<RegionSurroundings> decoded =
+      decodeRegion(region.cell, dimensions(int(region.level)), region.parts, *description_.encodings[std::size_t(Channel::Scalars)], bytes);
+  if (!decoded) failDamaged(fmt::format("{} has a value that is NaN or infinite", name));
+  return std::move(*decoded);
 }
 
 void FvxFile::checkAll() const {
-  for (const Section& section : sections()) checked(section);
-  for (int level = 0; level < levels(); ++level)
-    for (std::size_t channel = 0; channel < kChannels; ++channel) {
+  for (const Section& section : sections()) checkHash(section);
+  for (std::size_t channel = 0; channel < kChannels; ++channel)
+    for (int level = 0; level < levels() && hasChannel(Channel(channel)); ++level) {
+      const ChunkReader reader(*this, Channel(channel), level);
       const std::span<const ChunkEntry> all = chunks(Channel(channel), level);
-      tbb::parallel_for(std::size_t(0), all.size(), [&](std::size_t i) {
-        std::vector<std::byte> unpacked;
-        read(Channel(channel), all[i], unpacked);
-      });
+      tbb::parallel_for(std::size_t(0), all.size(), [&](std::size_t i) { reader.check(all[i]); });
     }
-  for (int level = 0; level < levels(); ++level)
-    for (const RegionEntry& region : regions(level)) readRegion(region);
+  tbb::parallel_for(std::size_t(0), allRegions_.size(), [&](std::size_t i) { readRegion(allRegions_[i]); });
 }
 
 }  // namespace freevoxels::fvx

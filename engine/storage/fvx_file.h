@@ -1,16 +1,16 @@
 #pragma once
-// A baked volume that is open for reading. The file is mapped into memory, so that only what is used is read
-// from the disk.
+// A baked volume that is open for reading. What describes it is in memory; chunks and regions are read from the disk when they are used, and
+// no map of the file exists that another process could cut.
 
-#include <boost/iostreams/device/mapped_file.hpp>
 #include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "engine/storage/regions.h"
+#include "engine/core/random_access_file.h"
 #include "engine/storage/fvx_description.h"
+#include "engine/storage/regions.h"
 #include "engine/volume/subject.h"
 
 namespace freevoxels::fvx {
@@ -21,18 +21,26 @@ bool isFvx(const std::filesystem::path& file);
 /// XXH3-64 of all bytes of a file. Fails with ErrorKind::Input if it cannot be read.
 std::uint64_t hashOfFile(const std::filesystem::path& file);
 
+/// Memory for what is read of a file: reading the next chunk needs no other.
+struct ReadBuffers {
+  std::vector<std::byte> stored, planes, unpacked;
+};
+
+/// Several threads may read at the same time. All that read fail with ErrorKind::Input and one sentence also if the file was cut or changed
+/// since it was opened, or if the disk fails.
 class FvxFile {
  public:
-  /// Opens a file and checks header, description and the index of the chunks. Fails with ErrorKind::Input and
+  /// Opens a file and checks header, description and the indices, every number against the others. Fails with ErrorKind::Input and
   /// one sentence if the file is not a baked volume, of a later major version, incomplete or damaged.
   explicit FvxFile(const std::filesystem::path& file);
   FvxFile(const FvxFile&) = delete;
   FvxFile& operator=(const FvxFile&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
-  const Header& header() const { return *reinterpret_cast<const Header*>(map_.data()); }
-  std::span<const Section> sections() const { return std::span(header().sections).first(header().sectionCount); }
+  const Header& header() const { return header_; }
+  std::span<const Section> sections() const { return std::span(header_.sections).first(header_.sectionCount); }
   const Description& description() const { return description_; }
+  /// JSON; may have any text in it.
   std::string_view provenance() const { return provenance_; }
   bool hasChannel(Channel channel) const { return description_.encodings[std::size_t(channel)].has_value(); }
 
@@ -41,12 +49,13 @@ class FvxFile {
   glm::ivec3 dimensions(int level) const { return dimensions_[std::size_t(level)]; }
   /// The chunks of a level in Hilbert order; none for a channel that the file does not have.
   std::span<const ChunkEntry> chunks(Channel channel, int level) const {
-    return chunks_[std::size_t(level)][std::size_t(channel)];
+    return chunks_[std::size_t(channel)][std::size_t(level)];
   }
-  /// The stored bricks of a chunk, in the order of the bits of its mask. Compressed ones are written to
-  /// `unpacked`; others lie in the mapped file, which exists as long as this object. Fails with
-  /// ErrorKind::Input if the chunk is damaged.
-  std::span<const std::byte> read(Channel channel, const ChunkEntry& chunk, std::vector<std::byte>& unpacked) const;
+  /// The stored bricks of a chunk, in the order of the bits of its mask, as long as `buffers` are not used again. Fails with
+  /// ErrorKind::Input if the chunk is damaged. The values may be any (chunk_reader.h).
+  std::span<const std::byte> read(Channel channel, const ChunkEntry& chunk, ReadBuffers& buffers) const;
+  /// The stored bricks of a chunk that is not compressed, as many bytes as they are.
+  void read(const ChunkEntry& chunk, std::span<std::byte> bytes) const;
   /// A chunk of a level; null if it has no data.
   const ChunkEntry* find(Channel channel, int level, glm::ivec3 cell) const;
   /// Whether the file has what regions need to be drawn on their own (regions.h).
@@ -57,33 +66,42 @@ class FvxFile {
   std::uint64_t bytesToRead(const RegionEntry& region) const;
   /// Fails with ErrorKind::Input if what is stored of the region is damaged.
   RegionSurroundings readRegion(const RegionEntry& region) const;
-  /// Reads the whole file and fails with ErrorKind::Input if any part is damaged.
+  /// Reads the whole file and fails with ErrorKind::Input if any part is damaged, or if any value is not as the index says.
   void checkAll() const;
 
- private:
-  /// Bytes of the file, which are all going to be read.
-  std::span<const std::byte> bytes(std::uint64_t offset, std::uint64_t count) const;
-  void checkHeader() const;
-  const Section* find(SectionKind kind, Channel channel = {}, int level = 0) const;
-  std::span<const std::byte> checked(const Section& section) const;
-  std::span<const std::byte> required(SectionKind kind, const char* name) const;
-  ContentCells readContent() const;
-  std::span<const ChunkEntry> readIndex(Channel channel, int level) const;
-  void checkEntry(const ChunkEntry& entry, const Section& chunks, Channel channel, int level) const;
-  void readRegions();
-  void checkEntry(const RegionEntry& entry, const Section& regions) const;
-  /// What an entry of an index refers to, unpacked: in the mapped file, or in `unpacked`. `what` begins the sentence.
-  std::span<const std::byte> unpack(std::uint64_t offset, std::uint64_t storedBytes, std::uint64_t bytes, std::uint64_t hash,
-                                    Codec codec, std::size_t bytesPerValue, std::vector<std::byte>& unpacked,
-                                    const std::string& what) const;
+  /// `what` is a clause.
   [[noreturn]] void failDamaged(const std::string& what) const;
 
+ private:
+  /// Fills `bytes`.
+  void readBytes(std::uint64_t offset, std::span<std::byte> bytes) const;
+  void readHeader();
+  void checkHeader() const;
+  void checkSections() const;
+  const Section* find(SectionKind kind, Channel channel = {}, int level = 0) const;
+  [[noreturn]] void failSectionHash(const Section& section) const;
+  void checkHash(const Section& section) const;
+  /// The bytes of a section as values.
+  template <typename Value>
+  std::vector<Value> valuesOf(const Section& section) const;
+  std::vector<char> required(SectionKind kind, const char* name) const;
+  ContentCells readContent() const;
+  void readChannel(Channel channel);
+  void readRegions();
+  /// What an entry of an index refers to, as it is stored and unpacked. `what` begins the sentence.
+  template <typename Entry>
+  void readStored(const Entry& entry, std::span<std::byte> bytes, const std::string& what) const;
+  template <typename Entry>
+  std::span<const std::byte> unpack(const Entry& entry, std::size_t bytesPerValue, ReadBuffers& buffers, const std::string& what) const;
+
   std::filesystem::path path_;
-  boost::iostreams::mapped_file_source map_;
+  RandomAccessFile file_;
+  Header header_;
   Description description_;
-  std::string_view provenance_;
+  std::string provenance_;
   std::vector<glm::ivec3> dimensions_;
-  std::vector<std::array<std::span<const ChunkEntry>, kChannels>> chunks_;
+  std::array<std::vector<std::vector<ChunkEntry>>, kChannels> chunks_;  ///< by level
+  std::vector<RegionEntry> allRegions_;
   std::vector<std::span<const RegionEntry>> regions_;  ///< by level
 };
 

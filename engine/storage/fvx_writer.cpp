@@ -9,6 +9,7 @@
 #include "engine/core/checked_file.h"
 #include "engine/core/error.h"
 #include "engine/core/spool.h"
+#include "engine/storage/fvx_index.h"
 #include "engine/storage/packed_bytes.h"
 #include "engine/storage/plane_codec.h"
 #include "engine/storage/region_sweep.h"
@@ -35,15 +36,6 @@ void setExtinctions(const Classification& classification, ChunkEntry& entry) {
     entry.leastExtinction = std::min(entry.leastExtinction, extinctionOf(point.scalar));
     entry.mostExtinction = std::max(entry.mostExtinction, extinctionOf(point.scalar));
   }
-}
-
-/// The regions that have chunks, in the order of these.
-std::vector<glm::ivec3> regionsOf(std::span<const ChunkEntry> chunks) {
-  std::vector<glm::ivec3> regions;
-  for (const ChunkEntry& chunk : chunks)
-    if (const glm::ivec3 region = chunk.cell * kChunkEdge / kRegionEdge; regions.empty() || regions.back() != region)
-      regions.push_back(region);
-  return regions;
 }
 
 std::vector<std::byte> contentBytes(const ContentCells& content) {

@@ -26,8 +26,8 @@ Codec compressPlanes(std::size_t bytesPerValue, std::vector<std::byte>& bytes) {
   return Codec::PlanesZstd;
 }
 
-bool decompressPlanes(std::span<const std::byte> stored, std::size_t bytesPerValue, std::span<std::byte> bytes) {
-  std::vector<std::byte> planes(bytes.size());
+bool decompressPlanes(std::span<const std::byte> stored, std::size_t bytesPerValue, std::vector<std::byte>& planes, std::span<std::byte> bytes) {
+  planes.resize(bytes.size());
   if (ZSTD_decompress(planes.data(), planes.size(), stored.data(), stored.size()) != planes.size()) return false;
   const std::size_t values = planes.size() / bytesPerValue;
   for (std::size_t plane = 0; plane < bytesPerValue; ++plane)

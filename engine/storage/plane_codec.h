@@ -11,7 +11,8 @@ namespace freevoxels::fvx {
 
 /// Compresses `bytes` in place, unless that makes them no fewer.
 Codec compressPlanes(std::size_t bytesPerValue, std::vector<std::byte>& bytes);
-/// `bytes` has the size of the result. Returns false if `stored` are not as many bytes compressed.
-bool decompressPlanes(std::span<const std::byte> stored, std::size_t bytesPerValue, std::span<std::byte> bytes);
+/// `bytes` has the size of the result, and `planes` is memory that is used on the way. Returns false if `stored` are not as many bytes
+/// compressed.
+bool decompressPlanes(std::span<const std::byte> stored, std::size_t bytesPerValue, std::vector<std::byte>& planes, std::span<std::byte> bytes);
 
 }  // namespace freevoxels::fvx

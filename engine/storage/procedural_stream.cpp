@@ -28,9 +28,8 @@ std::vector<float> chunkOf(const ProceduralField& field, glm::ivec3 cell, const 
 
 StreamedVolume proceduralStream(const ProceduralField& field, const Volume& sample, const Classification& classification) {
   StreamedVolume stream{.outline = {.source = sample.source, .dimensions = field.dimensions(), .indexToWorld = field.indexToWorld()},
-                        .content = contentCells(sample, classification),
+                        .content = contentCellsOf(field.dimensions(), sample, classification),
                         .range = {sample.minimum, sample.maximum}};
-  stream.content.edge *= double(field.dimensions().x) / double(sample.dimensions.x);
   const bool temperatures = sample.temperature.has_value();
   if (temperatures) stream.outline.temperature.emplace();
   stream.chunk = [&field, temperatures](glm::ivec3 cell) {

@@ -77,13 +77,13 @@ std::uint64_t regionBytes(glm::ivec3 cell, glm::ivec3 dimensions, std::uint64_t 
   return bytes;
 }
 
-RegionSurroundings decodeRegion(glm::ivec3 cell, glm::ivec3 dimensions, std::uint64_t parts, const Encoding& encoding,
-                                std::span<const std::byte> bytes) {
+std::optional<RegionSurroundings> decodeRegion(glm::ivec3 cell, glm::ivec3 dimensions, std::uint64_t parts, const Encoding& encoding,
+                                               std::span<const std::byte> bytes) {
   FV_CHECK_EQ(bytes.size(), regionBytes(cell, dimensions, parts, encoding));
   RegionSurroundings result{.depths = takeDepths(regionWithHalo(cell, dimensions).extent(), parts, bytes), .halo = {}};
   if ((parts & kHaloPart) == 0) return result;
   result.halo.resize(haloVoxels(cell, dimensions));
-  Decoder(encoding).decode(bytes, result.halo);
+  if (!Decoder(encoding).decode(bytes, result.halo)) return std::nullopt;
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -84,8 +85,9 @@ inline constexpr std::uint64_t kHaloPart = std::uint64_t(1) << kEntryFaces;
 
 /// Bytes of the stored parts of a region: the faces, then the halo in the encoding of the scalars.
 std::uint64_t regionBytes(glm::ivec3 cell, glm::ivec3 dimensions, std::uint64_t parts, const Encoding& encoding);
-RegionSurroundings decodeRegion(glm::ivec3 cell, glm::ivec3 dimensions, std::uint64_t parts, const Encoding& encoding,
-                                std::span<const std::byte> bytes);
+/// Nothing if a value is NaN or infinite.
+std::optional<RegionSurroundings> decodeRegion(glm::ivec3 cell, glm::ivec3 dimensions, std::uint64_t parts, const Encoding& encoding,
+                                               std::span<const std::byte> bytes);
 
 /// round(65535 sqrt(min(depth, 16) / 16)): what the table's own bytes cannot tell apart from 16 needs no more.
 std::uint16_t encodeEntryDepth(float depth);

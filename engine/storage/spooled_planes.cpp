@@ -35,16 +35,16 @@ void SpooledPlanes::readChunk(const ChunkEntry& chunk, int first, std::span<floa
   if (chunk.codec == Codec::None) {
     spool_.readAt(chunk.offset + before * brickBytes, bytes);
   } else {
-    std::vector<std::byte> stored(chunk.storedBytes), all(chunk.bytes);
+    std::vector<std::byte> stored(chunk.storedBytes), planes, all(chunk.bytes);
     spool_.readAt(chunk.offset, stored);
-    FV_CHECK_EQ(decompressPlanes(stored, bytesPerValue_, all), true);
+    FV_CHECK_EQ(decompressPlanes(stored, bytesPerValue_, planes, all), true);
     std::ranges::copy(std::span(all).subspan(before * brickBytes, bytes.size()), bytes.begin());
   }
   std::span<const std::byte> rest(bytes);
   for (int brick = 0; brick < kBricks * kBricks; ++brick) {
     if ((mask >> brick & 1u) == 0) continue;
     ScalarBricks::Brick values;
-    decoder_.decode(rest.first(brickBytes), values);
+    FV_CHECK_EQ(decoder_.decode(rest.first(brickBytes), values), true);
     rest = rest.subspan(brickBytes);
     place(values, chunk.cell * kChunkEdge + glm::ivec3(brick % kBricks, brick / kBricks, layer) * kEdge, densities);
   }

@@ -7,13 +7,19 @@
 
 namespace freevoxels {
 
+namespace {
+
+constexpr std::size_t kMaxBricks = std::numeric_limits<std::int32_t>::max();
+
+}  // namespace
+
 ScalarBricks::ScalarBricks(glm::ivec3 dimensions, glm::ivec3 corner)
     : dimensions_(dimensions),
       corner_(corner),
-      cellCount_((dimensions + corner + kEdge - 1) / kEdge),
+      cellCount_((glm::i64vec3(dimensions) + glm::i64vec3(corner) + std::int64_t(kEdge - 1)) / std::int64_t(kEdge)),
       numbers_(std::size_t(cellCount_.x) * std::size_t(cellCount_.y) * std::size_t(cellCount_.z), -1) {}
 
-ScalarBricks ScalarBricks::of(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, std::vector<Brick> bricks) {
+ScalarBricks ScalarBricks::of(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, Bricks bricks) {
   FV_CHECK_EQ(cells.size(), bricks.size());
   ScalarBricks result(dimensions);
   result.number(std::move(cells));
@@ -21,39 +27,34 @@ ScalarBricks ScalarBricks::of(glm::ivec3 dimensions, std::vector<glm::ivec3> cel
   return result;
 }
 
-ScalarBricks ScalarBricks::inPlace(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, std::span<const Brick> bricks,
-                                   std::shared_ptr<const void> owner) {
-  FV_CHECK_EQ(cells.size(), bricks.size());
-  FV_CHECK_EQ(owner != nullptr, true);
-  ScalarBricks result(dimensions);
-  result.number(std::move(cells));
-  result.owner_ = std::move(owner);
-  result.foreign_ = bricks;
-  return result;
+void ScalarBricks::checkCell(glm::ivec3 cell) const {
+  for (int axis = 0; axis < 3; ++axis) {
+    FV_CHECK_LE(0, cell[axis]);
+    FV_CHECK_LT(cell[axis], cellCount_[axis]);
+  }
 }
 
 void ScalarBricks::number(std::vector<glm::ivec3> cells) {
+  FV_CHECK_LE(cells.size(), kMaxBricks);
   cells_ = std::move(cells);
-  for (std::size_t i = 0; i < cells_.size(); ++i) numbers_[cellIndex(cells_[i])] = std::int32_t(i);
-}
-
-void ScalarBricks::copyToOwn() {
-  if (!owner_) return;
-  bricks_.assign(foreign_.begin(), foreign_.end());
-  foreign_ = {};
-  owner_.reset();
+  for (std::size_t i = 0; i < cells_.size(); ++i) {
+    checkCell(cells_[i]);
+    std::int32_t& number = numbers_[cellIndex(cells_[i])];
+    FV_CHECK_EQ(number, -1);
+    number = std::int32_t(i);
+  }
 }
 
 void ScalarBricks::reserve(std::size_t bricks) {
-  copyToOwn();
   cells_.reserve(bricks);
   bricks_.reserve(bricks);
 }
 
 ScalarBricks::Brick& ScalarBricks::makeBrick(glm::ivec3 cell) {
-  copyToOwn();
+  checkCell(cell);
   std::int32_t& number = numbers_[cellIndex(cell)];
   if (number < 0) {
+    FV_CHECK_LT(bricks_.size(), kMaxBricks);
     number = std::int32_t(bricks_.size());
     cells_.push_back(cell);
     bricks_.emplace_back().fill(kInactiveVoxel);

@@ -11,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "shaders/interface.h"
@@ -21,10 +22,28 @@ namespace freevoxels {
 /// classification.
 inline constexpr float kInactiveVoxel = -std::numeric_limits<float>::max();
 
+/// Leaves new elements of a vector as their memory is: setting them to 0 first takes as long as reading them from a file.
+template <typename Value>
+struct UnsetAllocator : std::allocator<Value> {
+  template <typename Other>
+  struct rebind {
+    using other = UnsetAllocator<Other>;
+  };
+  template <typename Element>
+  void construct(Element* place) {
+    ::new (static_cast<void*>(place)) Element;
+  }
+  template <typename Element, typename... Args>
+  void construct(Element* place, Args&&... args) {
+    ::new (static_cast<void*>(place)) Element(std::forward<Args>(args)...);
+  }
+};
+
 class ScalarBricks {
  public:
   static constexpr int kEdge = shader::kBrickEdge;
   using Brick = std::array<float, std::size_t(kEdge) * kEdge * kEdge>;  ///< x fastest
+  using Bricks = std::vector<Brick, UnsetAllocator<Brick>>;
 
   ScalarBricks() = default;
   /// A box without data. Its voxel (0,0,0) is voxel `corner` of its brick, with components 0 to kEdge - 1.
@@ -37,13 +56,9 @@ class ScalarBricks {
   static ScalarBricks make(glm::ivec3 dimensions, const Function& scalarAt) {
     return make(dimensions, scalarAt, [](glm::ivec3) { return true; });
   }
-  /// Takes over existing bricks, one for each of `cells`. Voxels of bricks that are beyond the box must be
-  /// inactive.
-  static ScalarBricks of(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, std::vector<Brick> bricks);
-  /// Uses bricks in the memory of another owner, such as a mapped file, which `owner` keeps alive. They are
-  /// used in place; the first change of the object copies them.
-  static ScalarBricks inPlace(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, std::span<const Brick> bricks,
-                              std::shared_ptr<const void> owner);
+  /// Takes over existing bricks, one for each of `cells`, which are in the box and differ. Voxels of bricks that are beyond the box must
+  /// be inactive.
+  static ScalarBricks of(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, Bricks bricks);
 
   const glm::ivec3& dimensions() const { return dimensions_; }
   /// Number of bricks along the axes, whether or not they exist.
@@ -53,7 +68,7 @@ class ScalarBricks {
   float at(glm::ivec3 voxel) const {
     const glm::ivec3 place = voxel + corner_;
     const std::int32_t number = numbers_[cellIndex(place / kEdge)];
-    return number < 0 ? kInactiveVoxel : bricks()[std::size_t(number)][indexInBrick(place % kEdge)];
+    return number < 0 ? kInactiveVoxel : bricks_[std::size_t(number)][indexInBrick(place % kEdge)];
   }
   /// Sets a voxel, making its brick if it does not exist.
   void set(glm::ivec3 voxel, float scalar) {
@@ -61,16 +76,13 @@ class ScalarBricks {
     makeBrick(place / kEdge)[indexInBrick(place % kEdge)] = scalar;
   }
   /// Returns brick `cell`, making it if it does not exist. The reference is valid until the next brick is
-  /// made, or for as many bricks as were reserved. Voxels of the brick beyond the box must stay inactive.
+  /// made, or for as many bricks as were reserved. The cell is in the box. Voxels of the brick beyond the box must stay inactive.
   Brick& makeBrick(glm::ivec3 cell);
   void reserve(std::size_t bricks);
 
   /// The existing bricks, in the order in which they were made.
-  std::span<Brick> bricks() {
-    copyToOwn();
-    return bricks_;
-  }
-  std::span<const Brick> bricks() const { return owner_ ? foreign_ : bricks_; }
+  std::span<Brick> bricks() { return bricks_; }
+  std::span<const Brick> bricks() const { return bricks_; }
   /// Position in the box of a brick's first voxel; negative if the brick begins before the box.
   glm::ivec3 firstVoxel(std::size_t brick) const { return cells_[brick] * kEdge - corner_; }
   /// Position of a brick among the bricks of the box. Boxes of equal `corner` have the same voxels in the
@@ -79,17 +91,17 @@ class ScalarBricks {
   /// The brick at a cell, or null if it does not exist.
   const Brick* brickAt(glm::ivec3 cell) const {
     const std::int32_t number = numbers_.empty() ? -1 : numbers_[cellIndex(cell)];
-    return number < 0 ? nullptr : &bricks()[std::size_t(number)];
+    return number < 0 ? nullptr : &bricks_[std::size_t(number)];
   }
   /// Copies the voxels of a row in the order of x. `row` must have as many elements as the box has voxels
   /// along x.
   void copyRow(int y, int z, std::span<float> row) const;
   /// The part of the box from voxel `low` to `high`. Beyond this box there is no data.
   ScalarBricks cropped(glm::ivec3 low, glm::ivec3 high) const;
-  /// On the host; bricks in place count too.
+  /// On the host.
   std::uint64_t bytes() const { return bytesOf(bricks().size(), dimensions_); }
   static std::uint64_t bytesOf(std::uint64_t bricks, glm::ivec3 dimensions) {
-    const glm::u64vec3 cells((dimensions + kEdge - 1) / kEdge);
+    const glm::u64vec3 cells = (glm::u64vec3(dimensions) + std::uint64_t(kEdge - 1)) / std::uint64_t(kEdge);
     return bricks * sizeof(Brick) + cells.x * cells.y * cells.z * sizeof(std::int32_t);
   }
 
@@ -104,14 +116,12 @@ class ScalarBricks {
   }
 
   void number(std::vector<glm::ivec3> cells);
-  void copyToOwn();
+  void checkCell(glm::ivec3 cell) const;
 
   glm::ivec3 dimensions_{0}, corner_{0}, cellCount_{0};
   std::vector<std::int32_t> numbers_;  ///< index of each cell's brick, -1 if it does not exist
   std::vector<glm::ivec3> cells_;      ///< cell of each brick
-  std::vector<Brick> bricks_;          ///< empty where `owner_` has them
-  std::shared_ptr<const void> owner_;  ///< keeps `foreign_` alive; null where the bricks are this object's
-  std::span<const Brick> foreign_;
+  Bricks bricks_;
 };
 
 template <typename Function, typename Predicate>

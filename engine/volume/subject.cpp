@@ -34,6 +34,13 @@ bool isAsBaked(const Volume& volume, const Classification& classification) {
          (volume.classificationIsFixed || (!classification.transferFunction && !volume.classification->transferFunction));
 }
 
+ContentCells contentCellsOf(glm::ivec3 dimensions, const Volume& sample, const Classification& classification) {
+  const auto longest = [](glm::ivec3 n) { return double(std::max({n.x, n.y, n.z})); };
+  ContentCells content = contentCells(sample, classification);
+  content.edge *= longest(dimensions) / longest(sample.dimensions);  // shorter edges may have a single voxel of the sample
+  return content;
+}
+
 Subject contentOf(const Volume& volume, const Classification& classification) {
   if (volume.content && isAsBaked(volume, classification)) return *volume.content;
   return subjectOf(contentCells(volume, classification), volume);

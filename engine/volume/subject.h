@@ -29,6 +29,8 @@ struct ContentCells {
   double edge = 1.0;  ///< of a cell, voxels
 };
 ContentCells contentCells(const Volume& volume, const Classification& classification);
+/// The same of a volume of `dimensions`, found in a sample of its voxels at equal distances.
+ContentCells contentCellsOf(glm::ivec3 dimensions, const Volume& sample, const Classification& classification);
 
 /// The cells in which something is seen; the whole box where there are none. Of `volume` the box is read, not the values.
 Subject subjectOf(const ContentCells& content, const Volume& volume);

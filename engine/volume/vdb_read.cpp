@@ -5,6 +5,7 @@
 #include <limits>
 #include <new>
 
+#include "engine/core/crash_note.h"
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
 #include "engine/volume/scan.h"
@@ -237,6 +238,7 @@ VdbParts::~VdbParts() = default;
 
 Volume VdbParts::read(glm::ivec3 first, int edge) const {
   constexpr int n = ScalarBricks::kEdge;
+  const CrashNote note(fmt::format("cannot read {}: the file was cut or overwritten while it was read; copy it again", printable(source_->name)));
   const openvdb::FloatTree& tree = source_->grid->tree();
   Volume part{.dimensions = glm::ivec3(edge), .scalars = ScalarBricks(glm::ivec3(edge))};
   const glm::ivec3 begin = first + outline_.indexOrigin, end = glm::min(first + edge, outline_.dimensions) + outline_.indexOrigin;

@@ -21,7 +21,7 @@ trap 'kill "${runs[@]}" 2>/dev/null || true' EXIT  # if this script is interrupt
 for kind in "${kinds[@]}"; do
   mkdir -p "$build/corpus/$kind"
   echo "fuzz: $kind for $seconds s"
-  "$build/${kind}_fuzz" -max_total_time="$seconds" -max_len=65536 -timeout=60 -rss_limit_mb=4096 -print_final_stats=1 \
+  "$build/${kind}_fuzz" -max_total_time="$seconds" -max_len=131072 -timeout=60 -rss_limit_mb=4096 -print_final_stats=1 \
     -artifact_prefix="$build/failures/$kind-" "$build/corpus/$kind" "$build/seeds-made/$kind" >"$build/$kind.log" 2>&1 &
   runs[$kind]=$!
 done

@@ -73,17 +73,33 @@ void writeFunctions(const fs::path& folder) {
   std::ofstream(folder / "short.json") << R"({"opacity": [[0.25, 1e-3]], "color": [[0, 1, 1, 1]]})";
 }
 
-void writeBakedVolumes(const fs::path& folder) {
-  const auto makeBricks = [](float scale) {
-    return ScalarBricks::make({40, 9, 8}, [scale](glm::ivec3 v) { return v.y > 5 ? kInactiveVoxel : scale * float(v.x + v.y); });
-  };
-  Volume volume{.source = "seed", .dimensions = {40, 9, 8}, .scalars = makeBricks(0.02f)};
+/// Sizes that end inside of bricks and chunks along every axis, with one chunk and with several, and with up to three levels.
+constexpr glm::ivec3 kBakedSizes[]{{40, 9, 8}, {1, 1, 1}, {38, 26, 31}, {33, 65, 9}, {7, 34, 67}, {65, 12, 33}};
+
+/// Few values, so that compressed chunks are small: the fuzzers take files of 64 KiB.
+ScalarBricks steps(glm::ivec3 size, float scale) {
+  return ScalarBricks::make(size, [=](glm::ivec3 v) { return v.y % 12 > 5 ? kInactiveVoxel : scale * float((v.x + v.z) / 16 + 1); });
+}
+
+void writeBakedVolume(const fs::path& folder, glm::ivec3 size) {
+  const auto name = [&](const char* kind) { return folder / fmt::format("{}_{}x{}x{}.fvx", kind, size.x, size.y, size.z); };
+  Volume volume{.source = "seed", .dimensions = size, .scalars = steps(size, 0.25f)};
   summariseValues(volume);
-  bakeVolume(folder / "plain.fvx", volume, {}, {});
-  bakeVolume(folder / "scalars.fvx", volume, {}, {.keepScalars = true, .compress = true});
-  volume.temperature = TemperatureGrid{.name = "heat", .values = makeBricks(100.0f)};
+  bakeVolume(name("densities"), volume, {}, {.compress = true});
+  bakeVolume(name("scalars"), volume, {}, {.keepScalars = true, .compress = size.x * size.y * size.z > 4096});
+  Classification banded{.transferFunction = TransferFunction{}};
+  banded.transferFunction->opacity = {{0.1f, 0.0f}, {0.9f, 0.5f}};
+  banded.transferFunction->color = {{0.0f, glm::vec3(1, 0, 0)}};
+  bakeVolume(name("banded"), volume, banded, {.compress = true});
+  volume.temperature = TemperatureGrid{.name = "heat", .values = steps(size, 700.0f)};
   summariseValues(*volume.temperature);
-  bakeVolume(folder / "heat.fvx", volume, {}, {.compress = true});
+  volume.albedo = AlbedoGrid{.name = "color"};
+  for (ScalarBricks& values : volume.albedo->values) values = steps(size, 0.1f);
+  bakeVolume(name("channels"), volume, {.emission = Emission{}}, {.compress = true});
+}
+
+void writeBakedVolumes(const fs::path& folder) {
+  for (const glm::ivec3 size : kBakedSizes) writeBakedVolume(folder, size);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,7 +15,7 @@ std::vector<float> throughFile(const Encoding& encoding, const std::vector<float
   std::vector<std::byte> bytes(values.size() * encoding.bytesPerValue());
   encode(encoding, values, bytes);
   std::vector<float> result(values.size());
-  Decoder(encoding).decode(bytes, result);
+  EXPECT_TRUE(Decoder(encoding).decode(bytes, result));
   return result;
 }
 
@@ -54,6 +55,38 @@ TEST(FvxEncoding, Linear16HasAnErrorOfAtMostHalfAStepAndKeepsInactive) {
 
 TEST(FvxEncoding, Linear16OfOneValueOnlyHasThatValue) {
   EXPECT_EQ(throughFile({.kind = EncodingKind::Linear16, .scale = 0.0, .offset = 7.5}, {7.5f}).front(), 7.5f);
+}
+
+TEST(FvxEncoding, NaNAndInfinitiesAreSaidWhateverTheEncoding) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const auto isSound = [](const Decoder& decoder, auto value) {
+    std::array<decltype(value), 3> stored{};
+    stored[1] = value;
+    std::array<float, 3> values;
+    return decoder.decode(std::as_bytes(std::span(stored)), values);
+  };
+  const Decoder floats({}), halves({.kind = EncodingKind::Float16, .scale = 2.0}), codes({.kind = EncodingKind::Linear16, .scale = 1.0});
+  for (const float value : {kInfinity, -kInfinity, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::signaling_NaN()})
+    EXPECT_FALSE(isSound(floats, value));
+  for (const float value : {0.0f, -0.0f, 1e-45f, std::numeric_limits<float>::max(), kInactiveVoxel}) EXPECT_TRUE(isSound(floats, value));
+  for (int code = 0; code <= 0xffff; ++code) {
+    const bool isFinite = (code & 0x7c00) != 0x7c00 || code == 0xffff;
+    EXPECT_EQ(isSound(halves, std::uint16_t(code)), isFinite) << code;
+    EXPECT_TRUE(isSound(codes, std::uint16_t(code)));
+  }
+}
+
+TEST(FvxEncoding, NoScaleMakesAFiniteCodeInfiniteOrAValueWithoutData) {
+  for (const EncodingKind kind : {EncodingKind::Float16, EncodingKind::Linear16})
+    for (const double scale : {0.0, 1e-300, 1e35, 1e300}) {
+      const Encoding encoding{.kind = kind, .scale = scale, .offset = -1e38};
+      for (const int number : {0x0001, 0x7bff, 0xfbff, 0x8001}) {
+        const auto code = std::uint16_t(number);
+        float value = 0.0f;
+        EXPECT_TRUE(Decoder(encoding).decode(std::as_bytes(std::span(&code, 1)), std::span(&value, 1)));
+        EXPECT_TRUE(std::isfinite(value) && value != kInactiveVoxel) << value;
+      }
+    }
 }
 
 }  // namespace

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
+
+#include "engine/core/error.h"
 
 namespace freevoxels {
 namespace {
@@ -63,6 +66,27 @@ TEST(ScalarBricks, CroppingKeepsTheScalarsOfTheRest) {
   const ScalarBricks cropped = bricks.cropped(low, high);
   EXPECT_EQ(cropped.dimensions(), high - low + 1);
   forEachVoxel(cropped.dimensions(), [&](glm::ivec3 v) { EXPECT_EQ(cropped.at(v), scalarOf(low + v)); });
+}
+
+TEST(ScalarBricks, ABrickBeyondTheBoxOrThereTwiceIsABug) {
+  for (const glm::ivec3 size : {glm::ivec3(1), glm::ivec3(19, 8, 33), glm::ivec3(8, 8, 8)}) {
+    const glm::ivec3 cells = ScalarBricks(size).cells();
+    for (int axis = 0; axis < 3; ++axis)
+      for (const int place : {-1, cells[axis], 1 << 20, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()}) {
+        glm::ivec3 cell(0);
+        cell[axis] = place;
+        ScalarBricks bricks(size);
+        EXPECT_THROW(bricks.makeBrick(cell), InternalError);
+        EXPECT_THROW(ScalarBricks::of(size, {cell}, ScalarBricks::Bricks(1)), InternalError);
+      }
+    EXPECT_THROW(ScalarBricks::of(size, {glm::ivec3(0), glm::ivec3(0)}, ScalarBricks::Bricks(2)), InternalError);
+    EXPECT_THROW(ScalarBricks::of(size, {glm::ivec3(0)}, {}), InternalError);
+  }
+}
+
+TEST(ScalarBricks, CellsOfTheLongestBoxAreCountedWithoutOverflow) {
+  constexpr int kLongest = std::numeric_limits<int>::max();
+  EXPECT_EQ(ScalarBricks::bytesOf(0, {kLongest, 1, 1}), std::uint64_t(1) << 30);
 }
 
 }  // namespace

@@ -74,5 +74,18 @@ TEST(Content, FillsMostOfTheImage) {
   EXPECT_NEAR(reach, 1.0 / 1.13, 1e-6);
 }
 
+TEST(Subject, CellsOfASampleCoverTheVolumeHoweverFlatItIs) {
+  for (const glm::ivec3 n : {glm::ivec3(1, 8192, 1), glm::ivec3(1, 1, 5000), glm::ivec3(8192, 2, 40), glm::ivec3(700, 8000, 3)}) {
+    const int step = (std::max({n.x, n.y, n.z}) + 255) / 256;
+    const Volume sample = makeVolume(glm::max(n / step, 1), glm::dmat4(1.0), [](int, int, int) { return 1.0; });
+    const ContentCells content = contentCellsOf(n, sample, {});
+    for (int axis = 0; axis < 3; ++axis)
+      EXPECT_NEAR(content.cells.dimensions[axis] * content.edge, n[axis], content.edge + step) << n.x << "," << n.y << "," << n.z;
+    Volume volume{.dimensions = n};
+    const IndexBox box = boundsOf(subjectOf(content, volume), volume);
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(box.high[axis], n[axis] - 0.5, step);
+  }
+}
+
 }  // namespace
 }  // namespace freevoxels
