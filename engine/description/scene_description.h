@@ -33,7 +33,7 @@ inline bool operator==(const PixelRectangle& a, const PixelRectangle& b) {
 }
 
 /// Largest number of pixels along an edge of an image, and of voxels along an edge of a procedural volume.
-inline constexpr int kMaximumImageEdge = 16384, kMaxResolution = 2048;
+inline constexpr int kMaxResolution = 2048;
 inline constexpr int kDefaultResolution = 128;
 /// Default number of orders of scattering.
 inline constexpr int kDefaultScattering = 3;

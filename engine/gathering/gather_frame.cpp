@@ -6,6 +6,8 @@
 #include <limits>
 #include <vector>
 
+#include "engine/image/sample_lattice.h"
+
 namespace freevoxels {
 
 namespace {
@@ -149,11 +151,6 @@ SeenRectangle seenRectangle(const PixelRays& rays, const glm::dmat3& toPixel, gl
   return {seen[0] - 1.0, seen[1] + 1.0};
 }
 
-/// Odd, so that every second sample is on each border of the lattice.
-glm::ivec2 sampleCount(glm::ivec2 size, double pitch) {
-  return (glm::ivec2(glm::floor(glm::dvec2(size - 1) / pitch)) + 2 * shader::kLatticeMargin + 2) | 1;
-}
-
 /// Fills in the rectangles of samples and of pixels outside of which nothing is seen. `seen` is that of the coarsest blocks.
 void setSeen(shader::GatherFrame& frame, const SeenRectangle& seen) {
   constexpr double kMargin = 3.0;       // samples: at least one without any light, however `seenLow` is rounded, and one for the stencil
@@ -257,7 +254,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   const SeenRectangle seen = seenRectangle(rays, toPixel, dimensions, 1);
   frame.seenLow = seen[0];
   frame.seenHigh = seen[1];
-  frame.samples = sampleCount(settings.size, double(frame.pitch));
+  frame.samples = latticeSamples(settings.size, double(frame.pitch));
   frame.firstSample = -0.5f * glm::vec2(settings.size) + 0.5f - float(shader::kLatticeMargin) * frame.pitch;
   setSeen(frame, seenRectangle(rays, toPixel, dimensions, 1 << detail.coarsest));
   frame.worldRay[0] = linear * rays.direction;

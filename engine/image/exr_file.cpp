@@ -8,15 +8,9 @@
 #include <ImfStringAttribute.h>
 #include <ImfThreading.h>
 
-#include <algorithm>
-#include <array>
-#include <fstream>
-#include <optional>
-#include <string>
 #include <thread>
 
 #include "engine/core/checked_file.h"
-#include "engine/core/error.h"
 
 namespace freevoxels {
 
@@ -34,49 +28,7 @@ class ExrStream : public Imf::OStream {
   CheckedFile& file_;
 };
 
-/// The bytes before the next 0; nothing if the file ends, or if they are more than OpenEXR's names can have.
-std::optional<std::string> nameIn(std::istream& stream) {
-  constexpr std::size_t kLongestName = 255;
-  std::string name;
-  for (int byte = stream.get(); byte != std::istream::traits_type::eof(); byte = stream.get()) {
-    if (byte == 0) return name;
-    if (name.size() == kLongestName) return {};
-    name.push_back(char(byte));
-  }
-  return {};
-}
-
-/// Bytes that OpenEXR takes for a value of this type and size: a preview's are counted by its own width and height.
-std::uint64_t bytesOfValue(const std::string& type, std::uint32_t size, std::istream& stream) {
-  std::array<std::uint32_t, 2> extent{};
-  if (type != "preview" || !stream.read(reinterpret_cast<char*>(extent.data()), sizeof(extent))) return size;
-  stream.seekg(-std::streamoff(sizeof(extent)), std::ios::cur);
-  const std::uint64_t pixels = std::uint64_t(extent[0]) * extent[1];
-  return std::max<std::uint64_t>(size, 4 * std::min(pixels, std::uint64_t(1) << 60));
-}
-
 }  // namespace
-
-void checkExrAttributes(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  const std::uint64_t bytes = std::filesystem::file_size(file);
-  std::array<char, 8> start{};  // the magic number and the version, of which a bit stands for several parts
-  if (!stream.read(start.data(), start.size())) return;
-  const bool hasParts = (start[5] & 0x10) != 0;
-  bool inHeader = true;
-  for (;;) {
-    const std::optional<std::string> name = nameIn(stream);
-    if (!name || (name->empty() && !(hasParts && inHeader))) return;
-    inHeader = !name->empty();  // an empty name ends a header, and another one all headers
-    if (!inHeader) continue;
-    const std::optional<std::string> type = nameIn(stream);
-    std::uint32_t size = 0;
-    if (!type || !stream.read(reinterpret_cast<char*>(&size), sizeof(size))) return;
-    if (bytesOfValue(*type, size, stream) > bytes - std::uint64_t(stream.tellg()))
-      fail(ErrorKind::Input, "cannot read '{}': the attribute '{}' of its header is longer than the file; write it again", file.string(), *name);
-    stream.seekg(size, std::ios::cur);
-  }
-}
 
 void useAllProcessors() {
   static const bool once = [] {

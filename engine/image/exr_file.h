@@ -11,10 +11,6 @@
 
 namespace freevoxels {
 
-/// Fails with ErrorKind::Input if an attribute in a header is longer than the rest of the file: OpenEXR allocates memory for all of it
-/// before it reads. Whatever else is wrong with the file is left to OpenEXR.
-void checkExrAttributes(const std::filesystem::path& file);
-
 /// Lets OpenEXR compress and decompress blocks of scan lines in parallel.
 void useAllProcessors();
 

@@ -18,6 +18,13 @@ bool FixedSums::isLike(const FixedSums& other) const {
          std::equal(digits.begin(), digits.begin() + channels, other.digits.begin()) && method == other.method;
 }
 
+bool FixedSums::canAdd(const FixedSums& other) const {
+  FV_CHECK_EQ(values.size(), other.values.size());
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (std::int64_t sum = 0; __builtin_add_overflow(values[i], other.values[i], &sum)) return false;
+  return true;
+}
+
 FixedSums& FixedSums::operator+=(const FixedSums& other) {
   FV_CHECK_EQ(isLike(other), true);
   FV_CHECK_EQ(values.size(), other.values.size());

@@ -45,6 +45,8 @@ struct FixedSums {
   double value(SumChannel channel, std::size_t i) const;
   /// Whether the sums of `other` may be added to these: everything except the values is equal.
   bool isLike(const FixedSums& other) const;
+  /// Whether adding `other`, which is like these, exceeds the range of 64 bits nowhere.
+  bool canAdd(const FixedSums& other) const;
   /// Adds `other`, which must be addable.
   FixedSums& operator+=(const FixedSums& other);
 };

@@ -15,6 +15,8 @@
 
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
+#include "engine/core/printable.h"
+#include "engine/image/exr_claims.h"
 #include "engine/image/exr_file.h"
 #include "engine/image/fixed_sums.h"
 
@@ -23,7 +25,7 @@ namespace freevoxels {
 namespace {
 
 constexpr std::array<const char*, kSumChannels> kNames{"red", "green", "blue", "energy", "depth", "distance"};
-constexpr std::int64_t kMaxPixels = std::int64_t(1) << 30;
+constexpr int kMostDigits = 512;  ///< more than any sum has, and few enough for numbers of double precision
 constexpr const char* kMethod = "freevoxels:method";
 constexpr const char* kLattice = "freevoxels:lattice";  ///< only where the sums are those of samples
 
@@ -83,26 +85,43 @@ bool hasChannels(const Imf::Header& header) {
 }
 
 FixedSums readLayout(const std::filesystem::path& file, const Imf::Header& header) {
+  const auto refuse = [&](const char* what) {
+    fail(ErrorKind::Input, "cannot read '{}': {}; render this share again", file.string(), what);
+  };
   const Imath::Box2i window = header.dataWindow(), display = header.displayWindow();
-  FixedSums sums{.size = {display.max.x + 1, display.max.y + 1}, .first = {window.min.x, window.min.y}};
-  sums.extent = glm::ivec2(window.max.x, window.max.y) - sums.first + 1;
-  if (const auto* lattice = header.findTypedAttribute<Imf::StringAttribute>(kLattice)) sums.lattice = latticeOf(lattice->value());
-  const glm::ivec2 full = sums.fullSize();
+  if (display.min.x != 0 || display.min.y != 0 || display.max.x < 0 || display.max.y < 0 || display.max.x >= kMaximumImageEdge ||
+      display.max.y >= kMaximumImageEdge)
+    refuse("its image has an impossible size");
+  FixedSums sums{.size = {display.max.x + 1, display.max.y + 1}};
   const bool hasDistance = header.channels().findChannel("distance.high") != nullptr;
-  if (display.min.x != 0 || display.min.y != 0 || std::int64_t(sums.size.x) * sums.size.y > kMaxPixels ||
-      std::int64_t(full.x) * full.y > kMaxPixels || glm::any(glm::lessThan(sums.first, glm::ivec2(0))) ||
-      glm::any(glm::greaterThan(sums.first + sums.extent, full)) || (sums.lattice && !hasDistance))
-    fail(ErrorKind::Input, "cannot read '{}': its rectangle of sums is not inside of its image; render this share again",
-         file.string());
+  if (const auto* lattice = header.findTypedAttribute<Imf::StringAttribute>(kLattice)) {
+    sums.lattice = latticeOf(lattice->value());
+    if (!hasDistance || sums.lattice->samples != latticeSamples(sums.size, sums.lattice->pitch)) refuse("its lattice of samples is not one of its image");
+  }
+  const glm::ivec2 full = sums.fullSize();
+  if (window.min.x < 0 || window.min.y < 0 || window.max.x < window.min.x || window.max.y < window.min.y || window.max.x >= full.x ||
+      window.max.y >= full.y)
+    refuse("its rectangle of sums is not inside of its image");
+  sums.first = {window.min.x, window.min.y};
+  sums.extent = glm::ivec2(window.max.x, window.max.y) - sums.first + 1;
   sums.channels = hasDistance ? kSumChannels : kSumChannels - 1;
-  for (int c = 0; c < sums.channels; ++c)
-    sums.digits[std::size_t(c)] = header.typedAttribute<Imf::IntAttribute>(digitsName(c)).value();
+  for (int c = 0; c < sums.channels; ++c) {
+    for (const char* part : {"high", "low"}) {
+      // A channel of fewer pixels than the window would not vouch for the size of the image.
+      const Imf::Channel* const channel = header.channels().findChannel(fmt::format("{}.{}", kNames[std::size_t(c)], part));
+      if (channel == nullptr || channel->type != Imf::UINT || channel->xSampling != 1 || channel->ySampling != 1)
+        refuse("its channels are not those of sums");
+    }
+    std::int32_t& digits = sums.digits[std::size_t(c)];
+    digits = header.typedAttribute<Imf::IntAttribute>(digitsName(c)).value();
+    if (digits < -kMostDigits || digits > kMostDigits) refuse("its sums have an impossible number of digits");
+  }
   sums.method = header.typedAttribute<Imf::StringAttribute>(kMethod).value();
   return sums;
 }
 
 SumsFile decode(const std::filesystem::path& file) {
-  checkExrAttributes(file);
+  checkExrClaims(file);
   Imf::InputFile exr(file.c_str());
   const Imf::Header& header = exr.header();
   if (!hasChannels(header))
@@ -129,8 +148,9 @@ auto guarded(const std::filesystem::path& file, const Read& read) {
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::exception& error) {
+    constexpr std::size_t kLongest = 200;
     fail(ErrorKind::Input, "cannot read '{}': it is not a complete OpenEXR file of sums ({}); render this share again", file.string(),
-         error.what());
+         printablePart(error.what(), kLongest));
   }
 }
 
@@ -150,7 +170,7 @@ SumsFile readSums(const std::filesystem::path& file) {
 
 bool holdsSums(const std::filesystem::path& file) {
   return guarded(file, [&] {
-    checkExrAttributes(file);
+    checkExrClaims(file);
     return hasChannels(Imf::InputFile(file.c_str()).header());
   });
 }

@@ -12,6 +12,9 @@
 
 namespace freevoxels {
 
+/// Pixels of an edge of an image that is drawn.
+inline constexpr int kMaximumImageEdge = 16384;
+
 struct Image {
   glm::ivec2 size{0};
   std::vector<glm::vec4> pixels;  ///< linear Rec.709, premultiplied alpha; row 0 is the top

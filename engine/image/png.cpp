@@ -15,12 +15,14 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <span>
 #include <stdexcept>
 
 #include "engine/core/atomic_file.h"
 #include "engine/core/checked_file.h"
 #include "engine/core/error.h"
 #include "engine/core/input_file.h"
+#include "engine/core/printable.h"
 #include "engine/image/display.h"
 #include "engine/image/srgb.h"
 
@@ -90,6 +92,11 @@ class PngDecoder {
     if (setjmp(png_jmpbuf(png_))) return false;
     png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);
     png_read_info(png_, info_);
+    return true;
+  }
+  /// Takes memory for rows, and converts what is read. False after an error.
+  bool begin() {
+    if (setjmp(png_jmpbuf(png_))) return false;
     png_set_expand(png_);
     png_set_gray_to_rgb(png_);
     png_set_add_alpha(png_, 0xffff, PNG_FILLER_AFTER);
@@ -101,12 +108,22 @@ class PngDecoder {
   std::int64_t width() const { return png_get_image_width(png_, info_); }
   std::int64_t height() const { return png_get_image_height(png_, info_); }
   bool isWide() const { return png_get_bit_depth(png_, info_) == 16; }
+  bool isInterlaced() const { return png_get_interlace_type(png_, info_) != PNG_INTERLACE_NONE; }
+  /// Before begin(), of a row in the file, before it is compressed; afterwards, of what is read.
   std::size_t rowBytes() const { return png_get_rowbytes(png_, info_); }
 
-  /// False after an error.
-  bool read(png_bytepp rows) {
+  /// Reads the next rows; all of them of an interlaced image. False after an error.
+  bool read(std::span<png_bytep> rows) {
     if (setjmp(png_jmpbuf(png_))) return false;
-    png_read_image(png_, rows);
+    if (isInterlaced())
+      png_read_image(png_, rows.data());
+    else
+      png_read_rows(png_, rows.data(), nullptr, png_uint_32(rows.size()));
+    return true;
+  }
+  /// What is behind the last row. False after an error.
+  bool readEnd() {
+    if (setjmp(png_jmpbuf(png_))) return false;
     png_read_end(png_, nullptr);
     return true;
   }
@@ -116,44 +133,66 @@ class PngDecoder {
   png_infop info_ = nullptr;
 };
 
-/// Converts straight RGBA samples to premultiplied linear light.
+/// Appends straight RGBA samples as premultiplied linear light.
 template <typename Sample>
-void toLinear(const std::vector<std::uint8_t>& bytes, std::vector<glm::vec4>& pixels) {
-  constexpr std::size_t kLevels = std::size_t(std::numeric_limits<Sample>::max()) + 1;
-  std::vector<float> linear(kLevels);
-  for (std::size_t i = 0; i < kLevels; ++i) linear[i] = linearFromSrgb(float(i) / float(kLevels - 1));
-  for (std::size_t i = 0; i < pixels.size(); ++i) {
-    std::array<Sample, 4> sample;
-    std::memcpy(sample.data(), bytes.data() + i * sizeof(sample), sizeof(sample));
-    const float alpha = float(sample[3]) / float(kLevels - 1);
-    pixels[i] = {alpha * linear[sample[0]], alpha * linear[sample[1]], alpha * linear[sample[2]], alpha};
+class LinearPixels {
+ public:
+  LinearPixels() {
+    for (std::size_t i = 0; i < kLevels; ++i) linear_.push_back(linearFromSrgb(float(i) / float(kLevels - 1)));
   }
+  void append(std::span<const std::uint8_t> bytes, std::vector<glm::vec4>& pixels) const {
+    std::array<Sample, 4> sample;
+    for (std::size_t at = 0; at < bytes.size(); at += sizeof(sample)) {
+      std::memcpy(sample.data(), &bytes[at], sizeof(sample));
+      const float alpha = float(sample[3]) / float(kLevels - 1);
+      pixels.emplace_back(alpha * linear_[sample[0]], alpha * linear_[sample[1]], alpha * linear_[sample[2]], alpha);
+    }
+  }
+
+ private:
+  static constexpr std::size_t kLevels = std::size_t(std::numeric_limits<Sample>::max()) + 1;
+  std::vector<float> linear_;
+};
+
+/// Reads the rows a band at a time, so that a file which ends early fails before the memory of all is taken. False after an error.
+template <typename Sample>
+bool decodeRows(PngDecoder& decoder, Image& image) {
+  constexpr std::int64_t kPixelsOfABand = 1 << 20;
+  const LinearPixels<Sample> linear;
+  const std::int64_t height = decoder.height(), band = decoder.isInterlaced() ? height : std::clamp<std::int64_t>(kPixelsOfABand / decoder.width(), 1, height);
+  std::vector<std::uint8_t> bytes(decoder.rowBytes() * std::size_t(band));
+  std::vector<png_bytep> rows;
+  for (std::size_t y = 0; y < std::size_t(band); ++y) rows.push_back(bytes.data() + y * decoder.rowBytes());
+  for (std::int64_t first = 0; first < height; first += band) {
+    const auto count = std::size_t(std::min(band, height - first));
+    if (!decoder.read(std::span(rows).first(count))) return false;
+    linear.append(std::span(bytes).first(count * decoder.rowBytes()), image.pixels);
+  }
+  return decoder.readEnd();
 }
 
 Image decode(const std::filesystem::path& file, std::FILE* stream) {
   std::string problem;
   const auto refuse = [&]() {
     fail(ErrorKind::Input, "cannot read '{}': it is not a complete PNG image ({}); write it again",
-         file.string(), problem);
+         file.string(), printable(problem));
   };
   PngDecoder decoder(stream, problem);
   if (!decoder.readHeader()) refuse();
   if (decoder.width() * decoder.height() > kMaximumPixels)
     fail(ErrorKind::Input, "cannot read '{}': {}x{} pixels are too many; choose a smaller image",
          file.string(), decoder.width(), decoder.height());
+  constexpr double kMostShrinking = 1100.0;  // Deflate reaches 1032
+  const std::uint64_t fileBytes = std::filesystem::file_size(file);
+  if (double(decoder.rowBytes()) * double(decoder.height()) > kMostShrinking * double(fileBytes))
+    fail(ErrorKind::Input, "cannot read '{}': its header claims {}x{} pixels, which a file of {} bytes cannot hold; write it again", file.string(),
+         decoder.width(), decoder.height(), fileBytes);
+  if (!decoder.begin()) refuse();
 
   Image image;
   image.size = {int(decoder.width()), int(decoder.height())};
-  image.pixels.resize(std::size_t(decoder.width() * decoder.height()));
-  std::vector<std::uint8_t> bytes(decoder.rowBytes() * std::size_t(image.size.y));
-  std::vector<png_bytep> rows;
-  for (std::size_t y = 0; y < std::size_t(image.size.y); ++y)
-    rows.push_back(bytes.data() + y * decoder.rowBytes());
-  if (!decoder.read(rows.data())) refuse();
-  if (decoder.isWide())
-    toLinear<std::uint16_t>(bytes, image.pixels);
-  else
-    toLinear<std::uint8_t>(bytes, image.pixels);
+  image.pixels.reserve(std::size_t(decoder.width() * decoder.height()));
+  if (!(decoder.isWide() ? decodeRows<std::uint16_t>(decoder, image) : decodeRows<std::uint8_t>(decoder, image))) refuse();
   return image;
 }
 

@@ -150,6 +150,10 @@ void visitNumbers(Lattice& lattice, const Visit& visit) {
 
 }  // namespace
 
+glm::ivec2 latticeSamples(glm::ivec2 size, double pitch) {
+  return (glm::ivec2(glm::floor(glm::dvec2(size - 1) / pitch)) + 2 * kLatticeMargin + 2) | 1;
+}
+
 std::string latticeText(const SampleLattice& lattice) {
   std::string text;
   visitNumbers(lattice, [&](auto number) { text += fmt::format("{}{}", text.empty() ? "" : " ", double(number)); });

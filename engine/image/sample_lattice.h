@@ -32,6 +32,9 @@ struct SampleLattice {
   bool operator==(const SampleLattice&) const = default;
 };
 
+/// The number of samples of an image's lattice. Odd, so that every second sample is on each border of the lattice.
+glm::ivec2 latticeSamples(glm::ivec2 size, double pitch);
+
 /// The lattice as one line of text, from which latticeOf makes an equal one.
 std::string latticeText(const SampleLattice& lattice);
 /// Throws std::invalid_argument if `text` is no lattice.

@@ -28,6 +28,25 @@ class CompareCommand : public CommandTest {
 
 }  // namespace
 
+/// libpng takes memory for rows of the width that the header says.
+TEST_F(CompareCommand, AnImageThatClaimsMoreThanItsFileHoldsIsRefusedAtOnce) {
+  write("a.png", {0.6f, 0.5f, 0.5f, 1.0f});
+  std::string bytes = readBytes(folder / "a.png");
+  for (const std::string& size : {std::string("\x1f\0\0\0\0\0\0\x01", 8), std::string("\0\0\x7f\0\0\0\x7f\0", 8), std::string("\0\0\0\x01\x0f\0\0\0", 8)}) {
+    bytes.replace(16, size.size(), size);
+    std::uint32_t check = ~0u;  // of the chunk: CRC-32
+    for (const char byte : bytes.substr(12, 17)) {
+      check ^= static_cast<unsigned char>(byte);
+      for (int bit = 0; bit < 8; ++bit) check = check >> 1 ^ (check & 1u ? 0xedb88320u : 0u);
+    }
+    for (int i = 0; i < 4; ++i) bytes[29 + std::size_t(i)] = char(~check >> (24 - 8 * i));
+    writeBytes(folder / "b.png", bytes);
+    const ProgramResult result = run("compare @b.png @b.png");
+    expectRefusal(result, ExitCode::Input, "cannot hold");
+    EXPECT_LT(result.peakBytes, std::uint64_t(300) << 20);
+  }
+}
+
 TEST_F(CompareCommand, MeasuresAsJsonAndAsATable) {
   write("a.exr", {0.6f, 0.5f, 0.5f, 1.0f});
   write("b.exr", {0.5f, 0.5f, 0.5f, 1.0f});

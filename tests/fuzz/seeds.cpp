@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "engine/core/error.h"
+#include "engine/image/fixed_sums.h"
 #include "engine/image/image.h"
 #include "engine/storage/baked_volume.h"
 #include "engine/volume/openvdb_trees.h"
@@ -56,6 +57,16 @@ void writeVolumes(const fs::path& folder) {
   Stream(stream).write(openvdb::GridPtrVec{makeGrid("density")});
 }
 
+void writeSumsOf(const fs::path& file, bool gathered) {
+  FixedSums sums{.size = {9, 7}, .first = {1, 2}, .extent = {5, 4}, .digits = {40, 40, 40, 43, 46, 38}, .method = "rays"};
+  if (gathered) {
+    sums.lattice = SampleLattice{.samples = latticeSamples(sums.size, 0.5), .pitch = 0.5, .first = {-4.5, -3.5}, .depth = true};
+    for (int axis = 0; axis < 3; ++axis) sums.lattice->axes[std::size_t(axis)].along = {axis == 2 ? 1.0 : 0.1, 0.01, 0.02};
+  }
+  for (std::size_t i = 0; i < sums.pixelCount() * kSumChannels; ++i) sums.values.push_back(std::int64_t(i) << 36);
+  writeSums(file, sums, {.metadata = {{"freevoxels:share", "0/1"}, {"freevoxels:size", "9x7"}}});
+}
+
 void writeImages(const fs::path& folder) {
   Image image{.size = {9, 7}};
   for (int i = 0; i < 63; ++i) {
@@ -64,6 +75,8 @@ void writeImages(const fs::path& folder) {
   }
   writeExr(folder / "exr/half.exr", image, {});
   writeExr(folder / "exr/float.exr", cropped(image, {{2, 1}, {5, 4}}), {.fullFloat = true, .metadata = {{"a", "b"}}});
+  writeSumsOf(folder / "exr/splats.exr", false);
+  writeSumsOf(folder / "exr/samples.exr", true);
   writePng(folder / "png/alpha.png", image);
   writePng(folder / "png/opaque.png", image, {.background = Background{}}, 16);
 }
