@@ -9,6 +9,7 @@
 
 #include "apps/freevoxels/share_options.h"
 #include "engine/core/error.h"
+#include "engine/core/printable.h"
 #include "engine/image/fixed_sums.h"
 
 namespace freevoxels {
@@ -30,6 +31,19 @@ const std::set<std::string> kMayDiffer{"freevoxels:share", "freevoxels:command",
 std::string valueOf(const ExrOptions& header, const std::string& name) {
   const auto entry = header.metadata.find(name);
   return entry == header.metadata.end() ? "" : entry->second;
+}
+
+/// A value of a header in a form that fits into a sentence.
+std::string shown(const std::string& value) {
+  constexpr std::size_t kLongest = 200;
+  return value.empty() ? "missing" : printablePart(value, kLongest);
+}
+
+/// Fails where the header says something else of a part than its sums.
+void checkHeader(const std::string& file, const SumsFile& part) {
+  const std::string size = valueOf(part.header, "freevoxels:size"), actual = fmt::format("{}x{}", part.sums.size.x, part.sums.size.y);
+  if (!size.empty() && size != actual)
+    fail(ErrorKind::Input, "'{}' has sums of {} pixels, and its header says {}; render this share again", file, actual, shown(size));
 }
 
 /// The parts that were added so far, and the file that each share came from.
@@ -56,23 +70,24 @@ void Merge::checkSameImage(const std::string& file, const SumsFile& part) const 
   };
   const auto compare = [&](const std::string& name, const std::string& what) {
     const std::string mine = valueOf(total_.header, name), other = valueOf(part.header, name);
-    if (mine != other) refuse(fmt::format("{} is {} in one and {} in the other", what, mine.empty() ? "missing" : mine, other.empty() ? "missing" : other));
+    if (mine != other) refuse(fmt::format("{} is {} in one and {} in the other", what, shown(mine), shown(other)));
   };
   compare("freevoxels:version", "the version of freevoxels");
   if (valueOf(total_.header, "freevoxels:content") != valueOf(part.header, "freevoxels:content"))
     refuse(fmt::format("their volumes, {} and {}, or their transfer functions or environments, are not the same",
-                       valueOf(total_.header, "freevoxels:volume"), valueOf(part.header, "freevoxels:volume")));
+                       shown(valueOf(total_.header, "freevoxels:volume")), shown(valueOf(part.header, "freevoxels:volume"))));
   std::set<std::string> names;
   for (const ExrOptions* header : {&total_.header, &part.header})
     for (const auto& [name, value] : header->metadata) names.insert(name);
   for (const std::string& name : names)
-    if (!kMayDiffer.contains(name)) compare(name, "--" + name.substr(name.find(':') + 1));
+    if (!kMayDiffer.contains(name)) compare(name, "--" + shown(name.substr(name.find(':') + 1)));
   if (total_.header.matrices != part.header.matrices) refuse("their cameras are not the same");
   if (!total_.sums.isLike(part.sums)) refuse("their rectangles or numbers of digits are not the same");
 }
 
 void Merge::add(const std::string& file) {
   SumsFile part = readSums(file);
+  checkHeader(file, part);
   const SharePart shares = readSharePart(fmt::format("the share of '{}'", file), valueOf(part.header, "freevoxels:share"));
   if (firstFile_.empty())
     firstFile_ = file;
@@ -86,10 +101,12 @@ void Merge::add(const std::string& file) {
       fail(ErrorKind::Input, "'{}' and '{}' have the same shares, {}: leave one of them out", other, file, sharePartText(shares));
     other = file;
   }
-  if (firstFile_ == file)
+  if (firstFile_ == file) {
     total_ = std::move(part);
-  else
-    total_.sums += part.sums;
+    return;
+  }
+  if (!total_.sums.canAdd(part.sums)) fail(ErrorKind::Input, "'{}' has sums that are too large to be added; render this share again", file);
+  total_.sums += part.sums;
 }
 
 void Merge::checkComplete() const {

@@ -4,6 +4,7 @@
 #include <charconv>
 
 #include "engine/core/error.h"
+#include "engine/core/printable.h"
 
 namespace freevoxels {
 
@@ -21,7 +22,8 @@ SharePart readSharePart(const std::string& name, const std::string& text) {
     const auto [last, countError] = std::from_chars(slash + 1, end, part.count);
     if (countError == std::errc() && last == end && 0 <= part.index && part.index < part.count && part.count <= kShares) return part;
   }
-  fail(ErrorKind::Usage, "{} takes I/N with 0 <= I < N <= {}, as 0/4, not '{}'", name, kShares, text);
+  constexpr std::size_t kLongest = 80;
+  fail(ErrorKind::Usage, "{} takes I/N with 0 <= I < N <= {}, as 0/4, not '{}'", name, kShares, printablePart(text, kLongest));
 }
 
 std::string sharePartText(const SharePart& part) {

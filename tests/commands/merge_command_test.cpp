@@ -1,5 +1,9 @@
 // freevoxels render --share I/N --sums and freevoxels merge: a distributed render without MPI.
 
+#include <array>
+#include <cstring>
+#include <limits>
+
 #include "engine/image/fixed_sums.h"
 #include "engine/image/image.h"
 #include "tests/commands/program_runner.h"
@@ -80,6 +84,60 @@ TEST_F(MergeCommandTest, NamesThatAreNoPartsOrNoImagesAreRefused) {
   const std::string bytes = readBytes(folder / "p1.exr");
   writeBytes(folder / "p1.exr", bytes.substr(0, bytes.size() - 100));
   expectCleanRefusal("merge @p0.exr @p1.exr @a.png", ExitCode::Input, "p1.exr");
+}
+
+/// The bytes of a file with another value of an attribute.
+template <typename Value>
+std::string withAttribute(std::string bytes, const std::string& name, const std::string& type, const Value& value) {
+  const std::string start = name + '\0' + type + '\0';
+  const std::size_t at = bytes.find(start);
+  EXPECT_NE(at, std::string::npos) << name;
+  std::memcpy(&bytes[at + start.size() + 4], &value, sizeof(value));
+  return bytes;
+}
+
+TEST_F(MergeCommandTest, HeadersThatClaimMoreThanTheirFileHoldsAreRefusedAtOnce) {
+  using Window = std::array<std::int32_t, 4>;
+  constexpr std::uint64_t kLittle = std::uint64_t(300) << 20;
+  for (const char* draw : {"--draw splats", "--draw gather"}) {
+    renderPart("whole.exr", "0/1", draw);
+    const std::string bytes = readBytes(folder / "whole.exr");
+    const Window large{0, 0, 16383, 16383};
+    const std::string both = withAttribute(withAttribute(bytes, "dataWindow", "box2i", large), "displayWindow", "box2i", large);
+    for (const std::string& changed : {both, withAttribute(bytes, "displayWindow", "box2i", large),
+                                       withAttribute(bytes, "freevoxels:digits.energy", "int", std::numeric_limits<std::int32_t>::min())}) {
+      writeBytes(folder / "changed.exr", changed);
+      expectCleanRefusal("merge @changed.exr @a.png", ExitCode::Input, "changed.exr");
+      EXPECT_LT(run("merge @changed.exr @a.png").peakBytes, kLittle);
+      EXPECT_LT(run("compare @changed.exr @changed.exr").peakBytes, kLittle);
+    }
+    expectSuccess(run("merge @whole.exr @a.png"));
+  }
+}
+
+TEST_F(MergeCommandTest, SumsThatOverflowAreRefused) {
+  renderPart("p0.exr", "0/2");
+  SumsFile part = readSums(folder / "p0.exr");
+  part.sums.values.front() = std::numeric_limits<std::int64_t>::max();
+  writeSums(folder / "p0.exr", part.sums, part.header);
+  part.header.metadata["freevoxels:share"] = "1/2";
+  writeSums(folder / "p1.exr", part.sums, part.header);
+  expectCleanRefusal("merge @p0.exr @p1.exr @a.png", ExitCode::Input, "too large to be added");
+}
+
+TEST_F(MergeCommandTest, TextOfHeadersIsPrintable) {
+  renderPart("p0.exr", "0/2");
+  const SumsFile part = readSums(folder / "p0.exr");
+  for (const char* name : {"freevoxels:share", "freevoxels:size", "freevoxels:version", "freevoxels:\x1b[31m", "freevoxels:albedo"}) {
+    SumsFile changed = part;
+    changed.header.metadata["freevoxels:share"] = "1/2";
+    changed.header.metadata[name] = "\x1b]0;title\x07" + std::string(10'000, 'x');
+    writeSums(folder / "p1.exr", changed.sums, changed.header);
+    const ProgramResult result = run("merge @p0.exr @p1.exr @a.png");
+    EXPECT_NE(result.exitCode, 0) << name;
+    EXPECT_EQ(result.err.find('\x1b'), std::string::npos) << result.err;
+    EXPECT_LT(result.err.size(), 2000u);
+  }
 }
 
 TEST_F(MergeCommandTest, WhatCannotBeSharedIsRefused) {
