@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/freevoxels/text_table.h"
+#include "engine/core/printable.h"
 
 namespace freevoxels {
 
@@ -94,7 +95,7 @@ TextTable levelTable(const FvxFile& file) {
 void printBaked(const FvxFile& file) {
   const fvx::Header& header = file.header();
   const Volume& volume = file.description().volume;
-  fmt::print("{}: baked volume of format {}.{}, {} bytes, {:.2f} for each active voxel\n", file.path().string(), header.majorVersion,
+  fmt::print("{}: baked volume of format {}.{}, {} bytes, {:.2f} for each active voxel\n", printable(file.path().string()), header.majorVersion,
              header.minorVersion, header.fileBytes, bytesPerVoxel(file));
   fmt::print("volume: {}, {}x{}x{} voxels, values {:.4g}..{:.4g}, classification {}\n", volume.source, volume.dimensions.x,
              volume.dimensions.y, volume.dimensions.z, volume.minimum, volume.maximum,
@@ -102,7 +103,7 @@ void printBaked(const FvxFile& file) {
   for (std::size_t channel = 0; channel < fvx::kChannels; ++channel)
     if (const auto& encoding = file.description().encodings[channel])
       fmt::print("channel {}: {}\n", kChannelNames[channel], fvx::kEncodingNames[std::size_t(encoding->kind)]);
-  fmt::print("provenance: {}\n\n", file.provenance());
+  fmt::print("provenance: {}\n\n", printable(file.provenance()));
   for (const std::string& line : levelTable(file).lines()) fmt::print("{}\n", line);
   fmt::print("\n");
   for (const std::string& line : sectionTable(file).lines()) fmt::print("{}\n", line);
@@ -114,7 +115,7 @@ Json bakedJson(const FvxFile& file) {
             {"bytes", header.fileBytes},
             {"bytes_per_active_voxel", bytesPerVoxel(file)},
             {"description", Json::parse(fvx::toJson(file.description()))},
-            {"provenance", Json::parse(file.provenance(), nullptr, false)},
+            {"provenance", Json::parse(file.provenance())},
             {"levels", Json::array()},
             {"sections", Json::array()}};
   for (int level = file.levels() - 1; level >= 0; --level)

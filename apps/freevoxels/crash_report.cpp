@@ -11,6 +11,7 @@
 
 #include "apps/freevoxels/failure.h"
 #include "engine/core/crash_note.h"
+#include "engine/core/printable.h"
 
 namespace freevoxels {
 
@@ -47,7 +48,7 @@ extern "C" void endAfterCrash(int) {
     throw;
   } catch (...) {
     const Failure failure = currentFailure();
-    endWith(failure.sentence, failure.code);
+    endWith(printable(failure.sentence), failure.code);
   }
 }
 

@@ -162,7 +162,7 @@ void InfoCommand::describeBaked() const {
   const fvx::FvxFile file(input.volume);
   if (check_) file.checkAll();
   if (json_)
-    fmt::print("{}\n", bakedJson(file).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    fmt::print("{}\n", bakedJson(file).dump(2, ' ', true, nlohmann::ordered_json::error_handler_t::replace));
   else
     printBaked(file);
   if (check_ && !json_) fmt::print("\nall checksums are right\n");
@@ -182,7 +182,7 @@ void InfoCommand::run() {
   }
   nlohmann::ordered_json json{{"input", input.volume}, {"grids", nlohmann::ordered_json::array()}};
   for (const GridInfo& grid : grids) json["grids"].push_back(toJson(grid));
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  fmt::print("{}\n", json.dump(2, ' ', true, nlohmann::ordered_json::error_handler_t::replace));
 }
 
 }  // namespace freevoxels

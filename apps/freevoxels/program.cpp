@@ -32,21 +32,22 @@ namespace {
 /// "%*" in the pattern: the message, marked where it is a warning, without control characters of names from files.
 class MessageText : public spdlog::custom_flag_formatter {
  public:
+  explicit MessageText(std::string start) : start_(std::move(start)) {}
   void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& text) override {
     const bool isWarning = message.level == spdlog::level::warn;
-    const std::string shown =
-        (isWarning ? "warning: " : "") + printable(std::string_view(message.payload.data(), message.payload.size()));
+    const std::string shown = fmt::format("{}: {}{}", start_, isWarning ? "warning: " : "",
+                                          printable(std::string_view(message.payload.data(), message.payload.size())));
     text.append(shown.data(), shown.data() + shown.size());
   }
-  std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<MessageText>(); }
+  std::unique_ptr<custom_flag_formatter> clone() const override { return std::make_unique<MessageText>(start_); }
+
+ private:
+  const std::string start_;
 };
 
 void setUpMessages(const std::string& program) {
-  auto formatter = std::make_unique<spdlog::pattern_formatter>();
-  formatter->add_flag<MessageText>('*').set_pattern(program + ": %*");
-  auto logger = std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_sink_mt>());
-  logger->set_formatter(std::move(formatter));
-  spdlog::set_default_logger(std::move(logger));
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>(program, std::make_shared<spdlog::sinks::stderr_sink_mt>()));
+  beginMessagesWith(program);
 }
 
 /// How a program ended; the sentence of an error.
@@ -190,6 +191,12 @@ struct Deferring {
 
 std::string programVersion() {
   return FREEVOXELS_PROGRAM_VERSION;
+}
+
+void beginMessagesWith(const std::string& start) {
+  auto formatter = std::make_unique<spdlog::pattern_formatter>();
+  formatter->add_flag<MessageText>('*', start).set_pattern("%*");
+  spdlog::default_logger()->set_formatter(std::move(formatter));
 }
 
 int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>& onFailure) {

@@ -20,6 +20,9 @@ std::string programVersion();
 /// printed. Adds --version to `app`.
 int runProgram(CLI::App& app, int argc, char** argv, const std::function<void()>& onFailure = {});
 
+/// Puts `start` and ": " before each message that follows. Control characters of names from files are escaped in messages.
+void beginMessagesWith(const std::string& start);
+
 /// --quiet and --verbose.
 struct MessageOptions {
   bool quiet = false, verbose = false;

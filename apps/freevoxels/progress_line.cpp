@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "engine/core/printable.h"
+
 namespace freevoxels {
 
 namespace {
@@ -42,7 +44,7 @@ void ProgressLine::show(std::string_view stage, double fraction) {
 }
 
 void ProgressLine::print(const std::string& text) {
-  fmt::print(stderr, "{}{}", kEraseLine, text);
+  fmt::print(stderr, "{}{}", kEraseLine, printable(text));  // it has names of files
   std::fflush(stderr);
 }
 

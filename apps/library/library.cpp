@@ -12,6 +12,7 @@
 #include "apps/library/scene_renderer.h"
 #include "engine/core/error.h"
 #include "engine/core/json_file.h"
+#include "engine/core/printable.h"
 #include "engine/volume/volume_of_scalars.h"
 #include "engine/vulkan/device_requirements.h"
 
@@ -45,7 +46,7 @@ auto translated(const Work& work) {
   try {
     return work();
   } catch (const freevoxels::Error& error) {
-    throw Error(kindOf(error.kind()), withSceneKeys(error.text()), error.parameters());
+    throw Error(kindOf(error.kind()), printable(withSceneKeys(error.text())), error.parameters());
   } catch (const InternalError& error) {
     throw Error(ErrorKind::Internal, fmt::format("internal error, please report it: {}", error.what()));
   } catch (const FrameCancelled&) {
@@ -59,7 +60,8 @@ Json parseScene(std::string_view text) {
     return true;
   };
   Json scene = Json::parse(text, refuseDeep, false);
-  if (!scene.is_object()) fail(freevoxels::ErrorKind::Usage, "a scene is a JSON object, as '{{\"size\": [800, 600]}}', not '{}'", text);
+  constexpr std::size_t kLongestQuote = 200;
+  if (!scene.is_object()) fail(freevoxels::ErrorKind::Usage, "a scene is a JSON object, as '{{\"size\": [800, 600]}}', not '{}'", printablePart(text, kLongestQuote));
   return scene;
 }
 
@@ -187,7 +189,7 @@ std::string Volume::source() const {
 
 std::vector<std::string> Volume::warnings() const {
   std::vector<std::string> warnings = warningsOf(state_->volume->describe(), false);
-  for (std::string& warning : warnings) warning = withSceneKeys(warning);
+  for (std::string& warning : warnings) warning = printable(withSceneKeys(warning));
   return warnings;
 }
 

@@ -1,7 +1,6 @@
 // freevoxels-mpi render | turntable | bake: the commands of freevoxels, done by all processes of an MPI job together.
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
@@ -43,7 +42,7 @@ int main(int argc, char** argv) {
   const int exitCode = freevoxels::runProgram(app, argc, argv, [&] {
     if (job.leads()) return;
     std::this_thread::sleep_for(kPatience);
-    spdlog::default_logger()->set_pattern("freevoxels-mpi: on " + job.name() + ": %v");
+    freevoxels::beginMessagesWith("freevoxels-mpi: on " + job.name());
   });
   if (exitCode != 0) job.abort(exitCode);
   return 0;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/printable.h"
 #include "engine/description/scene_description.h"
 
 namespace freevoxels {
@@ -27,13 +28,6 @@ py::array adopt(std::vector<Value>& values, std::vector<py::ssize_t> shape) {
   return py::array(py::dtype::of<float>(), std::move(shape), data, owner);
 }
 
-/// Text for people: bytes that are no UTF-8, as file names may have them, become \\xff.
-py::str messageOf(std::string_view text) {
-  PyObject* const decoded = PyUnicode_DecodeUTF8(text.data(), py::ssize_t(text.size()), "backslashreplace");
-  if (decoded == nullptr) throw py::error_already_set();
-  return py::reinterpret_steal<py::str>(decoded);
-}
-
 /// Needs no lock, because the GIL lets only one message through at a time.
 class PythonLog : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
  protected:
@@ -44,7 +38,7 @@ class PythonLog : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
                               : message.level == spdlog::level::info ? "info"
                                                                      : "debug";
     const py::object logger = py::module_::import("logging").attr("getLogger")("freevoxels");
-    logger.attr(level)("%s", messageOf({message.payload.data(), message.payload.size()}));
+    logger.attr(level)("%s", printable({message.payload.data(), message.payload.size()}));
   }
   void flush_() override {}
 };
@@ -165,7 +159,7 @@ void raise(const Error& error) {
   py::list parameters;
   for (const std::string& parameter : error.parameters()) parameters.append(keyword(parameter));
   const py::handle type = exceptionClasses[std::size_t(error.kind())];
-  const py::object exception = type(messageOf(withKeywords(error.text())));
+  const py::object exception = type(printable(withKeywords(error.text())));
   exception.attr("parameters") = py::tuple(parameters);
   PyErr_SetObject(type.ptr(), exception.ptr());
 }

@@ -21,6 +21,7 @@
 #include "apps/view/view_panel.h"
 #include "apps/view/window_parts.h"
 #include "engine/core/error.h"
+#include "engine/core/printable.h"
 #include "engine/image/image.h"
 
 namespace freevoxels {
@@ -39,7 +40,7 @@ constexpr double kIdleSeconds = 0.25;                // between frames in which 
 constexpr double kSoonSeconds = 0.01;                // in which something does
 
 std::string titleOf(const ViewState& state) {
-  return state.scene.input.volume + " - FreeVoxels";
+  return printable(state.scene.input.volume) + " - FreeVoxels";
 }
 
 std::string openedName(const ViewState& state) {

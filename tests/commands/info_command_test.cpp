@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
+#include <sstream>
 
+#include "engine/core/printable.h"
 #include "engine/volume/procedural.h"
 #include "tests/commands/program_runner.h"
+#include "tests/storage/fvx_editor.h"
 
 namespace freevoxels::test {
 
@@ -13,6 +16,14 @@ namespace {
 
 using InfoCommand = CommandTest;
 using DevicesCommand = CommandTest;
+
+/// A terminal's title, colours by C0 and by C1, and a change of the direction of writing.
+constexpr const char* kEscapes = "\x1b]0;title\x07\x1b[31m\xc2\x9b" "31m\xe2\x80\xae";
+
+void expectPrintable(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) EXPECT_EQ(line, printable(line));
+}
 
 }  // namespace
 
@@ -63,6 +74,53 @@ TEST_F(InfoCommand, SaysTheSameOfAProceduralVolumeAsOfItsFile) {
       EXPECT_NEAR(file.at("voxel_size").at(axis), made.at("voxel_size").at(axis), 1e-9);
       EXPECT_EQ(file.at("dimensions").at(axis), made.at("dimensions").at(axis));
     }
+  }
+}
+
+TEST_F(InfoCommand, TextOfABakedVolumeIsPrintable) {
+  using fvx::SectionKind;
+  const std::string name = "c" + std::string(kEscapes) + ".fvx", harmful = "\xc2\x9b" "31m \x7f \xe2\x80\xae";
+  for (const int resolution : {20, 70}) {
+    expectSuccess(run(fmt::format("bake procedural:cloud @c.fvx --resolution {} --quiet", resolution)));
+    FvxEditor edited(readBytes(folder / "c.fvx"));
+    nlohmann::json description = nlohmann::json::parse(edited.text(SectionKind::Description));
+    description["source"] = kEscapes;
+    edited.setText(SectionKind::Description, description.dump());
+    edited.setText(SectionKind::Provenance, "{\"made\":\n\r\"" + harmful + "\"}");
+    edited.save(folder / name);
+    for (const char* options : {"", " --check"}) {
+      const ProgramResult table = run("info @" + name + options);
+      expectSuccess(table);
+      expectPrintable(table.out);
+      for (const char* shown : {"c\\x1b]0;title", "volume: \\x1b]0;title", "\\x0a\\x0d", "\\xc2\\x9b" "31m \\x7f"})
+        EXPECT_NE(table.out.find(shown), std::string::npos) << shown << " in " << table.out;
+    }
+    const ProgramResult json = run("info @" + name + " --json");
+    expectSuccess(json);
+    expectPrintable(json.out);
+    EXPECT_EQ(nlohmann::json::parse(json.out).at("provenance").at("made"), harmful);
+    // JSON that has control characters as they are is none.
+    edited.setText(SectionKind::Provenance, "{\"" + std::string(kEscapes) + "\": 1}");
+    edited.save(folder / name);
+    for (const char* options : {"", " --json", " --check"}) {
+      const ProgramResult refused = run("info @" + name + options);
+      expectRefusal(refused, ExitCode::Input, "provenance");
+      expectPrintable(refused.err);
+    }
+  }
+}
+
+TEST_F(InfoCommand, NamesOfFilesArePrintableOnATerminal) {
+  if (!terminalsAvailable()) GTEST_SKIP() << "no pseudo-terminals";
+  const std::string name = "c" + std::string(kEscapes) + ".vdb";
+  expectSuccess(run("generate cloud @" + name + " --resolution 24 --quiet"));
+  const std::string eraseLine = "\r\x1b[K";
+  for (const char* format : {"bake @{} @c.fvx", "render @{} @c.png --size 16", "info @{}"}) {
+    ProgramResult result = runFreevoxelsOnTerminal(words(fmt::format(fmt::runtime(format), name)));
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    for (std::size_t at = 0; (at = result.err.find(eraseLine, at)) != std::string::npos;) result.err.replace(at, eraseLine.size(), "\n");
+    std::erase(result.err, '\r');  // the terminal's own
+    expectPrintable(result.err);
   }
 }
 

@@ -120,6 +120,8 @@ TEST(Library, ErrorsNameWhatIsWrong) {
   expectError(Usage, "a scene is a JSON object", render("[1, 2]"));
   const std::string deep = R"({"orbit": )" + std::string(100000, '[') + std::string(100000, ']') + "}";
   expectError(Usage, "nested at most 64 deep", render(deep.c_str()));
+  expectError(Input, R"(/none/\x1b[31m\xff.vdb)", [] { v1::Volume::open("/none/\x1b[31m\xff.vdb"); });
+  expectError(Usage, R"(not '[\x0a1]')", render("[\n1]"));
   expectError(Usage, R"("orbit" and "camera-position" exclude each other)", render(R"({"orbit": [1, 2], "camera-position": [1, 2, 3]})"),
               {"orbit", "camera-position"});
   expectError(Usage, R"("frames" is of turntables, which the command line alone draws)", render(R"({"frames": 3})"), {"frames", "orbit"});

@@ -142,6 +142,14 @@ class KeywordTest(unittest.TestCase):
         with self.assertRaisesRegex(freevoxels.InputError, r"\\xff"):
             freevoxels.Volume.open(os.fsdecode(b"/none/\xff.vdb"))
 
+    def test_messages_have_no_control_characters(self):
+        for text in ("\x1b]0;title\x07", "\x9b31m", "\u202e", "a\nb"):
+            for refuse in (lambda: freevoxels.Volume.open(f"/none/{text}.vdb"), lambda: freevoxels.render(BOX, environment=f"/none/{text}.exr"),
+                           lambda: freevoxels.render(BOX, orbit=text), lambda: freevoxels.render(BOX, **{text: 1})):
+                with self.assertRaises(freevoxels.Error) as raised:
+                    refuse()
+                self.assertTrue(str(raised.exception).isprintable(), repr(str(raised.exception)))
+
 
 class NoDataTest(unittest.TestCase):
     def voxels(self, values, no_data, dtype, **more):
