@@ -37,7 +37,7 @@ Json::parser_callback_t refuseRepeatedKeys(std::string_view kind, std::string_vi
     if (event == Json::parse_event_t::object_start) seen[inside].clear();
     if (event == Json::parse_event_t::key && !seen[inside].insert(parsed).second)
       fail(ErrorKind::Input, "{} '{}' has the key {} more than once; keep one of them", kind, name,
-           inQuotes(parsed));
+           inShort(parsed));
     return true;
   };
 }
@@ -66,6 +66,11 @@ std::string inQuotes(const nlohmann::json& value) {
   return value.dump(-1, ' ', true, Json::error_handler_t::replace);
 }
 
+std::string inShort(const nlohmann::json& value) {
+  constexpr std::size_t kLongest = 200;
+  return printablePart(inQuotes(value), kLongest);
+}
+
 nlohmann::json parseJsonQuietly(std::string_view text) {
   struct TooDeep {};
   const auto refuseDeep = [](int depth, Json::parse_event_t, Json&) {
@@ -75,8 +80,6 @@ nlohmann::json parseJsonQuietly(std::string_view text) {
   try {
     return Json::parse(text, refuseDeep, false);
   } catch (const TooDeep&) {
-    return Json(Json::value_t::discarded);
-  } catch (const Json::exception&) {  // of a number that is too large
     return Json(Json::value_t::discarded);
   }
 }

@@ -22,6 +22,9 @@ nlohmann::json parseJson(std::string_view kind, std::string_view name, std::stri
 /// Prints a value as one line of JSON; invalid UTF-8 is replaced.
 std::string inQuotes(const nlohmann::json& value);
 
+/// The same for sentences: the beginning of what is long.
+std::string inShort(const nlohmann::json& value);
+
 /// Parses text that no person wrote: a discarded value unless it is JSON that is nested at most kDeepestJson deep. The last value of a
 /// repeated key counts.
 nlohmann::json parseJsonQuietly(std::string_view text);

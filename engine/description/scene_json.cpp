@@ -22,7 +22,7 @@ using OrderedJson = nlohmann::ordered_json;
 using Kind = SceneField::Kind;
 
 std::string quoted(const std::string& section, const std::string& key) {
-  return inQuotes(section.empty() ? key : section + "." + key);
+  return inShort(section.empty() ? key : section + "." + key);
 }
 
 std::string quoted(const SceneField& field) {
@@ -61,7 +61,7 @@ std::string keysText(const SceneField& field, const Json& object) {
 std::string fieldText(const SceneField& field, const Json& value, const fs::path& folder, const std::string& name) {
   if (field.kind == Kind::Flag || field.kind == Kind::Switch) {
     if (value.is_boolean()) return value.dump();
-    fail(ErrorKind::Input, "{} takes true or false, not {}", name, inQuotes(value));
+    fail(ErrorKind::Input, "{} takes true or false, not {}", name, inShort(value));
   }
   if (value.is_string()) {
     const auto text = value.get<std::string>();
@@ -72,7 +72,7 @@ std::string fieldText(const SceneField& field, const Json& value, const fs::path
   if (value.is_object() && field.kind == Kind::Keys)
     if (const std::string text = keysText(field, value); !text.empty()) return text;
   if (value.is_object() && field.kind == Kind::File) return value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  fail(ErrorKind::Input, "{} takes {}, not {}", name, field.form, inQuotes(value));
+  fail(ErrorKind::Input, "{} takes {}, not {}", name, field.form, inShort(value));
 }
 
 /// A number, a list of numbers, or the text if it is neither.
@@ -80,7 +80,7 @@ Json numbersOrText(const std::string& text, char separator) {
   Json list = Json::array();
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(separator, begin), text.size());
-    list.push_back(Json::parse(text.substr(begin, end - begin), nullptr, false));
+    list.push_back(parseJsonQuietly(std::string_view(text).substr(begin, end - begin)));
     begin = end + 1;
   }
   if (!isNumbers(list)) return text;
@@ -124,7 +124,7 @@ SceneFile::SceneFile(const fs::path& file) : file_(file), root_(std::make_shared
   if (!root_->is_object()) failHere("must be an object {{\"camera\": ...}}");
   for (const auto& [section, keys] : root_->items()) {
     if (!isSceneSection(section)) failUnknown("", section);
-    if (!keys.is_object()) failHere("{} takes an object of keys, not {}", inQuotes(section), inQuotes(keys));
+    if (!keys.is_object()) failHere("{} takes an object of keys, not {}", inShort(section), inShort(keys));
   }
 }
 
@@ -198,7 +198,7 @@ std::vector<std::string> fieldTexts(const SceneField& field, const Json& value, 
   if (field.standsAlone && value.is_boolean())
     return value.get<bool>() ? std::vector<std::string>{""} : std::vector<std::string>{};
   if (!field.repeated) return {fieldText(field, value, folder, name)};
-  if (!value.is_array()) fail(ErrorKind::Input, "{} takes a list, not {}", name, inQuotes(value));
+  if (!value.is_array()) fail(ErrorKind::Input, "{} takes a list, not {}", name, inShort(value));
   std::vector<std::string> texts;
   for (const Json& one : value) texts.push_back(fieldText(field, one, folder, name));
   return texts;

@@ -80,7 +80,7 @@ void checkKeys(const fs::path& file, const Json& root) {
   for (const auto& [key, value] : root.items())
     if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end())
       fail(ErrorKind::Input, "transfer function '{}' has an unknown key {}; the known ones are: {}",
-           file.string(), inQuotes(key), fmt::join(kKeys, ", "));
+           file.string(), inShort(key), fmt::join(kKeys, ", "));
   if (!root.contains("opacity"))
     fail(ErrorKind::Input, "transfer function '{}' has no \"opacity\"; add a list of [x, alpha] points",
          file.string());

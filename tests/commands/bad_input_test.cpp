@@ -125,6 +125,19 @@ TEST_F(BadInput, BadTransferFunction) {
                             "unit_distance");
 }
 
+TEST_F(BadInput, JsonThatIsNestedTooDeep) {
+  const std::string lists = std::string(100'000, '[') + std::string(100'000, ']'), mention = "nested more than 64 deep";
+  const std::string render = std::string("render procedural:cube @a.png --resolution 8") + kSmallAndQuiet;
+  for (const std::string& scene : {lists, "{\"light\":{\"ambient\":" + lists + "}}", "{\"classification\":{\"transfer-function\":" + lists + "}}"}) {
+    writeBytes(folder / "s.json", scene);
+    expectCleanRefusal(render + " --scene @s.json", ExitCode::Input, mention);
+    expectCleanRefusal(render + " --transfer-function @s.json", ExitCode::Input, mention);
+  }
+  const std::string shorter = "{\"opacity\":" + std::string(500, '[') + std::string(500, ']') + "}";
+  expectCleanRefusal(render + " --transfer-function " + shorter, ExitCode::Input, mention);
+  expectCleanRefusal(render + " --save-scene @saved.json --transfer-function " + shorter, ExitCode::Input, mention);
+}
+
 TEST_F(BadInput, BadLights) {
   const auto expectBadLight = [this](const std::string& options, const std::string& mention) {
     SCOPED_TRACE(options);

@@ -84,6 +84,11 @@ void writeImages(const fs::path& folder) {
 void writeFunctions(const fs::path& folder) {
   std::ofstream(folder / "all.json") << R"({"range": [0, 1], "opacity": [[0, 0], [0.5, 0.2], [1, 1]], "color": [[0, 1, 0, 0], [1, 0, 0, 1]], "unit_distance": 0.5})";
   std::ofstream(folder / "short.json") << R"({"opacity": [[0.25, 1e-3]], "color": [[0, 1, 1, 1]]})";
+  std::ofstream(folder / "scene.json") << R"({"input": {"volume": "procedural:cloud", "resolution": [20, 30, 40]}, "camera": {"orbit": [30, 8], "fov": 33.3},
+  "light": {"light": [{"direction": [1, 2, 3], "color": "0.1,1,2", "intensity": 7.5}], "ambient": 0.1}, "output": {"aov": ["depth"]},
+  "classification": {"transfer-function": {"opacity": [[0, 0], [1, 0.5]]}}})";
+  constexpr std::size_t kDeep = 30'000;
+  std::ofstream(folder / "deep.json") << R"({"light": {"ambient": )" << std::string(kDeep, '[') << std::string(kDeep, ']') << "}}";
 }
 
 /// Sizes that end inside of bricks and chunks along every axis, with one chunk and with several, and with up to three levels.

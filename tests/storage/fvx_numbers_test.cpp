@@ -464,8 +464,8 @@ TEST_F(FvxNumbers, DescriptionsAndProvenancesThatAreNoJsonOrTooDeepAreRefused) {
   bake(test::smoothVolume());
   for (const SectionKind kind : {SectionKind::Description, SectionKind::Provenance})
     for (const std::size_t depth : {std::size_t(65), std::size_t(1000), std::size_t(100000)}) {
-      for (const std::string& text : {std::string(depth, '['), std::string(depth, '[') + std::string(depth, ']'), std::string("{"), std::string("\xff"),
-                                      "{\"a\":" + std::string(depth, '[') + std::string(depth, ']') + "}"}) {
+      for (const std::string& text : {std::string(depth, '['), std::string(depth, '[') + "0" + std::string(depth, ']'), std::string("{"), std::string("\xff"),
+                                      "{\"a\":" + std::string(depth, '[') + "0" + std::string(depth, ']') + "}"}) {
         FvxEditor edited(bytes_);
         edited.setText(kind, text);
         expectRefused(edited);

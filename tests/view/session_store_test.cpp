@@ -46,6 +46,18 @@ TEST(SessionStore, AStateThatCannotBeReadIsEmpty) {
   }
 }
 
+TEST(SessionStore, AStateThatIsTooDeepIsEmpty) {
+  const TemporaryFolder folder;
+  for (const std::size_t depth : {std::size_t(65), std::size_t(200'000)})
+    for (const std::string& text : {"{\"recent\":" + std::string(depth, '[') + std::string(depth, ']') + "}", std::string(depth, '[')}) {
+      test::writeBytes(folder / "viewer.json", text);
+      SessionStore store(folder.path());
+      EXPECT_TRUE(store.recent().empty());
+      store.remember("/b.vdb");
+      EXPECT_EQ(SessionStore(folder.path()).recent().front(), "/b.vdb");
+    }
+}
+
 TEST(SessionStore, TwoWindowsKeepEachOthersFiles) {
   const TemporaryFolder folder;
   SessionStore one(folder / "state"), other(folder / "state");
