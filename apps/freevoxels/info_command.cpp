@@ -28,7 +28,7 @@ GridInfo describeVolume(const Volume& volume) {
   grid.dimensions = volume.dimensions;
   grid.renderDimensions = volume.dimensions;
   grid.boundsMinimum = volume.indexOrigin;
-  grid.boundsMaximum = volume.indexOrigin + volume.dimensions - 1;
+  grid.boundsMaximum = volume.indexOrigin + (volume.dimensions - 1);
   for (int axis = 0; axis < 3; ++axis)
     grid.voxelSize[axis] = glm::length(glm::dvec3(volume.indexToWorld[axis]));
   grid.hasRange = volume.activeVoxels > 0;

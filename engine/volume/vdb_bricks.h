@@ -27,13 +27,13 @@ inline glm::ivec3 brickCell(glm::ivec3 origin, const openvdb::Coord& corner) {
   return (glm::ivec3(corner.x(), corner.y(), corner.z()) >> shift) - (origin >> shift);
 }
 
-/// Calls `visit(corner)` for each position of a leaf in a tile.
+/// Calls `visit(corner)` for each position of a leaf that a box touches.
 template <typename Visit>
-void forEachLeafIn(const openvdb::CoordBBox& tile, const Visit& visit) {
-  constexpr int n = int(VdbLeaf::DIM);
-  for (int z = tile.min().z(); z <= tile.max().z(); z += n)
-    for (int y = tile.min().y(); y <= tile.max().y(); y += n)
-      for (int x = tile.min().x(); x <= tile.max().x(); x += n) visit(openvdb::Coord(x, y, z));
+void forEachLeafIn(const openvdb::CoordBBox& box, const Visit& visit) {
+  const openvdb::Coord first = box.min() >> VdbLeaf::LOG2DIM, last = box.max() >> VdbLeaf::LOG2DIM;
+  for (int z = first.z(); z <= last.z(); ++z)
+    for (int y = first.y(); y <= last.y(); ++y)
+      for (int x = first.x(); x <= last.x(); ++x) visit(openvdb::Coord(x, y, z) << VdbLeaf::LOG2DIM);
 }
 
 template <typename ToDensity>

@@ -42,11 +42,8 @@ using Bricks = std::array<ScalarBricks::Brick*, 3>;
 
 /// The three bricks of a leaf, or null if it is beyond the box and so has no density.
 std::optional<Bricks> bricksAt(AlbedoGrid& grid, glm::ivec3 origin, const openvdb::Coord& corner) {
-  const glm::ivec3 cell = brickCell(origin, corner), first = cell * ScalarBricks::kEdge;
-  const glm::ivec3 begin = origin & (ScalarBricks::kEdge - 1);
-  if (glm::any(glm::lessThan(cell, glm::ivec3(0))) ||
-      glm::any(glm::greaterThanEqual(first - begin, grid.values[0].dimensions())))
-    return std::nullopt;
+  const glm::ivec3 cell = brickCell(origin, corner);
+  if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(cell, grid.values[0].cells()))) return std::nullopt;
   Bricks bricks;
   for (std::size_t c = 0; c < 3; ++c) bricks[c] = &grid.values[c].makeBrick(cell);
   return bricks;
@@ -61,12 +58,17 @@ AlbedoGrid toAlbedo(const openvdb::Vec3SGrid& grid, const std::string& name, con
   const glm::ivec3 origin = volume.indexOrigin;
   AlbedoGrid result{.name = name, .values = {}};
   result.values.fill(emptyBricks(volume.dimensions, origin));
+  const glm::ivec3 last = origin + (volume.dimensions - 1);
+  const openvdb::CoordBBox whole(openvdb::Coord(origin.x, origin.y, origin.z), openvdb::Coord(last.x, last.y, last.z));
   auto tile = grid.tree().cbeginValueOn();
   tile.setMaxDepth(openvdb::Vec3STree::ValueOnCIter::LEAF_DEPTH - 1);
   for (; tile; ++tile) {
     const Clipped value = clip(*tile);
     if (value.changed) result.clippedVoxels += tile.getVoxelCount();
-    forEachLeafIn(tile.getBoundingBox(), [&](const openvdb::Coord& corner) {
+    openvdb::CoordBBox seen = tile.getBoundingBox();
+    seen.intersect(whole);  // empty for most tiles of a file that has many large ones
+    if (seen.empty()) continue;
+    forEachLeafIn(seen, [&](const openvdb::Coord& corner) {
       if (const auto bricks = bricksAt(result, origin, corner))
         for (std::size_t i = 0; i < Leaf::SIZE; ++i) set(*bricks, i, value);
     });

@@ -7,12 +7,32 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <limits>
 #include <vector>
 
 #include "engine/volume/openvdb_trees.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
+
+// Coordinates of voxels may be any of 32 bits: what is beside or beyond the last one, and the extent of a box, may have more.
+
+/// Numbers of voxels along the axes of a box that has any.
+inline glm::i64vec3 extentOf(const openvdb::CoordBBox& box) {
+  const auto along = [&](int axis) { return std::int64_t(box.max()[axis]) - box.min()[axis] + 1; };
+  return {along(0), along(1), along(2)};
+}
+
+/// The box with `margin` more voxels on every side, as far as there are coordinates.
+inline openvdb::CoordBBox extendedBy(int margin, openvdb::CoordBBox box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min()[axis] = std::max(box.min()[axis], std::numeric_limits<int>::min() + margin) - margin;
+    box.max()[axis] = std::min(box.max()[axis], std::numeric_limits<int>::max() - margin) + margin;
+  }
+  return box;
+}
 
 /// The density of a fog volume's voxel.
 struct FogToDensity {
@@ -93,8 +113,7 @@ openvdb::CoordBBox boundsOf(const openvdb::FloatTree& tree,
   openvdb::CoordBBox bounds =
       tbb::parallel_reduce(Range(0, leaves.size()), openvdb::CoordBBox(), expandByLeaves, join);
   visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float) { bounds.expand(box); });
-  if (!bounds.empty()) bounds.expand(ToDensity::kMargin);
-  return bounds;
+  return bounds.empty() ? bounds : extendedBy(ToDensity::kMargin, bounds);
 }
 
 /// Calls `action(toDensity)` with the conversion for the grid's class.

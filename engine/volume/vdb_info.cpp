@@ -28,7 +28,7 @@ struct ValueRange {
   }
 };
 
-ValueRange join(const ValueRange& a, const ValueRange& b) {
+ValueRange joinRanges(const ValueRange& a, const ValueRange& b) {
   return {std::min(a.minimum, b.minimum), std::max(a.maximum, b.maximum)};
 }
 
@@ -44,7 +44,7 @@ ValueRange rangeOf(const FloatTree& tree) {
           for (auto voxel = leaves[i]->cbeginValueOn(); voxel; ++voxel) partial.include(*voxel);
         return partial;
       },
-      join);
+      joinRanges);
   auto tile = tree.cbeginValueOn();
   tile.setMaxDepth(FloatTree::ValueOnCIter::LEAF_DEPTH - 1);
   for (; tile; ++tile) values.include(*tile);
@@ -72,7 +72,7 @@ void describeVoxels(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
   info.boundsMinimum = {box.min().x(), box.min().y(), box.min().z()};
   info.boundsMaximum = {box.max().x(), box.max().y(), box.max().z()};
-  info.dimensions = glm::i64vec3(info.boundsMaximum) - glm::i64vec3(info.boundsMinimum) + std::int64_t(1);
+  info.dimensions = extentOf(box);
   const openvdb::FloatGrid::ConstPtr floats = asFloatGrid(grid);
   if (!floats) return;
   const ValueRange values = rangeOf(floats->tree());
@@ -89,22 +89,25 @@ template <typename ToDensity>
 std::vector<std::uint64_t> storedBlocks(const FloatTree& tree,
                                         const std::vector<const FloatTree::LeafNodeType*>& leaves,
                                         const openvdb::CoordBBox& bounds, const ToDensity& toDensity) {
-  if (bounds.volume() > kMaxCounted) return {};
-  std::vector<bool> holding(bounds.volume(), false);
-  const auto hold = [&](const openvdb::Coord& voxel) {
-    const openvdb::Coord place = voxel - bounds.min(), size = bounds.dim();
-    holding[std::size_t(place.x()) +
-            std::size_t(size.x()) *
-                (std::size_t(place.y()) + std::size_t(size.y()) * std::size_t(place.z()))] = true;
+  const glm::u64vec3 size(extentOf(bounds));
+  if (size.x * size.y * size.z > kMaxCounted) return {};
+  std::vector<bool> holding(size.x * size.y * size.z, false);
+  const auto indexOf = [&](const openvdb::Coord& voxel) {
+    const openvdb::Coord place = voxel - bounds.min();
+    return std::size_t(place.x()) + size.x * (std::size_t(place.y()) + size.y * std::size_t(place.z()));
   };
   for (const FloatTree::LeafNodeType* leaf : leaves)
     for (auto voxel = leaf->cbeginValueAll(); voxel; ++voxel)
-      if (toDensity(*voxel, voxel.isValueOn()) > 0.0f) hold(voxel.getCoord());
+      if (toDensity(*voxel, voxel.isValueOn()) > 0.0f) holding[indexOf(voxel.getCoord())] = true;
   visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float density) {
-    if (density > 0.0f)
-      for (auto voxel = box.begin(); voxel; ++voxel) hold(*voxel);
+    if (!(density > 0.0f)) return;
+    const glm::i64vec3 n = extentOf(box);
+    const std::size_t first = indexOf(box.min());
+    for (std::int64_t z = 0; z < n.z; ++z)
+      for (std::int64_t y = 0; y < n.y; ++y)
+        std::fill_n(holding.begin() + std::ptrdiff_t(first + size.x * (std::size_t(y) + size.y * std::size_t(z))), n.x, true);
   });
-  return countOccupiedBlocks({bounds.dim().x(), bounds.dim().y(), bounds.dim().z()}, std::move(holding));
+  return countOccupiedBlocks(glm::ivec3(size), std::move(holding));
 }
 
 template <typename ToDensity>
@@ -113,13 +116,14 @@ std::uint64_t hostBytes(const FloatTree& tree, const std::vector<const FloatTree
   auto bricks = std::uint64_t(
       std::ranges::count_if(leaves, [&](const auto* leaf) { return holdsData(*leaf, toDensity); }));
   visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float) {
-    bricks += box.volume() / std::tuple_size_v<ScalarBricks::Brick>;
+    const glm::u64vec3 n(extentOf(box));
+    bricks += n.x * n.y * n.z / std::tuple_size_v<ScalarBricks::Brick>;
   });
   return ScalarBricks::bytesOf(bricks, dimensions);
 }
 
 /// Voxels along an edge of a box whose number of voxels 64 bits hold.
-constexpr double kLongestEdge = 1 << 20;
+constexpr std::int64_t kLongestEdge = 1 << 20;
 
 /// Describes the box that readVdb would return, and its occupied blocks.
 void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
@@ -132,13 +136,12 @@ void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
       info.unusable = kNothingInsideClause;
       return;
     }
-    const glm::dvec3 extent = glm::dvec3(box.max().x(), box.max().y(), box.max().z()) -
-                              glm::dvec3(box.min().x(), box.min().y(), box.min().z()) + 1.0;
+    const glm::i64vec3 extent = extentOf(box);
     if (std::max({extent.x, extent.y, extent.z}) > kLongestEdge) {
       info.unusable = "its box is too large to number its voxels";
       return;
     }
-    info.renderDimensions = {box.dim().x(), box.dim().y(), box.dim().z()};
+    info.renderDimensions = glm::ivec3(extent);
     info.storedBlocks = storedBlocks(floats->tree(), leaves, box, toDensity);
     info.hostBytes = hostBytes(floats->tree(), leaves, info.renderDimensions, toDensity);
   });

@@ -22,16 +22,21 @@ namespace {
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
 
+/// Voxels along an edge of a box, to which margins and edges of bricks are added.
+constexpr std::int64_t kLongestReadEdge = 1 << 30;
+
+double voxelsIn(glm::i64vec3 extent) {
+  return double(extent.x) * double(extent.y) * double(extent.z);
+}
+
 void checkSize(const CoordBBox& bounds, std::uint64_t maximumVoxels, const std::string& source) {
-  const auto extent = [&](int axis) { return double(bounds.max()[axis]) - double(bounds.min()[axis]) + 1.0; };
-  const double voxels = extent(0) * extent(1) * extent(2);
-  const double longest = std::max({extent(0), extent(1), extent(2)});
-  if (voxels <= double(maximumVoxels) && longest <= double(std::numeric_limits<int>::max())) return;
+  const glm::i64vec3 extent = extentOf(bounds);
+  if (voxelsIn(extent) <= double(maximumVoxels) && std::max({extent.x, extent.y, extent.z}) <= kLongestReadEdge) return;
   fail(ErrorKind::OutOfMemory,
-       "{} is too large: its {:.0f} x {:.0f} x {:.0f} box needs {:.0f} voxels and at most {} are possible "
+       "{} is too large: its {} x {} x {} box needs {:.0f} voxels and at most {} are possible "
        "here; "
        "resample or crop the volume, for example with vdb_tool or Houdini",
-       source, extent(0), extent(1), extent(2), voxels, maximumVoxels);
+       source, extent.x, extent.y, extent.z, voxelsIn(extent), maximumVoxels);
 }
 
 glm::dmat4 indexToWorldOf(const FloatGrid& grid, glm::ivec3 indexOrigin) {
@@ -71,7 +76,7 @@ void normaliseWorld(Volume& volume) {
 /// Without voxels.
 Volume boxVolume(const FloatGrid& grid, const CoordBBox& bounds, const std::string& source) {
   Volume volume{.source = source,
-                .dimensions = {bounds.dim().x(), bounds.dim().y(), bounds.dim().z()},
+                .dimensions = glm::ivec3(extentOf(bounds)),
                 .indexOrigin = {bounds.min().x(), bounds.min().y(), bounds.min().z()}};
   volume.indexToWorld = indexToWorldOf(grid, volume.indexOrigin);
   normaliseWorld(volume);
@@ -148,7 +153,9 @@ constexpr int kSampleEdge = 256;
 /// Cubes of this number of voxels along an edge are read at a time, and this number of them is kept in memory.
 constexpr int kCubeEdge = 64;
 constexpr std::size_t kCubes = 16;
-constexpr double kMaxVoxels = 1e12;  ///< of a box that is gone through cube by cube
+/// Of a box that is gone through cube by cube.
+constexpr double kMaxVoxels = 1e12;
+constexpr std::int64_t kLongestPartsEdge = 1 << 20;
 
 /// A copy with the values, which the tree's leaf leaves in the file.
 VdbLeaf load(const VdbLeaf& leaf, const std::string& source) {
@@ -182,8 +189,10 @@ std::unique_ptr<VdbParts> VdbParts::open(const std::filesystem::path& path, cons
   if (!grid->isType<FloatGrid>() || grid->getGridClass() == openvdb::GRID_LEVEL_SET) return nullptr;
   source->grid = openvdb::gridConstPtrCast<FloatGrid>(grid);
   if (source->grid->tree().leafCount() * sizeof(ScalarBricks::Brick) <= mostBytes) return nullptr;
-  const openvdb::Vec3d n(source->grid->evalActiveVoxelBoundingBox().dim().asVec3d());
-  if (n.x() * n.y() * n.z() > kMaxVoxels) return nullptr;
+  const CoordBBox bounds = source->grid->evalActiveVoxelBoundingBox();
+  if (bounds.empty()) return nullptr;
+  const glm::i64vec3 n = extentOf(bounds);
+  if (voxelsIn(n) > kMaxVoxels || std::max({n.x, n.y, n.z}) > kLongestPartsEdge) return nullptr;
   return std::unique_ptr<VdbParts>(new VdbParts(std::move(source)));
 }
 
@@ -241,20 +250,19 @@ Volume VdbParts::read(glm::ivec3 first, int edge) const {
   const CrashNote note(fmt::format("cannot read {}: the file was cut or overwritten while it was read; copy it again", printable(source_->name)));
   const openvdb::FloatTree& tree = source_->grid->tree();
   Volume part{.dimensions = glm::ivec3(edge), .scalars = ScalarBricks(glm::ivec3(edge))};
-  const glm::ivec3 begin = first + outline_.indexOrigin, end = glm::min(first + edge, outline_.dimensions) + outline_.indexOrigin;
-  for (glm::ivec3 corner = begin & ~(n - 1); corner.z < end.z; corner.z += n)
-    for (corner.y = begin.y & ~(n - 1); corner.y < end.y; corner.y += n)
-      for (corner.x = begin.x & ~(n - 1); corner.x < end.x; corner.x += n) {
-        const openvdb::Coord at(corner.x, corner.y, corner.z);
-        const VdbLeaf* const kept = tree.probeConstLeaf(at);
-        if (kept == nullptr && !tree.isValueOn(at)) continue;
-        const VdbLeaf leaf = kept == nullptr ? VdbLeaf(at, tree.getValue(at), true) : load(*kept, source_->name);
-        const glm::ivec3 low = glm::max(corner, begin), high = glm::min(corner + n, end);
-        for (glm::ivec3 v = low; v.z < high.z; ++v.z)
-          for (v.y = low.y; v.y < high.y; ++v.y)
-            for (v.x = low.x; v.x < high.x; ++v.x)
-              if (const openvdb::Coord voxel(v.x, v.y, v.z); leaf.isValueOn(voxel)) part.scalars.set(v - begin, leaf.getValue(voxel));
-      }
+  const glm::ivec3 begin = first + outline_.indexOrigin, last = glm::min(first + (edge - 1), outline_.dimensions - 1) + outline_.indexOrigin;
+  forEachLeafIn({{begin.x, begin.y, begin.z}, {last.x, last.y, last.z}}, [&](const openvdb::Coord& at) {
+    const VdbLeaf* const kept = tree.probeConstLeaf(at);
+    if (kept == nullptr && !tree.isValueOn(at)) return;
+    const VdbLeaf leaf = kept == nullptr ? VdbLeaf(at, tree.getValue(at), true) : load(*kept, source_->name);
+    const glm::ivec3 corner(at.x(), at.y(), at.z());
+    const glm::ivec3 low = glm::max(corner, begin) - corner, high = glm::min(corner + (n - 1), last) - corner;
+    for (glm::ivec3 v = low; v.z <= high.z; ++v.z)
+      for (v.y = low.y; v.y <= high.y; ++v.y)
+        for (v.x = low.x; v.x <= high.x; ++v.x)
+          if (const openvdb::Index place = VdbLeaf::coordToOffset({v.x, v.y, v.z}); leaf.isValueOn(place))
+            part.scalars.set(corner - begin + v, leaf.getValue(place));
+  });
   summariseValues(part);
   return part;
 }
