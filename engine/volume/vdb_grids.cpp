@@ -86,9 +86,58 @@ void nameEntries(std::vector<VdbFile::Entry>& entries) {
     entry.name = oneLine(entry.key);
     ++uses[entry.name];
   }
-  for (VdbFile::Entry& entry : entries)
-    if (const std::string name = entry.name; uses[name] > 1) entry.name += fmt::format("[{}]", shown[name]++);
+  for (VdbFile::Entry& entry : entries) {
+    const std::string name = entry.name;
+    if (uses[name] == 1) continue;
+    do entry.name = fmt::format("{}[{}]", name, shown[name]++);
+    while (uses.contains(entry.name));  // another grid has that name by itself
+    uses[entry.name] = 1;
+  }
 }
+
+/// Which grid OpenVDB (io::File) finds by a name. It is another one where a grid's own name looks like that of the second of several:
+/// "density[1]", or where two have the same name in the file.
+class GridSearch {
+ public:
+  explicit GridSearch(const std::vector<VdbHeader::Grid>& grids) {
+    for (std::size_t i = 0; i < grids.size(); ++i) {
+      SameName& same = byName_[GridDescriptor::stripSuffix(grids[i].uniqueName)];
+      same.byUniqueName.emplace(grids[i].uniqueName, i);
+      same.all.push_back(i);
+    }
+  }
+  std::optional<std::size_t> find(const std::string& name) const {
+    const std::string uniqueName = GridDescriptor::stringAsUniqueName(name);
+    auto same = byName_.find(name);
+    if (same == byName_.end()) same = byName_.find(GridDescriptor::stripSuffix(uniqueName));
+    if (same == byName_.end()) return std::nullopt;
+    if (name == uniqueName) return same->second.all.front();
+    std::optional<std::size_t> first;
+    for (const std::string& wanted : {uniqueName, name})
+      if (const auto found = same->second.byUniqueName.find(wanted); found != same->second.byUniqueName.end())
+        first = std::min(first.value_or(found->second), found->second);
+    return first;
+  }
+  /// The first grid with this name in the file.
+  std::optional<std::size_t> named(const std::string& uniqueName) const {
+    const auto same = byName_.find(GridDescriptor::stripSuffix(uniqueName));
+    if (same == byName_.end() || !same->second.byUniqueName.contains(uniqueName)) return std::nullopt;
+    return same->second.byUniqueName.at(uniqueName);
+  }
+  /// The grids in the order in which OpenVDB reads all of them.
+  std::vector<std::size_t> order() const {
+    std::vector<std::size_t> order;
+    for (const auto& [name, same] : byName_) order.insert(order.end(), same.all.begin(), same.all.end());
+    return order;
+  }
+
+ private:
+  struct SameName {
+    std::map<std::string, std::size_t> byUniqueName;  ///< the first of each
+    std::vector<std::size_t> all;
+  };
+  std::map<std::string, SameName> byName_;
+};
 
 }  // namespace
 
@@ -121,11 +170,13 @@ void VdbFile::listGrids() {
                         .treeType = grid.type,
                         .key = GridDescriptor::nameAsString(grid.uniqueName)});
   nameEntries(entries_);
-  std::map<std::string, int> uses;
-  for (const Entry& entry : entries_)
-    if (++uses[entry.key] > 1)
-      fail(ErrorKind::Input, "'{}' has two grids under the one key '{}'; save it again with OpenVDB",
-           path_.string(), oneLine(entry.key));
+  const GridSearch search(header_.grids);
+  const std::vector<std::size_t> order = search.order();
+  for (std::size_t place = 0; place < order.size(); ++place) {
+    const std::string& parent = header_.grids[order[place]].parentName;
+    const bool findsParent = parent.empty() || search.find(GridDescriptor::nameAsString(parent)) == search.named(parent);
+    if (Entry& entry = entries_[order[place]]; search.find(entry.key) != order[place] || !findsParent) entry.place = place;
+  }
 }
 
 void VdbFile::readStreamedGrids() {
@@ -167,12 +218,12 @@ const VdbFile::Entry& VdbFile::choose(const std::string& name) {
   std::vector<const Entry*> sameName;
   for (const Entry& entry : entries_) {
     if (entry.name == name) return entry;
-    if (entry.baseName == name) sameName.push_back(&entry);
+    if (entry.baseName == name || oneLine(entry.key) == name) sameName.push_back(&entry);
   }
   if (sameName.empty())
     fail(ErrorKind::Input, "'{}' has no grid '{}'; choose one of: {}", path_.string(), oneLine(name),
          listOf(entries_));
-  return firstOf(sameName);
+  return firstOf(oneLine(name), sameName);
 }
 
 const VdbFile::Entry& VdbFile::chooseByDefault() {
@@ -184,7 +235,7 @@ const VdbFile::Entry& VdbFile::chooseByDefault() {
   }
   const auto exact = [](const Entry* entry) { return entry->baseName == "density"; };
   if (std::ranges::any_of(densities, exact)) std::erase_if(densities, std::not_fn(exact));
-  if (!densities.empty()) return firstOf(densities);
+  if (!densities.empty()) return firstOf(densities.front()->baseName, densities);
   if (reals.size() == 1) return *reals.front();
   if (reals.empty() && entries_.size() == 1) return entries_.front();  // readVdb will say why it cannot be drawn
   if (reals.empty())
@@ -195,13 +246,13 @@ const VdbFile::Entry& VdbFile::chooseByDefault() {
        Parameter("grid"), listOf(entries_));
 }
 
-const VdbFile::Entry& VdbFile::firstOf(const std::vector<const Entry*>& sameName) {
+const VdbFile::Entry& VdbFile::firstOf(const std::string& name, const std::vector<const Entry*>& sameName) {
   if (sameName.size() > 1) {
     std::string others;
     for (const Entry* entry : sameName)
       if (entry != sameName.front()) others += fmt::format("{}'{}'", others.empty() ? "" : ", ", entry->name);
     warnings_.push_back(fmt::format("'{}' has {} grids named '{}': using '{}'; {} chooses {}", path_.string(), sameName.size(),
-                                    sameName.front()->baseName, sameName.front()->name, Parameter("grid"), others));
+                                    name, sameName.front()->name, Parameter("grid"), others));
   }
   return *sameName.front();
 }
@@ -209,7 +260,9 @@ const VdbFile::Entry& VdbFile::firstOf(const std::vector<const Entry*>& sameName
 GridBase::Ptr VdbFile::readMetadata(const Entry& entry) {
   if (!streamed_.empty()) return streamed_[indexOf(entry)];
   GridBase::Ptr grid;
-  guarded(fmt::format("grid '{}'", entry.name), [&] { grid = file_.readGridMetadata(entry.key); });
+  guarded(fmt::format("grid '{}'", entry.name), [&] {
+    grid = entry.place ? file_.readAllGridMetadata()->at(*entry.place) : file_.readGridMetadata(entry.key);
+  });
   return grid;
 }
 
@@ -229,6 +282,13 @@ bool VdbFile::isFromBlender(const Entry& entry) {
 
 GridBase::Ptr VdbFile::read(const Entry& entry) {
   if (!streamed_.empty()) return streamed_[indexOf(entry)];
+  if (entry.place) {
+    if (all_.empty()) {
+      for (const VdbHeader::Grid& one : header_.grids) checkTree(one);
+      guarded("its grids", [&] { all_ = *file_.getGrids(); });
+    }
+    return all_.at(*entry.place);
+  }
   checkTree(header_.grids[indexOf(entry)]);
   GridBase::Ptr grid;
   guarded(fmt::format("grid '{}'", entry.name), [&] { grid = file_.readGrid(entry.key); });

@@ -7,6 +7,7 @@
 #include <array>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,11 +24,13 @@ void initialiseOpenVdb();
 class VdbFile {
  public:
   struct Entry {
-    std::string name;       ///< for messages: unique, one printable line, such as "density" or "density[1]"
+    std::string name;       ///< for messages and choices: unique, one printable line, such as "density" or "density[1]"
     std::string baseName;   ///< without the [k]
     std::string valueType;  ///< GridInfo::valueType
     std::string treeType;   ///< OpenVDB's name of the type
     std::string key;        ///< OpenVDB's name of the grid
+    /// The place among OpenVDB's list of all grids, where by the key it finds another grid or none, or for an instance another tree.
+    std::optional<std::size_t> place = std::nullopt;
   };
 
   /// Fails as readVdbHeader does, and with ErrorKind::Input if OpenVDB rejects the file. With `delaysValues` the leaves of grids that
@@ -42,6 +45,7 @@ class VdbFile {
   const Entry& choose(const std::string& name);
   /// Reads the grid without its tree.
   openvdb::GridBase::Ptr readMetadata(const Entry& entry);
+  /// Reads all grids of the file where OpenVDB cannot find this one by its key.
   openvdb::GridBase::Ptr read(const Entry& entry);
   /// For Volume::warnings.
   const std::vector<std::string>& warnings() const { return warnings_; }
@@ -57,7 +61,8 @@ class VdbFile {
   /// The place of a grid in entries_, and in header_.grids or streamed_.
   std::size_t indexOf(const Entry& entry) const { return std::size_t(&entry - entries_.data()); }
   const Entry& chooseByDefault();
-  const Entry& firstOf(const std::vector<const Entry*>& sameName);
+  /// `name` is what they have in common.
+  const Entry& firstOf(const std::string& name, const std::vector<const Entry*>& sameName);
 
   std::filesystem::path path_;
   bool delaysValues_ = false;
@@ -66,6 +71,7 @@ class VdbFile {
   std::vector<Entry> entries_;
   std::vector<std::string> warnings_;
   std::vector<openvdb::GridBase::Ptr> streamed_;  ///< all grids of a file that can only be read as a whole
+  std::vector<openvdb::GridBase::Ptr> all_;       ///< in OpenVDB's order, once one was read that has a place
 };
 
 /// Names of temperature grids, in the order of preference.

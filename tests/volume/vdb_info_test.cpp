@@ -34,6 +34,74 @@ TEST_F(VdbInfo, GridsThatShareANameAreToldApartByNumber) {
   expectReadRefused({"density[3]", "'density[2]' (float)", "'heat' (float)"}, "density[3]");
 }
 
+/// OpenVDB's own names of grids can be those that it gives to the second of several.
+TEST_F(VdbInfo, GridsWhoseNamesLookLikeNumberedOnesAreAllDescribedAndRead) {
+  struct Case {
+    std::vector<std::string> written, shown;
+  };
+  const std::vector<Case> cases{
+      {{"density", "density", "density[1]"}, {"density[0]", "density[1][0]", "density[1][1]"}},
+      {{"density[1]", "density", "density"}, {"density[1][0]", "density[0]", "density[1][1]"}},
+      {{"density[1]", "density[1]"}, {"density[1][0]", "density[1][1]"}},
+      {{"density[1]", "density[1]", "density", "density", "heat"}, {"density[1][0]", "density[1][1]", "density[0]", "density[1]", "heat"}},
+      {{"density[1]", "density", "density", "density[1][0]"}, {"density[1][1]", "density[0]", "density[1][2]", "density[1][0]"}},
+      {{"[1]", "", ""}, {"[1][0]", "[0]", "[1][1]"}},
+      {{"a[b", "a[b", "a]", "a]", "[]", "[]"}, {"a[b[0]", "a[b[1]", "a][0]", "a][1]", "[][0]", "[][1]"}}};
+  for (const Case& one : cases) {
+    openvdb::GridPtrVec grids;
+    for (const std::string& name : one.written) grids.push_back(makeGrid(name, 0.125f * float(grids.size() + 1)));
+    write(grids);
+    const std::vector<GridInfo> infos = describeVdb(file);
+    const std::vector<GridChoice> choices = listVdb(file);
+    ASSERT_EQ(infos.size(), grids.size());
+    for (std::size_t i = 0; i < infos.size(); ++i) {
+      SCOPED_TRACE(one.shown[i]);
+      EXPECT_EQ(infos[i].name, one.shown[i]);
+      EXPECT_EQ(choices[i].name, one.shown[i]);
+      EXPECT_EQ(infos[i].maximum, 0.125 * double(i + 1));
+      EXPECT_EQ(read(one.shown[i]).maximum, 0.125f * float(i + 1));
+    }
+  }
+}
+
+TEST_F(VdbInfo, TheNameOfSeveralGridsChoosesTheFirstAndSaysHowToNameTheOthers) {
+  write({makeGrid("density", 0.1f), makeGrid("density", 0.2f), makeGrid("density[1]", 0.3f), makeGrid("heat", 0.4f)});
+  const Volume volume = read("density[1]");
+  EXPECT_EQ(volume.maximum, 0.2f);
+  ASSERT_EQ(volume.warnings.size(), 1u);
+  EXPECT_NE(volume.warnings[0].find("2 grids named 'density[1]': using 'density[1][0]'"), std::string::npos) << volume.warnings[0];
+  EXPECT_NE(volume.warnings[0].find("chooses 'density[1][1]'"), std::string::npos) << volume.warnings[0];
+  EXPECT_EQ(read("heat").maximum, 0.4f);
+  EXPECT_TRUE(read("density[1][1]").warnings.empty());
+}
+
+TEST_F(VdbInfo, GridsUnderTheSameNameInTheFileAreAllDescribedAndRead) {
+  write({makeGrid("density", 0.25f), makeGrid("density", 0.5f), makeGrid("heat", 1.0f)});
+  std::string bytes = test::readBytes(file);
+  const std::string second = std::string("density\x1e") + "1";
+  std::size_t places = 0;
+  for (std::size_t at = bytes.find(second); at != std::string::npos; at = bytes.find(second, at + 1), ++places) bytes[at + second.size() - 1] = '0';
+  ASSERT_GE(places, 1u);
+  test::writeBytes(file, bytes);
+  const std::vector<GridInfo> infos = describeVdb(file);
+  ASSERT_EQ(infos.size(), 3u);
+  for (const auto& [place, name, value] : {std::tuple(0, "density[0][0]", 0.25f), std::tuple(1, "density[0][1]", 0.5f), std::tuple(2, "heat", 1.0f)}) {
+    EXPECT_EQ(infos[std::size_t(place)].name, name);
+    EXPECT_EQ(infos[std::size_t(place)].maximum, double(value));
+    EXPECT_EQ(read(name).maximum, value);
+  }
+  EXPECT_EQ(read().maximum, 0.25f);
+}
+
+/// The tree of an instance is that of the grid with its parent's name, not of one that OpenVDB confuses with it.
+TEST_F(VdbInfo, AnInstanceOfAGridWithAConfusingNameHasItsTree) {
+  const FloatGrid::Ptr parent = makeGrid("density", 0.25f), instance = FloatGrid::create(parent->treePtr());
+  instance->setName("instance");
+  write({makeGrid("density", 0.5f), parent, makeGrid("density[1]", 0.75f), instance});
+  EXPECT_EQ(read("instance").maximum, 0.25f);
+  EXPECT_EQ(describeVdb(file).at(3).maximum, 0.25);
+}
+
 TEST_F(VdbInfo, TheDefaultGridIsDensityOrTheOnlyFloatGrid) {
   const auto velocity = named<openvdb::Vec3SGrid>(openvdb::Vec3SGrid::create(), "velocity");
   write({makeGrid("a", 0.1f), makeGrid("density", 0.2f), velocity});
