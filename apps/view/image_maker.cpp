@@ -67,13 +67,15 @@ std::shared_ptr<const Volume> ImageMaker::coarse(const Scene& scene, int voxelsA
   const bool densities = !scene.classification.transferFunction;
   const int edge = blockEdge(*scene.volume, voxelsAlongEdge);
   if (whole_ == scene.volume && edge == blockEdge_ && densities == coarseIsOfDensities_) return coarse_;
+  // Before anything can fail, so that nothing of the last volume is taken for this one's; and not both in memory at once.
+  renderer_ = nullptr;  // which refers to the volume
+  whole_ = coarse_ = nullptr;
+  coarse_ = edge <= 1 ? scene.volume
+                      : std::make_shared<const Volume>(coarseVolume(
+                            *scene.volume, edge, densities ? WithoutData::Zero : WithoutData::Ignored));
   whole_ = scene.volume;
   blockEdge_ = edge;
   coarseIsOfDensities_ = densities;
-  coarse_ = edge <= 1 ? whole_
-                      : std::make_shared<const Volume>(coarseVolume(
-                            *whole_, edge, densities ? WithoutData::Zero : WithoutData::Ignored));
-  rendererOptions_.clear();
   return coarse_;
 }
 

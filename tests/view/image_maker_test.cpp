@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tests/device/device_fixture.h"
+#include "tests/failing_allocation.h"
 
 namespace freevoxels {
 namespace {
@@ -57,6 +58,35 @@ TEST_F(ImageMakerTest, LightingAShiningVolumeMakesItsLightFallOnIt) {
   request.scene.lighting.unlit = false;
   const DrawnImage kept = maker_.make(request, {}), made = ImageMaker(device(), volumes_).make(request, {});
   EXPECT_EQ(downloadImage(device(), *kept.image).pixels, downloadImage(device(), *made.image).pixels);
+}
+
+/// The bytes of the places of a coarse volume's bricks, which nothing else takes.
+std::size_t bytesOfCoarseCells(const Volume& volume, int voxelsAlongEdge) {
+  const glm::ivec3 n = volume.dimensions;
+  const int edge = (std::max({n.x, n.y, n.z}) + voxelsAlongEdge - 1) / voxelsAlongEdge;
+  return std::size_t(ScalarBricks::bytesOf(0, (n + edge - 1) / edge));
+}
+
+TEST_F(ImageMakerTest, AfterWantOfMemoryForACoarseVolumeTheNextImageIsNotOfThePreviousVolume) {
+  for (const int voxels : {64, 33}) {
+    ImageRequest first = litCloud();
+    first.scene.input.resolution = {104, 72, 88};
+    first.voxelsAlongEdge = voxels;
+    ImageRequest next = first;
+    next.scene.input.volume = "procedural:shells";
+    ImageMaker maker(device(), volumes_);
+    const DrawnImage before = maker.make(first, {});
+    for (int times = 0; times < 2; ++times) {
+      const test::FailingAllocation want(bytesOfCoarseCells(*volumes_.read(next.scene), voxels));
+      EXPECT_ANY_THROW(maker.make(next, {}));
+    }
+    const DrawnImage after = maker.make(next, {}), expected = ImageMaker(device(), volumes_).make(next, {});
+    EXPECT_EQ(downloadImage(device(), *after.image).pixels, downloadImage(device(), *expected.image).pixels);
+    EXPECT_NE(downloadImage(device(), *after.image).pixels, downloadImage(device(), *before.image).pixels);
+    // The same where the first volume comes back.
+    const DrawnImage again = maker.make(first, {});
+    EXPECT_EQ(downloadImage(device(), *again.image).pixels, downloadImage(device(), *before.image).pixels);
+  }
 }
 
 }  // namespace
