@@ -13,10 +13,54 @@ struct Abandoned {};
 /// Before, nobody could read what is being done.
 constexpr std::chrono::milliseconds kWorthSaying{250};
 
+/// Makes images, and beside them those of another method.
+class Makers {
+ public:
+  Makers(const Device& device, VolumeCache& volumes) : device_(device), volumes_(volumes) {}
+
+  std::shared_ptr<const DrawnImage> make(const ImageRequest& request, const Progress& progress) {
+    auto drawn = std::make_shared<DrawnImage>(makerOf(maker_).make(request, progress));
+    if (!request.compared) {
+      comparing_ = nullptr;
+      return drawn;
+    }
+    ImageRequest other = request;
+    other.scene.method = *request.compared;
+    other.diagnosis = {};
+    const auto tableOf = [](const ImageRequest& of) {
+      const TableSettings table = of.scene.method.table();
+      return std::tuple(table.code, table.pathLengthCorrection, table.directions, table.filter);
+    };
+    const bool sameTable = tableOf(other) == tableOf(request);
+    DrawnImage compared = makerOf(sameTable ? maker_ : comparing_).make(other, progress);
+    drawn->compared = std::move(compared.shown);
+    drawn->milliseconds += compared.milliseconds;
+    return drawn;
+  }
+
+ private:
+  ImageMaker& makerOf(std::unique_ptr<ImageMaker>& maker) const {
+    if (!maker) maker = std::make_unique<ImageMaker>(device_, volumes_);
+    return *maker;
+  }
+
+  const Device& device_;
+  VolumeCache& volumes_;
+  std::unique_ptr<ImageMaker> maker_;
+  std::unique_ptr<ImageMaker> comparing_;  ///< for methods with another table
+};
+
 }  // namespace
 
 RenderThread::RenderThread(const Device& device, VolumeCache& volumes, std::function<void()> finished)
-    : device_(device), volumes_(volumes), finished_(std::move(finished)), thread_([this] { run(); }) {}
+    : RenderThread(
+          [makers = std::make_shared<Makers>(device, volumes)](const ImageRequest& request, const Progress& progress) {
+            return makers->make(request, progress);
+          },
+          std::move(finished)) {}
+
+RenderThread::RenderThread(Make make, std::function<void()> finished)
+    : make_(std::move(make)), finished_(std::move(finished)), thread_([this] { run(); }) {}
 
 RenderThread::~RenderThread() {
   end();
@@ -47,6 +91,7 @@ void RenderThread::ask(ImageRequest request) {
 void RenderThread::abandon() {
   const std::lock_guard lock(mutex_);
   waiting_.reset();
+  result_.reset();
   abandons_ = busy_;
 }
 
@@ -67,40 +112,16 @@ std::optional<std::pair<std::string, double>> RenderThread::activity() const {
   return activity_;
 }
 
-std::shared_ptr<const DrawnImage> RenderThread::makeImage(const ImageRequest& request) {
+/// Nothing where its progress found that it is abandoned.
+std::optional<RenderThread::Result> RenderThread::answer(const ImageRequest& request) {
   const Progress progress = [this](std::string_view stage, double fraction) {
     const std::lock_guard lock(mutex_);
     if (ends_ || abandons_) throw Abandoned();
     activity_.emplace(std::string(stage), fraction);
   };
-  const auto makerOf = [this](std::unique_ptr<ImageMaker>& maker) -> ImageMaker& {
-    if (!maker) maker = std::make_unique<ImageMaker>(device_, volumes_);
-    return *maker;
-  };
-  auto drawn = std::make_shared<DrawnImage>(makerOf(maker_).make(request, progress));
-  if (!request.compared) {
-    comparing_ = nullptr;
-    return drawn;
-  }
-  ImageRequest other = request;
-  other.scene.method = *request.compared;
-  other.diagnosis = {};
-  const auto tableOf = [](const ImageRequest& of) {
-    const TableSettings table = of.scene.method.table();
-    return std::tuple(table.code, table.pathLengthCorrection, table.directions, table.filter);
-  };
-  const bool sameTable = tableOf(other) == tableOf(request);
-  DrawnImage compared = makerOf(sameTable ? maker_ : comparing_).make(other, progress);
-  drawn->compared = std::move(compared.shown);
-  drawn->milliseconds += compared.milliseconds;
-  return drawn;
-}
-
-/// Nothing where it was abandoned.
-std::optional<RenderThread::Result> RenderThread::answer(const ImageRequest& request) {
   Result result{.number = request.number};
   try {
-    result.drawn = makeImage(request);
+    result.drawn = make_(request, progress);
   } catch (const Abandoned&) {
     return std::nullopt;
   } catch (...) {
@@ -124,7 +145,7 @@ void RenderThread::run() {
     std::optional<Result> result = answer(request);
     lock.lock();
     busy_ = false;
-    if (result) result_ = std::move(result);
+    if (result && !abandons_ && !ends_) result_ = std::move(result);
     activity_.reset();
     lock.unlock();
     finished_();

@@ -24,8 +24,12 @@ class RenderThread {
     std::exception_ptr failure;              ///< what was thrown in this case
   };
 
-  /// On a device that other threads use as well. `finished` is called by the thread whenever there is a result.
+  using Make = std::function<std::shared_ptr<const DrawnImage>(const ImageRequest&, const Progress&)>;
+
+  /// On a device that other threads use as well. `finished` is called by the thread after each image, also where no result comes of it.
   RenderThread(const Device& device, VolumeCache& volumes, std::function<void()> finished);
+  /// `make` makes the images, in the thread; what its progress throws is to pass through it.
+  RenderThread(Make make, std::function<void()> finished);
   /// Abandons the image that is being made, and waits until the device has completed the slice that it is executing.
   ~RenderThread();
   RenderThread(const RenderThread&) = delete;
@@ -33,7 +37,7 @@ class RenderThread {
 
   /// Replaces a request that has not been started.
   void ask(ImageRequest request);
-  /// Abandons the image that is being made and the request that waits, if any: no result comes of them.
+  /// Abandons the image that is being made, the one that was made and not taken, and the request that waits: no result comes of them.
   void abandon();
   /// Abandons everything, for good, without waiting for that.
   void end();
@@ -48,13 +52,9 @@ class RenderThread {
  private:
   void run();
   std::optional<Result> answer(const ImageRequest& request);
-  std::shared_ptr<const DrawnImage> makeImage(const ImageRequest& request);
 
-  const Device& device_;
-  VolumeCache& volumes_;
+  const Make make_;
   const std::function<void()> finished_;
-  std::unique_ptr<ImageMaker> maker_;
-  std::unique_ptr<ImageMaker> comparing_;  ///< for methods with another table
 
   mutable std::mutex mutex_;  ///< guards all members below
   std::condition_variable asked_;

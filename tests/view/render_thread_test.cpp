@@ -49,7 +49,7 @@ TEST_F(RenderThreadTest, AnAbandonedImageHasNoResultAndTheNextOneIsAsIfItWereThe
     thread_.abandon();
     waitForFinish(2 * round + 1);
     const std::optional<RenderThread::Result> abandoned = thread_.take();
-    EXPECT_TRUE(!abandoned || abandoned->drawn) << "it was complete just before, or there is none";
+    EXPECT_FALSE(abandoned);
     thread_.ask(request(2, 64));
     waitForFinish(2 * round + 2);
     const std::optional<RenderThread::Result> next = thread_.take();
@@ -74,6 +74,83 @@ TEST_F(RenderThreadTest, WhatWaitsIsAbandonedToo) {
     ASSERT_LT(times, 4);
   }
   EXPECT_EQ(last->drawn->shown->size(), glm::ivec2(32));
+}
+
+/// A thread whose images end when the test says so, without another look at whether they are abandoned.
+class StubbornImages : public testing::Test {
+ protected:
+  ~StubbornImages() override {
+    const std::lock_guard lock(mutex_);
+    released_ = begun_ + 1;
+    changed_.notify_all();
+  }
+  std::shared_ptr<const DrawnImage> make(const ImageRequest& request) {
+    std::unique_lock lock(mutex_);
+    ++begun_;
+    changed_.notify_all();
+    changed_.wait(lock, [&] { return released_ >= begun_; });
+    if (fails_) throw std::runtime_error("no image");
+    return std::make_shared<DrawnImage>(DrawnImage{.request = request});
+  }
+  void ask(std::uint64_t number) {
+    ImageRequest request;
+    request.number = number;
+    thread_.ask(request);
+    wait([this] { return begun_ == released_ + 1; });
+  }
+  void endImage() {
+    {
+      const std::lock_guard lock(mutex_);
+      ++released_;
+      changed_.notify_all();
+    }
+    wait([this] { return finished_ == released_; });
+  }
+  template <typename Condition>
+  void wait(const Condition& condition) {
+    std::unique_lock lock(mutex_);
+    ASSERT_TRUE(changed_.wait_for(lock, std::chrono::seconds(60), condition));
+  }
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  int begun_ = 0, released_ = 0, finished_ = 0;
+  bool fails_ = false;
+  RenderThread thread_{[this](const ImageRequest& request, const Progress&) { return make(request); }, [this] {
+                         const std::lock_guard lock(mutex_);
+                         ++finished_;
+                         changed_.notify_all();
+                       }};
+};
+
+TEST_F(StubbornImages, AnImageOrAFailureThatEndsAfterItWasAbandonedIsNoResult) {
+  for (const bool fails : {false, true}) {
+    fails_ = fails;
+    ask(1);
+    thread_.abandon();
+    endImage();
+    EXPECT_FALSE(thread_.take());
+    ask(2);
+    endImage();
+    const std::optional<RenderThread::Result> next = thread_.take();
+    ASSERT_TRUE(next);
+    EXPECT_EQ(next->number, 2u);
+    EXPECT_EQ(next->drawn == nullptr, fails);
+  }
+}
+
+TEST_F(StubbornImages, AnImageThatWasMadeAndNotTakenIsAbandonedToo) {
+  ask(1);
+  endImage();
+  thread_.abandon();
+  EXPECT_FALSE(thread_.take());
+}
+
+TEST_F(StubbornImages, NothingComesAfterTheEnd) {
+  ask(1);
+  thread_.end();
+  endImage();
+  EXPECT_FALSE(thread_.take());
 }
 
 }  // namespace
