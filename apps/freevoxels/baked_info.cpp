@@ -90,6 +90,12 @@ TextTable levelTable(const FvxFile& file) {
   return table;
 }
 
+/// As a text where it is no JSON.
+Json provenanceJson(const FvxFile& file) {
+  const Json json = Json::parse(file.provenance(), nullptr, false);
+  return json.is_discarded() ? Json(std::string(file.provenance())) : json;
+}
+
 }  // namespace
 
 void printBaked(const FvxFile& file) {
@@ -115,7 +121,7 @@ Json bakedJson(const FvxFile& file) {
             {"bytes", header.fileBytes},
             {"bytes_per_active_voxel", bytesPerVoxel(file)},
             {"description", Json::parse(fvx::toJson(file.description()))},
-            {"provenance", Json::parse(file.provenance())},
+            {"provenance", provenanceJson(file)},
             {"levels", Json::array()},
             {"sections", Json::array()}};
   for (int level = file.levels() - 1; level >= 0; --level)

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -42,6 +44,20 @@ Json::parser_callback_t refuseRepeatedKeys(std::string_view kind, std::string_vi
   };
 }
 
+/// Nothing where the text is nested too deep; a discarded value where it is no JSON.
+std::optional<Json> parseUnlessTooDeep(std::string_view text) {
+  struct TooDeep {};
+  const auto refuseDeep = [](int depth, Json::parse_event_t, Json&) {
+    if (depth > kDeepestJson) throw TooDeep();
+    return true;
+  };
+  try {
+    return std::optional<Json>(std::in_place, Json::parse(text, refuseDeep, false));
+  } catch (const TooDeep&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 nlohmann::json parseJson(std::string_view kind, std::string_view name, std::string_view text) {
@@ -71,17 +87,12 @@ std::string inShort(const nlohmann::json& value) {
   return printablePart(inQuotes(value), kLongest);
 }
 
+bool isTooDeep(std::string_view text) {
+  return !parseUnlessTooDeep(text);
+}
+
 nlohmann::json parseJsonQuietly(std::string_view text) {
-  struct TooDeep {};
-  const auto refuseDeep = [](int depth, Json::parse_event_t, Json&) {
-    if (depth > kDeepestJson) throw TooDeep();
-    return true;
-  };
-  try {
-    return Json::parse(text, refuseDeep, false);
-  } catch (const TooDeep&) {
-    return Json(Json::value_t::discarded);
-  }
+  return parseUnlessTooDeep(text).value_or(Json(Json::value_t::discarded));
 }
 
 }  // namespace freevoxels

@@ -25,6 +25,9 @@ std::string inQuotes(const nlohmann::json& value);
 /// The same for sentences: the beginning of what is long.
 std::string inShort(const nlohmann::json& value);
 
+/// Whether `text` is nested deeper than kDeepestJson, as far as it is JSON.
+bool isTooDeep(std::string_view text);
+
 /// Parses text that no person wrote: a discarded value unless it is JSON that is nested at most kDeepestJson deep. The last value of a
 /// repeated key counts.
 nlohmann::json parseJsonQuietly(std::string_view text);

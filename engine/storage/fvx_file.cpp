@@ -8,7 +8,6 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <system_error>
 #include <tuple>
 
@@ -95,7 +94,7 @@ FvxFile::FvxFile(const fs::path& file) : path_(file), file_(openFile(file)) {
   description_ = parseDescription({description.data(), description.size()}, file);
   const std::vector<char> provenance = required(SectionKind::Provenance, "provenance");
   provenance_.assign(provenance.begin(), provenance.end());
-  if (parseJsonQuietly(provenance_).is_discarded()) failDamaged("its provenance is not valid JSON");
+  if (isTooDeep(provenance_)) failDamaged(fmt::format("its provenance is nested more than {} deep", kDeepestJson));
   description_.volume.content = std::make_shared<const Subject>(subjectOf(readContent(), description_.volume));
   dimensions_ = levelDimensions(description_.volume.dimensions);
   for (std::size_t channel = 0; channel < kChannels; ++channel) readChannel(Channel(channel));

@@ -40,7 +40,7 @@ class FvxFile {
   const Header& header() const { return header_; }
   std::span<const Section> sections() const { return std::span(header_.sections).first(header_.sectionCount); }
   const Description& description() const { return description_; }
-  /// JSON; may have any text in it.
+  /// JSON by the format, nested at most kDeepestJson deep; any text where another program wrote it.
   std::string_view provenance() const { return provenance_; }
   bool hasChannel(Channel channel) const { return description_.encodings[std::size_t(channel)].has_value(); }
 

@@ -30,11 +30,13 @@ TEST(JsonFile, IsReadUpToItsDepthAndRefusedBeyondInOneSentence) {
     for (const std::string& text : nested(depth)) {
       EXPECT_EQ(parseJson("scene", "a.json", text), parseJsonQuietly(text));
       EXPECT_FALSE(parseJsonQuietly(text).is_discarded()) << text;
+      EXPECT_FALSE(isTooDeep(text)) << text;
     }
   for (const int depth : {kDeepestJson + 1, kDeepestJson + 2, 1000, 100'000, 2'000'000})
     for (const std::string& text : nested(depth)) {
       test::expectRefusal([&] { parseJson("scene", "a.json", text); }, ErrorKind::Input, {"scene 'a.json' is nested more than 64 deep"});
       EXPECT_TRUE(parseJsonQuietly(text).is_discarded());
+      EXPECT_TRUE(isTooDeep(text));
       const std::string cut = text.substr(0, text.size() / 2);
       test::expectRefusal([&] { parseJson("scene", "a.json", cut); }, ErrorKind::Input, {"a.json"});
       EXPECT_TRUE(parseJsonQuietly(cut).is_discarded());
@@ -48,7 +50,10 @@ TEST(JsonFile, BracketsInTextsAreNoDepth) {
 }
 
 TEST(JsonFile, WhatIsNoJsonIsQuietlyNone) {
-  for (const char* text : {"", "{", "[1,", "\xff", "\"\x01\"", "1e999", "nan"}) EXPECT_TRUE(parseJsonQuietly(text).is_discarded()) << text;
+  for (const char* text : {"", "{", "[1,", "\xff", "\"\x01\"", "1e999", "nan"}) {
+    EXPECT_TRUE(parseJsonQuietly(text).is_discarded()) << text;
+    EXPECT_FALSE(isTooDeep(text)) << text;
+  }
   for (const char* text : {"1", "null", "\"a\"", R"({"a":1,"a":2})"}) EXPECT_FALSE(parseJsonQuietly(text).is_discarded()) << text;
 }
 

@@ -460,17 +460,30 @@ TEST_F(FvxNumbers, NamesInADescriptionBecomePrintable) {
   }
 }
 
-TEST_F(FvxNumbers, DescriptionsAndProvenancesThatAreNoJsonOrTooDeepAreRefused) {
+TEST_F(FvxNumbers, DescriptionsThatAreNoJsonAndDescriptionsAndProvenancesThatAreTooDeepAreRefused) {
   bake(test::smoothVolume());
+  const auto expectRefusedWith = [&](SectionKind kind, const std::string& text) {
+    FvxEditor edited(bytes_);
+    edited.setText(kind, text);
+    expectRefused(edited);
+  };
   for (const SectionKind kind : {SectionKind::Description, SectionKind::Provenance})
-    for (const std::size_t depth : {std::size_t(65), std::size_t(1000), std::size_t(100000)}) {
-      for (const std::string& text : {std::string(depth, '['), std::string(depth, '[') + "0" + std::string(depth, ']'), std::string("{"), std::string("\xff"),
-                                      "{\"a\":" + std::string(depth, '[') + "0" + std::string(depth, ']') + "}"}) {
-        FvxEditor edited(bytes_);
-        edited.setText(kind, text);
-        expectRefused(edited);
-      }
+    for (const std::size_t depth : {std::size_t(65), std::size_t(66), std::size_t(1000), std::size_t(100000)}) {
+      const std::string list = std::string(depth, '[') + "0" + std::string(depth, ']');
+      for (const std::string& text : {list, "{\"a\":" + list + "}", std::string(depth + 1, '['), "[" + list + ",\x1b"}) expectRefusedWith(kind, text);
     }
+  for (const char* text : {"", "{", "[[[", "\xff", "{\"a\": \"\x1b\"}"}) expectRefusedWith(SectionKind::Description, text);
+}
+
+TEST_F(FvxNumbers, AProvenanceMayBeAnyText) {
+  bake(test::smoothVolume());
+  for (const std::string& text : {std::string(), std::string("{"), std::string("\xff\x1b[31m"), std::string("{\"a\": \"\x1b\n\"}"), std::string(64, '[') + std::string(64, ']')}) {
+    FvxEditor edited(bytes_);
+    edited.setText(SectionKind::Provenance, text);
+    edited.save(file_);
+    EXPECT_EQ(FvxFile(file_).provenance(), text);
+    readAll();
+  }
 }
 
 /// What other programs do to a file that is open: the reader says so, and lives.
