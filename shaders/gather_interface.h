@@ -136,6 +136,7 @@ struct SamplesPush {
   int groupsOfARow;  // length of a row of workgroups in the list
   int rowsOfARange;  // number of rows of workgroups in each range of the list
   int firstRow;      // first row of the range that is marched
+  int groups;        // number of workgroups that list samples
 };
 
 struct GatherFrame {

@@ -1,29 +1,17 @@
 #version 460
-// Lists the samples of rough cells, which are to be marched, and interpolates those of the others. A cell is rough if one of its
-// coarse samples is.
+// Interpolates the samples of smooth cells, and counts those of the others, by workgroup, for the list of samples that are marched.
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_buffer_reference : require
-#extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_scalar_block_layout : require
-#include "gather_adaptive.glsl"
+#define ROUGHNESS_BINDING 5
+#include "gather_rough_cells.glsl"
 
 layout(binding = 1) uniform textureBuffer colorEnergy;  // C, E
 layout(binding = 2) uniform textureBuffer distances;    // sum of e times distance
 layout(binding = 3, rgba32f) writeonly uniform imageBuffer colorEnergyOut;
 layout(binding = 4, r32f) writeonly uniform imageBuffer distancesOut;
-layout(binding = 5) uniform textureBuffer roughness;
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SampleList { SampleListHead head; uint samples[]; };
-layout(push_constant, scalar) uniform Push { SamplesPush push; };
+layout(scalar, binding = 6) writeonly buffer GroupCounts { uint groupCounts[]; };
 
-bool isRough(ivec2 cell) {
-  const int row = coarseExtent().x;
-  float largest = 0.0;
-  [[unroll]] for (int i = 0; i < 4; ++i) {
-    const ivec2 at = cell + ivec2(i & 1, i >> 1);
-    largest = max(largest, texelFetch(roughness, at.x + at.y * row).x);
-  }
-  return largest > frame.sampleTolerance;
-}
+shared uint total;
 
 // Catmull-Rom interpolation in the middle between b and c.
 vec4 middle(vec4 a, vec4 b, vec4 c, vec4 d) { return (9.0 * (b + c) - a - d) / 16.0; }
@@ -56,26 +44,13 @@ void interpolate(ivec2 cell, int first) {
             corners[0] + corners[1] + corners[2] + corners[3]);
 }
 
-void listSample(SampleList list, int place) {
-  const uint number = atomicAdd(list.head.count, 1u), samplesOfARow = uint(push.groupsOfARow * kGatherTile * kGatherTile);
-  list.samples[number] = uint(place);
-  if (number % samplesOfARow != 0u) return;
-  const uint row = number / samplesOfARow, rows = uint(push.rowsOfARange);
-  atomicMax(list.head.ranges[row / rows].y, row % rows + 1u);
-}
-
-// Cells of the last column and row have only the samples that are stored.
 void main() {
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(cell, coarseExtent()))) return;
-  const bvec2 inside = lessThan(cell, coarseExtent() - 1);
-  const int first = placeOfCoarse(cell);
-  if (all(inside) && !isRough(cell)) {
-    interpolate(cell, first);
-    return;
-  }
-  SampleList list = SampleList(push.list);
-  if (inside.x) listSample(list, first + 1);
-  if (inside.y) listSample(list, first + frame.samples.x);
-  if (all(inside)) listSample(list, first + frame.samples.x + 1);
+  if (gl_LocalInvocationIndex == 0) total = 0;
+  barrier();
+  const uint count = countOfListed(cell);
+  atomicAdd(total, count);
+  if (all(lessThan(cell, coarseExtent() - 1)) && count == 0) interpolate(cell, placeOfCoarse(cell));
+  barrier();
+  if (gl_LocalInvocationIndex == 0) groupCounts[gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x] = total;
 }

@@ -23,6 +23,8 @@
 #include "embedded/gather_pre_unlit.h"
 #include "embedded/gather_pre_unlit_parts.h"
 #include "embedded/gather_pre_unlit_region.h"
+#include "embedded/gather_list.h"
+#include "embedded/gather_list_offsets.h"
 #include "embedded/gather_refine.h"
 #include "embedded/gather_resample.h"
 #include "embedded/gather_roughness.h"
@@ -135,28 +137,23 @@ void GatherPass::recordSamples(Commands& commands, const GatherVolume& volume, c
   commands.barrier(kComputeStage, kComputeStage);
 }
 
-void GatherPass::makeAdaptiveRoom(std::uint64_t coarse) {
-  if (adaptive_.roughness.bytes() >= coarse * sizeof(float)) return;
+void GatherPass::makeAdaptiveRoom(std::uint64_t coarse, std::uint64_t groups) {
+  if (adaptive_.roughness.bytes() >= coarse * sizeof(float) && adaptive_.groupCounts.bytes() >= groups * sizeof(std::uint32_t)) return;
   adaptive_ = {};  // free the old buffers before allocating the new ones
   Adaptive made;
   made.roughness = Buffer(device_, coarse * sizeof(float), MemoryUse::Device, "lattice roughness",
                           VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
   made.roughnessTexels = TexelView(device_, made.roughness, VK_FORMAT_R32_SFLOAT);
+  made.groupCounts = Buffer(device_, groups * sizeof(std::uint32_t), MemoryUse::Device, "rough samples of workgroups");
   made.list = Buffer(device_, sizeof(shader::SampleListHead) + 3 * coarse * sizeof(std::uint32_t), MemoryUse::Device, "rough samples",
                      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   adaptive_ = std::move(made);
 }
 
-/// Marches the coarse samples, and of the others those that are not interpolated. The list has no order: results do not depend on it.
+/// Marches the coarse samples, and of the others those that are not interpolated, from a list in a fixed order.
 void GatherPass::recordAdaptive(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
-  const glm::ivec2 coarse = (frame.seenExtent + 1) / 2;
-  makeAdaptiveRoom(std::uint64_t(coarse.x) * std::uint64_t(coarse.y));
-  const int groupsOfARow = (coarse.x + shader::kGatherTile - 1) / shader::kGatherTile;
-  const int samplesOfARow = groupsOfARow * shader::kGatherTile * shader::kGatherTile;
-  const int rows = (3 * coarse.x * coarse.y + samplesOfARow - 1) / samplesOfARow;
-  shader::SampleListHead empty{};
-  std::ranges::fill(empty.ranges, shader::DispatchSize{.x = std::uint32_t(groupsOfARow), .y = 0, .z = 1});
-  commands.update(adaptive_.list, empty);
+  const glm::ivec2 coarse = (frame.seenExtent + 1) / 2, groups = (coarse + shader::kGatherTile - 1) / shader::kGatherTile;
+  makeAdaptiveRoom(std::uint64_t(coarse.x) * std::uint64_t(coarse.y), std::uint64_t(groups.x) * std::uint64_t(groups.y));
   dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), coarse, Extent::Whole, {.step = 2});
   commands.barrier(kComputeStage, kComputeStage);
 
@@ -168,14 +165,30 @@ void GatherPass::recordAdaptive(Commands& commands, const GatherVolume& volume, 
   commands.barrier(kComputeStage, kComputeStage);
   std::vector<Binding> refined = sumBindings(gathered_, gathered_);
   refined.emplace_back(&adaptive_.roughnessTexels);
-  const shader::SamplesPush listed{.list = addressWords(adaptive_.list.address()),
-                                   .step = 0,
-                                   .groupsOfARow = groupsOfARow,
-                                   .rowsOfARange = (rows + shader::kSampleRanges - 1) / shader::kSampleRanges};
-  commands.dispatch(makeComputePipeline(device_, shaders::gather_refine, {}), refined, listed, threads);
+  refined.emplace_back(&adaptive_.groupCounts);
+  commands.dispatch(makeComputePipeline(device_, shaders::gather_refine, {}), refined, threads);
+  commands.barrier(kComputeStage, kComputeStage);
+  const shader::SamplesPush listed = recordList(commands, coarse, groups);
   commands.barrier(kComputeStage, kComputeStage | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
   commands.beginPass("gather rough rays");
   dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), glm::ivec2(0), Extent::Whole, listed);
+}
+
+/// Lists the samples that the workgroups have counted, and returns how the list is marched.
+shader::SamplesPush GatherPass::recordList(Commands& commands, glm::ivec2 coarse, glm::ivec2 groups) {
+  const int samplesOfARow = groups.x * shader::kGatherTile * shader::kGatherTile;
+  const int rows = (3 * coarse.x * coarse.y + samplesOfARow - 1) / samplesOfARow;
+  const shader::SamplesPush push{.list = addressWords(adaptive_.list.address()),
+                                 .step = 0,
+                                 .groupsOfARow = groups.x,
+                                 .rowsOfARange = (rows + shader::kSampleRanges - 1) / shader::kSampleRanges,
+                                 .groups = groups.x * groups.y};
+  commands.dispatch(makeComputePipeline(device_, shaders::gather_list_offsets, {}), std::array<Binding, 1>{&adaptive_.groupCounts}, push,
+                    {shader::kScanThreads, 1, 1});
+  commands.barrier(kComputeStage, kComputeStage);
+  const std::array<Binding, 3> bindings{&frame_, &adaptive_.roughnessTexels, &adaptive_.groupCounts};
+  commands.dispatch(makeComputePipeline(device_, shaders::gather_list, {}), bindings, push, glm::ivec3(coarse, 1));
+  return push;
 }
 
 void GatherPass::recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,

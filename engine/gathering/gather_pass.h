@@ -11,9 +11,9 @@
 
 namespace freevoxels {
 
-/// COMPUTE gather.comp, gather_roughness.comp, gather_refine.comp, gather_stencil.comp and gather_resample.comp: premultiplied RGBA in
-/// `targets.colorEnergy` and the mean distance in `targets.distance`, if that exists. Leaves the targets in layout GENERAL, visible to
-/// transfer.
+/// COMPUTE gather.comp, gather_roughness.comp, gather_refine.comp, gather_list_offsets.comp, gather_list.comp, gather_stencil.comp and
+/// gather_resample.comp: premultiplied RGBA in `targets.colorEnergy` and the mean distance in `targets.distance`, if that exists. Leaves the
+/// targets in layout GENERAL, visible to transfer.
 class GatherPass {
  public:
   explicit GatherPass(const Device& device);
@@ -55,12 +55,13 @@ class GatherPass {
   };
   /// The coarse samples' roughness, and the list of the samples to be marched besides them.
   struct Adaptive {
-    Buffer roughness, list;
+    Buffer roughness, list, groupCounts;
     TexelView roughnessTexels;
   };
   void setLattice(const shader::GatherFrame& frame);
-  void makeAdaptiveRoom(std::uint64_t coarse);
+  void makeAdaptiveRoom(std::uint64_t coarse, std::uint64_t groups);
   void recordAdaptive(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
+  shader::SamplesPush recordList(Commands& commands, glm::ivec2 coarse, glm::ivec2 groups);
   void makeRoom(Sums& sums, std::uint64_t samples);
   /// `extent` is that of the samples that are dispatched, unless they are listed.
   void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
