@@ -26,11 +26,12 @@ struct ProjectedBox {
   double nearest = std::numeric_limits<double>::max(), farthest = std::numeric_limits<double>::lowest();
 };
 
-ProjectedBox projectBox(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions) {
+/// The box of the voxels' centres, and `around` voxels more on all sides.
+ProjectedBox projectBox(const glm::dmat3& toPixel, const PixelRays& rays, glm::ivec3 dimensions, double around = 0.0) {
   ProjectedBox box;
   for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 voxel =
-        glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2) * glm::dvec3(dimensions - 1);
+    const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+    const glm::dvec3 voxel = glm::mix(glm::dvec3(-around), glm::dvec3(dimensions - 1) + around, side);
     const glm::dvec3 pixel = toPixel * (voxel - rays.origin);
     const glm::dvec2 position = rays.orthographic ? glm::dvec2(pixel) : glm::dvec2(pixel) / pixel.z;
     box.low = glm::min(box.low, position);
@@ -178,7 +179,8 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   const double reach = largestHalfExtent(toPixel, rays, volume.layout.dimensions, frame.detail);
   const ProjectedBox box = projectBox(toPixel, rays, volume.layout.dimensions);
   setCovered(frame, box, reach, settings.size);
-  frame.farthest = box.farthest;
+  // Blocks end up to an edge beyond the last centre of voxels, and are interpolated for half an edge more.
+  frame.farthest = projectBox(toPixel, rays, volume.layout.dimensions, 1.5 * Block{.level = frame.detail.coarsest}.edge()).farthest;
   const double margin = std::ceil(largestPoint / 2.0);
   const double widest = double(std::max(settings.size.x, settings.size.y)) + 2.0 * margin;
   frame.quads = 2.0 * reach > largestPoint || widest > double(device.limits().maxViewportDimensions[0]) ||

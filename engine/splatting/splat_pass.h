@@ -40,7 +40,7 @@ struct FrameConstants {
   bool readsLevels() const { return detail.coarsest > 0 || cull.hiddenDepth > 0.0; }
   /// The part of the image that splats can reach, at least one pixel.
   glm::ivec2 coveredFirst{0}, coveredExtent{1};
-  double farthest = 0.0;     ///< distance of the volume's farthest corner from the eye plane, world units
+  double farthest = 0.0;     ///< bound of the distances from the eye plane at which anything is drawn, world units
   double brightestRay = 0.0; ///< no pixel has more light that the volume sends out itself
   bool quads = false;  ///< whether a splat may be larger than the device's largest point
   float viewportMargin =
