@@ -58,22 +58,32 @@ ivec2 slicesInRegion(Slices level, Ray ray) {
 
 SliceValues sliceValuesAt(Slices level, Ray ray, int slice, bool scalars) {
   if (kScalars) {
-    if (scalars) return scalarValuesAt(level, ray.origin + ray.slope * float(slice), slice, 0.5 * ray.direction * ray.slope, ray.toEye);
+    if (scalars) return scalarValuesAt(level, ray.origin + ray.slope * float(slice), slice, ray.toEye);
   }
   return blockValuesAt(level, ray, slice, true);
 }
 
-// Moves on to the next stretch whose scalars add something, or until `left` is `rest`, and adds it; without kLeavesLoops by one stretch. The
-// search is a loop of its own, so that stretches that add nothing are not lit: lavapipe executes a branch even if no lane takes it.
+// Moves on to the next stretch whose scalars add something, or until `left` is `rest`, and adds it; where light is not evaluated at samples
+// by one stretch. The search is a loop of its own, so that stretches that add nothing are not lit: lavapipe executes a branch even if no
+// lane takes it.
 void addNextScalars(inout Sums sums, inout SliceValues last, inout int slice, inout int left, Slices level, Ray ray, int rest, int final) {
   Stretch stretch;
+  int stop = rest;
   do {
-    stretch = scalarStretch(last, level, ray, slice, slice != final + int(ray.direction));
-    slice += int(ray.direction);
-    --left;
-    if (!stretch.adds) last = stretch.end;
-  } while (kLeavesLoops && left > rest && !stretch.adds);
-  if (stretch.adds) addScalarStretch(sums, last, stretch, level, ray);
+    if (!kSampled || left > stop) {
+      stretch = scalarStretch(last, level, ray, slice, slice != final + int(ray.direction));
+      slice += int(ray.direction);
+      --left;
+      if (stretch.adds)
+        stop = left;
+      else if (left > stop)
+        last = stretch.end;
+    }
+  } while (kSampled && left > stop);
+  if (stretch.adds)
+    addScalarStretch(sums, last, stretch, level, ray);
+  else
+    last = stretch.end;
 }
 
 // Adds a slice of blocks, or the stretch up to it.
@@ -118,29 +128,32 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransm
     if (left <= 0) return;
     if (stretches && slice != begin) last = sliceValuesAt(level, ray, slice - direction, scalars);
   }
-  // The loops test their conditions at the end: lavapipe executes the body of other loops once more, masked.
   do {
-    int empty;
-    do {
-      empty = emptyGroups(level, ray, slice, kParts || last.coverage > 0.0 ? 1 : 0) * ray.group;
-      if (empty > 0) {
-        last.coverage = 0.0;
-        last.hasGradient = last.hasLight = false;
-        last.medium = vec4(0.0);
-        last.emission = vec3(0.0);
-      }
-      slice += direction * empty;
-      left -= empty;
-    } while (empty > 0 && left > 0);
     if (left > 0) {
-      // Slices in front that hold only bricks of other parts were skipped: `last` is out of date.
-      if (kParts && stretches && slice != begin) last = sliceValuesAt(level, ray, slice - direction, scalars);
+      const int leftBefore = left;
+      int tested = left + 1;  // what was left at the last test
+      do {
+        if (left > 0 && left < tested) {
+          tested = left;
+          const bool follows = kParts || (left == leftBefore && last.coverage > 0.0);
+          left -= emptyGroups(level, ray, slice + direction * (leftBefore - left), follows ? 1 : 0) * ray.group;
+        }
+      } while (left > 0 && left < tested);
+      slice += direction * (leftBefore - left);
+      const bool skipped = left < leftBefore;
+      if (skipped) last = emptySliceValues();
+      // The stretch from the last slice that was skipped may add something.
+      if (skipped && stretches && left > 0) {
+        slice -= direction;
+        ++left;
+      }
       const int rest = left - min(left, ray.group);
       do {
-        addNext(sums, last, slice, left, level, ray, rest, final, scalars);
+        if (left > rest) addNext(sums, last, slice, left, level, ray, rest, final, scalars);
       } while (left > rest);
+      if (!kParts && sums.transmittance <= endTransmittance) left = 0;
     }
-  } while (left > 0 && (kParts || sums.transmittance > endTransmittance));
+  } while (left > 0);
 }
 
 Slices slicesOf(int levelIndex) {

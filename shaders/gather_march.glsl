@@ -23,10 +23,9 @@ layout(constant_id = 8) const bool kTinted = false;   // whether the extinction 
 layout(constant_id = 9) const bool kEmits = false;    // whether blocks that are lit at samples emit light, too
 layout(constant_id = 10) const bool kLevels = true;   // whether levels of blocks are marched behind scalars
 
-// Whether some lanes of a vector may leave a loop before others and use afterwards what they computed in it. Lavapipe gives such lanes the
-// results of the last iteration, which repeats their own one: that is right unless it loads from addresses (kPieces), because those loads
-// return 0 for lanes that have left.
-const bool kLeavesLoops = !kPieces;
+// Loops that some lanes of a vector leave before others have the form `do { if (goes on) {...} } while (goes on)`, where `goes on` compares
+// integers. Lavapipe executes the bodies of other loops once more, masked; and what is assigned in a loop outside of the `if` it may compute
+// anew, for lanes that have left, from what they assigned last. Of a condition that is a bool the compiler may remove the `if`.
 
 layout(binding = 1) uniform utextureBuffer brickNumbers;     // with kParts, bricks of the part have kOwnBrick
 // Each quad has two neighbours along the first side, at this position and at the next one along the second
@@ -105,8 +104,6 @@ int ownBrick = 0;
 struct SliceValues {
   float coverage;  // share of the weights that voxels with data have, 0..1; if it is 0 the other values are undefined
   float scalar;    // in intervals of the transfer function's table
-  float ahead;     // the scalar half a slice further on, continued in its plane
-  float behind;    // the scalar half a slice before
   vec4 integral;   // integrals of extinction times colour (rgb) and of extinction (a) over the scalar
   vec4 medium;     // extinction times colour and extinction at the scalar
   vec3 emission;   // source term of the light that blocks emit, with kEmits
@@ -122,13 +119,14 @@ struct Stretch {
   SliceValues end;  // on the second of them
   int slice;        // the second of them
   vec4 near, far;   // extinction times colour and extinction of its halves
+  float coverage;   // in its middle
   int brick;        // ownBrick on the second slice
   bool adds;        // whether it adds anything to the sums
 };
 
 SliceValues emptySliceValues() {
   SliceValues nothing;
-  nothing.coverage = nothing.scalar = nothing.ahead = nothing.behind = 0.0;
+  nothing.coverage = nothing.scalar = 0.0;
   nothing.integral = nothing.medium = vec4(0.0);
   nothing.light = nothing.gradient = nothing.ambient = nothing.emission = vec3(0.0);
   nothing.hasGradient = nothing.hasLight = false;

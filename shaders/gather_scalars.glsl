@@ -6,26 +6,23 @@
 
 const float kMostlySurface = 0.95;        // surface share from which on other scattering is neglected
 
-// `halfStep` is the ray's movement along the sides in half a slice.
-SliceValues scalarValuesAt(Slices level, vec2 position, int slice, vec2 halfStep, vec3 toEye) {
-  vec4 weights;
-  const int quad = quadAt(level, position, slice, weights);
+// The scalars of a quad's voxels, in intervals of the transfer function's table. Voxels without data lose their weights.
+vec4 scalarsOf(int quad, inout vec4 weights) {
   const uvec2 pairs = mediumQuad(quad);
   const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
-  SliceValues found;
   [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = codes[i] != 0 ? weights[i] : 0.0;
-  found.coverage = weights.x + weights.y + weights.z + weights.w;
-  // Beyond the sides of the volume a quad has weights for two of its blocks only.
-  const bool whole = all(notEqual(codes, uvec4(0))) && found.coverage > 0.9999;
-  const vec4 scalars = (vec4(codes) - 1.0) * (float(kTransferIntervals) / float(kScalarCodes));
+  return (vec4(codes) - 1.0) * (float(kTransferIntervals) / float(kScalarCodes));
+}
+
+float sumOf(vec4 weights) { return weights.x + weights.y + weights.z + weights.w; }
+
+SliceValues scalarValuesAt(Slices level, vec2 position, int slice, vec3 toEye) {
+  vec4 weights;
+  const int quad = quadAt(level, position, slice, weights);
+  const vec4 scalars = scalarsOf(quad, weights);
+  SliceValues found;
+  found.coverage = sumOf(weights);
   found.scalar = max(dot(weights, scalars) / max(found.coverage, 1e-20), 0.0);
-  // The bilinear function of the quad, continued beyond the quad.
-  const float twist = scalars.x - scalars.y - scalars.z + scalars.w;
-  const vec2 change = vec2(mix(scalars.y - scalars.x, scalars.w - scalars.z, weights.z + weights.w),
-                           mix(scalars.z - scalars.x, scalars.w - scalars.y, weights.y + weights.w));
-  const float even = whole ? halfStep.x * halfStep.y * twist : 0.0, odd = whole ? dot(halfStep, change) : 0.0;
-  found.ahead = found.scalar + even + odd;
-  found.behind = found.scalar + even - odd;
   tableAt(found.scalar, found.integral, found.medium);
   found.gradient = found.ambient = vec3(0.0);
   found.depths = vec4(0.0);
@@ -35,26 +32,29 @@ SliceValues scalarValuesAt(Slices level, vec2 position, int slice, vec2 halfStep
     // Voxels that are not occupied have no light; that of the others counts.
     const uvec4 packed = sourceQuad(quad);
     [[unroll]] for (int i = 0; i < 4; ++i) weights[i] = packed[i] != 0 ? weights[i] : 0.0;
-    found.light = sourceAt(quad, packed, weights, toEye) / max(weights.x + weights.y + weights.z + weights.w, 1e-20);
+    found.light = sourceAt(quad, packed, weights, toEye) / max(sumOf(weights), 1e-20);
   }
   return found;
 }
 
-// The scalar at a position in index space, and the coverage by voxels with data.
-vec2 scalarNear(Slices level, vec3 position) {
-  const float low = floor(position[kAxis]), fraction = position[kAxis] - low;
+// The scalar between two slices, `fraction` of the way from the first to the second, at a position on the sides, and the coverage by voxels
+// with data. Slices beyond the volume have no data.
+vec2 scalarBetween(Slices level, vec2 position, int first, int second, float fraction) {
   vec2 sum = vec2(0.0);
   [[unroll]] for (int i = 0; i < 2; ++i) {
-    const int slice = int(low) + i;
-    if ((i == 1 && fraction == 0.0) || slice < 0 || slice >= level.count) continue;
+    const int slice = i == 0 ? first : second;
     vec4 weights;
-    const uvec2 pairs = mediumQuad(quadAt(level, vec2(position[kSideA], position[kSideB]), slice, weights));
-    const uvec4 codes = uvec4(pairs.x & 0xffffu, pairs.x >> 16, pairs.y & 0xffffu, pairs.y >> 16);
-    weights *= i == 0 ? 1.0 - fraction : fraction;
-    [[unroll]] for (int k = 0; k < 4; ++k) weights[k] = codes[k] != 0 ? weights[k] : 0.0;
-    sum += vec2(dot(weights, vec4(codes) - 1.0), weights.x + weights.y + weights.z + weights.w);
+    const vec4 scalars = scalarsOf(quadAt(level, position, clamp(slice, 0, level.count - 1), weights), weights);
+    const float share = slice >= 0 && slice < level.count ? i == 0 ? 1.0 - fraction : fraction : 0.0;
+    sum += share * vec2(dot(weights, scalars), sumOf(weights));
   }
-  return vec2(max(sum.x / max(sum.y, 1e-20), 0.0) * (float(kTransferIntervals) / float(kScalarCodes)), sum.y);
+  return vec2(max(sum.x / max(sum.y, 1e-20), 0.0), sum.y);
+}
+
+// The same at a position in index space.
+vec2 scalarNear(Slices level, vec3 position) {
+  const int low = int(floor(position[kAxis]));
+  return scalarBetween(level, vec2(position[kSideA], position[kSideB]), low, low + 1, position[kAxis] - float(low));
 }
 
 // Adds to the depths towards lights, which are known from a layer further on, the depths up to there. Where
@@ -82,7 +82,8 @@ void addLayerTowards(inout vec4 depths, Slices level, SliceValues at, vec3 posit
   }
 }
 
-// Finds the light that reaches the ends of a stretch. The first end has its own already if another stretch ended there.
+// Finds the light that reaches the ends of a stretch. The first end has its own already if another stretch ended there. The loop is as in
+// findGradients().
 void findLight(inout SliceValues last, inout SliceValues found, Slices level, Ray ray, int slice, bool shows) {
   const int before = slice - int(ray.direction);
   const bool enters = before < 0 || before >= level.count, leaves = slice < 0 || slice >= level.count;
@@ -101,7 +102,7 @@ void findLight(inout SliceValues last, inout SliceValues found, Slices level, Ra
     at.depths = depths;
     at.ambient = ambient;
     if (first) last = at; else found = at;
-    again = kLeavesLoops ? first : !begun;
+    again = kPieces ? !begun : first;
     first = false;
     begun = true;
   } while (again);
@@ -170,24 +171,26 @@ void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout Slice
 }
 
 // The stretch from the previous slice to this one. Scalars change linearly from a slice to the middle of the stretch and on to the next
-// slice, so that integrals of the transfer function give the means. In the middle both slices' functions count half. A slice that is not
-// `within` the level's slices has no data.
+// slice, so that integrals of the transfer function give the means. In the middle the scalar is interpolated between all eight voxels around.
+// A slice that is not `within` the level's slices has no data.
 Stretch scalarStretch(SliceValues last, Slices level, Ray ray, int slice, bool within) {
   Stretch stretch;
   stretch.slice = slice;
-  const int there = within ? slice : slice - int(ray.direction);
-  SliceValues found = scalarValuesAt(level, ray.origin + ray.slope * float(there), there, 0.5 * ray.direction * ray.slope, ray.toEye);
+  const int before = slice - int(ray.direction);
+  const vec2 middle = scalarBetween(level, ray.origin + ray.slope * (float(slice) - 0.5 * ray.direction), before, within ? slice : -1, 0.5);
+  const int there = within ? slice : before;
+  SliceValues found = scalarValuesAt(level, ray.origin + ray.slope * float(there), there, ray.toEye);
   stretch.brick = ownBrick;
   if (!within) found.coverage = 0.0;
   SliceValues first, second;
   endsOf(first, second, last, found);
-  const bool both = last.coverage > 0.0 && found.coverage > 0.0;
-  const float middle = both ? clamp(0.5 * (first.ahead + second.behind), 0.0, float(kTransferIntervals)) : first.scalar;
+  const float scalar = middle.y > 0.0 ? middle.x : first.scalar;
   vec4 integral, medium;
-  tableAt(middle, integral, medium);
-  stretch.near = meanBetween(first.scalar, first.integral, first.medium, middle, integral, medium);
-  stretch.far = meanBetween(middle, integral, medium, second.scalar, second.integral, second.medium);
-  stretch.adds = last.coverage + found.coverage > 0.0 && stretch.near.a + stretch.far.a > 0.0;
+  tableAt(scalar, integral, medium);
+  stretch.near = meanBetween(first.scalar, first.integral, first.medium, scalar, integral, medium);
+  stretch.far = meanBetween(scalar, integral, medium, second.scalar, second.integral, second.medium);
+  stretch.coverage = middle.y;
+  stretch.adds = last.coverage + middle.y + found.coverage > 0.0 && stretch.near.a + stretch.far.a > 0.0;
   if (kParts || kRegion) stretch.adds = stretch.adds && stretch.brick != 0;
   stretch.end = found;
   return stretch;
@@ -206,14 +209,16 @@ void addScalarStretch(inout Sums sums, inout SliceValues last, Stretch stretch, 
     near.rgb *= mix(first.light, second.light, 0.25);
     far.rgb *= mix(first.light, second.light, 0.75);
   }
+  // Coverage is linear in both halves, of which the parts in front of the eye count.
   const float ahead = (float(slice) - ray.eye) * ray.direction;
-  const float nearLayer = ray.layer * mix(last.coverage, found.coverage, 0.25);
-  const float farLayer = ray.layer * mix(last.coverage, found.coverage, 0.75);
+  const float nearPart = clamp(ahead - 0.5, 0.0, 0.5), farPart = clamp(ahead, 0.0, 0.5);
+  const float nearLayer = ray.layer * mix(stretch.coverage, last.coverage, nearPart);
+  const float farLayer = ray.layer * mix(found.coverage, stretch.coverage, farPart);
   const float shown = sums.transmittance * (nearLayer * near.a + farLayer * far.a);
   SegmentLight nearLit, farLit;
   if (kSampled) lightStretch(nearLit, farLit, last, found, near.a, far.a, shown, level, ray, slice);
-  addSegment(sums, near, nearLayer * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75, nearLit, ray.toEye);
-  addSegment(sums, far, farLayer * clamp(ahead, 0.0, 0.5), ahead - 0.25, farLit, ray.toEye);
+  addSegment(sums, near, nearLayer * nearPart, ahead - 0.75, nearLit, ray.toEye);
+  addSegment(sums, far, farLayer * farPart, ahead - 0.25, farLit, ray.toEye);
   last = found;
 }
 

@@ -29,7 +29,9 @@ vec3 gradientAt(Slices level, vec2 position, int slice) {
   return gradient;
 }
 
-// Finds the gradients at the ends of a stretch. The first end has its own already if another stretch ended there.
+// Finds the gradients at the ends of a stretch. The first end has its own already if another stretch ended there. What the loop's body
+// assigns is the same if a lane that has left repeats it, which is faster here than an `if` around it; but loads from addresses (kPieces)
+// would then return 0, so that all lanes stay for both ends.
 void findGradients(inout SliceValues last, inout SliceValues found, Slices level, Ray ray, int slice) {
   bool first = !last.hasGradient, again, begun = false;
   do {
@@ -39,7 +41,7 @@ void findGradients(inout SliceValues last, inout SliceValues found, Slices level
       last.gradient = gradient;
     else
       found.gradient = gradient;
-    again = kLeavesLoops ? first : !begun;
+    again = kPieces ? !begun : first;
     first = false;
     begun = true;
   } while (again);

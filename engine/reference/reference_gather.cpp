@@ -200,32 +200,8 @@ std::optional<double> ReferenceGather::scalarOf(glm::ivec3 voxel) const {
 }
 
 ReferenceGather::Scalar ReferenceGather::scalarAt(const Ray& ray, const Slab& slab, int slice) const {
-  const glm::dvec2 position = slab.position(ray, slice), part = position - glm::floor(position);
-  std::array<double, 4> values{}, weights{};
-  int known = 0;
-  forCorners(position, slab.axis, slice, volume_.dimensions, [&](std::size_t corner, double weight, glm::ivec3 voxel) {
-    const std::optional<double> scalar = scalarOf(voxel);
-    if (!scalar) return;
-    weights[corner] = weight;
-    values[corner] = *scalar;
-    ++known;
-  });
-  Scalar found;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    found.coverage += weights[i];
-    sum += weights[i] * values[i];
-  }
-  if (found.coverage > 0.0) found.value = sum / found.coverage;
-  found.ahead = found.behind = found.value;
-  if (known < 4) return found;
-  const glm::dvec2 halfStep = slab.position(ray, slice + 0.5 * slab.sign) - position;
-  const auto bilinear = [&](glm::dvec2 at) {
-    return glm::mix(glm::mix(values[0], values[1], at.x), glm::mix(values[2], values[3], at.x), at.y);
-  };
-  found.ahead = bilinear(part + halfStep);
-  found.behind = bilinear(part - halfStep);
-  return found;
+  const auto [value, coverage] = scalarNear(ray.origin + slab.distance(ray, slice) * ray.direction);
+  return {.coverage = coverage, .value = value};
 }
 
 glm::dvec4 ReferenceGather::mediumAt(double scalar) const {
@@ -242,39 +218,51 @@ glm::dvec4 ReferenceGather::meanBetween(double from, double to) const {
   return (integralUpTo(to) - integralUpTo(from)) / (to - from);
 }
 
-/// Marches from slice to slice in two halves: the scalar is linear up to the middle, where both slices'
-/// functions count half, and from there on. Extinction falls with the share of voxels with data, which is
-/// linear all the way.
+/// The stretch that ends at a slice. Beyond the level's last slice there is no data.
+ReferenceGather::ScalarStretch ReferenceGather::scalarStretch(const Ray& ray, const Slab& slab, int number, const Scalar& last) const {
+  ScalarStretch stretch{.slice = slab.slice(number), .begin = last};
+  if (number < slab.count) stretch.end = scalarAt(ray, slab, stretch.slice);
+  double sum = 0.0;
+  for (int end = 0; end < 2; ++end) {
+    if (end == 1 && number == slab.count) continue;
+    const int slice = stretch.slice - (1 - end) * slab.sign;
+    if (slice < 0 || slice >= volume_.dimensions[slab.axis]) continue;
+    forCorners(slab.position(ray, stretch.slice - 0.5 * slab.sign), slab.axis, slice, volume_.dimensions,
+               [&](std::size_t, double weight, glm::ivec3 voxel) {
+                 const std::optional<double> scalar = scalarOf(voxel);
+                 if (!scalar) return;
+                 stretch.middle.coverage += 0.5 * weight;
+                 sum += 0.5 * weight * *scalar;
+               });
+  }
+  stretch.middle.value = stretch.middle.coverage > 0.0 ? sum / stretch.middle.coverage : stretch.first().value;
+  stretch.means = {meanBetween(stretch.first().value, stretch.middle.value), meanBetween(stretch.middle.value, stretch.second().value)};
+  const double ahead = slab.ahead(ray, stretch.slice);
+  stretch.coverages = {glm::mix(stretch.middle.coverage, stretch.begin.coverage, std::clamp(ahead - 0.5, 0.0, 0.5)),
+                       glm::mix(stretch.end.coverage, stretch.middle.coverage, std::clamp(ahead, 0.0, 0.5))};
+  return stretch;
+}
+
+/// Marches from slice to slice in two halves: the scalar is linear up to the middle, and from there on. Extinction falls with the share of
+/// voxels with data, which is linear in both halves.
 void ReferenceGather::marchScalars(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab,
                                    const GatherLight* light) const {
   Scalar last;
   std::optional<Arriving> lastArriving;
   for (int number = 0; number <= slab.count; ++number) {
-    const int slice = slab.slice(number);
-    const Scalar found = number < slab.count ? scalarAt(ray, slab, slice) : Scalar();
-    const Scalar& first = last.coverage > 0.0 ? last : found;
-    const Scalar& second = found.coverage > 0.0 ? found : last;
-    const bool both = last.coverage > 0.0 && found.coverage > 0.0;
-    const double middle =
-        both ? std::clamp(0.5 * (last.ahead + found.behind), 0.0, double(shader::kTransferIntervals)) : first.value;
-    const std::array<glm::dvec4, 2> means{meanBetween(first.value, middle), meanBetween(middle, second.value)};
-    std::array<double, 2> lengths;
+    const ScalarStretch stretch = scalarStretch(ray, slab, number, last);
+    std::array<Stretch, 2> halves;
+    if (light != nullptr) halves = lightStretch(*light, ray, slab, stretch, transmittance, lastArriving);
     for (std::size_t half = 0; half < 2; ++half) {
-      const double part = half == 0 ? 0.25 : 0.75;
-      const double from = slab.ahead(ray, slice) - 1.25 + part;  // in slices in front of the eye, at the beginning of the half
-      lengths[half] = std::clamp(from + 0.5, 0.0, 0.5) * slab.layer(ray) * glm::mix(last.coverage, found.coverage, part);
-    }
-    std::array<Stretch, 2> stretches;
-    if (light != nullptr)
-      stretches = lightStretch(*light, ray, slab, slice, last, found, means, transmittance, lastArriving);
-    for (std::size_t half = 0; half < 2; ++half) {
-      const double distance = slab.distance(ray, slice + slab.sign * (half == 0 ? -0.75 : -0.25));
+      const double inFront = std::clamp(slab.ahead(ray, stretch.slice) - (half == 0 ? 0.5 : 0.0), 0.0, 0.5);  // of the half, in slices
+      const double length = inFront * slab.layer(ray) * stretch.coverages[half];
+      const double distance = slab.distance(ray, stretch.slice + slab.sign * (half == 0 ? -0.75 : -0.25));
       if (light != nullptr)
-        addLit(sums, transmittance, means[half], lengths[half], distance, stretches[half], ray);
+        addLit(sums, transmittance, stretch.means[half], length, distance, halves[half], ray);
       else
-        addPart(sums, transmittance, means[half], lengths[half], distance);
+        addPart(sums, transmittance, stretch.means[half], length, distance);
     }
-    last = found;
+    last = stretch.end;
   }
 }
 

@@ -67,6 +67,7 @@ class ReferenceGather {
   };
   struct Slab;
   struct Scalar;
+  struct ScalarStretch;
   struct Arriving;
   struct Stretch;
   Ray rayThrough(glm::dvec2 position) const;
@@ -79,6 +80,7 @@ class ReferenceGather {
   /// The voxel's scalar in intervals of the transfer function's table; none without data.
   std::optional<double> scalarOf(glm::ivec3 voxel) const;
   Scalar scalarAt(const Ray& ray, const Slab& slab, int slice) const;
+  ScalarStretch scalarStretch(const Ray& ray, const Slab& slab, int number, const Scalar& last) const;
   glm::dvec4 blockAt(const Ray& ray, const Slab& slab, int slice, const GatherBlocks& blocks) const;
   glm::dvec3 emissionAt(const Ray& ray, const Slab& slab, int slice, const GatherBlocks& blocks) const;
   // With lighting, in reference_gather_light.cpp:
@@ -86,9 +88,8 @@ class ReferenceGather {
                       const GatherLight& light) const;
   void lightSurfaces(std::array<Stretch, 2>& halves, const GatherLight& light, const Ray& ray, const Slab& slab, int slice, double first,
                      double second) const;
-  std::array<Stretch, 2> lightStretch(const GatherLight& light, const Ray& ray, const Slab& slab, int slice, const Scalar& last,
-                                      const Scalar& found, const std::array<glm::dvec4, 2>& means, double transmittance,
-                                      std::optional<Arriving>& lastArriving) const;
+  std::array<Stretch, 2> lightStretch(const GatherLight& light, const Ray& ray, const Slab& slab, const ScalarStretch& scalars,
+                                      double transmittance, std::optional<Arriving>& lastArriving) const;
   void addLit(GatherSums& sums, double& transmittance, glm::dvec4 medium, double length, double distance, const Stretch& stretch,
               const Ray& ray) const;
   glm::dvec3 leaving(const Stretch& stretch, double depth, glm::dvec3 toEye) const;

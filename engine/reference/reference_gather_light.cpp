@@ -298,30 +298,28 @@ void ReferenceGather::lightSurfaces(std::array<Stretch, 2>& halves, const Gather
   lightFromOutside(halves, light, ray, slab, slice - 0.5 * slab.sign, outwards);
 }
 
-/// What reaches the two halves of a stretch between slices of scalars, whose media are `means`. `lastArriving` is what reached the end of
-/// the stretch before, if that had a medium, and is set to that of this one.
-std::array<ReferenceGather::Stretch, 2> ReferenceGather::lightStretch(const GatherLight& light, const Ray& ray, const Slab& slab, int slice,
-                                                                      const Scalar& last, const Scalar& found,
-                                                                      const std::array<glm::dvec4, 2>& means, double transmittance,
+/// What reaches the two halves of a stretch between slices of scalars. `lastArriving` is what reached the end of the stretch before, if
+/// that had a medium, and is set to that of this one.
+std::array<ReferenceGather::Stretch, 2> ReferenceGather::lightStretch(const GatherLight& light, const Ray& ray, const Slab& slab,
+                                                                      const ScalarStretch& scalars, double transmittance,
                                                                       std::optional<Arriving>& lastArriving) const {
-  const int before = slice - slab.sign, end = volume_.dimensions[slab.axis];
+  const int slice = scalars.slice, before = slice - slab.sign, end = volume_.dimensions[slab.axis];
+  const Scalar &last = scalars.begin, &found = scalars.end;
   const auto place = [&](double at) { return ray.origin + slab.distance(ray, at) * ray.direction; };
-  const Scalar& first = last.coverage > 0.0 ? last : found;
-  const Scalar& second = found.coverage > 0.0 ? found : last;
   const Arriving atLast = arrivingAt(light, ray, slab, before), atFound = arrivingAt(light, ray, slab, std::clamp(slice, 0, end - 1));
   const glm::dvec3 ambientBegin = last.coverage > 0.0 ? atLast.ambient : atFound.ambient;
   const glm::dvec3 ambientEnd = found.coverage > 0.0 ? atFound.ambient : ambientBegin;
-  const double sum = means[0].a + means[1].a, share = sum > 0.0 ? means[0].a / sum : 0.5;
-  const double nearCoverage = glm::mix(last.coverage, found.coverage, 0.25), farCoverage = glm::mix(last.coverage, found.coverage, 0.75);
-  const double shown = transmittance * slab.layer(ray) * (nearCoverage * means[0].a + farCoverage * means[1].a);
+  const double sum = scalars.means[0].a + scalars.means[1].a, share = sum > 0.0 ? scalars.means[0].a / sum : 0.5;
+  const double shown = transmittance * slab.layer(ray) *
+                       (scalars.coverages[0] * scalars.means[0].a + scalars.coverages[1] * scalars.means[1].a);
 
   std::array<Stretch, 2> halves;
   halves[0].begin.ambient = ambientBegin;
   halves[0].end.ambient = halves[1].begin.ambient = glm::mix(ambientBegin, ambientEnd, share);
   halves[1].end.ambient = ambientEnd;
   for (Stretch& half : halves) half.position = place(slice - 0.5 * slab.sign);
-  if (lighting_->surface > 0.0 && shown > 2.0 * kMinShown) lightSurfaces(halves, light, ray, slab, slice, first.value, second.value);
-  if (sum <= 0.0 || last.coverage + found.coverage == 0.0) {
+  if (lighting_->surface > 0.0 && shown > 2.0 * kMinShown) lightSurfaces(halves, light, ray, slab, slice, scalars.first().value, scalars.second().value);
+  if (sum <= 0.0 || last.coverage + scalars.middle.coverage + found.coverage == 0.0) {
     lastArriving.reset();
     return halves;
   }

@@ -64,11 +64,21 @@ struct ReferenceGather::Slab {
   double ahead(const Ray& ray, double slice) const { return distance(ray, slice) * std::abs(ray.direction[axis]) / edge; }
 };
 
-/// The values of a ray on a slice of scalars, in intervals of the transfer function's table.
+/// The scalar at a place of a ray, in intervals of the transfer function's table.
 struct ReferenceGather::Scalar {
   double coverage = 0.0;  ///< by voxels with data
-  /// The scalar there, and half a slice further on and before, continued in the slice's plane.
-  double value = 0.0, ahead = 0.0, behind = 0.0;
+  double value = 0.0;
+};
+
+/// What a ray meets between two slices of scalars.
+struct ReferenceGather::ScalarStretch {
+  int slice = 0;  ///< the second of them
+  Scalar begin, middle, end;
+  std::array<glm::dvec4, 2> means{};      ///< source term and extinction of its halves
+  std::array<double, 2> coverages{};      ///< of the halves, as far as they are in front of the eye
+  /// Where an end has no data, the other one's scalar.
+  const Scalar& first() const { return begin.coverage > 0.0 ? begin : end; }
+  const Scalar& second() const { return end.coverage > 0.0 ? end : begin; }
 };
 
 /// What reaches a point of a ray.
