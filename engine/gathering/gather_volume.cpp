@@ -76,7 +76,8 @@ void GatherVolume::makeBricks(std::vector<StageTime>& times) {
   for (int level = finest; level <= top; ++level) {
     met.push_back(spread(cells, 0, 1));
     around.push_back(coarserCells(spread(cells, -1, 1)));
-    cells = coarserCells(cells);
+    // Blocks above interpolated scalars are means of voxels that are classified with half the way to their neighbours.
+    cells = coarserCells(level == finest && hasScalars() ? spread(cells, -1, 0) : cells);
   }
 
   std::vector<std::uint32_t>& numbers = cells_.numbers;

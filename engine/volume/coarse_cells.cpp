@@ -35,23 +35,24 @@ Range rangeOf(const std::vector<float>& row, int x, int end) {
   return range;
 }
 
-/// Marks the cells for whose range of values `holds(low, high)` is true. The range includes `reach` (0 or 1)
-/// more voxels at the cells' upper sides.
+/// Marks the cells for whose range of values `holds(low, high)` is true. The range includes `below` and `above` (0 or 1) more voxels at the
+/// cells' lower and upper sides.
 template <typename Holds>
-void markCells(Cells& cells, const ScalarBricks& scalars, int edge, int reach, const Holds& holds) {
+void markCells(Cells& cells, const ScalarBricks& scalars, int edge, int below, int above, const Holds& holds) {
   const glm::ivec3 n = scalars.dimensions();
   tbb::parallel_for(0, cells.dimensions.z, [&](int plane) {
     std::vector<Range> ranges(std::size_t(cells.dimensions.x) * std::size_t(cells.dimensions.y));
     std::vector<float> row(std::size_t(n.x));
-    for (int z = plane * edge; z < std::min((plane + 1) * edge + reach, n.z); ++z)
+    for (int z = std::max(plane * edge - below, 0); z < std::min((plane + 1) * edge + above, n.z); ++z)
       for (int y = 0; y < n.y; ++y) {
         scalars.copyRow(y, z, row);
         const int cellY = y / edge;
         for (int x = 0; x < cells.dimensions.x; ++x) {
-          const Range range = rangeOf(row, x * edge, (x + 1) * edge + reach);
+          const Range range = rangeOf(row, std::max(x * edge - below, 0), (x + 1) * edge + above);
           Range* const there = &ranges[std::size_t(x + cells.dimensions.x * cellY)];
           there->add(range);
-          if (reach > 0 && y % edge == 0 && cellY > 0) (there - cells.dimensions.x)->add(range);
+          if (above > 0 && y % edge == 0 && cellY > 0) (there - cells.dimensions.x)->add(range);
+          if (below > 0 && (y + 1) % edge == 0 && cellY + 1 < cells.dimensions.y) (there + cells.dimensions.x)->add(range);
         }
       }
     for (std::size_t i = 0; i < ranges.size(); ++i)
@@ -66,13 +67,14 @@ Cells metCells(const Volume& volume, const Classification& classification, int e
   Cells cells((volume.dimensions + edge - 1) / edge);
   if (classification.transferFunction) {
     const TransferIntegral integral(*classification.transferFunction, volume.minimum, volume.maximum);
-    markCells(cells, volume.scalars, edge, 1, [&](float low, float high) { return integral.isOccupied(low, high); });
+    const int below = classification.isPost(volume) ? 0 : 1;
+    markCells(cells, volume.scalars, edge, below, 1, [&](float low, float high) { return integral.isOccupied(low, high); });
   } else {
-    markCells(cells, volume.scalars, edge, 0, [&](float, float high) { return high > density; });
+    markCells(cells, volume.scalars, edge, 0, 0, [&](float, float high) { return high > density; });
   }
   if (classification.emission && volume.temperature) {
     const auto shines = [&](float, float high) { return emittedLight(*classification.emission, high) != glm::dvec3(0.0); };
-    markCells(cells, volume.temperature->values, edge, 0, shines);
+    markCells(cells, volume.temperature->values, edge, 0, 0, shines);
   }
   return cells;
 }

@@ -30,7 +30,8 @@ struct Cells {
 /// Marks with 1 the cells of `edge` voxels along each axis that contain a voxel with a density above
 /// `density` or with emission. With a transfer function, marks the cells in which a scalar interpolated
 /// between c * edge and (c + 1) * edge, both included, may have extinction: interpolated scalars lie between
-/// those of the voxels.
+/// those of the voxels. If voxels are classified before interpolation, their extinction depends on their neighbours (VoxelClassifier), so
+/// that the interpolated scalars begin one voxel earlier.
 Cells metCells(const Volume& volume, const Classification& classification, int edge, float density = 0.0f);
 
 /// Cells of twice the edge, 1 if any of their eight cells is 1.

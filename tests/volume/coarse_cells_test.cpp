@@ -40,7 +40,7 @@ TEST(GatherCells, InterpolatedScalarsThatHaveExtinctionAreInMarkedCells) {
   summariseValues(volume);
   const TransferFunction peak{.opacity = {{0.55f, 0.0f}, {0.6f, 0.8f}, {0.65f, 0.0f}}, .color = {{0.0f, glm::vec3(1.0f)}}, .unitDistance = 1.0};
   const TransferIntegral integral(peak, volume.minimum, volume.maximum);
-  const Cells cells = metCells(volume, {.transferFunction = peak}, 4);
+  const Cells cells = metCells(volume, {.transferFunction = peak, .order = ClassificationOrder::Post}, 4);
   int marked = 0, met = 0;
   glm::ivec3 cell;
   for (cell.z = 0; cell.z < cells.dimensions.z; ++cell.z)
@@ -60,6 +60,31 @@ TEST(GatherCells, InterpolatedScalarsThatHaveExtinctionAreInMarkedCells) {
       }
   EXPECT_GT(marked, 10);
   EXPECT_LT(marked, met - 10);
+}
+
+/// A voxel whose own scalar has no extinction may have some half the way to its neighbour, also to that in the cell before.
+TEST(GatherCells, VoxelsThatAreClassifiedWithTheirNeighboursAreInMarkedCells) {
+  const TransferFunction ramp{.opacity = {{0.2f, 0.0f}, {1.0f, 0.8f}}, .color = {{0.0f, glm::vec3(1.0f)}}, .unitDistance = 1.0};
+  const Classification classification{.transferFunction = ramp, .order = ClassificationOrder::Pre};
+  const glm::ivec3 size(17, 14, 19);
+  for (int axis = 0; axis < 3; ++axis)
+    for (int end = 1; end < 13; ++end)
+      for (const bool fromBelow : {false, true}) {
+        const Volume volume = makeVolume(size, glm::dmat4(1.0), [&](int x, int y, int z) {
+          return (glm::ivec3(x, y, z)[axis] < end) == fromBelow ? 1.0f : 0.0f;
+        });
+        const VoxelClassifier classifier(classification, volume);
+        const Cells met = spread(metCells(volume, classification, 4), 0, 1);
+        glm::ivec3 voxel;
+        for (voxel.z = 0; voxel.z < size.z; ++voxel.z)
+          for (voxel.y = 0; voxel.y < size.y; ++voxel.y)
+            for (voxel.x = 0; voxel.x < size.x; ++voxel.x)
+              if (classifier.at(voxel).extinction > 0.0) {
+                // Positions between the voxel and the one before it are interpolated with it, too.
+                for (const glm::ivec3 place : {voxel, glm::max(voxel - 1, 0)})
+                  EXPECT_EQ(int(met.at(place / 4)), 1) << place[axis] << " on axis " << axis << ", end " << end;
+              }
+      }
 }
 
 TEST(GatherCells, CoarserCellsHaveWhatAnyOfEightHas) {
