@@ -20,15 +20,29 @@ std::vector<SplatSums> RendererStages::renderSums(const Camera& camera, const Fr
   return sums.read(frame.constants);
 }
 
+void RendererStages::clearGather() const {
+  if (!state_.gather) return;
+  Commands clearing(state_.device);
+  state_.gather->recordClear(clearing);
+  clearing.submitAndWait();
+}
+
+std::vector<GatherSums> RendererStages::marchListed(const Camera& camera, const FrameSettings& settings,
+                                                    std::span<const std::uint32_t> places) const {
+  clearGather();
+  const Renderer::State::Gathering frame = state_.prepareGather(camera, settings, GatherPass::Extent::Whole, {});
+  Commands commands(state_.device);
+  state_.gather->begin(commands, frame.lattice);
+  state_.gather->recordListed(commands, *state_.gatherVolume, frame.lattice, places);
+  commands.submitAndWait();
+  return state_.gather->downloadGathered();
+}
+
 GatherStages RendererStages::renderGatherStages(const Camera& camera, const FrameSettings& settings) const {
   FV_CHECK_EQ(int(settings.draw), int(Draw::Gather));
   checkCamera(camera);
   checkFrameFits(state_.device, settings);
-  if (state_.gather) {
-    Commands clearing(state_.device);
-    state_.gather->recordClear(clearing);
-    clearing.submitAndWait();
-  }
+  clearGather();
   Commands commands(state_.device);
   const std::shared_ptr<const FrameTargets> targets = state_.recordImage(commands, camera, settings, {});
   commands.submitAndWait();

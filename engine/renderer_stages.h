@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 #include "engine/gathering/gather_stages.h"
@@ -40,8 +41,13 @@ class RendererStages {
   std::vector<SplatSums> renderSums(const Camera& camera, const FrameSettings& settings) const;
   /// What Renderer::render makes by gathering, with the stages before the image. `settings.draw` must be Gather.
   GatherStages renderGatherStages(const Camera& camera, const FrameSettings& settings) const;
+  /// The sums that the rays at `places` of the frame's lattice (x + y times its width) have if they are marched in this order and without
+  /// the others, whose sums are 0.
+  std::vector<GatherSums> marchListed(const Camera& camera, const FrameSettings& settings, std::span<const std::uint32_t> places) const;
 
  private:
+  void clearGather() const;
+
   Renderer::State& state_;
 };
 

@@ -1,6 +1,6 @@
 #include "engine/gathering/gather_pass.h"
 
-#include <algorithm>
+#include <cstring>
 #include <limits>
 #include <span>
 #include <utility>
@@ -189,6 +189,21 @@ shader::SamplesPush GatherPass::recordList(Commands& commands, glm::ivec2 coarse
   const std::array<Binding, 3> bindings{&frame_, &adaptive_.roughnessTexels, &adaptive_.groupCounts};
   commands.dispatch(makeComputePipeline(device_, shaders::gather_list, {}), bindings, push, glm::ivec3(coarse, 1));
   return push;
+}
+
+void GatherPass::recordListed(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
+                              std::span<const std::uint32_t> places) {
+  constexpr std::size_t kGroup = shader::kGatherTile * shader::kGatherTile;
+  shader::SampleListHead head{.ranges = {}, .count = std::uint32_t(places.size())};
+  head.ranges[0] = {.x = 1, .y = std::uint32_t((places.size() + kGroup - 1) / kGroup), .z = 1};
+  for (int i = 1; i < shader::kSampleRanges; ++i) head.ranges[i] = {.x = 1, .y = 0, .z = 1};
+  adaptive_ = {};
+  adaptive_.list = Buffer(device_, sizeof(head) + places.size_bytes(), MemoryUse::Upload, "listed samples", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  std::memcpy(adaptive_.list.mapped(), &head, sizeof(head));
+  std::memcpy(adaptive_.list.mapped() + sizeof(head), places.data(), places.size_bytes());
+  dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), glm::ivec2(0), Extent::Whole,
+                  {.list = addressWords(adaptive_.list.address()), .step = 0, .groupsOfARow = 1, .rowsOfARange = int(head.ranges[0].y)});
+  commands.barrier(kComputeStage, kComputeStage);
 }
 
 void GatherPass::recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,

@@ -4,6 +4,8 @@
 // over pixels. The transmittance to the eye is computed along each sample's ray: Subr et al. 2007, Section 2.1,
 // Eq. 4, without an attenuation table.
 
+#include <span>
+
 #include "engine/gathering/gather_frame.h"
 #include "engine/gathering/gather_stages.h"
 #include "engine/gathering/gather_volume.h"
@@ -28,6 +30,8 @@ class GatherPass {
   /// The targets have to be in layout GENERAL.
   void begin(Commands& commands, const shader::GatherFrame& frame);
   void recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
+  /// Instead of all samples, marches those at these places of the lattice (x + y times its width), in this order.
+  void recordListed(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, std::span<const std::uint32_t> places);
   void recordStencil(Commands& commands, const shader::GatherFrame& frame);
   /// The sums of the bricks of a part, in fixed point, instead of those of all samples. `frame.part` is filled in.
   void recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
