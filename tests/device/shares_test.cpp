@@ -158,6 +158,35 @@ TEST_F(SharesTest, GatheredSharesOfAHomogeneousBoxHaveItsTransmittance) {
     }
 }
 
+/// The eye in the outermost half voxel of a box, or just outside of it, looking out: all that it sees lies beyond the last centres of voxels.
+TEST_F(SharesTest, TheEyeInTheOutermostHalfVoxelSeesTheSameByShares) {
+  for (const glm::ivec3 size : {glm::ivec3(8), glm::ivec3(33, 17, 40)}) {
+    const Volume box = makeVolume(size, cubeTransform(size), [](int, int, int) { return 0.7; });
+    const glm::dvec3 middle = 0.5 * glm::dvec3(size - 1);
+    for (const ClassificationOrder order : {ClassificationOrder::Post, ClassificationOrder::Pre})
+      for (int axis = 0; axis < 3; ++axis)
+        for (const double beyond : {-0.4, 0.2, 0.45, 0.7})
+          for (const float lod : {0.0f, 4.0f}) {
+            SCOPED_TRACE(testing::Message() << size.x << " voxels, order " << int(order) << ", axis " << axis << ", " << beyond << ", lod " << lod);
+            Classification classification = coloured(box, 0.6f);
+            classification.order = order;
+            Renderer renderer(device(), box, classification, {});
+            glm::dvec3 eye = middle, way(0.0);
+            eye[axis] = size[axis] - 1 + beyond;
+            way[axis] = 1.0;
+            way[(axis + 1) % 3] = 0.2;
+            Camera camera{.position = glm::dvec3(box.indexToWorld * glm::dvec4(eye, 1.0))};
+            camera.lookAt = camera.position + way;
+            camera.up = {way.y, way.z, way.x};
+            camera.verticalFov = 60.0;
+            const FrameSettings settings{.size = {24, 24}, .draw = Draw::Gather, .lod = lod, .depth = true};
+            FixedSums sums = renderer.renderShares(camera, settings, {0, 2});
+            sums += renderer.renderShares(camera, settings, {1, 2});
+            EXPECT_LE(largestPixelDifference(resolveSums(sums, true), renderer.render(camera, settings)), 1e-4);
+          }
+  }
+}
+
 /// The device's stencil and interpolation against those of the host, which parts are resolved with.
 TEST_F(SharesTest, HostResolvesALatticeAsTheDeviceDoes) {
   for (const Scene& scene : {gathered()[0], gathered()[3]}) {
