@@ -94,6 +94,10 @@ void checkHeader(const std::filesystem::path& file, const Imf::Header& header, s
   if (!channels.findChannel("R") || !channels.findChannel("G") || !channels.findChannel("B"))
     fail(ErrorKind::Input, "cannot read '{}': it has no channels R, G and B; choose a colour image",
          file.string());
+  for (const char* name : {"R", "G", "B", "A", "Z"})
+    if (const Imf::Channel* const channel = channels.findChannel(name); channel != nullptr && (channel->xSampling != 1 || channel->ySampling != 1))
+      fail(ErrorKind::Input, "cannot read '{}': its channel {} has fewer samples than the image has pixels; write it with one a pixel", file.string(),
+           name);
   const Imath::Box2i window = header.dataWindow();
   const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
   const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;

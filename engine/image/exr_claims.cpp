@@ -19,8 +19,8 @@ namespace freevoxels {
 
 namespace {
 
-/// Bytes of pixels that are no more than many a small image takes.
-constexpr double kFewBytes = 1 << 26;
+/// Bytes of a chunk that a small file may claim, since a tile may be larger than its image: 4096x4096 pixels of four channels of halves.
+constexpr double kFewBytes = 1 << 27;
 
 /// How OpenEXR compresses, by its numbers: lines of a chunk, and an upper bound of the factor by which pixels of one value shrink. Deflate
 /// reaches 1032; PIZ's Huffman codes stand for 256 values of two bytes in ten bits; DWA keeps a value of each 64, and deflates these.
@@ -37,7 +37,7 @@ constexpr std::array<Compression, 10> kCompressions{
 using Attributes = std::map<std::string, std::vector<char>>;
 
 bool tellsSize(const std::string& name) {
-  return name == "dataWindow" || name == "channels" || name == "compression" || name == "tiles" || name == "chunkCount";
+  return name == "dataWindow" || name == "channels" || name == "compression" || name == "tiles" || name == "type" || name == "chunkCount";
 }
 
 template <typename Value>
@@ -70,7 +70,7 @@ std::uint64_t bytesOfValue(const std::string& type, std::uint32_t size, std::ist
   return std::max<std::uint64_t>(size, 4 * std::min(pixels, std::uint64_t(1) << 60));
 }
 
-/// Bytes of a line of pixels of all channels, and the least number of bytes that a file has of it.
+/// Bytes of a line of pixels that has samples of all channels, and the least number of bytes that a file has of a line on average.
 struct LineBytes {
   double pixels = 0.0, stored = 0.0;
 };
@@ -93,9 +93,18 @@ std::optional<LineBytes> lineBytes(const std::vector<char>& channels, double wid
     at += 1 + std::ptrdiff_t(sizeof(channel));
     const double pixels = std::max(width / std::max(channel.samplingX, 1), 1.0) * (channel.type == Half ? 2.0 : 4.0);
     bytes.pixels += pixels;
-    bytes.stored += pixels / (channel.type == Uint ? std::min(compression.factor, kLosslessFactor) : compression.factor);
+    const double factor = channel.type == Uint ? std::min(compression.factor, kLosslessFactor) : compression.factor;
+    bytes.stored += pixels / (factor * std::max(channel.samplingY, 1));
   }
   return bytes;
+}
+
+/// Whether the attribute that OpenEXR follows in files of several parts or of deep samples is that of tiles.
+bool typeSaysTiles(const Attributes& part) {
+  const auto type = part.find("type");
+  if (type == part.end()) return false;
+  const std::string name(type->second.begin(), type->second.end());
+  return name == "tiledimage" || name == "deeptile";
 }
 
 class ClaimCheck {
@@ -104,12 +113,13 @@ class ClaimCheck {
       : file_(file), stream_(file, std::ios::binary), bytes_(std::filesystem::file_size(file)) {}
 
   void check() {
-    std::array<char, 8> start{};  // the magic number and the version, of which a bit stands for several parts
+    std::array<char, 8> start{};  // the magic number and the version, whose bits say what the file has
     if (!stream_.read(start.data(), start.size())) return;
-    const bool hasParts = (start[5] & 0x10) != 0;
-    while (const std::optional<Attributes> part = readHeader()) {
+    constexpr int kTiles = 0x02, kDeepSamples = 0x08, kParts = 0x10;
+    const bool hasParts = (start[5] & kParts) != 0, hasTypes = (start[5] & (kDeepSamples | kParts)) != 0;
+    for (bool isFirst = true; const std::optional<Attributes> part = readHeader(); isFirst = false) {
       if (part->empty()) return;  // an empty header ends the list of them
-      checkPart(*part);
+      checkPart(*part, hasTypes ? typeSaysTiles(*part) : (start[5] & kTiles) != 0, isFirst);
       if (!hasParts) return;
     }
   }
@@ -136,7 +146,8 @@ class ClaimCheck {
     }
   }
 
-  void checkPart(const Attributes& part) const {
+  /// Of the first part the pixels are read, of the others only the tables of chunks.
+  void checkPart(const Attributes& part, bool isTiled, bool isFirst) const {
     const auto window = valueOf<std::array<std::int32_t, 4>>(part, "dataWindow");
     const auto channels = part.find("channels");
     if (!window || channels == part.end()) return;
@@ -145,19 +156,21 @@ class ClaimCheck {
     const Compression compression = number < kCompressions.size() ? kCompressions[number] : kCompressions.back();
     const std::optional<LineBytes> line = lineBytes(channels->second, width, compression);
     if (!line || width < 1.0 || height < 1.0) return;
-    if (line->stored * height > double(bytes_))
+    if (isFirst && line->stored * height > double(bytes_))
       fail(ErrorKind::Input, "cannot read '{}': its header claims {:.0f}x{:.0f} pixels, which a file of {} bytes cannot hold; write it again",
            file_.string(), width, height, bytes_);
     double chunkLines = double(compression.lines), chunks = height / chunkLines;
     LineBytes lineOfChunk = *line;
-    if (const auto tile = valueOf<std::array<std::uint32_t, 2>>(part, "tiles")) {
+    const auto tile = valueOf<std::array<std::uint32_t, 2>>(part, "tiles");
+    if (isTiled && tile) {
       lineOfChunk = lineBytes(channels->second, (*tile)[0], compression).value_or(LineBytes());
       chunkLines = (*tile)[1];
       chunks = (width / std::max((*tile)[0], 1u)) * (height / std::max((*tile)[1], 1u));
     }
     chunks = std::max(chunks, double(valueOf<std::int32_t>(part, "chunkCount").value_or(0)));
     constexpr double kEntryBytes = 8.0;  // of a chunk in a table of the file
-    const bool chunkIsTooLarge = lineOfChunk.stored * chunkLines > double(bytes_) && lineOfChunk.pixels * chunkLines > kFewBytes;
+    const bool chunkIsTooLarge =
+        isFirst && lineOfChunk.stored * chunkLines > double(bytes_) && lineOfChunk.pixels * chunkLines > kFewBytes;
     if (chunkIsTooLarge || kEntryBytes * std::floor(chunks) > double(bytes_))
       fail(ErrorKind::Input, "cannot read '{}': its header claims chunks that a file of {} bytes cannot hold; write it again", file_.string(), bytes_);
   }

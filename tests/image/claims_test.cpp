@@ -20,6 +20,7 @@
 #include "engine/image/exr_claims.h"
 #include "engine/image/fixed_sums.h"
 #include "engine/image/image.h"
+#include "tests/image/exr_parts.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
@@ -27,25 +28,10 @@ namespace freevoxels {
 namespace {
 
 namespace fs = std::filesystem;
+using test::frameOf, test::headerOf, test::patched, test::placeOf, test::Window;
 using test::TemporaryFolder;
 
 constexpr int kBig = std::numeric_limits<int>::max();
-
-/// The place of an attribute's value in the bytes of a file.
-std::size_t placeOf(const std::string& bytes, const std::string& name, const std::string& type) {
-  const std::string start = name + '\0' + type + '\0';
-  const std::size_t at = bytes.find(start);
-  EXPECT_NE(at, std::string::npos) << name;
-  return at + start.size() + sizeof(std::uint32_t);
-}
-
-template <typename Value>
-std::string patched(std::string bytes, const std::string& name, const std::string& type, const Value& value) {
-  std::memcpy(&bytes[placeOf(bytes, name, type)], &value, sizeof(value));
-  return bytes;
-}
-
-using Window = std::array<std::int32_t, 4>;
 
 /// Larger than what a small file holds, along one edge or both, at the origin and elsewhere.
 const std::vector<Window> kWindows{{0, 0, 16383, 16383},
@@ -55,21 +41,6 @@ const std::vector<Window> kWindows{{0, 0, 16383, 16383},
                                    {-(1 << 29), -(1 << 29), 1 << 29, 1 << 29},
                                    {1 << 20, 1 << 20, (1 << 20) + 40000, (1 << 20) + 40000},
                                    {std::numeric_limits<int>::min(), std::numeric_limits<int>::min(), kBig, kBig}};
-
-template <typename T>
-Imf::FrameBuffer frameOf(const std::vector<T>& values, glm::ivec2 size, Imf::PixelType type) {
-  Imf::FrameBuffer frame;
-  for (const char* name : {"R", "G", "B", "A"})
-    frame.insert(name, Imf::Slice(type, reinterpret_cast<char*>(const_cast<T*>(values.data())), sizeof(T), sizeof(T) * std::size_t(size.x)));
-  return frame;
-}
-
-Imf::Header headerOf(glm::ivec2 size, Imf::PixelType type, int compression) {
-  Imf::Header header(size.x, size.y);
-  header.compression() = Imf::Compression(compression);
-  for (const char* name : {"R", "G", "B", "A"}) header.channels().insert(name, Imf::Channel(type));
-  return header;
-}
 
 TEST(Claims, ImagesOfOneValueAreReadWhateverTheirCompression) {
   const TemporaryFolder folder;
