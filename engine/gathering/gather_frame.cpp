@@ -20,12 +20,6 @@ constexpr double kCoarseVoxels = 1.25;
 /// Largest second difference of coarse samples' distances for interpolation, in voxels: its error is an eighth of that on a smooth surface,
 /// and up to a half at an edge.
 constexpr double kSmoothVoxels = 2.0;
-/// Distances between samples are multiples of this part of a pixel, so that their positions are exact in 32 bits.
-constexpr double kPitchUnits = 1024.0;
-/// Larger images have no more samples than this as long as that is one a pixel. Their sums take 0.9 GiB.
-constexpr double kManySamples = 1 << 24;
-/// No image has more samples than this, which a texel buffer can hold.
-constexpr double kMostSamples = 1 << 26;
 
 std::array<int, 2> sidesOf(int axis) {
   return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
@@ -229,10 +223,8 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   const glm::dvec3 viewAxis = glm::transpose(toPixel)[2];
   const double distance = orthographic ? 1.0 : referenceDistance(rays, viewAxis, dimensions);
   const glm::dvec2 size(settings.size);
-  const double least = std::max(std::clamp(std::sqrt(size.x * size.y / kManySamples), double(shader::kMinPitch), 1.0),
-                                std::sqrt(size.x * size.y / kMostSamples));
   // At least a few samples, however near the volume is.
-  const double wanted = std::clamp(voxel / (kSamplesPerVoxel * std::max(distance, 1e-300)), least, std::max(size.x, size.y));
+  const double wanted = std::clamp(voxel / (kSamplesPerVoxel * std::max(distance, 1e-300)), leastPitch(settings.size), std::max(size.x, size.y));
   const double pitch = std::round(wanted * kPitchUnits) / kPitchUnits;
   // Coarse samples, two pitches apart, would miss single voxels that are much smaller.
   const bool adapts = 2.0 * pitch * distance <= kCoarseVoxels * voxel;

@@ -4,12 +4,15 @@
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
-#include <ImfInputFile.h>
+#include <ImfInputPart.h>
 #include <ImfIntAttribute.h>
 #include <ImfMatrixAttribute.h>
+#include <ImfMultiPartInputFile.h>
 #include <ImfOutputFile.h>
 #include <ImfStringAttribute.h>
+#include <ImfThreading.h>
 
+#include <algorithm>
 #include <new>
 #include <string_view>
 
@@ -33,18 +36,23 @@ std::string digitsName(int channel) {
   return fmt::format("freevoxels:digits.{}", kNames[std::size_t(channel)]);
 }
 
-/// The high and the low words of all values, as a file's channels have them.
+/// Rows of the rectangle of sums.
+struct Rows {
+  int first, count;
+};
+
+/// The high and the low words of the values of some rows, as a file's channels have them.
 struct Words {
   std::vector<std::uint32_t> high, low;
 };
 
 /// Slices of both words of every channel, addressed in the image's coordinates.
-Imf::FrameBuffer frameBuffer(Words& words, const FixedSums& sums) {
+Imf::FrameBuffer frameBuffer(Words& words, const FixedSums& sums, Rows rows) {
   Imf::FrameBuffer frame;
   const auto stride = std::size_t(sums.extent.x) * sizeof(std::uint32_t);
-  const std::ptrdiff_t before = std::ptrdiff_t(sums.first.y) * sums.extent.x + sums.first.x;
+  const std::ptrdiff_t before = (std::ptrdiff_t(sums.first.y) + rows.first) * sums.extent.x + sums.first.x;
   for (int c = 0; c < sums.channels; ++c) {
-    const std::ptrdiff_t place = std::ptrdiff_t(c) * std::ptrdiff_t(sums.pixelCount()) - before;
+    const std::ptrdiff_t place = std::ptrdiff_t(c) * sums.extent.x * rows.count - before;
     const auto insert = [&](const char* part, std::vector<std::uint32_t>& data) {
       frame.insert(fmt::format("{}.{}", kNames[std::size_t(c)], part),
                    Imf::Slice(Imf::UINT, reinterpret_cast<char*>(data.data() + place), sizeof(std::uint32_t), stride));
@@ -77,7 +85,7 @@ void encode(const std::filesystem::path& file, const FixedSums& sums, const ExrO
     words.high[i] = std::uint32_t(std::uint64_t(sums.values[i]) >> 32);
     words.low[i] = std::uint32_t(std::uint64_t(sums.values[i]));
   }
-  writeExrPixels(file, makeHeader(sums, options), frameBuffer(words, sums));
+  writeExrPixels(file, makeHeader(sums, options), frameBuffer(words, sums, {0, sums.extent.y}));
 }
 
 bool hasChannels(const Imf::Header& header) {
@@ -96,7 +104,8 @@ FixedSums readLayout(const std::filesystem::path& file, const Imf::Header& heade
   const bool hasDistance = header.channels().findChannel("distance.high") != nullptr;
   if (const auto* lattice = header.findTypedAttribute<Imf::StringAttribute>(kLattice)) {
     sums.lattice = latticeOf(lattice->value());
-    if (!hasDistance || sums.lattice->samples != latticeSamples(sums.size, sums.lattice->pitch)) refuse("its lattice of samples is not one of its image");
+    if (!hasDistance || sums.lattice->pitch < leastPitch(sums.size) || sums.lattice->samples != latticeSamples(sums.size, sums.lattice->pitch))
+      refuse("its lattice of samples is not one of its image");
   }
   const glm::ivec2 full = sums.fullSize();
   if (window.min.x < 0 || window.min.y < 0 || window.max.x < window.min.x || window.max.y < window.min.y || window.max.x >= full.x ||
@@ -120,21 +129,40 @@ FixedSums readLayout(const std::filesystem::path& file, const Imf::Header& heade
   return sums;
 }
 
+/// Reads the rows a band at a time, from the last ones on, so that a file which ends early fails before the memory of all sums is taken.
+void readValues(Imf::InputPart& part, FixedSums& sums) {
+  constexpr int kPixelsOfABand = 1 << 18, kRowsOfAChunk = 16;
+  const int rowsOfABand = std::max(kPixelsOfABand / sums.extent.x / kRowsOfAChunk, 1) * kRowsOfAChunk;
+  const auto width = std::size_t(sums.extent.x), channels = std::size_t(sums.channels);
+  Words words;
+  for (int first = (sums.extent.y - 1) / rowsOfABand * rowsOfABand; first >= 0; first -= rowsOfABand) {
+    const Rows rows{first, std::min(rowsOfABand, sums.extent.y - first)};
+    const std::size_t pixels = width * std::size_t(rows.count);
+    words.high.resize(pixels * channels);
+    words.low.resize(pixels * channels);
+    part.setFrameBuffer(frameBuffer(words, sums, rows));
+    part.readPixels(sums.first.y + rows.first, sums.first.y + rows.first + rows.count - 1);
+    sums.values.resize(sums.pixelCount() * channels);
+    for (std::size_t c = 0; c < channels; ++c) {
+      std::int64_t* const values = &sums.values[c * sums.pixelCount() + width * std::size_t(rows.first)];
+      for (std::size_t i = 0; i < pixels; ++i)
+        values[i] = std::int64_t(std::uint64_t(words.high[c * pixels + i]) << 32 | words.low[c * pixels + i]);
+    }
+  }
+}
+
 SumsFile decode(const std::filesystem::path& file) {
+  useAllProcessors();
   checkExrClaims(file);
-  Imf::InputFile exr(file.c_str());
-  const Imf::Header& header = exr.header();
+  // Allocates nothing for pixels before the header is known to be one of sums.
+  Imf::MultiPartInputFile exr(file.c_str(), Imf::globalThreadCount(), false);
+  const Imf::Header& header = exr.header(0);
   if (!hasChannels(header))
     fail(ErrorKind::Input, "cannot read '{}' as sums: it is an image; write sums with 'freevoxels render {} {}'",
          file.string(), Parameter("share", "I/N"), Parameter("sums"));
   SumsFile result{.sums = readLayout(file, header), .header = readOptions(header)};
-  FixedSums& sums = result.sums;
-  const std::size_t count = sums.pixelCount() * std::size_t(sums.channels);
-  Words words{std::vector<std::uint32_t>(count), std::vector<std::uint32_t>(count)};
-  exr.setFrameBuffer(frameBuffer(words, sums));
-  exr.readPixels(header.dataWindow().min.y, header.dataWindow().max.y);
-  sums.values.resize(count);
-  for (std::size_t i = 0; i < count; ++i) sums.values[i] = std::int64_t(std::uint64_t(words.high[i]) << 32 | words.low[i]);
+  Imf::InputPart part(exr, 0);
+  readValues(part, result.sums);
   return result;
 }
 
@@ -171,7 +199,7 @@ SumsFile readSums(const std::filesystem::path& file) {
 bool holdsSums(const std::filesystem::path& file) {
   return guarded(file, [&] {
     checkExrClaims(file);
-    return hasChannels(Imf::InputFile(file.c_str()).header());
+    return hasChannels(Imf::MultiPartInputFile(file.c_str(), Imf::globalThreadCount(), false).header(0));
   });
 }
 

@@ -19,6 +19,10 @@ using namespace shader;
 
 constexpr double kNoDistance = -1.0;
 constexpr int kMaxSamples = 1 << 16;
+/// Larger images have no more samples than this as long as that is one a pixel. Their sums take 0.9 GiB.
+constexpr double kManySamples = 1 << 24;
+/// No image has more samples than this, which a texel buffer can hold.
+constexpr double kMostSamples = 1 << 26;
 
 /// A weighted sum of samples, with weights of both signs. Its mean distance stays within the range of those of the samples.
 class WeightedSamples {
@@ -152,6 +156,12 @@ void visitNumbers(Lattice& lattice, const Visit& visit) {
 
 glm::ivec2 latticeSamples(glm::ivec2 size, double pitch) {
   return (glm::ivec2(glm::floor(glm::dvec2(size - 1) / pitch)) + 2 * kLatticeMargin + 2) | 1;
+}
+
+double leastPitch(glm::ivec2 size) {
+  const double pixels = double(size.x) * size.y;
+  const double least = std::max(std::clamp(std::sqrt(pixels / kManySamples), double(kMinPitch), 1.0), std::sqrt(pixels / kMostSamples));
+  return std::round(least * kPitchUnits) / kPitchUnits;
 }
 
 std::string latticeText(const SampleLattice& lattice) {

@@ -10,6 +10,9 @@
 
 namespace freevoxels {
 
+/// Distances between samples are multiples of this part of a pixel, so that their positions are exact in 32 bits.
+inline constexpr double kPitchUnits = 1024.0;
+
 /// All positions on the image are relative to its middle, in pixels. A value that is affine in the position is (1, x, y) . value.
 struct SampleLattice {
   glm::ivec2 samples{0};
@@ -34,6 +37,10 @@ struct SampleLattice {
 
 /// The number of samples of an image's lattice. Odd, so that every second sample is on each border of the lattice.
 glm::ivec2 latticeSamples(glm::ivec2 size, double pitch);
+
+/// The least distance between the samples of an image of this size, in pixels: a multiple of 1 / kPitchUnits. With it, images of less than
+/// 16 million pixels have no more than 16 million samples and those on the borders of the lattice, and larger images no more than 64 million.
+double leastPitch(glm::ivec2 size);
 
 /// The lattice as one line of text, from which latticeOf makes an equal one.
 std::string latticeText(const SampleLattice& lattice);

@@ -157,6 +157,33 @@ TEST(Claims, SumsThatTheirFileCannotHoldAreRefused) {
   }
 }
 
+/// Shares of large images: the finest lattice that a frame has is read, a finer one is refused.
+TEST(Claims, LatticesFinerThanThoseOfFramesAreRefused) {
+  const TemporaryFolder folder;
+  for (const glm::ivec2 size : {glm::ivec2(1, 1), glm::ivec2(2048, 2048), glm::ivec2(3000, 2000), glm::ivec2(4096, 4096), glm::ivec2(16384, 1),
+                                glm::ivec2(8192, 16384), glm::ivec2(16384, 16384)}) {
+    SCOPED_TRACE(fmt::format("{}x{} pixels", size.x, size.y));
+    FixedSums sums = smallSums(true);
+    sums.size = size;
+    const auto writeOf = [&](double pitch) {
+      sums.lattice->samples = latticeSamples(size, pitch);
+      sums.lattice->pitch = pitch;
+      sums.first = {0, 1};
+      writeSums(folder / "a.exr", sums, {});
+    };
+    const double least = leastPitch(size);
+    for (const double pitch : {least, 1.5 * least}) {
+      writeOf(pitch);
+      EXPECT_EQ(readSums(folder / "a.exr").sums.values, sums.values);
+    }
+    if (least == 0.5) continue;
+    for (const double pitch : {0.5, least - 1.0 / 1024.0}) {
+      writeOf(pitch);
+      test::expectRefusal([&] { readSums(folder / "a.exr"); }, ErrorKind::Input, {"a.exr", "lattice"});
+    }
+  }
+}
+
 /// What OpenEXR itself can write: channels of few pixels in a large window, of another type, or not all of them.
 TEST(Claims, SumsWithOtherChannelsAreRefusedBeforeTheyAreRead) {
   const TemporaryFolder folder;

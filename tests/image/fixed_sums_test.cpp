@@ -44,6 +44,25 @@ TEST(FixedSums, FilesKeepEveryBit) {
   }
 }
 
+/// Files are read a quarter of a million pixels at a time.
+TEST(FixedSums, LargeFilesKeepEveryBit) {
+  const test::TemporaryFolder folder;
+  for (const glm::ivec2 extent : {glm::ivec2(16384, 33), glm::ivec2(700, 1000), glm::ivec2(1, 16384), glm::ivec2(512, 512)})
+    for (const int channels : {kSumChannels, kSumChannels - 1}) {
+      const glm::ivec2 first = glm::min(glm::ivec2(37, 5), kMaximumImageEdge - extent);
+      FixedSums sums{.size = first + extent, .first = first, .extent = extent, .channels = channels, .digits = {40, 40, 40, 43, 50, 38}};
+      sums.values.resize(sums.pixelCount() * std::size_t(channels));
+      for (std::size_t i = 0; i < sums.values.size(); ++i) sums.values[i] = std::int64_t(i % 251 == 0 ? ~i << 20 : i);
+      writeSums(folder / "a.exr", sums, {});
+      EXPECT_TRUE(readSums(folder / "a.exr").sums.values == sums.values) << extent.x << 'x' << extent.y << ", " << channels << " channels";
+      const std::string bytes = test::readBytes(folder / "a.exr");
+      for (const double part : {0.2, 0.9, 0.999}) {
+        test::writeBytes(folder / "cut.exr", bytes.substr(0, std::size_t(part * double(bytes.size()))));
+        test::expectRefusal([&] { readSums(folder / "cut.exr"); }, ErrorKind::Input, {"cut.exr", "again"});
+      }
+    }
+}
+
 TEST(FixedSums, TreesOfAdditionsHaveTheSameBits) {
   const FixedSums a = randomSums(kSumChannels, 1), b = randomSums(kSumChannels, 2), c = randomSums(kSumChannels, 3);
   FixedSums left = a, right = c;

@@ -30,6 +30,24 @@ TEST(SampleLattice, DamagedTextsAreRefused) {
     EXPECT_THROW(latticeOf(damaged), std::invalid_argument) << damaged;
 }
 
+/// 16 million samples where that is at least one a pixel, and never more than 64 million.
+TEST(SampleLattice, LargeImagesHaveWideLattices) {
+  for (const int x : {1, 2, 100, 1000, 2048, 2500, 4096, 5000, 8192, 10'001, 16384})
+    for (const int y : {1, 3, 640, 2048, 3001, 4096, 8191, 11'000, 16384}) {
+      const double pitch = leastPitch({x, y}), pixels = double(x) * y;
+      EXPECT_EQ(pitch * 1024.0, std::round(pitch * 1024.0));
+      EXPECT_GE(pitch, 0.5);
+      if (pixels <= double(1 << 22)) {
+        EXPECT_EQ(pitch, 0.5);
+      }
+      if (pixels >= double(1 << 24) && pixels <= double(1 << 26)) {
+        EXPECT_EQ(pitch, 1.0);
+      }
+      const glm::dvec2 samples(latticeSamples({x, y}, pitch));
+      EXPECT_LE((samples.x - 5.0) * (samples.y - 5.0), 1.002 * std::max(double(1 << 24), std::min(pixels, double(1 << 26)))) << x << 'x' << y;
+    }
+}
+
 TEST(SampleLattice, EqualSamplesBecomeEqualPixels) {
   const std::vector<LatticeSample> samples(120, {{0.1, 0.2, 0.3, 0.6}, 0.6 * 4.0});
   const Image image = resolveLattice(lattice(), {16, 12}, samples);
