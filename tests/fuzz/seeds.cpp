@@ -1,5 +1,10 @@
 // Writes small valid files for the fuzzers to begin with: seeds FOLDER, into FOLDER/{vdb,exr,png,json,fvx}.
 
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfOutputFile.h>
+#include <ImfTiledOutputFile.h>
 #include <openvdb/io/Stream.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
@@ -67,7 +72,36 @@ void writeSumsOf(const fs::path& file, bool gathered) {
   writeSums(file, sums, {.metadata = {{"freevoxels:share", "0/1"}, {"freevoxels:size", "9x7"}}});
 }
 
+/// Images of kinds that this project reads and does not write: channels of few samples in the compression that shrinks most, and tiles.
+void writeOtherImages(const fs::path& folder) {
+  constexpr int kEdge = 64;
+  std::vector<float> values(kEdge * kEdge, 0.25f);
+  for (const bool tiled : {false, true}) {
+    Imf::Header header(kEdge, kEdge);
+    header.compression() = Imf::DWAB_COMPRESSION;
+    Imf::FrameBuffer frame;
+    const auto insert = [&](const char* name, int sampling) {
+      header.channels().insert(name, Imf::Channel(Imf::FLOAT, sampling, sampling));
+      frame.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(values.data()), sizeof(float), kEdge / std::size_t(sampling) * sizeof(float),
+                                    sampling, sampling));
+    };
+    for (const char* name : {"R", "G", "B"}) insert(name, 1);
+    if (tiled) {
+      header.setTileDescription(Imf::TileDescription(16, 32));
+      Imf::TiledOutputFile exr((folder / "tiled.exr").c_str(), header);
+      exr.setFrameBuffer(frame);
+      exr.writeTiles(0, exr.numXTiles() - 1, 0, exr.numYTiles() - 1);
+    } else {
+      for (const char* name : {"BY", "RY"}) insert(name, 2);
+      Imf::OutputFile exr((folder / "sampled.exr").c_str(), header);
+      exr.setFrameBuffer(frame);
+      exr.writePixels(kEdge);
+    }
+  }
+}
+
 void writeImages(const fs::path& folder) {
+  writeOtherImages(folder / "exr");
   Image image{.size = {9, 7}};
   for (int i = 0; i < 63; ++i) {
     image.pixels.emplace_back(float(i) / 63.0f, 0.5f, 0.25f, 1.0f - float(i) / 100.0f);

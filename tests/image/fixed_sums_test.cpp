@@ -47,7 +47,7 @@ TEST(FixedSums, FilesKeepEveryBit) {
 /// Files are read a quarter of a million pixels at a time.
 TEST(FixedSums, LargeFilesKeepEveryBit) {
   const test::TemporaryFolder folder;
-  for (const glm::ivec2 extent : {glm::ivec2(16384, 33), glm::ivec2(700, 1000), glm::ivec2(1, 16384), glm::ivec2(512, 512)})
+  for (const glm::ivec2 extent : {glm::ivec2(16384, 33), glm::ivec2(700, 800), glm::ivec2(1, 16384), glm::ivec2(512, 512)})
     for (const int channels : {kSumChannels, kSumChannels - 1}) {
       const glm::ivec2 first = glm::min(glm::ivec2(37, 5), kMaximumImageEdge - extent);
       FixedSums sums{.size = first + extent, .first = first, .extent = extent, .channels = channels, .digits = {40, 40, 40, 43, 50, 38}};
@@ -56,7 +56,7 @@ TEST(FixedSums, LargeFilesKeepEveryBit) {
       writeSums(folder / "a.exr", sums, {});
       EXPECT_TRUE(readSums(folder / "a.exr").sums.values == sums.values) << extent.x << 'x' << extent.y << ", " << channels << " channels";
       const std::string bytes = test::readBytes(folder / "a.exr");
-      for (const double part : {0.2, 0.9, 0.999}) {
+      for (const double part : {0.2, 0.999}) {
         test::writeBytes(folder / "cut.exr", bytes.substr(0, std::size_t(part * double(bytes.size()))));
         test::expectRefusal([&] { readSums(folder / "cut.exr"); }, ErrorKind::Input, {"cut.exr", "again"});
       }
