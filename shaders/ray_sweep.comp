@@ -124,7 +124,8 @@ void main() {
     depth = layer * sourceCut(atFirst, perPlane);
   Found last;
   if (kScalars) last = scalarAt(2 * pair - 1, atFirst + perPlane * float(2 * pair - 1));
-  // Software Vulkan executes the body of a loop that ends with its condition once less.
+  // Lavapipe executes the body of a loop that ends with its condition once less. For rays that have left, it repeats their last pair, from the
+  // same values (gather_march.glsl).
   do {
     vec2 planeDepths;
     [[unroll]] for (int i = 0; i < 2; ++i) {

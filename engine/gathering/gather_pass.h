@@ -30,7 +30,7 @@ class GatherPass {
   /// The targets have to be in layout GENERAL.
   void begin(Commands& commands, const shader::GatherFrame& frame);
   void recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
-  /// Instead of all samples, marches those at these places of the lattice (x + y times its width), in this order.
+  /// Instead of all samples, marches those at these places of the lattice (x + y times its width), in this order; for tests.
   void recordListed(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, std::span<const std::uint32_t> places);
   void recordStencil(Commands& commands, const shader::GatherFrame& frame);
   /// The sums of the bricks of a part, in fixed point, instead of those of all samples. `frame.part` is filled in.

@@ -16,7 +16,8 @@ namespace {
 
 constexpr DirectionSet kDirections = DirectionSet::Directions26;
 
-/// Extinction by scalar: exact without a transfer function, otherwise from a table.
+/// Extinction by scalar: exact without a transfer function, otherwise from a table. Scalars beyond the volume's range, which means of coarse
+/// levels may be, have the extinction of its end.
 class ExtinctionTable {
  public:
   ExtinctionTable(const Volume& volume, const Classification& classification)
@@ -31,7 +32,7 @@ class ExtinctionTable {
   float at(float scalar) const {
     if (scalar == kInactiveVoxel) return 0.0f;
     if (values_.empty()) return std::min(std::max(scalar, 0.0f) * scale_, float(kMaximumExtinction));
-    return values_[std::size_t((scalar - low_) * perScalar_ + 0.5f)];
+    return values_[std::size_t(std::clamp((scalar - low_) * perScalar_, 0.0f, float(kIntervals)) + 0.5f)];
   }
 
  private:

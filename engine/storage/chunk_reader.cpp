@@ -1,6 +1,7 @@
 #include "engine/storage/chunk_reader.h"
 
 #include <algorithm>
+#include <limits>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -64,22 +65,30 @@ void ChunkReader::checkValues(const ChunkEntry& chunk, int brick, bool finite, S
   });
   // Version 0.1 stored albedos beyond the box, where the file it read had some.
   if (!isEmpty && channel_ != Channel::Albedo) file_.failDamaged(fmt::format("{} has a value beyond the volume's box", nameOf(chunk)));
+  checkRange(chunk, values);
+}
+
+void ChunkReader::checkRange(const ChunkEntry& chunk, const ScalarBricks::Brick& values) const {
+  float low = std::numeric_limits<float>::max(), high = std::numeric_limits<float>::lowest();
+  for (const float value : values) {
+    low = std::min(low, value == kInactiveVoxel ? low : value);
+    high = std::max(high, value == kInactiveVoxel ? high : value);
+  }
+  if (low > high) return;  // all inactive
+  if (double(low) < double(chunk.minimum) - encoding_.largestError(chunk.minimum) || double(high) > double(chunk.maximum) + encoding_.largestError(chunk.maximum))
+    failContradicts(chunk);
+}
+
+void ChunkReader::failContradicts(const ChunkEntry& chunk) const {
+  file_.failDamaged(fmt::format("{} has other values than its entry in the index says", nameOf(chunk)));
 }
 
 void ChunkReader::check(const ChunkEntry& chunk) const {
   ScalarBricks::Bricks bricks(std::size_t(chunk.bricks()) * components_);
   read(chunk, [&](std::size_t number, std::size_t component) { return &bricks[number * components_ + component]; });
   std::size_t active = 0;
-  bool inRange = true;
-  for (std::size_t i = 0; i < bricks.size(); ++i)
-    for (const float value : bricks[i]) {
-      if (value == kInactiveVoxel) continue;
-      if (i % components_ == 0) ++active;
-      inRange = inRange && value >= chunk.minimum && value <= chunk.maximum;
-    }
-  const bool isCounted = active == chunk.activeVoxels || channel_ == Channel::Albedo;  // see above
-  const bool isExact = encoding_.kind == EncodingKind::Float32;                        // others are rounded
-  if (!isCounted || (isExact && !inRange)) file_.failDamaged(fmt::format("{} has other values than its entry in the index says", nameOf(chunk)));
+  for (std::size_t i = 0; i < bricks.size(); i += components_) active += std::size_t(std::ranges::count_if(bricks[i], [](float value) { return value != kInactiveVoxel; }));
+  if (active != chunk.activeVoxels && channel_ != Channel::Albedo) failContradicts(chunk);  // see checkValues()
 }
 
 }  // namespace freevoxels::fvx

@@ -19,7 +19,7 @@ class ChunkReader {
 
   /// Decodes the bricks of a chunk, in the order of the bits of its mask, for each of them the values of a voxel one after the other.
   /// `brickOf(number, component)` is the memory of one, which is to be filled, or null. Fails with ErrorKind::Input if the chunk is damaged
-  /// or a value is none that can be stored: NaN, infinite, or beyond the volume's box.
+  /// or a value is none that can be stored: NaN, infinite, beyond the volume's box, or beyond the chunk's range.
   template <typename BrickOf>
   void read(const ChunkEntry& chunk, const BrickOf& brickOf) const {
     std::span<const std::byte> bytes = file_.read(channel_, chunk, buffers_.local());
@@ -39,6 +39,9 @@ class ChunkReader {
  private:
   void decode(const ChunkEntry& chunk, int brick, std::span<const std::byte> bytes, ScalarBricks::Brick& values) const;
   void checkValues(const ChunkEntry& chunk, int brick, bool finite, ScalarBricks::Brick& values) const;
+
+  void checkRange(const ChunkEntry& chunk, const ScalarBricks::Brick& values) const;
+  [[noreturn]] void failContradicts(const ChunkEntry& chunk) const;
 
   const FvxFile& file_;
   const Channel channel_;

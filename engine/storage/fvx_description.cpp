@@ -169,19 +169,22 @@ Encodings readEncodings(const Json& json) {
   return encodings;
 }
 
-/// Affine, of voxels that have an extent along each axis in numbers that floats hold when they are squared.
+/// Affine, of voxels that have an extent along each axis in numbers that floats hold when they are squared, and that differ in position.
 void readTransform(const Json& json, Volume& volume) {
   constexpr double kLargest = 1e15, kFlattest = 1e-9;  // world units; volume of a voxel relative to the box of its edge lengths
-  const auto refuseTransform = [] { throw std::runtime_error("its voxels have no extent, or one that is impossible"); };
+  constexpr double kFarthest = 1e12;                   // distance of the first voxel from the origin, in edges
+  const auto refuseTransform = [] { throw std::runtime_error("its voxels have no extent or place, or one that is impossible"); };
   if (!json.is_array() || json.size() != 16) refuseTransform();
   for (int i = 0; i < 16; ++i) volume.indexToWorld[i / 4][i % 4] = number(json[std::size_t(i)], -kLargestDouble, kLargestDouble, "index_to_world");
   const glm::dmat4& m = volume.indexToWorld;
-  double lengths = 1.0;
+  double lengths = 1.0, shortest = kLargest;
   for (int axis = 0; axis < 3; ++axis) {
     const double length = glm::length(glm::dvec3(m[axis]));
     if (!(length < kLargest && length > 1.0 / kLargest) || m[axis][3] != 0.0) refuseTransform();
     lengths *= length;
+    shortest = std::min(shortest, length);
   }
+  if (m[3][3] != 1.0 || !(glm::length(glm::dvec3(m[3])) <= kFarthest * shortest)) refuseTransform();
   if (!(std::abs(glm::determinant(glm::dmat3(m))) > kFlattest * lengths)) refuseTransform();
 }
 

@@ -31,6 +31,13 @@ std::uint16_t codeOf(double value, const Encoding& encoding) {
 
 }  // namespace
 
+double Encoding::largestError(double value) const {
+  constexpr double kHalf = 0x1p-10, kLeastHalf = 0x1p-24, kFloat = 0x1p-22;  // relative error of halves, the least of them, that of floats
+  if (kind == EncodingKind::Float32) return 0.0;
+  if (kind == EncodingKind::Float16) return std::max(std::abs(value) * kHalf, scale * kLeastHalf);
+  return scale + std::abs(value) * kFloat;
+}
+
 void encode(const Encoding& encoding, std::span<const float> values, std::span<std::byte> bytes) {
   FV_CHECK_EQ(bytes.size(), values.size() * encoding.bytesPerValue());
   if (encoding.kind == EncodingKind::Float32) {

@@ -10,7 +10,7 @@
 
 namespace freevoxels::fvx {
 
-static_assert(std::endian::native == std::endian::little, "baked volumes are written and mapped as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "baked volumes are written and read as they lie in memory");
 
 /// First bytes of a file. Transfers that treat it as text change or cut them, as in PNG and KTX files.
 inline constexpr std::array<std::uint8_t, 12> kIdentifier{0xab, 'F', 'V', 'X', ' ', '0', '1', 0xbb, '\r', '\n', 0x1a, '\n'};

@@ -40,5 +40,21 @@ TEST(AmbientCells, OfATransferFunctionHaveItsExtinctions) {
   EXPECT_NEAR(cells[3], std::log(2.0), 1e-3);
 }
 
+/// As means of coarse levels have them, in which voxels without data count as 0.
+TEST(AmbientCells, ScalarsBeyondTheVolumesRangeHaveTheExtinctionOfItsEnd) {
+  for (const auto& [low, high] : {std::pair(10000.0f, 10001.0f), std::pair(-1000.0f, -600.0f), std::pair(5.0f, 5.0f)}) {
+    Volume volume = makeVolume(glm::ivec3(4, 1, 1), glm::dmat4(1.0), [](int x, int, int) { return x == 0 ? -1e30 : x == 1 ? 1e30 : 0.0; });
+    volume.minimum = low;
+    volume.maximum = high;
+    Classification classification;
+    classification.transferFunction = TransferFunction{.opacity = {{low, 0.2f}, {high + 0.5f, 0.5f}}, .color = {{0.0f, glm::vec3(1.0f)}}};
+    const auto extinctionOf = [&](float scalar) { return float(classify(classification, scalar).extinction); };
+    const std::vector<float> cells = cellExtinctions(volume, classification, 1);
+    EXPECT_FLOAT_EQ(cells[0], extinctionOf(low));
+    EXPECT_FLOAT_EQ(cells[1], extinctionOf(high));
+    EXPECT_FLOAT_EQ(cells[2], extinctionOf(low > 0.0f ? low : high));
+  }
+}
+
 }  // namespace
 }  // namespace freevoxels

@@ -12,7 +12,7 @@ namespace freevoxels::test {
 
 /// Smooth densities with an empty half, in a box that is no multiple of a chunk or a brick.
 inline Volume smoothVolume(glm::ivec3 dimensions = {70, 41, 37}) {
-  Volume volume = makeVolume(dimensions, glm::dmat4(0.25), [&](int x, int y, int z) {
+  Volume volume = makeVolume(dimensions, glm::dmat4(glm::dmat3(0.25)), [&](int x, int y, int z) {
     const double wave = std::sin(0.11 * x) + std::sin(0.23 * y + 1.0) + std::cos(0.17 * z);
     return x >= dimensions.x / 2 ? double(kInactiveVoxel) : std::max(wave, 0.0);
   });

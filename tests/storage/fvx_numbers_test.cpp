@@ -76,7 +76,7 @@ class FvxNumbers : public testing::Test {
 
 /// Everywhere.
 Volume denseVolume(glm::ivec3 size) {
-  return makeVolume(size, glm::dmat4(0.25), [](int x, int y, int z) { return 0.1 + 0.01 * ((x + 2 * y + 3 * z) % 50); });
+  return makeVolume(size, glm::dmat4(glm::dmat3(0.25)), [](int x, int y, int z) { return 0.1 + 0.01 * ((x + 2 * y + 3 * z) % 50); });
 }
 
 glm::ivec3 firstVoxelOf(const ChunkEntry& chunk, int brick) {
@@ -229,6 +229,43 @@ TEST_F(FvxNumbers, ValuesBeyondTheBoxAreRefused) {
           edited.storedValues<std::uint16_t>(last).back() = 0x3800;
         expectValuesRefused(edited, level, "beyond the volume's box");
       }
+    }
+}
+
+TEST_F(FvxNumbers, ValuesBeyondTheRangeOfTheirChunkAreRefused) {
+  for (const bool keepScalars : {false, true})
+    for (const glm::ivec3 size : {glm::ivec3(38, 26, 31), glm::ivec3(33, 65, 9), glm::ivec3(1, 1, 1)}) {
+      bake(denseVolume(size), {.keepScalars = keepScalars});
+      for (int level = 0; level < FvxFile(file_).levels(); ++level)
+        for (const bool below : {false, true}) {
+          FvxEditor edited(bytes_);
+          const ChunkEntry chunk = edited.chunks(level).back();
+          if (keepScalars)
+            edited.storedValues<float>(chunk).front() = below ? -1e20f : std::nextafter(chunk.maximum, 1.0f);
+          else
+            edited.storedValues<std::uint16_t>(chunk).front() = below ? 0xfbff : 0x7bff;  // the largest halves
+          expectValuesRefused(edited, level, "other values than its entry");
+        }
+    }
+}
+
+/// Codes that mean other values than those that were written.
+TEST_F(FvxNumbers, ScalesAndOffsetsThatDoNotFitTheRangesAreRefused) {
+  const TransferFunction function{.opacity = {{0.1f, 0.0f}, {0.9f, 0.5f}}, .color = {{0.0f, glm::vec3(1, 0, 0.25f)}}};
+  for (const bool isFunction : {false, true})
+    for (const auto& [key, value] : {std::pair<const char*, double>{"/channels/0/scale", 1e10}, {"/channels/0/scale", 1.0}, {"/channels/0/offset", -1e6}}) {
+      if (isFunction)
+        bake(denseVolume({38, 26, 31}), {}, {.transferFunction = function});
+      else
+        bake(denseVolume({38, 26, 31}));
+      FvxEditor edited(bytes_);
+      nlohmann::json description = nlohmann::json::parse(edited.text(SectionKind::Description));
+      const nlohmann::json::json_pointer place(key);
+      if (!description.contains(place) || (!isFunction && std::string_view(key) == "/channels/0/offset")) continue;  // halves have none
+      description[place] = value;
+      edited.setText(SectionKind::Description, description.dump());
+      SCOPED_TRACE(fmt::format("{} {}{}", key, value, isFunction ? " of a function's scalars" : ""));
+      expectValuesRefused(edited, 0, "other values than its entry");
     }
 }
 
@@ -387,6 +424,8 @@ TEST_F(FvxNumbers, DescriptionsThatCannotBeAreRefusedInOneSentence) {
       {"/index_origin/1", {2147483647, 4294967296LL, number, half, text}},
       {"/index_to_world/0", {0.0, 1e-300, number, text, none}},
       {"/index_to_world/3", {1.0, number, 1e-3}},
+      {"/index_to_world/13", {1e30, -1e20, number}},
+      {"/index_to_world/15", {0.0, 2.0, -1.0, half}},
       {"/index_to_world", {list, {1, 2, 3}}},
       {"/up/1", {0.0, number, text}},
       {"/active_voxels", {-1, 1 << 30, half, 0, text, none}},
