@@ -182,7 +182,7 @@ TEST_F(SharesTest, TheEyeInTheOutermostHalfVoxelSeesTheSameByShares) {
             const FrameSettings settings{.size = {24, 24}, .draw = Draw::Gather, .lod = lod, .depth = true};
             FixedSums sums = renderer.renderShares(camera, settings, {0, 2});
             sums += renderer.renderShares(camera, settings, {1, 2});
-            EXPECT_LE(largestPixelDifference(resolveSums(sums, true), renderer.render(camera, settings)), 1e-4);
+            EXPECT_LE(largestPixelDifference(resolveSums(sums, true), renderer.render(camera, settings)), 1e-3);  // depths to the eye are interpolated
           }
   }
 }
