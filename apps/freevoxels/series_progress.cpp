@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <utility>
 
 namespace freevoxels {
 
@@ -29,8 +30,9 @@ void SeriesProgress::start(std::size_t frames) {
 Progress SeriesProgress::progress() {
   const Progress progress = line_.progress();
   if (!progress) return {};
-  return [progress, prefix = prefix()](std::string_view stage, double fraction) {
-    progress(fmt::format("{}{}", prefix, stage), fraction);
+  return [this, progress, prefix = prefix()](std::string_view stage, double fraction) {
+    if (std::exchange(fractionOf_, drawn) != drawn) fraction_ = {};
+    progress(fmt::format("{}{}", prefix, stage), fraction_.next(fraction));
   };
 }
 

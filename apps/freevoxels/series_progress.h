@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/freevoxels/progress_line.h"
+#include "apps/freevoxels/whole_progress.h"
 
 namespace freevoxels {
 
@@ -31,6 +32,8 @@ class SeriesProgress {
   std::string prefix() const;
 
   ProgressLine line_;
+  WholeFraction fraction_;
+  std::size_t fractionOf_ = 0;  ///< the frame that `fraction_` is of
   std::size_t frames_ = 0;
   std::chrono::steady_clock::time_point begun_;
 };

@@ -1,5 +1,8 @@
 #include "apps/library/device_context.h"
 
+#include <unistd.h>
+
+#include <atomic>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -28,6 +31,19 @@ ValidationLog noted(const ValidationLog& log) {
   };
 }
 
+/// The process that was the first to open a device; 0 if none has. A forked process inherits the number.
+std::atomic<int> openingProcess = 0;
+
+/// Fails in a process forked from one that has opened a device: Vulkan's locks may be held there by threads that this one does not have.
+int processThatMayOpen() {
+  const int self = int(getpid());
+  int first = 0;
+  if (!openingProcess.compare_exchange_strong(first, self) && first != self)
+    fail(ErrorKind::Device, "this process was forked from one that uses a Vulkan device already, and cannot use one: start processes by 'spawn', as "
+                            "multiprocessing.get_context('spawn') does, or fork before the first image");
+  return self;
+}
+
 }  // namespace
 
 void refuseInsideValidationLog() {
@@ -35,10 +51,18 @@ void refuseInsideValidationLog() {
 }
 
 DeviceContext::DeviceContext(const DeviceOptions& options, const ValidationLog& log)
-    : isAdopted(false), instance(log != nullptr, noted(log)), device(options.open(instance)) {}
+    : process(processThatMayOpen()), isAdopted(false), instance(log != nullptr, noted(log)), device(options.open(instance)) {}
 
 DeviceContext::DeviceContext(VkInstance adoptedInstance, const AdoptedDevice& adopted, const DeviceOptions& options)
-    : isAdopted(true), instance(adoptedInstance), device(options.adopt(instance, adopted)) {}
+    : process(processThatMayOpen()), isAdopted(true), instance(adoptedInstance), device(options.adopt(instance, adopted)) {}
+
+bool DeviceContext::isOfThisProcess() const {
+  return process == int(getpid());
+}
+
+void DeviceContext::refuseAfterFork() const {
+  if (!isOfThisProcess()) processThatMayOpen();
+}
 
 void DeviceContext::checkValidation() const {
   if (const std::uint64_t count = instance.validationMessageCount(); count > 0)
@@ -47,6 +71,7 @@ void DeviceContext::checkValidation() const {
 
 std::shared_ptr<DeviceContext> sharedContext(const DeviceOptions& options) {
   refuseInsideValidationLog();
+  processThatMayOpen();  // before the lock, which may have been held when this process was forked
   static std::mutex opening;
   const std::lock_guard lock(opening);
   // Never destroyed, because Python or static objects may release the last renderer after Vulkan's own static

@@ -19,6 +19,12 @@ struct DeviceContext {
   /// Throws an InternalError if the validation layers have found anything.
   void checkValidation() const;
 
+  /// Whether the device was opened by this process, rather than by one from which it was forked.
+  bool isOfThisProcess() const;
+  /// Fails with ErrorKind::Device if it was not: no device can be used then, as its threads and locks are the other process's.
+  void refuseAfterFork() const;
+
+  const int process;     ///< that opened the device
   const bool isAdopted;  ///< whether `device` is the caller's
   const Instance instance;
   const std::unique_ptr<const Device> device;

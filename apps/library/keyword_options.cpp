@@ -59,6 +59,8 @@ void Reader::refuse(const std::string& section, const std::string& name) const {
     if (section.empty() && field.name == name) fail(ErrorKind::Usage, "{} has no effect here: leave it out", Parameter(name));
   }
   if (uses("device")) known.insert(known.end(), kDeviceKeys.begin(), kDeviceKeys.end());
+  if (section.empty() && isSceneSection(name))
+    fail(ErrorKind::Usage, "{} is a group of options, and takes a dictionary of them", Parameter(name));
   const std::string given = section.empty() ? name : section + "." + name;
   if (const std::string meant = nearestName(name, known); !meant.empty())
     fail(ErrorKind::Usage, "there is no option {}; did you mean {}?", Parameter(given), Parameter(meant));
@@ -93,6 +95,8 @@ void Reader::give(const SceneField& field, const Json& value, SceneFieldSet& giv
   const bool wantsList = field.repeated && !value.is_array();
   const auto texts = fieldTexts(field, wantsList ? Json::array({value}) : value, "", fmt::format("{}", Parameter(field.name)));
   if (texts.empty()) return;
+  if (given.contains(&field))
+    fail(ErrorKind::Usage, "{} is given twice, by two spellings of its name: keep one of them", Parameter(field.name));
   for (const SceneField* other : given)
     if (other != &field && field.isOrExcludes(*other))
       fail(ErrorKind::Usage, "{} and {} exclude each other: keep one of them", Parameter(field.name), Parameter(other->name));

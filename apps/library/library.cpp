@@ -259,6 +259,27 @@ Image Renderer::render(std::string_view scene, bool withDepth, const Progress& p
   });
 }
 
+Image Renderer::renderTurn(int frame, int frames, std::string_view scene, bool withDepth, const Progress& progress) {
+  return translated([&] {
+    if (frames < 1 || frames > kMaximumFrames || frame < 0 || frame >= frames)
+      fail(freevoxels::ErrorKind::Usage, "frame {} is not one of {} {}, which are numbered from 0: there are 1 to {}", frame, frames, Parameter("frames"),
+           kMaximumFrames);
+    SceneRenderer& renderer = state_->renderer;
+    return imageOf(renderer.renderTurn(*renderer.read(parseScene(scene)), {frame, frames}, withDepth, progress));
+  });
+}
+
+std::string Renderer::camera() const {
+  const std::optional<CameraDescription> camera = state_->renderer.camera();
+  if (!camera) return "{}";
+  const auto triple = [](const glm::dvec3& v) { return Json{v.x, v.y, v.z}; };
+  Json scene{{"camera-position", triple(*camera->position)}, {"look-at", triple(*camera->lookAt)}, {"up", triple(*camera->up)}};
+  if (camera->orthographicHeight) scene["orthographic"] = *camera->orthographicHeight;
+  if (camera->verticalFov) scene["fov"] = *camera->verticalFov;
+  scene["size"] = Json{camera->size.x, camera->size.y};
+  return scene.dump();
+}
+
 Frame Renderer::submit(std::string_view scene, bool withDepth, Progress progress) {
   return translated([&] {
     SceneRenderer& renderer = state_->renderer;

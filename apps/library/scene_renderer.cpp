@@ -1,12 +1,16 @@
 #include "apps/library/scene_renderer.h"
 
+#include <utility>
+
 #include "apps/freevoxels/output_options.h"
 #include "apps/freevoxels/program.h"
 #include "apps/freevoxels/sequence.h"
+#include "apps/freevoxels/whole_progress.h"
 #include "engine/core/error.h"
 #include "engine/description/scene_fields.h"
 #include "engine/description/scene_json.h"
 #include "engine/memory_planner.h"
+#include "engine/scene/orbit.h"
 
 namespace freevoxels {
 
@@ -25,8 +29,26 @@ KeywordOptions::Sections sections(bool ofFile, bool choosesDevice) {
 /// Fails where a turn is asked for. The key in a section belongs to a whole scene, of which a frame is drawn.
 void refuseTurn(const Json& keywords) {
   if (keywords.contains("frames"))
-    fail(ErrorKind::Usage, "{} is of turntables, which the command line alone draws: draw a frame for each {}", Parameter("frames"),
+    fail(ErrorKind::Usage, "{} is of turntables, and this is one frame: draw a turntable, or a frame for each {}", Parameter("frames"),
          Parameter("orbit"));
+}
+
+/// The camera at another place around its look-at point, at the same distance.
+Camera movedTo(glm::dvec2 orbit, glm::dvec3 up, Camera camera) {
+  const double distance = glm::length(camera.position - camera.lookAt);
+  camera.up = up;
+  const Camera there = framingCamera({.points = {glm::dvec3(-1.0), glm::dvec3(1.0)}}, orbit.x, orbit.y, 1.0, camera);
+  camera.up = there.up;
+  camera.position = camera.lookAt + distance * glm::normalize(there.position - there.lookAt);
+  return camera;
+}
+
+/// Fails where colours are no numbers, of which no picture can be made.
+void refuseNan(const Image& image) {
+  for (std::size_t i = 0; i < image.pixels.size(); ++i)
+    if (const glm::vec4& pixel = image.pixels[i]; glm::any(glm::isnan(pixel)))
+      fail(ErrorKind::Input, "the image to save is no number (NaN) at row {}, column {}: replace such values first", i / std::size_t(image.size.x),
+           i % std::size_t(image.size.x));
 }
 
 }  // namespace
@@ -54,6 +76,7 @@ void saveImage(const std::string& file, const Image& image, const Json& keywords
   if (output.aovs.position || output.aovs.normal)
     fail(ErrorKind::Usage, "an image does not know its camera, of which positions and normals are made: leave them out of {}", Parameter("aov"));
   checkOutputs(output, files);
+  refuseNan(image);
   Image withChannels = image;
   addChannels(withChannels, output.aovs, Camera{});
   writeImages(withChannels, output, files, {.fullFloat = output.fullFloat});
@@ -94,7 +117,13 @@ SceneRenderer::SceneRenderer(std::shared_ptr<const SharedVolume> volume, Json ke
       keywords_(std::move(keywords)),
       choosesDevice_(!context),
       context_(context ? std::move(context) : sharedContext(read(Json::object())->device)) {
-  if (!choosesDevice_) read(Json::object());
+  ownCamera_ = read(Json::object())->scene.camera;
+}
+
+SceneRenderer::~SceneRenderer() {
+  if (context_->isOfThisProcess()) return;
+  (void)renderer_.release();
+  (void)new std::shared_ptr<DeviceContext>(context_);
 }
 
 std::unique_ptr<const KeywordOptions> SceneRenderer::read(const Json& more) const {
@@ -104,12 +133,34 @@ std::unique_ptr<const KeywordOptions> SceneRenderer::read(const Json& more) cons
   return options;
 }
 
+/// Resolves camera and light of scene_.
+void SceneRenderer::resolveView(const SceneDescription& description, std::optional<TurnStep> step) {
+  if (step) {
+    description.resolveView(scene_);
+    scene_.camera = description.cameras(*scene_.volume, scene_.classification, step->frames)[std::size_t(step->frame)];
+    return;
+  }
+  const CameraDescription& given = description.camera;
+  SceneDescription own = description;
+  own.camera = ownCamera_;
+  own.camera.size = given.size;
+  if (!given.position) own.camera.position.reset();  // an orbit has replaced it
+  own.resolveView(scene_);
+  if (given == own.camera) return;
+  const glm::dvec2 ownAngles = own.camera.angles();
+  const bool isMoved = !given.position && given.angles() != ownAngles;
+  own.camera = given;
+  if (isMoved) own.camera.orbit = ownAngles;  // whose distance and look-at point the frame has
+  scene_.camera = own.cameras(*scene_.volume, scene_.classification).front();
+  if (isMoved) scene_.camera = movedTo(given.angles(), given.up.value_or(scene_.volume->up), scene_.camera);
+}
+
 /// Makes renderer_ anew if the options need another one.
-FrameSettings SceneRenderer::prepare(const KeywordOptions& options, bool depth, const Progress& progress) {
+FrameSettings SceneRenderer::prepare(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress) {
   FrameSettings settings{.size = options.scene.camera.size, .depth = depth};
   options.scene.method.apply(settings);
   checkFrameFits(*context_->device, settings);
-  const int level = volume_->levelFor(options.scene);
+  const int level = volume_->levelFor(options.scene, step ? step->frames : 1);
   if (!scene_.volume || level != level_) {
     renderer_ = nullptr;  // which refers to the volume
     scene_.volume = nullptr;
@@ -121,7 +172,7 @@ FrameSettings SceneRenderer::prepare(const KeywordOptions& options, bool depth, 
     scene_.classification = options.scene.resolveClassification(*scene_.volume);
     classification_ = classification;
   }
-  options.scene.resolveView(scene_);
+  resolveView(options.scene, step);
   settings.lighting = scene_.lighting;
   makeRenderer(options, progress);
   return settings;
@@ -133,36 +184,62 @@ void SceneRenderer::makeRenderer(const KeywordOptions& options, const Progress& 
   renderer_ = nullptr;  // so that the device never holds two
   renderer_ = std::make_unique<Renderer>(*context_->device, *scene_.volume, scene_.classification, options.scene.method.table(), progress);
   rendererText_ = text;
+  buildStages_ = renderer_->timings().size();
+  isRendererNew_ = true;
 }
 
-void SceneRenderer::complete() {
+void SceneRenderer::complete(glm::ivec2 size) {
   context_->checkValidation();
   std::vector<StageTime> times = renderer_->timings();
-  const std::lock_guard lock(timingsMutex_);
+  if (!std::exchange(isRendererNew_, false)) times.erase(times.begin(), times.begin() + std::ptrdiff_t(buildStages_));
+  CameraDescription camera;
+  camera.look(scene_.camera);
+  camera.size = size;
+  const std::lock_guard lock(lastFrameMutex_);
   timings_ = std::move(times);
+  camera_ = camera;
+}
+
+Image SceneRenderer::draw(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress) {
+  refuseInsideValidationLog();
+  context_->refuseAfterFork();
+  const Turn turn(*this);
+  const Progress whole = wholeProgress(progress);
+  const FrameSettings settings = prepare(options, step, depth, whole);
+  Image image = renderer_->render(scene_.camera, settings, whole);
+  if (progress) progress("complete", 1.0);
+  complete(settings.size);
+  return image;
 }
 
 Image SceneRenderer::render(const KeywordOptions& options, bool depth, const Progress& progress) {
-  refuseInsideValidationLog();
-  const Turn turn(*this);
-  const FrameSettings settings = prepare(options, depth, progress);
-  Image image = renderer_->render(scene_.camera, settings, progress);
-  complete();
-  return image;
+  return draw(options, std::nullopt, depth, progress);
+}
+
+Image SceneRenderer::renderTurn(const KeywordOptions& options, TurnStep step, bool depth, const Progress& progress) {
+  return draw(options, step, depth, progress);
 }
 
 std::shared_ptr<const FrameTargets> SceneRenderer::renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress) {
   refuseInsideValidationLog();
+  context_->refuseAfterFork();
   const Turn turn(*this);
-  const FrameSettings settings = prepare(options, depth, progress);
-  std::shared_ptr<const FrameTargets> targets = renderer_->renderOnDevice(scene_.camera, settings, progress);
-  complete();
+  const Progress whole = wholeProgress(progress);
+  const FrameSettings settings = prepare(options, std::nullopt, depth, whole);
+  std::shared_ptr<const FrameTargets> targets = renderer_->renderOnDevice(scene_.camera, settings, whole);
+  if (progress) progress("complete", 1.0);
+  complete(settings.size);
   return targets;
 }
 
 std::vector<StageTime> SceneRenderer::timings() const {
-  const std::lock_guard lock(timingsMutex_);
+  const std::lock_guard lock(lastFrameMutex_);
   return timings_;
+}
+
+std::optional<CameraDescription> SceneRenderer::camera() const {
+  const std::lock_guard lock(lastFrameMutex_);
+  return camera_;
 }
 
 }  // namespace freevoxels

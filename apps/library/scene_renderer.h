@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,14 @@ nlohmann::json loadScene(const std::filesystem::path& file);
 /// Writes keywords as a scene file, with names of files relative to its folder.
 void saveScene(const std::filesystem::path& file, const nlohmann::json& keywords);
 
+/// A frame of a full turn around the volume.
+struct TurnStep {
+  int frame = 0, frames = 1;  ///< 0 <= frame < frames
+};
+
+/// The view belongs to the renderer: its own keywords choose the distance of the eye, the look-at point and the default lights, and the
+/// `orbit` of a frame moves the eye about that point, so that neither size nor light change from frame to frame.
+///
 /// Any thread may call the member functions; the frames of one device are drawn one after another. A progress function may call them
 /// too, except that it cannot draw with the renderer that calls it: ErrorKind::Usage.
 class SceneRenderer {
@@ -37,29 +46,38 @@ class SceneRenderer {
   /// `keywords` (KeywordOptions) hold for every frame. The table is made for the first frame that needs it. If `context` is
   /// null, the keywords choose the device, which is opened here.
   SceneRenderer(std::shared_ptr<const SharedVolume> volume, nlohmann::json keywords, std::shared_ptr<DeviceContext> context = nullptr);
+  /// In a process forked from the renderer's own, what the renderer has on the device is given up, as it cannot be freed there.
+  ~SceneRenderer();
 
   /// Reads the options of a frame: the renderer's keywords, overridden by `more`.
   std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more) const;
 
   /// Draws a frame. What frames share is made again only if the options change it.
   Image render(const KeywordOptions& options, bool depth, const Progress& progress);
+  /// Draws a frame of a turn, with the cameras and the light of `freevoxels turntable`. `options` have the camera of the turn.
+  Image renderTurn(const KeywordOptions& options, TurnStep step, bool depth, const Progress& progress);
   /// The same frame, which stays on the device, complete.
   std::shared_ptr<const FrameTargets> renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress);
 
-  /// Stage times of the last complete frame and of the data from which it was drawn. Does not wait for a frame that is being drawn.
+  /// Times of the stages that the last complete frame ran, those of data that it made included. Does not wait for a frame that is being drawn.
   std::vector<StageTime> timings() const;
+  /// The camera of the last complete frame, as fields of the section "camera"; nothing before.
+  std::optional<CameraDescription> camera() const;
   const std::shared_ptr<DeviceContext>& context() const { return context_; }
 
  private:
   class Turn;
-  FrameSettings prepare(const KeywordOptions& options, bool depth, const Progress& progress);
+  Image draw(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress);
+  FrameSettings prepare(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress);
+  void resolveView(const SceneDescription& description, std::optional<TurnStep> step);
   void makeRenderer(const KeywordOptions& options, const Progress& progress);
-  void complete();
+  void complete(glm::ivec2 size);
 
   const std::shared_ptr<const SharedVolume> volume_;
   const nlohmann::json keywords_;
   const bool choosesDevice_;  ///< whether the keywords choose the device
   const std::shared_ptr<DeviceContext> context_;
+  CameraDescription ownCamera_;  ///< of the renderer's own keywords
 
   // While context_->turns is held:
   bool isDrawing_ = false;
@@ -68,9 +86,12 @@ class SceneRenderer {
   std::string classification_;  ///< the fields of which scene_.classification was made
   std::string rendererText_;    ///< rendererText for which renderer_ was made
   std::unique_ptr<Renderer> renderer_;
+  std::size_t buildStages_ = 0;    ///< how many of renderer_'s timings are of its making
+  bool isRendererNew_ = false;     ///< whether it was made for the frame that is being drawn
 
-  mutable std::mutex timingsMutex_;  ///< guards timings_
+  mutable std::mutex lastFrameMutex_;  ///< guards the members below, of the last complete frame
   std::vector<StageTime> timings_;
+  std::optional<CameraDescription> camera_;
 };
 
 }  // namespace freevoxels

@@ -17,8 +17,8 @@ SharedVolume::SharedVolume(std::shared_ptr<const fvx::FvxFile> file, std::uint64
   description_ = std::make_shared<const Volume>(std::move(outline));
 }
 
-int SharedVolume::levelFor(const SceneDescription& scene) const {
-  return std::max(scene.finestLevelNeeded(file_.get(), 1), finestLevel_);
+int SharedVolume::levelFor(const SceneDescription& scene, int frames) const {
+  return std::max(scene.finestLevelNeeded(file_.get(), frames), finestLevel_);
 }
 
 std::shared_ptr<const Volume> SharedVolume::read(int level) const {

@@ -19,8 +19,8 @@ class SharedVolume {
 
   /// The volume; of a file its finest level that is used, without the values.
   const Volume& describe() const { return *description_; }
-  /// The level that a frame of the scene is drawn of, as on the command line; 0 without a file.
-  int levelFor(const SceneDescription& scene) const;
+  /// The level that a frame of the scene, or the frames of a turn, are drawn of, as on the command line; 0 without a file.
+  int levelFor(const SceneDescription& scene, int frames) const;
   /// Fails as readBaked does.
   std::shared_ptr<const Volume> read(int level) const;
 

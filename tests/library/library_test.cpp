@@ -3,12 +3,17 @@
 #include <fmt/format.h>
 #include <freevoxels/freevoxels.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "tests/temporary_folder.h"
 
@@ -109,8 +114,91 @@ TEST(Library, ScenesAreWrittenToFilesAndReadBack) {
 
 TEST(Library, AFramesKeysReplaceWhatTheyExcludeAndSectionsGiveWay) {
   v1::Renderer renderer(cloud(), R"({"camera": {"camera-position": [2, 1, 3], "size": [48, 40]}, "density-scale": 20})");
-  v1::Renderer separate(cloud(), R"({"size": [48, 40], "density-scale": 20, "orbit": [90, 10]})");
-  EXPECT_EQ(renderer.render(R"({"orbit": [90, 10]})").pixels, separate.render().pixels);
+  v1::Renderer separate(cloud(), R"({"size": [48, 40], "density-scale": 20})");
+  EXPECT_EQ(renderer.render(R"({"orbit": [90, 10]})").pixels, separate.render(R"({"orbit": [90, 10]})").pixels);
+}
+
+double distanceOf(const v1::Renderer& renderer) {
+  const nlohmann::json camera = nlohmann::json::parse(renderer.camera());
+  double sum = 0.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double along = camera["camera-position"][axis].get<double>() - camera["look-at"][axis].get<double>();
+    sum += along * along;
+  }
+  return std::sqrt(sum);
+}
+
+TEST(Library, TheViewIsTheRenderersWhichOrbitsTurn) {
+  const v1::Volume bar = v1::Volume::copy(std::vector<float>(40 * 9 * 6, 1.0f), {40, 9, 6});
+  for (const char* own : {R"({"size": [48, 40]})", R"({"size": [40, 48], "orbit": [10, -20], "orthographic": 50})"}) {
+    v1::Renderer renderer(bar, own);
+    EXPECT_EQ(renderer.camera(), "{}");
+    const std::vector<float> first = renderer.render().pixels;
+    const std::string camera = renderer.camera();
+    const double distance = distanceOf(renderer);
+    for (const char* orbit : {R"({"orbit": [0, 0]})", R"({"orbit": [90, 10]})", R"({"orbit": [200, -80]})"}) {
+      renderer.render(orbit);
+      EXPECT_NEAR(distanceOf(renderer), distance, 1e-9 * distance) << orbit;
+    }
+    EXPECT_EQ(renderer.render(camera).pixels, first);
+  }
+}
+
+TEST(Library, TurnsHaveOneDistanceAndTheirFramesAreNumbered) {
+  v1::Renderer renderer(cloud(), R"({"size": [48, 40]})");
+  std::vector<double> distances;
+  for (int frame = 0; frame < 5; ++frame) {
+    renderer.renderTurn(frame, 5);
+    distances.push_back(distanceOf(renderer));
+    EXPECT_NEAR(distances.back(), distances.front(), 1e-9 * distances.front());
+  }
+  for (const auto& [frame, frames] : {std::pair(-1, 5), std::pair(5, 5), std::pair(0, 0), std::pair(0, 1 << 30)})
+    expectError(v1::ErrorKind::Usage, "is not one of", [&] { renderer.renderTurn(frame, frames); }, {"frames"});
+}
+
+TEST(Library, ProgressOfAFrameNeverDecreasesAndEndsAtOne) {
+  v1::Renderer renderer(cloud(), R"({"size": [600, 500]})");
+  for (const char* scene : {"{}", R"({"draw": "splats"})", R"({"orbit": [3, 4]})"}) {
+    double last = 0.0;
+    renderer.render(scene, false, [&](std::string_view, double fraction) {
+      EXPECT_GE(fraction, last);
+      last = fraction;
+    });
+    EXPECT_EQ(last, 1.0) << scene;
+  }
+}
+
+TEST(Library, AForkedProcessIsToldThatItCannotDraw) {
+  v1::Renderer renderer(cloud(), R"({"size": [16, 12]})");
+  renderer.render();
+  const pid_t child = fork();
+  if (child == 0) {
+    int told = 0;
+    for (const bool isNew : {false, true}) try {
+        isNew ? v1::Renderer(cloud()).render() : renderer.render();
+      } catch (const v1::Error& error) {
+        told += error.kind() == v1::ErrorKind::Device && std::string_view(error.what()).find("forked") != std::string_view::npos;
+      }
+    _exit(told);
+  }
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  EXPECT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 2);
+}
+
+TEST(Library, KeysGivenTwiceAndSectionsThatAreNoObjectsAreRefused) {
+  const auto make = [](const char* scene) { return [scene] { v1::Renderer(cloud(), scene); }; };
+  expectError(v1::ErrorKind::Usage, "is given twice", make(R"({"light": "direction=1,1,1", "lights": ["direction=1,0,0"]})"), {"light"});
+  expectError(v1::ErrorKind::Usage, "is given twice", make(R"({"density-scale": 1, "density_scale": 2})"), {"density-scale"});
+  expectError(v1::ErrorKind::Usage, "is a group of options", make(R"({"camera": 5})"), {"camera"});
+}
+
+TEST(Library, ImagesThatAreNoNumbersAreNotSaved) {
+  v1::Image image{.width = 3, .height = 2, .pixels = std::vector<float>(24, 0.5f)};
+  image.pixels[4 * 5] = std::numeric_limits<float>::quiet_NaN();
+  for (const char* name : {"none.png", "none.exr"})
+    expectError(v1::ErrorKind::Input, "at row 1, column 2", [&] { v1::save(name, image); });
 }
 
 TEST(Library, ErrorsNameWhatIsWrong) {
@@ -124,7 +212,7 @@ TEST(Library, ErrorsNameWhatIsWrong) {
   expectError(Usage, R"(not '[\x0a1]')", render("[\n1]"));
   expectError(Usage, R"("orbit" and "camera-position" exclude each other)", render(R"({"orbit": [1, 2], "camera-position": [1, 2, 3]})"),
               {"orbit", "camera-position"});
-  expectError(Usage, R"("frames" is of turntables, which the command line alone draws)", render(R"({"frames": 3})"), {"frames", "orbit"});
+  expectError(Usage, R"("frames" is of turntables, and this is one frame)", render(R"({"frames": 3})"), {"frames", "orbit"});
   expectError(Usage, R"("share" is an option of the command line alone)", render(R"({"share": "0/2"})"), {"share"});
   expectError(Usage, "'s_##.vdb' is a sequence, which the command line alone draws", [] { v1::Volume::open("s_##.vdb"); });
   EXPECT_EQ(v1::Renderer(cloud(), R"({"camera": {"frames": 3, "size": 8}})").render().width, 8) << "of a whole scene, a frame";

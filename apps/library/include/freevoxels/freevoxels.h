@@ -64,7 +64,8 @@ class FREEVOXELS_API Error : public std::runtime_error {
   std::vector<std::string> parameters_;
 };
 
-/// Called about every 50 ms with the name of a stage and the fraction of the work that is done, 0..1: by the thread that called
+/// Called about every 50 ms, and at the end, with the name of a stage and the fraction of the frame that is done, an estimate that never
+/// decreases and ends at 1: by the thread that called
 /// render(), or, for a submitted frame, by a thread of the renderer. An exception that it throws cancels the work and is passed on
 /// to the caller. It may call functions of this library, also draw with another renderer, whose frame it then waits for. ErrorKind::Usage is
 /// thrown by what might never end: drawing with the renderer that calls it, and waiting for a submitted frame that is not complete. It must
@@ -168,7 +169,8 @@ class FREEVOXELS_API Frame {
   std::unique_ptr<State> state_;
 };
 
-/// Draws images of one volume. What frames share, such as the attenuation table, stays on the device and is
+/// Draws images of one volume. The scene of the renderer gives the view: the distance of the eye, the look-at point and the default
+/// lights. The "orbit" of a frame turns the eye around that point. What frames share, such as the attenuation table, stays on the device and is
 /// made again only if a frame's scene changes it.
 class FREEVOXELS_API Renderer {
  public:
@@ -183,11 +185,16 @@ class FREEVOXELS_API Renderer {
 
   /// Draws a frame and waits for it. The keys of `scene` override those of the renderer's scene for this frame.
   Image render(std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {});
-  /// Begins the same frame and returns at once. Frames of a renderer are drawn in the order in which they were submitted. Throws
+  /// Draws frame `frame` of a full turn of `frames`, with the cameras and the light of `freevoxels turntable`: the eye is as far away in
+  /// all of them as the farthest needs.
+  Image renderTurn(int frame, int frames, std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {});
+  /// Begins the same frame as render() and returns at once. Frames of a renderer are drawn in the order in which they were submitted. Throws
   /// for errors of `scene`; Frame::wait() throws those of drawing.
   Frame submit(std::string_view scene = "{}", bool withDepth = false, Progress progress = {});
 
-  /// Stages and milliseconds of the last complete frame and of the data from which it was drawn. Waits for nothing.
+  /// The camera of the last complete frame, as the text of a scene that gives it. "{}" before the first frame.
+  std::string camera() const;
+  /// Milliseconds of the stages that the last complete frame ran. Waits for nothing.
   std::vector<std::pair<std::string, double>> timings() const;
   /// The name of the Vulkan device.
   std::string device() const;
