@@ -1,14 +1,18 @@
 #include "apps/python/array_volume.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <concepts>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <variant>
 
+#include "apps/python/numpy_array.h"
 #include "apps/python/python_values.h"
 #include "engine/core/error.h"
 #include "engine/volume/volume_of_scalars.h"
@@ -35,26 +39,30 @@ struct Source {
   const char* data;
   glm::i64vec3 strides;  ///< distances in bytes along x, y and z
   glm::ivec3 dimensions;
+  bool isSwapped;  ///< ArrayView
 };
 
-std::string shapeText(const py::array& array) {
-  std::string text;
-  for (py::ssize_t axis = 0; axis < array.ndim(); ++axis)
-    text += fmt::format("{}{}", axis == 0 ? "" : " x ", array.shape(axis));
-  return text;
+Source sourceOf(const ArrayView& array) {
+  if (array.dimensions() != 3)
+    fail(ErrorKind::Input, "the array has {} dimension{}: a volume needs three, ordered z, y, x", array.dimensions(),
+         array.dimensions() == 1 ? "" : "s");
+  constexpr py::ssize_t kMax = std::numeric_limits<std::int32_t>::max();
+  for (const py::ssize_t size : array.shape)
+    if (size < 1 || size > kMax)
+      fail(ErrorKind::Input, "the array has the shape {}: every dimension of a volume is at least 1 and below 2^31", array.shapeText());
+  return {array.data,
+          {array.strides[2], array.strides[1], array.strides[0]},
+          {array.shape[2], array.shape[1], array.shape[0]},
+          array.isSwapped};
 }
 
-Source sourceOf(const py::array& array) {
-  if (array.ndim() != 3)
-    fail(ErrorKind::Input, "the array has {} dimension{}: a volume needs three, ordered z, y, x", array.ndim(),
-         array.ndim() == 1 ? "" : "s");
-  constexpr py::ssize_t kMax = std::numeric_limits<std::int32_t>::max();
-  for (py::ssize_t axis = 0; axis < 3; ++axis)
-    if (array.shape(axis) < 1 || array.shape(axis) > kMax)
-      fail(ErrorKind::Input, "the array has the shape {}: every dimension of a volume is at least 1", shapeText(array));
-  return {static_cast<const char*>(array.data()),
-          {array.strides(2), array.strides(1), array.strides(0)},
-          {array.shape(2), array.shape(1), array.shape(0)}};
+/// Reads an element, which may be at any address.
+template <typename Value>
+Value elementAt(const char* place, bool isSwapped) {
+  std::array<char, sizeof(Value)> bytes;
+  std::memcpy(bytes.data(), place, bytes.size());
+  if (isSwapped) std::ranges::reverse(bytes);
+  return std::bit_cast<Value>(bytes);
 }
 
 /// The number that marks voxels without data, as exact as Python has it.
@@ -140,38 +148,30 @@ double comparable(Half value) {
 
 /// Calls `work` with a value of the array's type.
 template <typename Work>
-auto withTypeOf(const py::array& array, const Work& work) {
-  const py::dtype type = array.dtype();
-  if (type.byteorder() != '>')  // the supported machines are little-endian
-    switch (type.kind()) {
-      case 'b': return work(Flag());
-      case 'u':
-        if (type.itemsize() == 1) return work(std::uint8_t());
-        if (type.itemsize() == 2) return work(std::uint16_t());
-        if (type.itemsize() == 4) return work(std::uint32_t());
-        return work(std::uint64_t());
-      case 'i':
-        if (type.itemsize() == 1) return work(std::int8_t());
-        if (type.itemsize() == 2) return work(std::int16_t());
-        if (type.itemsize() == 4) return work(std::int32_t());
-        return work(std::int64_t());
-      case 'f':
-        if (type.itemsize() == 2) return work(Half());
-        if (type.itemsize() == 4) return work(float());
-        if (type.itemsize() == 8) return work(double());
-        break;
-      default: break;
-    }
-  fail(ErrorKind::Input, "arrays of {} cannot be rendered: convert it with array.astype('float32')",
-       py::str(type.attr("name")).cast<std::string>());
+auto withTypeOf(const ArrayView& array, const Work& work) {
+  switch (array.type) {
+    case ElementType::Flag: return work(Flag());
+    case ElementType::U8: return work(std::uint8_t());
+    case ElementType::U16: return work(std::uint16_t());
+    case ElementType::U32: return work(std::uint32_t());
+    case ElementType::U64: return work(std::uint64_t());
+    case ElementType::I8: return work(std::int8_t());
+    case ElementType::I16: return work(std::int16_t());
+    case ElementType::I32: return work(std::int32_t());
+    case ElementType::I64: return work(std::int64_t());
+    case ElementType::F16: return work(Half());
+    case ElementType::F32: return work(float());
+    case ElementType::F64: break;
+  }
+  return work(double());
 }
 
 /// Whether values of the array can be equal to the marker. NaN marks nothing in whole numbers, and need not.
-bool canHold(const py::array& array, const Marker& marker) {
+bool canHold(const ArrayView& array, const Marker& marker) {
   return std::isnan(marker.real) || withTypeOf(array, [&](auto value) { return valueOf(marker, value).has_value(); });
 }
 
-ScalarBricks readArray(const py::array& array, const std::optional<Marker>& marker) {
+ScalarBricks readArray(const ArrayView& array, const std::optional<Marker>& marker) {
   const Source source = sourceOf(array);
   return withTypeOf(array, [&](auto typed) {
     using Value = decltype(typed);
@@ -180,8 +180,7 @@ ScalarBricks readArray(const py::array& array, const std::optional<Marker>& mark
     const py::gil_scoped_release withoutGil;
     return ScalarBricks::make(source.dimensions, [&](glm::ivec3 voxel) {
       const glm::i64vec3 offset = glm::i64vec3(voxel) * source.strides;
-      Value value;
-      std::memcpy(&value, source.data + offset.x + offset.y + offset.z, sizeof value);
+      const auto value = elementAt<Value>(source.data + offset.x + offset.y + offset.z, source.isSwapped);
       const float scalar = float(value);
       return std::isnan(scalar) || (absent && comparable(value) == *absent) ? kInactiveVoxel : scalar;
     });
@@ -190,19 +189,21 @@ ScalarBricks readArray(const py::array& array, const std::optional<Marker>& mark
 
 }  // namespace
 
-Volume volumeOfArray(const py::array& scalars, const std::optional<py::array>& temperature,
-                     const ArrayPlacement& placement) {
+Volume volumeOfArray(const py::object& array, const py::object& temperature, const ArrayPlacement& placement) {
+  const ArrayView scalars = viewOf(array, "the array");
+  std::optional<ArrayView> heat;
+  if (!temperature.is_none()) heat = viewOf(temperature, fmt::format("{}", Parameter("temperature")));
   std::optional<Marker> noData;
   if (!placement.noData.is_none()) noData = markerOf(placement.noData);
-  if (noData && !canHold(scalars, *noData) && !(temperature && canHold(*temperature, *noData)))
+  if (noData && !canHold(scalars, *noData) && !(heat && canHold(*heat, *noData)))
     fail(ErrorKind::Input, "{} is {}, which no {} can be: leave it out, or give a value that the array can hold", Parameter("no-data"),
-         noData->real, py::str(scalars.dtype().attr("name")).cast<std::string>());
+         noData->real, scalars.typeName());
+  if (heat && heat->shape != scalars.shape)
+    fail(ErrorKind::Input, "{} has the shape {}, and the array has {}: they must be the same", Parameter("temperature"), heat->shapeText(),
+         scalars.shapeText());
   Volume volume = volumeOfScalars(readArray(scalars, noData), placement.indexToWorld);
-  if (!temperature) return volume;
-  volume.temperature = TemperatureGrid{.name = "temperature", .values = readArray(*temperature, noData)};
-  if (volume.temperature->values.dimensions() != volume.dimensions)
-    fail(ErrorKind::Input, "the temperatures have the shape {}, and the array has {}: they must be the same",
-         shapeText(*temperature), shapeText(scalars));
+  if (!heat) return volume;
+  volume.temperature = TemperatureGrid{.name = "temperature", .values = readArray(*heat, noData)};
   summariseValues(*volume.temperature);
   coverBricks(volume, volume.temperature->values);
   return volume;

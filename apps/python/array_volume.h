@@ -1,10 +1,9 @@
 #pragma once
 // Volumes of NumPy arrays.
 
-#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
 
 #include <glm/glm.hpp>
-#include <optional>
 
 #include "engine/volume/volume.h"
 
@@ -19,10 +18,9 @@ struct ArrayPlacement {
   pybind11::object noData = pybind11::none();
 };
 
-/// Reads an array with axes (z, y, x), of real numbers or bool in the machine's byte order and with any
-/// strides, without copying it first. Releases the GIL meanwhile. `temperature` must have the same shape.
-/// Fails with ErrorKind::Input for other arrays, and for a value of no data that neither array can hold.
-Volume volumeOfArray(const pybind11::array& scalars, const std::optional<pybind11::array>& temperature,
-                     const ArrayPlacement& placement);
+/// Reads an array (numpy_array.h) with axes (z, y, x), with any strides and byte order, without copying it first. Releases the GIL
+/// meanwhile. `temperature` is None or must have the same shape. Fails with ErrorKind::Input for other arrays, and for a value of no data
+/// that neither array can hold.
+Volume volumeOfArray(const pybind11::object& array, const pybind11::object& temperature, const ArrayPlacement& placement);
 
 }  // namespace freevoxels

@@ -5,7 +5,7 @@ takes the text of the command line (size="640x420"). An object of a section's na
 section: camera={"orbit": (35, 25)}.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import Any, Literal, TypedDict, overload
 
@@ -42,7 +42,7 @@ class _Camera(TypedDict, total=False):
     up: _Triple
     fov: float
     orthographic: float
-    size: Sequence[int] | str
+    size: Sequence[int] | NDArray[Any] | str
     frames: int
     camera: _Section
 
@@ -97,7 +97,7 @@ class _Output(TypedDict, total=False):
     float: bool
     png_bits: Literal[8, 16]
     aov: str
-    crop: Sequence[int] | str
+    crop: Sequence[int] | NDArray[Any] | str
     output: _Section
 
 class _Device(TypedDict, total=False):
@@ -116,8 +116,8 @@ class _RendererOptions(_FrameOptions, total=False):
 class _OpenOptions(_Input, _FrameOptions, total=False): ...
 
 class _OnceOptions(_Part, _FrameOptions, total=False):
-    spacing: float | Sequence[float]
-    origin: Sequence[float]
+    spacing: float | Sequence[float] | NDArray[Any]
+    origin: Sequence[float] | NDArray[Any]
     transform: ArrayLike | None
     no_data: float | None
     temperature: ArrayLike | None
@@ -138,11 +138,14 @@ class Volume:
         self,
         array: ArrayLike,
         *,
-        spacing: float | Sequence[float] = ...,
-        origin: Sequence[float] = ...,
+        spacing: float | Sequence[float] | NDArray[Any] = ...,
+        origin: Sequence[float] | NDArray[Any] = ...,
         transform: ArrayLike | None = ...,
         no_data: float | None = ...,
         temperature: ArrayLike | None = ...,
+        clip_box: _Numbers | None = ...,
+        clip_plane: _Numbers | None = ...,
+        input: _Section | None = ...,
     ) -> None: ...
     @staticmethod
     def open(file: _Path | None = ..., **kwargs: Unpack[_OpenOptions]) -> Volume: ...
@@ -167,6 +170,16 @@ class Renderer:
     def render(
         self, *, progress: _Progress | None = ..., depth: Literal[True], **kwargs: Unpack[_RendererOptions]
     ) -> tuple[_Image, _Depth]: ...
+    @overload
+    def turntable(
+        self, frames: int, *, progress: _Progress | None = ..., depth: Literal[False] = ..., **kwargs: Unpack[_RendererOptions]
+    ) -> Iterator[_Image]: ...
+    @overload
+    def turntable(
+        self, frames: int, *, progress: _Progress | None = ..., depth: Literal[True], **kwargs: Unpack[_RendererOptions]
+    ) -> Iterator[tuple[_Image, _Depth]]: ...
+    @property
+    def camera(self) -> dict[str, Any] | None: ...
     @property
     def timings(self) -> list[tuple[str, float]]: ...
     @property

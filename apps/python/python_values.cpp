@@ -7,8 +7,10 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <memory>
 #include <utility>
 
+#include "apps/python/numpy_array.h"
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
 #include "engine/description/scene_description.h"
@@ -21,11 +23,10 @@ namespace py = pybind11;
 using Json = nlohmann::json;
 
 template <typename Value>
-py::array adopt(std::vector<Value>& values, std::vector<py::ssize_t> shape) {
-  auto owned = std::make_unique<std::vector<Value>>(std::move(values));
-  void* const data = owned->data();
-  const py::capsule owner(owned.release(), [](void* vector) { delete static_cast<std::vector<Value>*>(vector); });
-  return py::array(py::dtype::of<float>(), std::move(shape), data, owner);
+py::object adopt(std::vector<Value>& values, std::vector<py::ssize_t> shape) {
+  auto owned = std::make_shared<std::vector<Value>>(std::move(values));
+  auto* const data = reinterpret_cast<float*>(owned->data());
+  return arrayOf(std::move(owned), data, std::move(shape));
 }
 
 /// Needs no lock, because the GIL lets only one message through at a time.
@@ -208,7 +209,13 @@ Json jsonOf(const py::kwargs& keywords) {
   return object;
 }
 
+Json jsonOf(py::handle value, const std::string& keyword) {
+  return ValueReader(keyword).read(value, keyword, 0);
+}
+
 Progress progressOf(const py::object& callback) {
+  if (!callback.is_none() && PyCallable_Check(callback.ptr()) == 0)
+    fail(ErrorKind::Usage, "{} takes a function of a stage and a fraction, not {}", Parameter("progress"), typeName(callback));
   return [function = py::handle(callback)](std::string_view stage, double fraction) {
     const py::gil_scoped_acquire withGil;
     if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -216,27 +223,30 @@ Progress progressOf(const py::object& callback) {
   };
 }
 
-py::array pixelsOf(Image& image) {
+py::object pixelsOf(Image& image) {
   return adopt(image.pixels, {image.size.y, image.size.x, 4});
 }
 
-py::array depthOf(Image& image) {
+py::object depthOf(Image& image) {
   return adopt(image.depth, {image.size.y, image.size.x});
 }
 
-Image imageOf(const py::array& pixels, const std::optional<py::array>& depth) {
-  using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
-  if (pixels.ndim() != 3 || pixels.shape(2) != 4 || pixels.size() == 0)
+Image imageOf(const py::object& pixels, const py::object& depth) {
+  const ArrayView colors = viewOf(pixels, "the image");
+  if (colors.dimensions() != 3 || colors.shape[2] != 4 || colors.elements() == 0)
     fail(ErrorKind::Input, "an image to save has the shape (height, width, 4): linear red, green, blue and alpha");
-  const Floats colors(pixels);
-  Image image{.size = {colors.shape(1), colors.shape(0)}};
-  image.pixels.resize(std::size_t(colors.size()) / 4);
-  std::memcpy(image.pixels.data(), colors.data(), std::size_t(colors.nbytes()));
-  if (!depth) return image;
-  const Floats distances(*depth);
-  if (distances.ndim() != 2 || distances.shape(0) != image.size.y || distances.shape(1) != image.size.x)
+  if (colors.type < ElementType::F16)
+    fail(ErrorKind::Input, "an image to save has linear colours as floats, 1 is white, and not {}: give the array that render() returned",
+         colors.typeName());
+  Image image{.size = {colors.shape[1], colors.shape[0]}};
+  const std::vector<float> values = floatsOf(colors);
+  image.pixels.resize(values.size() / 4);
+  std::memcpy(image.pixels.data(), values.data(), values.size() * sizeof(float));
+  if (depth.is_none()) return image;
+  const ArrayView distances = viewOf(depth, fmt::format("{}", Parameter("depth")));
+  if (distances.dimensions() != 2 || distances.shape[0] != image.size.y || distances.shape[1] != image.size.x)
     fail(ErrorKind::Input, "the depth to save has the shape (height, width) of its image");
-  image.depth.assign(distances.data(), distances.data() + distances.size());
+  image.depth = floatsOf(distances);
   return image;
 }
 

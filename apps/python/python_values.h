@@ -1,7 +1,7 @@
 #pragma once
 // Conversions of values between Python and the engine. All functions must be called with the GIL held.
 
-#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
 
 #include <nlohmann/json.hpp>
 
@@ -14,6 +14,8 @@ namespace freevoxels {
 /// Converts keyword arguments: bools, finite numbers, text, paths, mappings and sequences of them, and objects with tolist() such as
 /// NumPy's arrays. None is left out. Fails with ErrorKind::Input for others; the sentence names the keyword.
 nlohmann::json jsonOf(const pybind11::kwargs& keywords);
+/// Converts the value of one keyword in the same way.
+nlohmann::json jsonOf(pybind11::handle value, const std::string& keyword);
 /// The inverse, for JSON that was read from a file.
 pybind11::object pythonOf(const nlohmann::json& value);
 /// Text that may be a file name: bytes that are no UTF-8 become surrogates, as os.fsdecode() has them.
@@ -29,11 +31,12 @@ std::string typeName(pybind11::handle value);
 Progress progressOf(const pybind11::object& callback);
 
 /// Arrays float32 (height, width, 4) and (height, width) that take over the image's memory.
-pybind11::array pixelsOf(Image& image);
-pybind11::array depthOf(Image& image);
+pybind11::object pixelsOf(Image& image);
+pybind11::object depthOf(Image& image);
 
-/// The image of two such arrays. Fails with ErrorKind::Input for other shapes.
-Image imageOf(const pybind11::array& pixels, const std::optional<pybind11::array>& depth);
+/// The image of two such arrays, of which `depth` may be None. Fails with ErrorKind::Input for other shapes, and for colours that are
+/// whole numbers.
+Image imageOf(const pybind11::object& pixels, const pybind11::object& depth);
 
 /// Adds freevoxels.Error and its subclasses, one for each ErrorKind, and translates Error to them, with its parameters.
 void addExceptions(pybind11::module_& module);

@@ -41,8 +41,8 @@ def parameters(function):
 
 
 def compiled(function):
-    """The signature that the module's function has in the first line of its documentation."""
-    return ast.parse(f"def {function.__doc__.splitlines()[0]}: ...").body[0]
+    """The signature that inspect finds of the module's function."""
+    return ast.parse(f"def f{str(inspect.signature(function)).replace('/, ', '')}: ...").body[0]
 
 
 def keywords(name):
@@ -79,10 +79,26 @@ class StubTest(unittest.TestCase):
             self.assertEqual(set(members), public(vars(cls)), name)
             for member, nodes in members.items():
                 value = inspect.getattr_static(cls, member)
+                if member == "__init__":
+                    of_class = inspect.signature(cls)
+                    self.assertEqual(list(of_class.parameters), list(inspect.signature(cls.__init__).parameters)[1:])
+                    self.expect_parameters(nodes, cls.__init__)
+                    continue
                 if isinstance(value, property):
                     self.assertEqual(ast.unparse(nodes[0].decorator_list[0]), "property", member)
                 else:
                     self.expect_parameters(nodes, getattr(cls, member))
+
+    def test_objects_say_what_they_are(self):
+        volume = freevoxels.Volume([[[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]])
+        self.assertEqual(repr(volume), "<freevoxels.Volume of the array: 1 x 2 x 3 voxels along z, y, x>")
+        renderer = freevoxels.Renderer(volume)
+        self.assertEqual(repr(renderer), f"<freevoxels.Renderer on {renderer.device}>")
+
+    def test_documentation_has_no_signature_twice(self):
+        for item in (freevoxels.render, freevoxels.save, freevoxels.Volume, freevoxels.Renderer, freevoxels.Renderer.render, freevoxels.Volume.open):
+            self.assertNotIn("--", item.__doc__.splitlines()[0])
+            self.assertFalse(item.__doc__.startswith(item.__name__ + "("), item.__doc__)
 
     def test_keywords_are_those_of_the_list_of_scene_keys(self):
         text = (SOURCE / "apps" / "scenes" / "README.md").read_text()
