@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 
 #include "engine/core/printable.h"
 
@@ -14,9 +15,15 @@ namespace {
 constexpr const char* kEraseLine = "\r\033[K";
 constexpr std::chrono::milliseconds kRefresh{50};
 
+/// Whether standard error shows escape codes.
+bool canEraseLines() {
+  const char* const terminal = std::getenv("TERM");
+  return isatty(STDERR_FILENO) == 1 && (terminal == nullptr || std::string_view(terminal) != "dumb");
+}
+
 }  // namespace
 
-ProgressLine::ProgressLine(bool wanted) : visible_(wanted && isatty(STDERR_FILENO) == 1) {}
+ProgressLine::ProgressLine(bool wanted) : visible_(wanted && canEraseLines()) {}
 
 ProgressLine::~ProgressLine() {
   erase();

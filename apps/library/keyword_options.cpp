@@ -62,6 +62,9 @@ void Reader::refuse(const std::string& section, const std::string& name) const {
   if (section.empty() && isSceneSection(name))
     fail(ErrorKind::Usage, "{} is a group of options, and takes a dictionary of them", Parameter(name));
   const std::string given = section.empty() ? name : section + "." + name;
+  if (section == "light" && nearestName(name, known).empty())
+    fail(ErrorKind::Usage, "there is no option {}; a single {} has a {} or a {}", Parameter(given), Parameter(section), Parameter("direction"),
+         Parameter("position"));
   if (const std::string meant = nearestName(name, known); !meant.empty())
     fail(ErrorKind::Usage, "there is no option {}; did you mean {}?", Parameter(given), Parameter(meant));
   fail(ErrorKind::Usage, "there is no option {}; 'freevoxels render --help' lists them", Parameter(given));

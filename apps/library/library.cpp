@@ -55,11 +55,8 @@ auto translated(const Work& work) {
 }
 
 Json parseScene(std::string_view text) {
-  const auto refuseDeep = [](int depth, Json::parse_event_t, Json&) {
-    if (depth > kDeepestJson) fail(freevoxels::ErrorKind::Usage, "a scene is nested at most {} deep, and this one is deeper", kDeepestJson);
-    return true;
-  };
-  Json scene = Json::parse(text, refuseDeep, false);
+  if (isTooDeep(text)) fail(freevoxels::ErrorKind::Usage, "a scene is nested at most {} deep, and this one is deeper", kDeepestJson);
+  Json scene = parseJson("scene", "inline", text);
   constexpr std::size_t kLongestQuote = 200;
   if (!scene.is_object()) fail(freevoxels::ErrorKind::Usage, "a scene is a JSON object, as '{{\"size\": [800, 600]}}', not '{}'", printablePart(text, kLongestQuote));
   return scene;

@@ -23,7 +23,7 @@ _Triple = _Numbers  # (x, y, z), or linear (red, green, blue)
 _Section = Mapping[str, Any]
 _Image = NDArray[float32]  # (height, width, 4): linear, premultiplied
 _Depth = NDArray[float32]  # (height, width)
-_Progress = Callable[[str, float], object]  # (stage, fraction of it that is done, 0 to 1)
+_Progress = Callable[[str, float], object]  # (stage, fraction of the image that is done, 0 to 1)
 
 class _Part(TypedDict, total=False):  # which part of a file is read
     grid: str

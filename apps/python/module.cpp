@@ -32,6 +32,7 @@ using Json = nlohmann::json;
 
 struct PythonVolume {
   std::shared_ptr<const SharedVolume> volume;
+  bool isOfArray = false;
 
   const Volume& describe() const { return volume->describe(); }
 };
@@ -39,6 +40,18 @@ struct PythonVolume {
 /// Fails for arguments without a name, of which there are none beyond the first.
 void refuseMore(const py::args& more, const char* function, const char* first) {
   if (!more.empty()) fail(ErrorKind::Usage, "{} takes {} without a name, and options by name only: density_scale=40", function, first);
+}
+
+/// The one argument that may be given without its name, None if it is not given, and the keywords without it.
+std::pair<py::object, py::kwargs> oneOf(const py::args& arguments, const py::kwargs& named, const char* name, const char* function) {
+  const bool isNamed = named.contains(name);
+  if (arguments.size() + (isNamed ? 1 : 0) > 1)
+    fail(ErrorKind::Usage, "{} takes one {}, and options by name: density_scale=40", function, name);
+  py::kwargs others;
+  for (const auto& [key, value] : named)
+    if (keywordText(key) != name) others[key] = value;
+  if (!arguments.empty()) return {arguments[0], others};
+  return {isNamed ? py::object(named[name]) : py::object(py::none()), others};
 }
 
 bool flagOf(const py::object& value, const char* name) {
@@ -120,8 +133,8 @@ InputDescription clipOf(const py::kwargs& keywords) {
   return KeywordOptions({clip}, {"input"}).scene.input;
 }
 
-PythonVolume volumeFromArray(const py::object& array, const py::args& more, const py::kwargs& keywords) {
-  refuseMore(more, "Volume()", "one array");
+PythonVolume volumeFromArray(const py::args& arguments, const py::kwargs& named) {
+  const auto [array, keywords] = oneOf(arguments, named, "array", "Volume()");
   std::vector<std::string> known(kArrayKeywords.begin(), kArrayKeywords.end());
   known.insert(known.end(), kClipKeywords.begin(), kClipKeywords.end());
   py::kwargs ofClip;
@@ -134,7 +147,7 @@ PythonVolume volumeFromArray(const py::object& array, const py::args& more, cons
   const auto of = [&](const char* name) { return keywords.contains(name) ? py::object(keywords[name]) : py::object(py::none()); };
   Volume volume = clipOf(ofClip).clip(volumeOfArray(array, of("temperature"), {placementOf(keywords), of("no_data")}));
   warnInPython(volume);
-  return {std::make_shared<const SharedVolume>(std::move(volume))};
+  return {std::make_shared<const SharedVolume>(std::move(volume)), true};
 }
 
 PythonVolume volumeFromFile(const py::object& file, const py::args& more, const py::kwargs& keywords) {
@@ -158,13 +171,24 @@ const PythonVolume& volumeOf(const py::object& object) {
   return object.cast<const PythonVolume&>();
 }
 
-std::unique_ptr<SceneRenderer> makeRenderer(const py::object& object, const py::args& more, const py::kwargs& keywords) {
-  refuseMore(more, "Renderer()", "one volume");
+std::unique_ptr<SceneRenderer> makeRenderer(const py::object& object, const py::kwargs& keywords) {
   const PythonVolume& volume = volumeOf(object);
   refuseArrayKeywords(keywords, "a volume");
   Json options = jsonOf(keywords);
-  const py::gil_scoped_release withoutGil;  // which another thread may need that opens the device
-  return std::make_unique<SceneRenderer>(volume.volume, std::move(options));
+  std::unique_ptr<SceneRenderer> renderer;
+  {
+    const py::gil_scoped_release withoutGil;  // which another thread may need that opens the device
+    renderer = std::make_unique<SceneRenderer>(volume.volume, std::move(options));
+  }
+  if (volume.isOfArray && !volume.describe().temperature && renderer->read(Json::object())->scene.emission.grid())
+    fail(ErrorKind::Usage, "{} needs temperatures, which the array has not: give {}, an array of the same shape, with it", Parameter("emission"),
+         Parameter("temperature"));
+  return renderer;
+}
+
+std::unique_ptr<SceneRenderer> newRenderer(const py::args& arguments, const py::kwargs& named) {
+  const auto [volume, keywords] = oneOf(arguments, named, "volume", "Renderer()");
+  return makeRenderer(volume, keywords);
 }
 
 py::object resultOf(Image& image, bool depth) {
@@ -283,7 +307,7 @@ void addVolume(py::module_& module) {
   py::class_<PythonVolume>(module, "Volume",
                            "Volume(array, *, spacing=1.0, origin=(0.0, 0.0, 0.0), transform=None, no_data=None, temperature=None, clip_box=None, clip_plane=None, input=None)\n--\n\n"
                            "A volume in memory, which renderers can share.")
-      .def(py::init(&volumeFromArray), "array"_a = py::none(),
+      .def(py::init(&volumeFromArray),
            "__init__(self, array, *, spacing=1.0, origin=(0.0, 0.0, 0.0), transform=None, no_data=None, temperature=None, clip_box=None, clip_plane=None, input=None)\n--\n\n"
            "Copies an array of real numbers with axes (z, y, x). spacing: world units between voxels, one number or along\n"
            "(x, y, z). origin: where the centre of voxel [0, 0, 0] is. transform: instead of both, a 4x4 affine matrix from\n"
@@ -326,7 +350,7 @@ void addRenderer(py::module_& module) {
                              "kept on the device, and is made again only for a frame whose options change it. Threads may share\n"
                              "a renderer; its frames are drawn one after another. Its own options give the view: the distance of the eye, the point\n"
                              "that it looks at, and the default lights. The orbit of a frame turns the eye around that point.")
-      .def(py::init(&makeRenderer), "volume"_a = py::none(), "__init__(self, volume, **kwargs)\n--\n\nOptions given here hold for every frame.")
+      .def(py::init(&newRenderer), "__init__(self, volume, **kwargs)\n--\n\nOptions given here hold for every frame.")
       .def("__repr__", [](const SceneRenderer& r) {
         return fmt::format("<freevoxels.Renderer on {}>", printable(r.context()->device->description().name));
       })
@@ -362,13 +386,12 @@ bool isOfFiles(std::string keyword) {
 }
 
 /// A file is read with all keywords, since the scene decides which of its grids are needed. Without a source it is the file of the scene.
-py::object renderOnce(const py::object& source, const py::args& more, const py::object& progress, const py::object& depth,
-                      const py::kwargs& keywords) {
-  refuseMore(more, "render()", "one volume");
+py::object renderOnce(const py::args& arguments, const py::object& progress, const py::object& depth, const py::kwargs& named) {
+  const auto [source, keywords] = oneOf(arguments, named, "volume", "render()");
   flagOf(depth, "depth");
   progressOf(progress);  // fails before a volume is read for what cannot be called
   const py::object type = py::type::of<PythonVolume>();
-  if (py::isinstance<PythonVolume>(source)) return render(*makeRenderer(source, {}, keywords), {}, progress, depth, {});
+  if (py::isinstance<PythonVolume>(source)) return render(*makeRenderer(source, keywords), {}, progress, depth, {});
   const bool isFile = source.is_none() || py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__");
   py::dict ofVolume, ofFrame;
   for (const auto& [key, value] : keywords) {
@@ -378,7 +401,7 @@ py::object renderOnce(const py::object& source, const py::args& more, const py::
     if (!ofVolumeAlone) ofFrame[key] = value;
   }
   const py::object volume = (isFile ? py::object(type.attr("open")) : type)(source, **ofVolume);
-  return render(*makeRenderer(volume, {}, py::kwargs(ofFrame)), {}, progress, depth, {});
+  return render(*makeRenderer(volume, py::kwargs(ofFrame)), {}, progress, depth, {});
 }
 
 }  // namespace
@@ -394,7 +417,7 @@ PYBIND11_MODULE(freevoxels, module) {
   addExceptions(module);
   addVolume(module);
   addRenderer(module);
-  module.def("render", &renderOnce, "volume"_a = py::none(), "progress"_a = py::none(), "depth"_a = false,
+  module.def("render", &renderOnce, "progress"_a = py::none(), "depth"_a = false,
              "render(volume=None, *, progress=None, depth=False, **kwargs)\n--\n\n"
              "Renders an array, a file or a Volume once, as Renderer(...).render() does. Also takes the keywords of Volume for an\n"
              "array, and those of Volume.open for a file. Without a volume it is that of the scene: render(**load_scene('a.json')).");

@@ -10,6 +10,7 @@
 #include "engine/core/error.h"
 #include "engine/core/json_file.h"
 #include "engine/core/nearest_name.h"
+#include "engine/core/printable.h"
 #include "engine/description/text_values.h"
 
 namespace freevoxels {
@@ -85,6 +86,15 @@ Json numbersOrText(const std::string& text, char separator) {
   }
   if (!isNumbers(list)) return text;
   return list.size() == 1 ? list.front() : list;
+}
+
+bool isUnicode(const Json& value) {
+  try {
+    (void)value.dump();
+    return true;
+  } catch (const Json::type_error&) {
+    return false;
+  }
 }
 
 /// One text of a field as JSON.
@@ -191,7 +201,13 @@ OrderedJson sceneToJson(const SceneDescription& description, const std::optional
 }
 
 void writeScene(const fs::path& file, const SceneDescription& description) {
-  writeTextAtomically(file, layOut(sceneToJson(description, fs::absolute(file).parent_path())) + "\n");
+  const fs::path folder = fs::absolute(file).parent_path();
+  for (const SceneField& field : sceneFields())
+    for (const std::string& text : field.texts(description))
+      if (!isUnicode(jsonOf(field, text, folder)))
+        fail(ErrorKind::Input, "a scene file is Unicode text, and the {} '{}' is not: give that file or grid another name", Parameter(field.name),
+             printable(text));
+  writeTextAtomically(file, layOut(sceneToJson(description, folder)) + "\n");
 }
 
 std::vector<std::string> fieldTexts(const SceneField& field, const Json& value, const fs::path& folder, const std::string& name) {

@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <regex>
+#include <string>
 
 #include "engine/image/image.h"
 #include "tests/commands/render_fixture.h"
@@ -10,6 +14,27 @@
 namespace freevoxels::test {
 
 using RenderOutput = RenderCommand;
+
+/// A variable of the environment that programs are started with, for as long as this object exists.
+class EnvironmentVariable {
+ public:
+  EnvironmentVariable(const char* name, const char* value) : name_(name) {
+    if (const char* const before = std::getenv(name)) before_ = before;
+    setenv(name, value, 1);
+  }
+  ~EnvironmentVariable() {
+    if (before_)
+      setenv(name_, before_->c_str(), 1);
+    else
+      unsetenv(name_);
+  }
+  EnvironmentVariable(const EnvironmentVariable&) = delete;
+  EnvironmentVariable& operator=(const EnvironmentVariable&) = delete;
+
+ private:
+  const char* const name_;
+  std::optional<std::string> before_;
+};
 
 TEST_F(RenderOutput, TheRecordedCommandGivesTheSameBytes) {
   const std::string first = render("--float --paper --orbit 10,-20");
@@ -102,6 +127,7 @@ TEST_F(RenderOutput, TimingsAreJson) {
 
 TEST_F(RenderOutput, ProgressIsForTerminalsAndErased) {
   if (!terminalsAvailable()) GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
+  const EnvironmentVariable terminal("TERM", "xterm");
   const Arguments arguments = words(std::string("render procedural:cloud @a.png") + kSmall);
   const ProgramResult shown = runFreevoxelsOnTerminal(arguments);
   expectSuccess(shown);
@@ -110,6 +136,31 @@ TEST_F(RenderOutput, ProgressIsForTerminalsAndErased) {
   EXPECT_EQ(runFreevoxels(arguments).err.find("\033"), std::string::npos);
   EXPECT_EQ(
       runFreevoxelsOnTerminal(words(std::string("render procedural:cloud @a.png --quiet") + kSmall)).err, "");
+}
+
+TEST_F(RenderOutput, ProgressNeverGoesBackwards) {
+  if (!terminalsAvailable()) GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
+  const EnvironmentVariable terminal("TERM", "xterm");
+  for (const std::string method : {"--draw splats", "--draw gather"}) {
+    const ProgramResult shown = runFreevoxelsOnTerminal(words("render procedural:cloud @a.png --resolution 64 --size 700 " + method));
+    expectSuccess(shown);
+    int last = 0;
+    const std::regex percent(" ([0-9]+) %");
+    for (auto one = std::sregex_iterator(shown.err.begin(), shown.err.end(), percent); one != std::sregex_iterator(); ++one) {
+      const int now = std::stoi((*one)[1]);
+      EXPECT_GE(now, last) << shown.err;
+      last = now;
+    }
+    EXPECT_GT(last, 0) << shown.err;
+  }
+}
+
+TEST_F(RenderOutput, TerminalsWithoutEscapeCodesAreGivenNone) {
+  if (!terminalsAvailable()) GTEST_SKIP() << "no pseudo-terminals here: /dev/pts is not mounted";
+  const EnvironmentVariable terminal("TERM", "dumb");
+  const ProgramResult shown = runFreevoxelsOnTerminal(words(std::string("render procedural:cloud @a.png") + kSmall));
+  expectSuccess(shown);
+  EXPECT_EQ(shown.err.find("\033"), std::string::npos) << shown.err;
 }
 
 TEST_F(RenderOutput, ACropIsThePartOfTheWholeToTheByte) {

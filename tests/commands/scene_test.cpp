@@ -128,6 +128,16 @@ TEST_F(SceneCommand, SavedOnesMakeTheSamePixelsFromAnyFolder) {
   EXPECT_EQ(nlohmann::json::parse(readBytes(folder / "made/t.json")).size(), 2u);
 }
 
+TEST_F(SceneCommand, NamesThatAreNoUnicodeAreRefusedInsteadOfChanged) {
+  expectSuccess(run("generate cloud @made\xff.vdb --resolution 12 --quiet"));
+  const std::string draw = "render @made\xff.vdb @a.png --size 8 --quiet";
+  expectSuccess(run(draw));
+  const ProgramResult refused = run(draw + " --save-scene @s.json");
+  EXPECT_EQ(refused.exitCode, int(ExitCode::Input));
+  EXPECT_NE(refused.err.find(R"(the volume 'made\xff.vdb' is not)"), std::string::npos) << refused.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "s.json"));
+}
+
 TEST_F(SceneCommand, EmissionNeedsNoNumber) {
   const std::string fire = "procedural:fire @a.exr --resolution 16 --size 24x24 ";
   for (const auto& [json, option] :

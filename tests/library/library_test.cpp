@@ -212,6 +212,10 @@ TEST(Library, ErrorsNameWhatIsWrong) {
   expectError(Usage, R"(not '[\x0a1]')", render("[\n1]"));
   expectError(Usage, R"("orbit" and "camera-position" exclude each other)", render(R"({"orbit": [1, 2], "camera-position": [1, 2, 3]})"),
               {"orbit", "camera-position"});
+  expectError(Input, "scene 'inline' is not valid JSON: parse error at line 2, column 7", render("{\"size\":\n [8, 6}"));
+  expectError(Input, "size", render(R"({"size": [8, 6], "size": [6, 8]})"));
+  expectError(Usage, R"(no option "light.dir"; a single "light" has a "direction" or a "position")", render(R"({"light": {"dir": [1, 1, 1]}})"),
+              {"light.dir", "light", "direction", "position"});
   expectError(Usage, R"("frames" is of turntables, and this is one frame)", render(R"({"frames": 3})"), {"frames", "orbit"});
   expectError(Usage, R"("share" is an option of the command line alone)", render(R"({"share": "0/2"})"), {"share"});
   expectError(Usage, "'s_##.vdb' is a sequence, which the command line alone draws", [] { v1::Volume::open("s_##.vdb"); });

@@ -8,6 +8,7 @@ import fractions
 import logging
 import os
 import pathlib
+import tempfile
 import types
 import unittest
 
@@ -114,6 +115,78 @@ class KeywordTest(unittest.TestCase):
         self.refused(freevoxels.InputError, "'camera.orbit' takes numbers, .* not set", camera={"orbit": {1, 2}})
         self.refused(freevoxels.InputError, "'density_scale' takes S, not true", density_scale=True)
         self.refused(freevoxels.InputError, "'unlit' takes true or false, not 1", unlit=1)
+
+    def test_keywords_that_do_not_fit_are_named(self):
+        for options, sentence, parameters in (
+            ({"camera": 5}, "'camera' is a group of options", ("camera",)),
+            ({"light": {"dir": (1, 1, 1)}}, "a single 'light' has a 'direction' or a 'position'", ("light.dir", "light", "direction", "position")),
+            ({"lights": [{"direction": (1, 1, 1)}], "light": {"direction": (1, 0, 0)}}, "'light' is given twice", ("light",)),
+            ({"emission": True}, "the array has not: give 'temperature', an array of the same shape", ("emission", "temperature")),
+            ({"spacing": 2, "transform": np.eye(4)}, "'spacing' and 'transform' exclude each other", ("spacing", "transform")),
+            ({"origin": (1, 2, 3), "transform": np.eye(4)}, "'origin' and 'transform' exclude each other", ("origin", "transform")),
+            ({"spacing": (1, 2)}, "'spacing' takes one number, or three along .x, y, z., not 2 numbers", ("spacing",)),
+            ({"spacing": "wide"}, "'spacing' takes one number, or three", ("spacing",)),
+            ({"origin": 5}, "'origin' takes three numbers .x, y, z., not 1 number", ("origin",)),
+            ({"transform": np.eye(3)}, "'transform' takes a matrix of 4 x 4 numbers, not 9 numbers", ("transform",)),
+            ({"depth": "yes"}, "'depth' takes True or False, not str", ("depth",)),
+            ({"volume": BOX}, "render.. takes one volume, and options by name", ()),
+        ):
+            self.assertEqual(self.refused(freevoxels.Error, sentence, **options).parameters, parameters)
+
+    def test_options_of_arrays_are_refused_for_files_and_volumes(self):
+        volume = freevoxels.Volume(BOX)
+        for call, what in ((lambda **o: freevoxels.render("procedural:cube", **o), "a file"), (lambda **o: freevoxels.Volume.open("procedural:cube", **o), "a file"),
+                           (lambda **o: freevoxels.Renderer(volume, **o), "a volume"), (lambda **o: freevoxels.render(volume, **o), "a volume"),
+                           (lambda **o: freevoxels.Renderer(volume).render(**o), "a volume")):
+            for name, value in (("spacing", 2), ("origin", (1, 2, 3)), ("transform", np.eye(4)), ("no_data", 0), ("temperature", BOX)):
+                with self.assertRaisesRegex(freevoxels.UsageError, f"'{name}' is an option of arrays, and {what} has its own") as caught:
+                    call(**{name: value})
+                self.assertEqual(caught.exception.parameters, (name,))
+
+    def test_arguments_of_wrong_types_are_named_without_their_values(self):
+        volume = freevoxels.Volume(BOX)
+        renderer = freevoxels.Renderer(volume, **SMALL)
+        for call, sentence in ((lambda: freevoxels.Volume(BOX, BOX), "Volume.. takes one array"), (lambda: freevoxels.Volume(BOX, size=(3, 3)), "has no option 'size'"),
+                               (lambda: freevoxels.Volume(BOX, spacng=2), "has no option 'spacng'; did you mean 'spacing'"), (lambda: freevoxels.Volume(), "the array is of the type None"),
+                               (lambda: freevoxels.Renderer(BOX), "takes a Volume, not ndarray"), (lambda: freevoxels.Renderer(), "takes a Volume, not None"),
+                               (lambda: renderer.render((1, 2)), "render.. takes nothing without a name"), (lambda: freevoxels.render(BOX, BOX), "render.. takes one volume"),
+                               (lambda: freevoxels.Volume.open(5), "'file' takes the name of a file, not int"), (lambda: freevoxels.save(BOX, BOX), "'file' takes the name of a file, not ndarray"),
+                               (lambda: freevoxels.load_scene(None), "'file' takes the name of a file, not None")):
+            with self.assertRaisesRegex(freevoxels.Error, sentence) as caught:
+                call()
+            self.assertLess(len(str(caught.exception)), 250)
+
+    def test_arrays_are_clipped_as_files_are(self):
+        whole = np.arange(12 * 10 * 8, dtype="f4").reshape(12, 10, 8)
+        box = (1, 2, 3, 5, 7, 9)
+        expected = freevoxels.Volume(whole, clip_box=box)
+        self.assertEqual(expected.shape, (7, 6, 5))
+        self.assertEqual(expected.active_voxels, 7 * 6 * 5)
+        self.assertEqual(expected.range, (0, 959))  # of the whole, so that clipping changes no colours
+        image = freevoxels.render(expected, **SMALL)
+        for options in ({"clip_box": box}, {"input": {"clip-box": box}}, {"input": {"volume": "none.vdb", "clip_box": np.array(box)}}):
+            np.testing.assert_array_equal(freevoxels.render(whole, **options, **SMALL), image)
+        plane = freevoxels.Volume(whole, clip_plane=(4, 5, 6, 1, 0, 0))
+        self.assertLess(plane.active_voxels, whole.size)
+        with self.assertRaisesRegex(freevoxels.UsageError, "'clip_box' takes"):
+            freevoxels.Volume(whole, clip_box=(1, 2, 3))
+
+    def test_binary_files_are_no_scenes_or_functions(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for content in (b"\x89PNG\r\n\xff\xfe{", b"\xff", b"{\"camera\": \"\xff\"}", bytes(range(256))):
+                file = pathlib.Path(folder) / "file"
+                file.write_bytes(content)
+                for call in (lambda: freevoxels.load_scene(file), lambda: freevoxels.render(BOX, scene=file), lambda: freevoxels.render(BOX, transfer_function=file)):
+                    with self.assertRaises(freevoxels.InputError) as caught:
+                        call()
+                    self.assertIn(str(file), str(caught.exception))
+
+    def test_scenes_that_name_files_that_are_no_unicode_are_not_written(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "s.json"
+            with self.assertRaisesRegex(freevoxels.InputError, r"'volume' '.*\\xff.vdb' is not"):
+                freevoxels.save_scene(file, volume=os.fsdecode(b"\xff.vdb"))
+            self.assertFalse(file.exists())
 
     def test_exceptions_of_values_reach_the_caller(self):
         def wrong():

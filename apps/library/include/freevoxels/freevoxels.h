@@ -75,11 +75,11 @@ using Progress = std::function<void(std::string_view stage, double fraction)>;
 struct ContextOptions {
   /// The device by its index in `freevoxels devices`, its UUID or a part of its name. Empty: a discrete GPU, then any GPU, then a
   /// CPU device.
-  std::string device;
+  std::string device = {};
   int memoryLimit = 0;  ///< MiB of device memory that may be allocated; 0: all
   /// If set, the Vulkan validation layers are on and their messages are passed to it, by any thread, in the middle of a call of Vulkan:
   /// nothing can be drawn or opened there. For debugging.
-  std::function<void(std::string_view message)> validationLog;
+  std::function<void(std::string_view message)> validationLog = nullptr;
 };
 
 struct AdoptedDevice;
