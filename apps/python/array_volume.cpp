@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <chrono>
 #include <cmath>
 #include <concepts>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
 #include <limits>
 #include <optional>
-#include <thread>
 #include <utility>
 #include <variant>
 
@@ -173,22 +171,6 @@ bool canHold(const ArrayView& array, const Marker& marker) {
   return std::isnan(marker.real) || withTypeOf(array, [&](auto value) { return valueOf(marker, value).has_value(); });
 }
 
-/// Lets Ctrl-C end the reading of an array. All threads that read call it; the one that made it looks at signals, every 50 ms.
-class Interruption {
- public:
-  void check() {
-    const auto now = std::chrono::steady_clock::now();
-    if (std::this_thread::get_id() != reader_ || now - looked_ < std::chrono::milliseconds(50)) return;
-    looked_ = now;
-    const py::gil_scoped_acquire withGil;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-  }
-
- private:
-  const std::thread::id reader_ = std::this_thread::get_id();
-  std::chrono::steady_clock::time_point looked_ = std::chrono::steady_clock::now();  ///< is used by the reader alone
-};
-
 ScalarBricks readArray(const ArrayView& array, const std::optional<Marker>& marker) {
   const Source source = sourceOf(array);
   return withTypeOf(array, [&](auto typed) {
@@ -196,16 +178,11 @@ ScalarBricks readArray(const ArrayView& array, const std::optional<Marker>& mark
     using Comparable = decltype(comparable(typed));
     const std::optional<Comparable> absent = marker ? valueOf(*marker, typed) : std::nullopt;
     const py::gil_scoped_release withoutGil;
-    Interruption interruption;
-    const auto scalarAt = [&](glm::ivec3 voxel) {
+    return ScalarBricks::make(source.dimensions, [&](glm::ivec3 voxel) {
       const glm::i64vec3 offset = glm::i64vec3(voxel) * source.strides;
       const auto value = elementAt<Value>(source.data + offset.x + offset.y + offset.z, source.isSwapped);
       const float scalar = float(value);
       return std::isnan(scalar) || (absent && comparable(value) == *absent) ? kInactiveVoxel : scalar;
-    };
-    return ScalarBricks::make(source.dimensions, scalarAt, [&](glm::ivec3) {
-      interruption.check();
-      return true;
     });
   });
 }

@@ -1,10 +1,7 @@
 """What functions of the caller may do that the module calls: progress, and handlers of its logger."""
 
 import logging
-import os
-import signal
 import threading
-import time
 import unittest
 
 import freevoxels
@@ -83,21 +80,6 @@ class ProgressTest(unittest.TestCase):
         self.during_a_frame(renderer, thread.start)
         thread.join()
         np.testing.assert_array_equal(images[0], renderer.render(**QUICK))
-
-
-class InterruptTest(unittest.TestCase):
-    def test_ctrl_c_ends_the_reading_of_an_array(self):
-        array = np.ones((280, 280, 280), "u1")
-        begun = time.monotonic()
-        freevoxels.Volume(array)
-        whole = time.monotonic() - begun
-        timer = threading.Timer(whole / 8, lambda: os.kill(os.getpid(), signal.SIGINT))
-        begun = time.monotonic()
-        with self.assertRaises(KeyboardInterrupt):
-            timer.start()
-            freevoxels.Volume(array)
-        self.assertLess(time.monotonic() - begun, 0.8 * whole)
-        self.assertEqual(freevoxels.Volume(array[:5, :5, :5]).active_voxels, 125)
 
 
 class LoggingTest(unittest.TestCase):
