@@ -205,8 +205,7 @@ void writeScene(const fs::path& file, const SceneDescription& description) {
   for (const SceneField& field : sceneFields())
     for (const std::string& text : field.texts(description))
       if (!isUnicode(jsonOf(field, text, folder)))
-        fail(ErrorKind::Input, "a scene file is Unicode text, and the {} '{}' is not: give that file or grid another name", Parameter(field.name),
-             printable(text));
+        fail(ErrorKind::Input, "a scene file is Unicode text, and the {} '{}' is not: give that file or grid another name", field.name, printable(text));
   writeTextAtomically(file, layOut(sceneToJson(description, folder)) + "\n");
 }
 

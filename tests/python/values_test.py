@@ -184,7 +184,7 @@ class KeywordTest(unittest.TestCase):
     def test_scenes_that_name_files_that_are_no_unicode_are_not_written(self):
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "s.json"
-            with self.assertRaisesRegex(freevoxels.InputError, r"'volume' '.*\\xff.vdb' is not"):
+            with self.assertRaisesRegex(freevoxels.InputError, r"the volume '.*\\xff.vdb' is not"):
                 freevoxels.save_scene(file, volume=os.fsdecode(b"\xff.vdb"))
             self.assertFalse(file.exists())
 
