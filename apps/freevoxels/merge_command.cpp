@@ -135,7 +135,7 @@ ExrOptions imageHeaderOf(const Merge& merge, const OutputDescription& output) {
 
 void MergeCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("merge", "Add up the parts of an image that were rendered share by share");
-  command->add_option("PART... OUT", files_, "Files of sums, then images to write: .exr (linear, premultiplied) or .png (sRGB)")
+  command->add_option("FILES", files_, "PART... OUT...: files of sums, then images to write, .exr (linear, premultiplied) or .png (sRGB)")
       ->required();
   scene_.addSection(*command, "output");
   messages_.add(*command);

@@ -1,5 +1,7 @@
 // What is asked for wrongly is refused before any work, in a sentence that names it: exit code 2.
 
+#include <sstream>
+
 #include "tests/commands/program_runner.h"
 
 namespace freevoxels::test {
@@ -119,6 +121,34 @@ TEST_F(CommandTest, EveryCommandHasHelpWithItsOptions) {
     EXPECT_EQ(result.err, "");
   }
   EXPECT_NE(run("render --help").out.find("freevoxels render cloud.vdb"), std::string::npos);
+}
+
+/// The first word of each line that describes an option, with what follows it up to the blanks before its description.
+std::vector<std::string> describedNames(const std::string& help) {
+  std::vector<std::string> names;
+  std::istringstream lines(help);
+  bool describes = false;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("  ")) describes = line == "Positionals:" || (describes && line.empty());
+    if (describes && line.starts_with("  ") && line[2] != ' ') names.push_back(line.substr(2, line.find("  ", 2) - 2));
+  }
+  return names;
+}
+
+/// CLI11 2.2 and later refuse others, before there is a handler for the exception.
+TEST_F(CommandTest, NamesOfPositionalsAreWords) {
+  std::size_t names = 0;
+  const auto check = [&](const char* program, const Arguments& arguments) {
+    for (const std::string& described : describedNames(runProgramFile(program, arguments).out)) {
+      const std::string name = described.ends_with(" ...") ? described.substr(0, described.size() - 4) : described;
+      EXPECT_EQ(name.find_first_of(" =:{!"), std::string::npos) << program << ": '" << name << "'";
+      ++names;
+    }
+  };
+  for (const char* command : {"render", "turntable", "merge", "oracle", "compare", "info", "generate", "bake", "devices"})
+    check(FREEVOXELS_PROGRAM, {command, "--help"});
+  for (const char* program : {FREEVOXELS_VALIDATE_PROGRAM, FREEVOXELS_VIEW_PROGRAM}) check(program, {"--help"});
+  EXPECT_GE(names, 12u);
 }
 
 TEST_F(CommandTest, VersionIsOneLine) {
