@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "apps/view/keys.h"
+
 namespace freevoxels {
 
 namespace {
@@ -72,7 +74,7 @@ bool isDialogOpen() {
 bool isPressed(const Entry& entry) {
   const ImGuiIO& io = ImGui::GetIO();
   const With with = !io.KeyCtrl ? With::Nothing : io.KeyShift ? With::ControlShift : With::Control;
-  if (entry.key == 0 || entry.with != with || !ImGui::IsKeyPressed(entry.key, false)) return false;
+  if (entry.key == 0 || entry.with != with || !isKeyPressed(entry.key)) return false;
   if (!io.WantTextInput || entry.key == GLFW_KEY_F1) return true;
   const bool ofTexts = entry.action == Action::Undo || entry.action == Action::Redo || entry.action == Action::CopyImage;
   return with != With::Nothing && !ofTexts;
@@ -128,7 +130,7 @@ void drawKeysWindow(bool& open) {
     ImGui::EndTable();
   }
   ImGui::End();
-  if (ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false)) open = false;
+  if (isKeyPressed(GLFW_KEY_ESCAPE)) open = false;
 }
 
 }  // namespace freevoxels

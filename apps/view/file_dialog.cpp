@@ -13,6 +13,7 @@
 
 #include "engine/description/scene_description.h"
 #include "apps/freevoxels/sequence.h"
+#include "apps/view/keys.h"
 #include "apps/view/ui_painter.h"
 #include "apps/view/widgets.h"
 #include "engine/core/error.h"
@@ -267,7 +268,7 @@ void FileDialog::drawName() {
     ImGui::TextUnformatted("");
   bool sure = ImGui::Button(!saves_ ? "Open" : replaces ? "Replace" : "Save", {6.0f * ImGui::GetFontSize(), 0.0f});
   ImGui::SameLine();
-  if (ImGui::Button("Cancel", {6.0f * ImGui::GetFontSize(), 0.0f}) || ImGui::IsKeyPressed(GLFW_KEY_ESCAPE, false))
+  if (ImGui::Button("Cancel", {6.0f * ImGui::GetFontSize(), 0.0f}) || isKeyPressed(GLFW_KEY_ESCAPE))
     ImGui::CloseCurrentPopup();
   ImGui::SameLine();
   if (ImGui::Checkbox("All files", &all_)) go(folder_);

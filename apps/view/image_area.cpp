@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/view/actions.h"
+#include "apps/view/keys.h"
 #include "apps/view/navigation.h"
 #include "apps/view/transfer_model.h"
 #include "apps/view/ui_painter.h"
@@ -151,8 +152,8 @@ void ImageArea::fly(ViewState& state) {
   // A key that is still down after a shortcut or after text was not pressed to fly.
   const bool free = keysAreFree() && !ImGui::GetIO().KeyCtrl;
   for (std::size_t i = 0; i < kFlightKeys.size(); ++i) {
-    const bool pressed = flies_[i] || ImGui::IsKeyPressed(kFlightKeys[i], false);
-    flies_[i] = free && pressed && ImGui::IsKeyDown(kFlightKeys[i]);
+    const bool pressed = flies_[i] || isKeyPressed(kFlightKeys[i]);
+    flies_[i] = free && pressed && isKeyDown(kFlightKeys[i]);
   }
   glm::dvec3 way{double(flies_[0]) - double(flies_[1]), double(flies_[2]) - double(flies_[3]),
                  double(flies_[4]) - double(flies_[5])};

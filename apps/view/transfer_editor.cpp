@@ -1,8 +1,11 @@
 #include "apps/view/transfer_editor.h"
 
+#include <GLFW/glfw3.h>
+
 #include <array>
 #include <cmath>
 
+#include "apps/view/keys.h"
 #include "apps/view/widgets.h"
 
 namespace freevoxels {
@@ -71,7 +74,7 @@ bool OpacityCurve::handle(TransferModel& model, const Frame& frame) {
     selected_ = hovered ? *hovered : model.addOpacity(x, alpha);
     return !hovered;
   }
-  if (selected_ && ImGui::IsItemHovered() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Delete)))
+  if (selected_ && ImGui::IsItemHovered() && isKeyPressed(GLFW_KEY_DELETE, true))
     return remove(model, *selected_);
   const bool moved = ImGui::GetIO().MouseDelta.x != 0.0f || ImGui::GetIO().MouseDelta.y != 0.0f;
   if (!selected_ || !moved || !ImGui::IsItemActive() || !ImGui::IsMouseDown(ImGuiMouseButton_Left))
@@ -158,7 +161,7 @@ bool ColorStrip::handle(TransferModel& model, const PlotSpan& span, float y) {
     selected_ = hovered ? *hovered : model.addColor(span.x(mouse.x));
     return !hovered;
   }
-  if (selected_ && ImGui::IsItemHovered() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Delete)))
+  if (selected_ && ImGui::IsItemHovered() && isKeyPressed(GLFW_KEY_DELETE, true))
     return remove(model, *selected_);
   if (!selected_ || ImGui::GetIO().MouseDelta.x == 0.0f || !ImGui::IsItemActive() ||
       !ImGui::IsMouseDown(ImGuiMouseButton_Left))

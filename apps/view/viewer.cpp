@@ -1,6 +1,5 @@
 #include "apps/view/viewer.h"
 
-#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
 #include <spdlog/spdlog.h>
@@ -283,8 +282,6 @@ bool Viewer::paints() const {
 void Viewer::drawFrame() {
   const bool paint = paints();
   if (paint && !swapchain_.acquire()) return;
-  // Dear ImGui would go from field to field.
-  ImGui::GetIO().KeyMap[ImGuiKey_Tab] = ImGui::GetIO().WantTextInput ? GLFW_KEY_TAB : -1;
   window_.beginFrame();
   drawWindow();
   act();

@@ -11,6 +11,7 @@
 #include "engine/description/scene_description.h"
 #include "apps/view/actions.h"
 #include "apps/view/clip_panel.h"
+#include "apps/view/keys.h"
 #include "apps/view/widgets.h"
 #include "engine/core/error.h"
 
@@ -135,8 +136,8 @@ void SequencePanel::playOrPause() {
 
 void SequencePanel::takeKeys(int frames, int& frame) {
   if (!keysAreFree()) return;
-  if (ImGui::IsKeyPressed(GLFW_KEY_SPACE, false)) playOrPause();
-  const int step = int(ImGui::IsKeyPressed(GLFW_KEY_PERIOD)) - int(ImGui::IsKeyPressed(GLFW_KEY_COMMA));
+  if (isKeyPressed(GLFW_KEY_SPACE)) playOrPause();
+  const int step = int(isKeyPressed(GLFW_KEY_PERIOD, true)) - int(isKeyPressed(GLFW_KEY_COMMA, true));
   if (step == 0) return;
   plays_ = false;
   frame = (frame + step + frames) % frames;

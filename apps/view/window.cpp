@@ -11,6 +11,7 @@
 #include <limits>
 #include <utility>
 
+#include "apps/view/keys.h"
 #include "engine/core/error.h"
 
 namespace freevoxels {
@@ -113,7 +114,7 @@ void Window::give(const InputEvent& event) {
       ImGui_ImplGlfw_ScrollCallback(window_, event.value.x, event.value.y);
       break;
     case InputEvent::Kind::Key:
-      ImGui_ImplGlfw_KeyCallback(window_, event.code, 0, event.down ? GLFW_PRESS : GLFW_RELEASE, 0);
+      giveKey(window_, event.code, event.down);
       break;
     case InputEvent::Kind::Character:
       io.AddInputCharacter(static_cast<unsigned int>(event.code));
@@ -122,11 +123,18 @@ void Window::give(const InputEvent& event) {
 }
 
 void Window::beginFrame() {
+  keepTab();
   for (const InputEvent& event : input_.nextFrame()) give(event);
   ImGui_ImplGlfw_NewFrame();
   ImGuiIO& io = ImGui::GetIO();  // not the mouse as it is by now
+#if IMGUI_VERSION_NUM < 18700
   io.MousePos = {cursor_.x, cursor_.y};
   std::ranges::copy(buttons_, io.MouseDown);
+#else
+  io.ConfigInputTrickleEventQueue = false;  // input_ has chosen what one frame has
+  io.AddMousePosEvent(cursor_.x, cursor_.y);
+  for (std::size_t i = 0; i < buttons_.size(); ++i) io.AddMouseButtonEvent(int(i), buttons_[i]);
+#endif
   ImGui::NewFrame();
 }
 
