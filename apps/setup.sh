@@ -5,7 +5,8 @@
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)"
 
-# The one list of what FreeVoxels needs of Debian 12; third_party_notes/README.md says why.
+# The one list of what FreeVoxels needs of Debian 12 and 13; third_party_notes/README.md says why. Of "a|b", names of one package in
+# different releases, it takes the first that is installed or else exists.
 packages=(
   g++ cmake ninja-build pkg-config
   libvulkan-dev libvulkan-volk-dev mesa-vulkan-drivers vulkan-validationlayers
@@ -23,23 +24,37 @@ packages=(
 # Only freevoxels-mpi, and so all, needs Open MPI, which brings 38 packages; the fuzzers alone need Clang.
 for target in "$@"; do
   case $target in freevoxels-mpi | all) packages+=(libopenmpi-dev) ;; esac
-  case $target in all) packages+=(clang libclang-rt-14-dev) ;; esac
+  case $target in all) packages+=(clang 'libclang-rt-dev|libclang-rt-14-dev') ;; esac
 done
 
 say() { echo "setup: $*"; }
 
 installed() { [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
+# first TEST NAME|NAME...: the first name that passes the test.
+first() {
+  local name
+  for name in ${2//|/ }; do
+    if "$1" "$name"; then
+      echo "$name"
+      return
+    fi
+  done
+  return 1
+}
+
+exists() { [ -n "$(apt-cache madison "$1" 2>/dev/null)" ]; }
+
 install_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     say "this script installs Debian packages, and this system has no apt-get."
-    say "Install what these Debian 12 packages hold, then run: cmake --preset release && cmake --build --preset release"
-    say "  ${packages[*]}"
+    say "Install what these Debian packages hold, then run: cmake --preset release && cmake --build --preset release"
+    say "  ${packages[*]%%|*}"
     exit 1
   fi
   local missing=() package
   for package in "${packages[@]}"; do
-    installed "$package" || missing+=("$package")
+    first installed "$package" >/dev/null || missing+=("$package")
   done
   if [ ${#missing[@]} -eq 0 ]; then
     say "all Debian packages are there"
@@ -49,15 +64,22 @@ install_packages() {
   local as_root=()
   if [ "$(id -u)" -ne 0 ]; then
     if ! command -v sudo >/dev/null; then
-      say "as root, please run: apt-get install ${missing[*]}"
+      say "as root, please run: apt-get install ${missing[*]%%|*}"
       exit 1
     fi
     as_root=(sudo)
   fi
-  say "installing with apt-get: ${missing[*]}"
   "${as_root[@]}" apt-get update -qq
+  local found=()
+  for package in "${missing[@]}"; do
+    found+=("$(first exists "$package")") || {
+      say "apt-get knows no package ${package//|/ or }: FreeVoxels is built with the packages of Debian 12 or 13"
+      exit 1
+    }
+  done
+  say "installing with apt-get: ${found[*]}"
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get install -y -qq --no-install-recommends -o DPkg::Lock::Timeout=120 "${missing[@]}"
+    apt-get install -y -qq --no-install-recommends -o DPkg::Lock::Timeout=120 "${found[@]}"
   installed_packages=1
 }
 
