@@ -41,7 +41,7 @@ FREEVOXELS_VALIDATION
 .BR freevoxels-view (1),
 .BR freevoxels-bench (1),
 .BR freevoxels-validate (1),
-and /usr/share/doc/freevoxels/manual
+and /usr/share/doc/freevoxels/apps/manual
 SECTIONS
 
 mkdir -p "$out"

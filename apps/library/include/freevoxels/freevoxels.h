@@ -7,7 +7,7 @@
 // Keys outside of sections override those inside. Keys that are left out have the command line's defaults. The images equal the
 // command line's bit for bit. A whole scene file (loadScene) may be given everywhere: a function ignores sections that it cannot use,
 // such as "output" where an image is drawn. Keys outside of sections that it cannot use are errors. All keys, their values and
-// defaults are in share/doc/freevoxels/scene_keys.md.
+// defaults are in share/doc/freevoxels/apps/scenes/README.md.
 //
 // Threads: any thread may call any function, with these exceptions. An object must not be assigned to, moved from or destroyed
 // while another thread uses it; frames of one device are drawn one after another.
