@@ -46,8 +46,7 @@ bool chooseGrid(const char* label, const std::vector<GridChoice>& grids, bool Gr
   if (given == words.end()) words.push_back(*name);
   int chosen = name ? int(std::ranges::find(words.begin() + 1, words.end(), *name) - words.begin()) : 0;
   if (!choose(label, words, chosen)) return false;
-  name.reset();
-  if (chosen > 0) name = words[std::size_t(chosen)];
+  name = chosen > 0 ? std::optional(words[std::size_t(chosen)]) : std::nullopt;
   return true;
 }
 
