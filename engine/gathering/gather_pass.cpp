@@ -66,7 +66,8 @@ std::uint64_t latticeSize(const shader::GatherFrame& frame) {
 
 GatherPass::GatherPass(const Device& device)
     : device_(device), frame_(device, sizeof(shader::GatherFrame), MemoryUse::Device, "gather frame",
-             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT) {}
+             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
+      noDistance_(device, glm::ivec2(1), kTargetScalarFormat, "no distance") {}
 
 void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels,
                               Extent marched) {
@@ -249,10 +250,11 @@ void GatherPass::recordResampling(Commands& commands, const shader::GatherFrame&
   const Sums& samples = scalars ? gathered_ : smoothed_;
   const auto taps = std::uint32_t(frame.pitch >= 1.0f ? shader::kSparseResampleTaps : shader::kResampleTaps);
   makeRoom(rows_, std::uint64_t(frame.size.x) * std::uint64_t(frame.samples.y));
+  if (!withDistance) commands.transition(noDistance_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kComputeStage, kComputeStage);
   for (const bool alongY : {false, true}) {
     std::vector<Binding> bindings = sumBindings(alongY ? rows_ : samples, alongY ? samples : rows_);
     bindings.emplace_back(&targets.colorEnergy);
-    bindings.emplace_back(withDistance ? &targets.distance : &targets.colorEnergy);
+    bindings.emplace_back(withDistance ? &targets.distance : &noDistance_);
     commands.dispatch(makeComputePipeline(device_, shaders::gather_resample, {withDistance, alongY, taps}), bindings,
                       {frame.pixelExtent.x, alongY ? frame.pixelExtent.y : frame.seenExtent.y, 1});
     commands.barrier(kComputeStage, kComputeStage);

@@ -78,6 +78,7 @@ class GatherPass {
   GatherLattice lattice_;  ///< of the last frame
   SampleRectangle seen_;   ///< of the last frame: outside of it sums are 0 and not stored
   Buffer frame_;  ///< shader::GatherFrame
+  RenderTarget noDistance_;  ///< bound where a frame has none, of the format that the shader declares
   Sums gathered_, smoothed_, rows_;
   Adaptive adaptive_;
 };
