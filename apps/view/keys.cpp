@@ -75,8 +75,8 @@ constexpr std::array kModifiers{
     Modifier{GLFW_KEY_LEFT_SUPER, GLFW_KEY_RIGHT_SUPER, ImGuiKey_LeftSuper, ImGuiKey_RightSuper, ImGuiKey(ImGuiMod_Super)},
 };
 
-/// Stands for Tab outside of text fields: a key that Dear ImGui has no use for, and keyboards do not have.
-constexpr ImGuiKey kTabOfViewer = ImGuiKey_GamepadR3;
+/// Stands for Tab outside of text fields: a key that Dear ImGui has no use for, and that it is never given.
+constexpr ImGuiKey kTabOfViewer = ImGuiKey_ScrollLock;
 
 ImGuiKey namedKey(int key) {
   const auto range = std::ranges::find_if(kRanges, [&](const KeyRange& keys) { return keys.first <= key && key <= keys.last; });

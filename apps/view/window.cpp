@@ -7,6 +7,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 #include <limits>
 #include <utility>
@@ -33,6 +34,10 @@ std::string lastProblem() {
 }  // namespace
 
 WindowSystem::WindowSystem() {
+#ifdef GLFW_PLATFORM  // since 3.4, which tries Wayland first, whose library writes to stderr where it does not run
+  if (std::getenv("WAYLAND_DISPLAY") == nullptr && std::getenv("WAYLAND_SOCKET") == nullptr)
+    glfwInitHint(GLFW_PLATFORM, GLFW_PLATFORM_X11);
+#endif
   if (glfwInit() == GLFW_FALSE)
     fail(ErrorKind::Device, "no window can be opened ({}): 'freevoxels render' draws without a display",
          lastProblem());
