@@ -179,7 +179,7 @@ int main(int count, char** arguments) {
                                            .features = &vulkan.features,
                                            .queueMutex = &vulkan.queueMutex});
     const fv::Volume volume = fv::Volume::open(context, count > 1 ? arguments[1] : "procedural:cloud");
-    fv::Renderer renderer(context, volume, R"({"size": [640, 480], "camera": {"fov": 30}})");
+    fv::Renderer renderer(context, volume, R"({"size": [640, 480], "camera": {"fov": 30}, "orbit": [120, 20]})");
 
     // The second frame is drawn while the first one is read and written.
     fv::Frame first = renderer.submit(R"({"orbit": [120, 20]})");

@@ -9,7 +9,7 @@ namespace fv = freevoxels::v1;
 int main(int count, char** arguments) {
   try {
     const fv::Volume volume = fv::Volume::open(count > 1 ? arguments[1] : "procedural:cloud");
-    fv::Renderer renderer(volume, R"({"size": [640, 480], "camera": {"fov": 30}})");
+    fv::Renderer renderer(volume, R"({"size": [640, 480], "camera": {"fov": 30}, "orbit": [120, 20]})");
     for (int azimuth = 0; azimuth < 360; azimuth += 120) {
       const fv::Image image = renderer.render("{\"orbit\": [" + std::to_string(azimuth) + ", 20]}");
       const std::string file = "view_" + std::to_string(azimuth) + ".png";
