@@ -5,7 +5,6 @@
 
 #include <cerrno>
 #include <exception>
-#include <initializer_list>
 #include <new>
 #include <string_view>
 #include <system_error>
@@ -17,40 +16,34 @@ namespace {
 
 using freevoxels::ExitCode;
 
-/// Writes the parts and a line's end as they are: where memory is full, no string can be made of them.
-[[noreturn]] void endWith(ExitCode code, std::initializer_list<std::string_view> parts) {
-  const auto put = [&](std::string_view text) {
-    if (write(STDERR_FILENO, text.data(), text.size()) < 0) _exit(int(code));
-  };
-  put("freevoxels: the program could not start: ");
-  for (const std::string_view part : parts) put(part);
-  put("\n");
+/// Writes the sentence as it is: where memory is full, no longer string can be made of it.
+[[noreturn]] void endWith(ExitCode code, std::string_view sentence) {
+  for (const std::string_view part : {std::string_view("freevoxels: the program could not start: "), sentence, std::string_view("\n")})
+    if (write(STDERR_FILENO, part.data(), part.size()) < 0) break;
   _exit(int(code));
 }
 
-[[noreturn]] void endForWantOfResources() {
-  endWith(ExitCode::OutOfMemory, {"raise the limits on threads and memory (ulimit -u, ulimit -v)"});
-}
-
-[[noreturn]] void endAfterBug(std::string_view cause) {
-  endWith(ExitCode::Internal, {"internal error, please report it: ", cause});
-}
-
-[[noreturn]] void endBeforeMain() {
-  if (!std::current_exception()) endAfterBug("std::terminate was called");
+/// Whether the exception that is being handled is the want of memory or threads.
+bool isWantOfResources() {
   try {
     throw;
   } catch (const std::bad_alloc&) {
-    endForWantOfResources();
+    return true;
   } catch (const std::system_error& error) {
-    if (error.code().value() == EAGAIN || error.code().value() == ENOMEM) endForWantOfResources();
-    endAfterBug(freevoxels::printable(error.what()));
-  } catch (const freevoxels::Error& error) {
-    endWith(freevoxels::exitCodeOf(error.kind()), {freevoxels::printable(freevoxels::withOptions(error))});
-  } catch (const std::exception& error) {
-    endAfterBug(freevoxels::printable(error.what()));
+    return error.code().value() == EAGAIN || error.code().value() == ENOMEM;
   } catch (...) {
-    endAfterBug("an exception of unknown type");
+    return false;
+  }
+}
+
+[[noreturn]] void endBeforeMain() {
+  if (!std::current_exception()) endWith(ExitCode::Internal, "internal error, please report it: std::terminate was called");
+  try {
+    throw;
+  } catch (...) {
+    if (isWantOfResources()) endWith(ExitCode::OutOfMemory, "raise the limits on threads and memory (ulimit -u, ulimit -v)");
+    const freevoxels::Failure failure = freevoxels::currentFailure();
+    endWith(failure.code, freevoxels::printable(failure.sentence));
   }
 }
 

@@ -5,6 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "embedded/gather_list.h"
+#include "embedded/gather_list_offsets.h"
 #include "embedded/gather_post_lit.h"
 #include "embedded/gather_post_lit_parts.h"
 #include "embedded/gather_post_lit_region.h"
@@ -23,8 +25,6 @@
 #include "embedded/gather_pre_unlit.h"
 #include "embedded/gather_pre_unlit_parts.h"
 #include "embedded/gather_pre_unlit_region.h"
-#include "embedded/gather_list.h"
-#include "embedded/gather_list_offsets.h"
 #include "embedded/gather_refine.h"
 #include "embedded/gather_resample.h"
 #include "embedded/gather_roughness.h"
@@ -197,6 +197,7 @@ void GatherPass::recordListed(Commands& commands, const GatherVolume& volume, co
   constexpr std::size_t kGroup = shader::kGatherTile * shader::kGatherTile;
   shader::SampleListHead head{.ranges = {}, .count = std::uint32_t(places.size())};
   head.ranges[0] = {.x = 1, .y = std::uint32_t((places.size() + kGroup - 1) / kGroup), .z = 1};
+  FV_CHECK_LE(head.ranges[0].y, device_.limits().maxComputeWorkGroupCount[1]);
   for (int i = 1; i < shader::kSampleRanges; ++i) head.ranges[i] = {.x = 1, .y = 0, .z = 1};
   adaptive_ = {};
   adaptive_.list = Buffer(device_, sizeof(head) + places.size_bytes(), MemoryUse::Upload, "listed samples", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
