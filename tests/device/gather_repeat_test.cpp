@@ -53,7 +53,8 @@ class GatherRepeatTest : public GatherTest {
     Camera camera;
     FrameSettings settings;
   };
-  static std::vector<View> views(const Volume& volume) {
+  /// The last one has more lights than are evaluated at samples if `crowded`.
+  static std::vector<View> views(const Volume& volume, bool crowded) {
     Camera orthographic, inside;
     orthographic.orthographic = true;
     inside.position = glm::dvec3(volume.indexToWorld * glm::dvec4(glm::dvec3(volume.dimensions) * glm::dvec3(0.5, 0.6, 0.9), 1.0));
@@ -62,17 +63,17 @@ class GatherRepeatTest : public GatherTest {
     const Lighting sun{.lights = {{.place = {1.0, 0.7, 0.2}}}, .ambient = glm::dvec3(0.2), .surface = 0.5};
     Lighting many = sun;
     many.surface = 0.0;
-    for (int i = 0; i < 4; ++i) many.lights.push_back({.place = {0.3 * i, 1.0, -0.5}, .atInfinity = i % 2 == 0});
-    FrameSettings plain = gathering({200, 184}), levels = plain, lit = plain, crowded = plain;
+    for (int i = 0; i < (crowded ? 4 : 1); ++i) many.lights.push_back({.place = {0.3 * i, 1.0, -0.5}, .atInfinity = i % 2 == 0});
+    FrameSettings plain = gathering({136, 124}), levels = plain, lit = plain, surrounded = plain;
     plain.depth = true;
     levels.lod = 2.0f;
     lit.lighting = sun;
     lit.depth = true;
-    crowded.lighting = many;
+    surrounded.lighting = many;
     return {{framingCamera(volume, 35.0, 25.0, 1.1, {}), plain},
             {framingCamera(volume, 120.0, 50.0, 1.1, orthographic), levels},
             {framingCamera(volume, 250.0, 10.0, 1.1, {}), lit},
-            {inside, crowded}};
+            {inside, surrounded}};
   }
   static void expectSame(const Image& image, const Image& expected) {
     EXPECT_TRUE(image.pixels == expected.pixels);
@@ -85,7 +86,7 @@ TEST_F(GatherRepeatTest, FramesAndSharesHaveTheSameBitsEveryTimeAndWithAnyNumber
   std::size_t scene = 0;
   for (const Scene& each : scenes()) {
     Renderer first(*one.device, each.volume, each.classification, {}), second(*two.device, each.volume, each.classification, {});
-    const std::vector<View> seen = views(each.volume);
+    const std::vector<View> seen = views(each.volume, scene % 8 == 0);
     for (std::size_t view = 0; view < seen.size(); ++view) {
       const auto& [camera, settings] = seen[view];
       SCOPED_TRACE(testing::Message() << "scene " << scene << ", view " << view);
@@ -93,7 +94,7 @@ TEST_F(GatherRepeatTest, FramesAndSharesHaveTheSameBitsEveryTimeAndWithAnyNumber
       EXPECT_GT(std::ranges::count_if(image.pixels, [](const glm::vec4& pixel) { return pixel.a > 0.01f; }), 500);
       expectSame(first.render(camera, settings), image);
       expectSame(second.render(camera, settings), image);
-      if (view != scene % seen.size()) continue;  // shares take longer
+      if (view != scene % 3) continue;  // shares take longer
       const FixedSums whole = second.renderShares(camera, settings, {});
       for (const int count : {2, 3}) {
         FixedSums sums = first.renderShares(camera, settings, {0, count});
