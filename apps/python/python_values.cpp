@@ -54,16 +54,10 @@ struct ExceptionClass {
 /// The exception classes by ErrorKind, owned by the module. Other kinds are freevoxels.Error itself.
 std::array<PyObject*, 8> exceptionClasses{};
 
-std::string keyword(std::string_view parameter) {
-  std::string name(parameter);
-  std::ranges::replace(name, '-', '_');
-  return name;
-}
-
 /// The text with its parameters as keyword arguments: 'memory_limit', draw='splats'.
 std::string withKeywords(std::string_view text) {
   return spelled(text, [](std::string_view name, std::string_view value) {
-    return value.empty() ? fmt::format("'{}'", keyword(name)) : fmt::format("{}='{}'", keyword(name), value);
+    return value.empty() ? fmt::format("'{}'", keywordOf(name)) : fmt::format("{}='{}'", keywordOf(name), value);
   });
 }
 
@@ -158,7 +152,7 @@ Json ValueReader::read(py::handle value, const std::string& place, int depth) co
 /// Sets Python's current exception.
 void raise(const Error& error) {
   py::list parameters;
-  for (const std::string& parameter : error.parameters()) parameters.append(keyword(parameter));
+  for (const std::string& parameter : error.parameters()) parameters.append(keywordOf(parameter));
   const py::handle type = exceptionClasses[std::size_t(error.kind())];
   const py::object exception = type(printable(withKeywords(error.text())));
   exception.attr("parameters") = py::tuple(parameters);
@@ -172,6 +166,12 @@ std::string keywordText(py::handle keyword) {
   if (const char* const characters = PyUnicode_AsUTF8AndSize(keyword.ptr(), &size); characters != nullptr) return {characters, std::size_t(size)};
   PyErr_Clear();
   fail(ErrorKind::Usage, "there is no option whose name has characters that Unicode does not have");
+}
+
+std::string keywordOf(std::string_view name) {
+  std::string keyword(name);
+  std::ranges::replace(keyword, '-', '_');
+  return keyword;
 }
 
 std::string typeName(py::handle value) {

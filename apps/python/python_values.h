@@ -22,6 +22,8 @@ pybind11::object pythonOf(const nlohmann::json& value);
 pybind11::str fileNameOf(std::string_view text);
 /// The name of a keyword argument. Fails with ErrorKind::Usage for what is no Unicode text.
 std::string keywordText(pybind11::handle keyword);
+/// The name of an option or key as a keyword: "density_scale" for "density-scale".
+std::string keywordOf(std::string_view name);
 /// The name of a value's type, for messages.
 std::string typeName(pybind11::handle value);
 
