@@ -40,8 +40,9 @@ bool hasClip(const std::string& keyword) {
   return keyword == "input" || isClip(keyword);
 }
 
-/// The numbers of a keyword; several unless `count` is 1. Nothing if it is not given.
-std::optional<std::vector<double>> numbersOf(const py::kwargs& keywords, const char* name, std::size_t count, const char* form) {
+/// The `count` numbers of a keyword, or a single one where `orSingle`. Nothing if it is not given.
+std::optional<std::vector<double>> numbersOf(const py::kwargs& keywords, const char* name, std::size_t count, const char* form,
+                                             bool orSingle = false) {
   if (!keywords.contains(name) || py::object(keywords[name]).is_none()) return std::nullopt;
   std::vector<double> numbers;
   const std::function<void(const Json&)> collect = [&](const Json& value) {
@@ -54,13 +55,13 @@ std::optional<std::vector<double>> numbersOf(const py::kwargs& keywords, const c
   };
   const Json value = jsonOf(keywords[name], name);
   collect(value);
-  if (numbers.size() != count && !(count == 3 && value.is_number() && std::string_view(name) == "spacing"))
+  if (numbers.size() != count && !(orSingle && value.is_number()))
     fail(ErrorKind::Input, "{} takes {}, not {} number{}", Parameter(name), form, numbers.size(), numbers.size() == 1 ? "" : "s");
   return numbers;
 }
 
 glm::dmat4 placementOf(const py::kwargs& keywords) {
-  const auto spacing = numbersOf(keywords, "spacing", 3, "one number, or three along (x, y, z)");
+  const auto spacing = numbersOf(keywords, "spacing", 3, "one number, or three along (x, y, z)", true);
   const auto origin = numbersOf(keywords, "origin", 3, "three numbers (x, y, z)");
   const auto transform = numbersOf(keywords, "transform", 16, "a matrix of 4 x 4 numbers");
   if (!transform) {
