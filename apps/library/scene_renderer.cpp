@@ -1,5 +1,6 @@
 #include "apps/library/scene_renderer.h"
 
+#include <functional>
 #include <utility>
 
 #include "apps/freevoxels/output_options.h"
@@ -200,36 +201,30 @@ void SceneRenderer::complete(glm::ivec2 size) {
   camera_ = camera;
 }
 
-Image SceneRenderer::draw(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress) {
+template <typename Work>
+auto SceneRenderer::draw(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress,
+                         const Work& work) {
   refuseInsideValidationLog();
   context_->refuseAfterFork();
   const Turn turn(*this);
   const Progress whole = wholeProgress(progress);
   const FrameSettings settings = prepare(options, step, depth, whole);
-  Image image = renderer_->render(scene_.camera, settings, whole);
+  auto drawn = std::invoke(work, *renderer_, scene_.camera, settings, whole);
   if (progress) progress("complete", 1.0);
   complete(settings.size);
-  return image;
+  return drawn;
 }
 
 Image SceneRenderer::render(const KeywordOptions& options, bool depth, const Progress& progress) {
-  return draw(options, std::nullopt, depth, progress);
+  return draw(options, std::nullopt, depth, progress, &Renderer::render);
 }
 
 Image SceneRenderer::renderTurn(const KeywordOptions& options, TurnStep step, bool depth, const Progress& progress) {
-  return draw(options, step, depth, progress);
+  return draw(options, step, depth, progress, &Renderer::render);
 }
 
 std::shared_ptr<const FrameTargets> SceneRenderer::renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress) {
-  refuseInsideValidationLog();
-  context_->refuseAfterFork();
-  const Turn turn(*this);
-  const Progress whole = wholeProgress(progress);
-  const FrameSettings settings = prepare(options, std::nullopt, depth, whole);
-  std::shared_ptr<const FrameTargets> targets = renderer_->renderOnDevice(scene_.camera, settings, whole);
-  if (progress) progress("complete", 1.0);
-  complete(settings.size);
-  return targets;
+  return draw(options, std::nullopt, depth, progress, &Renderer::renderOnDevice);
 }
 
 std::vector<StageTime> SceneRenderer::timings() const {

@@ -67,7 +67,9 @@ class SceneRenderer {
 
  private:
   class Turn;
-  Image draw(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress);
+  /// Prepares a frame and returns what `work`, a drawing function of Renderer, makes of it.
+  template <typename Work>
+  auto draw(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress, const Work& work);
   FrameSettings prepare(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress);
   void resolveView(const SceneDescription& description, std::optional<TurnStep> step);
   void makeRenderer(const KeywordOptions& options, const Progress& progress);
