@@ -159,8 +159,8 @@ void addVolume(py::module_& module) {
       .def_static("open", &volumeFromFile, "file"_a = py::none(),
                   "open(file=None, **kwargs)\n--\n\n"
                   "Reads an OpenVDB file, or makes 'procedural:NAME'; without a file the volume of a scene. Options: grid, resolution,\n"
-                  "and those of a frame, of which emission=True, temperature_grid and albedo_grid add grids to read. Of a baked volume (.fvx)\n"
-                  "a level of detail is read when a frame needs it.")
+                  "and those of a frame, of which emission=True, temperature_grid and albedo_grid add grids to read. Of a baked\n"
+                  "volume (.fvx) a level of detail is read when a frame needs it.")
       .def("__repr__", [](const PythonVolume& v) {
         const glm::ivec3 size = v.describe().dimensions;
         return fmt::format("<freevoxels.Volume of {}: {} x {} x {} voxels along z, y, x>", printable(v.describe().source), size.z, size.y,
