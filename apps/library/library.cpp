@@ -267,14 +267,7 @@ Image Renderer::renderTurn(int frame, int frames, std::string_view scene, bool w
 }
 
 std::string Renderer::camera() const {
-  const std::optional<CameraDescription> camera = state_->renderer.camera();
-  if (!camera) return "{}";
-  const auto triple = [](const glm::dvec3& v) { return Json{v.x, v.y, v.z}; };
-  Json scene{{"camera-position", triple(*camera->position)}, {"look-at", triple(*camera->lookAt)}, {"up", triple(*camera->up)}};
-  if (camera->orthographicHeight) scene["orthographic"] = *camera->orthographicHeight;
-  if (camera->verticalFov) scene["fov"] = *camera->verticalFov;
-  scene["size"] = Json{camera->size.x, camera->size.y};
-  return scene.dump();
+  return state_->renderer.camera().dump();
 }
 
 Frame Renderer::submit(std::string_view scene, bool withDepth, Progress progress) {

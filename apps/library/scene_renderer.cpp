@@ -232,9 +232,15 @@ std::vector<StageTime> SceneRenderer::timings() const {
   return timings_;
 }
 
-std::optional<CameraDescription> SceneRenderer::camera() const {
+nlohmann::json SceneRenderer::camera() const {
   const std::lock_guard lock(lastFrameMutex_);
-  return camera_;
+  if (!camera_) return Json::object();
+  const auto triple = [](const glm::dvec3& v) { return Json{v.x, v.y, v.z}; };
+  Json keywords{{"camera-position", triple(*camera_->position)}, {"look-at", triple(*camera_->lookAt)}, {"up", triple(*camera_->up)}};
+  if (camera_->orthographicHeight) keywords["orthographic"] = *camera_->orthographicHeight;
+  if (camera_->verticalFov) keywords["fov"] = *camera_->verticalFov;
+  keywords["size"] = {camera_->size.x, camera_->size.y};
+  return keywords;
 }
 
 }  // namespace freevoxels

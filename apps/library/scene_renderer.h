@@ -61,8 +61,8 @@ class SceneRenderer {
 
   /// Times of the stages that the last complete frame ran, those of data that it made included. Does not wait for a frame that is being drawn.
   std::vector<StageTime> timings() const;
-  /// The camera of the last complete frame, as fields of the section "camera"; nothing before.
-  std::optional<CameraDescription> camera() const;
+  /// The camera of the last complete frame, as keywords that give it; an empty object before.
+  nlohmann::json camera() const;
   const std::shared_ptr<DeviceContext>& context() const { return context_; }
 
  private:

@@ -110,17 +110,14 @@ Turntable turntableOf(const py::object& renderer, const py::object& count, const
 
 /// Options that give the camera of the last frame.
 py::object cameraOf(const SceneRenderer& renderer) {
-  const std::optional<CameraDescription> camera = renderer.camera();
-  if (!camera) return py::none();
-  const auto triple = [](const glm::dvec3& v) { return py::make_tuple(v.x, v.y, v.z); };
-  py::dict fields;
-  fields["camera_position"] = triple(*camera->position);
-  fields["look_at"] = triple(*camera->lookAt);
-  fields["up"] = triple(*camera->up);
-  if (camera->orthographicHeight) fields["orthographic"] = *camera->orthographicHeight;
-  if (camera->verticalFov) fields["fov"] = *camera->verticalFov;
-  fields["size"] = py::make_tuple(camera->size.x, camera->size.y);
-  return fields;
+  const Json camera = renderer.camera();
+  if (camera.empty()) return py::none();
+  py::dict options;
+  for (const auto& [name, value] : camera.items()) {
+    const py::object numbers = pythonOf(value);
+    options[py::str(keywordOf(name))] = value.is_array() ? py::tuple(numbers) : numbers;
+  }
+  return options;
 }
 
 std::vector<std::pair<std::string, double>> timingsOf(const SceneRenderer& renderer) {
