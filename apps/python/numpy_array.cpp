@@ -93,11 +93,9 @@ ArrayView viewOf(const py::object& source, std::string_view what) {
           .strides = sizesOf(array.attr("strides"))};
 }
 
-std::vector<float> floatsOf(const ArrayView& view) {
+void copyFloats(const ArrayView& view, float* values) {
   const ArrayView floats = viewOf(numpy().attr("ascontiguousarray")(view.array, "dtype"_a = "=f4"), "the array");
-  std::vector<float> values(std::size_t(floats.elements()));
-  if (!values.empty()) std::memcpy(values.data(), floats.data, values.size() * sizeof(float));
-  return values;
+  std::memcpy(values, floats.data, std::size_t(floats.elements()) * sizeof(float));
 }
 
 py::object arrayOf(std::shared_ptr<void> owner, float* values, std::vector<py::ssize_t> shape) {

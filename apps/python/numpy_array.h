@@ -32,8 +32,8 @@ struct ArrayView {
 /// ErrorKind::Input for what is no array, for arrays that are masked, and for elements that are no real numbers of ElementType.
 ArrayView viewOf(const pybind11::object& source, std::string_view what);
 
-/// Copies an array of any type as 32-bit floats in C order.
-std::vector<float> floatsOf(const ArrayView& view);
+/// Copies an array of any type to `values`, as 32-bit floats in C order.
+void copyFloats(const ArrayView& view, float* values);
 
 /// A float32 array of `shape`, in C order, of memory that `owner` keeps for it.
 pybind11::object arrayOf(std::shared_ptr<void> owner, float* values, std::vector<pybind11::ssize_t> shape);

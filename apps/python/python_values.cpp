@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <memory>
 #include <utility>
 
@@ -239,14 +238,14 @@ Image imageOf(const py::object& pixels, const py::object& depth) {
     fail(ErrorKind::Input, "an image to save has linear colours as floats, 1 is white, and not {}: give the array that render() returned",
          colors.typeName());
   Image image{.size = {colors.shape[1], colors.shape[0]}};
-  const std::vector<float> values = floatsOf(colors);
-  image.pixels.resize(values.size() / 4);
-  std::memcpy(image.pixels.data(), values.data(), values.size() * sizeof(float));
+  image.pixels.resize(std::size_t(colors.elements()) / 4);
+  copyFloats(colors, &image.pixels.front().x);
   if (depth.is_none()) return image;
   const ArrayView distances = viewOf(depth, fmt::format("{}", Parameter("depth")));
   if (distances.dimensions() != 2 || distances.shape[0] != image.size.y || distances.shape[1] != image.size.x)
     fail(ErrorKind::Input, "the depth to save has the shape (height, width) of its image");
-  image.depth = floatsOf(distances);
+  image.depth.resize(image.pixels.size());
+  copyFloats(distances, image.depth.data());
   return image;
 }
 
