@@ -13,10 +13,6 @@ PROGRAM = os.environ["FREEVOXELS_PROGRAM"]
 LONG = np.ones((6, 9, 30), "float32")  # seen from the side much wider than from its end
 
 
-def height(image):
-    return int(np.count_nonzero((image[..., 3] > 0.05).any(axis=1)))
-
-
 def distance(camera):
     return float(np.linalg.norm(np.subtract(camera["camera_position"], camera["look_at"])))
 
@@ -24,13 +20,13 @@ def distance(camera):
 class TurntableTest(unittest.TestCase):
     def test_frames_are_those_of_the_command_line(self):
         with tempfile.TemporaryDirectory() as folder:
-            for source, words in (("procedural:cloud", {"resolution": 20}), ("procedural:shells", {"resolution": (24, 16, 12), "orbit": (80, 10)})):
-                options = dict(size=(48, 40), **words)
-                flags = [f"--{key}={'x'.join(map(str, value)) if key != 'orbit' else '80,10'}" if isinstance(value, tuple) else f"--{key}={value}"
-                         for key, value in options.items()]
-                made = subprocess.run([PROGRAM, "turntable", source, f"{folder}/cli_#.png", "--frames", "5", *flags], capture_output=True, text=True)
+            for source, resolution, view in (("procedural:cloud", "20", {}), ("procedural:shells", "24x16x12", {"orbit": "80,10"})):
+                options = {"size": "48x40", **view}
+                flags = [f"--{key}={value}" for key, value in {"resolution": resolution, **options}.items()]
+                made = subprocess.run([PROGRAM, "turntable", source, f"{folder}/cli_#.png", "--frames", "5", *flags], capture_output=True,
+                                      text=True)
                 self.assertEqual(made.returncode, 0, made.stderr)
-                renderer = freevoxels.Renderer(freevoxels.Volume.open(source, **words), size=(48, 40), **{k: v for k, v in words.items() if k == "orbit"})
+                renderer = freevoxels.Renderer(freevoxels.Volume.open(source, resolution=resolution), **options)
                 frames = renderer.turntable(5)
                 self.assertEqual(len(frames), 5)
                 for number, image in enumerate(frames):
