@@ -65,11 +65,10 @@ class FREEVOXELS_API Error : public std::runtime_error {
 };
 
 /// Called about every 50 ms, and at the end, with the name of a stage and the fraction of the frame that is done, an estimate that never
-/// decreases and ends at 1: by the thread that called
-/// render(), or, for a submitted frame, by a thread of the renderer. An exception that it throws cancels the work and is passed on
-/// to the caller. It may call functions of this library, also draw with another renderer, whose frame it then waits for. ErrorKind::Usage is
-/// thrown by what might never end: drawing with the renderer that calls it, and waiting for a submitted frame that is not complete. It must
-/// not destroy the renderer that calls it.
+/// decreases and ends at 1. The thread that called render() calls it or, for a submitted frame, a thread of the renderer. An exception
+/// that it throws cancels the work and is passed on to the caller. It may call functions of this library, also draw with another
+/// renderer, whose frame it then waits for. ErrorKind::Usage is thrown by what might never end: drawing with the renderer that calls it,
+/// and waiting for a submitted frame that is not complete. It must not destroy the renderer that calls it.
 using Progress = std::function<void(std::string_view stage, double fraction)>;
 
 struct ContextOptions {
@@ -170,8 +169,8 @@ class FREEVOXELS_API Frame {
 };
 
 /// Draws images of one volume. The scene of the renderer gives the view: the distance of the eye, the look-at point and the default
-/// lights. The "orbit" of a frame turns the eye around that point. What frames share, such as the attenuation table, stays on the device and is
-/// made again only if a frame's scene changes it.
+/// lights. The "orbit" of a frame turns the eye around that point. What frames share, such as the attenuation table, stays on the device
+/// and is made again only if a frame's scene changes it.
 class FREEVOXELS_API Renderer {
  public:
   /// `scene` holds for every frame.
@@ -188,8 +187,8 @@ class FREEVOXELS_API Renderer {
   /// Draws frame `frame` of a full turn of `frames`, with the cameras and the light of `freevoxels turntable`: the eye is as far away in
   /// all of them as the farthest needs.
   Image renderTurn(int frame, int frames, std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {});
-  /// Begins the same frame as render() and returns at once. Frames of a renderer are drawn in the order in which they were submitted. Throws
-  /// for errors of `scene`; Frame::wait() throws those of drawing.
+  /// Begins the same frame as render() and returns at once. Frames of a renderer are drawn in the order in which they were submitted.
+  /// Throws for errors of `scene`; Frame::wait() throws those of drawing.
   Frame submit(std::string_view scene = "{}", bool withDepth = false, Progress progress = {});
 
   /// The camera of the last complete frame, as the text of a scene that gives it. "{}" before the first frame.
