@@ -51,12 +51,10 @@ class VoxelValues {
 }  // namespace
 
 std::vector<std::uint8_t> bricksAround(const fvx::FvxFile& file, int level) {
-  constexpr int m = fvx::kChunkEdge / kEdge;
   Cells cells((file.dimensions(level) + kEdge - 1) / kEdge);
   for (const fvx::ChunkEntry& chunk : file.chunks(fvx::Channel::Scalars, level))
     for (int brick = 0; brick < fvx::kChunkBricks; ++brick)
-      if ((chunk.brickMask >> brick & 1u) != 0)
-        cells.values[cells.index(chunk.cell * m + glm::ivec3(brick % m, brick / m % m, brick / (m * m)))] = 1;
+      if (chunk.hasBrick(brick)) cells.values[cells.index(chunk.brickCell(brick))] = 1;
   return spread(cells, -1, 1).values;
 }
 

@@ -24,7 +24,7 @@ struct ChunkPart {
 };
 
 std::vector<ChunkPart> chunksOf(const FvxFile& file, Channel channel, int level, const fvx::VoxelBox& box) {
-  constexpr int n = ScalarBricks::kEdge, m = fvx::kChunkEdge / n;
+  constexpr int n = ScalarBricks::kEdge;
   std::vector<ChunkPart> chunks;
   const glm::ivec3 firstChunk = box.first / fvx::kChunkEdge, endChunk = (box.end + fvx::kChunkEdge - 1) / fvx::kChunkEdge;
   for (glm::ivec3 cell = firstChunk; cell.z < endChunk.z; ++cell.z)
@@ -34,8 +34,8 @@ std::vector<ChunkPart> chunksOf(const FvxFile& file, Channel channel, int level,
         if (stored.chunk == nullptr) continue;
         std::size_t number = 0;
         for (int brick = 0; brick < fvx::kChunkBricks; ++brick) {
-          if ((stored.chunk->brickMask >> brick & 1u) == 0) continue;
-          const glm::ivec3 first = n * (cell * m + glm::ivec3(brick % m, brick / m % m, brick / (m * m)));
+          if (!stored.chunk->hasBrick(brick)) continue;
+          const glm::ivec3 first = n * stored.chunk->brickCell(brick);
           if (glm::all(glm::greaterThanEqual(first, box.first)) && glm::all(glm::lessThan(first, box.end)))
             stored.bricks.emplace_back(number, (first - box.first) / n);
           ++number;

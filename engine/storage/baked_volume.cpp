@@ -73,12 +73,11 @@ bool copyBrick(const ScalarBricks& scalars, glm::ivec3 first, float* values) {
 
 /// Empty if no voxel has a value.
 std::vector<float> chunkOf(std::span<const ScalarBricks* const> components, glm::ivec3 cell) {
-  constexpr int n = ScalarBricks::kEdge, m = fvx::kChunkEdge / n;
   std::vector<float> values(components.size() * fvx::kChunkVoxels, kInactiveVoxel);
   bool any = false;
   for (std::size_t component = 0; component < components.size(); ++component)
     for (int brick = 0; brick < fvx::kChunkBricks; ++brick) {
-      const glm::ivec3 first = cell * fvx::kChunkEdge + n * glm::ivec3(brick % m, brick / m % m, brick / (m * m));
+      const glm::ivec3 first = cell * fvx::kChunkEdge + ScalarBricks::kEdge * fvx::cellInChunk(brick);
       if (glm::any(glm::greaterThanEqual(first, components[component]->dimensions()))) continue;
       float* const to = &values[(component * fvx::kChunkBricks + std::size_t(brick)) * fvx::kBrickVoxels];
       any = copyBrick(*components[component], first, to) || any;
@@ -146,12 +145,10 @@ struct BrickPlaces {
   std::vector<std::size_t> first;  ///< by chunk
 
   explicit BrickPlaces(std::span<const ChunkEntry> chunks) {
-    constexpr int m = fvx::kChunkEdge / ScalarBricks::kEdge;
     for (const ChunkEntry& chunk : chunks) {
       first.push_back(cells.size());
       for (int brick = 0; brick < fvx::kChunkBricks; ++brick)
-        if ((chunk.brickMask >> brick & 1u) != 0)
-          cells.push_back(chunk.cell * m + glm::ivec3(brick % m, brick / m % m, brick / (m * m)));
+        if (chunk.hasBrick(brick)) cells.push_back(chunk.brickCell(brick));
     }
   }
 };

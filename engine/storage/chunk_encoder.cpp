@@ -60,10 +60,10 @@ EncodedChunk encodeChunk(const WriteSettings& settings, const ChunkValues& chunk
   entry.minimum = std::numeric_limits<float>::max();
   entry.maximum = -entry.minimum;
   std::span<std::byte> rest(result.bytes);
-  for (std::size_t brick = 0; brick < kChunkBricks; ++brick) {
-    if ((entry.brickMask >> brick & 1u) == 0) continue;
+  for (int brick = 0; brick < kChunkBricks; ++brick) {
+    if (!entry.hasBrick(brick)) continue;
     for (std::size_t component = 0; component < components; ++component) {
-      const std::size_t first = (component * kChunkBricks + brick) * kBrickVoxels;
+      const std::size_t first = (component * kChunkBricks + std::size_t(brick)) * kBrickVoxels;
       const std::span<const float> from =
           values.empty() ? std::span<const float>(nothing) : std::span(values).subspan(first, kBrickVoxels);
       encode(encoding, from, rest.first(brickBytes));

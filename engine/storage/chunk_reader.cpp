@@ -11,7 +11,7 @@ namespace freevoxels::fvx {
 
 namespace {
 
-constexpr int kBrickEdge = ScalarBricks::kEdge, kBricksAlong = kChunkEdge / kBrickEdge;
+constexpr int kBrickEdge = ScalarBricks::kEdge;
 
 /// Calls `visit(value)` for the voxels of a brick that are not among its first `inside` ones along each axis.
 template <typename Visit>
@@ -43,7 +43,7 @@ void ChunkReader::readAll(const ChunkEntry& chunk, std::span<ScalarBricks::Brick
   file_.read(chunk, std::as_writable_bytes(bricks));  // as they are
   std::size_t number = 0;
   for (int brick = 0; brick < kChunkBricks; ++brick) {
-    if ((chunk.brickMask >> brick & 1u) == 0) continue;
+    if (!chunk.hasBrick(brick)) continue;
     checkValues(chunk, brick, areFinite(bricks[number]), bricks[number]);
     ++number;
   }
@@ -56,8 +56,7 @@ void ChunkReader::decode(const ChunkEntry& chunk, int brick, std::span<const std
 
 void ChunkReader::checkValues(const ChunkEntry& chunk, int brick, bool finite, ScalarBricks::Brick& values) const {
   if (!finite) file_.failDamaged(fmt::format("{} has a value that is NaN or infinite", nameOf(chunk)));
-  const glm::ivec3 place(brick % kBricksAlong, brick / kBricksAlong % kBricksAlong, brick / (kBricksAlong * kBricksAlong));
-  const glm::ivec3 inside = glm::min(dimensions_ - chunk.cell * kChunkEdge - place * kBrickEdge, kBrickEdge);
+  const glm::ivec3 inside = glm::min(dimensions_ - chunk.brickCell(brick) * kBrickEdge, kBrickEdge);
   bool isEmpty = true;
   forVoxelsBeyond(inside, values, [&](float& value) {
     isEmpty = isEmpty && value == kInactiveVoxel;

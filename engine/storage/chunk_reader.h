@@ -25,7 +25,7 @@ class ChunkReader {
     std::span<const std::byte> bytes = file_.read(channel_, chunk, buffers_.local());
     std::size_t number = 0;
     for (int brick = 0; brick < kChunkBricks; ++brick) {
-      if ((chunk.brickMask >> brick & 1u) == 0) continue;
+      if (!chunk.hasBrick(brick)) continue;
       for (std::size_t component = 0; component < components_; ++component, bytes = bytes.subspan(brickBytes_))
         if (ScalarBricks::Brick* const values = brickOf(number, component)) decode(chunk, brick, bytes.first(brickBytes_), *values);
       ++number;

@@ -33,6 +33,12 @@ inline constexpr int kChunkVoxels = kChunkEdge * kChunkEdge * kChunkEdge;
 inline constexpr int kBrickVoxels = ScalarBricks::kEdge * ScalarBricks::kEdge * ScalarBricks::kEdge;
 static_assert(kChunkBricks * kBrickVoxels == kChunkVoxels);
 
+/// The place in its chunk of a brick by its number, in bricks.
+inline glm::ivec3 cellInChunk(int brick) {
+  constexpr int n = kChunkEdge / ScalarBricks::kEdge;
+  return {brick % n, brick / n % n, brick / (n * n)};
+}
+
 enum class SectionKind : std::uint32_t {
   Description = 1,  ///< JSON: everything that a reader needs to know of the volume
   Provenance = 2,   ///< JSON: the origin of the file, for information
@@ -91,7 +97,7 @@ static_assert(sizeof(ContentHeader) == 24);
 struct ChunkEntry {
   glm::ivec3 cell{0};           ///< it starts at voxel kChunkEdge * cell of its level
   Codec codec = Codec::None;
-  /// Bit x + 4 (y + 4 z): whether the chunk has brick (x,y,z); bricks are stored in the order of the bits.
+  /// Bit x + 4 (y + 4 z), the number of the brick: whether the chunk has brick (x,y,z); bricks are stored in the order of the bits.
   std::uint64_t brickMask = 0;
   std::uint64_t offset = 0;     ///< from the beginning of the file
   std::uint64_t storedBytes = 0;
@@ -103,6 +109,9 @@ struct ChunkEntry {
   std::array<std::uint32_t, 5> reserved{};
 
   int bricks() const { return std::popcount(brickMask); }
+  bool hasBrick(int brick) const { return (brickMask >> brick & 1u) != 0; }
+  /// Where a brick of it starts, in bricks of its level.
+  glm::ivec3 brickCell(int brick) const { return cell * (kChunkEdge / ScalarBricks::kEdge) + cellInChunk(brick); }
 };
 static_assert(sizeof(ChunkEntry) == 96);
 

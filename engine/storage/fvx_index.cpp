@@ -16,11 +16,6 @@ bool isIn(glm::ivec3 cell, glm::ivec3 cells) {
   return glm::all(glm::greaterThanEqual(cell, glm::ivec3(0))) && glm::all(glm::lessThan(cell, cells));
 }
 
-glm::ivec3 firstVoxel(const ChunkEntry& chunk, int brick) {
-  constexpr int n = ScalarBricks::kEdge, m = kChunkEdge / n;
-  return chunk.cell * kChunkEdge + n * glm::ivec3(brick % m, brick / m % m, brick / (m * m));
-}
-
 /// Whether what an entry refers to lies in its section.
 template <typename Entry>
 bool isStored(const Entry& entry, const Section& section) {
@@ -39,7 +34,7 @@ const char* whyNot(const ChunkEntry& entry, const IndexedLevel& level) {
   if (!isIn(entry.cell, chunkCells(level.dimensions))) return "it is beyond the volume's box";
   if (entry.brickMask == 0) return "it has no bricks";
   for (int brick = 0; brick < kChunkBricks; ++brick)
-    if ((entry.brickMask >> brick & 1u) != 0 && !isIn(firstVoxel(entry, brick), level.dimensions)) return "a brick of it is beyond the volume's box";
+    if (entry.hasBrick(brick) && !isIn(entry.brickCell(brick) * ScalarBricks::kEdge, level.dimensions)) return "a brick of it is beyond the volume's box";
   if (!isStored(entry, level.chunks)) return "it is not stored where it should be";
   if (entry.bytes != std::uint64_t(entry.bricks()) * level.brickBytes) return "its size is not that of its bricks";
   if (entry.activeVoxels > std::uint32_t(entry.bricks() * kBrickVoxels)) return "it counts more voxels than it has";

@@ -9,10 +9,10 @@ namespace {
 /// Empty if no voxel is active.
 template <typename ValueAt>
 std::vector<float> chunkOf(const ProceduralField& field, glm::ivec3 cell, const ValueAt& valueAt) {
-  constexpr int n = ScalarBricks::kEdge, m = fvx::kChunkEdge / n;
+  constexpr int n = ScalarBricks::kEdge;
   std::vector<float> values(fvx::kChunkVoxels, kInactiveVoxel);
   for (int brick = 0; brick < fvx::kChunkBricks; ++brick) {
-    const glm::ivec3 first = cell * fvx::kChunkEdge + n * glm::ivec3(brick % m, brick / m % m, brick / (m * m));
+    const glm::ivec3 first = cell * fvx::kChunkEdge + n * fvx::cellInChunk(brick);
     const glm::ivec3 end = glm::min(field.dimensions() - first, n);
     if (std::min({end.x, end.y, end.z}) <= 0 || !field.mayHoldData(first)) continue;
     float* const to = &values[std::size_t(brick) * fvx::kBrickVoxels];
