@@ -1,0 +1,188 @@
+// Values of files whose checksums are right: sound ones are read in every way, others in none.
+
+#include <cmath>
+
+#include "tests/storage/edited_fvx.h"
+
+namespace freevoxels {
+namespace {
+
+using fvx::Channel;
+using fvx::ChunkEntry;
+using fvx::FvxFile;
+using fvx::RegionEntry;
+using fvx::SectionKind;
+using test::FvxEditor;
+
+class FvxValues : public test::EditedFvx {};
+
+TEST_F(FvxValues, SoundFilesOfAllSizesAndKindsAreReadInEveryWay) {
+  for (const glm::ivec3 size : test::kBakedSizes)
+    for (const BakeSettings& settings : test::kBakeSettings) {
+      bake(test::denseVolume(size), settings);
+      readAll();
+      bake(test::smoothVolume(size), settings);
+      readAll();
+      TransferFunction function{.opacity = {{0.1f, 0.0f}, {0.9f, 0.5f}}, .color = {{0.0f, glm::vec3(1, 0, 0.25f)}}};
+      bake(test::denseVolume(size), settings, {.transferFunction = function});
+      readAll();
+    }
+  for (const BakeSettings& settings : test::kBakeSettings) {
+    bake(test::volumeOfAllChannels(), settings);
+    readAll();
+    bake(test::volumeOfAllChannels(), settings, {.emission = Emission{}});
+    readAll();
+  }
+}
+
+TEST_F(FvxValues, ACountOrARangeThatIsNotThatOfTheValuesIsFoundByACheckOfTheWholeFile) {
+  for (const bool compress : {false, true}) {
+    bake(test::smoothVolume(), {.keepScalars = true, .compress = compress});
+    const auto expectFound = [&](const auto& change) {
+      for (const int level : {0, 1}) {
+        FvxEditor edited(bytes_);
+        change(edited.chunks(level)[0]);
+        edited.save(file_);
+        test::expectRefusal([&] { FvxFile(file_).checkAll(); }, ErrorKind::Input, {"a.fvx", "other values than its entry"});
+      }
+    };
+    expectFound([](ChunkEntry& chunk) { chunk.activeVoxels -= 1; });
+    expectFound([](ChunkEntry& chunk) { chunk.minimum = std::nextafter(chunk.minimum, chunk.maximum); });
+    expectFound([](ChunkEntry& chunk) { chunk.maximum = std::nextafter(chunk.maximum, chunk.minimum); });
+  }
+}
+
+TEST_F(FvxValues, ValuesThatAreNaNOrInfiniteAreRefusedWhereverTheyAre) {
+  bake(test::denseVolume({38, 26, 31}), {.keepScalars = true});
+  for (const int level : {0, 1})
+    for (const float value : {test::kNaN, -test::kNaN, test::kInfinity, -test::kInfinity})
+      for (const bool last : {false, true}) {
+        FvxEditor edited(bytes_);
+        const std::span<float> values = edited.storedValues<float>(edited.chunks(level).back());
+        (last ? values.back() : values.front()) = value;
+        expectValuesRefused(edited, level, "NaN or infinite");
+      }
+  bake(test::denseVolume({38, 26, 31}));
+  for (const int half : {0x7c00, 0xfc00, 0x7c01, 0x7fff, 0xfe00}) {
+    FvxEditor edited(bytes_);
+    edited.storedValues<std::uint16_t>(edited.chunks().front())[100] = std::uint16_t(half);
+    expectValuesRefused(edited, 0, "NaN or infinite");
+  }
+}
+
+TEST_F(FvxValues, ValuesBeyondTheBoxAreRefused) {
+  for (const bool keepScalars : {false, true})
+    for (const glm::ivec3 size : {glm::ivec3(38, 26, 31), glm::ivec3(33, 65, 9), glm::ivec3(1, 1, 1)}) {
+      bake(test::denseVolume(size), {.keepScalars = keepScalars});
+      for (int level = 0; level < FvxFile(file_).levels(); ++level) {
+        FvxEditor edited(bytes_);
+        const ChunkEntry last = edited.chunks(level).back();
+        // The last voxel of the last brick is beyond a box that ends inside of it.
+        if (keepScalars)
+          edited.storedValues<float>(last).back() = 0.5f;
+        else
+          edited.storedValues<std::uint16_t>(last).back() = 0x3800;
+        expectValuesRefused(edited, level, "beyond the volume's box");
+      }
+    }
+}
+
+TEST_F(FvxValues, ValuesBeyondTheRangeOfTheirChunkAreRefused) {
+  for (const bool keepScalars : {false, true})
+    for (const glm::ivec3 size : {glm::ivec3(38, 26, 31), glm::ivec3(33, 65, 9), glm::ivec3(1, 1, 1)}) {
+      bake(test::denseVolume(size), {.keepScalars = keepScalars});
+      for (int level = 0; level < FvxFile(file_).levels(); ++level)
+        for (const bool below : {false, true}) {
+          FvxEditor edited(bytes_);
+          const ChunkEntry chunk = edited.chunks(level).back();
+          if (keepScalars)
+            edited.storedValues<float>(chunk).front() = below ? -1e20f : std::nextafter(chunk.maximum, 1.0f);
+          else
+            edited.storedValues<std::uint16_t>(chunk).front() = below ? 0xfbff : 0x7bff;  // the largest halves
+          expectValuesRefused(edited, level, "other values than its entry");
+        }
+    }
+}
+
+/// Codes that mean other values than those that were written.
+TEST_F(FvxValues, ScalesAndOffsetsThatDoNotFitTheRangesAreRefused) {
+  const TransferFunction function{.opacity = {{0.1f, 0.0f}, {0.9f, 0.5f}}, .color = {{0.0f, glm::vec3(1, 0, 0.25f)}}};
+  for (const bool isFunction : {false, true})
+    for (const auto& [key, value] : {std::pair<const char*, double>{"/channels/0/scale", 1e10}, {"/channels/0/scale", 1.0}, {"/channels/0/offset", -1e6}}) {
+      if (isFunction)
+        bake(test::denseVolume({38, 26, 31}), {}, {.transferFunction = function});
+      else
+        bake(test::denseVolume({38, 26, 31}));
+      FvxEditor edited(bytes_);
+      nlohmann::json description = nlohmann::json::parse(edited.text(SectionKind::Description));
+      const nlohmann::json::json_pointer place(key);
+      if (!description.contains(place) || (!isFunction && std::string_view(key) == "/channels/0/offset")) continue;  // halves have none
+      description[place] = value;
+      edited.setText(SectionKind::Description, description.dump());
+      SCOPED_TRACE(fmt::format("{} {}{}", key, value, isFunction ? " of a function's scalars" : ""));
+      expectValuesRefused(edited, 0, "other values than its entry");
+    }
+}
+
+TEST_F(FvxValues, AlbedosBeyondTheBoxWhichEarlierVersionsStoredAreLeftOut) {
+  Volume volume = test::volumeOfAllChannels();
+  bake(volume, {.keepScalars = true});
+  FvxEditor edited(bytes_);
+  const ChunkEntry& chunk = edited.chunks(0, Channel::Albedo).back();
+  const std::span<float> values = edited.storedValues<float>(chunk);
+  ASSERT_EQ(values.back(), kInactiveVoxel);
+  values.back() = 0.5f;
+  edited.save(file_);
+  const auto file = std::make_shared<const FvxFile>(file_);
+  file->checkAll();
+  const Volume baked = readBaked(file);
+  for (std::size_t c = 0; c < 3; ++c) test::expectSameVoxels(baked.albedo->values[c], volume.albedo->values[c]);
+  const auto lastBrick = baked.albedo->values[2].bricks().back();
+  EXPECT_EQ(lastBrick.back(), kInactiveVoxel);
+}
+
+TEST_F(FvxValues, AlbedosThatReachBeyondTheBoxAreNotStored) {
+  Volume volume = test::volumeOfAllChannels();
+  for (ScalarBricks& values : volume.albedo->values)
+    for (ScalarBricks::Brick& brick : values.bricks()) brick.fill(0.25f);
+  bake(volume, {.keepScalars = true});
+  FvxEditor edited(bytes_);
+  for (const ChunkEntry& chunk : edited.chunks(0, Channel::Albedo))
+    for (int brick = 0, number = 0; brick < fvx::kChunkBricks; ++brick) {
+      if (!chunk.hasBrick(brick)) continue;
+      const glm::ivec3 inside = glm::min(volume.dimensions - chunk.brickCell(brick) * ScalarBricks::kEdge, ScalarBricks::kEdge);
+      const float last = edited.storedValues<float>(chunk)[std::size_t(number++) * 3 * 512 + 511];
+      EXPECT_EQ(last, inside == glm::ivec3(ScalarBricks::kEdge) ? 0.25f : kInactiveVoxel);
+    }
+}
+
+TEST_F(FvxValues, AHaloWithValuesThatAreNaNIsRefused) {
+  bake(test::denseVolume({130, 70, 37}), {.keepScalars = true});
+  FvxEditor edited(bytes_);
+  for (RegionEntry& region : edited.regions()) {
+    if ((region.parts & fvx::kHaloPart) == 0) continue;
+    region.parts = fvx::kHaloPart;
+    const glm::ivec3 size(130, 70, 37);
+    if (region.level != 0) continue;
+    region.codec = fvx::Codec::None;
+    region.bytes = region.storedBytes = fvx::haloVoxels(region.cell, size) * sizeof(float);
+    const std::span<float> halo = edited.storedValues<float>(region);
+    std::ranges::fill(halo, 0.5f);
+    halo[7] = test::kNaN;
+    break;
+  }
+  for (RegionEntry& region : edited.regions())
+    if (region.codec != fvx::Codec::None) region.parts = 0, region.bytes = region.storedBytes = 0, region.codec = fvx::Codec::None;
+  edited.save(file_);
+  const FvxFile file(file_);
+  int refused = 0;
+  for (const RegionEntry& region : file.regions(0)) {
+    if (region.bytes == 0) continue;
+    test::expectRefusal([&] { readBakedRegion(file, region); }, ErrorKind::Input, {"a.fvx", "NaN or infinite"});
+    ++refused;
+  }
+  EXPECT_EQ(refused, 1);
+}
+
+}  // namespace
+}  // namespace freevoxels
