@@ -39,7 +39,6 @@ class ChunkReader {
  private:
   void decode(const ChunkEntry& chunk, int brick, std::span<const std::byte> bytes, ScalarBricks::Brick& values) const;
   void checkValues(const ChunkEntry& chunk, int brick, bool finite, ScalarBricks::Brick& values) const;
-
   void checkRange(const ChunkEntry& chunk, const ScalarBricks::Brick& values) const;
   [[noreturn]] void failContradicts(const ChunkEntry& chunk) const;
 

@@ -29,13 +29,29 @@ std::uint16_t codeOf(double value, const Encoding& encoding) {
   return std::uint16_t(std::clamp((value - encoding.offset) / encoding.scale + 1.5, 1.0, kLargestCode));
 }
 
+/// Values beyond it become the nearest one in it.
+std::pair<double, double> rangeOf(const Encoding& encoding) {
+  if (encoding.kind == EncodingKind::Float16) return {-kLargestHalf * encoding.scale, kLargestHalf * encoding.scale};
+  if (encoding.kind == EncodingKind::Linear16) return {encoding.offset, encoding.offset + (kLargestCode - 1.0) * encoding.scale};
+  return {std::numeric_limits<float>::lowest(), std::numeric_limits<float>::max()};
+}
+
+/// Bound of how far a value within the encoding's range is from what it was before it was encoded.
+double largestError(const Encoding& encoding, double value) {
+  constexpr double kHalf = 0x1p-10, kLeastHalf = 0x1p-24, kFloat = 0x1p-22;  // relative error of halves, the least of them, that of floats
+  constexpr double kLeastFloat = std::numeric_limits<float>::denorm_min();
+  if (encoding.kind == EncodingKind::Float32) return 0.0;
+  if (encoding.kind == EncodingKind::Float16) return std::max({std::abs(value) * kHalf, encoding.scale * kLeastHalf, kLeastFloat});
+  return encoding.scale + std::max(std::abs(value) * kFloat, kLeastFloat);
+}
+
 }  // namespace
 
-double Encoding::largestError(double value) const {
-  constexpr double kHalf = 0x1p-10, kLeastHalf = 0x1p-24, kFloat = 0x1p-22;  // relative error of halves, the least of them, that of floats
-  if (kind == EncodingKind::Float32) return 0.0;
-  if (kind == EncodingKind::Float16) return std::max(std::abs(value) * kHalf, scale * kLeastHalf);
-  return scale + std::abs(value) * kFloat;
+std::pair<float, float> Encoding::decodedRange(float minimum, float maximum) const {
+  const auto [low, high] = rangeOf(*this);
+  const double least = std::clamp(double(minimum), low, high), most = std::clamp(double(maximum), low, high);
+  constexpr double kMost = std::numeric_limits<float>::max();
+  return {float(std::max(least - largestError(*this, least), -kMost)), float(std::min(most + largestError(*this, most), kMost))};
 }
 
 void encode(const Encoding& encoding, std::span<const float> values, std::span<std::byte> bytes) {
@@ -53,9 +69,9 @@ void encode(const Encoding& encoding, std::span<const float> values, std::span<s
 }
 
 bool areFinite(std::span<const float> values) {
-  bool finite = true;
-  for (const float value : values) finite &= (std::bit_cast<std::uint32_t>(value) & kExponent) != kExponent;
-  return finite;
+  std::size_t others = 0;
+  for (const float value : values) others += (std::bit_cast<std::uint32_t>(value) & kExponent) == kExponent;
+  return others == 0;
 }
 
 Decoder::Decoder(const Encoding& encoding) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace freevoxels::fvx {
@@ -23,8 +24,8 @@ struct Encoding {
   double scale = 1.0, offset = 0.0;
 
   std::size_t bytesPerValue() const { return kind == EncodingKind::Float32 ? 4 : 2; }
-  /// Bound of how far a value within the encoding's range is from what it was before it was encoded.
-  double largestError(double value) const;
+  /// The range of what values between two are after they were encoded, rounded up or down, and decoded.
+  std::pair<float, float> decodedRange(float minimum, float maximum) const;
 };
 
 /// Encodes values; those beyond the encoding's range become the nearest one in it. `bytes` has

@@ -3,17 +3,16 @@
 
 #include <gtest/gtest.h>
 
-#include <limits>
-
 #include "engine/storage/baked_box.h"
 #include "engine/storage/baked_volume.h"
+#include "tests/not_finite.h"
 #include "tests/refusal.h"
 #include "tests/storage/baked_fixture.h"
 #include "tests/storage/fvx_editor.h"
 
 namespace freevoxels::test {
 
-inline constexpr float kNaN = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
+inline constexpr auto kFloatNan = float(kNan), kFloatInfinity = float(kInfinity);
 
 /// Ends inside of bricks and chunks along every axis, with one level, with two and with three.
 inline constexpr glm::ivec3 kBakedSizes[]{{1, 1, 1}, {9, 31, 8}, {38, 26, 31}, {33, 65, 9}, {70, 41, 37}, {7, 34, 67}};

@@ -81,7 +81,7 @@ TEST_F(FvxNumbers, PlacesSizesAndCodecsOfChunksAreRefusedUnlessTheyAreInTheirSec
 
 TEST_F(FvxNumbers, RangesAndCountsOfChunksAreRefusedUnlessTheyCanBe) {
   bake(test::smoothVolume(), {.keepScalars = true});
-  for (const float value : {test::kNaN, test::kInfinity, -test::kInfinity}) {
+  for (const float value : {test::kFloatNan, test::kFloatInfinity, -test::kFloatInfinity}) {
     expectChunkRefused([&](ChunkEntry& chunk) { chunk.minimum = value; }, "range");
     expectChunkRefused([&](ChunkEntry& chunk) { chunk.maximum = value; }, "range");
     expectChunkRefused([&](ChunkEntry& chunk) { chunk.leastExtinction = value; }, "range");
@@ -149,7 +149,7 @@ TEST_F(FvxNumbers, ContentCellsThatAreNotThoseOfTheBoxAreRefused) {
       change(*reinterpret_cast<fvx::ContentHeader*>(edited.valuesOf<char>(*edited.section(SectionKind::ContentCells)).data()));
       expectRefused(edited, "content cells");
     };
-    for (const double edge : {double(test::kNaN), double(test::kInfinity), 0.0, -1.0, 1e-300, 1e300, 20.0, 0.1})
+    for (const double edge : {test::kNan, test::kInfinity, 0.0, -1.0, 1e-300, 1e300, 20.0, 0.1})
       expectContentRefused([&](fvx::ContentHeader& content) { content.edge = edge; });
     for (const int cells : {0, -1, 1 << 30, std::numeric_limits<int>::max(), std::numeric_limits<int>::min()})
       expectContentRefused([&](fvx::ContentHeader& content) { content.cells.y = cells; });

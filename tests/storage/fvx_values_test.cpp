@@ -35,6 +35,47 @@ TEST_F(FvxValues, SoundFilesOfAllSizesAndKindsAreReadInEveryWay) {
   }
 }
 
+fvx::ChunkValues chunkOfScalars(const Volume& volume, glm::ivec3 cell) {
+  fvx::ChunkValues chunk{.cell = cell};
+  std::vector<float>& values = chunk.channels[std::size_t(Channel::Scalars)];
+  values.assign(fvx::kChunkVoxels, kInactiveVoxel);
+  const glm::ivec3 first = cell * fvx::kChunkEdge, end = glm::min(volume.dimensions - first, fvx::kChunkEdge);
+  for (glm::ivec3 v(0); v.z < end.z; ++v.z)
+    for (v.y = 0; v.y < end.y; ++v.y)
+      for (v.x = 0; v.x < end.x; ++v.x) values[fvx::ChunkValues::index(v)] = volume.scalars.at(first + v);
+  return chunk;
+}
+
+/// They are stored as the nearest value in it; the ranges of chunks are those of the values before.
+TEST_F(FvxValues, FilesWithValuesBeyondTheRangeOfTheirEncodingAreReadInEveryWay) {
+  const auto functionFrom = [](float first) {
+    return Classification{.transferFunction = TransferFunction{.opacity = {{first, 0.0f}, {first + 0.01f, 0.5f}}, .color = {{first, glm::vec3(1)}}}};
+  };
+  for (const glm::ivec3 size : test::kBakedSizes) {
+    const Volume volume = test::denseVolume(size);
+    for (const bool compress : {false, true}) {
+      for (const double densityScale : {0.0, 1e-30, 1e5, 1e12, 1e40, 1e47}) {
+        SCOPED_TRACE(densityScale);
+        bake(volume, {.compress = compress}, {.densityScale = densityScale});
+        readAll();
+      }
+      for (const float first : {-1.0f, 0.1f, 0.3f, 1.0f}) {  // values are from 0.1 to 0.59
+        SCOPED_TRACE(first);
+        bake(volume, {.compress = compress}, functionFrom(first));
+        readAll();
+      }
+      // The range of a sample, as of procedural volumes.
+      bakeStreamed(file_,
+                   {.outline = {.source = "sampled", .dimensions = size},
+                    .content = contentCells(volume, functionFrom(0.3f)),
+                    .range = {0.3f, 0.31f},
+                    .chunk = [&](glm::ivec3 cell) { return chunkOfScalars(volume, cell); }},
+                   functionFrom(0.3f), {.compress = compress});
+      readAll();
+    }
+  }
+}
+
 TEST_F(FvxValues, ACountOrARangeThatIsNotThatOfTheValuesIsFoundByACheckOfTheWholeFile) {
   for (const bool compress : {false, true}) {
     bake(test::smoothVolume(), {.keepScalars = true, .compress = compress});
@@ -55,7 +96,7 @@ TEST_F(FvxValues, ACountOrARangeThatIsNotThatOfTheValuesIsFoundByACheckOfTheWhol
 TEST_F(FvxValues, ValuesThatAreNaNOrInfiniteAreRefusedWhereverTheyAre) {
   bake(test::denseVolume({38, 26, 31}), {.keepScalars = true});
   for (const int level : {0, 1})
-    for (const float value : {test::kNaN, -test::kNaN, test::kInfinity, -test::kInfinity})
+    for (const float value : {test::kFloatNan, -test::kFloatNan, test::kFloatInfinity, -test::kFloatInfinity})
       for (const bool last : {false, true}) {
         FvxEditor edited(bytes_);
         const std::span<float> values = edited.storedValues<float>(edited.chunks(level).back());
@@ -168,7 +209,7 @@ TEST_F(FvxValues, AHaloWithValuesThatAreNaNIsRefused) {
     region.bytes = region.storedBytes = fvx::haloVoxels(region.cell, size) * sizeof(float);
     const std::span<float> halo = edited.storedValues<float>(region);
     std::ranges::fill(halo, 0.5f);
-    halo[7] = test::kNaN;
+    halo[7] = test::kFloatNan;
     break;
   }
   for (RegionEntry& region : edited.regions())
