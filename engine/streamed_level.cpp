@@ -5,6 +5,7 @@
 
 #include "engine/core/error.h"
 #include "engine/storage/baked_box.h"
+#include "engine/volume/cell_extinctions.h"
 #include "engine/vulkan/commands.h"
 
 namespace freevoxels {

@@ -1,45 +1,17 @@
 #include "engine/lighting/ambient_pass.h"
 
-#include <tbb/parallel_for.h>
-
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
 #include <tuple>
 
 #include "embedded/ambient_sweep.h"
+#include "engine/volume/cell_extinctions.h"
 
 namespace freevoxels {
 
 namespace {
 
 constexpr DirectionSet kDirections = DirectionSet::Directions26;
-
-/// Extinction by scalar: exact without a transfer function, otherwise from a table. Scalars beyond the volume's range, which means of coarse
-/// levels may be, have the extinction of its end.
-class ExtinctionTable {
- public:
-  ExtinctionTable(const Volume& volume, const Classification& classification)
-      : scale_(float(classification.densityScale)), low_(volume.minimum) {
-    if (!classification.transferFunction) return;
-    perScalar_ = volume.maximum > volume.minimum ? float(kIntervals) / (volume.maximum - volume.minimum) : 0.0f;
-    for (int i = 0; i <= kIntervals; ++i) {
-      const double scalar = std::lerp(double(volume.minimum), double(volume.maximum), double(i) / kIntervals);
-      values_.push_back(float(classify(classification, float(scalar)).extinction));
-    }
-  }
-  float at(float scalar) const {
-    if (scalar == kInactiveVoxel) return 0.0f;
-    if (values_.empty()) return std::min(std::max(scalar, 0.0f) * scale_, float(kMaximumExtinction));
-    return values_[std::size_t(std::clamp((scalar - low_) * perScalar_, 0.0f, float(kIntervals)) + 0.5f)];
-  }
-
- private:
-  static constexpr int kIntervals = 4096;
-  float scale_, low_, perScalar_ = 0.0f;
-  std::vector<float> values_;
-};
 
 std::size_t countOf(glm::ivec3 cells) {
   return std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z);
@@ -51,23 +23,6 @@ int ambientCellEdge(glm::ivec3 dimensions, bool hasPhase) {
   int edge = 1;
   while (countOf((dimensions + edge - 1) / edge) > (hasPhase ? kMaxPhaseCells : kMaxAmbientCells)) edge *= 2;
   return edge;
-}
-
-std::vector<float> cellExtinctions(const Volume& volume, const Classification& classification, int edge) {
-  const ExtinctionTable table(volume, classification);
-  const glm::ivec3 n = volume.dimensions, cells = (n + edge - 1) / edge;
-  std::vector<float> result(countOf(cells), 0.0f);
-  const float share = 1.0f / float(edge * edge * edge);
-  tbb::parallel_for(0, cells.z, [&](int plane) {
-    std::vector<float> row(std::size_t(n.x));
-    for (int z = plane * edge; z < std::min((plane + 1) * edge, n.z); ++z)
-      for (int y = 0; y < n.y; ++y) {
-        volume.scalars.copyRow(y, z, row);
-        float* const to = &result[std::size_t(cells.x) * (std::size_t(y / edge) + std::size_t(cells.y) * std::size_t(plane))];
-        for (int x = 0; x < n.x; ++x) to[x / edge] += share * table.at(row[std::size_t(x)]);
-      }
-  });
-  return result;
 }
 
 AmbientPass::AmbientPass(const Device& device, const Volume& volume, const Classification& classification, int edge)

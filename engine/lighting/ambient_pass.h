@@ -22,10 +22,6 @@ namespace freevoxels {
 inline constexpr std::uint64_t kMaxAmbientCells = 1u << 20, kMaxPhaseCells = 1u << 19;
 int ambientCellEdge(glm::ivec3 dimensions, bool hasPhase);
 
-/// The mean extinction, per world unit, of each cell, x fastest. The part of a cell beyond the volume counts
-/// as empty.
-std::vector<float> cellExtinctions(const Volume& volume, const Classification& classification, int edge);
-
 /// COMPUTE ambient_sweep.comp: a dispatch for each direction. Belongs to one volume.
 class AmbientPass {
  public:

@@ -9,6 +9,10 @@
 
 #include "engine/storage/baked_box.h"
 #include "engine/storage/baked_volume.h"
+#include "engine/volume/cell_extinctions.h"
+#include "engine/volume/coarse_cells.h"
+#include "engine/volume/histogram.h"
+#include "shaders/gather_interface.h"
 #include "tests/fuzz/fuzz_file.h"
 
 /// Of libFuzzer and of replay.cpp: changes bytes, and returns how many there are.
@@ -121,6 +125,17 @@ void mutateIndex(std::uint8_t* index, std::uint64_t bytes, std::mt19937& random)
   }
 }
 
+/// What drawing computes of a volume on the host before it needs a device.
+void prepareToDraw(const Volume& volume) {
+  constexpr int kBins = 256;
+  const Classification& classification = *volume.classification;
+  histogramOf(volume, kBins);
+  for (const int edge : {1, 2, 1 << shader::kSkipLevels}) {
+    cellExtinctions(volume, classification, edge);
+    metCells(volume, classification, edge);
+  }
+}
+
 }  // namespace
 
 /// The numbers of a file are a small part of its bytes, of which most are values and zeros between sections.
@@ -151,9 +166,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (const fvx::RegionEntry& region : file->regions(level)) fuzz::tryTo([&] { readBakedRegion(*file, region); });
     fuzz::tryTo([&] { file->checkAll(); });
     const int level = finestLevel(*file, kMaxVoxels);
-    fuzz::tryTo([&] { readBaked(file, level); });
+    fuzz::tryTo([&] { prepareToDraw(readBaked(file, level)); });
     const glm::ivec3 end = file->dimensions(level), middle = end / 2 & ~(ScalarBricks::kEdge - 1);
-    fuzz::tryTo([&] { readBakedBox(*file, level, {middle, end}); });
+    fuzz::tryTo([&] { prepareToDraw(readBakedBox(*file, level, {middle, end})); });
   });
   return 0;
 }

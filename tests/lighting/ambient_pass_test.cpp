@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/volume/cell_extinctions.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels {
@@ -53,6 +54,29 @@ TEST(AmbientCells, ScalarsBeyondTheVolumesRangeHaveTheExtinctionOfItsEnd) {
     EXPECT_FLOAT_EQ(cells[0], extinctionOf(low));
     EXPECT_FLOAT_EQ(cells[1], extinctionOf(high));
     EXPECT_FLOAT_EQ(cells[2], extinctionOf(low > 0.0f ? low : high));
+  }
+}
+
+TEST(AmbientCells, DensitiesOfAnyScaleHaveExtinctionsOfNumbers) {
+  const Volume volume = makeVolume(glm::ivec3(3, 1, 1), glm::dmat4(1.0), [](int x, int, int) { return 0.5 * x; });
+  for (const double scale : {1e30, 1e40, 1e300}) {
+    const std::vector<float> cells = cellExtinctions(volume, {.densityScale = scale}, 1);
+    EXPECT_EQ(cells[0], 0.0f);
+    EXPECT_FLOAT_EQ(cells[1], scale == 1e30 ? 5e29f : float(kMaximumExtinction));
+    EXPECT_EQ(cells[2], float(kMaximumExtinction));
+  }
+}
+
+TEST(AmbientCells, ScalarsOfTheSmallestAndTheLargestRangesHaveTheirExtinctions) {
+  for (const auto& [low, high] : {std::pair(-3e38f, 3e38f), std::pair(-1e38f, 3e38f), std::pair(0.0f, 1e-44f), std::pair(1e-38f, 1.001e-38f)}) {
+    SCOPED_TRACE(low);
+    const Volume volume = makeVolume(glm::ivec3(3, 1, 1), glm::dmat4(1.0), [&](int x, int, int) { return x == 1 ? high : low; });
+    Classification classification;
+    classification.transferFunction = TransferFunction{.opacity = {{low, 0.2f}, {high, 0.5f}}, .color = {{0.0f, glm::vec3(1.0f)}}};
+    const std::vector<float> cells = cellExtinctions(volume, classification, 1);
+    EXPECT_FLOAT_EQ(cells[0], float(classify(classification, low).extinction));
+    EXPECT_FLOAT_EQ(cells[1], float(classify(classification, high).extinction));
+    EXPECT_FLOAT_EQ(cells[2], cells[0]);
   }
 }
 
