@@ -62,18 +62,19 @@ TEST(FvxEncoding, TheDecodedRangeOfAValueHoldsWhatItBecomesAndFewOthers) {
     const float stored = throughFile(encoding, {float(value)}).front();
     const auto [low, high] = encoding.decodedRange(float(value), float(value));
     EXPECT_TRUE(low <= stored && stored <= high) << value << " as " << stored << " in " << low << " to " << high;
-    EXPECT_LE(high - low, widest) << value;
+    EXPECT_LE(double(high) - low, widest) << value;
   };
   constexpr double kLargest = std::numeric_limits<float>::max(), kLeast = std::numeric_limits<float>::denorm_min();
   for (const double sign : {1.0, -1.0})
-    for (double size = 1e-44; size < kLargest; size *= 1.7) {
+    for (double size = 1e-44; size < kLargest; size *= 17.0) {
       const double value = sign * size;
       expectHeld({}, value, 0.0);
       for (const double scale : {1e-300, 1e-50, 1e-42, 1e-20, 0.37, 1e20, 1e38, 1e50}) {
         const double held = std::min(size, 65504.0 * scale);
-        expectHeld({.kind = EncodingKind::Float16, .scale = scale}, value, std::max({held * 0x1.1p-9, scale * 0x1p-23, 2.0 * kLeast}));
+        expectHeld({.kind = EncodingKind::Float16, .scale = scale}, value, std::max({held * 0x1.1p-9, scale * 0x1.1p-23, 2.0 * kLeast}));
         for (const double offset : {0.0, -1000.0, 3e37})
-          expectHeld({.kind = EncodingKind::Linear16, .scale = scale, .offset = offset}, value, 2.1 * scale + 0x1.1p-21 * std::max(std::abs(offset), size) + 2.0 * kLeast);
+          expectHeld({.kind = EncodingKind::Linear16, .scale = scale, .offset = offset}, value,
+                     2.1 * scale + 0x1.1p-21 * std::max(std::abs(offset), size) + 2.0 * kLeast);
       }
     }
 }
