@@ -29,6 +29,7 @@
 #include "embedded/gather_resample.h"
 #include "embedded/gather_roughness.h"
 #include "embedded/gather_stencil.h"
+#include "engine/core/error.h"
 #include "engine/vulkan/commands.h"
 
 namespace freevoxels {
