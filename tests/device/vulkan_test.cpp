@@ -80,12 +80,22 @@ TEST_F(VulkanTest, WithoutPassesThereIsNoProgress) {
   EXPECT_TRUE(commands.times().empty());
 }
 
+/// Mesa's lavapipe of version 25 takes memory when it is first used, and refuses no size.
+bool allocatesAnySize(const Device& device, VkDeviceSize size) {
+  const VkMemoryAllocateInfo info{.sType = VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, .allocationSize = size};
+  VkDeviceMemory memory = VK_NULL_HANDLE;
+  if (vkAllocateMemory(device.handle(), &info, nullptr, &memory) != VK_SUCCESS) return false;
+  vkFreeMemory(device.handle(), memory, nullptr);
+  return true;
+}
+
 /// Without validation, which would not let the device be asked.
 TEST(Memory, WhatCouldNotBeAllocatedIsNotCounted) {
   const Instance instance(false);
   const Device device(instance, "");
   const std::uint64_t available = device.availableBytes();
   const VkMemoryRequirements tooMuch{.size = VkDeviceSize(1) << 60, .alignment = 256, .memoryTypeBits = ~0u};
+  if (allocatesAnySize(device, tooMuch.size)) GTEST_SKIP() << "the driver refuses no size";
   const auto allocate = [&] { DeviceMemory(device, tooMuch, MemoryUse::Device, false); };
   test::expectRefusal(allocate, ErrorKind::OutOfMemory, {"the device is out of memory"});
   EXPECT_EQ(device.availableBytes(), available);
