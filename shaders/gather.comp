@@ -15,9 +15,9 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Sam
 layout(push_constant, scalar) uniform Push { SamplesPush push; };
 
 // The number of groups of ray.group slices, starting at `slice` in the ray's direction, that are empty; 0 if
-// the first, or the `before` slices in front of it, may not be.
-int emptyGroups(Slices level, Ray ray, int slice, int before) {
-  const float first = float(slice) - ray.direction * float(before), last = float(slice) + ray.direction * float(ray.group - 1);
+// the first may not be.
+int emptyGroups(Slices level, Ray ray, int slice) {
+  const float first = float(slice), last = float(slice) + ray.direction * float(ray.group - 1);
   const vec2 low = min(ray.origin + ray.slope * first, ray.origin + ray.slope * last);
   ivec3 place = ivec3(floor(vec3(low, min(first, last))));
   if (kRegion) place -= level.first;
@@ -135,8 +135,9 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransm
       do {
         if (left > 0 && left < tested) {
           tested = left;
-          const bool follows = kParts || (left == leftBefore && last.coverage > 0.0);
-          left -= emptyGroups(level, ray, slice + direction * (leftBefore - left), follows ? 1 : 0) * ray.group;
+          // A stretch from the slice before may add something, so that this one has to be empty, too.
+          const int before = kParts || (left == leftBefore && last.coverage > 0.0) ? 1 : 0;
+          left -= max(emptyGroups(level, ray, slice + direction * (leftBefore - left - before)) * ray.group - before, 0);
         }
       } while (left > 0 && left < tested);
       slice += direction * (leftBefore - left);
