@@ -41,6 +41,7 @@ FREEVOXELS_VALIDATION
 .BR freevoxels-view (1),
 .BR freevoxels-bench (1),
 .BR freevoxels-validate (1),
+.BR freevoxels-mpi (1),
 and /usr/share/doc/freevoxels/apps/manual
 SECTIONS
 
