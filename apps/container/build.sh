@@ -18,6 +18,7 @@ for tool in mmdebstrap buildah newuidmap; do
 done
 if [ $# -eq 0 ]; then
   bash "$root/apps/setup.sh" all
+  rm -f "$root"/build/packages/*.deb # of another version
   cpack --config "$root/build/CPackConfig.cmake" -B "$root/build/packages"
   set -- "$root"/build/packages/freevoxels_*.deb
 fi

@@ -2,6 +2,7 @@
 """Checks the documentation against the repository and the programs.
 
     python3 tests/documentation/check_documentation.py ROOT PROGRAM...
+    python3 tests/documentation/check_documentation.py --links FOLDER      only the first check, of the pages in a folder
 
 - Every relative link in a *.md file leads to a file, and to a heading of it if the link has an anchor.
 - Every file that a page or a comment mentions by its path exists.
@@ -109,7 +110,18 @@ def unmentioned_options(root, known):
             yield f"apps/manual mentions {option} of '{command}' nowhere"
 
 
+def check_links(folder):
+    pages = sorted(folder.rglob("*.md"))
+    problems = [p for page in pages for p in broken_links(folder, page)]
+    for problem in problems:
+        print(problem)
+    print(f"{len(pages)} pages: {len(problems)} problems")
+    return 1 if problems or not pages else 0
+
+
 def main():
+    if sys.argv[1] == "--links":
+        return check_links(pathlib.Path(sys.argv[2]).resolve())
     root = pathlib.Path(sys.argv[1]).resolve()
     known = known_options(sys.argv[2:])
     files = [root / "README.md"] + sorted(f for folder in FOLDERS for f in (root / folder).rglob("*") if f.is_file())
