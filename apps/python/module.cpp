@@ -1,4 +1,4 @@
-// The Python module `freevoxels`: arrays and files in, images as arrays out.
+// The compiled part of the Python package `freevoxels`: arrays and files in, images as arrays out.
 
 #include <pybind11/pybind11.h>
 
@@ -49,10 +49,12 @@ constexpr const char* kModuleText =
 
 }  // namespace
 
-PYBIND11_MODULE(freevoxels, module) {
+PYBIND11_MODULE(_core, module) {
   using namespace py::literals;
   py::options options;
   options.disable_function_signatures();  // the texts begin with those that inspect.signature() understands
+  const py::object ownName = module.attr("__name__");
+  module.attr("__name__") = "freevoxels";  // where users find the classes and functions, which take it as their module
   module.doc() = kModuleText;
   addArrayMemory(module);
   module.attr("__version__") = programVersion();
@@ -71,6 +73,7 @@ PYBIND11_MODULE(freevoxels, module) {
              "save(file, image, *, depth=None, **kwargs)\n--\n\n"
              "Writes an image to a .png, 8-bit sRGB over a background, or to an .exr, linear, which may have depth. Options:\n"
              "background, exposure, tone_map, float.");
+  module.attr("__name__") = ownName;
 }
 
 }  // namespace freevoxels

@@ -1,4 +1,4 @@
-"""apps/python/freevoxels.pyi names exactly the module's functions, classes, parameters and keywords. Usage: stub_test.py SOURCE_FOLDER"""
+"""apps/python/freevoxels/__init__.pyi names exactly the module's functions, classes, parameters and keywords. Usage: stub_test.py SOURCE_FOLDER"""
 
 import ast
 import inspect
@@ -10,7 +10,7 @@ import unittest
 import freevoxels
 
 SOURCE = pathlib.Path(sys.argv.pop())
-STUB = pathlib.Path(freevoxels.__file__).with_name("freevoxels.pyi")
+STUB = pathlib.Path(freevoxels.__file__).with_name("__init__.pyi")
 TREE = ast.parse(STUB.read_text())
 
 
@@ -60,6 +60,12 @@ class StubTest(unittest.TestCase):
 
     def test_names_are_those_of_the_module(self):
         self.assertEqual(set(declared(TREE.body)), public(vars(freevoxels)))
+        self.assertEqual(set(declared(TREE.body)) - {"__version__"}, set(freevoxels.__all__))
+
+    def test_names_are_those_of_the_package_and_not_of_its_compiled_part(self):
+        for name in freevoxels.__all__:
+            self.assertEqual(getattr(freevoxels, name).__module__, "freevoxels", name)
+        self.assertTrue(STUB.with_name("py.typed").exists())
 
     def test_functions_have_their_parameters(self):
         for name, nodes in declared(TREE.body).items():

@@ -1,4 +1,4 @@
-"""Types of the module `freevoxels` for editors and type checkers; the functions' own documentation is that of help(freevoxels).
+"""Types of the package `freevoxels` for editors and type checkers; the functions' own documentation is that of help(freevoxels).
 
 The keywords of options are those of apps/scenes/README.md, which gives their units, ranges and defaults, with _ in place of -. Each also
 takes the text of the command line (size="640x420"). An object of a section's name, as load_scene() returns it, holds the options of that
