@@ -5,6 +5,7 @@
 import json
 import os
 import pathlib
+import platform
 import subprocess
 import sys
 import tempfile
@@ -77,9 +78,14 @@ class CpuDriverTest(unittest.TestCase):
         self.expect(self.offered(), None, VK_ADD_DRIVER_FILES=manifest)
         self.expect(self.offered(loader="none"), str(self.scratch / "freevoxels_lavapipe" / "libvulkan.so.1"), VK_ADD_DRIVER_FILES=manifest)
 
+    def test_a_driver_for_another_processor_is_none(self):
+        self.install_driver()
+        self.system_with("lvp_icd.i386.json")
+        self.expect(self.offered(), None, VK_ADD_DRIVER_FILES=str(self.scratch / "freevoxels_lavapipe" / "lvp_icd.json"))
+
     def test_a_driver_for_the_cpu_of_the_system_or_the_user_comes_first(self):
         self.install_driver()
-        self.system_with("nvidia_icd.json", "lvp_icd.x86_64.json")
+        self.system_with("nvidia_icd.json", f"lvp_icd.{platform.machine()}.json")
         self.expect(self.offered(), None)
         self.expect(self.offered(XDG_DATA_DIRS="/nowhere", XDG_DATA_HOME=str(self.scratch / "system")), None)
 

@@ -16,7 +16,7 @@ def blocks():
     """The indented blocks of the page that are Python."""
     found = re.findall(r"(?<=\n\n)((?:    .*\n|\n)+)", PAGE.read_text())
     texts = [textwrap.dedent(block) for block in found]
-    return [text for text in texts if text.strip() and not re.match(r"\s*(apt-get|PYTHONPATH=)", text)]
+    return [text for text in texts if text.strip() and not re.match(r"\s*(apt-get|python3 -m|PYTHONPATH=)", text)]
 
 
 class ManualTest(unittest.TestCase):

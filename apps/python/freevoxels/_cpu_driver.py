@@ -4,6 +4,7 @@ import ctypes
 import importlib.util
 import os
 import pathlib
+import platform
 
 _CHOICES = ("VK_ADD_DRIVER_FILES", "VK_DRIVER_FILES", "VK_ICD_FILENAMES")  # by which a user names drivers
 
@@ -18,7 +19,8 @@ def _manifest_folders():
 
 
 def _system_has_one():
-    return any(manifest for folder in _manifest_folders() for manifest in folder.glob("lvp_icd*.json"))
+    names = ("lvp_icd.json", f"lvp_icd.{platform.machine()}.json")
+    return any((folder / name).exists() for folder in _manifest_folders() for name in names)
 
 
 def _system_has_a_loader():

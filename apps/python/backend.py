@@ -1,0 +1,7 @@
+"""The build backend of both pyproject.toml: that of setuptools, which runs setup.py in this folder."""
+
+import os
+
+from setuptools.build_meta import *  # noqa: F403
+
+os.chdir(os.path.dirname(os.path.abspath(__file__)))
