@@ -43,7 +43,7 @@ masked() {
 }
 
 cd "$scratch"
-"$program" generate procedural:cloud cloud.vdb --resolution 48
+"$program" generate cloud cloud.vdb --resolution 48
 scene=(cloud.vdb --size 320x240 --transfer-function "$root/apps/transfer_functions/cloud.json" --orbit 30,20)
 "$program" render "${scene[@]}" expected.png --quiet
 cat >draw.py <<END
