@@ -1,4 +1,4 @@
-"""Adds to a wheel that auditwheel repaired the licences of the Debian packages whose parts are in it, and compresses it as far as wheels can be.
+"""Adds to a wheel that auditwheel repaired the licences of the Debian packages whose parts are in it, and compresses it as far as it goes.
 
     finish_wheel.py WHEEL FOLDER LICENSE [HEADER...]
 

@@ -55,7 +55,8 @@ def package_of(file):
 
 def version_of(package):
     """(version, source package, version of the source package)"""
-    return output("dpkg-query", "--show", "--showformat", "${Version}\t${source:Package}\t${source:Version}\n", package).splitlines()[0].split("\t")
+    form = "${Version}\t${source:Package}\t${source:Version}\n"
+    return output("dpkg-query", "--show", "--showformat", form, package).splitlines()[0].split("\t")
 
 
 def copyright_of(package):

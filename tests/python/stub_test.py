@@ -1,4 +1,6 @@
-"""apps/python/freevoxels/__init__.pyi names exactly the module's functions, classes, parameters and keywords. Usage: stub_test.py SOURCE_FOLDER"""
+"""apps/python/freevoxels/__init__.pyi names exactly the package's functions, classes, parameters and keywords.
+
+Usage: stub_test.py SOURCE_FOLDER"""
 
 import ast
 import inspect

@@ -57,7 +57,8 @@ def missing_of(source):
     with tarfile.open(source) as archive:
         names = {name.partition("/")[2] for name in archive.getnames()}
     print(f"{source.name}: {len(names)} files")
-    for name in ("PKG-INFO", "pyproject.toml", "CMakeLists.txt", "LICENSE", "engine/renderer.cpp", "shaders/gather.comp", "apps/python/setup.py"):
+    for name in ("PKG-INFO", "pyproject.toml", "CMakeLists.txt", "LICENSE", "engine/renderer.cpp", "shaders/gather.comp",
+                 "apps/python/setup.py"):
         if name not in names:
             yield f"lacks {name}"
     if any(name.startswith("build/") for name in names):
