@@ -105,13 +105,13 @@ TEST_F(SharesTest, GatheredLightHasTheSameBitsFromAllSides) {
   scan.transferFunction = TransferFunction{.opacity = {{0.0f, 0.0f}, {0.4f, 0.2f}, {0.5f, 0.0f}}, .color = {{0.0f, glm::vec3(0.8f)}}};
   for (const Classification& classification : {fog, scan}) {
     Renderer renderer(device(), cloud, classification, {});
-    FrameSettings settings{.size = {96, 96}, .draw = Draw::Gather};
+    FrameSettings settings{.size = {64, 64}, .draw = Draw::Gather};
     settings.lighting = Lighting{.lights = {{.place = {1.0, 0.7, 0.2}}}, .ambient = glm::dvec3(0.2)};
     for (int side = 0; side < 8; ++side) {
       SCOPED_TRACE(testing::Message() << "side " << side << (classification.transferFunction ? ", scan" : ", fog"));
       const Camera camera = framingCamera(cloud, 20.0 + 45.0 * side, side % 2 == 0 ? 15.0 : -50.0, 1.0, {});
       const FixedSums whole = renderer.renderShares(camera, settings, {});
-      for (const int count : {2, 3, 5}) {
+      for (const int count : {2, 5}) {
         FixedSums sums = renderer.renderShares(camera, settings, {0, count});
         for (int index = 1; index < count; ++index) sums += renderer.renderShares(camera, settings, {index, count});
         EXPECT_EQ(sums.values, whole.values) << count << " shares";
