@@ -6,6 +6,7 @@
 #include "engine/core/error.h"
 #include "engine/core/json_file.h"
 #include "engine/core/nearest_name.h"
+#include "engine/core/printable.h"
 #include "engine/description/scene_json.h"
 #include "engine/description/text_values.h"
 
@@ -61,7 +62,7 @@ void Reader::refuse(const std::string& section, const std::string& name) const {
   if (uses("device")) known.insert(known.end(), kDeviceKeys.begin(), kDeviceKeys.end());
   if (section.empty() && isSceneSection(name))
     fail(ErrorKind::Usage, "{} is a group of options, and takes a dictionary of them", Parameter(name));
-  const std::string given = section.empty() ? name : section + "." + name;
+  const std::string given = quotedPart(section.empty() ? name : section + "." + name);
   if (section == "light" && nearestName(name, known).empty())
     fail(ErrorKind::Usage, "there is no option {}; a single {} has a {} or a {}", Parameter(given), Parameter(section), Parameter("direction"),
          Parameter("position"));

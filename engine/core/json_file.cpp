@@ -83,8 +83,7 @@ std::string inQuotes(const nlohmann::json& value) {
 }
 
 std::string inShort(const nlohmann::json& value) {
-  constexpr std::size_t kLongest = 200;
-  return printablePart(inQuotes(value), kLongest);
+  return quotedPart(inQuotes(value));
 }
 
 bool isTooDeep(std::string_view text) {

@@ -70,4 +70,9 @@ std::string printablePart(std::string_view text, std::size_t bytes) {
   return printable(text.substr(0, end)) + "...";
 }
 
+std::string quotedPart(std::string_view text) {
+  constexpr std::size_t kLongest = 100;
+  return printablePart(text, kLongest);
+}
+
 }  // namespace freevoxels

@@ -13,4 +13,7 @@ std::string printable(std::string_view text);
 /// printable() of the text's beginning, with "..." where `bytes` of it or more follow.
 std::string printablePart(std::string_view text, std::size_t bytes);
 
+/// The beginning of a wrong value, as long as a sentence can quote it.
+std::string quotedPart(std::string_view text);
+
 }  // namespace freevoxels

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "engine/core/printable.h"
 
 namespace freevoxels {
 
@@ -88,7 +89,7 @@ Aovs readAovs(const std::string& name, const std::string& text) {
     const std::string word = text.substr(begin, end - begin);
     const auto named = std::ranges::find_if(kAovs, [&](const AovName& aov) { return aov.word == word; });
     if (named == kAovs.end())
-      fail(ErrorKind::Usage, "{} takes depth, position, normal and transmittance, with commas between them, not '{}'", name, word);
+      fail(ErrorKind::Usage, "{} takes depth, position, normal and transmittance, with commas between them, not '{}'", name, quotedPart(word));
     aovs.*named->member = true;
     begin = end + 1;
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
+#include "engine/core/printable.h"
 #include "engine/description/text_values.h"
 
 namespace freevoxels {
@@ -220,22 +221,22 @@ LightingDescription::GivenLight readLight(const std::string& text) {
   bool placed = false;
   for (const auto& [key, value] : readKeys(marked("light"), kLightForm, text)) {
     if (key == "direction" || key == "position") {
-      if (placed) fail(ErrorKind::Usage, "{} '{}' has a direction and a position: give one of them", name, text);
+      if (placed) fail(ErrorKind::Usage, "{} '{}' has a direction and a position: give one of them", name, quotedPart(text));
       placed = true;
       given.light.atInfinity = key == "direction";
       given.light.place = lightTriple(key.c_str(), "X,Y,Z", value);
       if (given.light.atInfinity && given.light.place == glm::dvec3(0.0))
-        fail(ErrorKind::Usage, "{} '{}' has the direction 0,0,0, which points nowhere: give another", name, text);
+        fail(ErrorKind::Usage, "{} '{}' has the direction 0,0,0, which points nowhere: give another", name, quotedPart(text));
     } else if (key == "color") {
       given.light.color = lightTriple("color", "R,G,B", value, kPositive);
     } else if (key == "intensity") {
       given.light.intensity = readNumbers({.name = marked("light") + " intensity", .form = "I", .range = kPositive}, value)[0];
       given.hasIntensity = true;
     } else {
-      fail(ErrorKind::Usage, "{} knows no '{}': it takes {}", name, key, kLightForm);
+      fail(ErrorKind::Usage, "{} knows no '{}': it takes {}", name, quotedPart(key), kLightForm);
     }
   }
-  if (!placed) fail(ErrorKind::Usage, "{} '{}' has neither a direction nor a position: give one", name, text);
+  if (!placed) fail(ErrorKind::Usage, "{} '{}' has neither a direction nor a position: give one", name, quotedPart(text));
   return given;
 }
 

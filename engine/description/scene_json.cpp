@@ -72,7 +72,7 @@ std::string fieldText(const SceneField& field, const Json& value, const fs::path
   if (!field.isFile() && isNumbers(value)) return numbersText(field, value);
   if (value.is_object() && field.kind == Kind::Keys)
     if (const std::string text = keysText(field, value); !text.empty()) return text;
-  if (value.is_object() && field.kind == Kind::File) return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (value.is_object() && field.form == "FILE.json") return value.dump(-1, ' ', false, Json::error_handler_t::replace);
   fail(ErrorKind::Input, "{} takes {}, not {}", name, field.form, inShort(value));
 }
 

@@ -10,6 +10,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/nearest_name.h"
+#include "engine/core/printable.h"
 #include "engine/image/srgb.h"
 
 namespace freevoxels {
@@ -56,7 +57,7 @@ std::string colorSuggestion(const std::string& text) {
   const bool one = expected.count <= 1;
   fail(ErrorKind::Usage, "{} takes {}, {}{} number{}{}{}, not '{}'{}", expected.name, expected.form, one ? "a " : "",
        expected.whole ? "whole" : "finite", one ? "" : "s", rangeText(expected),
-       isColor(expected) ? ", or a colour such as #ff8000 or white" : "", text, isColor(expected) ? colorSuggestion(text) : "");
+       isColor(expected) ? ", or a colour such as #ff8000 or white" : "", quotedPart(text), isColor(expected) ? colorSuggestion(text) : "");
 }
 
 std::optional<double> parseNumber(std::string_view word, const NumberForm& expected) {
@@ -115,20 +116,20 @@ std::map<std::string, std::string> readKeys(const std::string& name, const std::
     begin = end + 1;
     const std::size_t equals = word.find('=');
     if (equals == std::string::npos) {
-      if (key.empty()) fail(ErrorKind::Usage, "{} takes {}, not '{}'", name, form, text);
+      if (key.empty()) fail(ErrorKind::Usage, "{} takes {}, not '{}'", name, form, quotedPart(text));
       keys[key] += "," + word;
       continue;
     }
     key = word.substr(0, equals);
     if (!keys.emplace(key, word.substr(equals + 1)).second)
-      fail(ErrorKind::Usage, "{} '{}' gives '{}' twice: give it once", name, text, key);
+      fail(ErrorKind::Usage, "{} '{}' gives '{}' twice: give it once", name, quotedPart(text), quotedPart(key));
   }
   return keys;
 }
 
 int readWord(const std::string& name, const std::vector<std::string>& words, const std::string& text) {
   const auto found = std::ranges::find(words, text);
-  if (found == words.end()) fail(ErrorKind::Usage, "{} takes '{}', not '{}'", name, fmt::join(words, "' or '"), text);
+  if (found == words.end()) fail(ErrorKind::Usage, "{} takes '{}', not '{}'", name, fmt::join(words, "' or '"), quotedPart(text));
   return int(found - words.begin());
 }
 

@@ -116,6 +116,23 @@ class KeywordTest(unittest.TestCase):
         self.refused(freevoxels.InputError, "'density_scale' takes S, not true", density_scale=True)
         self.refused(freevoxels.InputError, "'unlit' takes true or false, not 1", unlit=1)
 
+    def test_long_values_are_quoted_in_part(self):
+        wide, text = np.arange(40000.0).reshape(200, 200), "x" * 5000
+        for name in ("size", "orbit", "fov", "up", "look_at", "density_scale", "albedo", "ambient", "shading", "draw", "directions", "scattering",
+                     "clip_box", "clip_plane", "extinction_tint", "emission", "unlit", "lod", "code", "transfer_function", "environment", "light"):
+            for value in (range(100000), wide, wide.ravel(), {"direction": wide}, {"opacity": wide}, {text: 1}, {"a": text}, [text] * 3, [[1, 2], text]):
+                error = self.refused(freevoxels.Error, "", **{name: value})
+                self.assertLess(len(str(error)), 500, (name, type(value)))
+        for name in ("size", "orbit", "albedo", "shading", "directions", "clip_box", "light", "lod"):
+            self.assertLess(len(str(self.refused(freevoxels.Error, f"not 'x.*\\.\\.\\.'", **{name: text}))), 300)
+        for name in ("direction", "position", "color", "intensity", text):
+            error = self.refused(freevoxels.Error, "light", light={"direction": (1, 1, 1), name: wide})
+            self.assertLess(len(str(error)), 500, name)
+
+    def test_objects_are_no_images(self):
+        for value in ({"opacity": [[0, 0]]}, {}, [1, 2]):
+            self.refused(freevoxels.InputError, "'environment' takes FILE.exr, not", environment=value)
+
     def test_keywords_that_do_not_fit_are_named(self):
         for options, sentence, parameters in (
             ({"camera": 5}, "'camera' is a group of options", ("camera",)),
