@@ -21,11 +21,11 @@ int SharedVolume::levelFor(const SceneDescription& scene, int frames) const {
   return std::max(scene.finestLevelNeeded(file_.get(), frames), finestLevel_);
 }
 
-std::shared_ptr<const Volume> SharedVolume::read(int level) const {
+std::shared_ptr<const Volume> SharedVolume::read(int level, const Progress& progress) const {
   const std::lock_guard lock(mutex_);
   if (read_ && (!file_ || level == readLevel_)) return read_;
   read_ = nullptr;  // not both at once
-  read_ = std::make_shared<const Volume>(readBaked(file_, level));
+  read_ = std::make_shared<const Volume>(readBaked(file_, level, progress));
   readLevel_ = level;
   return read_;
 }

@@ -21,8 +21,8 @@ class SharedVolume {
   const Volume& describe() const { return *description_; }
   /// The level that a frame of the scene, or the frames of a turn, are drawn of, as on the command line; 0 without a file.
   int levelFor(const SceneDescription& scene, int frames) const;
-  /// Fails as readBaked does.
-  std::shared_ptr<const Volume> read(int level) const;
+  /// Fails as readBaked does. `progress` may abandon it.
+  std::shared_ptr<const Volume> read(int level, const Progress& progress = {}) const;
 
  private:
   const std::shared_ptr<const fvx::FvxFile> file_;  ///< null where the volume is of no baked file

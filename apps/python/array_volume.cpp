@@ -183,7 +183,7 @@ ScalarBricks readArray(const ArrayView& array, const std::optional<Marker>& mark
       const auto value = elementAt<Value>(source.data + offset.x + offset.y + offset.z, source.isSwapped);
       const float scalar = float(value);
       return std::isnan(scalar) || (absent && comparable(value) == *absent) ? kInactiveVoxel : scalar;
-    });
+    }, [](glm::ivec3) { return true; }, watchSignals());
   });
 }
 

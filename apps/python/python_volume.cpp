@@ -118,7 +118,7 @@ PythonVolume volumeFromArray(const py::args& arguments, const py::kwargs& named)
     if (const std::string name = keywordText(key); hasClip(name))
       ofClip[key] = value;
     else if (!isPlacement(name))
-      fail(ErrorKind::Usage, "a volume of an array has no option {}{}", Parameter(name),
+      fail(ErrorKind::Usage, "a volume of an array has no option {}{}", Parameter(quotedPart(name)),
            suggestion(name, known).empty() ? fmt::format(": it has {}", fmt::join(known, ", ")) : suggestion(name, known));
   const auto of = [&](const char* name) { return keywords.contains(name) ? py::object(keywords[name]) : py::object(py::none()); };
   Volume volume = clipOf(ofClip).clip(volumeOfArray(array, of("temperature"), {placementOf(keywords), of("no_data")}));
@@ -134,7 +134,7 @@ PythonVolume volumeFromFile(const py::object& file, const py::args& more, const 
   PythonVolume opened;
   {
     const py::gil_scoped_release withoutGil;
-    opened.volume = openVolume(name, options);
+    opened.volume = openVolume(name, options, nullptr, watchSignals());
   }
   warnInPython(opened.describe());
   return opened;

@@ -11,7 +11,8 @@
 
 namespace freevoxels {
 
-/// Callback for the progress of a stage: its name and the fraction of it that is done, 0..1. May be empty.
+/// Callback for the progress of a stage: its name and the fraction of it that is done, 0..1. May be empty. Long work of every kind, reading
+/// as well as drawing, calls it from the thread that began the work; an exception that it throws abandons the work and is passed on.
 using Progress = std::function<void(std::string_view stage, double fraction)>;
 
 struct StageTime {

@@ -15,9 +15,10 @@ namespace {
 
 constexpr std::string_view kProceduralPrefix = "procedural:";
 
-Volume openBaked(const std::shared_ptr<const fvx::FvxFile>& file, std::uint64_t maximumVoxels, int level) {
+Volume openBaked(const std::shared_ptr<const fvx::FvxFile>& file, std::uint64_t maximumVoxels, int level,
+                 const Progress& progress) {
   std::vector<std::string> warnings;
-  Volume volume = readBaked(file, levelThatFits(*file, level, maximumVoxels, warnings));
+  Volume volume = readBaked(file, levelThatFits(*file, level, maximumVoxels, warnings), progress);
   volume.warnings = std::move(warnings);
   return volume;
 }
@@ -54,7 +55,8 @@ int levelThatFits(const fvx::FvxFile& file, int level, std::uint64_t maximumVoxe
   return std::max(fitting, level);
 }
 
-Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolution, std::uint64_t maximumVoxels) {
+Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolution, std::uint64_t maximumVoxels,
+                      const Progress& progress) {
   const glm::ivec3 dimensions = resolution.value_or(glm::ivec3(kDefaultResolution));
   const std::uint64_t needed = std::uint64_t(dimensions.x) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z);
   const std::uint64_t available =
@@ -63,7 +65,7 @@ Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolut
     fail(ErrorKind::OutOfMemory,
          "procedural:{} has {} voxels at {}, and {} fit: lower {}", name, needed,
          Parameter("resolution", resolutionText(dimensions)), available, Parameter("resolution"));
-  Volume volume = makeProcedural(name, dimensions);
+  Volume volume = makeProcedural(name, dimensions, progress);
   cropToActive(volume);
   return volume;
 }
@@ -93,11 +95,11 @@ std::shared_ptr<const fvx::FvxFile> InputDescription::baked() const {
   return std::make_shared<const fvx::FvxFile>(volume);
 }
 
-Volume InputDescription::open(std::uint64_t maximumVoxels, const MoreGrids& more, int level) const {
+Volume InputDescription::open(std::uint64_t maximumVoxels, const MoreGrids& more, int level, const Progress& progress) const {
   const std::optional<std::string> name = proceduralName(volume);
-  if (const auto file = baked()) return openBaked(file, maximumVoxels, level);
-  if (!name) return clip(readVdb(volume, grid.value_or(""), maximumVoxels, more));
-  Volume made = openProcedural(*name, resolution, maximumVoxels);
+  if (const auto file = baked()) return openBaked(file, maximumVoxels, level, progress);
+  if (!name) return clip(readVdb(volume, grid.value_or(""), maximumVoxels, more, progress));
+  Volume made = openProcedural(*name, resolution, maximumVoxels, progress);
   if (!more.temperature) made.temperature.reset();
   return clip(std::move(made));
 }

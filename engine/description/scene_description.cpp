@@ -96,8 +96,8 @@ void SceneDescription::check() const {
   lighting.check();
 }
 
-Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level) const {
-  return input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.albedoGrid}, level);
+Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level, const Progress& progress) const {
+  return input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.albedoGrid}, level, progress);
 }
 
 int SceneDescription::finestLevelNeeded(const fvx::FvxFile* file, int frameCount) const {

@@ -56,8 +56,8 @@ struct InputDescription {
   Volume clip(Volume whole) const;
   /// Reads or makes the volume. A procedural volume has its temperatures if any are requested; a baked one always has its
   /// temperatures and albedos. If the box of a baked volume is too large at `level` of its octree, the finest level that fits is
-  /// opened, with a warning.
-  Volume open(std::uint64_t maximumVoxels, const MoreGrids& more = {}, int level = 0) const;
+  /// opened, with a warning. `progress` may abandon it.
+  Volume open(std::uint64_t maximumVoxels, const MoreGrids& more = {}, int level = 0, const Progress& progress = {}) const;
   /// Null where the volume is not a baked one.
   std::shared_ptr<const fvx::FvxFile> baked() const;
 
@@ -223,7 +223,7 @@ struct SceneDescription {
   /// Fails for fields that are wrong for every volume and file of their kinds.
   void check() const;
   /// Reads the volume, with the grids that other fields need; of a baked one an octree level, which other volumes do not have.
-  Volume readVolume(std::uint64_t maximumVoxels, int level = 0) const;
+  Volume readVolume(std::uint64_t maximumVoxels, int level = 0, const Progress& progress = {}) const;
   /// The level of a baked volume that frames need: one finer than the finest of which anything is drawn. 0 where the levels are of
   /// scalars that are classified by a transfer function, and without a file.
   int finestLevelNeeded(const fvx::FvxFile* file, int frameCount) const;
@@ -263,7 +263,8 @@ int levelThatFits(const fvx::FvxFile& file, int level, std::uint64_t maximumVoxe
 
 /// Calls makeProcedural, but fails with ErrorKind::OutOfMemory before allocating if the volume exceeds `maximumVoxels` or this
 /// machine's memory.
-Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolution, std::uint64_t maximumVoxels);
+Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolution, std::uint64_t maximumVoxels,
+                      const Progress& progress = {});
 
 /// What the user should know of a volume: its own warnings, NaN values, and negative values if the scalars are densities.
 std::vector<std::string> warningsOf(const Volume& volume, bool scalarsAreDensities);

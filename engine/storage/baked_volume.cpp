@@ -154,17 +154,22 @@ struct BrickPlaces {
 };
 
 /// One set of bricks for each value of a voxel.
-std::vector<ScalarBricks> readChannel(const FvxFile& file, Channel channel, int level) {
+std::vector<ScalarBricks> readChannel(const FvxFile& file, Channel channel, int level, const Progress& progress) {
   const std::span<const ChunkEntry> chunks = file.chunks(channel, level);
   const BrickPlaces places(chunks);
   const std::size_t count = places.cells.size(), components = std::size_t(fvx::valuesPerVoxel(channel));
   const fvx::ChunkReader reader(file, channel, level);
   std::vector<ScalarBricks::Bricks> bricks(components);
   for (ScalarBricks::Bricks& values : bricks) values.resize(count);
-  tbb::parallel_for(std::size_t(0), chunks.size(), [&](std::size_t i) {
+  const auto readChunk = [&](std::size_t i) {
     if (components == 1) return reader.readAll(chunks[i], std::span(bricks.front()).subspan(places.first[i], std::size_t(chunks[i].bricks())));
     reader.read(chunks[i], [&](std::size_t number, std::size_t component) { return &bricks[component][places.first[i] + number]; });
-  });
+  };
+  constexpr std::size_t kBatch = 256;  // chunks, of 128 KiB of values each
+  for (std::size_t first = 0; first < chunks.size(); first += kBatch) {
+    if (progress) progress("reading the file", double(first) / double(chunks.size()));
+    tbb::parallel_for(first, std::min(first + kBatch, chunks.size()), readChunk);
+  }
   std::vector<ScalarBricks> result;
   for (ScalarBricks::Bricks& values : bricks)
     result.push_back(ScalarBricks::of(file.dimensions(level), places.cells, std::move(values)));
@@ -203,11 +208,12 @@ std::vector<ScalarBricks> readRegionChunks(const FvxFile& file, Channel channel,
   return result;
 }
 
-Volume readLevel(const FvxFile& file, int level) {
+Volume readLevel(const FvxFile& file, int level, const Progress& progress) {
   Volume volume = bakedOutline(file, level);
-  volume.scalars = std::move(readChannel(file, Channel::Scalars, level).front());
-  if (volume.temperature) volume.temperature->values = std::move(readChannel(file, Channel::Temperature, level).front());
-  if (volume.albedo) std::ranges::move(readChannel(file, Channel::Albedo, level), volume.albedo->values.begin());
+  const auto read = [&](Channel channel) { return readChannel(file, channel, level, progress); };
+  volume.scalars = std::move(read(Channel::Scalars).front());
+  if (volume.temperature) volume.temperature->values = std::move(read(Channel::Temperature).front());
+  if (volume.albedo) std::ranges::move(read(Channel::Albedo), volume.albedo->values.begin());
   return volume;
 }
 
@@ -291,10 +297,10 @@ Volume bakedOutline(const FvxFile& file, int level) {
   return volume;
 }
 
-Volume readBaked(const std::shared_ptr<const FvxFile>& file, int level) {
+Volume readBaked(const std::shared_ptr<const FvxFile>& file, int level, const Progress& progress) {
   FV_CHECK_LT(level, file->levels());
   try {
-    return readLevel(*file, level);
+    return readLevel(*file, level, progress);
   } catch (const std::bad_alloc&) {
     fail(ErrorKind::OutOfMemory, "not enough memory for level {} of '{}'; free some", level, file->path().string());
   }

@@ -61,8 +61,8 @@ void bakeVolume(const std::filesystem::path& file, const Volume& volume, const C
 
 /// Reads a level of a baked file: the voxels, or for a level above 0 blocks of 2^level voxels along each
 /// axis, each their mean, at the same place in the world. Every chunk that is read is verified first, and the file is not needed
-/// afterwards. Fails with ErrorKind::Input if a chunk is damaged.
-Volume readBaked(const std::shared_ptr<const fvx::FvxFile>& file, int level = 0);
+/// afterwards. `progress` may abandon it. Fails with ErrorKind::Input if a chunk is damaged.
+Volume readBaked(const std::shared_ptr<const fvx::FvxFile>& file, int level = 0, const Progress& progress = {});
 
 /// A region of a level with its halo, as a volume of its own, and what its table is swept from.
 struct BakedRegion {

@@ -156,15 +156,15 @@ bool ProceduralField::mayHoldData(glm::ivec3 first) const {
   return double(functions_->clearance(middle)) <= std::sqrt(3.0) * half * voxelSize_;
 }
 
-Volume makeProcedural(std::string_view name, glm::ivec3 dimensions) {
+Volume makeProcedural(std::string_view name, glm::ivec3 dimensions, const Progress& progress) {
   const ProceduralField field(name, dimensions);
   const auto mayHoldData = [&](glm::ivec3 first) { return field.mayHoldData(first); };
   Volume volume{.source = fmt::format("procedural:{}", name), .dimensions = dimensions, .indexToWorld = field.indexToWorld()};
-  volume.scalars = ScalarBricks::make(dimensions, [&](glm::ivec3 v) { return field.density(v); }, mayHoldData);
+  volume.scalars = ScalarBricks::make(dimensions, [&](glm::ivec3 v) { return field.density(v); }, mayHoldData, progress);
   summariseValues(volume);
   if (!field.hasTemperatures()) return volume;
   volume.temperature = TemperatureGrid{
-      .name = "", .values = ScalarBricks::make(dimensions, [&](glm::ivec3 v) { return field.temperature(v); }, mayHoldData)};
+      .name = "", .values = ScalarBricks::make(dimensions, [&](glm::ivec3 v) { return field.temperature(v); }, mayHoldData, progress)};
   summariseValues(*volume.temperature);
   coverBricks(volume, volume.temperature->values);
   return volume;

@@ -43,7 +43,7 @@ class ProceduralField {
 };
 
 /// All voxels of a field, with its temperatures, if it has any.
-Volume makeProcedural(std::string_view name, glm::ivec3 dimensions);
+Volume makeProcedural(std::string_view name, glm::ivec3 dimensions, const Progress& progress = {});
 /// On a grid of resolution³ voxels.
 inline Volume makeProcedural(std::string_view name, int resolution) {
   return makeProcedural(name, glm::ivec3(resolution));

@@ -69,9 +69,9 @@ class EmptyVolumeError : public Error {
 /// density of 1 inside and 0 outside, linear over three voxels across the surface. Fails with ErrorKind::Input
 /// if a grid of `more` does not exist or has another transform, and for frustum transforms, other grid types,
 /// empty grids (EmptyVolumeError) and unreadable files; with ErrorKind::OutOfMemory if the box exceeds
-/// `maximumVoxels`, before allocating it.
-Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels,
-               const MoreGrids& more = {});
+/// `maximumVoxels`, before allocating it. `progress` may abandon it.
+Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels, const MoreGrids& more = {},
+               const Progress& progress = {});
 
 /// Writes the active voxels as a float fog volume, and temperatures as a second grid. Atomic
 /// (core/atomic_file.h).

@@ -3,6 +3,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "engine/volume/openvdb_trees.h"
@@ -49,9 +50,14 @@ void fillBrick(ScalarBricks::Brick& brick, const VdbLeaf& leaf, const ToDensity&
 /// such voxels make no brick.
 template <typename ToDensity>
 ScalarBricks bricksOf(const openvdb::FloatTree& tree, std::vector<const VdbLeaf*> leaves,
-                      glm::ivec3 dimensions, glm::ivec3 origin, const ToDensity& toDensity) {
+                      glm::ivec3 dimensions, glm::ivec3 origin, const ToDensity& toDensity, const Progress& progress = {}) {
+  constexpr std::size_t kBatch = 1 << 14;  // leaves
+  const auto report = [&](double fraction) {
+    if (progress) progress("making bricks", fraction);
+  };
   ScalarBricks result = emptyBricks(dimensions, origin);
   visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float density) {
+    report(0.0);
     forEachLeafIn(box, [&](const openvdb::Coord& corner) {
       result.makeBrick(brickCell(origin, corner)).fill(density);
     });
@@ -60,8 +66,10 @@ ScalarBricks bricksOf(const openvdb::FloatTree& tree, std::vector<const VdbLeaf*
   result.reserve(result.bricks().size() + leaves.size());
   std::vector<ScalarBricks::Brick*> bricks;
   for (const VdbLeaf* leaf : leaves) bricks.push_back(&result.makeBrick(brickCell(origin, leaf->origin())));
-  tbb::parallel_for(std::size_t(0), leaves.size(),
-                    [&](std::size_t i) { fillBrick(*bricks[i], *leaves[i], toDensity); });
+  for (std::size_t first = 0; first < leaves.size(); first += kBatch) {
+    report(double(first) / double(leaves.size()));
+    tbb::parallel_for(first, std::min(first + kBatch, leaves.size()), [&](std::size_t i) { fillBrick(*bricks[i], *leaves[i], toDensity); });
+  }
   return result;
 }
 

@@ -12,10 +12,12 @@
 #include <map>
 #include <new>
 #include <span>
+#include <utility>
 
 #include "engine/core/crash_note.h"
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
+#include "engine/volume/vdb_grid_reader.h"
 #include "engine/volume/vdb_tree_check.h"
 
 namespace freevoxels {
@@ -153,10 +155,19 @@ void initialiseOpenVdb() {
   static_cast<void>(once);
 }
 
-VdbFile::VdbFile(const fs::path& path, bool delaysValues) : path_(path), file_(path.string()), header_(readVdbHeader(path)) {
+VdbFile::VdbFile(const fs::path& path, const Reading& reading) : path_(path), file_(path.string()), header_(readVdbHeader(path)) {
+  if (reading.progress)
+    progress_ = [this, report = reading.progress](std::string_view stage, double fraction) {
+      try {
+        report(stage, fraction);
+      } catch (...) {
+        abandoned_ = std::current_exception();
+        throw;
+      }
+    };
   initialiseOpenVdb();
   if (header_.hasOffsets) {
-    guarded("the header", [&] { delaysValues_ = openFile(file_, delaysValues); });
+    guarded("the header", [&] { delaysValues_ = openFile(file_, reading.delaysValues); });
     listGrids();
   } else {
     readStreamedGrids();
@@ -207,6 +218,7 @@ void VdbFile::guarded(const std::string& what, const std::function<void()>& read
     fail(ErrorKind::Input, "cannot read {} of '{}': the file ends too early; copy or download it again", what,
          path_.string());
   } catch (const std::exception& e) {
+    if (abandoned_) std::rethrow_exception(std::exchange(abandoned_, nullptr));
     fail(ErrorKind::Input, "cannot read {} of '{}': {}; the file may be damaged", what, path_.string(),
          oneLine(e.what()));
   }
@@ -291,15 +303,21 @@ GridBase::Ptr VdbFile::read(const Entry& entry) {
   }
   checkTree(header_.grids[indexOf(entry)]);
   GridBase::Ptr grid;
-  guarded(fmt::format("grid '{}'", entry.name), [&] { grid = file_.readGrid(entry.key); });
+  guarded(fmt::format("grid '{}'", entry.name), [&] { grid = readAlone(entry); });
   return grid;
+}
+
+GridBase::Ptr VdbFile::readAlone(const Entry& entry) {
+  const VdbHeader::Grid& grid = header_.grids[indexOf(entry)];
+  if (!progress_ || delaysValues_ || !grid.parentName.empty()) return file_.readGrid(entry.key);
+  return readVdbGrid(path_, grid, progress_);
 }
 
 void VdbFile::checkTree(const VdbHeader::Grid& grid) const {
   const auto parent = std::ranges::find(header_.grids, grid.parentName, &VdbHeader::Grid::uniqueName);
   const bool isShared = !grid.parentName.empty() && parent != header_.grids.end();
   VdbReader reader(path_);
-  checkVdbTree(reader, isShared ? *parent : grid);
+  checkVdbTree(reader, isShared ? *parent : grid, progress_);
 }
 
 bool isScalar(const VdbFile::Entry& entry) {

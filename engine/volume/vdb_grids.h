@@ -5,12 +5,14 @@
 #include <openvdb/io/File.h>
 
 #include <array>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/core/stages.h"
 #include "engine/volume/openvdb_trees.h"
 #include "engine/volume/vdb_header.h"
 
@@ -33,9 +35,15 @@ class VdbFile {
     std::optional<std::size_t> place = std::nullopt;
   };
 
-  /// Fails as readVdbHeader does, and with ErrorKind::Input if OpenVDB rejects the file. With `delaysValues` the leaves of grids that
-  /// are read leave their values in the file, as long as this object lives, where OpenVDB can do that.
-  explicit VdbFile(const std::filesystem::path& path, bool delaysValues = false);
+  struct Reading {
+    /// Whether the leaves of grids that are read leave their values in the file, as long as the VdbFile lives, where OpenVDB can do that.
+    bool delaysValues = false;
+    Progress progress = {};  ///< may abandon read()
+  };
+
+  /// Fails as readVdbHeader does, and with ErrorKind::Input if OpenVDB rejects the file.
+  explicit VdbFile(const std::filesystem::path& path, const Reading& reading);
+  explicit VdbFile(const std::filesystem::path& path) : VdbFile(path, Reading{}) {}
   bool delaysValues() const { return delaysValues_; }
 
   const std::filesystem::path& path() const { return path_; }
@@ -56,6 +64,7 @@ class VdbFile {
   void listGrids();
   void readStreamedGrids();
   void checkTree(const VdbHeader::Grid& grid) const;
+  openvdb::GridBase::Ptr readAlone(const Entry& entry);
   /// Runs `read`, with OpenVDB's exceptions turned into one sentence, and a CrashNote in case that it crashes.
   void guarded(const std::string& what, const std::function<void()>& read) const;
   /// The place of a grid in entries_, and in header_.grids or streamed_.
@@ -66,6 +75,8 @@ class VdbFile {
 
   std::filesystem::path path_;
   bool delaysValues_ = false;
+  Progress progress_;  ///< empty, or notes in abandoned_ what it throws
+  mutable std::exception_ptr abandoned_;
   openvdb::io::File file_;
   VdbHeader header_;
   std::vector<Entry> entries_;

@@ -209,6 +209,8 @@ VdbHeader::Grid readGridEntry(VdbReader& reader) {
     reader.failDamaged("its grids are not where its header says");
   reader.seek(std::uint64_t(end));  // checked first, so that a truncated file is not called damaged
   reader.seek(std::uint64_t(gridStart));
+  grid.start = std::uint64_t(gridStart);
+  grid.end = std::uint64_t(end);
   readGridStart(reader, grid);
   reader.seek(std::uint64_t(end));
   return grid;

@@ -17,6 +17,7 @@ struct VdbHeader {
     std::string parentName;         ///< unique name of the grid whose tree this one shares, or empty
     std::uint32_t compression = 0;  ///< OpenVDB's flags
     bool valuesAreHalf = false;     ///< whether the tree's values are half; OpenVDB decides by the metadata, not by savedAsHalf
+    std::uint64_t start = 0, end = 0;  ///< position in the file; 0 if it was streamed out
     std::uint64_t treeStart = 0;    ///< position in the file; 0 if it is unknown
   };
   std::uint32_t formatVersion = 0;

@@ -95,7 +95,7 @@ void finishVolume(VdbFile& file, const VdbFile::Entry& entry, Volume& volume) {
 /// Makes the volume of the box around the voxels that `toDensity` keeps and around `more`.
 template <typename ToDensity>
 Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::string& source,
-                const CoordBBox& more, std::uint64_t maximumVoxels) {
+                const CoordBBox& more, std::uint64_t maximumVoxels, const Progress& progress) {
   std::vector<const VdbLeaf*> leaves;
   grid.tree().getNodes(leaves);
   CoordBBox bounds = boundsOf(grid.tree(), leaves, toDensity);
@@ -105,7 +105,7 @@ Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::st
   checkSize(bounds, maximumVoxels, source);
 
   Volume volume = boxVolume(grid, bounds, source);
-  volume.scalars = bricksOf(grid.tree(), std::move(leaves), volume.dimensions, volume.indexOrigin, toDensity);
+  volume.scalars = bricksOf(grid.tree(), std::move(leaves), volume.dimensions, volume.indexOrigin, toDensity, progress);
   summariseValues(volume);
   return volume;
 }
@@ -122,8 +122,8 @@ void checkUsable(VdbFile& file, const VdbFile::Entry& entry) {
 }  // namespace
 
 Volume readVdb(const std::filesystem::path& path, const std::string& gridName, std::uint64_t maximumVoxels,
-               const MoreGrids& more) {
-  VdbFile file(path);
+               const MoreGrids& more, const Progress& progress) {
+  VdbFile file(path, {.progress = progress});
   const VdbFile::Entry& entry = file.choose(gridName);
   checkUsable(file, entry);
   VdbChannels channels(file, entry, more);
@@ -135,7 +135,7 @@ Volume readVdb(const std::filesystem::path& path, const std::string& gridName, s
   try {
     channels.read();
     Volume volume = withDensity(*grid, [&](const auto& toDensity) {
-      return toVolume(*floats, toDensity, source, channels.bounds(), maximumVoxels);
+      return toVolume(*floats, toDensity, source, channels.bounds(), maximumVoxels, progress);
     });
     channels.addTo(volume);
     volume.isLevelSet = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
@@ -171,7 +171,7 @@ VdbLeaf load(const VdbLeaf& leaf, const std::string& source) {
 }  // namespace
 
 struct VdbParts::Source {
-  explicit Source(const std::filesystem::path& path) : file(path, true) {}
+  explicit Source(const std::filesystem::path& path) : file(path, {.delaysValues = true}) {}
 
   VdbFile file;
   const VdbFile::Entry* entry = nullptr;

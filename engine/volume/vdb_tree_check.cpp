@@ -42,11 +42,12 @@ std::uint64_t countOn(MaskView mask) {
 
 class TreeCheck {
  public:
-  TreeCheck(VdbReader& reader, const VdbHeader::Grid& grid, const ValueLayout& layout)
+  TreeCheck(VdbReader& reader, const VdbHeader::Grid& grid, const ValueLayout& layout, const Progress& progress)
       : reader_(reader),
         layout_(layout),
         compression_(grid.compression),
-        isHalf_(grid.valuesAreHalf && layout.halfBytes != layout.bytes) {}
+        isHalf_(grid.valuesAreHalf && layout.halfBytes != layout.bytes),
+        progress_(progress) {}
 
   void check() {
     if (compression_ > (kZip | kActiveMask | kBlosc))
@@ -101,6 +102,8 @@ class TreeCheck {
   }
 
   void checkLeaf(const Mask<kLeaf>& mask) {
+    constexpr std::size_t kInterval = 4096;  // leaves
+    if (progress_ && leavesChecked_++ % kInterval == 0) progress_("checking the grid", double(leavesChecked_) / double(leaves_.size()));
     if (reader_.read<Mask<kLeaf>>() != mask) reader_.failDamaged("the masks of a leaf differ");
     if (layout_.leafBytes > 0)
       reader_.skip(layout_.leafBytes);
@@ -147,16 +150,18 @@ class TreeCheck {
   const ValueLayout& layout_;
   std::uint32_t compression_;
   bool isHalf_;
+  const Progress& progress_;
+  std::size_t leavesChecked_ = 0;
   std::vector<Mask<kLeaf>> leaves_;  // in the order of their values
 };
 
 }  // namespace
 
-bool checkVdbTree(VdbReader& reader, const VdbHeader::Grid& grid) {
+bool checkVdbTree(VdbReader& reader, const VdbHeader::Grid& grid, const Progress& progress) {
   const auto layout = std::ranges::find(kLayouts, grid.type, &ValueLayout::treeType);
   if (layout == std::end(kLayouts) || grid.treeStart == 0) return false;
   reader.seek(grid.treeStart);
-  TreeCheck(reader, grid, *layout).check();
+  TreeCheck(reader, grid, *layout, progress).check();
   return true;
 }
 

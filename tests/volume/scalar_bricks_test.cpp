@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 
@@ -33,6 +34,26 @@ TEST(ScalarBricks, KeepsEveryScalarWhereverTheBoxBeginsInItsFirstBrick) {
     forEachVoxel(size, [&](glm::ivec3 v) { EXPECT_EQ(bricks.at(v), scalarOf(v)); });
     for (std::size_t i = 0; i < bricks.bricks().size(); ++i)
       EXPECT_EQ((bricks.firstVoxel(i) + corner) % ScalarBricks::kEdge, glm::ivec3(0));
+  }
+}
+
+TEST(ScalarBricks, ProgressMayAbandonAndChangesNothing) {
+  for (const glm::ivec3 size : {glm::ivec3(1), glm::ivec3(70, 65, 130), glm::ivec3(200, 9, 300)}) {
+    const auto everywhere = [](glm::ivec3) { return true; };
+    std::vector<double> fractions;
+    const ScalarBricks plain = ScalarBricks::make(size, scalarOf);
+    const ScalarBricks reported = ScalarBricks::make(size, scalarOf, everywhere, [&](std::string_view, double fraction) { fractions.push_back(fraction); });
+    ASSERT_EQ(reported.bricks().size(), plain.bricks().size());
+    for (std::size_t i = 0; i < plain.bricks().size(); ++i) {
+      EXPECT_EQ(reported.cell(i), plain.cell(i));
+      EXPECT_EQ(reported.bricks()[i], plain.bricks()[i]);
+    }
+    const glm::ivec3 cells = plain.cells();
+    EXPECT_GE(fractions.size(), std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z) / 512);
+    EXPECT_TRUE(std::ranges::is_sorted(fractions));
+    std::size_t left = fractions.size();
+    const auto abandon = [&] { ScalarBricks::make(size, scalarOf, everywhere, [&](std::string_view, double) { if (--left == 0) throw left; }); };
+    EXPECT_THROW(abandon(), std::size_t);
   }
 }
 

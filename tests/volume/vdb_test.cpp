@@ -39,6 +39,56 @@ void expectNear(const glm::dmat4& a, const glm::dmat4& b, double tolerance) {
     for (int j = 0; j < 4; ++j) EXPECT_NEAR(a[i][j], b[i][j], tolerance) << "column " << i << " row " << j;
 }
 
+/// What ends a reading; no std::exception, as those of callers need not be.
+struct Abandoned {};
+
+TEST_F(Vdb, ReadingReportsProgressAndChangesNothing) {
+  for (const bool isHalf : {false, true})
+    for (const std::uint32_t compression : {openvdb::io::COMPRESS_NONE, openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK}) {
+      const FloatGrid::Ptr density = makeGrid("density", {Coord(-3, 5, 0), Coord(180, 170, 160)}, 0.5f), other = makeGrid("density");
+      for (auto leaf = density->tree().beginLeaf(); leaf; ++leaf)
+        for (auto voxel = leaf->beginValueOn(); voxel; ++voxel) voxel.setValue(float((voxel.pos() * 7 + leaf.pos()) % 1000) / 512.0f);
+      density->setSaveFloatAsHalf(isHalf);
+      openvdb::io::File written(file.string());
+      written.setCompression(compression);
+      written.write({other, named(makeGrid("heat"), "heat"), density});
+      written.close();
+      for (const char* name : {"density[0]", "density[1]", "heat"}) {
+        std::vector<double> fractions;
+        const Volume plain = readVdb(file, name, kPlenty), reported = readVdb(file, name, kPlenty, {}, [&](std::string_view, double fraction) {
+                       fractions.push_back(fraction);
+                     });
+        EXPECT_EQ(denseScalars(reported), denseScalars(plain)) << name;
+        EXPECT_EQ(reported.indexToWorld, plain.indexToWorld);
+        EXPECT_EQ(reported.indexOrigin, plain.indexOrigin);
+        EXPECT_EQ(reported.source, plain.source);
+        for (const double fraction : fractions) EXPECT_TRUE(fraction >= 0.0 && fraction <= 1.0) << fraction;
+        EXPECT_GE(fractions.size(), plain.activeVoxels > 1000 ? 5u : 2u);
+      }
+    }
+}
+
+TEST_F(Vdb, ReadingMayBeAbandonedAtEveryReport) {
+  writeVdb(file, makeProcedural("marschner-lobb", glm::ivec3(130, 140, 150)), "density");
+  int reports = 0;
+  const Volume whole = readVdb(file, "", kPlenty, {}, [&](std::string_view, double) { ++reports; });
+  ASSERT_GE(reports, 5);
+  for (int last = 1; last <= reports; ++last) {
+    int left = last;
+    const auto abandon = [&] { readVdb(file, "", kPlenty, {}, [&](std::string_view, double) { if (--left == 0) throw Abandoned(); }); };
+    EXPECT_THROW(abandon(), Abandoned) << last;
+    left = last;
+    const auto fails = [&] { readVdb(file, "", kPlenty, {}, [&](std::string_view, double) { if (--left == 0) throw std::runtime_error("mine"); }); };
+    try {
+      fails();
+      ADD_FAILURE() << last;
+    } catch (const std::exception& error) {
+      EXPECT_STREQ(error.what(), "mine") << last;
+    }
+  }
+  EXPECT_EQ(denseScalars(read()), denseScalars(whole));
+}
+
 TEST_F(Vdb, WhatIsWrittenIsReadBack) {
   glm::dmat4 sheared = glm::rotate(glm::translate(glm::dmat4(1.0), {3.0, -2.0, 7.0}), 0.6, {0.3, 1.0, -0.2});
   sheared = glm::scale(sheared, {0.1, 0.25, 0.4});
