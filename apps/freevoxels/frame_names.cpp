@@ -4,6 +4,7 @@
 #include <charconv>
 #include <optional>
 
+#include "apps/freevoxels/output_options.h"
 #include "engine/core/error.h"
 
 namespace freevoxels {
@@ -37,6 +38,7 @@ std::string withHashes(const std::string& pattern) {
 }
 
 std::string frameName(const std::string& pattern, int frame) {
+  if (pattern == kStandardOutput) return pattern;
   const std::string hashes = withHashes(pattern);
   const std::size_t first = hashes.find('#', hashes.rfind('/') + 1);
   if (first == std::string::npos)

@@ -79,12 +79,20 @@ void FrameSeries::printDrawnElsewhere() {
   for (const FrameJob* job : drawnElsewhere_) writer_.printNames(*job);
 }
 
+/// Whether all frames of the volume are skipped, and it does not decide how others are seen.
+bool FrameSeries::needsNoVolume(std::span<const FrameJob> jobs) const {
+  return std::ranges::all_of(jobs, &FrameJob::isSkipped) && (hasReference_ || !options_.fixedView);
+}
+
 void FrameSeries::drawVolumes(std::span<const FrameJob> jobs) {
   const std::vector<std::string> inputs = volumesOf(jobs);
   isFilm_ = inputs.size() > 1;
   const MemoryLimits limits = memoryLimits(options_, device_);
   const int turn = int(framesOfFirstVolume(jobs));
-  VolumesAhead volumes(inputs, [this, limits, turn](const std::string& input) {
+  VolumesAhead volumes(inputs, [this, limits, turn, jobs](const std::string& input) {
+    const auto first = std::ranges::find(jobs, input, &FrameJob::input);
+    const std::span<const FrameJob> own = jobs.subspan(std::size_t(first - jobs.begin()));
+    if (needsNoVolume(own.first(framesOfFirstVolume(own)))) return std::shared_ptr<const Volume>();
     // A baked volume is read no finer than the frames need, and not at all if they are drawn piece by piece.
     const SceneDescription scene = options_.sceneOf(input);
     const int level = scene.finestLevelNeeded(scene.input.baked().get(), turn);
@@ -110,6 +118,10 @@ bool FrameSeries::drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs
     {
       const StageTimer timer(report_.stages, "read volume");
       volume = volumes.next();
+    }
+    if (needsNoVolume(jobs)) {
+      progress_.drawn += jobs.size();
+      return true;
     }
     drawFitting(std::move(volume), jobs);
     return true;
@@ -220,6 +232,7 @@ FrameSeries::VolumeView FrameSeries::beginVolume(std::shared_ptr<const Volume> v
     logWarnings(*scene.volume, !scene.classification.transferFunction);
   agree(scene, file);
   if (isFirst || !options_.fixedView) reference_ = scene;
+  hasReference_ = true;
   return view;
 }
 
@@ -256,6 +269,7 @@ void FrameSeries::drawFrames(FrameRenderer& renderer, const VolumeView& view, st
   addTimes(report_.stages, built);
   Scene scene = view.scene;
   for (std::size_t i = 0; i < jobs.size(); ++i, ++progress_.drawn) {
+    if (jobs[i].isSkipped) continue;
     if (options_.group != nullptr && !options_.group->draws(progress_.drawn)) {
       drawnElsewhere_.push_back(&jobs[i]);
       continue;
@@ -321,7 +335,7 @@ void FrameSeries::writeEmpty(const FrameJob& job) {
     return;
   }
   ++progress_.drawn;
-  if (!options_.leads()) return;
+  if (!options_.leads() || job.isSkipped) return;
   const FrameSettings settings = options_.frameSettings();
   const std::size_t pixels = std::size_t(settings.size.x) * std::size_t(settings.size.y);
   Image image{.size = settings.size, .pixels = std::vector<glm::vec4>(pixels, glm::vec4(0.0f))};

@@ -1,6 +1,7 @@
 #pragma once
 // Draws the frames of a command on one device: one volume seen by one camera or by those of a turn, or the volumes of a film.
 
+#include <atomic>
 #include <future>
 #include <memory>
 #include <optional>
@@ -49,6 +50,7 @@ class FrameSeries {
     std::future<AddedUp> result;
   };
 
+  bool needsNoVolume(std::span<const FrameJob> jobs) const;
   void drawVolumes(std::span<const FrameJob> jobs);
   bool drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs);
   void drawFitting(std::shared_ptr<const Volume> volume, std::span<const FrameJob> jobs);
@@ -71,6 +73,7 @@ class FrameSeries {
   RunReport& report_;
   SeriesProgress progress_;
   bool isFilm_ = false;              ///< whether there are several volumes
+  std::atomic<bool> hasReference_ = false;  ///< whether there is a reference_, also for the thread that reads volumes ahead
   std::optional<Scene> reference_;   ///< the first frame's with a fixed view, else the last one's
   FrameWriter writer_;
   AddingUp addingUp_;

@@ -1,8 +1,5 @@
 #include "apps/freevoxels/frame_writer.h"
 
-#include <fmt/format.h>
-
-#include <cstdio>
 #include <utility>
 
 #include "apps/freevoxels/program.h"
@@ -31,8 +28,7 @@ void FrameWriter::finish() {
 void FrameWriter::printNames(const FrameJob& job) {
   progress_.erase();
   if (options_.messages.quiet || !options_.leads()) return;
-  for (const std::string& file : job.files) fmt::print("{}\n", file);
-  std::fflush(stdout);
+  freevoxels::printNames(job.files);
 }
 
 /// The options with which `render` makes this frame alone.

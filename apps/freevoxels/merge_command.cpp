@@ -169,7 +169,7 @@ void MergeCommand::run() const {
   writeImages(resolveSums(merge.sums(), valueOf(merge.header(), "freevoxels:composite") != "additive"), output, images,
               imageHeaderOf(merge, output));
   if (messages_.quiet) return;
-  for (const std::string& file : images) fmt::print("{}\n", file);
+  printNames(images);
 }
 
 }  // namespace freevoxels

@@ -45,8 +45,8 @@ void OracleCommand::run() {
   scene_.check(scene_.files);
   draw();
   if (messages_.quiet) return;
-  for (const std::string& file : scene_.files) fmt::print("{}\n", file);
-  if (scene_.saved) fmt::print("{}\n", *scene_.saved);
+  printNames(scene_.files);
+  if (scene_.saved && !usesStandardOutput(scene_.files)) fmt::print("{}\n", *scene_.saved);
 }
 
 std::uint64_t OracleCommand::voxelsThatFit() const {

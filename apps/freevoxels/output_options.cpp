@@ -1,6 +1,10 @@
 #include "apps/freevoxels/output_options.h"
 
+#include <fmt/format.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 
 #include "apps/freevoxels/program.h"
@@ -17,14 +21,28 @@ std::string extensionOf(const std::string& file) {
   return extension;
 }
 
+int pngBits(const OutputDescription& output) {
+  return output.pngBits == PngBits::Sixteen ? 16 : 8;
+}
+
+void writeToStandardOutput(const Image& image, const OutputDescription& output) {
+  const std::vector<std::uint8_t> bytes = encodePng(image, output.look(), pngBits(output));
+  if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
+    fail(ErrorKind::Output, "cannot write the image to standard output: its reader has ended, or the disk is full");
+}
+
 }  // namespace
+
+bool usesStandardOutput(std::span<const std::string> files) {
+  return std::ranges::find(files, kStandardOutput) != files.end();
+}
 
 bool isExr(const std::string& file) {
   return extensionOf(file) == ".exr";
 }
 
 bool isPng(const std::string& file) {
-  return extensionOf(file) == ".png";
+  return extensionOf(file) == ".png" || file == kStandardOutput;
 }
 
 bool isJpeg(const std::string& file) {
@@ -49,7 +67,7 @@ OutputDescription honoured(const OutputDescription& output, std::span<const std:
 void checkOutputs(const OutputDescription& output, std::span<const std::string> files) {
   for (const std::string& file : files)
     if (!isImage(file))
-      fail(ErrorKind::Usage, "'{}' has no known image extension; name it .exr, .png or .jpg", file);
+      fail(ErrorKind::Usage, "'{}' has no known image extension; name it .exr, .png or .jpg, or - for a .png on standard output", file);
   const auto needs = [&](bool given, const char* field) { return given && !honours(files, field); };
   if (needs(output.aovs.any(), "aov")) fail(ErrorKind::Usage, "{} needs an .exr output", Parameter("aov", aovText(output.aovs)));
   if (needs(output.fullFloat, "float")) fail(ErrorKind::Usage, "{} needs an .exr output", Parameter("float"));
@@ -61,7 +79,10 @@ void checkOutputs(const OutputDescription& output, std::span<const std::string> 
   if (needs(output.exposure || output.toneMap, "exposure"))
     fail(ErrorKind::Usage, "{} needs a .png or .jpg output: an .exr keeps linear light",
          Parameter(output.exposure ? "exposure" : "tone-map"));
-  for (const std::string& file : files) checkOutput(file);
+  if (usesStandardOutput(files) && isatty(STDOUT_FILENO) == 1)
+    fail(ErrorKind::Output, "'-' sends the image to a terminal: append > FILE.png, or | and a program that reads a .png");
+  for (const std::string& file : files)
+    if (file != kStandardOutput) checkOutput(file);
 }
 
 void writeImages(const Image& whole, const OutputDescription& output, std::span<const std::string> files, const ExrOptions& exr) {
@@ -74,9 +95,17 @@ void writeImages(const Image& whole, const OutputDescription& output, std::span<
       writeExr(file, image, exr);
     else if (isJpeg(file))
       writeJpeg(file, image, output.look());
+    else if (file == kStandardOutput)
+      writeToStandardOutput(image, output);
     else
-      writePng(file, image, output.look(), output.pngBits == PngBits::Sixteen ? 16 : 8);
+      writePng(file, image, output.look(), pngBits(output));
   }
+}
+
+void printNames(std::span<const std::string> files) {
+  if (usesStandardOutput(files)) return;
+  for (const std::string& file : files) fmt::print("{}\n", file);
+  std::fflush(stdout);
 }
 
 std::string commandInto(const std::string& command, OptionList options, const std::string& file) {

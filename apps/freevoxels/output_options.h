@@ -14,6 +14,11 @@
 
 namespace freevoxels {
 
+/// The name of the output that is standard output: a .png.
+inline constexpr std::string_view kStandardOutput = "-";
+/// Whether an image is written there, so that nothing else may be.
+bool usesStandardOutput(std::span<const std::string> files);
+
 /// By extension, in any case.
 bool isExr(const std::string& file);
 bool isPng(const std::string& file);
@@ -25,11 +30,14 @@ bool isImage(const std::string& file);
 bool honours(std::span<const std::string> files, std::string_view field);
 /// The fields of the output that affect any of the files.
 OutputDescription honoured(const OutputDescription& output, std::span<const std::string> files);
-/// Checks extensions and fields that no output can honour (ErrorKind::Usage), and folders (ErrorKind::Output). To be called before
-/// any work.
+/// Checks extensions and fields that no output can honour (ErrorKind::Usage), folders, and that no terminal is sent an image
+/// (ErrorKind::Output). To be called before any work.
 void checkOutputs(const OutputDescription& output, std::span<const std::string> files);
-/// Writes each file completely or not at all.
+/// Writes each file completely or not at all, and to standard output one image after another.
 void writeImages(const Image& image, const OutputDescription& output, std::span<const std::string> files, const ExrOptions& exr);
+
+/// Prints the names of images that are complete, unless one is written to standard output.
+void printNames(std::span<const std::string> files);
 
 /// The metadata of an EXR: "freevoxels:NAME" for every option, the command that makes it again as image.exr,
 /// versions, the device, and the camera's matrices. Contains nothing that differs between two runs of a

@@ -24,6 +24,7 @@ void RenderCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("render", "Draw a volume, or a sequence of volumes, into images");
   options_.add(*command);
   sequence_.add(*command, options_.fixedView);
+  options_.addSkipExisting(*command);
   command->footer(kRenderExamples);
   command->callback([this] {
     options_.messages.apply();

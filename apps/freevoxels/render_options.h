@@ -19,6 +19,7 @@ namespace freevoxels {
 struct FrameJob {
   std::string input;
   std::vector<std::string> files;
+  bool isSkipped = false;  ///< whether it is not drawn, but counts as a frame of its turn or film
 };
 
 struct RenderOptions {
@@ -27,13 +28,16 @@ struct RenderOptions {
   MessageOptions messages;
   std::optional<std::string> timings;
   bool fixedView = true;  ///< whether all frames are seen as the first one is where options leave that open
+  bool skipsExisting = false;    ///< whether frames whose images exist are left as they are
   ShareOptions shares;
   /// The processes among which every frame is divided; null: this process draws alone, what `shares` says. Lives longer.
   ShareGroup* group = nullptr;
 
   void add(CLI::App& app);
+  /// Adds --skip-existing, which `run` obeys, where there is no group.
+  void addSkipExisting(CLI::App& app);
   /// Draws the frames; those of one volume are the steps of a full turn. Refuses whatever can be refused before any work.
-  void run(std::span<const FrameJob> frames) const;
+  void run(std::vector<FrameJob> frames) const;
   /// Without lighting.
   FrameSettings frameSettings() const;
   /// The scene of this volume.
@@ -45,6 +49,7 @@ struct RenderOptions {
 
  private:
   void check(std::span<const FrameJob> frames) const;
+  void skipExisting(std::span<FrameJob> frames) const;
   void checkShares(std::span<const FrameJob> frames) const;
 };
 

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include "apps/freevoxels/failure.h"
 #include "apps/freevoxels/option_help.h"
@@ -156,7 +157,7 @@ void checkScene(const SceneDescription& description, std::span<const std::string
   description.output.checkCrop(description.camera.size);
   for (const std::string& written : moreOutputs) checkOutput(written);
   std::vector<std::string> files = std::move(moreOutputs);
-  files.insert(files.end(), images.begin(), images.end());
+  std::ranges::copy_if(images, std::back_inserter(files), [](const std::string& image) { return image != kStandardOutput; });
   for (const std::string& volume : moreInputs)
     if (!proceduralName(volume)) files.push_back(volume);
   if (!proceduralName(description.input.volume)) files.push_back(description.input.volume);

@@ -12,7 +12,10 @@ class TurntableCommand {
   void add(CLI::App& app);
 
  private:
+  void skipOthers(std::vector<FrameJob>& frames) const;
+
   RenderOptions options_;
+  std::optional<std::string> range_;
   std::optional<int> ranksPerFrame_;
 };
 

@@ -89,6 +89,6 @@ std::vector<std::uint8_t> srgbTexels(const Image& image, const DisplayLook& look
 void writePngTexels(const std::filesystem::path& file, glm::ivec2 size, std::span<const std::uint8_t> texels);
 
 /// The bytes of the file that writePng writes.
-std::vector<std::uint8_t> encodePng(const Image& image, const DisplayLook& look = {});
+std::vector<std::uint8_t> encodePng(const Image& image, const DisplayLook& look = {}, int bits = 8);
 
 }  // namespace freevoxels

@@ -253,7 +253,7 @@ void encode(const Samples& samples, const Sink& sink) {
 }
 
 template <typename Sample>
-void encodeAs(const Image& image, const DisplayLook& look, const Sink& sink) {
+void encodeSamples(const Image& image, const DisplayLook& look, const Sink& sink) {
   FV_CHECK_EQ(image.pixels.size(), std::size_t(image.size.x) * std::size_t(image.size.y));
   const std::vector<Sample> samples = displaySamples<Sample>(image, look);
   encode({.size = image.size,
@@ -261,6 +261,14 @@ void encodeAs(const Image& image, const DisplayLook& look, const Sink& sink) {
           .bits = 8 * int(sizeof(Sample)),
           .bytes = reinterpret_cast<const std::uint8_t*>(samples.data())},
          sink);
+}
+
+void encodeAs(const Image& image, const DisplayLook& look, int bits, const Sink& sink) {
+  FV_CHECK_EQ(bits == 8 || bits == 16, true);
+  if (bits == 16)
+    encodeSamples<std::uint16_t>(image, look, sink);
+  else
+    encodeSamples<std::uint8_t>(image, look, sink);
 }
 
 /// Atomic.
@@ -291,22 +299,16 @@ std::vector<std::uint8_t> srgbTexels(const Image& image, const DisplayLook& look
   return texels;
 }
 
-std::vector<std::uint8_t> encodePng(const Image& image, const DisplayLook& look) {
+std::vector<std::uint8_t> encodePng(const Image& image, const DisplayLook& look, int bits) {
   std::vector<std::uint8_t> file;
-  encodeAs<std::uint8_t>(image, look, [&](const std::uint8_t* bytes, std::size_t count) {
+  encodeAs(image, look, bits, [&](const std::uint8_t* bytes, std::size_t count) {
     file.insert(file.end(), bytes, bytes + count);
   });
   return file;
 }
 
 void writePng(const std::filesystem::path& file, const Image& image, const DisplayLook& look, int bits) {
-  FV_CHECK_EQ(bits == 8 || bits == 16, true);
-  writeFile(file, [&](const Sink& sink) {
-    if (bits == 16)
-      encodeAs<std::uint16_t>(image, look, sink);
-    else
-      encodeAs<std::uint8_t>(image, look, sink);
-  });
+  writeFile(file, [&](const Sink& sink) { encodeAs(image, look, bits, sink); });
 }
 
 void writePngTexels(const std::filesystem::path& file, glm::ivec2 size,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -40,6 +41,35 @@ TEST_F(RenderOutput, TheRecordedCommandGivesTheSameBytes) {
   const std::string first = render("--float --paper --orbit 10,-20");
   expectSuccess(runFreevoxels(recordedCommand(first, folder / "again.exr")));
   EXPECT_EQ(first, readBytes(folder / "again.exr"));
+}
+
+TEST_F(RenderOutput, StandardOutputIsAPngAndNothingElse) {
+  for (const std::string options : {"", "--png-bits 16", "--background transparent", "--crop 3,5,20,11 --exposure 1", "--verbose", "--quiet"}) {
+    const std::string more = " --resolution 16 --size 40x30 " + options;
+    const ProgramResult file = run("render procedural:cloud @a.png" + more);
+    ASSERT_EQ(file.exitCode, 0) << file.err;
+    const ProgramResult piped = run("render procedural:cloud -" + more);
+    ASSERT_EQ(piped.exitCode, 0) << piped.err;
+    EXPECT_TRUE(piped.out == readBytes(folder / "a.png")) << options;
+  }
+  const ProgramResult both = run("render procedural:cloud - @b.exr --resolution 16 --size 40x30 --aov depth --save-scene @s.json --timings @t.json");
+  ASSERT_EQ(both.exitCode, 0) << both.err;
+  EXPECT_TRUE(both.out.starts_with("\x89PNG"));
+  EXPECT_TRUE(both.out.ends_with(std::string("IEND\xae\x42\x60\x82")));
+  for (const char* name : {"b.exr", "s.json", "t.json"}) EXPECT_TRUE(std::filesystem::exists(folder / name)) << name;
+  expectCleanRefusal("render procedural:cloud - -", ExitCode::Usage, "named twice");
+  expectCleanRefusal("render procedural:cloud - --float", ExitCode::Usage, "--float");
+  const ProgramResult oracle = run("oracle procedural:cube - --resolution 4 --size 6");
+  ASSERT_EQ(oracle.exitCode, 0) << oracle.err;
+  EXPECT_TRUE(oracle.out.starts_with("\x89PNG"));
+}
+
+TEST_F(RenderOutput, EndsByTheSignalThatInterruptsIt) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    const ProgramResult result = runAndInterrupt(words("render procedural:cloud @i.png --resolution 512"), signal, 800);
+    EXPECT_EQ(result.exitCode, -signal) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "i.png"));
+  }
 }
 
 TEST_F(RenderOutput, RecordsOptionsVersionsAndCamera) {

@@ -1,5 +1,6 @@
 // freevoxels render of several volumes: the files of a pattern, or named one by one.
 
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "engine/image/image.h"
@@ -72,6 +73,31 @@ TEST_F(SequenceCommand, FramesAndTheirViewAreChosen) {
   EXPECT_NEAR(twice, 2.0, 0.01);
   const auto json = nlohmann::json::parse(readBytes(folder / "t.json"));
   EXPECT_EQ(json.at("options").at("input"), (folder / "s%d.vdb").string());
+}
+
+TEST_F(SequenceCommand, FramesThatExistAreSkippedAndTheOthersSeenAsBefore) {
+  for (const int number : {1, 2, 3, 4}) write(fmt::format("s{}.vdb", number), float(number));
+  for (const std::string view : {" --fixed-view", " --no-fixed-view"}) {
+    const std::string command = "render @s#.vdb @i#.exr --skip-existing" + view + kSmallUnlit;
+    expectSuccess(run(command));
+    std::map<int, std::string> before;
+    for (const int number : {1, 2, 3, 4}) before[number] = readBytes(folder / fmt::format("i{}.exr", number));
+    EXPECT_EQ(run(command).out, "");
+    for (const std::vector<int>& missing : std::vector<std::vector<int>>{{4}, {1}, {2, 3}, {1, 2, 3, 4}}) {
+      std::vector<std::string> names;
+      for (const int number : missing) {
+        names.push_back(fmt::format("i{}.exr", number));
+        std::filesystem::remove(folder / names.back());
+      }
+      const ProgramResult again = run(command);
+      expectSuccess(again);
+      std::string printed;
+      for (const std::string& name : names) printed += (folder / name).string() + "\n";
+      EXPECT_EQ(again.out, printed);
+      for (const int number : {1, 2, 3, 4}) EXPECT_TRUE(readBytes(folder / fmt::format("i{}.exr", number)) == before[number]) << number << view;
+    }
+    for (const int number : {1, 2, 3, 4}) std::filesystem::remove(folder / fmt::format("i{}.exr", number));
+  }
 }
 
 TEST_F(SequenceCommand, SeveralVolumesBecomeImagesOfTheirNamesInAFolder) {

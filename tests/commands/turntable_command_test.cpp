@@ -1,6 +1,9 @@
 // freevoxels turntable: the options of render, an image a frame.
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -52,6 +55,54 @@ TEST_F(TurntableCommand, NumbersGrowBeyondTheirPlace) {
   EXPECT_TRUE(std::filesystem::exists(folder / "0.png"));
   EXPECT_TRUE(std::filesystem::exists(folder / "10.png"));
   EXPECT_EQ(folder.fileCount(), 11u);
+}
+
+TEST_F(TurntableCommand, ARangeHasTheFramesOfTheWholeTurn) {
+  turn("@all_#.exr @all_#.png --frames 7");
+  for (const auto& [range, numbers] : std::map<std::string, std::vector<int>>{{"2-4", {2, 3, 4}}, {"1-5:2", {1, 3, 5}}, {"5-", {5, 6}}, {"0", {0}}, {"4-90:2", {4, 6}}}) {
+    const ProgramResult result = turn("@part_#.exr @part_#.png --frames 7 --range " + range);
+    std::string printed;
+    for (const int number : numbers)
+      for (const char* kind : {"exr", "png"}) {
+        const std::string name = fmt::format("part_{}.{}", number, kind);
+        printed += (folder / name).string() + "\n";
+        EXPECT_TRUE(readBytes(folder / name) == readBytes(folder / fmt::format("all_{}.{}", number, kind))) << name << " of " << range;
+      }
+    EXPECT_EQ(result.out, printed) << range;
+    EXPECT_EQ(folder.fileCount(), 14 + 2 * numbers.size()) << range;
+    for (const int number : numbers)
+      for (const char* kind : {"exr", "png"}) std::filesystem::remove(folder / fmt::format("part_{}.{}", number, kind));
+  }
+  for (const char* wrong : {"7-", "x", "3-2", "1-2:0", ""})
+    expectCleanRefusal(fmt::format("turntable procedural:cloud @n#.png --frames 7 --range={}", wrong), ExitCode::Usage, "--range");
+}
+
+TEST_F(TurntableCommand, FramesThatExistAreSkipped) {
+  turn("@a#.png @a#.exr --frames 5");
+  std::map<std::string, std::string> before;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "")) before[entry.path().string()] = readBytes(entry.path());
+  for (const char* name : {"a1.png", "a3.exr", "a4.png", "a4.exr"}) std::filesystem::remove(folder / name);
+  writeBytes(folder / "a2.png", "kept, whatever it is");
+  const ProgramResult rest = turn("@a#.png @a#.exr --frames 5 --skip-existing");
+  std::string printed;
+  for (const char* name : {"a1.png", "a1.exr", "a3.png", "a3.exr", "a4.png", "a4.exr"}) printed += (folder / name).string() + "\n";
+  EXPECT_EQ(rest.out, printed);
+  EXPECT_NE(rest.err.find("2 of 5 frames exist"), std::string::npos) << rest.err;
+  EXPECT_EQ(readBytes(folder / "a2.png"), "kept, whatever it is");
+  before[(folder / "a2.png").string()] = "kept, whatever it is";
+  for (const auto& [file, bytes] : before) EXPECT_TRUE(readBytes(file) == bytes) << file;
+  const ProgramResult nothing = turn("@a#.png @a#.exr --frames 5 --skip-existing --range 1-3");
+  EXPECT_EQ(nothing.out, "");
+  EXPECT_EQ(turn("@a#.png @a#.exr --frames 5 --skip-existing --save-scene @s.json").out, (folder / "s.json").string() + "\n");
+  expectCleanRefusal("turntable procedural:cloud - --skip-existing", ExitCode::Usage, "--skip-existing");
+}
+
+TEST_F(TurntableCommand, StandardOutputHasTheImagesOneAfterAnother) {
+  turn("@#.png --frames 3");
+  const std::string whole = readBytes(folder / "0.png") + readBytes(folder / "1.png") + readBytes(folder / "2.png");
+  EXPECT_TRUE(turn("- --frames 3").out == whole);
+  EXPECT_TRUE(turn("- @b#.exr --frames 3 --range 1-").out == readBytes(folder / "1.png") + readBytes(folder / "2.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "b2.exr"));
 }
 
 TEST_F(TurntableCommand, TheRecordedCommandRepeatsOneFrame) {
