@@ -252,7 +252,7 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Image Renderer::render(std::string_view scene, bool withDepth, const Progress& progress) {
   return translated([&] {
     SceneRenderer& renderer = state_->renderer;
-    return imageOf(renderer.render(*renderer.read(parseScene(scene)), withDepth, progress));
+    return imageOf(renderer.render(*renderer.read(parseScene(scene)), {.depth = withDepth}, progress));
   });
 }
 
@@ -262,7 +262,7 @@ Image Renderer::renderTurn(int frame, int frames, std::string_view scene, bool w
       fail(freevoxels::ErrorKind::Usage, "frame {} is not one of {} {}, which are numbered from 0: there are 1 to {}", frame, frames, Parameter("frames"),
            kMaximumFrames);
     SceneRenderer& renderer = state_->renderer;
-    return imageOf(renderer.renderTurn(*renderer.read(parseScene(scene)), {frame, frames}, withDepth, progress));
+    return imageOf(renderer.renderTurn(*renderer.read(parseScene(scene)), {frame, frames}, {.depth = withDepth}, progress));
   });
 }
 

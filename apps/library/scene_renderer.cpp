@@ -54,7 +54,8 @@ void refuseNan(const Image& image) {
 
 }  // namespace
 
-std::shared_ptr<const SharedVolume> openVolume(const std::string& file, const Json& keywords, const std::shared_ptr<DeviceContext>& context) {
+std::shared_ptr<const SharedVolume> openVolume(const std::string& file, const Json& keywords, const std::shared_ptr<DeviceContext>& context,
+                                               const Progress& progress) {
   refuseTurn(keywords);
   Json named = keywords;
   if (!file.empty()) named["volume"] = file;
@@ -67,15 +68,17 @@ std::shared_ptr<const SharedVolume> openVolume(const std::string& file, const Js
   const std::shared_ptr<DeviceContext> used = context ? context : sharedContext(options.device);
   const std::uint64_t most = maximumVoxels(*used->device);
   if (auto baked = options.scene.input.baked()) return std::make_shared<const SharedVolume>(std::move(baked), most);
-  return std::make_shared<const SharedVolume>(options.scene.readVolume(most));
+  return std::make_shared<const SharedVolume>(options.scene.readVolume(most, 0, progress));
 }
 
 void saveImage(const std::string& file, const Image& image, const Json& keywords) {
   OutputDescription output = KeywordOptions({keywords}, {"output"}).scene.output;
   const std::span<const std::string> files(&file, 1);
   output.aovs.depth = !image.depth.empty() && isExr(file);
+  if (!image.channels.empty() && !isExr(file)) fail(ErrorKind::Usage, "{} needs an .exr output", Parameter("aov"));
   if (output.aovs.position || output.aovs.normal)
     fail(ErrorKind::Usage, "an image does not know its camera, of which positions and normals are made: leave them out of {}", Parameter("aov"));
+  if (usesStandardOutput(files)) fail(ErrorKind::Usage, "'-' is standard output, where the command line alone writes: name a file");
   checkOutputs(output, files);
   refuseNan(image);
   Image withChannels = image;
@@ -165,7 +168,7 @@ FrameSettings SceneRenderer::prepare(const KeywordOptions& options, std::optiona
   if (!scene_.volume || level != level_) {
     renderer_ = nullptr;  // which refers to the volume
     scene_.volume = nullptr;
-    scene_.volume = volume_->read(level);
+    scene_.volume = volume_->read(level, progress);
     level_ = level;
   }
   const std::string classification = textOf(options.scene, {"classification", "emission"});
@@ -215,12 +218,21 @@ auto SceneRenderer::draw(const KeywordOptions& options, std::optional<TurnStep> 
   return drawn;
 }
 
-Image SceneRenderer::render(const KeywordOptions& options, bool depth, const Progress& progress) {
-  return draw(options, std::nullopt, depth, progress, &Renderer::render);
+Image SceneRenderer::drawImage(const KeywordOptions& options, std::optional<TurnStep> step, const Aovs& channels, const Progress& progress) {
+  const auto work = [&](Renderer& renderer, const Camera& camera, const FrameSettings& settings, const Progress& report) {
+    Image image = renderer.render(camera, settings, report);
+    addChannels(image, channels, camera);
+    return image;
+  };
+  return draw(options, step, channels.needDepth(), progress, work);
 }
 
-Image SceneRenderer::renderTurn(const KeywordOptions& options, TurnStep step, bool depth, const Progress& progress) {
-  return draw(options, step, depth, progress, &Renderer::render);
+Image SceneRenderer::render(const KeywordOptions& options, const Aovs& channels, const Progress& progress) {
+  return drawImage(options, std::nullopt, channels, progress);
+}
+
+Image SceneRenderer::renderTurn(const KeywordOptions& options, TurnStep step, const Aovs& channels, const Progress& progress) {
+  return drawImage(options, step, channels, progress);
 }
 
 std::shared_ptr<const FrameTargets> SceneRenderer::renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress) {

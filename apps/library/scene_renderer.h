@@ -18,12 +18,12 @@ namespace freevoxels {
 
 /// Reads a file or makes "procedural:NAME", at most as large as the device of `context` can hold; if it is null, that of the
 /// keywords. `keywords` are the grid, the resolution and the scene of later frames, which decides what other grids are needed.
-/// Without a file it is the volume of the scene.
+/// Without a file it is the volume of the scene. `progress` may abandon it.
 /// Fails as readVdb does, and for a baked file as FvxFile does.
 std::shared_ptr<const SharedVolume> openVolume(const std::string& file, const nlohmann::json& keywords,
-                                               const std::shared_ptr<DeviceContext>& context = nullptr);
+                                               const std::shared_ptr<DeviceContext>& context = nullptr, const Progress& progress = {});
 
-/// Writes an image as `freevoxels render` does. `keywords` are options of the section "output".
+/// Writes an image as `freevoxels render` does, with the channels that it has. `keywords` are options of the section "output".
 void saveImage(const std::string& file, const Image& image, const nlohmann::json& keywords);
 
 /// A scene file as keywords, with absolute names of files. Fails with ErrorKind::Input.
@@ -52,10 +52,10 @@ class SceneRenderer {
   /// Reads the options of a frame: the renderer's keywords, overridden by `more`.
   std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more) const;
 
-  /// Draws a frame. What frames share is made again only if the options change it.
-  Image render(const KeywordOptions& options, bool depth, const Progress& progress);
+  /// Draws a frame, with channels. What frames share is made again only if the options change it.
+  Image render(const KeywordOptions& options, const Aovs& channels, const Progress& progress);
   /// Draws a frame of a turn, with the cameras and the light of `freevoxels turntable`. `options` have the camera of the turn.
-  Image renderTurn(const KeywordOptions& options, TurnStep step, bool depth, const Progress& progress);
+  Image renderTurn(const KeywordOptions& options, TurnStep step, const Aovs& channels, const Progress& progress);
   /// The same frame, which stays on the device, complete.
   std::shared_ptr<const FrameTargets> renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress);
 
@@ -67,6 +67,7 @@ class SceneRenderer {
 
  private:
   class Turn;
+  Image drawImage(const KeywordOptions& options, std::optional<TurnStep> step, const Aovs& channels, const Progress& progress);
   /// Prepares a frame and returns what `work`, a drawing function of Renderer, makes of it.
   template <typename Work>
   auto draw(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress, const Work& work);

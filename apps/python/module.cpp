@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 
 #include <filesystem>
+#include <optional>
 #include <nlohmann/json.hpp>
 
 #include "apps/freevoxels/program.h"
@@ -21,8 +22,16 @@ namespace py = pybind11;
 
 void save(const py::object& name, const py::object& image, const py::object& depth, const py::kwargs& keywords) {
   const std::filesystem::path file = pathOf(name);
-  const nlohmann::json options = jsonOf(keywords);
-  const Image pixels = imageOf(image, depth);
+  py::kwargs others;
+  std::optional<py::dict> channels;  // arrays, in place of the names of what can be made of the image
+  for (const auto& [key, value] : keywords)
+    if (keywordText(key) == "aov" && py::isinstance<py::dict>(value))
+      channels = py::reinterpret_borrow<py::dict>(value);
+    else
+      others[key] = value;
+  const nlohmann::json options = jsonOf(others);
+  Image pixels = imageOf(image, depth);
+  if (channels) addChannels(pixels, *channels);
   const py::gil_scoped_release withoutGil;
   saveImage(file.string(), pixels, options);
 }
@@ -71,8 +80,8 @@ PYBIND11_MODULE(_core, module) {
              "Writes options, sections or a whole scene as a scene file for the command line and the viewer.");
   module.def("save", &save, "file"_a, "image"_a, py::kw_only(), "depth"_a = py::none(),
              "save(file, image, *, depth=None, **kwargs)\n--\n\n"
-             "Writes an image to a .png, 8-bit sRGB over a background, or to an .exr, linear, which may have depth. Options:\n"
-             "background, exposure, tone_map, float.");
+             "Writes an image to a .png or .jpg, sRGB over a background, or to an .exr, linear, which may have depth. Options:\n"
+             "background, exposure, tone_map, png_bits, crop, float, and aov: the dictionary of channels that render() returned.");
   module.attr("__name__") = ownName;
 }
 

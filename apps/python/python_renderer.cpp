@@ -47,24 +47,45 @@ std::unique_ptr<SceneRenderer> newRenderer(const py::args& arguments, const py::
   return makeRenderer(volume.cast<const PythonVolume&>(), keywords);
 }
 
-py::object resultOf(Image& image, bool depth) {
-  if (!depth) return pixelsOf(image);
-  return py::make_tuple(pixelsOf(image), depthOf(image));
+/// What a drawing function returns beside the colours.
+struct Wanted {
+  Aovs channels;
+  bool byName = false;  ///< whether channels are returned in a dictionary
+
+  py::object resultOf(Image& image) const {
+    const py::object pixels = pixelsOf(image);
+    if (byName) return py::make_tuple(pixels, channelsOf(image));
+    return channels.depth ? py::make_tuple(pixels, depthOf(image)) : pixels;
+  }
+};
+
+Wanted wantedOf(const py::object& depth, const py::object& aov) {
+  Wanted wanted{.channels = {.depth = flagOf(depth, "depth")}};
+  if (aov.is_none()) return wanted;
+  if (wanted.channels.depth)
+    fail(ErrorKind::Usage, "{} and {} exclude each other: name depth among the channels", Parameter("depth"), Parameter("aov"));
+  const Json names = jsonOf(aov, "aov");
+  std::string text;
+  for (const Json& name : names.is_array() ? names : Json::array({names})) {
+    if (!name.is_string()) fail(ErrorKind::Usage, "{} takes names of channels as text, not {}", Parameter("aov"), typeName(aov));
+    text += (text.empty() ? "" : ",") + name.get<std::string>();
+  }
+  return {.channels = readAovs(fmt::format("{}", Parameter("aov")), text), .byName = true};
 }
 
-py::object render(SceneRenderer& renderer, const py::args& more, const py::object& progress, const py::object& withDepth,
+py::object render(SceneRenderer& renderer, const py::args& more, const py::object& progress, const py::object& depth, const py::object& aov,
                   const py::kwargs& keywords) {
   refuseMore(more, "render()", "nothing");
-  const bool depth = flagOf(withDepth, "depth");
+  const Wanted wanted = wantedOf(depth, aov);
   refusePlacement(keywords, "a volume");
   const Json options = jsonOf(keywords);
   const Progress report = progressOf(progress);
   Image image;
   {
     const py::gil_scoped_release withoutGil;
-    image = renderer.render(*renderer.read(options), depth, report);
+    image = renderer.render(*renderer.read(options), wanted.channels, report);
   }
-  return resultOf(image, depth);
+  return wanted.resultOf(image);
 }
 
 /// The frames of a turn, drawn one by one as they are asked for. Keeps its renderer.
@@ -72,7 +93,7 @@ struct Turntable {
   py::object renderer, progress;
   std::shared_ptr<const KeywordOptions> options;
   int frames = 0, next = 0;
-  bool depth = false;
+  Wanted wanted;
 
   py::object draw() {
     if (next == frames) throw py::stop_iteration();
@@ -83,15 +104,15 @@ struct Turntable {
     Image image;
     {
       const py::gil_scoped_release withoutGil;
-      image = drawn.renderTurn(*ofTurn, step, depth, report);
+      image = drawn.renderTurn(*ofTurn, step, wanted.channels, report);
     }
     ++next;
-    return resultOf(image, depth);
+    return wanted.resultOf(image);
   }
 };
 
 Turntable turntableOf(const py::object& renderer, const py::object& count, const py::args& more, const py::object& progress,
-                      const py::object& depth, const py::kwargs& keywords) {
+                      const py::object& depth, const py::object& aov, const py::kwargs& keywords) {
   refuseMore(more, "turntable()", "the number of frames");
   if (count.is_none()) fail(ErrorKind::Usage, "{} is missing: give the number of images", Parameter("frames"));
   const Json number = jsonOf(count, "frames");
@@ -105,7 +126,7 @@ Turntable turntableOf(const py::object& renderer, const py::object& count, const
           .progress = progress,
           .options = renderer.cast<SceneRenderer&>().read(jsonOf(keywords)),
           .frames = int(frames),
-          .depth = flagOf(depth, "depth")};
+          .wanted = wantedOf(depth, aov)};
 }
 
 /// Options that give the camera of the last frame.
@@ -134,12 +155,13 @@ bool isOfFiles(const std::string& keyword) {
 }
 
 /// A file is read with all keywords, since the scene decides which of its grids are needed. Without a source it is the file of the scene.
-py::object renderOnce(const py::args& arguments, const py::object& progress, const py::object& depth, const py::kwargs& named) {
+py::object renderOnce(const py::args& arguments, const py::object& progress, const py::object& depth, const py::object& aov,
+                      const py::kwargs& named) {
   const auto [source, keywords] = oneOf(arguments, named, "volume", "render()");
-  flagOf(depth, "depth");
+  wantedOf(depth, aov);
   progressOf(progress);  // fails before a volume is read for what cannot be called
   if (py::isinstance<PythonVolume>(source))
-    return render(*makeRenderer(source.cast<const PythonVolume&>(), keywords), {}, progress, depth, {});
+    return render(*makeRenderer(source.cast<const PythonVolume&>(), keywords), {}, progress, depth, aov, {});
   const bool isFile = source.is_none() || py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__");
   py::kwargs ofVolume, ofFrame;
   for (const auto& [key, value] : keywords) {
@@ -149,7 +171,7 @@ py::object renderOnce(const py::args& arguments, const py::object& progress, con
     if (!ofVolumeAlone) ofFrame[key] = value;
   }
   const PythonVolume volume = isFile ? volumeFromFile(source, {}, ofVolume) : volumeFromArray(py::args(py::make_tuple(source)), ofVolume);
-  return render(*makeRenderer(volume, ofFrame), {}, progress, depth, {});
+  return render(*makeRenderer(volume, ofFrame), {}, progress, depth, aov, {});
 }
 
 }  // namespace
@@ -171,16 +193,17 @@ void addRenderer(py::module_& module) {
       .def("__repr__", [](const SceneRenderer& r) {
         return fmt::format("<freevoxels.Renderer on {}>", printable(r.context()->device->description().name));
       })
-      .def("turntable", &turntableOf, "frames"_a = py::none(), "progress"_a = py::none(), "depth"_a = false,
-           "turntable(self, frames, *, progress=None, depth=False, **kwargs)\n--\n\n"
+      .def("turntable", &turntableOf, "frames"_a = py::none(), "progress"_a = py::none(), "depth"_a = false, "aov"_a = py::none(),
+           "turntable(self, frames, *, progress=None, depth=False, aov=None, **kwargs)\n--\n\n"
            "Yields the images of a full turn around the volume, as 'freevoxels turntable' draws them: the eye is as far away in all of\n"
            "them as the farthest needs, and the light does not move. Options hold for all frames; orbit is the place of the first.\n"
-           "progress and depth are those of render().")
-      .def("render", &render, "progress"_a = py::none(), "depth"_a = false,
-           "render(self, *, progress=None, depth=False, **kwargs)\n--\n\n"
+           "progress, depth and aov are those of render().")
+      .def("render", &render, "progress"_a = py::none(), "depth"_a = false, "aov"_a = py::none(),
+           "render(self, *, progress=None, depth=False, aov=None, **kwargs)\n--\n\n"
            "Returns float32 (height, width, 4): linear red, green and blue, multiplied by alpha, and alpha; row 0 is the top.\n"
            "With depth=True returns (image, depth), the latter float32 (height, width): mean distance along the viewing axis\n"
-           "of what is seen, infinite where there is nothing. progress(stage, fraction) is called about every 50 ms of work,\n"
+           "of what is seen, infinite where there is nothing. With aov='depth,position,normal,transmittance', or some of them, returns\n"
+           "(image, dictionary of arrays), which save() writes. progress(stage, fraction) is called about every 50 ms of work,\n"
            "and at the end, with the fraction of the frame that is done, which never decreases and ends at 1;\n"
            "an exception that it raises abandons the frame. It may draw with other renderers. Options given here hold for this frame.")
       .def_property_readonly("timings", &timingsOf, "List of (stage, milliseconds): the stages that the last complete frame ran.")
@@ -189,8 +212,8 @@ void addRenderer(py::module_& module) {
                              "units, fov in degrees or orthographic in world units, and size in pixels. None before the first frame.")
       .def_property_readonly("device", [](const SceneRenderer& r) { return r.context()->device->description().name; },
                              "Name of the Vulkan device.");
-  module.def("render", &renderOnce, "progress"_a = py::none(), "depth"_a = false,
-             "render(volume=None, *, progress=None, depth=False, **kwargs)\n--\n\n"
+  module.def("render", &renderOnce, "progress"_a = py::none(), "depth"_a = false, "aov"_a = py::none(),
+             "render(volume=None, *, progress=None, depth=False, aov=None, **kwargs)\n--\n\n"
              "Renders an array, a file or a Volume once, as Renderer(...).render() does. Also takes the keywords of Volume for an\n"
              "array, and those of Volume.open for a file. Without a volume it is that of the scene: render(**load_scene('a.json')).");
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <utility>
@@ -222,12 +223,89 @@ Progress progressOf(const py::object& callback) {
   };
 }
 
+Progress watchSignals() {
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kInterval{50};  // other threads may hold the GIL for 5 ms each time
+  return [next = Clock::now()](std::string_view, double) mutable {
+    if (Clock::now() < next) return;
+    const py::gil_scoped_acquire withGil;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    next = Clock::now() + kInterval;
+  };
+}
+
 py::object pixelsOf(Image& image) {
   return adopt(image.pixels, {image.size.y, image.size.x, 4});
 }
 
 py::object depthOf(Image& image) {
   return adopt(image.depth, {image.size.y, image.size.x});
+}
+
+namespace {
+
+/// Channels of an .exr that are one array: by the name that readAovs has, and those of its components.
+struct ChannelArray {
+  const char* word;
+  std::vector<std::string> channels;
+};
+
+const std::vector<ChannelArray>& channelArrays() {
+  static const std::vector<ChannelArray> arrays{
+      {"position", {"P.X", "P.Y", "P.Z"}}, {"normal", {"N.X", "N.Y", "N.Z"}}, {"transmittance", {"transmittance.Y"}}};
+  return arrays;
+}
+
+/// The values of `array`, which must have the image's height and width, and `components` a pixel if that is not 1.
+std::vector<float> pixelValues(const ArrayView& array, glm::ivec2 size, std::size_t components, const std::string& what) {
+  const std::vector<py::ssize_t> scalar{size.y, size.x}, vector{size.y, size.x, py::ssize_t(components)};
+  if (array.shape != (components == 1 ? scalar : vector))
+    fail(ErrorKind::Input, "{} to save has the shape (height, width{}) of its image", what, components == 1 ? "" : fmt::format(", {}", components));
+  std::vector<float> values(std::size_t(array.elements()));
+  copyFloats(array, values.data());
+  return values;
+}
+
+}  // namespace
+
+py::dict channelsOf(Image& image) {
+  py::dict arrays;
+  const std::vector<py::ssize_t> scalar{image.size.y, image.size.x};
+  if (!image.depth.empty()) arrays["depth"] = depthOf(image);
+  for (const ChannelArray& one : channelArrays()) {
+    const std::size_t components = one.channels.size();
+    if (!image.channels.contains(one.channels.front())) continue;
+    if (components == 1) {
+      arrays[one.word] = adopt(image.channels.at(one.channels.front()), scalar);
+      continue;
+    }
+    std::vector<float> values(components * image.channels.at(one.channels.front()).size());
+    for (std::size_t c = 0; c < components; ++c) {
+      const std::vector<float>& channel = image.channels.at(one.channels[c]);
+      FV_CHECK_EQ(components * channel.size(), values.size());
+      for (std::size_t i = 0; i < channel.size(); ++i) values[components * i + c] = channel[i];
+    }
+    arrays[one.word] = adopt(values, {image.size.y, image.size.x, py::ssize_t(components)});
+  }
+  return arrays;
+}
+
+void addChannels(Image& image, const py::dict& channels) {
+  for (const auto& [key, value] : channels) {
+    const std::string word = keywordText(py::str(key)), what = fmt::format("{}", Parameter("aov." + word));
+    const ArrayView array = viewOf(py::reinterpret_borrow<py::object>(value), what);
+    if (word == "depth") {
+      if (!image.depth.empty()) fail(ErrorKind::Usage, "{} is given twice: leave out {}", Parameter("depth"), Parameter("aov." + word));
+      image.depth = pixelValues(array, image.size, 1, what);
+      continue;
+    }
+    const auto named = std::ranges::find(channelArrays(), word, &ChannelArray::word);
+    if (named == channelArrays().end())
+      fail(ErrorKind::Usage, "{} takes depth, position, normal and transmittance, not '{}'", Parameter("aov"), word);
+    const std::size_t components = named->channels.size();
+    const std::vector<float> values = pixelValues(array, image.size, components, what);
+    for (std::size_t i = 0; i < values.size(); ++i) image.channels[named->channels[i % components]].push_back(values[i]);
+  }
 }
 
 Image imageOf(const py::object& pixels, const py::object& depth) {
@@ -241,11 +319,7 @@ Image imageOf(const py::object& pixels, const py::object& depth) {
   image.pixels.resize(std::size_t(colors.elements()) / 4);
   copyFloats(colors, &image.pixels.front().x);
   if (depth.is_none()) return image;
-  const ArrayView distances = viewOf(depth, fmt::format("{}", Parameter("depth")));
-  if (distances.dimensions() != 2 || distances.shape[0] != image.size.y || distances.shape[1] != image.size.x)
-    fail(ErrorKind::Input, "the depth to save has the shape (height, width) of its image");
-  image.depth.resize(image.pixels.size());
-  copyFloats(distances, image.depth.data());
+  image.depth = pixelValues(viewOf(depth, fmt::format("{}", Parameter("depth"))), image.size, 1, "the depth");
   return image;
 }
 

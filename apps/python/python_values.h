@@ -31,14 +31,21 @@ std::string typeName(pybind11::handle value);
 /// lets Ctrl-C interrupt the work. An exception of either cancels the work. `callback` must outlive the
 /// result.
 Progress progressOf(const pybind11::object& callback);
+/// Returns a progress function that lets Ctrl-C interrupt work, which may call it often.
+Progress watchSignals();
 
 /// Arrays float32 (height, width, 4) and (height, width) that take over the image's memory.
 pybind11::object pixelsOf(Image& image);
 pybind11::object depthOf(Image& image);
+/// The image's depth and channels as a dictionary of arrays float32 (height, width), or (height, width, 3) of vectors, by the names that
+/// readAovs has.
+pybind11::dict channelsOf(Image& image);
 
 /// The image of two such arrays, of which `depth` may be None. Fails with ErrorKind::Input for other shapes, and for colours that are
 /// whole numbers.
 Image imageOf(const pybind11::object& pixels, const pybind11::object& depth);
+/// Gives an image the depth and channels of such a dictionary. Fails with ErrorKind::Input for other names and shapes.
+void addChannels(Image& image, const pybind11::dict& channels);
 
 /// Adds freevoxels.Error and its subclasses, one for each ErrorKind, and translates Error to them, with its parameters.
 void addExceptions(pybind11::module_& module);

@@ -23,6 +23,7 @@ _Triple = _Numbers  # (x, y, z), or linear (red, green, blue)
 _Section = Mapping[str, Any]
 _Image = NDArray[float32]  # (height, width, 4): linear, premultiplied
 _Depth = NDArray[float32]  # (height, width)
+_Channels = dict[str, NDArray[float32]]  # (height, width), or (height, width, 3) of vectors
 _Progress = Callable[[str, float], object]  # (stage, fraction of the image that is done, 0 to 1)
 
 class _Part(TypedDict, total=False):  # which part of a file is read
@@ -96,7 +97,7 @@ class _Output(TypedDict, total=False):
     tone_map: Literal["none", "filmic", "aces"]
     float: bool
     png_bits: Literal[8, 16]
-    aov: str
+    aov: str | Mapping[str, ArrayLike]
     crop: Sequence[int] | NDArray[Any] | str
     output: _Section
 
@@ -164,20 +165,40 @@ class Renderer:
     def __init__(self, volume: Volume, **kwargs: Unpack[_RendererOptions]) -> None: ...
     @overload
     def render(
-        self, *, progress: _Progress | None = ..., depth: Literal[False] = ..., **kwargs: Unpack[_RendererOptions]
+        self, *, progress: _Progress | None = ..., depth: Literal[False] = ..., aov: None = ..., **kwargs: Unpack[_RendererOptions]
     ) -> _Image: ...
     @overload
     def render(
-        self, *, progress: _Progress | None = ..., depth: Literal[True], **kwargs: Unpack[_RendererOptions]
+        self, *, progress: _Progress | None = ..., depth: Literal[True], aov: None = ..., **kwargs: Unpack[_RendererOptions]
     ) -> tuple[_Image, _Depth]: ...
     @overload
+    def render(
+        self, *, progress: _Progress | None = ..., depth: Literal[False] = ..., aov: str | Sequence[str], **kwargs: Unpack[_RendererOptions]
+    ) -> tuple[_Image, _Channels]: ...
+    @overload
     def turntable(
-        self, frames: int, *, progress: _Progress | None = ..., depth: Literal[False] = ..., **kwargs: Unpack[_RendererOptions]
+        self,
+        frames: int,
+        *,
+        progress: _Progress | None = ...,
+        depth: Literal[False] = ...,
+        aov: None = ...,
+        **kwargs: Unpack[_RendererOptions],
     ) -> Iterator[_Image]: ...
     @overload
     def turntable(
-        self, frames: int, *, progress: _Progress | None = ..., depth: Literal[True], **kwargs: Unpack[_RendererOptions]
+        self, frames: int, *, progress: _Progress | None = ..., depth: Literal[True], aov: None = ..., **kwargs: Unpack[_RendererOptions]
     ) -> Iterator[tuple[_Image, _Depth]]: ...
+    @overload
+    def turntable(
+        self,
+        frames: int,
+        *,
+        progress: _Progress | None = ...,
+        depth: Literal[False] = ...,
+        aov: str | Sequence[str],
+        **kwargs: Unpack[_RendererOptions],
+    ) -> Iterator[tuple[_Image, _Channels]]: ...
     @property
     def camera(self) -> dict[str, Any] | None: ...
     @property
@@ -191,6 +212,7 @@ def render(
     *,
     progress: _Progress | None = ...,
     depth: Literal[False] = ...,
+    aov: None = ...,
     **kwargs: Unpack[_OnceOptions],
 ) -> _Image: ...
 @overload
@@ -199,8 +221,18 @@ def render(
     *,
     progress: _Progress | None = ...,
     depth: Literal[True],
+    aov: None = ...,
     **kwargs: Unpack[_OnceOptions],
 ) -> tuple[_Image, _Depth]: ...
+@overload
+def render(
+    volume: ArrayLike | _Path | Volume | None = ...,
+    *,
+    progress: _Progress | None = ...,
+    depth: Literal[False] = ...,
+    aov: str | Sequence[str],
+    **kwargs: Unpack[_OnceOptions],
+) -> tuple[_Image, _Channels]: ...
 def load_scene(file: _Path) -> dict[str, Any]: ...
 def save_scene(file: _Path, **kwargs: Unpack[_SceneOptions]) -> None: ...
 def save(file: _Path, image: ArrayLike, *, depth: ArrayLike | None = ..., **kwargs: Unpack[_Output]) -> None: ...
