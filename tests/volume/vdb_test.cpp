@@ -44,14 +44,15 @@ struct Abandoned {};
 
 TEST_F(Vdb, ReadingReportsProgressAndChangesNothing) {
   for (const bool isHalf : {false, true})
-    for (const std::uint32_t compression : {openvdb::io::COMPRESS_NONE, openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK}) {
+    for (const std::uint32_t compression : {std::uint32_t(openvdb::io::COMPRESS_NONE), std::uint32_t(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK)}) {
       const FloatGrid::Ptr density = makeGrid("density", {Coord(-3, 5, 0), Coord(180, 170, 160)}, 0.5f), other = makeGrid("density");
-      for (auto leaf = density->tree().beginLeaf(); leaf; ++leaf)
-        for (auto voxel = leaf->beginValueOn(); voxel; ++voxel) voxel.setValue(float((voxel.pos() * 7 + leaf.pos()) % 1000) / 512.0f);
+      int leaves = 0;
+      for (auto leaf = density->tree().beginLeaf(); leaf; ++leaf, ++leaves)
+        for (auto voxel = leaf->beginValueOn(); voxel; ++voxel) voxel.setValue(float((int(voxel.pos()) * 7 + leaves) % 1000) / 512.0f);
       density->setSaveFloatAsHalf(isHalf);
       openvdb::io::File written(file.string());
       written.setCompression(compression);
-      written.write({other, named(makeGrid("heat"), "heat"), density});
+      written.write(openvdb::GridPtrVec{other, makeGrid("heat"), density});
       written.close();
       for (const char* name : {"density[0]", "density[1]", "heat"}) {
         std::vector<double> fractions;
