@@ -18,7 +18,8 @@ using Json = nlohmann::json;
 
 const std::vector<std::string> kDeviceKeys{"device", "memory-limit"};
 /// Options of `freevoxels render` that are no fields of a scene.
-const std::vector<std::string> kCommandLineKeys{"share", "sums", "color-parts", "fixed-view", "out-dir", "format", "save-scene", "timings"};
+const std::vector<std::string> kCommandLineKeys{"share", "sums", "color-parts", "fixed-view", "out-dir", "format",
+                                                "save-scene", "timings", "range", "skip-existing"};
 
 /// The name of the field that a keyword means: "density-scale" for "density_scale".
 std::string nameOf(std::string keyword) {
