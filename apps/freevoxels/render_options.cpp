@@ -43,7 +43,8 @@ void RenderOptions::skipExisting(std::span<FrameJob> frames) const {
   if (!skipsExisting) return;
   std::size_t existing = 0;
   for (FrameJob& frame : frames) {
-    if (usesStandardOutput(frame.files)) fail(ErrorKind::Usage, "--skip-existing looks for images that exist, and - has no name: leave one of them out");
+    if (usesStandardOutput(frame.files))
+      fail(ErrorKind::Usage, "--skip-existing looks for images that exist, and - has no name: leave one of them out");
     std::error_code unreadable;
     const bool exists = std::ranges::all_of(frame.files, [&](const std::string& file) { return std::filesystem::exists(file, unreadable); });
     if (exists && !frame.isSkipped) ++existing;

@@ -5,45 +5,10 @@
 #include <openvdb/io/io.h>
 
 #include <algorithm>
-#include <fstream>
-#include <istream>
-#include <utility>
 
 namespace freevoxels {
 
 namespace {
-
-/// A file that reports how much of a stretch of it has been read.
-class ReportingFile : public std::filebuf {
- public:
-  ReportingFile(const std::filesystem::path& file, const Progress& progress) : progress_(progress) { open(file, std::ios::in | std::ios::binary); }
-  void expect(double bytes) { expected_ = bytes; }
-
- protected:
-  int_type underflow() override {
-    const int_type character = std::filebuf::underflow();
-    count(egptr() - gptr());
-    return character;
-  }
-  std::streamsize xsgetn(char* to, std::streamsize bytes) override {
-    const std::streamsize read = std::filebuf::xsgetn(to, bytes);
-    count(read);
-    return read;
-  }
-
- private:
-  static constexpr double kInterval = double(4 << 20);  // bytes
-
-  void count(std::streamsize bytes) {
-    read_ += double(bytes);
-    if (read_ < next_) return;
-    next_ = read_ + kInterval;
-    progress_("reading the grid", std::min(read_ / expected_, 1.0));
-  }
-
-  const Progress& progress_;
-  double read_ = 0.0, next_ = 0.0, expected_ = 1.0;
-};
 
 /// Gives access to what OpenVDB's own readers of files and streams are made of.
 class GridArchive : public openvdb::io::Archive {
@@ -64,11 +29,36 @@ class GridArchive : public openvdb::io::Archive {
 
 }  // namespace
 
+ReportingFile::ReportingFile(const std::filesystem::path& file, std::uint64_t expected, const Progress& progress)
+    : std::istream(nullptr), buffer_(expected, progress) {
+  rdbuf(&buffer_);
+  exceptions(std::ios::failbit | std::ios::badbit);
+  if (buffer_.open(file, std::ios::in | std::ios::binary) == nullptr) setstate(std::ios::failbit);
+}
+
+ReportingFile::Buffer::int_type ReportingFile::Buffer::underflow() {
+  const int_type character = std::filebuf::underflow();
+  count(egptr() - gptr());
+  return character;
+}
+
+std::streamsize ReportingFile::Buffer::xsgetn(char* to, std::streamsize bytes) {
+  const std::streamsize read = std::filebuf::xsgetn(to, bytes);
+  count(read);
+  return read;
+}
+
+/// What is read through the buffer is counted when the buffer is filled, too: the fraction is an estimate.
+void ReportingFile::Buffer::count(std::streamsize bytes) {
+  constexpr std::uint64_t kInterval = 4 << 20;
+  read_ += std::uint64_t(bytes);
+  if (!progress_ || read_ < next_) return;
+  next_ = read_ + kInterval;
+  progress_("reading the grid", std::min(double(read_) / double(std::max<std::uint64_t>(expected_, 1)), 1.0));
+}
+
 openvdb::GridBase::Ptr readVdbGrid(const std::filesystem::path& file, const VdbHeader::Grid& entry, const Progress& progress) {
-  ReportingFile buffer(file, progress);
-  buffer.expect(double(std::max<std::uint64_t>(entry.end - entry.start, 1)));
-  std::istream input(buffer.is_open() ? &buffer : nullptr);
-  input.exceptions(std::ios::failbit | std::ios::badbit);  // which also passes on what `progress` throws
+  ReportingFile input(file, entry.end - entry.start, progress);
   const GridArchive archive(input);
   openvdb::io::GridDescriptor descriptor(entry.uniqueName, entry.type, entry.savedAsHalf);
   openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(entry.type);

@@ -1,18 +1,45 @@
 #pragma once
-// Internal to the vdb_*.cpp files, since it includes OpenVDB: reads a grid of a file in a way that can be abandoned, which
-// openvdb::io::File cannot.
+// Internal to the vdb_*.cpp files, since it includes OpenVDB: reads files in a way that can be abandoned, which openvdb::io::File cannot.
 
 #include <openvdb/Grid.h>
 
 #include <filesystem>
+#include <fstream>
+#include <istream>
 
 #include "engine/core/stages.h"
 #include "engine/volume/vdb_header.h"
 
 namespace freevoxels {
 
-/// Reads a grid that has a tree of its own, with all values. `progress` is called at every few MiB of the file; an exception that it throws
-/// is passed on, as those of OpenVDB are. OpenVDB must be initialised.
+/// A file that calls `progress`, which must outlive it, at every few MiB that are read; an empty one is not called. It throws what that
+/// throws, and std::ios_base::failure where it cannot be read.
+class ReportingFile : public std::istream {
+ public:
+  /// `expected` bytes will be read.
+  ReportingFile(const std::filesystem::path& file, std::uint64_t expected, const Progress& progress);
+
+ private:
+  class Buffer : public std::filebuf {
+   public:
+    Buffer(std::uint64_t expected, const Progress& progress) : progress_(progress), expected_(expected) {}
+
+   protected:
+    int_type underflow() override;
+    std::streamsize xsgetn(char* to, std::streamsize bytes) override;
+
+   private:
+    void count(std::streamsize bytes);
+
+    const Progress& progress_;
+    const std::uint64_t expected_;
+    std::uint64_t read_ = 0, next_ = 0;
+  };
+
+  Buffer buffer_;
+};
+
+/// Reads a grid that has a tree of its own, with all values. Throws what ReportingFile and OpenVDB throw. OpenVDB must be initialised.
 openvdb::GridBase::Ptr readVdbGrid(const std::filesystem::path& file, const VdbHeader::Grid& grid, const Progress& progress);
 
 }  // namespace freevoxels

@@ -155,7 +155,7 @@ void initialiseOpenVdb() {
   static_cast<void>(once);
 }
 
-VdbFile::VdbFile(const fs::path& path, const Reading& reading) : path_(path), file_(path.string()), header_(readVdbHeader(path)) {
+VdbFile::VdbFile(const fs::path& path, const Reading& reading) : path_(path), file_(path.string()), header_(readVdbHeader(path, reading.progress)) {
   if (reading.progress)
     progress_ = [this, report = reading.progress](std::string_view stage, double fraction) {
       try {
@@ -192,9 +192,7 @@ void VdbFile::listGrids() {
 
 void VdbFile::readStreamedGrids() {
   guarded("its grids", [&] {
-    std::ifstream input;
-    input.exceptions(std::ios::failbit | std::ios::badbit);  // without exceptions OpenVDB reads on beyond the end of the file
-    input.open(path_, std::ios::binary);
+    ReportingFile input(path_, fs::file_size(path_), progress_);  // without exceptions OpenVDB reads on beyond the end of the file
     streamed_ = readWholeStream<openvdb::io::Stream>(input);
   });
   for (const GridBase::Ptr& grid : streamed_)

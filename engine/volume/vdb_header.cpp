@@ -217,19 +217,19 @@ VdbHeader::Grid readGridEntry(VdbReader& reader) {
 }
 
 /// Checks grids that follow each other, as long as the end of each is known.
-void checkStreamedGrids(VdbReader& reader, std::int32_t count) {
+void checkStreamedGrids(VdbReader& reader, std::int32_t count, const Progress& progress) {
   bool canContinue = true;
   for (std::int32_t i = 0; i < count && canContinue; ++i) {
     VdbHeader::Grid grid = readDescriptor(reader);
     reader.skip(3 * sizeof(std::int64_t));  // positions, which are not known in a stream
     readGridStart(reader, grid);
-    canContinue = grid.parentName.empty() ? checkVdbTree(reader, grid) : grid.treeStart != 0;
+    canContinue = grid.parentName.empty() ? checkVdbTree(reader, grid, progress) : grid.treeStart != 0;
   }
 }
 
 }  // namespace
 
-VdbHeader readVdbHeader(const std::filesystem::path& file) {
+VdbHeader readVdbHeader(const std::filesystem::path& file, const Progress& progress) {
   checkRegularFile(file);
   VdbReader reader(file);
   checkSignature(file, reader);
@@ -250,7 +250,7 @@ VdbHeader readVdbHeader(const std::filesystem::path& file) {
   if (gridCount < 0) reader.failDamaged("its header counts {} grids", gridCount);
   reader.require(std::uint64_t(gridCount) * kMinGridBytes);
   if (!header.hasOffsets) {
-    checkStreamedGrids(reader, gridCount);
+    checkStreamedGrids(reader, gridCount, progress);
     return header;
   }
   for (std::int32_t i = 0; i < gridCount; ++i) header.grids.push_back(readGridEntry(reader));

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/core/stages.h"
+
 namespace freevoxels {
 
 struct VdbHeader {
@@ -27,7 +29,7 @@ struct VdbHeader {
 };
 
 /// Fails with ErrorKind::Input if `file` is missing, a folder, unreadable, not an OpenVDB file, older than
-/// OpenVDB supports, shorter than its header says, or damaged in the metadata of the file or of a grid.
-VdbHeader readVdbHeader(const std::filesystem::path& file);
+/// OpenVDB supports, shorter than its header says, or damaged in the metadata of the file or of a grid. `progress` may abandon it.
+VdbHeader readVdbHeader(const std::filesystem::path& file, const Progress& progress = {});
 
 }  // namespace freevoxels

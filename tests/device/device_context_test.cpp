@@ -27,7 +27,7 @@ TEST(DeviceContext, NothingIsDrawnOrOpenedInTheMiddleOfACallOfVulkan) {
     const auto refused = [](const std::function<void()>& work) {
       test::expectRefusal(work, ErrorKind::Usage, {"in a function that logs Vulkan's validation"});
     };
-    refused([&] { renderer->render(*renderer->read(nlohmann::json::object()), false, {}); });
+    refused([&] { renderer->render(*renderer->read(nlohmann::json::object()), {}, {}); });
     refused([&] { DeviceContext another(DeviceOptions(), nullptr); });
     refused([&] { sharedContext(DeviceOptions()); });
     EXPECT_TRUE(renderer->timings().empty());

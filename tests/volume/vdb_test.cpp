@@ -1,6 +1,7 @@
 #include "engine/volume/vdb.h"
 
 #include <gtest/gtest.h>
+#include <openvdb/io/Stream.h>
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/LevelSetSphere.h>
 #include <unistd.h>
@@ -67,6 +68,25 @@ TEST_F(Vdb, ReadingReportsProgressAndChangesNothing) {
         EXPECT_GE(fractions.size(), plain.activeVoxels > 1000 ? 5u : 2u);
       }
     }
+}
+
+TEST_F(Vdb, ReadingOfStreamedFilesReportsToo) {
+  const FloatGrid::Ptr density = makeGrid("density", {Coord(0), Coord(200, 190, 180)}, 0.5f);
+  for (auto leaf = density->tree().beginLeaf(); leaf; ++leaf)
+    for (auto voxel = leaf->beginValueOn(); voxel; ++voxel) voxel.setValue(float(voxel.pos() * 7 % 1000) / 512.0f);
+  {
+    std::ofstream stream(file, std::ios::binary);
+    openvdb::io::Stream(stream).write(openvdb::GridPtrVec{density, makeGrid("heat")});
+  }
+  int reports = 0;
+  const Volume plain = read("density"), reported = readVdb(file, "density", kPlenty, {}, [&](std::string_view, double) { ++reports; });
+  EXPECT_EQ(denseScalars(reported), denseScalars(plain));
+  ASSERT_GE(reports, 5);
+  for (int last = 1; last <= reports; ++last) {
+    int left = last;
+    const auto abandon = [&] { readVdb(file, "density", kPlenty, {}, [&](std::string_view, double) { if (--left == 0) throw Abandoned(); }); };
+    EXPECT_THROW(abandon(), Abandoned) << last;
+  }
 }
 
 TEST_F(Vdb, ReadingMayBeAbandonedAtEveryReport) {
