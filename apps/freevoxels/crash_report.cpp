@@ -60,6 +60,12 @@ void describeCrashesWithoutNote() {
         "volume or image",
         limit.rlim_cur >> 20);
     codeWithoutNote = ExitCode::OutOfMemory;
+  } else if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
+    sentenceWithoutNote = fmt::format(
+        "the program stopped, most likely as its files may have {} KiB (ulimit -f): drivers for the CPU have their memory in files, too; raise "
+        "that limit",
+        limit.rlim_cur >> 10);
+    codeWithoutNote = ExitCode::Output;
   } else {
     sentenceWithoutNote = "internal error, please report it with the command and its files: the program crashed";
   }

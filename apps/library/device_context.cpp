@@ -3,11 +3,13 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstdlib>
 #include <map>
 #include <mutex>
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/vulkan/pipeline.h"
 
 namespace freevoxels {
 
@@ -69,16 +71,40 @@ void DeviceContext::checkValidation() const {
     throw InternalError(fmt::format("{} Vulkan validation messages", count));
 }
 
+namespace {
+
+struct SharedContexts {
+  std::mutex opening;  ///< of what follows
+  std::map<std::pair<std::string, int>, std::shared_ptr<DeviceContext>> contexts;
+};
+
+/// Never destroyed, because Python or static objects may release the last renderer after Vulkan's own static
+/// objects are gone.
+SharedContexts& sharedContexts() {
+  static auto& shared = *new SharedContexts;
+  return shared;
+}
+
+/// Threads may not call Vulkan when its own static objects are gone. Those were registered before, so that this is called first.
+void endThreadsAtExit() {
+  SharedContexts& shared = sharedContexts();
+  const std::unique_lock lock(shared.opening, std::try_to_lock);
+  if (!lock) return;  // a thread that is opening a device goes on
+  for (const auto& [key, context] : shared.contexts)
+    if (context && context->isOfThisProcess()) context->device->pipelines().stopCompilingAhead();
+}
+
+}  // namespace
+
 std::shared_ptr<DeviceContext> sharedContext(const DeviceOptions& options) {
   refuseInsideValidationLog();
   processThatMayOpen();  // before the lock, which may have been held when this process was forked
-  static std::mutex opening;
-  const std::lock_guard lock(opening);
-  // Never destroyed, because Python or static objects may release the last renderer after Vulkan's own static
-  // objects are gone.
-  static auto& contexts = *new std::map<std::pair<std::string, int>, std::shared_ptr<DeviceContext>>;
-  std::shared_ptr<DeviceContext>& context = contexts[{options.selector.value_or(""), options.memoryLimit.value_or(0)}];
-  if (!context) context = std::make_shared<DeviceContext>(options, validationRequested() ? logValidation : ValidationLog());
+  SharedContexts& shared = sharedContexts();
+  const std::lock_guard lock(shared.opening);
+  std::shared_ptr<DeviceContext>& context = shared.contexts[{options.selector.value_or(""), options.memoryLimit.value_or(0)}];
+  if (context) return context;
+  context = std::make_shared<DeviceContext>(options, validationRequested() ? logValidation : ValidationLog());
+  static_cast<void>(std::atexit(endThreadsAtExit));
   return context;
 }
 

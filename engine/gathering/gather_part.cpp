@@ -81,8 +81,7 @@ PartCells partCells(const GatherVolume::BrickCells& cells, const std::vector<sha
     Cells met = cells.met[level], own(met.dimensions);
     const int edge = cells.cellsPerBrick[level];
     forEachCell(met.dimensions, [&](glm::ivec3 cell) { own.values[own.index(cell)] = (numberAt(cell / edge) & shader::kOwnBrick) != 0; });
-    // Quads reach into the next cell along each axis. Stretches begin on the slice before, which may be in the cell on either side.
-    own = spread(own, -1, 1);
+    own = spread(own, 0, 1);
     for (std::size_t i = 0; i < met.values.size(); ++i) met.values[i] = met.values[i] != 0 && own.values[i] != 0;
     const Cells skips = groupsToSkip(met);
     result.skips.insert(result.skips.end(), skips.values.begin(), skips.values.end());

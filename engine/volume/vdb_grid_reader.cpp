@@ -30,8 +30,7 @@ class GridArchive : public openvdb::io::Archive {
 }  // namespace
 
 ReportingFile::ReportingFile(const std::filesystem::path& file, std::uint64_t expected, const Progress& progress)
-    : std::istream(nullptr), buffer_(expected, progress) {
-  rdbuf(&buffer_);
+    : std::istream(&buffer_), buffer_(expected, progress) {
   exceptions(std::ios::failbit | std::ios::badbit);
   if (buffer_.open(file, std::ios::in | std::ios::binary) == nullptr) setstate(std::ios::failbit);
 }

@@ -74,7 +74,8 @@ void checkVulkan(VkResult result, const char* call, const char* file, int line) 
     fail(ErrorKind::Device, "the device was lost ({} in {}): try again, or choose another with {}", name,
          call, Parameter("device"));
   // What drivers answer that find too little of anything when they start; a limit set by the user is the likely reason.
-  if (result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_UNKNOWN)
+  // The loader says of a layer that does not fit into the address space that it is not there.
+  if (result == VK_ERROR_INITIALIZATION_FAILED || result == VK_ERROR_UNKNOWN || (result == VK_ERROR_LAYER_NOT_PRESENT && processIsLimited()))
     fail(processIsLimited() ? ErrorKind::OutOfMemory : ErrorKind::Device,
          "the Vulkan driver failed to start ({} in {}): raise the limits of this process on memory and threads (ulimit -v, ulimit "
          "-u), or choose another device with {}",

@@ -206,12 +206,18 @@ VkPipeline Pipeline::handle() const {
 }
 
 PipelineStore::~PipelineStore() {
+  stopCompilingAhead();
+}
+
+void PipelineStore::stopCompilingAhead() {
+  std::vector<std::thread> threads;
   {
     const std::lock_guard lock(mutex_);
     closing_ = true;
+    threads.swap(threads_);
   }
   changed_.notify_all();
-  for (std::thread& thread : threads_) thread.join();
+  for (std::thread& thread : threads) thread.join();
 }
 
 Pipeline PipelineStore::get(const PipelineKey& key, const std::function<PipelineLayout()>& makeLayout, const Compiler& compile) {
@@ -235,7 +241,7 @@ Pipeline PipelineStore::get(const PipelineKey& key, const std::function<Pipeline
 /// Adds a thread if there is work for another one. Called with `mutex_` locked.
 void PipelineStore::addThread() {
   const std::size_t mostThreads = std::clamp<std::size_t>(std::thread::hardware_concurrency(), 2, kMaxThreads + 1) - 1;
-  if (idle_ >= wanted_.size() || threads_.size() >= mostThreads) return;
+  if (closing_ || idle_ >= wanted_.size() || threads_.size() >= mostThreads) return;
   try {
     threads_.emplace_back([this] { compileAhead(); });
   } catch (const std::system_error&) {  // There are no more threads: the caller compiles the pipeline when it binds it.

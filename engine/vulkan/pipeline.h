@@ -107,6 +107,9 @@ class PipelineStore {
   Pipeline get(const PipelineKey& key, const std::function<PipelineLayout()>& makeLayout, const Compiler& compile);
   /// Compiles `stored` unless it is compiled; waits for a thread that does. Throws what compiling throws, and may be called again then.
   void compile(StoredPipeline& stored);
+  /// Ends the threads that compile ahead, once they have compiled what they are at. From then on pipelines are compiled when they are bound.
+  /// For processes that end while the device is open.
+  void stopCompilingAhead();
   PipelineCache& cache() { return cache_; }
   /// Time to compile the pipelines, summed over all threads: it overlaps that of other stages.
   std::vector<StageTime> times() const;
