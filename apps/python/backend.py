@@ -1,4 +1,4 @@
-"""The build backend of both pyproject.toml: that of setuptools, which runs setup.py in this folder."""
+"""The build backend, here and in a source distribution: that of setuptools, which runs setup.py in this folder."""
 
 import os
 

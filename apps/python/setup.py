@@ -40,6 +40,8 @@ class SourceTree(sdist):
             copy = Path(base_dir) / file
             copy.parent.mkdir(parents=True, exist_ok=True)
             shutil.copy2(ROOT / file, copy)
+        project = (ROOT / "apps" / "python" / "pyproject.toml").read_text()
+        (Path(base_dir) / "pyproject.toml").write_text(project.replace('backend-path = ["."]', 'backend-path = ["apps/python"]'))
         self.distribution.metadata.write_pkg_info(base_dir)
 
     def check_readme(self):
