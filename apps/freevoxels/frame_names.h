@@ -10,8 +10,8 @@ namespace freevoxels {
 std::string withHashes(const std::string& pattern);
 
 /// The pattern with the frame's number, padded with zeros, in place of the run of # (or %0Nd) in its file
-/// name; numbers with more digits are not cut. Standard output is one for all frames. Fails with ErrorKind::Usage if the file name has no such place,
-/// or several.
+/// name; numbers with more digits are not cut. Standard output is one for all frames. Fails with ErrorKind::Usage if the file name has no
+/// such place, or several.
 std::string frameName(const std::string& pattern, int frame);
 
 }  // namespace freevoxels

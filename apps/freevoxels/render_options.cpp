@@ -35,7 +35,8 @@ void RenderOptions::add(CLI::App& app) {
 
 void RenderOptions::addSkipExisting(CLI::App& app) {
   if (group != nullptr) return;  // its processes need not see the same files
-  app.add_flag("--skip-existing", skipsExisting, "Leave frames out whose images all exist already, as after an interrupted run")->group("Sequence");
+  app.add_flag("--skip-existing", skipsExisting, "Leave frames out whose images all exist already, as after an interrupted run")
+      ->group("Sequence");
 }
 
 /// A file that exists is complete (core/atomic_file.h).

@@ -259,8 +259,8 @@ Image Renderer::render(std::string_view scene, bool withDepth, const Progress& p
 Image Renderer::renderTurn(int frame, int frames, std::string_view scene, bool withDepth, const Progress& progress) {
   return translated([&] {
     if (frames < 1 || frames > kMaximumFrames || frame < 0 || frame >= frames)
-      fail(freevoxels::ErrorKind::Usage, "frame {} is not one of {} {}, which are numbered from 0: there are 1 to {}", frame, frames, Parameter("frames"),
-           kMaximumFrames);
+      fail(freevoxels::ErrorKind::Usage, "frame {} is not one of {} {}, which are numbered from 0: there are 1 to {}", frame, frames,
+           Parameter("frames"), kMaximumFrames);
     SceneRenderer& renderer = state_->renderer;
     return imageOf(renderer.renderTurn(*renderer.read(parseScene(scene)), {frame, frames}, {.depth = withDepth}, progress));
   });

@@ -34,7 +34,8 @@ const char* whyNot(const ChunkEntry& entry, const IndexedLevel& level) {
   if (!isIn(entry.cell, chunkCells(level.dimensions))) return "it is beyond the volume's box";
   if (entry.brickMask == 0) return "it has no bricks";
   for (int brick = 0; brick < kChunkBricks; ++brick)
-    if (entry.hasBrick(brick) && !isIn(entry.brickCell(brick) * ScalarBricks::kEdge, level.dimensions)) return "a brick of it is beyond the volume's box";
+    if (entry.hasBrick(brick) && !isIn(entry.brickCell(brick) * ScalarBricks::kEdge, level.dimensions))
+      return "a brick of it is beyond the volume's box";
   if (!isStored(entry, level.chunks)) return "it is not stored where it should be";
   if (entry.bytes != std::uint64_t(entry.bricks()) * level.brickBytes) return "its size is not that of its bricks";
   if (entry.activeVoxels > std::uint32_t(entry.bricks() * kBrickVoxels)) return "it counts more voxels than it has";

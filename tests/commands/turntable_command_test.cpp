@@ -59,7 +59,9 @@ TEST_F(TurntableCommand, NumbersGrowBeyondTheirPlace) {
 
 TEST_F(TurntableCommand, ARangeHasTheFramesOfTheWholeTurn) {
   turn("@all_#.exr @all_#.png --frames 7");
-  for (const auto& [range, numbers] : std::map<std::string, std::vector<int>>{{"2-4", {2, 3, 4}}, {"1-5:2", {1, 3, 5}}, {"5-", {5, 6}}, {"0", {0}}, {"4-90:2", {4, 6}}}) {
+  const std::map<std::string, std::vector<int>> ranges{
+      {"2-4", {2, 3, 4}}, {"1-5:2", {1, 3, 5}}, {"5-", {5, 6}}, {"0", {0}}, {"4-90:2", {4, 6}}};
+  for (const auto& [range, numbers] : ranges) {
     const ProgramResult result = turn("@part_#.exr @part_#.png --frames 7 --range " + range);
     std::string printed;
     for (const int number : numbers)

@@ -117,7 +117,8 @@ TEST_F(FvxDescription, DescriptionsThatAreNoJsonAndDescriptionsAndProvenancesTha
 
 TEST_F(FvxDescription, AProvenanceMayBeAnyText) {
   bake(test::smoothVolume());
-  for (const std::string& text : {std::string(), std::string("{"), std::string("\xff\x1b[31m"), std::string("{\"a\": \"\x1b\n\"}"), std::string(64, '[') + std::string(64, ']')}) {
+  for (const std::string& text : {std::string(), std::string("{"), std::string("\xff\x1b[31m"), std::string("{\"a\": \"\x1b\n\"}"),
+                                 std::string(64, '[') + std::string(64, ']')}) {
     FvxEditor edited(bytes_);
     edited.setText(SectionKind::Provenance, text);
     edited.save(file_);

@@ -147,9 +147,10 @@ TEST_F(FvxValues, ValuesBeyondTheRangeOfTheirChunkAreRefused) {
 
 /// Codes that mean other values than those that were written.
 TEST_F(FvxValues, ScalesAndOffsetsThatDoNotFitTheRangesAreRefused) {
+  using Edit = std::pair<const char*, double>;
   const TransferFunction function{.opacity = {{0.1f, 0.0f}, {0.9f, 0.5f}}, .color = {{0.0f, glm::vec3(1, 0, 0.25f)}}};
   for (const bool isFunction : {false, true})
-    for (const auto& [key, value] : {std::pair<const char*, double>{"/channels/0/scale", 1e10}, {"/channels/0/scale", 1.0}, {"/channels/0/offset", -1e6}}) {
+    for (const auto& [key, value] : {Edit("/channels/0/scale", 1e10), Edit("/channels/0/scale", 1.0), Edit("/channels/0/offset", -1e6)}) {
       if (isFunction)
         bake(test::denseVolume({38, 26, 31}), {}, {.transferFunction = function});
       else

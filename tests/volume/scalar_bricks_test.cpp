@@ -42,7 +42,8 @@ TEST(ScalarBricks, ProgressMayAbandonAndChangesNothing) {
     const auto everywhere = [](glm::ivec3) { return true; };
     std::vector<double> fractions;
     const ScalarBricks plain = ScalarBricks::make(size, scalarOf);
-    const ScalarBricks reported = ScalarBricks::make(size, scalarOf, everywhere, [&](std::string_view, double fraction) { fractions.push_back(fraction); });
+    const Progress report = [&](std::string_view, double fraction) { fractions.push_back(fraction); };
+    const ScalarBricks reported = ScalarBricks::make(size, scalarOf, everywhere, report);
     ASSERT_EQ(reported.bricks().size(), plain.bricks().size());
     for (std::size_t i = 0; i < plain.bricks().size(); ++i) {
       EXPECT_EQ(reported.cell(i), plain.cell(i));
