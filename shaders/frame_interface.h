@@ -33,6 +33,13 @@ struct Light {
 };
 
 // The lighting of a frame.
+// Codes of 16 bits a block, in bricks: of scalars, or of depths towards a light.
+struct CodeBricks {
+  uvec2 numbers, codes;  // device addresses of the bricks' numbers by cell (0 is the empty brick) and of the codes
+  ivec3 corner;          // position of the first block in its brick
+  ivec3 cells;           // number of bricks along the axes
+};
+
 struct FrameLighting {
   int lightCount;
   int lookup;                    // kLookup... for the transmittance to lights
@@ -43,6 +50,7 @@ struct FrameLighting {
   int octaves;                   // orders of scattering
   float octaveScale;             // factor from one order to the next
   mat3 gradientToWorld;
+  CodeBricks scalars;  // of voxels, whose gradients are the normals of surfaces; codes at address 0: extinctions' are
   // By cell number: radiance from this direction times its fraction of the sphere (rgb), and that fraction
   // (a).
   vec4 ambientByDirection[kMaximumCells];

@@ -188,13 +188,6 @@ struct ShadePush {
   int emissionApart;  // 1 if emission is kept apart from the source term
 };
 
-// Codes of 16 bits a block, in bricks: of scalars, or of depths towards a light.
-struct CodeBricks {
-  uvec2 numbers, codes;  // device addresses of the bricks' numbers by cell (0 is the empty brick) and of the codes
-  ivec3 corner;          // position of the first block in its brick
-  ivec3 cells;           // number of bricks along the axes
-};
-
 // expand_scalars.comp
 struct ExpandScalarsPush {
   ivec3 first;       // first voxel, whose position in its brick along x is a multiple of 4; may be outside of the volume

@@ -3,6 +3,7 @@
 #ifndef LIGHTING_GLSL
 #define LIGHTING_GLSL
 #include "block_depth.glsl"
+#include "code_bricks.glsl"
 #include "phase_function.glsl"
 #include "ray_lookup.glsl"
 #include "self_attenuation.glsl"
@@ -32,6 +33,23 @@ vec3 extinctionGradient(Block block) {
     gradient[axis] = 0.5 * (extinctionOf(level, after) - extinctionOf(level, before));
   }
   return gradient;
+}
+
+// The gradient whose direction is the normal of a surface, in index space: that of the scalar where a transfer function is applied to it,
+// as steps of the function would be steps of the extinction's.
+vec3 normalGradient(Block block, vec3 ofExtinction) {
+  const CodeBricks scalars = frame.lighting.scalars;
+  if (block.level != 0 || scalars.codes == uvec2(0)) return ofExtinction;
+  const float own = scalarOfCode(codeAt(scalars, frame.dimensions, block.cell));
+  vec3 gradient = vec3(0.0);
+  for (int axis = 0; axis < 3; ++axis) {
+    ivec3 before = block.cell, after = block.cell;
+    --before[axis];
+    ++after[axis];
+    const float first = scalarOfCode(codeAt(scalars, frame.dimensions, before)), last = scalarOfCode(codeAt(scalars, frame.dimensions, after));
+    gradient[axis] = (last == kNoScalar ? own : last) - (first == kNoScalar ? own : first);
+  }
+  return own != kNoScalar && dot(gradient, gradient) > 0.0 ? gradient : ofExtinction;
 }
 
 // The fraction of a light that reaches the parts of a block that the eye sees, if the eye is on the light's
@@ -157,10 +175,9 @@ ScatteredLight scatteredLight(Block block, float sigma, uint rank, vec3 towardsE
   SeenBlock seen = SeenBlock(block, rank, sigma, towardsEye, own, vec3(0.0), 0.0);
   if (!kAnyView && frame.lighting.surface > 0.0) {
     const vec3 gradient = extinctionGradient(block);
-    const vec3 normal = frame.lighting.gradientToWorld * gradient;
     // Where the extinction hardly changes there is no surface, and its normal would be noise.
     if (dot(gradient, gradient) > 0.0) {
-      seen.normal = normalize(normal);
+      seen.normal = normalize(frame.lighting.gradientToWorld * normalGradient(block, gradient));
       seen.surface = frame.lighting.surface * min(2.0 * length(gradient) / sigma, 1.0);
     }
   }

@@ -117,6 +117,23 @@ glm::dvec3 ReferenceLight::extinctionGradient(const Block& block) const {
   return gradient;
 }
 
+glm::dvec3 ReferenceLight::normalGradient(const Block& block, const glm::dvec3& ofExtinction) const {
+  if (block.level != 0 || inputs_.scalars == nullptr) return ofExtinction;
+  const auto codeOf = [&](glm::ivec3 voxel) { return int(inputs_.scalars->code(inputs_.volume.scalars.at(voxel))); };
+  const int own = codeOf(block.cell);
+  if (own == 0) return ofExtinction;
+  glm::dvec3 gradient(0.0);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int way : {-1, 1}) {
+      glm::ivec3 next = block.cell;
+      next[axis] += way;
+      const bool isInside = next[axis] >= 0 && next[axis] < inputs_.volume.dimensions[axis];
+      const int code = isInside ? codeOf(next) : 0;
+      gradient[axis] += way * (code == 0 ? own : code);
+    }
+  return gradient == glm::dvec3(0.0) ? ofExtinction : gradient;
+}
+
 glm::dvec3 ReferenceLight::scattered(const Block& block, glm::dvec3 toEye) const {
   const glm::dvec3 centre = boxOf(block, inputs_.volume.dimensions).centre();
   const glm::dvec3 after = glm::normalize(toWorld_ * toEye);
@@ -126,7 +143,7 @@ glm::dvec3 ReferenceLight::scattered(const Block& block, glm::dvec3 toEye) const
   double surface = 0.0;
   if (gradient != glm::dvec3(0.0)) {
     const double sigma = extinctionOf(block, inputs_.volume, inputs_.extinction, inputs_.coarser);
-    normal = glm::normalize(glm::inverse(glm::transpose(toWorld_)) * gradient);
+    normal = glm::normalize(glm::inverse(glm::transpose(toWorld_)) * normalGradient(block, gradient));
     surface =
         lighting_.surface * surfaceShare(glm::length(gradient) / sigma);  // infinite if sigma is 0
   }

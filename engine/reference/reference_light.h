@@ -9,6 +9,7 @@
 
 #include "engine/reference/reference_depth.h"
 #include "engine/scene/lighting.h"
+#include "engine/volume/transfer_table.h"
 
 namespace freevoxels {
 
@@ -24,6 +25,8 @@ struct LightInputs {
   std::span<const LevelData> coarser;
   TableSettings tableSettings;
   std::span<const glm::dvec3> emission = {};
+  /// The codes of scalars whose gradients are the normals of surfaces; null: those of extinctions are.
+  const TransferTable* scalars = nullptr;
 };
 
 class ReferenceLight {
@@ -44,6 +47,8 @@ class ReferenceLight {
 
   /// The gradient by central differences in index space, per block of its size.
   glm::dvec3 extinctionGradient(const Block& block) const;
+  /// The gradient along which a surface's normal is, that of the scalar if there are any.
+  glm::dvec3 normalGradient(const Block& block, const glm::dvec3& ofExtinction) const;
 
   const LightInputs inputs_;
   const Lighting lighting_;

@@ -53,18 +53,18 @@ double largest(glm::dvec3 light) {
 
 class SplatSummer {
  public:
-  SplatSummer(const Volume& volume, const Classification& classification, const SplatInputs& inputs,
-              const Camera& camera, const FrameSettings& settings)
+  SplatSummer(const Volume& volume, const Classification& classification, const SplatInputs& inputs, const Camera& camera,
+              const FrameSettings& settings)
       : volume_(volume),
         classification_(classification),
         classifier_(classification, volume),
         inputs_(inputs),
         settings_(settings),
         projector_(volume, camera, settings.size),
-        rayShare_(rayShare(lookupFor(settings.attenuation, !inputs.emission.empty()), camera,
-                           volume.dimensions, volume.indexToWorld)),
+        rayShare_(rayShare(lookupFor(settings.attenuation, !inputs.emission.empty()), camera, volume.dimensions, volume.indexToWorld)),
         rays_(rayShare_ > 0.0 ? raysFor(camera) : nullptr),
         table_(rayShare_ < 1.0 ? tableFor(camera) : nullptr),
+        codes_(codesFor()),
         light_(lightFor()) {
     FV_CHECK_EQ(inputs.extinction.size(), volume.voxelCount());
   }
@@ -77,6 +77,7 @@ class SplatSummer {
  private:
   std::unique_ptr<ReferenceDepth> raysFor(const Camera& camera) const;
   std::unique_ptr<ReferenceDepth> tableFor(const Camera& camera) const;
+  std::optional<TransferTable> codesFor() const;
   std::unique_ptr<ReferenceLight> lightFor() const;
   void add(const Block& block, std::vector<SplatSums>& image) const;
   double extinctionOf(const Block& block) const {
@@ -101,6 +102,7 @@ class SplatSummer {
   const SplatProjector projector_;
   const double rayShare_;
   const std::unique_ptr<ReferenceDepth> rays_, table_;  ///< null if their weight is 0
+  const std::optional<TransferTable> codes_;            ///< of scalars that are classified after interpolation
   const std::unique_ptr<ReferenceLight> light_;         ///< null without lighting
 };
 
@@ -119,6 +121,11 @@ std::unique_ptr<ReferenceDepth> SplatSummer::tableFor(const Camera& camera) cons
       inside ? std::optional(eyeSource(camera, volume_.indexToWorld).place) : std::nullopt, inputs_.emission);
 }
 
+std::optional<TransferTable> SplatSummer::codesFor() const {
+  if (!classification_.isPost(volume_)) return {};
+  return TransferTable(*classification_.transferFunction, volume_.minimum, volume_.maximum);
+}
+
 std::unique_ptr<ReferenceLight> SplatSummer::lightFor() const {
   if (!settings_.lighting) return nullptr;
   return std::make_unique<ReferenceLight>(LightInputs{.volume = volume_,
@@ -126,7 +133,8 @@ std::unique_ptr<ReferenceLight> SplatSummer::lightFor() const {
                                                       .table = inputs_.table,
                                                       .coarser = inputs_.coarser,
                                                       .tableSettings = inputs_.tableSettings,
-                                                      .emission = inputs_.emission},
+                                                      .emission = inputs_.emission,
+                                                      .scalars = codes_ ? &*codes_ : nullptr},
                                           settings_);
 }
 
