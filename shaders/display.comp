@@ -46,7 +46,7 @@ void main() {
   const bool over = push.hasBackground != 0;
   float needed = light.a;
   for (int c = 0; c < 3; ++c)
-    if (!over && mapped[c] > needed) needed = mapped[c];  // not by max(), which may return NaN
+    if (!over && light[c] > needed) needed = light[c];  // not by max(), which may return NaN
   const float alpha = clampUnit(needed);
   vec4 result = vec4(0.0, 0.0, 0.0, over ? 1.0 : alpha);
   for (int c = 0; c < 3; ++c) {

@@ -54,7 +54,7 @@ class RowWriter {
   void write(int row, Sample* samples) const {
     const glm::vec3 behind = backgroundOf(row);
     const glm::vec4* const pixels = &image_.pixels[std::size_t(row) * std::size_t(image_.size.x)];
-    for (int x = 0; x < image_.size.x; ++x) writePixel(shown(pixels[x]), behind, samples + std::size_t(x) * channels_);
+    for (int x = 0; x < image_.size.x; ++x) writePixel(pixels[x], behind, samples + std::size_t(x) * channels_);
   }
 
  private:
@@ -72,10 +72,11 @@ class RowWriter {
   }
 
   /// Alpha above 1, which the additive composite makes, counts as 1. Straight alpha cannot be less than a colour that it is
-  /// to show: light of more than the opacity takes as much alpha as it needs.
-  void writePixel(const glm::vec4& pixel, const glm::vec3& behind, Sample* samples) const {
-    const float needed = look_.background ? pixel.a : std::max({pixel.a, pixel.r, pixel.g, pixel.b});
+  /// to show: light of more than the opacity takes as much alpha as it needs, whatever the exposure.
+  void writePixel(const glm::vec4& light, const glm::vec3& behind, Sample* samples) const {
+    const float needed = look_.background ? light.a : std::max({light.a, light.r, light.g, light.b});
     const float alpha = clampUnit(needed);
+    const glm::vec4 pixel = shown(light);
     for (int c = 0; c < 3; ++c) {
       const float straight = alpha > 0.0f ? pixel[c] / alpha : 0.0f;
       setColor(samples[c], clampUnit(look_.background ? pixel[c] + (1.0f - alpha) * behind[c] : straight));
