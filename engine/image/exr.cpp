@@ -23,6 +23,7 @@
 #include "engine/core/error.h"
 #include "engine/core/input_file.h"
 #include "engine/core/printable.h"
+#include "engine/image/exr_channels.h"
 #include "engine/image/exr_claims.h"
 #include "engine/image/exr_file.h"
 #include "engine/image/image.h"
@@ -87,17 +88,14 @@ void encode(const std::filesystem::path& file, const Image& image, const ExrOpti
 }
 
 /// Fails where the header is of no image that `decode` reads.
-void checkHeader(const std::filesystem::path& file, const Imf::Header& header, std::int64_t maximumPixels) {
+void checkHeader(const std::filesystem::path& file, const Imf::Header& header, const ExrColors& colors, std::int64_t maximumPixels) {
   if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE)
     fail(ErrorKind::Input, "cannot read '{}': it holds deep samples; flatten it first", file.string());
   const Imf::ChannelList& channels = header.channels();
-  if (!channels.findChannel("R") || !channels.findChannel("G") || !channels.findChannel("B"))
-    fail(ErrorKind::Input, "cannot read '{}': it has no channels R, G and B; choose a colour image",
-         file.string());
-  for (const char* name : {"R", "G", "B", "A", "Z"})
+  for (const std::string& name : {colors.names[0], colors.names[1], colors.names[2], colors.names[3], colors.depth})
     if (const Imf::Channel* const channel = channels.findChannel(name); channel != nullptr && (channel->xSampling != 1 || channel->ySampling != 1))
-      fail(ErrorKind::Input, "cannot read '{}': its channel {} has fewer samples than the image has pixels; write it with one a pixel", file.string(),
-           name);
+      fail(ErrorKind::Input, "cannot read '{}': its channel {} has fewer samples than the image has pixels; write it with one a pixel",
+           file.string(), printable(name));
   const Imath::Box2i window = header.dataWindow();
   const std::int64_t width = std::int64_t(window.max.x) - window.min.x + 1;
   const std::int64_t height = std::int64_t(window.max.y) - window.min.y + 1;
@@ -112,11 +110,12 @@ Image decode(const std::filesystem::path& file, std::int64_t maximumPixels) {
   useAllProcessors();
   checkExrClaims(file);
   Imf::MultiPartInputFile exr(file.c_str(), Imf::globalThreadCount(), false);
-  const Imf::Header& header = exr.header(0);
-  checkHeader(file, header, maximumPixels);
-  Imf::InputPart part(exr, 0);
+  const ExrColors colors = findColors(file, exr);
+  const Imf::Header& header = exr.header(colors.part);
+  checkHeader(file, header, colors, maximumPixels);
+  Imf::InputPart part(exr, colors.part);
   const Imath::Box2i window = header.dataWindow();
-  const bool hasDepth = header.channels().findChannel("Z") != nullptr;
+  const bool hasDepth = !colors.depth.empty(), isGrey = colors.names[0] == colors.names[1];
   Image image;
   image.size = {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
   const auto width = std::size_t(image.size.x);
@@ -126,15 +125,21 @@ Image decode(const std::filesystem::path& file, std::int64_t maximumPixels) {
     const std::size_t before = image.pixels.size(), after = before + width * std::size_t(band.max.y - band.min.y + 1);
     image.pixels.resize(after);
     Imf::FrameBuffer frame;
-    for (std::size_t c = 0; c < kColorChannels.size(); ++c)
-      frame.insert(kColorChannels[c], makeSlice(Imf::FLOAT, &image.pixels[before].x + c, 4, band, c == 3 ? 1.0 : 0.0));
+    for (std::size_t c = 0; c < colors.names.size(); ++c)
+      if (!isGrey || c == 0 || c == 3)
+        frame.insert(colors.names[c].empty() ? "A" : colors.names[c],
+                     makeSlice(Imf::FLOAT, &image.pixels[before].x + c, 4, band, c == 3 ? 1.0 : 0.0));
     if (hasDepth) {
       image.depth.resize(after);
-      frame.insert("Z", makeSlice(Imf::FLOAT, &image.depth[before], 1, band));
+      frame.insert(colors.depth, makeSlice(Imf::FLOAT, &image.depth[before], 1, band));
     }
     part.setFrameBuffer(frame);
     part.readPixels(band.min.y, band.max.y);
   }
+  if (isGrey)
+    for (glm::vec4& pixel : image.pixels) pixel = {pixel.r, pixel.r, pixel.r, pixel.a};
+  if (const std::optional<glm::dmat3> matrix = isGrey ? std::nullopt : toRec709(header))
+    for (glm::vec4& pixel : image.pixels) pixel = glm::vec4(glm::vec3(*matrix * glm::dvec3(pixel)), pixel.a);
   return image;
 }
 

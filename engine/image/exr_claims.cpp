@@ -99,12 +99,10 @@ std::optional<LineBytes> lineBytes(const std::vector<char>& channels, double wid
   return bytes;
 }
 
-/// Whether the attribute that OpenEXR follows in files of several parts or of deep samples is that of tiles.
-bool typeSaysTiles(const Attributes& part) {
+/// The attribute that OpenEXR follows in files of several parts or of deep samples; empty if it is missing.
+std::string typeOf(const Attributes& part) {
   const auto type = part.find("type");
-  if (type == part.end()) return false;
-  const std::string name(type->second.begin(), type->second.end());
-  return name == "tiledimage" || name == "deeptile";
+  return type == part.end() ? std::string() : std::string(type->second.begin(), type->second.end());
 }
 
 class ClaimCheck {
@@ -117,9 +115,10 @@ class ClaimCheck {
     if (!stream_.read(start.data(), start.size())) return;
     constexpr int kTiles = 0x02, kDeepSamples = 0x08, kParts = 0x10;
     const bool hasParts = (start[5] & kParts) != 0, hasTypes = (start[5] & (kDeepSamples | kParts)) != 0;
-    for (bool isFirst = true; const std::optional<Attributes> part = readHeader(); isFirst = false) {
+    while (const std::optional<Attributes> part = readHeader()) {
       if (part->empty()) return;  // an empty header ends the list of them
-      checkPart(*part, hasTypes ? typeSaysTiles(*part) : (start[5] & kTiles) != 0, isFirst);
+      const std::string type = hasTypes ? typeOf(*part) : "";
+      checkPart(*part, hasTypes ? type == "tiledimage" || type == "deeptile" : (start[5] & kTiles) != 0, type.starts_with("deep"));
       if (!hasParts) return;
     }
   }
@@ -146,8 +145,8 @@ class ClaimCheck {
     }
   }
 
-  /// Of the first part the pixels are read, of the others only the tables of chunks.
-  void checkPart(const Attributes& part, bool isTiled, bool isFirst) const {
+  /// Of deep parts, which are not read, any pixel may have no sample.
+  void checkPart(const Attributes& part, bool isTiled, bool isDeep) const {
     const auto window = valueOf<std::array<std::int32_t, 4>>(part, "dataWindow");
     const auto channels = part.find("channels");
     if (!window || channels == part.end()) return;
@@ -156,21 +155,23 @@ class ClaimCheck {
     const Compression compression = number < kCompressions.size() ? kCompressions[number] : kCompressions.back();
     const std::optional<LineBytes> line = lineBytes(channels->second, width, compression);
     if (!line || width < 1.0 || height < 1.0) return;
-    if (isFirst && line->stored * height > double(bytes_))
+    if (!isDeep && line->stored * height > double(bytes_))
       fail(ErrorKind::Input, "cannot read '{}': its header claims {:.0f}x{:.0f} pixels, which a file of {} bytes cannot hold; write it again",
            file_.string(), width, height, bytes_);
     double chunkLines = double(compression.lines), chunks = height / chunkLines;
+    bool isLargerThanImage = false;
     LineBytes lineOfChunk = *line;
     const auto tile = valueOf<std::array<std::uint32_t, 2>>(part, "tiles");
     if (isTiled && tile) {
       lineOfChunk = lineBytes(channels->second, (*tile)[0], compression).value_or(LineBytes());
       chunkLines = (*tile)[1];
+      isLargerThanImage = double((*tile)[0]) > width || chunkLines > height;  // of which the file has a part alone
       chunks = (width / std::max((*tile)[0], 1u)) * (height / std::max((*tile)[1], 1u));
     }
     chunks = std::max(chunks, double(valueOf<std::int32_t>(part, "chunkCount").value_or(0)));
     constexpr double kEntryBytes = 8.0;  // of a chunk in a table of the file
-    const bool chunkIsTooLarge =
-        isFirst && lineOfChunk.stored * chunkLines > double(bytes_) && lineOfChunk.pixels * chunkLines > kFewBytes;
+    const bool canHold = !isLargerThanImage && lineOfChunk.stored * chunkLines <= double(bytes_);
+    const bool chunkIsTooLarge = !isDeep && !canHold && lineOfChunk.pixels * chunkLines > kFewBytes;
     if (chunkIsTooLarge || kEntryBytes * std::floor(chunks) > double(bytes_))
       fail(ErrorKind::Input, "cannot read '{}': its header claims chunks that a file of {} bytes cannot hold; write it again", file_.string(), bytes_);
   }

@@ -56,7 +56,12 @@ Image readExr(const std::filesystem::path& file, std::int64_t maximumPixels = st
 /// say. Fails with ErrorKind::Input.
 Image readPng(const std::filesystem::path& file);
 
-/// Calls readExr or readPng, by the first bytes of the file, not by its name. Fails with ErrorKind::Input.
+/// Reads a Radiance picture (.hdr): linear Rec.709, opaque. Fails with ErrorKind::Input.
+Image readHdr(const std::filesystem::path& file, std::int64_t maximumPixels = std::int64_t(1) << 30);
+/// Whether the file begins as a Radiance picture does; false if it cannot be read.
+bool isHdr(const std::filesystem::path& file);
+
+/// Calls readExr, readHdr or readPng, by the first bytes of the file, not by its name. Fails with ErrorKind::Input.
 Image readImage(const std::filesystem::path& file);
 
 /// The background of an image, linear Rec.709, interpolated linearly from the top edge to the bottom edge.

@@ -41,7 +41,8 @@ Image readImage(const std::filesystem::path& file) {
   const std::string_view signature(start.data(), start.size());
   if (signature == kExr) return readExr(file);
   if (signature == kPng) return readPng(file);
-  fail(ErrorKind::Input, "cannot read '{}': it is neither an OpenEXR nor a PNG image; choose one that is",
+  if (isHdr(file)) return readHdr(file);
+  fail(ErrorKind::Input, "cannot read '{}': it is neither an OpenEXR nor a PNG image, nor a Radiance picture; choose one that is",
        file.string());
 }
 

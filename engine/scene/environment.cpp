@@ -44,7 +44,7 @@ RowSums sumRow(const Environment& environment, int row, DirectionSet set, const 
 }  // namespace
 
 Environment readEnvironment(const std::filesystem::path& file) {
-  const Image image = readExr(file, kMaximumMapPixels);
+  const Image image = isHdr(file) ? readHdr(file, kMaximumMapPixels) : readExr(file, kMaximumMapPixels);
   if (image.size.x != 2 * image.size.y)
     fail(ErrorKind::Input,
          "environment '{}' has {}x{} pixels, and a latitude-longitude image is twice as wide as high: choose one",

@@ -57,6 +57,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   Imf::setGlobalThreadCount(0);
   const fuzz::FuzzFile file(bytes, size);
   fuzz::tryTo([&] { readExr(file.path(), kMaxPixels); });
+  fuzz::tryTo([&] { readHdr(file.path(), kMaxPixels); });
   fuzz::tryTo([&] {
     if (!holdsSums(file.path())) return;
     FixedSums sums = readSums(file.path()).sums;

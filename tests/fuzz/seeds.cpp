@@ -109,6 +109,9 @@ void writeImages(const fs::path& folder) {
   }
   writeExr(folder / "exr/half.exr", image, {});
   writeExr(folder / "exr/float.exr", cropped(image, {{2, 1}, {5, 4}}), {.fullFloat = true, .metadata = {{"a", "b"}}});
+  std::ofstream(folder / "exr/rows.hdr", std::ios::binary)
+      << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\n\n-Y 2 +X 8\n"
+      << std::string("\2\2\0\10\210\1\210\2\210\3\2\200\201\206\177", 15) << std::string("\3\4\5\200\1\1\1\7", 8);
   writeSumsOf(folder / "exr/splats.exr", false);
   writeSumsOf(folder / "exr/samples.exr", true);
   writePng(folder / "png/alpha.png", image);
