@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <numeric>
@@ -15,38 +16,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kDigits = "0123456789";
-constexpr std::size_t kMaxDigits = 9;  // that an int holds
-
-std::size_t nameStart(const std::string& file) {
-  return file.rfind('/') + 1;  // 0 without a folder
-}
-
-/// The number that makes `name` of the pattern.
-std::optional<int> numberOf(const std::string& name, const std::string& pattern) {
-  const std::size_t first = pattern.find('#'), end = pattern.find_last_of('#') + 1;
-  const std::size_t around = first + pattern.size() - end;
-  if (name.size() <= around || name.size() - around > kMaxDigits) return std::nullopt;
-  const char* const digits = name.data() + first;
-  const char* const digitsEnd = digits + (name.size() - around);
-  int number = 0;
-  const auto [read, error] = std::from_chars(digits, digitsEnd, number);
-  if (error != std::errc() || read != digitsEnd || number < 0) return std::nullopt;
-  return frameName(pattern, number) == name ? std::optional(number) : std::nullopt;
-}
-
 /// `pattern` has a run of #.
 Sequence filesOf(const std::string& pattern) {
-  frameName(pattern, 0);  // refuses what is no pattern
-  const std::string folder = pattern.substr(0, nameStart(pattern));
-  const std::string ownName = pattern.substr(nameStart(pattern));
-  std::vector<std::pair<int, std::string>> frames;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end; !error && entry != end;
+  const NumberPlace place = placeOfNumber(pattern);
+  std::vector<std::pair<FrameNumber, std::string>> frames;
+  std::error_code error, unreadable;
+  for (fs::directory_iterator entry(place.folder.empty() ? "." : place.folder, error), end; !error && entry != end;
        entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    if (const std::optional<int> number = numberOf(name, ownName))
-      frames.emplace_back(*number, folder + name);
+    const std::optional<FrameNumber> number = frameOf(name, place);
+    const std::string file = place.folder + name + place.rest;
+    if (number && (place.rest.empty() || fs::exists(file, unreadable))) frames.emplace_back(*number, file);
   }
   std::ranges::sort(frames);
   Sequence sequence{.pattern = pattern};
@@ -57,29 +37,52 @@ Sequence filesOf(const std::string& pattern) {
   return sequence;
 }
 
-/// A whole number that fills the text.
-std::optional<int> wholeNumber(std::string_view text) {
-  int number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || number < 0) return std::nullopt;
+/// Takes a number from the front of a text.
+std::optional<double> takeNumber(std::string_view& text) {
+  double number = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, std::chars_format::fixed);
+  constexpr double kLargest = 1e9;
+  if (error != std::errc() || !(std::abs(number) < kLargest)) return std::nullopt;
+  text.remove_prefix(std::size_t(end - text.data()));
   return number;
+}
+
+bool takeCharacter(std::string_view& text, char character) {
+  if (!text.starts_with(character)) return false;
+  text.remove_prefix(1);
+  return true;
+}
+
+/// Nothing if it is none.
+std::optional<FrameRange> rangeOf(std::string_view text) {
+  const std::optional<double> first = takeNumber(text);
+  if (!first) return std::nullopt;
+  FrameRange range{.first = *first, .last = *first, .step = std::nullopt};
+  if (takeCharacter(text, '-')) {
+    const bool isOpen = text.empty() || text.front() == ':';
+    const std::optional<double> last = isOpen ? FrameRange{}.last : takeNumber(text);
+    if (!last || *last < *first) return std::nullopt;
+    range.last = *last;
+  }
+  if (takeCharacter(text, ':')) {
+    range.step = takeNumber(text);
+    if (!range.step || !(*range.step > 0.0)) return std::nullopt;
+  }
+  return text.empty() ? std::optional(range) : std::nullopt;
 }
 
 }  // namespace
 
+bool FrameRange::contains(const FrameNumber& number) const {
+  constexpr double kSame = 1e-6;
+  if (!(number.value >= first - kSame && number.value <= last + kSame)) return false;
+  return !step || std::abs(std::remainder(number.value - first, *step)) < kSame;
+}
+
 FrameRange readFrameRange(const std::string& option, const std::string& text) {
-  const std::size_t colon = std::min(text.find(':'), text.size());
-  const std::string_view range = std::string_view(text).substr(0, colon);
-  const std::size_t dash = range.find('-');
-  const std::optional<int> first = wholeNumber(range.substr(0, dash));
-  std::optional<int> last = first, step = 1;
-  if (dash != std::string_view::npos)
-    last = dash + 1 == range.size() ? std::numeric_limits<int>::max() : wholeNumber(range.substr(dash + 1));
-  if (colon < text.size()) step = wholeNumber(std::string_view(text).substr(colon + 1));
-  if (!first || !last || !step || *step < 1 || *last < *first)
-    fail(ErrorKind::Usage, "{} takes A-B, A-B:STEP, A- or A, whole numbers with A up to B and STEP of at least 1, not '{}'", option,
-         text);
-  return {*first, *last, *step};
+  const std::optional<FrameRange> range = rangeOf(text);
+  if (!range) fail(ErrorKind::Usage, "{} takes A-B, A-B:STEP, A- or A, numbers with A up to B and STEP above 0, not '{}'", option, text);
+  return *range;
 }
 
 Sequence findSequence(const std::string& pattern) {
@@ -99,15 +102,19 @@ Sequence selectFrames(const Sequence& sequence, const FrameRange& range) {
   }
   if (selected.files.empty())
     fail(ErrorKind::Input, "'{}' has no frame among those chosen: its numbers are from {} to {}", sequence.pattern,
-         sequence.numbers.front(), sequence.numbers.back());
+         sequence.numbers.front().text(1), sequence.numbers.back().text(1));
   return selected;
 }
 
 std::string gapsOf(const Sequence& sequence, const std::optional<FrameRange>& range) {
-  const std::vector<int>& numbers = sequence.numbers;
-  std::int64_t step = range ? range->step : 0;
+  std::vector<std::int64_t> numbers;
+  for (const FrameNumber& number : sequence.numbers) numbers.push_back(std::llround(number.value));
+  const double given = range ? range->step.value_or(1.0) : 0.0;
+  const bool areWhole = std::ranges::all_of(sequence.numbers, [](const FrameNumber& number) { return number.fraction.empty(); });
+  if (!areWhole || given != std::floor(given) || (range && range->first != std::floor(range->first))) return "";
+  auto step = std::int64_t(given);
   if (!range)
-    for (const int number : numbers) step = std::gcd(step, std::int64_t(number - numbers.front()));
+    for (const std::int64_t number : numbers) step = std::gcd(step, number - numbers.front());
   std::string gaps;
   const auto addBetween = [&](std::int64_t before, std::int64_t after) {  // neither of which is missing
     const std::int64_t first = before + step, last = after - step;
@@ -115,24 +122,51 @@ std::string gapsOf(const Sequence& sequence, const std::optional<FrameRange>& ra
     gaps += fmt::format("{}{}", gaps.empty() ? "" : ", ", first);
     if (last > first) gaps += fmt::format("{}{}", last - first == step ? ", " : "-", last);
   };
-  if (range) addBetween(range->first - step, numbers.front());
+  if (range) addBetween(std::int64_t(range->first) - step, numbers.front());
   for (std::size_t i = 1; i < numbers.size(); ++i) addBetween(numbers[i - 1], numbers[i]);
-  if (range && range->last < std::numeric_limits<int>::max())
-    addBetween(numbers.back(), range->first + (std::int64_t(range->last) - range->first) / step * step + step);
+  if (range && std::isfinite(range->last)) {
+    const auto first = std::int64_t(range->first);
+    addBetween(numbers.back(), first + (std::int64_t(std::floor(range->last)) - first) / step * step + step);
+  }
   return gaps;
 }
 
+namespace {
+
+/// The patterns that a name may be of, with the number at its end: "smoke_0001", "-0001", "0001.5". The best is the last.
+std::vector<std::string> patternsOf(const std::string& name, std::size_t end) {
+  constexpr std::string_view kDigits = "0123456789", kBeforeSigns = "_. ";
+  constexpr std::size_t kMaxDigits = 9;  // of a FrameNumber
+  const std::size_t first = end == 0 ? 0 : name.find_last_not_of(kDigits, end - 1) + 1,
+                    digits = end - first;  // 0 where all of it are digits
+  if (digits == 0 || digits > kMaxDigits) return {};
+  std::vector<std::string> patterns;
+  const bool mayBeFraction = end == name.size() && first > 1 && name[first - 1] == '.';
+  if (mayBeFraction) patterns = patternsOf(name, first - 1);
+  const bool isNegative =
+      first > 0 && name[first - 1] == '-' && (first == 1 || kBeforeSigns.find(name[first - 2]) != std::string_view::npos);
+  for (std::size_t width = name[first] == '0' ? digits : 1; width <= digits; ++width)
+    patterns.push_back(name.substr(0, first - (isNegative ? 1 : 0)) + std::string(width, '#'));
+  return patterns;
+}
+
+/// The pattern with most frames.
+void takeMost(Sequence& most, const std::string& before, const std::string& name, const std::string& after) {
+  if (name.find('#') != std::string::npos) return;
+  for (const std::string& pattern : patternsOf(name, name.size()))
+    if (Sequence found = filesOf(before + pattern + after); found.files.size() >= most.files.size()) most = std::move(found);
+}
+
+}  // namespace
+
 std::optional<Sequence> sequenceAround(const std::string& file) {
-  const std::size_t end = file.size() - fs::path(file).extension().string().size();
-  const std::size_t before = file.find_last_not_of(kDigits, end == 0 ? 0 : end - 1);
-  const std::size_t first = std::max(before + 1, nameStart(file));  // 0 where all of it are digits
-  const std::size_t digits = end > first ? end - first : 0;
-  if (digits == 0 || digits > kMaxDigits || file.find('#', nameStart(file)) != std::string::npos)
-    return std::nullopt;
   Sequence most;
-  for (std::size_t width = file[first] == '0' ? digits : 1; width <= digits; ++width) {
-    Sequence found = filesOf(file.substr(0, first) + std::string(width, '#') + file.substr(end));
-    if (found.files.size() >= most.files.size()) most = std::move(found);
+  const std::size_t start = file.rfind('/') + 1;  // 0 without a folder
+  const std::string extension = fs::path(file).extension().string();
+  takeMost(most, file.substr(0, start), file.substr(start, file.size() - extension.size() - start), extension);
+  if (most.files.size() < 2 && start > 1) {
+    const std::size_t folder = file.rfind('/', start - 2) + 1;
+    takeMost(most, file.substr(0, folder), file.substr(folder, start - 1 - folder), file.substr(start - 1));
   }
   if (most.files.size() < 2) return std::nullopt;
   return most;
@@ -140,7 +174,7 @@ std::optional<Sequence> sequenceAround(const std::string& file) {
 
 bool isPattern(const std::string& file) {
   std::error_code unreadable;
-  return withHashes(file).find('#', nameStart(file)) != std::string::npos && !fs::exists(file, unreadable);
+  return hasNumberPlace(file) && !fs::exists(file, unreadable);
 }
 
 }  // namespace freevoxels

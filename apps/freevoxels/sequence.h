@@ -6,21 +6,25 @@
 #include <string>
 #include <vector>
 
+#include "apps/freevoxels/frame_names.h"
+
 namespace freevoxels {
 
 struct Sequence {
   std::string pattern;             ///< "smoke_####.vdb", as for frameName
   std::vector<std::string> files;  ///< that exist, in the order of their numbers
-  std::vector<int> numbers;        ///< of each file
+  std::vector<FrameNumber> numbers;  ///< of each file
 };
 
-/// Numbers of frames: first, first + step, ... up to last.
+/// Numbers of frames: all from first to last, or first, first + step, ... up to last.
 struct FrameRange {
-  int first = 0, last = std::numeric_limits<int>::max(), step = 1;
-  bool contains(int number) const { return number >= first && number <= last && (number - first) % step == 0; }
+  double first = 0.0, last = std::numeric_limits<double>::infinity();
+  std::optional<double> step;
+  bool contains(const FrameNumber& number) const;
 };
 
-/// "A-B:STEP", "A-B", "A-" or "A". ErrorKind::Usage for anything else; `option` is what the sentence calls it.
+/// "A-B:STEP", "A-B", "A-" or "A", in which A and B may be below 0. ErrorKind::Usage for anything else; `option` is what the sentence calls
+/// it.
 FrameRange readFrameRange(const std::string& option, const std::string& text);
 
 /// The frames of a pattern. ErrorKind::Input where there is none, ErrorKind::Usage as for frameName.
@@ -30,10 +34,11 @@ Sequence findSequence(const std::string& pattern);
 Sequence selectFrames(const Sequence& sequence, const FrameRange& range);
 
 /// "13, 17-19": the numbers of the range at which no file exists. Without a range those between the first and the last frame, in
-/// steps of the greatest common divisor of the distances between numbers: of 0, 10, 30 that is 20. Empty where there are none.
+/// steps of the greatest common divisor of the distances between numbers: of 0, 10, 30 that is 20. Empty where there are none, and of
+/// frames with fractions.
 std::string gapsOf(const Sequence& sequence, const std::optional<FrameRange>& range = std::nullopt);
 
-/// The sequence that a file is a frame of: its name without extension ends in the number. The # are as many
+/// The sequence that a file is a frame of: its name without extension ends in the number, or a folder is called by it. The # are as many
 /// as make most frames. Nothing where it is the only one.
 std::optional<Sequence> sequenceAround(const std::string& file);
 
