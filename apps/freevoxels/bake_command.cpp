@@ -142,8 +142,12 @@ void BakeCommand::bakeProcedural(const std::string& name, ProgressLine& line) co
 
 bool BakeCommand::bakeParts(ProgressLine& line) const {
   const SceneDescription& description = scene_.description;
-  if (description.emission.grid() || description.classification.albedoGrid || fvx::isFvx(description.input.volume)) return false;
-  const std::unique_ptr<const VdbParts> parts = VdbParts::open(description.input.volume, description.input.grid.value_or(""), kMaxBytesInMemory);
+  if (fvx::isFvx(description.input.volume)) return false;
+  const std::unique_ptr<const VdbParts> parts =
+      VdbParts::open(description.input.volume,
+                     {.grid = description.input.grid.value_or(""),
+                      .more = {.temperature = description.emission.grid(), .albedo = description.classification.grid()}},
+                     kMaxBytesInMemory, description.input.noData);
   if (!parts) return false;
   const Classification classification = description.resolveClassification(parts->sample());
   line.erase();

@@ -1,9 +1,12 @@
 #include "apps/freevoxels/failure.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <new>
 #include <string_view>
 #include <system_error>
+
+#include "engine/description/scene_fields.h"
 
 namespace freevoxels {
 
@@ -22,7 +25,10 @@ ExitCode exitCodeOf(ErrorKind kind) {
 
 std::string withOptions(std::string_view text) {
   return spelled(text, [](std::string_view name, std::string_view value) {
-    return value.empty() ? fmt::format("--{}", name) : fmt::format("--{} {}", name, value);
+    if (value.empty()) return fmt::format("--{}", name);
+    const auto field = std::ranges::find(sceneFields(), name, &SceneField::name);
+    const bool isSwitchedOff = value == kNoGrid && field != sceneFields().end() && field->standsAlone;
+    return isSwitchedOff ? fmt::format("--no-{}", name) : fmt::format("--{} {}", name, value);
   });
 }
 

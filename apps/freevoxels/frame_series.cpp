@@ -10,6 +10,7 @@
 
 #include "apps/freevoxels/colored_parts.h"
 #include "apps/freevoxels/failure.h"
+#include "apps/freevoxels/film_view.h"
 #include "apps/freevoxels/share_group.h"
 #include "engine/memory_planner.h"
 #include "engine/region_renderer.h"
@@ -88,8 +89,10 @@ void FrameSeries::drawVolumes(std::span<const FrameJob> jobs) {
   const std::vector<std::string> inputs = volumesOf(jobs);
   isFilm_ = inputs.size() > 1;
   const MemoryLimits limits = memoryLimits(options_, device_);
+  if (isFilm_ && !options_.fixedView) surveyFilm(inputs);
+  const bool isSurveyed = reference_.has_value();
   const int turn = int(framesOfFirstVolume(jobs));
-  VolumesAhead volumes(inputs, [this, limits, turn, jobs](const std::string& input) {
+  VolumesAhead volumes(inputs, [this, limits, isSurveyed, turn, jobs](const std::string& input) {
     const auto first = std::ranges::find(jobs, input, &FrameJob::input);
     const std::span<const FrameJob> own = jobs.subspan(std::size_t(first - jobs.begin()));
     if (needsNoVolume(own.first(framesOfFirstVolume(own)))) return std::shared_ptr<const Volume>();
@@ -97,7 +100,7 @@ void FrameSeries::drawVolumes(std::span<const FrameJob> jobs) {
     const SceneDescription scene = options_.sceneOf(input);
     const int level = scene.finestLevelNeeded(scene.input.baked().get(), turn);
     if (!isFilm_ && needsPieces(options_, limits, pieceDrawing(options_, scene, turn), level)) return std::shared_ptr<const Volume>();
-    return std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level));
+    return std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level, {}, isSurveyed));
   });
   std::size_t failed = 0;
   while (!jobs.empty()) {
@@ -108,6 +111,23 @@ void FrameSeries::drawVolumes(std::span<const FrameJob> jobs) {
   writer_.finish();
   if (failed > 0) fail(ErrorKind::Input, "{} of {} volumes could not be drawn, for the reasons above", failed, inputs.size());
   if (!waiting_.empty()) fail(ErrorKind::Input, "no frame of {} holds anything to draw", progress_.frames());
+}
+
+/// Chooses the view of all frames.
+void FrameSeries::surveyFilm(std::span<const std::string> inputs) {
+  progress_.begin("looking through the film");
+  const StageTimer timer(report_.stages, "survey film");
+  std::optional<FilmView> view = viewOfFilm(options_.scene.description, inputs, maximumVoxels(device_));
+  progress_.erase();
+  if (!view) return;
+  reference_ = std::move(view->scene);
+  hasReference_ = true;
+  announce(*reference_, 1);
+  const auto nameOf = [](const std::string& input) { return std::filesystem::path(input).filename().string(); };
+  spdlog::info(
+      "camera and scales are those of the whole film, in which {} holds most{}; change it with --fixed-view, for those of the "
+      "first frame, or --no-fixed-view, for each frame's own",
+      nameOf(view->largest), view->brightest.empty() ? "" : fmt::format(" and {} shines most", nameOf(view->brightest)));
 }
 
 /// Draws the frames of the next volume. False, after a message, for a volume of a film that is no volume.
@@ -216,10 +236,10 @@ void FrameSeries::drawPieces(const PieceDrawing& pieces, int level, std::span<co
 FrameSeries::VolumeView FrameSeries::beginVolume(std::shared_ptr<const Volume> volume, std::span<const FrameJob> jobs,
                                                  const fvx::FvxFile* file) {
   const SceneDescription description = options_.sceneOf(jobs.front().input);
-  const bool isFirst = !reference_;
-  VolumeView view{.scene = options_.fixedView && !isFirst ? description.resolveLike(*reference_, std::move(volume))
-                                                          : description.resolve(std::move(volume)),
-                  .settings = options_.frameSettings()};
+  const bool isFirst = !reference_, isFixed = options_.fixedView.value_or(isFilm_);
+  VolumeView view{
+      .scene = isFixed && !isFirst ? description.resolveLike(*reference_, std::move(volume)) : description.resolve(std::move(volume)),
+      .settings = options_.frameSettings()};
   Scene& scene = view.scene;
   view.cameras = {scene.camera};
   if (jobs.size() > 1) view.cameras = description.cameras(*scene.volume, scene.classification, int(jobs.size()));
@@ -231,7 +251,7 @@ FrameSeries::VolumeView FrameSeries::beginVolume(std::shared_ptr<const Volume> v
   else
     logWarnings(*scene.volume, !scene.classification.transferFunction);
   agree(scene, file);
-  if (isFirst || !options_.fixedView) reference_ = scene;
+  if (isFirst || !isFixed) reference_ = scene;
   hasReference_ = true;
   return view;
 }

@@ -52,6 +52,7 @@ class FrameSeries {
 
   bool needsNoVolume(std::span<const FrameJob> jobs) const;
   void drawVolumes(std::span<const FrameJob> jobs);
+  void surveyFilm(std::span<const std::string> inputs);
   bool drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs);
   void drawFitting(std::shared_ptr<const Volume> volume, std::span<const FrameJob> jobs);
   void drawWhole(std::shared_ptr<const Volume> volume, const PieceDrawing& pieces, std::span<const FrameJob> jobs);
@@ -74,7 +75,7 @@ class FrameSeries {
   SeriesProgress progress_;
   bool isFilm_ = false;              ///< whether there are several volumes
   std::atomic<bool> hasReference_ = false;  ///< whether there is a reference_, also for the thread that reads volumes ahead
-  std::optional<Scene> reference_;   ///< the first frame's with a fixed view, else the last one's
+  std::optional<Scene> reference_;          ///< the film's, or the first frame's with a fixed view, else the last one's
   FrameWriter writer_;
   AddingUp addingUp_;
   std::vector<const FrameJob*> drawnElsewhere_;  ///< frames of other processes of the group

@@ -23,7 +23,7 @@ GridInfo describeVolume(const Volume& volume) {
   GridInfo grid;
   grid.name = "density";
   grid.valueType = "float";
-  grid.gridClass = "fog volume";
+  grid.gridClass = volume.isFog ? "fog volume" : "unknown";
   grid.activeVoxels = volume.activeVoxels;
   grid.dimensions = volume.dimensions;
   grid.renderDimensions = volume.dimensions;

@@ -14,7 +14,8 @@ const std::vector<OptionHelp> kVolumeHelp{
      "OpenVDB file, baked volume (.fvx), or procedural:NAME ('freevoxels generate --list' has the names); may be left "
      "out where a --scene has it"},
     {"resolution", fmt::format("Voxels of a procedural volume, one number for a cube [{}]", kDefaultResolution)},
-    {"grid", "Grid of the file, NAME[k] if several have the name [density, or the only float grid]"},
+    {"grid", "Grid of the file, NAME[k] if several have the name [density, smoke or a like name, or the only float grid]"},
+    {"no-data", "Value of voxels that hold no data [of scans the value that they are filled up with around what was measured]"},
     {"clip-box",
      "Draw only these voxels: the first and the last ones along x, y and z, inclusive, in the volume's box, whose voxels "
      "'freevoxels info' counts"},
@@ -28,13 +29,13 @@ const std::vector<OptionHelp> kVolumeHelp{
     {"aov",
      "Adds channels to an .exr, of depth, position, normal and transmittance, with commas between them: Z, the mean distance "
      "along the viewing axis; P, the point there in the world; N, its normal; transmittance.Y, 1 - alpha"},
-    {"crop",
-     "Writes only these pixels of the image: column and row of the top left one, width and height; the whole image is drawn"},
+    {"crop", "Writes only these pixels of the image: column and row of the top left one, width and height; the whole image is drawn"},
 
     {"density-scale",
      "Extinction per world unit at density 1 [chosen so that the volume's mean optical depth suits an image; level sets are opaque]"},
-    {"albedo", "Colour of the volume, linear [0.9,0.9,0.9; with --emission 0.5,0.5,0.5]"},
-    {"albedo-grid", "Grid of vectors of the file with the colours, linear, 0..1"},
+    {"albedo", "Colour of the volume, linear [0.9,0.9,0.9; of volumes with emission 0.5,0.5,0.5]"},
+    {"albedo-grid",
+     "Grid of vectors of the file with the colours, linear, 0..1; none for none [Cd, color or a like name, if there is one]"},
     {"transfer-function",
      "Colour and opacity by scalar, instead of the above: a file, or JSON that begins with { [for scans one made from the histogram]"},
     {"classification",
@@ -43,13 +44,12 @@ const std::vector<OptionHelp> kVolumeHelp{
 
     {"emission",
      fmt::format("Emission by temperature: luminance per world unit at {:g} K; without a number it must not be followed by a file "
-                 "name [chosen to suit an image]",
+                 "name [chosen to suit an image, where a volume has temperatures of which some shine]",
                  kReferenceTemperature)},
-    {"temperature-grid", "Grid of the temperatures; turns emission on by itself [temperature, heat or flame]"},
+    {"temperature-grid", "Grid of the temperatures [temperature, heat, flame, fire, burn or a like name]"},
     {"temperature-scale", fmt::format("Kelvin per unit of the grid [1; if no value is above {:g}, the scale that makes the largest {:g} K]",
                                       kMinKelvinMaximum, kReferenceTemperature)},
-    {"temperature-offset",
-     fmt::format("Kelvin at value 0 of the grid [0; with such an automatic scale {:g}]", kEmberTemperature)},
+    {"temperature-offset", fmt::format("Kelvin at value 0 of the grid [0; with such an automatic scale {:g}]", kEmberTemperature)},
 
     {"camera-position", "Position of the eye in world units [around the volume, see --orbit]"},
     {"orbit", fmt::format("Direction of the eye around the volume in degrees: azimuth about the up direction (if +y is up, from +z "
@@ -59,8 +59,8 @@ const std::vector<OptionHelp> kVolumeHelp{
     {"up", "Up direction of the image [0,1,0; for scans and files of Blender 0,0,1]"},
     {"fov", fmt::format("Vertical field of view [{}]", Camera{}.verticalFov)},
     {"orthographic", "Orthographic projection; the image is HEIGHT world units high [perspective]"},
-    {"size", fmt::format("Image size in pixels, or one number for a square [{}x{}]", CameraDescription{}.size.x,
-                         CameraDescription{}.size.y)}};
+    {"size",
+     fmt::format("Image size in pixels, or one number for a square [{}x{}]", CameraDescription{}.size.x, CameraDescription{}.size.y)}};
 
 const std::vector<OptionHelp> kLightHelp{
     {"unlit", "No lighting: every voxel sends out its colour"},

@@ -62,8 +62,9 @@ std::uint64_t OracleCommand::voxelsThatFit() const {
   const bool colored = lighting.environment || (lighting.ambient && lighting.tint);
   const std::uint64_t channels = colored ? 3 : lighting.ambient ? 1 : 0;
   const std::uint64_t ambient = channels * kOracleAmbientBytesPerVoxel;
+  // Grids that are not asked for are read if they are there.
   const std::uint64_t light = description.emission.grid() ? kOracleLightBytesPerVoxel : 0;
-  const std::uint64_t albedo = description.classification.albedoGrid ? kOracleAlbedoBytesPerVoxel : 0;
+  const std::uint64_t albedo = description.classification.grid() ? kOracleAlbedoBytesPerVoxel : 0;
   return (machine - image) / (kOracleBytesPerVoxel + ambient + light + albedo);
 }
 

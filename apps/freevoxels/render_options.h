@@ -27,8 +27,9 @@ struct RenderOptions {
   DeviceOptions device;
   MessageOptions messages;
   std::optional<std::string> timings;
-  bool fixedView = true;  ///< whether all frames are seen as the first one is where options leave that open
-  bool skipsExisting = false;    ///< whether frames whose images exist are left as they are
+  /// Whether all frames are seen as the first one is where options leave that open; else as the film is (film_view.h).
+  std::optional<bool> fixedView;
+  bool skipsExisting = false;  ///< whether frames whose images exist are left as they are
   ShareOptions shares;
   /// The processes among which every frame is divided; null: this process draws alone, what `shares` says. Lives longer.
   ShareGroup* group = nullptr;

@@ -32,11 +32,11 @@ OptionList optionsOf(const SceneDescription& description, const std::function<bo
   for (const SceneField& field : sceneFields()) {
     if (wanted && !wanted(field)) continue;
     for (const std::string& text : field.texts(description)) {
-      const bool isFlag = field.kind == Kind::Flag || field.kind == Kind::Switch;
+      const bool isFlag = field.kind == Kind::Flag || field.kind == Kind::Switch || (field.standsAlone && text == kNoGrid);
       if (field.kind == Kind::Volume)
         options.emplace_back("", text);
       else
-        options.emplace_back((isFlag && text == "false" ? "--no-" : "--") + field.name, isFlag ? "" : text);
+        options.emplace_back((isFlag && text != "true" ? "--no-" : "--") + field.name, isFlag ? "" : text);
     }
   }
   return options;
@@ -92,7 +92,13 @@ CLI::Option* SceneOptions::addField(CLI::App& app, std::string_view name, const 
     option = app.add_option_function<std::string>("--" + field.name, [give](const std::string& text) { give({text}); }, help)
                  ->take_last()
                  ->type_name(field.form);
-    if (field.standsAlone) option->expected(0, 1);
+    if (field.standsAlone) {
+      option->expected(0, 1);
+      app.add_flag_function(
+             "--no-" + field.name, [give](std::int64_t) { give({kNoGrid}); }, "Not that")
+          ->excludes(option)
+          ->group(groupOf(field.section));
+    }
   }
   for (const auto& [other, added] : options_)
     if (other != &field && field.isOrExcludes(*other)) option->excludes(added);
@@ -169,6 +175,10 @@ void logWarnings(const Volume& volume, bool scalarsAreDensities) {
   for (const std::string& warning : warningsOf(volume, scalarsAreDensities)) spdlog::warn("{}", withOptions(warning));
 }
 
+void logAssumptions(const Volume& volume) {
+  if (const std::string remarks = remarksOf(volume); !remarks.empty()) spdlog::info("{}", withOptions(remarks));
+}
+
 namespace {
 
 /// Warns of temperatures that are not drawn as they are, and if nothing emits light.
@@ -177,8 +187,8 @@ void warnOfTemperatures(const Volume& volume, const Classification& classificati
   const TemperatureGrid& grid = *volume.temperature;
   if (grid.nanVoxels > 0) {
     const bool one = grid.nanVoxels == 1;
-    spdlog::warn("{} temperature{} of {} that {} NaN or infinite count{} as 0", grid.nanVoxels, one ? "" : "s", volume.source,
-                 one ? "is" : "are", one ? "s" : "");
+    spdlog::warn("{} temperature{} of {} that {} NaN or infinite {} no data", grid.nanVoxels, one ? "" : "s", volume.source,
+                 one ? "is" : "are", one ? "is" : "are");
   }
   if (classification.emission->strength > 0.0 && brightestLight(classification, volume) == 0.0)
     spdlog::warn(
@@ -192,6 +202,7 @@ void warnOfTemperatures(const Volume& volume, const Classification& classificati
 void logRemarks(const SceneDescription& description, const Scene& scene) {
   const Volume& volume = *scene.volume;
   logWarnings(volume, !scene.classification.transferFunction);
+  logAssumptions(volume);
   if (scene.classification.transferFunction && !description.classification.transferFunction && !volume.classification)
     spdlog::info("{} looks like a scan: the transfer function is made from its histogram; change it with --transfer-function, or "
                  "show densities with --density-scale",

@@ -66,6 +66,8 @@ void checkScene(const SceneDescription& description, std::span<const std::string
 
 /// Logs what the user should know of a volume (warningsOf).
 void logWarnings(const Volume& volume, bool scalarsAreDensities);
+/// Logs what was assumed of a volume (remarksOf).
+void logAssumptions(const Volume& volume);
 /// Logs values of the volume that are not drawn as they are, and what was chosen for it.
 void logRemarks(const SceneDescription& description, const Scene& scene);
 

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 struct NumberedVolume {
   std::string file;
-  int number;
+  FrameNumber number;
+  std::string name;  ///< of its images, where these have none of their own
 };
 
 /// Whether a word behind IN is another volume. What is neither a volume nor an image is left to be refused as an image.
@@ -36,6 +37,11 @@ std::vector<std::string> takeVolumes(std::vector<std::string>& outputs) {
   return volumes;
 }
 
+/// "cloud" of "a/cloud.vdb" and of "procedural:cloud".
+std::string nameOf(const std::string& volume) {
+  return proceduralName(volume).value_or(fs::path(volume).stem().string());
+}
+
 std::vector<NumberedVolume> framesOf(const std::string& pattern, const std::optional<std::string>& frames) {
   Sequence sequence = findSequence(pattern);
   std::optional<FrameRange> range;
@@ -46,7 +52,13 @@ std::vector<NumberedVolume> framesOf(const std::string& pattern, const std::opti
   if (const std::string gaps = gapsOf(sequence, range); !gaps.empty())
     spdlog::warn("'{}' has no file of frame {}", pattern, gaps);
   std::vector<NumberedVolume> volumes;
-  for (std::size_t i = 0; i < sequence.files.size(); ++i) volumes.push_back({sequence.files[i], sequence.numbers[i]});
+  const NumberPlace place = placeOfNumber(sequence.pattern);
+  for (std::size_t i = 0; i < sequence.files.size(); ++i) {
+    const FrameNumber& number = sequence.numbers[i];
+    // Files in numbered folders have one name.
+    const std::string ending = place.rest.empty() ? "" : "_" + number.text(place.digits);
+    volumes.push_back({sequence.files[i], number, nameOf(sequence.files[i]) + ending});
+  }
   return volumes;
 }
 
@@ -62,22 +74,19 @@ std::vector<std::string> extensionsOf(const std::string& formats) {
   return extensions;
 }
 
-/// "cloud" of "a/cloud.vdb" and of "procedural:cloud".
-std::string nameOf(const std::string& volume) {
-  return proceduralName(volume).value_or(fs::path(volume).stem().string());
-}
-
 }  // namespace
 
-void SequenceOptions::add(CLI::App& app, bool& fixedView) {
+void SequenceOptions::add(CLI::App& app, std::optional<bool>& fixedView) {
   constexpr const char* kGroup = "Sequence";
   addText(app, "--frames", "A-B:STEP", frames, "Numbers of the frames of IN with a run of #; A-B, A- and A will do [all]")->group(kGroup);
   addText(app, "--out-dir", "FOLDER", folder, "Where images go whose names have no folder; it is made where it is missing")
       ->group(kGroup);
   addText(app, "--format", "LIST", formats, "Of images that have the names of their volumes: exr, png, jpg, with commas between them [png]")
       ->group(kGroup);
-  app.add_flag("--fixed-view,!--no-fixed-view", fixedView,
-               "Whether the camera, the lights and the scale of densities that the first frame has by default hold for all frames [yes]")
+  app.add_flag_function(
+         "--fixed-view,!--no-fixed-view", [&fixedView](std::int64_t count) { fixedView = count > 0; },
+         "Whether the camera, the lights and the scales that the first frame has by default hold for all frames; no: each frame "
+         "has its own [they are chosen for the whole film]")
       ->group(kGroup);
 }
 
@@ -93,7 +102,7 @@ std::vector<FrameJob> SequenceOptions::plan(SceneOptions& scene) const {
   bool hasPattern = false;
   for (const std::string& input : inputs) {
     if (!isPattern(input)) {
-      volumes.push_back({input, int(volumes.size())});
+      volumes.push_back({input, int(volumes.size()), nameOf(input)});
       continue;
     }
     hasPattern = true;
@@ -110,7 +119,7 @@ std::vector<FrameJob> SequenceOptions::plan(SceneOptions& scene) const {
   for (const NumberedVolume& volume : volumes) {
     FrameJob& frame = plan.emplace_back(FrameJob{.input = volume.file, .files = {}});
     if (namesAreOfVolumes)
-      for (const std::string& extension : extensions) frame.files.push_back(placed(nameOf(volume.file) + extension));
+      for (const std::string& extension : extensions) frame.files.push_back(placed(volume.name + extension));
     else
       for (const std::string& file : scene.files)
         frame.files.push_back(placed(hasPattern || volumes.size() > 1 ? frameName(file, volume.number) : file));

@@ -15,7 +15,7 @@ struct SequenceOptions {
   std::optional<std::string> formats;  ///< extensions with commas between them, of images that have the names of their volumes
 
   /// --frames, --out-dir, --format and, into `fixedView`, --fixed-view.
-  void add(CLI::App& app, bool& fixedView);
+  void add(CLI::App& app, std::optional<bool>& fixedView);
   /// The frames of the words IN and OUT, before `scene.takeScene()`: volumes among OUT are inputs, too. Without OUT an image has
   /// the name of its volume. Takes the scene; makes the folder; warns of gaps. ErrorKind::Usage for options that say nothing.
   std::vector<FrameJob> plan(SceneOptions& scene) const;

@@ -74,7 +74,7 @@ freevoxels::Volume volumeOf(std::span<const float> values, std::array<int, 3> di
                                               const float value = values[std::size_t(voxel.x) + std::size_t(x) * row];
                                               return std::isnan(value) ? kInactiveVoxel : value;
                                             }),
-                         latticeTransform(vector(placement.spacing), vector(placement.origin)));
+                         latticeTransform(vector(placement.spacing), vector(placement.origin)), false);
 }
 
 Image imageOf(freevoxels::Image image) {
@@ -188,6 +188,10 @@ std::vector<std::string> Volume::warnings() const {
   std::vector<std::string> warnings = warningsOf(state_->volume->describe(), false);
   for (std::string& warning : warnings) warning = printable(withSceneKeys(warning));
   return warnings;
+}
+
+std::string Volume::remarks() const {
+  return printable(withSceneKeys(remarksOf(state_->volume->describe())));
 }
 
 Frame::Frame(std::unique_ptr<State> state) : state_(std::move(state)) {}

@@ -15,6 +15,7 @@
 #include "apps/python/numpy_array.h"
 #include "apps/python/python_values.h"
 #include "engine/core/error.h"
+#include "engine/description/scene_description.h"
 #include "engine/volume/volume_of_scalars.h"
 
 namespace freevoxels {
@@ -40,6 +41,11 @@ struct Source {
   glm::i64vec3 strides;  ///< distances in bytes along x, y and z
   glm::ivec3 dimensions;
   bool isSwapped;  ///< ArrayView
+
+  const char* at(glm::ivec3 voxel) const {
+    const glm::i64vec3 offset = glm::i64vec3(voxel) * strides;
+    return data + offset.x + offset.y + offset.z;
+  }
 };
 
 Source sourceOf(const ArrayView& array) {
@@ -173,18 +179,27 @@ bool canHold(const ArrayView& array, const Marker& marker) {
 
 ScalarBricks readArray(const ArrayView& array, const std::optional<Marker>& marker) {
   const Source source = sourceOf(array);
+  const std::optional<Source> mask = array.mask ? std::optional(sourceOf(*array.mask)) : std::nullopt;
   return withTypeOf(array, [&](auto typed) {
     using Value = decltype(typed);
     using Comparable = decltype(comparable(typed));
     const std::optional<Comparable> absent = marker ? valueOf(*marker, typed) : std::nullopt;
     const py::gil_scoped_release withoutGil;
-    return ScalarBricks::make(source.dimensions, [&](glm::ivec3 voxel) {
-      const glm::i64vec3 offset = glm::i64vec3(voxel) * source.strides;
-      const auto value = elementAt<Value>(source.data + offset.x + offset.y + offset.z, source.isSwapped);
-      const float scalar = float(value);
-      return std::isnan(scalar) || (absent && comparable(value) == *absent) ? kInactiveVoxel : scalar;
-    }, [](glm::ivec3) { return true; }, watchSignals());
+    return ScalarBricks::make(
+        source.dimensions,
+        [&](glm::ivec3 voxel) {
+          if (mask && *mask->at(voxel) != 0) return kInactiveVoxel;
+          const auto value = elementAt<Value>(source.at(voxel), source.isSwapped);
+          const float scalar = float(value);
+          return std::isnan(scalar) || (absent && comparable(value) == *absent) ? kInactiveVoxel : scalar;
+        },
+        [](glm::ivec3) { return true; }, watchSignals());
   });
+}
+
+/// Whether the word says that every value is data.
+bool isNone(const py::object& noData) {
+  return py::isinstance<py::str>(noData) && noData.cast<std::string>() == kNoGrid;
 }
 
 }  // namespace
@@ -194,14 +209,15 @@ Volume volumeOfArray(const py::object& array, const py::object& temperature, con
   std::optional<ArrayView> heat;
   if (!temperature.is_none()) heat = viewOf(temperature, fmt::format("{}", Parameter("temperature")));
   std::optional<Marker> noData;
-  if (!placement.noData.is_none()) noData = markerOf(placement.noData);
+  if (!placement.noData.is_none() && !isNone(placement.noData)) noData = markerOf(placement.noData);
   if (noData && !canHold(scalars, *noData) && !(heat && canHold(*heat, *noData)))
     fail(ErrorKind::Input, "{} is {}, which no {} can be: leave it out, or give a value that the array can hold", Parameter("no-data"),
          noData->real, scalars.typeName());
   if (heat && heat->shape != scalars.shape)
     fail(ErrorKind::Input, "{} has the shape {}, and the array has {}: they must be the same", Parameter("temperature"), heat->shapeText(),
          scalars.shapeText());
-  Volume volume = volumeOfScalars(readArray(scalars, noData), placement.indexToWorld);
+  const bool knowsNoData = !placement.noData.is_none() || scalars.mask;
+  Volume volume = volumeOfScalars(readArray(scalars, noData), placement.indexToWorld, knowsNoData);
   if (!heat) return volume;
   volume.temperature = TemperatureGrid{.name = "temperature", .values = readArray(*heat, noData)};
   summariseValues(*volume.temperature);

@@ -46,8 +46,6 @@ std::optional<ElementType> typeOf(const py::object& dtype) {
 py::object asArray(const py::object& source, std::string_view what) {
   if (py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__"))
     fail(ErrorKind::Input, "{} is the name of a file: open it with Volume.open(), or load it into an array", what);
-  if (py::isinstance(source, numpy().attr("ma").attr("MaskedArray")))
-    fail(ErrorKind::Input, "{} has a mask, which would be lost: fill it with array.astype('float32').filled(numpy.nan)", what);
   try {
     return numpy().attr("asarray")(source);
   } catch (py::error_already_set& error) {
@@ -76,6 +74,17 @@ std::string ArrayView::shapeText() const {
   return text;
 }
 
+namespace {
+
+/// Null where nothing is masked.
+std::shared_ptr<const ArrayView> maskOf(const py::object& source, std::string_view what) {
+  const py::module_ masked = numpy().attr("ma");
+  if (!py::isinstance(source, masked.attr("MaskedArray")) || !masked.attr("is_masked")(source).cast<bool>()) return nullptr;
+  return std::make_shared<const ArrayView>(viewOf(masked.attr("getmaskarray")(source), what));
+}
+
+}  // namespace
+
 ArrayView viewOf(const py::object& source, std::string_view what) {
   const py::object array = asArray(source, what), dtype = array.attr("dtype");
   const std::optional<ElementType> type = typeOf(dtype);
@@ -90,10 +99,12 @@ ArrayView viewOf(const py::object& source, std::string_view what) {
           .isSwapped = !dtype.attr("isnative").cast<bool>(),
           .data = reinterpret_cast<const char*>(address),
           .shape = sizesOf(array.attr("shape")),
-          .strides = sizesOf(array.attr("strides"))};
+          .strides = sizesOf(array.attr("strides")),
+          .mask = maskOf(source, what)};
 }
 
 void copyFloats(const ArrayView& view, float* values) {
+  if (view.mask) fail(ErrorKind::Input, "an array to save has a mask, which images have not: fill it with array.filled(0)");
   const ArrayView floats = viewOf(numpy().attr("ascontiguousarray")(view.array, "dtype"_a = "=f4"), "the array");
   std::memcpy(values, floats.data, std::size_t(floats.elements()) * sizeof(float));
 }

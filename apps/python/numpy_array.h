@@ -20,6 +20,8 @@ struct ArrayView {
   bool isSwapped = false;  ///< whether the bytes of an element are in the reverse of the machine's order
   const char* data = nullptr;
   std::vector<pybind11::ssize_t> shape, strides;  ///< the latter in bytes, of either sign
+  /// Flags of the same shape, set where an element of a masked array (numpy.ma) is masked; null of other arrays.
+  std::shared_ptr<const ArrayView> mask;
 
   pybind11::ssize_t dimensions() const { return pybind11::ssize_t(shape.size()); }
   pybind11::ssize_t elements() const;
@@ -29,7 +31,7 @@ struct ArrayView {
 };
 
 /// Views an array, or converts what numpy.asarray() takes. `what` is its name in sentences, such as "the array". Fails with
-/// ErrorKind::Input for what is no array, for arrays that are masked, and for elements that are no real numbers of ElementType.
+/// ErrorKind::Input for what is no array, and for elements that are no real numbers of ElementType.
 ArrayView viewOf(const pybind11::object& source, std::string_view what);
 
 /// Copies an array of any type to `values`, as 32-bit floats in C order.

@@ -34,7 +34,7 @@ std::unique_ptr<SceneRenderer> makeRenderer(const PythonVolume& volume, const py
     const py::gil_scoped_release withoutGil;  // which another thread may need that opens the device
     renderer = std::make_unique<SceneRenderer>(volume.volume, std::move(options));
   }
-  if (volume.isOfArray && !volume.describe().temperature && renderer->read(Json::object())->scene.emission.grid())
+  if (volume.isOfArray && !volume.describe().temperature && renderer->read(Json::object())->scene.emission.isAsked())
     fail(ErrorKind::Usage, "{} needs temperatures, which the array has not: give {}, an array of the same shape, with it",
          Parameter("emission"), Parameter("temperature"));
   return renderer;

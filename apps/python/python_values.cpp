@@ -353,6 +353,7 @@ void addExceptions(py::module_& module) {
 
 void warnInPython(const Volume& volume) {
   for (const std::string& warning : warningsOf(volume, false)) spdlog::warn("{}", withKeywords(warning));
+  if (const std::string remarks = remarksOf(volume); !remarks.empty()) spdlog::info("{}", withKeywords(remarks));
 }
 
 void logToPython() {

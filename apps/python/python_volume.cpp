@@ -128,7 +128,10 @@ PythonVolume volumeFromArray(const py::args& arguments, const py::kwargs& named)
 
 PythonVolume volumeFromFile(const py::object& file, const py::args& more, const py::kwargs& keywords) {
   refuseMore(more, "Volume.open()", "one file");
-  refusePlacement(keywords, "a file");
+  py::kwargs placement;
+  for (const auto& [key, value] : keywords)
+    if (keywordText(key) != "no_data") placement[key] = value;  // which files have as well
+  refusePlacement(placement, "a file");
   const Json options = jsonOf(keywords);
   const std::string name = file.is_none() ? "" : pathOf(file).string();
   PythonVolume opened;

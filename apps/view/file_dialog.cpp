@@ -55,7 +55,7 @@ FileDialog::FileDialog(const Device& device, const SessionStore& store)
     : device_(device), store_(store), start_(fs::current_path()), folder_(start_) {}
 
 void FileDialog::open(std::function<void(const std::string&)> chosen) {
-  begin("Open", {".vdb", ".fvx", ".json", ".exr"}, std::move(chosen));
+  begin("Open", {".vdb", ".fvx", ".json", ".exr", ".hdr"}, std::move(chosen));
   saves_ = false;
   name_.clear();
 }

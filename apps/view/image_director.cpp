@@ -40,6 +40,8 @@ ImageRequest ImageDirector::request(const ViewState& state, Purpose purpose, int
   ImageRequest request{.scene = state.scene,
                        .diagnosis = state.diagnosis,
                        .compared = state.comparedMethod(),
+                       .isFrame = state.sequence.has_value(),
+                       .film = state.sequence && !state.camera ? state.sequence->files : std::vector<std::string>(),
                        .number = lastRequest_,
                        .revision = revision_,
                        .purpose = purpose,

@@ -1,5 +1,7 @@
 #include "apps/view/image_maker.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -21,8 +23,11 @@ std::string nameOf(const SceneDescription& scene, bool clipped) {
     read.input.clipBox.reset();
     read.input.clipPlane.reset();
   }
-  return fmt::format("{}temperature={} albedo={}", textOf(read, {"input"}), scene.emission.grid().value_or("none"),
-                     scene.classification.albedoGrid.value_or("none"));
+  const auto nameOf = [](const std::optional<GridRequest>& request) {
+    return request ? fmt::format("{} {}", request->isRequired, request->name) : std::string(kNoGrid);
+  };
+  return fmt::format("{}temperature={} albedo={}", textOf(read, {"input"}), nameOf(scene.emission.grid()),
+                     nameOf(scene.classification.grid()));
 }
 
 int blockEdge(const Volume& volume, int voxelsAlongEdge) {
@@ -35,7 +40,7 @@ int blockEdge(const Volume& volume, int voxelsAlongEdge) {
 VolumeCache::VolumeCache(const SceneDescription& scene, std::shared_ptr<const Volume> volume)
     : maximumVoxels_(volume->voxelCount()), clippedName_(nameOf(scene, true)), clipped_(std::move(volume)) {}
 
-std::shared_ptr<const Volume> VolumeCache::read(const SceneDescription& scene) {
+std::shared_ptr<const Volume> VolumeCache::read(const SceneDescription& scene, bool isFrame) {
   const std::lock_guard lock(mutex_);
   const std::string clippedName = nameOf(scene, true);
   if (clipped_ && clippedName == clippedName_) return clipped_;
@@ -46,13 +51,25 @@ std::shared_ptr<const Volume> VolumeCache::read(const SceneDescription& scene) {
     SceneDescription unclipped = scene;
     unclipped.input.clipBox.reset();
     unclipped.input.clipPlane.reset();
-    whole_ = std::make_shared<const Volume>(unclipped.readVolume(maximumVoxels_));
+    whole_ = std::make_shared<const Volume>(unclipped.readVolume(maximumVoxels_, 0, {}, isFrame));
     logWarnings(*whole_, false);
+    logAssumptions(*whole_);
     name_ = name;
   }
   clipped_ = scene.input.clipBox || scene.input.clipPlane ? std::make_shared<const Volume>(scene.input.clip(*whole_)) : whole_;
   clippedName_ = clippedName;
   return clipped_;
+}
+
+std::shared_ptr<const FilmView> VolumeCache::viewOf(const SceneDescription& scene, const std::vector<std::string>& files) {
+  const std::lock_guard lock(mutex_);
+  const std::string name = fmt::format("{}{}", textOf(scene, {"classification", "emission", "camera", "lighting"}), fmt::join(files, "\n"));
+  if (name == filmName_) return film_;
+  filmName_.clear();
+  std::optional<FilmView> view = viewOfFilm(scene, files, maximumVoxels_);
+  film_ = view ? std::make_shared<const FilmView>(std::move(*view)) : nullptr;
+  filmName_ = name;
+  return film_;
 }
 
 glm::ivec3 VolumeCache::wholeDimensions() const {
@@ -93,13 +110,16 @@ void ImageMaker::makeRenderer(const Scene& scene, const ImageRequest& request, c
 
 /// Sums over the volume, the environment and the histogram are made once for all cameras.
 Scene ImageMaker::resolve(const ImageRequest& request) {
-  std::shared_ptr<const Volume> volume = volumes_.read(request.scene);
+  std::shared_ptr<const Volume> volume = volumes_.read(request.scene, request.isFrame);
   if (scene_ && request.revision != 0 && request.revision == revision_ && scene_->volume == volume) {
     scene_->camera = request.scene.cameras(*volume, scene_->classification).front();
     return *scene_;
   }
   scene_.reset();
-  scene_ = request.scene.resolve(std::move(volume));
+  const std::shared_ptr<const FilmView> film = request.film.empty() ? nullptr : volumes_.viewOf(request.scene, request.film);
+  SceneDescription scene = request.scene;
+  if (request.isFrame && !volume->temperature && !volume->classification) scene.emission = {.emission = false};
+  scene_ = film ? scene.resolveLike(film->scene, std::move(volume)) : scene.resolve(std::move(volume));
   revision_ = request.revision;
   return *scene_;
 }

@@ -5,7 +5,9 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "apps/freevoxels/film_view.h"
 #include "apps/view/diagnosis.h"
 #include "apps/view/image_pace.h"
 #include "engine/description/scene_description.h"
@@ -20,8 +22,11 @@ class VolumeCache {
   /// The volume that the options name was read already, and clipped.
   VolumeCache(const SceneDescription& scene, std::shared_ptr<const Volume> volume);
 
-  /// The volume that the options name, read and clipped unless it is the last one; whoever comes meanwhile waits for it.
-  std::shared_ptr<const Volume> read(const SceneDescription& scene);
+  /// The volume that the options name, read and clipped unless it is the last one; whoever comes meanwhile waits for it. A frame of a
+  /// sequence may lack grids.
+  std::shared_ptr<const Volume> read(const SceneDescription& scene, bool isFrame = false);
+  /// How the files of a sequence are seen as a whole (film_view.h); null if none can be drawn. Chosen once.
+  std::shared_ptr<const FilmView> viewOf(const SceneDescription& scene, const std::vector<std::string>& files);
   /// The size of its box before it was clipped.
   glm::ivec3 wholeDimensions() const;
 
@@ -30,6 +35,8 @@ class VolumeCache {
   mutable std::mutex mutex_;
   std::string name_, clippedName_;
   std::shared_ptr<const Volume> whole_, clipped_;
+  std::string filmName_;
+  std::shared_ptr<const FilmView> film_;
 };
 
 /// What an image is drawn for: while the camera moves, while something else changes, as a step from there to the whole image, or
@@ -41,6 +48,9 @@ struct ImageRequest {
   SceneDescription scene;
   Diagnosis diagnosis;
   std::optional<MethodDescription> compared;  ///< another method for comparison
+  bool isFrame = false;                       ///< whether the volume is a frame of a sequence
+  /// The files of the sequence, if what the scene leaves open is to be chosen for all of them: for the first image.
+  std::vector<std::string> film;
   std::uint64_t number = 0;               ///< larger than that of all earlier requests
   /// The same for requests that differ in camera and size alone, so that the rest of the scene is not resolved again; 0 if that is
   /// not known.

@@ -230,7 +230,7 @@ bool LightPanel::drawEnvironment(LightingDescription& options) {
   const std::string given = options.environment.value_or("");
   if (given != environment_) environment_ = environmentText_ = given;
   bool changed = false;
-  if (editText("Environment", environmentText_, "name.exr")) {
+  if (editText("Environment", environmentText_, "name.exr or name.hdr")) {
     environment_ = environmentText_;
     options.environment.reset();
     if (!environment_.empty()) options.environment = environment_;

@@ -243,7 +243,7 @@ void EmissionPanel::draw(ViewState& state, GridList& grids) {
   ImGui::PushID("emission");
   EmissionDescription& options = state.scene.emission;
   const bool mayShine = all->empty() || std::ranges::any_of(*all, &GridChoice::isScalar);
-  bool shines = options.grid().has_value();
+  bool shines = options.isAsked() || (options.emission != false && state.latest->scene.classification.emission);
   if (shines || mayShine) {
     if (tick("Emission", shines)) {
       options = {};

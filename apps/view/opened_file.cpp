@@ -49,13 +49,13 @@ void openFile(ViewState& state, const std::string& file) {
   if (!named && !std::filesystem::exists(file))
     fail(ErrorKind::Input, "cannot read '{}': there is no such file; check its name", file);
   if (named || hasExtension(file, ".vdb") || hasExtension(file, ".fvx")) return openVolume(state, file);
-  if (hasExtension(file, ".exr")) {
+  if (hasExtension(file, ".exr") || hasExtension(file, ".hdr")) {
     state.scene.lighting.environment = file;
     state.changed = true;
   } else if (!hasExtension(file, ".json")) {
     fail(ErrorKind::Input,
          "'{}' cannot be shown: open a volume (.vdb, .fvx), a scene or a transfer function (.json), or the light "
-         "around (.exr)",
+         "around (.exr, .hdr)",
          file);
   } else if (isTransferFunction(file)) {
     state.scene.classification = {.transferFunction = file};
@@ -66,7 +66,7 @@ void openFile(ViewState& state, const std::string& file) {
 }
 
 bool isWorthRemembering(const std::string& file) {
-  return !proceduralName(file) && !hasExtension(file, ".exr") &&
+  return !proceduralName(file) && !hasExtension(file, ".exr") && !hasExtension(file, ".hdr") &&
          !(hasExtension(file, ".json") && isTransferFunction(file));
 }
 

@@ -39,6 +39,7 @@ void ViewState::look(const Camera& from) {
 
 void ViewState::begin(const Scene& first) {
   camera = first.camera;
+  if (sequence) keepScales(first.classification);
   if (const auto& function = first.classification.transferFunction; function && !scene.classification.transferFunction)
     scene.classification.transferFunction = transferFunctionJson(*function);
   LightingDescription& lighting = scene.lighting;
@@ -60,11 +61,13 @@ void ViewState::showFrame(const std::string& file) {
   changed = true;
   if (!camera) return;  // the first image says what is not given
   scene.camera.look(*camera);
-  const Classification& now = latest->scene.classification;
+  keepScales(latest->scene.classification);
+}
+
+void ViewState::keepScales(const Classification& now) {
   ClassificationDescription& classification = scene.classification;
   if (!now.transferFunction && !classification.densityScale) classification.densityScale = now.densityScale;
-  if (!now.emission) return;
-  scene.emission.take(*now.emission);
+  if (now.emission) scene.emission.take(*now.emission);
 }
 
 void ViewState::clip(const std::optional<VoxelBox>& box, const std::optional<ClipPlane>& plane) {

@@ -8,12 +8,13 @@
 #include <array>
 #include <filesystem>
 
-#include "engine/description/scene_description.h"
+#include "apps/freevoxels/failure.h"
 #include "apps/view/actions.h"
 #include "apps/view/clip_panel.h"
 #include "apps/view/keys.h"
 #include "apps/view/widgets.h"
 #include "engine/core/error.h"
+#include "engine/description/scene_description.h"
 
 namespace freevoxels {
 
@@ -64,7 +65,9 @@ void VolumePanel::drawGrids(ViewState& state, GridList& grids) {
     hint("The densities, or the values of a transfer function", "--grid");
   }
   if (someColors && !classification.transferFunction) {
-    state.changed |= chooseGrid("Albedo grid", *all, &GridChoice::isAlbedo, "one colour", classification.albedoGrid);
+    std::vector<GridChoice> choice = *all;
+    choice.insert(choice.begin(), {.name = kNoGrid, .isAlbedo = true});
+    state.changed |= chooseGrid("Albedo grid", choice, &GridChoice::isAlbedo, "automatic", classification.albedoGrid);
     hint("Albedos voxel by voxel", "--albedo-grid");
   }
 }
@@ -80,6 +83,9 @@ void VolumePanel::drawFacts(const ViewState& state) {
   const std::string active = millions < 0.1 ? fmt::format("{}", volume.activeVoxels) : fmt::format("{:.3g} million", millions);
   ImGui::TextDisabled("%d × %d × %d voxels, %s active", size.x, size.y, size.z, active.c_str());
   ImGui::TextDisabled("values %.4g to %.4g, voxel size %.3g", double(volume.minimum), double(volume.maximum), volume.voxelSize());
+  ImGui::PushTextWrapPos(0.0f);
+  for (const std::string& remark : volume.remarks) ImGui::TextDisabled("%s", withOptions(remark).c_str());
+  ImGui::PopTextWrapPos();
 }
 
 void VolumePanel::draw(ViewState& state, GridList& grids) {

@@ -9,7 +9,7 @@ namespace {
 
 /// What a baked volume was baked with, changed by what is given.
 Classification bakedClassification(const ClassificationDescription& given, const Volume& volume) {
-  if (given.albedoGrid)
+  if (given.albedoGrid && given.albedoGrid != kNoGrid)
     fail(ErrorKind::Usage, "{} chooses among the grids of an OpenVDB file, and {} is a baked volume: give it to 'freevoxels bake'",
          Parameter("albedo-grid"), volume.source);
   Classification classification = *volume.classification;
@@ -39,7 +39,7 @@ Classification ClassificationDescription::resolve(const Volume& volume, bool shi
     return classification;
   }
   if (volume.classification) return classification;
-  if (!densityScale && !albedo && !albedoGrid && !shines && looksLikeScan(volume)) {
+  if (!densityScale && !albedo && !volume.albedo && !shines && looksLikeScan(volume)) {
     classification.transferFunction = scanTransferFunction(volume);
     classification.order = order.value_or(ClassificationOrder::Post);
     return classification;
@@ -54,9 +54,15 @@ Classification ClassificationDescription::resolve(const Volume& volume, bool shi
   return classification;
 }
 
+std::optional<GridRequest> ClassificationDescription::grid() const {
+  if (albedoGrid) return *albedoGrid == kNoGrid ? std::nullopt : std::optional(GridRequest{.name = *albedoGrid, .isRequired = true});
+  return albedo || transferFunction ? std::nullopt : std::optional(GridRequest());
+}
+
 void ClassificationDescription::take(const Classification& resolved) {
   if (!resolved.transferFunction) {
     densityScale = resolved.densityScale;
+    albedo = glm::dvec3(resolved.albedo);
     return;
   }
   transferFunction = transferFunctionJson(*resolved.transferFunction);  // with its range, which a file may leave to the volume

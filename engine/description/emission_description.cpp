@@ -7,16 +7,26 @@ void EmissionDescription::check(const InputDescription& input) const {
   if (temperatureGrid && proceduralName(input.volume))
     fail(ErrorKind::Usage, "{} chooses among the grids of a file: {} takes {} alone", Parameter("temperature-grid"), input.volume,
          Parameter("emission"));
-  if (grid()) return;
-  for (const auto& [name, given] : {std::pair("temperature-scale", temperatureScale), {"temperature-offset", temperatureOffset}})
+  if (emission != false) return;
+  for (const auto& [name, given] : {std::pair("temperature-grid", temperatureGrid.has_value()),
+                                    {"temperature-scale", temperatureScale.has_value()},
+                                    {"temperature-offset", temperatureOffset.has_value()}})
     if (given)
-      fail(ErrorKind::Usage, "{} is of emission: add {} or {}", Parameter(name), Parameter("emission"),
-           Parameter("temperature-grid", "NAME"));
+      fail(ErrorKind::Usage, "{} is of emission, which {} turns off: leave one of them out", Parameter(name),
+           Parameter("emission", kNoGrid));
 }
 
-std::optional<std::string> EmissionDescription::grid() const {
-  if (temperatureGrid) return temperatureGrid;
-  return emission ? std::optional<std::string>("") : std::nullopt;
+std::optional<GridRequest> EmissionDescription::grid() const {
+  if (temperatureGrid) return GridRequest{.name = *temperatureGrid, .isRequired = true};
+  return emission == false ? std::nullopt : std::optional(GridRequest{.name = "", .isRequired = isAsked()});
+}
+
+bool EmissionDescription::shines(const Volume& volume) const {
+  if (isAsked() || !volume.temperature || emission == false) return isAsked();
+  Emission unit;
+  unit.temperatureOffset = temperatureOffset.value_or(temperatureScale ? 0.0 : automaticTemperatureOffset(*volume.temperature));
+  unit.temperatureScale = temperatureScale.value_or(automaticTemperatureScale(*volume.temperature, unit.temperatureOffset));
+  return brightestLight({.emission = unit}, volume) > 0.0;
 }
 
 std::optional<Emission> EmissionDescription::resolve(const Volume& volume,
@@ -25,7 +35,9 @@ std::optional<Emission> EmissionDescription::resolve(const Volume& volume,
     fail(ErrorKind::Usage,
          "{} chooses among the grids of an OpenVDB file, and {} is a baked volume: give it to 'freevoxels bake'",
          Parameter("temperature-grid"), volume.source);
-  if (!grid()) return classification.emission;  // a baked volume's
+  if (emission == false) return std::nullopt;
+  if (volume.classification && !isAsked()) return classification.emission;
+  if (!shines(volume)) return std::nullopt;
   if (!volume.temperature)
     fail(ErrorKind::Usage, "{} has no temperatures: leave {} out, {}", volume.source, Parameter("emission"),
          volume.classification ? "or give it to 'freevoxels bake'" : "or take procedural:fire");

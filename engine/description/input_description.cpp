@@ -1,6 +1,8 @@
+#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 #include "engine/core/error.h"
@@ -76,6 +78,8 @@ void InputDescription::checkGiven() const {
 
 void InputDescription::check() const {
   const bool isProcedural = proceduralName(volume).has_value(), isBaked = !isProcedural && fvx::isFvx(volume);
+  if (noData && isBaked)
+    fail(ErrorKind::Usage, "{} does not apply to a baked volume such as '{}': give it to 'freevoxels bake'", Parameter("no-data"), volume);
   if (grid && isBaked)
     fail(ErrorKind::Usage, "{} chooses among the grids of an OpenVDB file, and '{}' is a baked volume", Parameter("grid"), volume);
   if (clipBox && glm::any(glm::greaterThan(clipBox->first, clipBox->last)))
@@ -98,18 +102,34 @@ std::shared_ptr<const fvx::FvxFile> InputDescription::baked() const {
 Volume InputDescription::open(std::uint64_t maximumVoxels, const MoreGrids& more, int level, const Progress& progress) const {
   const std::optional<std::string> name = proceduralName(volume);
   if (const auto file = baked()) return openBaked(file, maximumVoxels, level, progress);
-  if (!name) return clip(readVdb(volume, grid.value_or(""), maximumVoxels, more, progress));
+  if (!name) {
+    Volume read = readVdb(
+        volume, {.grid = grid.value_or(""), .maximumVoxels = maximumVoxels, .more = more, .clipBox = clipBox, .progress = progress});
+    applyNoData(read);
+    return clip(std::move(read));
+  }
   Volume made = openProcedural(*name, resolution, maximumVoxels, progress);
   if (!more.temperature) made.temperature.reset();
+  applyNoData(made);
   return clip(std::move(made));
+}
+
+void InputDescription::applyNoData(Volume& read) const {
+  if (!noData) return removePadding(read);
+  if (!noData->value) return;
+  const float value = float(*noData->value);
+  if (looksLikeScan(read)) read.padding = value;
+  removeValue(read, value);
+  if (read.activeVoxels == 0)
+    fail(ErrorKind::Usage, "all voxels of {} have the value of {}: leave it out", read.source, Parameter("no-data"));
 }
 
 Volume InputDescription::clip(Volume whole) const {
   const glm::ivec3 size = whole.dimensions;
-  if (clipBox && glm::any(glm::greaterThanEqual(clipBox->first, size)))
+  if (clipBox && !whole.isPart && glm::any(glm::greaterThanEqual(clipBox->first, size)))
     fail(ErrorKind::Usage, "{} has no voxel of the volume's box, which has {} x {} x {}", Parameter("clip-box", clipText(*clipBox)), size.x,
          size.y, size.z);
-  if (clipBox) whole = clippedVolume(whole, *clipBox);
+  if (clipBox && !whole.isPart) whole = clippedVolume(whole, *clipBox);
   if (!clipPlane) return whole;
   const bool hadVoxels = whole.activeVoxels > 0;
   whole = clippedVolume(whole, *clipPlane);
@@ -125,12 +145,33 @@ std::vector<std::string> warningsOf(const Volume& volume, bool scalarsAreDensiti
     const bool one = voxels == 1;
     warnings.push_back(fmt::format("{} voxel{} of {} with {} count{} as 0", voxels, one ? "" : "s", volume.source, what, one ? "s" : ""));
   };
-  warn(volume.nanVoxels, "a value that is NaN or infinite");
+  const auto count = [](std::uint64_t voxels) { return fmt::format("{} voxel{}", voxels, voxels == 1 ? "" : "s"); };
+  if (volume.nanVoxels > 0)
+    warnings.push_back(fmt::format("{} of {} whose value is NaN or infinite hold{} no data", count(volume.nanVoxels), volume.source,
+                                   volume.nanVoxels == 1 ? "s" : ""));
+  if (volume.overflownVoxels > 0)
+    warnings.push_back(
+        fmt::format("{} of {} had too large a value for the 16-bit floats of the file: they have the largest of those, 65504",
+                    count(volume.overflownVoxels), volume.source));
+  const auto warnOfWild = [&](const auto& values, const char* what) {
+    if (values.wildVoxels > 0)
+      warnings.push_back(
+          fmt::format("{}{} of {} {} beyond all others by a factor of a thousand and more, up to {:g}: {} drawn like the "
+                      "largest of the others, {:g}",
+                      what, count(values.wildVoxels), volume.source, values.wildVoxels == 1 ? "is" : "are", values.wildest,
+                      values.wildVoxels == 1 ? "it is" : "they are", std::max(values.maximum, -values.minimum)));
+  };
+  warnOfWild(volume, "");
+  if (volume.temperature) warnOfWild(*volume.temperature, "the temperatures of ");
   if (volume.albedo && volume.albedo->clippedVoxels > 0)
     warnings.push_back(fmt::format("{} voxels of grid '{}' have components outside of 0..1, which are clipped to it",
                                    volume.albedo->clippedVoxels, volume.albedo->name));
   if (scalarsAreDensities) warn(volume.negativeVoxels, "negative density");
   return warnings;
+}
+
+std::string remarksOf(const Volume& volume) {
+  return volume.remarks.empty() ? "" : fmt::format("{}: {}", volume.source, fmt::join(volume.remarks, "; "));
 }
 
 }  // namespace freevoxels

@@ -34,14 +34,17 @@ ClassificationDescription resolvedClassification(const ClassificationDescription
     return {.transferFunction = given.transferFunction.value_or(transferFunctionJson(*classification.transferFunction)),
             .order = classification.order};
   const glm::vec3 albedo = classification.albedo;
-  return {.densityScale = classification.densityScale,
-          .albedo = glm::dvec3(shortest(albedo.r), shortest(albedo.g), shortest(albedo.b)),
-          .albedoGrid = given.albedoGrid};
+  return {
+      .densityScale = classification.densityScale,
+      .albedo = glm::dvec3(shortest(albedo.r), shortest(albedo.g), shortest(albedo.b)),
+      .albedoGrid = scene.volume->albedo && !scene.volume->classification ? std::optional(scene.volume->albedo->name) : given.albedoGrid};
 }
 
-EmissionDescription resolvedEmission(const Scene& scene) {
+EmissionDescription resolvedEmission(const EmissionDescription& given, const Scene& scene) {
   EmissionDescription description;
-  if (!scene.classification.emission) return description;
+  // Temperatures that are not shown: another range of them, as in a film, must not change that.
+  if (!scene.classification.emission)
+    return {.emission = scene.volume->temperature && !scene.volume->classification ? false : given.emission};
   description.emission = true;
   description.take(*scene.classification.emission);
   // A procedural volume's temperatures have no name.
@@ -89,15 +92,16 @@ MethodDescription resolvedMethod(const MethodDescription& given) {
 
 void SceneDescription::check() const {
   input.check();
-  if (classification.albedoGrid && proceduralName(input.volume))
+  if (classification.albedoGrid && classification.albedoGrid != kNoGrid && proceduralName(input.volume))
     fail(ErrorKind::Usage, "{} chooses among the grids of a file, and {} has one", Parameter("albedo-grid"), input.volume);
   emission.check(input);
   camera.check();
   lighting.check();
 }
 
-Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level, const Progress& progress) const {
-  return input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.albedoGrid}, level, progress);
+Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level, const Progress& progress, bool isFrame) const {
+  return input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.grid(), .mayBeMissing = isFrame}, level,
+                    progress);
 }
 
 int SceneDescription::finestLevelNeeded(const fvx::FvxFile* file, int frameCount) const {
@@ -129,7 +133,7 @@ Scene SceneDescription::resolve(std::shared_ptr<const Volume> volume) const {
 }
 
 Classification SceneDescription::resolveClassification(const Volume& volume) const {
-  Classification result = classification.resolve(volume, emission.grid().has_value());
+  Classification result = classification.resolve(volume, emission.shines(volume));
   result.emission = emission.resolve(volume, result);
   if (result.emission && !classification.albedo && !volume.classification) result.albedo = glm::vec3(kSmokeAlbedo);
   return result;
@@ -144,7 +148,13 @@ void SceneDescription::resolveView(Scene& scene) const {
 Scene SceneDescription::resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const {
   SceneDescription fixed = *this;
   if (!volume->classificationIsFixed) fixed.classification.take(other.classification);
-  if (other.classification.emission) fixed.emission.take(*other.classification.emission);
+  // A frame has the light and the albedo of all, or none where it has no temperatures.
+  if (other.classification.emission && volume->temperature) {
+    fixed.emission.emission = true;
+    fixed.emission.take(*other.classification.emission);
+  } else if (!volume->classification) {
+    fixed.emission = {.emission = false};
+  }
   Scene scene{.volume = std::move(volume), .camera = other.camera, .lighting = other.lighting};
   scene.classification = fixed.resolveClassification(*scene.volume);
   makeEmissionLight(scene);
@@ -155,7 +165,7 @@ SceneDescription SceneDescription::resolved(const Scene& scene) const {
   SceneDescription result = *this;
   if (proceduralName(input.volume)) result.input.resolution = input.resolution.value_or(glm::ivec3(kDefaultResolution));
   result.classification = resolvedClassification(classification, scene);
-  result.emission = resolvedEmission(scene);
+  result.emission = resolvedEmission(emission, scene);
   result.camera.look(scene.camera);
   result.camera.frames.reset();
   result.lighting = resolvedLighting(lighting, scene.lighting);

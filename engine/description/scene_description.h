@@ -23,6 +23,7 @@
 #include "engine/storage/fvx_file.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/coarse_volume.h"
+#include "engine/volume/scan.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/volume.h"
 
@@ -38,6 +39,7 @@ inline constexpr int kDefaultResolution = 128;
 /// Default number of orders of scattering.
 inline constexpr int kDefaultScattering = 3;
 /// Frames of a turn around the volume.
+inline constexpr const char* kNoGrid = "none";
 inline constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
 
 /// The volume, before it is read.
@@ -47,11 +49,14 @@ struct InputDescription {
   std::optional<glm::ivec3> resolution;  ///< voxels of a procedural volume, 1 to kMaxResolution; else kDefaultResolution
   std::optional<VoxelBox> clipBox;       ///< in the volume's box; the voxels outside of it are not drawn
   std::optional<ClipPlane> clipPlane;    ///< the voxels in front of it are not drawn
+  std::optional<NoData> noData;          ///< of a volume that is not baked; else the padding of a scan holds no data
 
   /// Fails without a volume.
   void checkGiven() const;
   /// Fails for fields that do not apply to this volume.
   void check() const;
+  /// Takes away the data of voxels with the value that means none.
+  void applyNoData(Volume& read) const;
   /// The part of a volume in the clip box and behind the clip plane. Fails if there is none.
   Volume clip(Volume whole) const;
   /// Reads or makes the volume. A procedural volume has its temperatures if any are requested; a baked one always has its
@@ -91,7 +96,9 @@ struct ClassificationDescription {
   std::optional<double> densityScale;           ///< extinction per world unit at density 1, at least 0
   std::optional<glm::dvec3> albedo;             ///< linear Rec.709, 0 to 1
   std::optional<std::string> transferFunction;  ///< a file, or JSON that begins with {
-  std::optional<std::string> albedoGrid;        ///< a grid of vectors of an OpenVDB file: linear colours, 0 to 1
+  /// A grid of vectors of an OpenVDB file: linear colours, 0 to 1; kNoGrid for none; else that of a usual name (grid_names.h), if there is
+  /// one and neither albedo nor transfer function are given.
+  std::optional<std::string> albedoGrid;
   std::optional<ClassificationOrder> order;     ///< of a transfer function; else Post
 
   /// Reads the transfer function. What is not given is as the volume's file says, if it does (Volume::classification); fields are
@@ -101,20 +108,27 @@ struct ClassificationDescription {
   /// Gives what was resolved for another volume.
   void take(const Classification& resolved);
 
+  /// The grid of albedos to read, if any.
+  std::optional<GridRequest> grid() const;
+
   bool operator==(const ClassificationDescription&) const = default;
 };
 
 /// Emission by temperature.
 struct EmissionDescription {
-  bool emission = false;         ///< whether hot voxels send out light
+  std::optional<bool> emission;    ///< whether hot voxels send out light; else they do where some are hot enough
   std::optional<double> strength;  ///< luminance per world unit at kReferenceTemperature, at least 0
   std::optional<std::string> temperatureGrid;  ///< of an OpenVDB file; turns emission on by itself
   std::optional<double> temperatureScale, temperatureOffset;  ///< kelvin = scale (at least 0) x value + offset
 
   /// Fails for fields that do not apply to the volume.
   void check(const InputDescription& input) const;
-  /// The name of the grid to read, empty for the usual names; nothing without emission.
-  std::optional<std::string> grid() const;
+  /// Whether emission is asked for, so that a volume without temperatures is an error.
+  bool isAsked() const { return emission.value_or(temperatureGrid || temperatureScale || temperatureOffset); }
+  /// The grid to read; nothing without emission.
+  std::optional<GridRequest> grid() const;
+  /// Whether the volume sends out light: where that is not asked for, if it has temperatures that do.
+  bool shines(const Volume& volume) const;
   /// What is not given is automatic. `classification` is that without emission.
   std::optional<Emission> resolve(const Volume& volume, const Classification& classification) const;
   /// Gives what was resolved for another volume.
@@ -222,8 +236,9 @@ struct SceneDescription {
 
   /// Fails for fields that are wrong for every volume and file of their kinds.
   void check() const;
-  /// Reads the volume, with the grids that other fields need; of a baked one an octree level, which other volumes do not have.
-  Volume readVolume(std::uint64_t maximumVoxels, int level = 0, const Progress& progress = {}) const;
+  /// Reads the volume, with the grids that other fields need; of a baked one an octree level, which other volumes do not have. A frame of
+  /// a film may lack grids.
+  Volume readVolume(std::uint64_t maximumVoxels, int level = 0, const Progress& progress = {}, bool isFrame = false) const;
   /// The level of a baked volume that frames need: one finer than the finest of which anything is drawn. 0 where the levels are of
   /// scalars that are classified by a transfer function, and without a file.
   int finestLevelNeeded(const fvx::FvxFile* file, int frameCount) const;
@@ -268,5 +283,7 @@ Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolut
 
 /// What the user should know of a volume: its own warnings, NaN values, and negative values if the scalars are densities.
 std::vector<std::string> warningsOf(const Volume& volume, bool scalarsAreDensities);
+/// What was assumed of a volume's file, and how to say otherwise, in one line; empty if nothing was.
+std::string remarksOf(const Volume& volume);
 
 }  // namespace freevoxels

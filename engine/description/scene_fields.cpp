@@ -150,17 +150,25 @@ class Section {
 
 constexpr NumberRange kPositive{.minimum = 0.0}, kUnit{.minimum = 0.0, .maximum = 1.0};
 
+NoData readNoData(const std::string& name, const std::string& given) {
+  if (given == kNoGrid) return {};
+  return {.value = readNumbers({.name = name, .form = "VALUE or none", .count = 1}, given)[0]};
+}
+
 void addInput(std::vector<SceneField>& fields) {
   using Input = InputDescription;
   Section<Input> section(fields, "input", &SceneDescription::input);
   section.add("volume", &Input::volume, text(Kind::Volume, "the name of a volume")).replaces = {"grid", "resolution", "clip-box",
-                                                                                                "clip-plane"};
+                                                                                                "clip-plane", "no-data"};
   section.add("grid", &Input::grid, text(Kind::Name, "NAME"));
   Codec<glm::ivec3> resolution = extent<glm::ivec3>("WxHxD", kMaxResolution);
   resolution.text = [](const glm::ivec3& size) { return resolutionText(size); };
   section.add("resolution", &Input::resolution, resolution);
   section.add("clip-box", &Input::clipBox,
               numbers<VoxelBox>({.form = "X0,Y0,Z0,X1,Y1,Z1", .range = {0.0, double(kBeyondAnything)}}));
+  section.add("no-data", &Input::noData, Codec<NoData>{.form = "VALUE|none", .read = readNoData, .text = [](const NoData& marks) {
+                                                         return marks.value ? numberText(*marks.value) : std::string(kNoGrid);
+                                                       }});
   section.add("clip-plane", &Input::clipPlane, numbers<ClipPlane>({.form = "X,Y,Z,NX,NY,NZ", .range = {-1e30, 1e30}}));
 }
 
@@ -180,15 +188,17 @@ void addEmission(std::vector<SceneField>& fields) {
   Section<Emitted> section(fields, "emission", &SceneDescription::emission);
   section.add("temperature-grid", &Emitted::temperatureGrid, text(Kind::Name, "NAME"));
   SceneField& emission = section.add(
-      "emission", Kind::Value, "STRENGTH",
+      "emission", Kind::Value, "STRENGTH|none",
       [](Emitted& emitted, const Texts& given) {
+        emitted.strength.reset();
+        emitted.emission = given.back() != kNoGrid;
+        if (!*emitted.emission) return;
         const auto values = readNumbers({.name = marked("emission"), .form = "STRENGTH", .count = 0, .range = kPositive}, given.back());
-        emitted.emission = true;
         emitted.strength = values.empty() ? std::nullopt : std::optional(values[0]);
       },
       [](const Emitted& emitted) {
         if (emitted.strength) return Texts{numberText(*emitted.strength)};
-        return emitted.emission ? Texts{""} : Texts{};
+        return !emitted.emission ? Texts{} : Texts{*emitted.emission ? "" : kNoGrid};
       });
   emission.standsAlone = true;
   section.add("temperature-scale", &Emitted::temperatureScale, numbers<double>({.form = "K", .range = kPositive}));

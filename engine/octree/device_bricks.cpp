@@ -113,7 +113,7 @@ shader::BricksPush DeviceBricks::push() const {
           .brickCount = brickCount_,
           .densityScale = classification_.transferFunction
                               ? 1.0f
-                              : float(std::min(classification_.densityScale, kMaximumExtinction))};
+                              : float(std::min(classification_.densityScale, double(std::numeric_limits<float>::max())))};
 }
 
 }  // namespace freevoxels

@@ -38,11 +38,12 @@ std::pair<double, double> rangeOf(const Encoding& encoding) {
 
 /// Bound of how far a value within the encoding's range is from what it was before it was encoded.
 double largestError(const Encoding& encoding, double value) {
-  constexpr double kHalf = 0x1p-10, kLeastHalf = 0x1p-24, kFloat = 0x1p-22;  // relative error of halves, the least of them, that of floats
+  constexpr double kHalfError = 0x1p-10, kLeastHalf = 0x1p-24,
+                   kFloatError = 0x1p-22;  // relative error of halves, the least of them, that of floats
   constexpr double kLeastFloat = std::numeric_limits<float>::denorm_min();
   if (encoding.kind == EncodingKind::Float32) return 0.0;
-  if (encoding.kind == EncodingKind::Float16) return std::max({std::abs(value) * kHalf, encoding.scale * kLeastHalf, kLeastFloat});
-  return encoding.scale + std::max(std::abs(value) * kFloat, kLeastFloat);
+  if (encoding.kind == EncodingKind::Float16) return std::max({std::abs(value) * kHalfError, encoding.scale * kLeastHalf, kLeastFloat});
+  return encoding.scale + std::max(std::abs(value) * kFloatError, kLeastFloat);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 #include "engine/core/error.h"
@@ -137,7 +138,7 @@ class LevelSweep {
 
   /// As in brick_row.glsl.
   void toExtinction(std::span<float> densities) const {
-    const float scale = float(std::min(level_.densityScale, kMaximumExtinction));
+    const float scale = float(std::min(level_.densityScale, double(std::numeric_limits<float>::max())));
     for (float& density : densities) density = std::min(std::max(density, 0.0f) * scale, float(kMaximumExtinction));
   }
 

@@ -57,10 +57,6 @@ double totalDensity(const Volume& volume) {
       std::plus<>());
 }
 
-bool areKelvin(const TemperatureGrid& grid) {
-  return !(grid.maximum > 0.0f) || double(grid.maximum) > kMinKelvinMaximum;
-}
-
 /// Sums over all voxels of the emitted luminance, its square, and its product with the extinction.
 struct LightSums {
   double light = 0.0, squares = 0.0, dimmed = 0.0;
@@ -123,6 +119,10 @@ double brightestLight(const Classification& classification, const Volume& volume
 glm::vec3 albedoOf(const Classification& classification, const AlbedoGrid& grid, glm::ivec3 voxel) {
   const glm::vec3 color(grid.values[0].at(voxel), grid.values[1].at(voxel), grid.values[2].at(voxel));
   return color.r == kInactiveVoxel ? classification.albedo : color;
+}
+
+bool areKelvin(const TemperatureGrid& grid) {
+  return !(grid.maximum > 0.0f) || double(grid.maximum) > kMinKelvinMaximum;
 }
 
 double automaticTemperatureOffset(const TemperatureGrid& grid) {

@@ -103,6 +103,7 @@ inline constexpr float kSmokeAlbedo = 0.5f;
 /// The default mapping of temperature grids to kelvin. A grid without values above kMinKelvinMaximum is not
 /// in kelvin: its 0 becomes kEmberTemperature and its largest value kReferenceTemperature.
 inline constexpr double kMinKelvinMaximum = 200.0, kEmberTemperature = 1000.0;
+bool areKelvin(const TemperatureGrid& grid);
 double automaticTemperatureOffset(const TemperatureGrid& grid);
 double automaticTemperatureScale(const TemperatureGrid& grid, double offset);
 

@@ -19,6 +19,7 @@ struct ProceduralFunctions {
   /// it.
   float (*clearance)(glm::vec3 position) = nullptr;
   float (*temperature)(glm::vec3 position) = nullptr;  ///< in kelvin; null if the field has no temperatures
+  bool isMeasured = false;                             ///< whether the values are such as scanners have, not densities
 };
 
 namespace {
@@ -86,10 +87,10 @@ constexpr std::array<ProceduralFunctions, 8> kFields{{
      [](vec3 position, float) { return fireDensity(position); },
      nullptr,
      fireTemperature},
-    {{"marschner-lobb", "the reconstruction test signal of Marschner and Lobb"}, marschnerLobb},
+    {{"marschner-lobb", "the reconstruction test signal of Marschner and Lobb"}, marschnerLobb, nullptr, nullptr, true},
     {{"shells", "nested translucent spherical shells"}, shellsDensity},
     {{"rods", "a lattice of thin rods"}, rodsDensity},
-    {{"head", "a head of ellipsoids with an opaque skull"}, headDensity},
+    {{"head", "a head of ellipsoids with an opaque skull"}, headDensity, nullptr, nullptr, true},
 }};
 
 float activeIf(float value) {
@@ -141,6 +142,10 @@ bool ProceduralField::hasTemperatures() const {
   return functions_->temperature != nullptr;
 }
 
+bool ProceduralField::isFog() const {
+  return !functions_->isMeasured;
+}
+
 float ProceduralField::density(glm::ivec3 voxel) const {
   return activeIf(functions_->density(place(voxel), float(voxelSize_)));
 }
@@ -159,7 +164,8 @@ bool ProceduralField::mayHoldData(glm::ivec3 first) const {
 Volume makeProcedural(std::string_view name, glm::ivec3 dimensions, const Progress& progress) {
   const ProceduralField field(name, dimensions);
   const auto mayHoldData = [&](glm::ivec3 first) { return field.mayHoldData(first); };
-  Volume volume{.source = fmt::format("procedural:{}", name), .dimensions = dimensions, .indexToWorld = field.indexToWorld()};
+  Volume volume{
+      .source = fmt::format("procedural:{}", name), .dimensions = dimensions, .indexToWorld = field.indexToWorld(), .isFog = field.isFog()};
   volume.scalars = ScalarBricks::make(dimensions, [&](glm::ivec3 v) { return field.density(v); }, mayHoldData, progress);
   summariseValues(volume);
   if (!field.hasTemperatures()) return volume;

@@ -27,6 +27,7 @@ class ProceduralField {
   /// As Volume::indexToWorld.
   glm::dmat4 indexToWorld() const;
   bool hasTemperatures() const;
+  bool isFog() const;  ///< as Volume::isFog
   /// kInactiveVoxel where the density is 0; of the temperature, in kelvin, where nothing burns.
   float density(glm::ivec3 voxel) const;
   float temperature(glm::ivec3 voxel) const;

@@ -1,12 +1,19 @@
 #include "engine/volume/scan.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <set>
 #include <span>
+#include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/parameter.h"
 #include "engine/volume/histogram.h"
 
 namespace freevoxels {
@@ -82,23 +89,48 @@ Classes classesOf(std::span<const double> weights) {
   return classes;
 }
 
-/// The values of the active voxels on the six sides of the box.
+/// The values of the active voxels on the six sides of the box; those at the ends of rows, where these do not reach the sides.
 std::vector<float> valuesOnSides(const Volume& volume) {
   std::vector<float> values;
   std::vector<float> row(std::size_t(volume.dimensions.x));
   const glm::ivec3 last = volume.dimensions - 1;
-  const auto add = [&](float value) {
-    if (value != kInactiveVoxel) values.push_back(value);
-  };
+  const auto isActive = [](float value) { return value != kInactiveVoxel; };
   for (int z = 0; z <= last.z; ++z)
     for (int y = 0; y <= last.y; ++y) {
       volume.scalars.copyRow(y, z, row);
-      if (z == 0 || z == last.z || y == 0 || y == last.y)
-        std::ranges::for_each(row, add);
-      else
-        for (const float value : {row.front(), row.back()}) add(value);
+      if (z == 0 || z == last.z || y == 0 || y == last.y) {
+        std::ranges::copy_if(row, std::back_inserter(values), isActive);
+      } else if (const auto first = std::ranges::find_if(row, isActive); first != row.end()) {
+        values.push_back(*first);
+        values.push_back(*std::find_if(row.rbegin(), row.rend(), isActive));
+      }
     }
   return values;
+}
+
+/// The smallest and the largest of the values of active voxels that are not `without`.
+std::pair<float, float> rangeWithout(const Volume& volume, float without) {
+  using Range = std::pair<float, float>;
+  const std::span<const ScalarBricks::Brick> bricks = volume.scalars.bricks();
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, bricks.size()), Range(kHuge, -kHuge),
+      [&](const tbb::blocked_range<std::size_t>& part, Range range) {
+        for (std::size_t i = part.begin(); i != part.end(); ++i)
+          for (const float value : bricks[i])
+            if (value != kInactiveVoxel && value != without) range = {std::min(range.first, value), std::max(range.second, value)};
+        return range;
+      },
+      [](const Range& a, const Range& b) { return Range(std::min(a.first, b.first), std::max(a.second, b.second)); });
+}
+
+/// Whether the active voxels have few different values beside `without`, as labels have.
+bool areLabels(const Volume& volume, float without) {
+  constexpr std::size_t kMostLabels = 32;
+  std::set<float> found;
+  for (const ScalarBricks::Brick& brick : volume.scalars.bricks())
+    for (const float value : brick)
+      if (value != kInactiveVoxel && value != without && found.insert(value).second && found.size() > kMostLabels) return false;
+  return true;
 }
 
 /// The class that most values belong to, or the lowest if no class has half of them.
@@ -108,6 +140,13 @@ int commonClass(std::span<const float> values, std::span<const double> threshold
     ++counts[std::size_t(std::ranges::count_if(thresholds, [&](double threshold) { return threshold <= value; }))];
   const auto most = std::ranges::max_element(counts);
   return 2 * *most > values.size() ? int(most - counts.begin()) : 0;
+}
+
+/// The last class whose mean is as good as that of the lowest.
+int lastClassOfAir(const Classes& classes) {
+  constexpr double kSame = 0.1 * double(kBins);
+  const auto isAir = [&](double mean) { return mean <= classes.means[0] + kSame; };
+  return int(std::ranges::count_if(classes.means, isAir)) - 1;
 }
 
 /// The value below which all voxels but the outliers are.
@@ -124,8 +163,44 @@ double highestUsual(const Histogram& histogram) {
 
 bool looksLikeScan(const Volume& volume) {
   if (volume.isLevelSet || !(volume.minimum < volume.maximum)) return false;
-  return double(volume.negativeVoxels) > 0.01 * double(volume.activeVoxels) ||
-         double(volume.activeVoxels) >= 0.95 * double(volume.voxelCount());
+  if (double(volume.negativeVoxels) > 0.01 * double(volume.activeVoxels)) return true;
+  return !volume.isFog && (volume.padding || double(volume.activeVoxels) >= 0.95 * double(volume.voxelCount()));
+}
+
+std::optional<float> paddingOf(const Volume& volume) {
+  constexpr double kLeastOnSides = 0.1, kLeastOthers = 0.05, kLeastGap = 0.3;
+  if (!looksLikeScan(volume)) return std::nullopt;
+  const std::vector<float> sides = valuesOnSides(volume);
+  for (const float value : {volume.minimum, volume.maximum}) {
+    const double share = double(std::ranges::count(sides, value)) / double(sides.size());
+    if (value == 0.0f || share < kLeastOnSides) continue;
+    const auto [least, most] = rangeWithout(volume, value);
+    const double width = double(most) - double(least);
+    const double gap = value < least ? double(least) - double(value) : double(value) - double(most);
+    if (width > 0.0 && (gap > width || (share <= 1.0 - kLeastOthers && gap > kLeastGap * width)) && !areLabels(volume, value)) return value;
+  }
+  return std::nullopt;
+}
+
+std::string paddingRemark(float padding) {
+  return fmt::format("the value {:g} around the scan counts as no data ({} keeps it)", padding, Parameter("no-data", "none"));
+}
+
+void removePadding(Volume& volume) {
+  volume.padding = paddingOf(volume);
+  if (!volume.padding) return;
+  removeValue(volume, *volume.padding);
+  volume.remarks.push_back(paddingRemark(*volume.padding));
+}
+
+bool looksLikeFog(const Volume& volume) {
+  constexpr double kLargestDensity = 10.0, kLeastEmpty = 0.9;
+  if (volume.minimum != 0.0f || !(volume.maximum > 0.0f) || double(volume.maximum) > kLargestDensity) return false;
+  const std::vector<float> sides = valuesOnSides(volume);
+  if (double(std::ranges::count(sides, 0.0f)) < kLeastEmpty * double(sides.size())) return false;
+  return std::ranges::any_of(volume.scalars.bricks(), [](const ScalarBricks::Brick& brick) {
+    return std::ranges::any_of(brick, [](float value) { return value != kInactiveVoxel && value != std::floor(value); });
+  });
 }
 
 void orientScan(Volume& volume) {
@@ -149,8 +224,12 @@ TransferFunction scanTransferFunction(const Volume& volume) {
 
   std::array<double, kClasses - 1> thresholds{};
   std::ranges::transform(classes.thresholds, thresholds.begin(), valueOf);
-  const int transparent = commonClass(valuesOnSides(volume), thresholds);
-  const auto opacityOf = [&](int number) { return kOpacities[std::size_t(std::abs(number - transparent))]; };
+  // What padding surrounds is in air, the noise of which may make two classes.
+  const int transparent = volume.padding ? lastClassOfAir(classes) : commonClass(valuesOnSides(volume), thresholds);
+  const auto opacityOf = [&](int number) {
+    if (volume.padding) return number > transparent ? kOpacities[std::size_t(number)] : 0.0f;
+    return kOpacities[std::size_t(std::abs(number - transparent))];
+  };
 
   TransferFunction function;
   const glm::dvec3 extent = glm::dvec3(volume.dimensions) *

@@ -6,9 +6,30 @@
 namespace freevoxels {
 
 /// Whether the scalars are measurements rather than densities: more than 1 % of the active voxels are
-/// negative, or at least 95 % of the box's voxels are active and have more than one value. Level sets are not
-/// scans, since they are read as densities.
+/// negative, or at least 95 % of the box's voxels are active and have more than one value, where the file does not say that they are
+/// densities (Volume::isFog). Level sets are not scans, since they are read as densities.
 bool looksLikeScan(const Volume& volume);
+
+/// What of a volume's values means that a voxel holds no data.
+struct NoData {
+  std::optional<double> value;  ///< nothing: every number is data
+
+  bool operator==(const NoData&) const = default;
+};
+
+/// The value with which a scan is filled up to a box around what was measured: the smallest or largest value, which a tenth of the
+/// voxels on the box's sides have exactly, and which is far from all others. Farther than these are from each other, it cannot be data;
+/// three tenths of that are enough where other values reach the sides, too. 0 is not taken for padding, since it may be air,
+/// nor anything in a volume of labels, which has few different values.
+std::optional<float> paddingOf(const Volume& volume);
+/// Makes voxels with the padding voxels without data.
+void removePadding(Volume& volume);
+/// The remark (Volume::remarks) that this was done.
+std::string paddingRemark(float padding);
+
+/// Whether an array is of densities that were cut out of nothing, as no file says of it: values from 0 to 10, not all of them whole, of
+/// which nine tenths on the sides of the box are exactly 0.
+bool looksLikeFog(const Volume& volume);
 
 /// Sets the up direction of a volume that looks like a scan to +z: slices are mostly stacked along the
 /// patient's axis.

@@ -10,6 +10,9 @@ namespace {
 constexpr int kCellsAlongLongestSide = 64;
 constexpr float kMinDensity = 1.0f / 256.0f;  // as a fraction of the largest density
 constexpr double kMargin = 0.13;
+// Along an axis of few voxels none is left out of the image, nor what interpolation draws beyond their faces.
+constexpr int kFewVoxels = 16;
+constexpr double kReachOfVoxels = 1.0;  // voxels
 
 }  // namespace
 
@@ -62,8 +65,13 @@ Subject subjectOf(const ContentCells& content, const Volume& volume) {
       if (first == end) continue;
       const auto* last = end - 1;
       while (*last == 0) --last;
-      const glm::dvec3 from = glm::dvec3(first - row, y, z) * content.edge - 0.5;
-      const glm::dvec3 to = glm::min(glm::dvec3(last - row + 1, y + 1, z + 1) * content.edge, glm::dvec3(n)) - 0.5;
+      glm::dvec3 from = glm::dvec3(first - row, y, z) * content.edge - 0.5;
+      glm::dvec3 to = glm::min(glm::dvec3(last - row + 1, y + 1, z + 1) * content.edge, glm::dvec3(n)) - 0.5;
+      for (int axis = 0; axis < 3; ++axis)
+        if (n[axis] < kFewVoxels) {
+          from[axis] = -0.5 - kReachOfVoxels;
+          to[axis] = n[axis] - 0.5 + kReachOfVoxels;
+        }
       low = glm::min(low, from);
       high = glm::max(high, to);
       for (int corner = 0; corner < 8; ++corner) {

@@ -10,6 +10,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/stages.h"
+#include "engine/volume/coarse_volume.h"
 #include "engine/volume/procedural.h"
 #include "engine/volume/volume.h"
 
@@ -51,10 +52,20 @@ struct GridChoice {
 /// whole file if it was streamed out. Fails as describeVdb does.
 std::vector<GridChoice> listVdb(const std::filesystem::path& file);
 
-/// More grids to read, which must be in the same file and on the same lattice of voxels.
+/// A grid to read beside the densities.
+struct GridRequest {
+  std::string name;         ///< empty: the first by the usual names (grid_names.h) that there is
+  bool isRequired = false;  ///< whether it is an error if there is none
+
+  bool operator==(const GridRequest&) const = default;
+};
+
+/// More grids to read, of the same file. On another lattice of voxels they are resampled to that of the densities.
 struct MoreGrids {
-  std::optional<std::string> temperature;  ///< name of a float grid; an empty name means `temperature`, `heat` or `flame`
-  std::optional<std::string> albedo;       ///< name of a vec3s, vec3h or vec3d grid
+  std::optional<GridRequest> temperature;  ///< a float grid
+  std::optional<GridRequest> albedo;       ///< a vec3s, vec3h or vec3d grid
+  /// Whether the file is a frame of a film, others of which have the grids: it is read without those that it lacks.
+  bool mayBeMissing = false;
 };
 
 /// A volume that can be read, but in which nothing is to be drawn, as in frames of a simulation before its source begins.
@@ -63,17 +74,36 @@ class EmptyVolumeError : public Error {
   using Error::Error;
 };
 
-/// Reads one float or half grid as a box around its active voxels (active tiles count as voxels); with
-/// temperatures, around their active voxels too. `gridName` is "NAME" or "NAME[k]"; if it is empty, `density`
-/// is read, else the only float grid; otherwise it is an error that lists the choice. A level set becomes a
-/// density of 1 inside and 0 outside, linear over three voxels across the surface. Fails with ErrorKind::Input
-/// if a grid of `more` does not exist or has another transform, and for frustum transforms, other grid types,
-/// empty grids (EmptyVolumeError) and unreadable files; with ErrorKind::OutOfMemory if the box exceeds
-/// `maximumVoxels`, before allocating it. `progress` may abandon it.
-Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels, const MoreGrids& more = {},
-               const Progress& progress = {});
+/// Which part of a grid is read, and how.
+struct ReadRequest {
+  std::string grid;  ///< "NAME" or "NAME[k]"; empty: the first by the usual names of densities, else the only float grid that can be one
+  std::uint64_t maximumVoxels = 0;  ///< of the box
+  MoreGrids more = {};
+  std::optional<VoxelBox> clipBox = std::nullopt;  ///< read only this part where the whole box has more than `maximumVoxels`
+  Progress progress = {};                          ///< may abandon it
+};
 
-/// Writes the active voxels as a float fog volume, and temperatures as a second grid. Atomic
+/// Reads one float or half grid as a box around its active voxels (active tiles count as voxels, but for those of a fog volume that are 0);
+/// with temperatures, around their active voxels too. A file of temperatures alone is a flame without density. Where no grid can be told
+/// to be the density it is an error that lists the choice. A level set becomes a density of 1 inside and 0 outside, linear over three
+/// voxels across the surface. Fails with ErrorKind::Input if a required grid of `more` does not exist, and for frustum transforms, other
+/// grid types, empty grids (EmptyVolumeError) and unreadable files; with ErrorKind::OutOfMemory if the box exceeds `maximumVoxels`, before
+/// allocating it.
+Volume readVdb(const std::filesystem::path& file, const ReadRequest& request);
+inline Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels,
+                      const MoreGrids& more = {}, const Progress& progress = {}) {
+  return readVdb(file, {.grid = gridName, .maximumVoxels = maximumVoxels, .more = more, .progress = progress});
+}
+
+/// Where the voxels of a file are, as far as its header says without reading them.
+struct VdbExtent {
+  std::vector<glm::dvec3> corners;  ///< of the boxes of the grids that readVdb reads, in the world; empty if nothing is active
+  std::uint64_t voxels = 0;         ///< active ones, of all these grids
+};
+/// Nothing where the header does not say it. Chooses the grids and fails as readVdb does.
+std::optional<VdbExtent> extentOfVdb(const std::filesystem::path& file, const std::string& gridName, const MoreGrids& more);
+
+/// Writes the active voxels as a float grid, a fog volume if Volume::isFog, and temperatures as a second grid. Atomic
 /// (core/atomic_file.h).
 void writeVdb(const std::filesystem::path& file, const Volume& volume, const std::string& gridName);
 /// The same of a field, of which no volume is made: 160 bytes for every 8^3 voxels that hold something are in memory, and their values in

@@ -1,28 +1,51 @@
 #include "engine/volume/vdb_channels.h"
 
+#include <openvdb/tools/GridTransformer.h>
+
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "engine/core/error.h"
+#include "engine/volume/classification.h"
 #include "engine/volume/vdb_bricks.h"
 
 namespace freevoxels {
 
 namespace {
 
-const VdbFile::Entry& chooseTemperature(VdbFile& file, const std::string& name) {
-  if (!name.empty()) return file.choose(name);
-  for (const char* usual : kTemperatureNames)
-    if (std::ranges::find(file.entries(), usual, &VdbFile::Entry::baseName) != file.entries().end())
-      return file.choose(usual);
+std::string namesOf(const VdbFile& file) {
   std::string names;
   for (const VdbFile::Entry& entry : file.entries())
     names += fmt::format("{}{}", names.empty() ? "" : ", ", entry.name);
-  fail(ErrorKind::Input,
-       "'{}' has no grid named 'temperature', 'heat' or 'flame'; choose one with {}: {}",
-       file.path().string(), Parameter("temperature-grid"), names);
+  return names;
+}
+
+/// Whether a grid can hold albedos. Staggered vectors are velocities.
+bool canBeAlbedo(VdbFile& file, const VdbFile::Entry& entry) {
+  return isColor(entry) && file.readMetadata(entry)->getGridClass() != openvdb::GRID_STAGGERED;
+}
+
+/// The grid that is asked for, or null if it may be missing and is.
+const VdbFile::Entry* find(VdbFile& file, GridRole role, const GridRequest& request, bool mayBeMissing,
+                           const std::function<bool(const VdbFile::Entry&)>& suits) {
+  if (!request.name.empty() && mayBeMissing && !file.has(request.name)) return nullptr;
+  return request.name.empty() ? file.findByRole(role, suits) : &file.choose(request.name);
+}
+
+/// Whether the voxels of two lattices are in the same places, up to rounding, as far as `box` reaches.
+bool isSameLattice(const openvdb::math::Transform& a, const openvdb::math::Transform& b, const openvdb::CoordBBox& box) {
+  constexpr double kFarthest = 1e-2;  // voxels
+  if (a == b || box.empty()) return true;
+  for (int corner = 0; corner < 8; ++corner) {
+    const openvdb::Vec3d index(box.min()[0] + (corner & 1) * double(box.dim()[0]), box.min()[1] + (corner >> 1 & 1) * double(box.dim()[1]),
+                               box.min()[2] + (corner >> 2) * double(box.dim()[2]));
+    const openvdb::Vec3d there = b.worldToIndex(a.indexToWorld(index)) - index;
+    if (!(there.length() < kFarthest)) return false;
+  }
+  return true;
 }
 
 /// A colour clamped to 0..1, and whether it was outside of that range.
@@ -98,54 +121,103 @@ TemperatureGrid toTemperature(const openvdb::FloatGrid& grid, const std::string&
 
 }  // namespace
 
-VdbChannels::VdbChannels(VdbFile& file, const VdbFile::Entry& density, const MoreGrids& more) : file_(file) {
+VdbChannels::VdbChannels(VdbFile& file, const VdbFile::Entry* density, const MoreGrids& more) : file_(file) {
   if (more.temperature) {
-    temperature_ = &chooseTemperature(file, *more.temperature);
-    if (!isScalar(*temperature_))
+    temperature_ = find(file, GridRole::Temperature, *more.temperature, more.mayBeMissing, isScalar);
+    isTemperatureChosen_ = !more.temperature->isRequired;
+    isTemperatureFound_ = more.temperature->name.empty();
+    if (temperature_ == density) temperature_ = more.temperature->isRequired ? temperature_ : nullptr;
+    if (!temperature_ && more.temperature->isRequired && !more.mayBeMissing)
+      fail(ErrorKind::Input, "'{}' has no grid named 'temperature', 'heat', 'flame' or the like; choose one with {}: {}",
+           file.path().string(), Parameter("temperature-grid"), namesOf(file));
+    if (temperature_ && !isScalar(*temperature_))
       fail(ErrorKind::Input,
            "grid '{}' of '{}' holds no temperatures: its values are of type {}; choose a float grid with "
            "{}",
            temperature_->name, file.path().string(), temperature_->valueType, Parameter("temperature-grid"));
-    checkLattice(*temperature_, density);
   }
   if (more.albedo) {
-    albedo_ = &file.choose(*more.albedo);
-    if (!isColor(*albedo_))
+    isAlbedoChosen_ = !more.albedo->isRequired;
+    albedo_ =
+        find(file, GridRole::Color, *more.albedo, more.mayBeMissing, [&](const VdbFile::Entry& entry) { return canBeAlbedo(file, entry); });
+    if (albedo_ && !isColor(*albedo_))
       fail(ErrorKind::Input,
            "grid '{}' of '{}' holds no colours: its values are of type {}; choose a vec3s grid with "
            "{}",
            albedo_->name, file.path().string(), albedo_->valueType, Parameter("albedo-grid"));
-    checkLattice(*albedo_, density);
   }
+  const auto isComponent = [](const VdbFile::Entry& entry) { return roleOfName(entry.baseName).role == GridRole::ColorComponent; };
+  if (const auto component = std::ranges::find_if(file.entries(), isComponent);
+      more.albedo && !albedo_ && component != file.entries().end())
+    remarks_.push_back(fmt::format("colours in a grid for each component, such as '{}', are left out: one grid of vectors has all three",
+                                   component->name));
+  for (const VdbFile::Entry* entry : {temperature_, albedo_})
+    if (entry)
+      if (const std::string why = whyTransformUnusable(file.readMetadata(*entry)->transform()); !why.empty())
+        fail(ErrorKind::Input, "grid '{}' of '{}' cannot be rendered: {}", entry->name, file.path().string(), why);
 }
 
-void VdbChannels::checkLattice(const VdbFile::Entry& entry, const VdbFile::Entry& density) const {
-  if (file_.readMetadata(entry)->transform() == file_.readMetadata(density)->transform()) return;
-  fail(ErrorKind::Input,
-       "grid '{}' of '{}' has another transform than '{}': resample it to that grid's voxels first",
-       entry.name, file_.path().string(), density.name);
+template <typename Grid>
+std::shared_ptr<const Grid> VdbChannels::onLattice(std::shared_ptr<const Grid> grid, const openvdb::math::Transform& lattice,
+                                                   const VdbFile::Entry& entry) {
+  const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
+  if (isSameLattice(grid->transform(), lattice, box)) return grid;
+  const double growth = std::abs(grid->transform().baseMap()->determinant() / lattice.baseMap()->determinant());
+  constexpr double kMostVoxels = 1e10;
+  if (double(grid->activeVoxelCount()) * growth > kMostVoxels)
+    fail(ErrorKind::OutOfMemory, "grid '{}' of '{}' has voxels that are {:.0f} times as large as those of the density: resample it first",
+         entry.name, file_.path().string(), growth);
+  auto resampled = std::make_shared<Grid>(grid->background());
+  resampled->setTransform(lattice.copy());
+  openvdb::tools::resampleToMatch<openvdb::tools::BoxSampler>(*grid, *resampled);
+  remarks_.push_back(fmt::format("grid '{}' is resampled to the voxels of the densities", entry.name));
+  return resampled;
 }
 
-void VdbChannels::read() {
-  if (temperature_) temperatures_ = asFloatGrid(file_.read(*temperature_));
+void VdbChannels::read(const openvdb::math::Transform& lattice) {
+  if (temperature_) temperatures_ = onLattice(asFloatGrid(file_.read(*temperature_)), lattice, *temperature_);
   if (!albedo_) return;
   const openvdb::GridBase::ConstPtr grid = file_.read(*albedo_);
-  albedos_ = openvdb::gridConstPtrCast<openvdb::Vec3SGrid>(grid);
-  if (!albedos_)
-    albedos_ =
-        std::make_shared<const openvdb::Vec3SGrid>(*openvdb::gridConstPtrCast<openvdb::Vec3DGrid>(grid));
+  openvdb::Vec3SGrid::ConstPtr colors = openvdb::gridConstPtrCast<openvdb::Vec3SGrid>(grid);
+  if (!colors) colors = std::make_shared<const openvdb::Vec3SGrid>(*openvdb::gridConstPtrCast<openvdb::Vec3DGrid>(grid));
+  albedos_ = onLattice(std::move(colors), lattice, *albedo_);
+}
+
+const VdbFile::Entry* VdbChannels::emptyFlames() const {
+  for (const VdbFile::Entry& entry : file_.entries())
+    if (isScalar(entry) && roleOfName(entry.baseName).isFlame && file_.read(entry)->activeVoxelCount() == 0) return &entry;
+  return nullptr;
 }
 
 openvdb::CoordBBox VdbChannels::bounds() const {
   return temperatures_ ? temperatures_->evalActiveVoxelBoundingBox() : openvdb::CoordBBox();
 }
 
-void VdbChannels::addTo(Volume& volume) const {
+void VdbChannels::clip(const openvdb::CoordBBox& box) {
+  if (!temperatures_) return;
+  const openvdb::FloatGrid::Ptr part = temperatures_->deepCopy();
+  part->tree().clip(box);
+  temperatures_ = part;
+}
+
+void VdbChannels::addTo(Volume& volume) {
   if (temperatures_) {
     volume.temperature = toTemperature(*temperatures_, temperature_->name, volume);
     coverBricks(volume, volume.temperature->values);
+    // A simulation of smoke alone has temperatures, too, which make it rise.
+    const VdbFile::Entry* noFlames = isTemperatureChosen_ && !areKelvin(*volume.temperature) ? emptyFlames() : nullptr;
+    if (noFlames) {
+      remarks_.push_back(fmt::format("nothing burns, as grid '{}' is empty", noFlames->name));
+      volume.temperature.reset();
+    } else if (isTemperatureFound_) {
+      remarks_.push_back(fmt::format("temperatures are those of grid '{}' ({} chooses another, {} leaves them out)", temperature_->name,
+                                     Parameter("temperature-grid"), Parameter("emission", "none")));
+    }
   }
   if (albedos_) volume.albedo = toAlbedo(*albedos_, albedo_->name, volume);
+  if (albedos_ && isAlbedoChosen_)
+    remarks_.push_back(fmt::format("colours are those of grid '{}' ({} leaves them out)", albedo_->name, Parameter("albedo-grid", "none")));
+  volume.remarks.insert(volume.remarks.end(), remarks_.begin(), remarks_.end());
 }
 
 }  // namespace freevoxels

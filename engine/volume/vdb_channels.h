@@ -1,6 +1,5 @@
 #pragma once
-// Internal to the vdb_*.cpp files, since it includes OpenVDB: grids in addition to the densities, on the same
-// lattice.
+// Internal to the vdb_*.cpp files, since it includes OpenVDB: grids in addition to the densities, on their lattice of voxels.
 
 #include <optional>
 #include <string>
@@ -12,19 +11,32 @@ namespace freevoxels {
 
 class VdbChannels {
  public:
-  /// Fails with ErrorKind::Input if `file` lacks a grid of `more`, or has it on another lattice than
-  /// `density`.
-  VdbChannels(VdbFile& file, const VdbFile::Entry& density, const MoreGrids& more);
+  /// Fails with ErrorKind::Input if `file` lacks a required grid of `more`. `density` may be null.
+  VdbChannels(VdbFile& file, const VdbFile::Entry* density, const MoreGrids& more);
 
-  void read();
+  const VdbFile::Entry* temperature() const { return temperature_; }
+  const VdbFile::Entry* albedo() const { return albedo_; }
+
+  /// Reads the grids, and resamples them where their voxels are others than those of `lattice`.
+  void read(const openvdb::math::Transform& lattice);
   /// The box of the active temperatures, where there may be emission without density.
   openvdb::CoordBBox bounds() const;
-  void addTo(Volume& volume) const;
+  /// Drops the voxels beyond a box.
+  void clip(const openvdb::CoordBBox& box);
+  void addTo(Volume& volume);
 
  private:
-  void checkLattice(const VdbFile::Entry& entry, const VdbFile::Entry& density) const;
+  template <typename Grid>
+  std::shared_ptr<const Grid> onLattice(std::shared_ptr<const Grid> grid, const openvdb::math::Transform& lattice,
+                                        const VdbFile::Entry& entry);
+
+  /// The grid of flames of a fire that does not burn: it has no voxels. Null if there is none.
+  const VdbFile::Entry* emptyFlames() const;
 
   VdbFile& file_;
+  bool isTemperatureFound_ = false;                            ///< by the usual names
+  bool isTemperatureChosen_ = false, isAlbedoChosen_ = false;  ///< by the usual names, of the reader's own accord
+  std::vector<std::string> remarks_;
   const VdbFile::Entry *temperature_ = nullptr, *albedo_ = nullptr;
   openvdb::FloatGrid::ConstPtr temperatures_;
   openvdb::Vec3SGrid::ConstPtr albedos_;

@@ -34,11 +34,15 @@ inline openvdb::CoordBBox extendedBy(int margin, openvdb::CoordBBox box) {
   return box;
 }
 
-/// The density of a fog volume's voxel.
+// The conversions have operator() for voxels and tile() for tiles, of which many files have large ones.
+
+/// The value of any other grid's voxel.
 struct FogToDensity {
   static constexpr int kMargin = 0;
   static constexpr bool kKeepsInactive = false;  // whether it keeps any inactive voxel
+  bool hasEmptyTiles = false;                    ///< whether active tiles of value 0 hold nothing: those of densities
   float operator()(float value, bool active) const { return active ? value : kInactiveVoxel; }
+  float tile(float value, bool active) const { return active && !(hasEmptyTiles && value == 0.0f) ? value : kInactiveVoxel; }
 };
 
 /// The density of a level set's voxel: 1 inside, 0 outside, linear over three voxels across the surface, so
@@ -47,19 +51,22 @@ struct LevelSetToDensity {
   static constexpr bool kKeepsInactive = true;
   static constexpr int kMargin = 2;  // voxels around it, from which light reaches its surface
   float voxelSize;
-  float operator()(float distance, bool active) const {
+  float sign = 1.0f;  ///< -1 where distances are negative outside
+  float operator()(float stored, bool active) const {
+    const float distance = sign * stored;
     if (active && std::isnan(distance)) return distance;  // counted later and then set to 0, like every NaN
     constexpr float kRamp = 3.0f;  // voxels
     const float density = active ? std::clamp(0.5f - distance / (kRamp * voxelSize), 0.0f, 1.0f) : distance < 0.0f ? 1.0f : 0.0f;
     return density > 0.0f ? density : kInactiveVoxel;
   }
+  float tile(float distance, bool active) const { return (*this)(distance, active); }
 };
 
 /// Calls `visit(box, density)` for the tiles of a node, each of `edge` voxels along an edge, that `toDensity` keeps.
 template <typename Node, typename ToDensity, typename Visit>
 void visitTilesOf(const Node& node, int edge, const ToDensity& toDensity, const Visit& visit) {
   const auto visitIfKept = [&](const auto& tile) {
-    const float density = toDensity(*tile, tile.isValueOn());
+    const float density = toDensity.tile(*tile, tile.isValueOn());
     if (density != kInactiveVoxel) visit(openvdb::CoordBBox::createCube(tile.getCoord(), edge), density);
   };
   if constexpr (ToDensity::kKeepsInactive) {
@@ -116,12 +123,22 @@ openvdb::CoordBBox boundsOf(const openvdb::FloatTree& tree,
   return bounds.empty() ? bounds : extendedBy(ToDensity::kMargin, bounds);
 }
 
+/// Whether a grid says that it has densities: it is called a fog volume, and its name is usual for them.
+bool isFog(const openvdb::GridBase& grid);
+
+/// Whether a grid has signed distances: it is called a level set or, where the program that wrote it does not say so, its background is
+/// the largest distance from a surface, on both sides of which it has voxels.
+bool isLevelSet(const openvdb::GridBase& grid);
+
+/// Whether the distances of a level set are negative outside, as its background says.
+bool isInverted(const openvdb::GridBase& grid);
+
 /// Calls `action(toDensity)` with the conversion for the grid's class.
 template <typename Action>
 auto withDensity(const openvdb::GridBase& grid, const Action& action) {
-  if (grid.getGridClass() != openvdb::GRID_LEVEL_SET) return action(FogToDensity{});
+  if (!isLevelSet(grid)) return action(FogToDensity{.hasEmptyTiles = isFog(grid)});
   const double voxelSize = std::cbrt(std::abs(grid.transform().baseMap()->determinant()));
-  return action(LevelSetToDensity{float(voxelSize)});
+  return action(LevelSetToDensity{float(voxelSize), isInverted(grid) ? -1.0f : 1.0f});
 }
 
 }  // namespace freevoxels

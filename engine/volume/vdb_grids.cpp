@@ -224,7 +224,6 @@ void VdbFile::guarded(const std::string& what, const std::function<void()>& read
 
 const VdbFile::Entry& VdbFile::choose(const std::string& name) {
   if (entries_.empty()) fail(ErrorKind::Input, "'{}' holds no grids; choose another file", path_.string());
-  if (name.empty()) return chooseByDefault();
   std::vector<const Entry*> sameName;
   for (const Entry& entry : entries_) {
     if (entry.name == name) return entry;
@@ -236,21 +235,49 @@ const VdbFile::Entry& VdbFile::choose(const std::string& name) {
   return firstOf(oneLine(name), sameName);
 }
 
-const VdbFile::Entry& VdbFile::chooseByDefault() {
-  std::vector<const Entry*> densities, reals;
+bool VdbFile::has(const std::string& name) const {
+  return std::ranges::any_of(
+      entries_, [&](const Entry& entry) { return entry.name == name || entry.baseName == name || oneLine(entry.key) == name; });
+}
+
+const VdbFile::Entry* VdbFile::chooseDensity(const std::string& name, bool mayBeMissing) {
+  if (!name.empty() && mayBeMissing && !has(name)) return nullptr;
+  if (!name.empty() || entries_.empty()) return &choose(name);
+  return chooseDensityByDefault();
+}
+
+const VdbFile::Entry* VdbFile::findByRole(GridRole role, const std::function<bool(const Entry&)>& suits) {
+  std::vector<const Entry*> best;
+  int rank = 0;
+  for (const Entry& entry : entries_) {
+    const NamedRole named = roleOfName(entry.baseName);
+    if (named.role != role || !suits(entry) || (!best.empty() && named.rank > rank)) continue;
+    if (!best.empty() && named.rank < rank) best.clear();
+    rank = named.rank;
+    best.push_back(&entry);
+  }
+  // "density" before "Density" and "DENSITY".
+  const auto isLower = [](const Entry* entry) { return entry->baseName == lowerCase(entry->baseName); };
+  if (std::ranges::any_of(best, isLower)) std::erase_if(best, std::not_fn(isLower));
+  return best.empty() ? nullptr : &firstOf(best.front()->baseName, best);
+}
+
+const VdbFile::Entry* VdbFile::chooseDensityByDefault() {
+  if (const Entry* density = findByRole(GridRole::Density, isScalar)) return density;
+  std::vector<const Entry*> scalars, possible;
+  bool hasTemperatures = false;
   for (const Entry& entry : entries_) {
     if (!isScalar(entry)) continue;
-    reals.push_back(&entry);
-    if (lowerCase(entry.baseName) == "density") densities.push_back(&entry);
+    scalars.push_back(&entry);
+    const GridRole role = roleOfName(entry.baseName).role;
+    hasTemperatures = hasTemperatures || role == GridRole::Temperature;
+    if (role == GridRole::Unknown) possible.push_back(&entry);
   }
-  const auto exact = [](const Entry* entry) { return entry->baseName == "density"; };
-  if (std::ranges::any_of(densities, exact)) std::erase_if(densities, std::not_fn(exact));
-  if (!densities.empty()) return firstOf(densities.front()->baseName, densities);
-  if (reals.size() == 1) return *reals.front();
-  if (reals.empty() && entries_.size() == 1) return entries_.front();  // readVdb will say why it cannot be drawn
-  if (reals.empty())
-    fail(ErrorKind::Input, "'{}' has no float grid, only: {}; choose another file", path_.string(),
-         listOf(entries_));
+  if (possible.size() == 1) return possible.front();
+  if (possible.empty() && hasTemperatures) return nullptr;
+  if (scalars.size() == 1) return scalars.front();
+  if (scalars.empty() && entries_.size() == 1) return &entries_.front();  // readVdb will say why it cannot be drawn
+  if (scalars.empty()) fail(ErrorKind::Input, "'{}' has no float grid, only: {}; choose another file", path_.string(), listOf(entries_));
   fail(ErrorKind::Input,
        "'{}' has several float grids and none is named 'density'; choose one with {}: {}", path_.string(),
        Parameter("grid"), listOf(entries_));

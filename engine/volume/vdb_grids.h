@@ -4,7 +4,6 @@
 
 #include <openvdb/io/File.h>
 
-#include <array>
 #include <exception>
 #include <filesystem>
 #include <functional>
@@ -13,6 +12,7 @@
 #include <vector>
 
 #include "engine/core/stages.h"
+#include "engine/volume/grid_names.h"
 #include "engine/volume/openvdb_trees.h"
 #include "engine/volume/vdb_header.h"
 
@@ -49,8 +49,15 @@ class VdbFile {
   const std::filesystem::path& path() const { return path_; }
   const std::vector<Entry>& entries() const { return entries_; }
 
-  /// Chooses a grid by a name as in readVdb. Adds a warning if several grids have the name.
+  /// Chooses a grid by a name. Adds a warning if several grids have the name.
   const Entry& choose(const std::string& name);
+  /// Whether a grid has the name.
+  bool has(const std::string& name) const;
+  /// Chooses a grid of densities as readVdb does; null where the name is empty and the file has temperatures alone, or where the grid of
+  /// the name may be missing and is.
+  const Entry* chooseDensity(const std::string& name, bool mayBeMissing);
+  /// The first grid by the usual names of a role, which `suits`; null if there is none.
+  const Entry* findByRole(GridRole role, const std::function<bool(const Entry&)>& suits);
   /// Reads the grid without its tree.
   openvdb::GridBase::Ptr readMetadata(const Entry& entry);
   /// Reads all grids of the file where OpenVDB cannot find this one by its key.
@@ -69,7 +76,7 @@ class VdbFile {
   void guarded(const std::string& what, const std::function<void()>& read) const;
   /// The place of a grid in entries_, and in header_.grids or streamed_.
   std::size_t indexOf(const Entry& entry) const { return std::size_t(&entry - entries_.data()); }
-  const Entry& chooseByDefault();
+  const Entry* chooseDensityByDefault();
   /// `name` is what they have in common.
   const Entry& firstOf(const std::string& name, const std::vector<const Entry*>& sameName);
 
@@ -85,8 +92,6 @@ class VdbFile {
   std::vector<openvdb::GridBase::Ptr> all_;       ///< in OpenVDB's order, once one was read that has a place
 };
 
-/// Names of temperature grids, in the order of preference.
-inline constexpr std::array<const char*, 3> kTemperatureNames{"temperature", "heat", "flame"};
 /// Whether the grid has scalars, or colours, by OpenVDB's names of value types.
 bool isScalar(const VdbFile::Entry& entry);
 bool isColor(const VdbFile::Entry& entry);

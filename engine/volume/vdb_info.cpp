@@ -148,7 +148,7 @@ void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
 }
 
 bool hasTemperatures(const VdbFile::Entry& entry) {
-  return isScalar(entry) && std::ranges::find(kTemperatureNames, entry.baseName) != kTemperatureNames.end();
+  return isScalar(entry) && roleOfName(entry.baseName).role == GridRole::Temperature;
 }
 
 /// Whether a grid can hold albedos. Staggered vectors are velocities.

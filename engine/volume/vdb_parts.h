@@ -5,6 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "engine/volume/scan.h"
+#include "engine/volume/vdb.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -12,9 +14,10 @@ namespace freevoxels {
 class VdbParts {
  public:
   /// Null where the values of the grid take at most `mostBytes`, and where they have to be read at once: those of level sets, of grids
-  /// that are not float or half, of files that were streamed out, and all with an OpenVDB without delayed loading. Chooses the grid and
-  /// fails as readVdb does.
-  static std::unique_ptr<VdbParts> open(const std::filesystem::path& file, const std::string& gridName, std::uint64_t mostBytes);
+  /// that are not float or half, of volumes with temperatures or albedos, of files that were streamed out, and all with an OpenVDB without
+  /// delayed loading. Chooses the grids and fails as readVdb does. Without `noData` the padding of a scan (scan.h) holds no data.
+  static std::unique_ptr<VdbParts> open(const std::filesystem::path& file, const ReadRequest& request, std::uint64_t mostBytes,
+                                        const std::optional<NoData>& noData = std::nullopt);
   ~VdbParts();
 
   /// What readVdb returns, without bricks.
@@ -27,7 +30,9 @@ class VdbParts {
 
  private:
   struct Source;
-  explicit VdbParts(std::unique_ptr<Source> source);
+  VdbParts(std::unique_ptr<Source> source, const std::optional<NoData>& noData);
+  void sumUp();
+  Volume readValues(glm::ivec3 first, int edge) const;
 
   std::unique_ptr<Source> source_;
   Volume outline_, sample_;

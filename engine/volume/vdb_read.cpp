@@ -8,7 +8,10 @@
 #include "engine/core/crash_note.h"
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
+#include "engine/volume/blackbody.h"
 #include "engine/volume/scan.h"
+#include "engine/volume/subject.h"
+#include "engine/volume/value_range.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/vdb_bricks.h"
 #include "engine/volume/vdb_channels.h"
@@ -25,6 +28,9 @@ using openvdb::FloatGrid;
 /// Voxels along an edge of a box, to which margins and edges of bricks are added.
 constexpr std::int64_t kLongestReadEdge = 1 << 30;
 
+/// Of a box that is not read at once.
+constexpr double kMaxVoxels = 1e12;
+
 double voxelsIn(glm::i64vec3 extent) {
   return double(extent.x) * double(extent.y) * double(extent.z);
 }
@@ -33,14 +39,13 @@ void checkSize(const CoordBBox& bounds, std::uint64_t maximumVoxels, const std::
   const glm::i64vec3 extent = extentOf(bounds);
   if (voxelsIn(extent) <= double(maximumVoxels) && std::max({extent.x, extent.y, extent.z}) <= kLongestReadEdge) return;
   fail(ErrorKind::OutOfMemory,
-       "{} is too large: its {} x {} x {} box needs {:.0f} voxels and at most {} are possible "
-       "here; "
-       "resample or crop the volume, for example with vdb_tool or Houdini",
-       source, extent.x, extent.y, extent.z, voxelsIn(extent), maximumVoxels);
+       "{} is too large: its {} x {} x {} box needs {:.0f} voxels and at most {} are possible here; draw a part of it with {}, or "
+       "resample the volume",
+       source, extent.x, extent.y, extent.z, voxelsIn(extent), maximumVoxels, Parameter("clip-box"));
 }
 
-glm::dmat4 indexToWorldOf(const FloatGrid& grid, glm::ivec3 indexOrigin) {
-  const openvdb::Mat4d matrix = grid.transform().baseMap()->getAffineMap()->getMat4();
+glm::dmat4 indexToWorldOf(const openvdb::math::Transform& transform, glm::ivec3 indexOrigin) {
+  const openvdb::Mat4d matrix = transform.baseMap()->getAffineMap()->getMat4();
   glm::dmat4 indexToWorld;  // OpenVDB multiplies row vectors from the left, so its rows are glm's columns
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < 4; ++j) indexToWorld[i][j] = matrix(i, j);
@@ -48,70 +53,120 @@ glm::dmat4 indexToWorldOf(const FloatGrid& grid, glm::ivec3 indexOrigin) {
   return indexToWorld;
 }
 
-/// Moves a volume near to the origin, and scales it, where its coordinates would leave double precision too few digits to tell
-/// its voxels apart, or single precision's range when they are squared; warns of it, as cameras and densities then count in other
-/// units.
-void normaliseWorld(Volume& volume) {
-  constexpr double kFarthest = 1e10;  // voxels from the origin
-  constexpr double kLargest = 1e9;    // world units of a voxel, and their inverse
-  const double voxel = volume.voxelSize();
-  const glm::dvec3 centre(volume.indexToWorld * glm::dvec4((glm::dvec3(volume.dimensions) - 1.0) / 2.0, 1.0));
-  if (glm::length(centre) > kFarthest * voxel) {
-    volume.indexToWorld[3] -= glm::dvec4(centre, 0.0);
-    volume.warnings.push_back(
-        fmt::format("{} is so far from the origin that its voxels can hardly be told apart: its middle, {:g},{:g},{:g}, becomes the "
-                    "origin, from which positions of cameras and lights count",
-                    volume.source, centre.x, centre.y, centre.z));
-  }
-  if (voxel > kLargest || voxel < 1.0 / kLargest) {
-    const double scale = std::pow(10.0, -std::floor(std::log10(voxel)));
-    for (int column = 0; column < 4; ++column) volume.indexToWorld[column] = glm::dvec4(glm::dvec3(volume.indexToWorld[column]) * scale, column == 3);
-    volume.warnings.push_back(
-        fmt::format("voxels of {} are {:g} world units large: it is scaled by {:g}, so that the camera, the lights and the scale of "
-                    "densities count in units of {:g}",
-                    volume.source, voxel, scale, 1.0 / scale));
-  }
-}
-
 /// Without voxels.
-Volume boxVolume(const FloatGrid& grid, const CoordBBox& bounds, const std::string& source) {
+Volume boxVolume(const openvdb::math::Transform& transform, const CoordBBox& bounds, const std::string& source) {
   Volume volume{.source = source,
                 .dimensions = glm::ivec3(extentOf(bounds)),
                 .indexOrigin = {bounds.min().x(), bounds.min().y(), bounds.min().z()}};
-  volume.indexToWorld = indexToWorldOf(grid, volume.indexOrigin);
+  volume.indexToWorld = indexToWorldOf(transform, volume.indexOrigin);
   normaliseWorld(volume);
   return volume;
 }
 
+/// 16-bit floats beyond their range are infinite in the file.
+void limitOverflow(ScalarBricks& scalars, std::uint64_t& overflown) {
+  constexpr float kLargestHalf = 65504.0f;
+  for (ScalarBricks::Brick& brick : scalars.bricks())
+    for (float& scalar : brick)
+      if (std::isinf(scalar)) {
+        scalar = std::copysign(kLargestHalf, scalar);
+        ++overflown;
+      }
+}
+
 /// Adds what the file says of the volume, once the values are known.
-void finishVolume(VdbFile& file, const VdbFile::Entry& entry, Volume& volume) {
+void finishVolume(VdbFile& file, const VdbFile::Entry& entry, const openvdb::GridBase& grid, Volume& volume) {
   volume.warnings.insert(volume.warnings.begin(), file.warnings().begin(), file.warnings().end());
+  volume.isLevelSet = isLevelSet(grid);
+  volume.isFog = !volume.isLevelSet && isFog(grid);
+  if (volume.isLevelSet && grid.getGridClass() != openvdb::GRID_LEVEL_SET)
+    volume.remarks.emplace_back("its values are distances from a surface, as those of a level set");
+  if (volume.isLevelSet && isInverted(grid))
+    volume.remarks.emplace_back("distances of the level set are negative outside, and count the other way round");
   orientScan(volume);
   if (!file.isFromBlender(entry)) return;
   volume.upReason = "Blender wrote the file";
   volume.up = {0.0, 0.0, 1.0};
 }
 
-/// Makes the volume of the box around the voxels that `toDensity` keeps and around `more`.
+/// The part of the whole box that a clip box counted in it leaves, where the whole has more than `maximumVoxels`.
+CoordBBox clippedBounds(const CoordBBox& whole, const std::optional<VoxelBox>& clip, std::uint64_t maximumVoxels) {
+  if (!clip || voxelsIn(extentOf(whole)) <= double(maximumVoxels)) return whole;
+  const glm::i64vec3 last = extentOf(whole) - std::int64_t(1);
+  CoordBBox part = whole;
+  for (int axis = 0; axis < 3; ++axis) {
+    part.max()[axis] = int(whole.min()[axis] + std::min(std::int64_t(clip->last[axis]), last[axis]));
+    part.min()[axis] = int(whole.min()[axis] + std::min(std::int64_t(clip->first[axis]), last[axis]));
+  }
+  return part;
+}
+
+/// A copy of the grid without the voxels beyond a box.
+FloatGrid::ConstPtr clippedGrid(const FloatGrid& grid, const CoordBBox& box) {
+  const FloatGrid::Ptr part = grid.deepCopy();
+  part->tree().clip(box);
+  return part;
+}
+
+/// Makes the volume of the box around the voxels that `toDensity` keeps and around the channels.
 template <typename ToDensity>
-Volume toVolume(const FloatGrid& grid, const ToDensity& toDensity, const std::string& source,
-                const CoordBBox& more, std::uint64_t maximumVoxels, const Progress& progress) {
+Volume toVolume(FloatGrid::ConstPtr grid, const ToDensity& toDensity, const std::string& source, bool savedAsHalf, VdbChannels& channels,
+                const ReadRequest& request) {
   std::vector<const VdbLeaf*> leaves;
-  grid.tree().getNodes(leaves);
-  CoordBBox bounds = boundsOf(grid.tree(), leaves, toDensity);
+  grid->tree().getNodes(leaves);
+  CoordBBox bounds = boundsOf(grid->tree(), leaves, toDensity);
+  bounds.expand(channels.bounds());
   if (bounds.empty())
     throw EmptyVolumeError(ErrorKind::Input, fmt::format("{} cannot be rendered: {}", source, kNothingInsideClause));
-  bounds.expand(more);
-  checkSize(bounds, maximumVoxels, source);
+  const CoordBBox whole = bounds;
+  if (const CoordBBox part = clippedBounds(bounds, request.clipBox, request.maximumVoxels); part != bounds) {
+    checkSize(part, request.maximumVoxels, source);
+    bounds = part;
+    grid = clippedGrid(*grid, part);
+    channels.clip(part);
+    leaves.clear();
+    grid->tree().getNodes(leaves);
+  }
+  checkSize(bounds, request.maximumVoxels, source);
 
-  Volume volume = boxVolume(grid, bounds, source);
-  volume.scalars = bricksOf(grid.tree(), std::move(leaves), volume.dimensions, volume.indexOrigin, toDensity, progress);
+  Volume volume = boxVolume(grid->transform(), bounds, source);
+  volume.isPart = request.clipBox && voxelsIn(extentOf(whole)) > double(request.maximumVoxels);
+  volume.scalars = bricksOf(grid->tree(), std::move(leaves), volume.dimensions, volume.indexOrigin, toDensity, request.progress);
+  if (savedAsHalf) limitOverflow(volume.scalars, volume.overflownVoxels);
   summariseValues(volume);
+  channels.addTo(volume);
+  if (volume.activeVoxels == 0 && (!volume.temperature || volume.temperature->activeVoxels == 0))
+    throw EmptyVolumeError(ErrorKind::Input, fmt::format("{} cannot be rendered: none of its {} active voxels has a number as its value",
+                                                         source, volume.nanVoxels));
   return volume;
 }
 
 std::string whyUnusable(const VdbFile& file, const VdbFile::Entry& entry, const std::string& why) {
   return fmt::format("grid '{}' of '{}' cannot be rendered: {}", entry.name, file.path().string(), why);
+}
+
+/// A grid without voxels.
+openvdb::GridBase::ConstPtr emptyLike(const openvdb::GridBase& grid) {
+  const FloatGrid::Ptr empty = FloatGrid::create(0.0f);
+  empty->setTransform(grid.transform().copy());
+  empty->setGridClass(openvdb::GRID_FOG_VOLUME);
+  return empty;
+}
+
+/// Says what was chosen by the names of the grids, and fails where that gives nothing to see.
+void remarkOn(Volume& volume, const VdbFile& file, const VdbFile::Entry* density, const ReadRequest& request) {
+  if (!density) {
+    const bool isCold = volume.temperature && areKelvin(*volume.temperature) && double(volume.temperature->maximum) <= kColdestLight;
+    if (isCold && !request.more.temperature->isRequired)
+      throw EmptyVolumeError(
+          ErrorKind::Input,
+          fmt::format("{} has temperatures alone, none of which is above {:g} K, where light begins: {} draws them as a density",
+                      volume.source, kColdestLight, Parameter("grid", volume.temperature->name)));
+    volume.remarks.insert(volume.remarks.begin(), "there is no density");
+  } else if (request.grid.empty() && file.entries().size() > 1 && density->baseName != "density") {
+    volume.remarks.insert(volume.remarks.begin(),
+                          fmt::format("densities are those of grid '{}' ({} chooses another)", density->name, Parameter("grid")));
+  }
 }
 
 void checkUsable(VdbFile& file, const VdbFile::Entry& entry) {
@@ -121,30 +176,55 @@ void checkUsable(VdbFile& file, const VdbFile::Entry& entry) {
 
 }  // namespace
 
-Volume readVdb(const std::filesystem::path& path, const std::string& gridName, std::uint64_t maximumVoxels,
-               const MoreGrids& more, const Progress& progress) {
-  VdbFile file(path, {.progress = progress});
-  const VdbFile::Entry& entry = file.choose(gridName);
-  checkUsable(file, entry);
-  VdbChannels channels(file, entry, more);
+Volume readVdb(const std::filesystem::path& path, const ReadRequest& request) {
+  VdbFile file(path, {.progress = request.progress});
+  const VdbFile::Entry* const density = file.chooseDensity(request.grid, request.more.mayBeMissing);
+  if (density) checkUsable(file, *density);
+  VdbChannels channels(file, density, request.more);
+  if (!density && !channels.temperature())
+    throw EmptyVolumeError(ErrorKind::Input, fmt::format("'{}' has no density: {} draws one of its grids as a density", path.string(),
+                                                         Parameter("grid", "NAME")));
 
-  const openvdb::GridBase::Ptr grid = file.read(entry);
-  if (grid->activeVoxelCount() == 0) throw EmptyVolumeError(ErrorKind::Input, whyUnusable(file, entry, kEmptyGridClause));
-  const FloatGrid::ConstPtr floats = asFloatGrid(grid);
+  const VdbFile::Entry& entry = density ? *density : *channels.temperature();
+  const openvdb::GridBase::ConstPtr grid = density ? openvdb::GridBase::ConstPtr(file.read(entry)) : emptyLike(*file.readMetadata(entry));
   const std::string source = fmt::format("{} {}", path.filename().string(), entry.name);
   try {
-    channels.read();
+    channels.read(grid->transform());
+    if (grid->activeVoxelCount() == 0 && channels.bounds().empty())
+      throw EmptyVolumeError(ErrorKind::Input, whyUnusable(file, entry, kEmptyGridClause));
     Volume volume = withDensity(*grid, [&](const auto& toDensity) {
-      return toVolume(*floats, toDensity, source, channels.bounds(), maximumVoxels, progress);
+      return toVolume(asFloatGrid(grid), toDensity, source, entry.valueType == "half", channels, request);
     });
-    channels.addTo(volume);
-    volume.isLevelSet = grid->getGridClass() == openvdb::GRID_LEVEL_SET;
-    finishVolume(file, entry, volume);
+    finishVolume(file, entry, *grid, volume);
+    remarkOn(volume, file, density, request);
     return volume;
   } catch (const std::bad_alloc&) {
     fail(ErrorKind::OutOfMemory, "not enough memory for {}; free some, or resample or crop the volume",
          source);
   }
+}
+
+std::optional<VdbExtent> extentOfVdb(const std::filesystem::path& path, const std::string& gridName, const MoreGrids& more) {
+  VdbFile file(path);
+  const VdbFile::Entry* const density = file.chooseDensity(gridName, more.mayBeMissing);
+  const VdbChannels channels(file, density, more);
+  VdbExtent extent;
+  // Temperatures are there of cold air, too: they count where there is no density.
+  for (const VdbFile::Entry* entry : {density, channels.temperature()}) {
+    if (!entry || extent.voxels > 0) continue;
+    checkUsable(file, *entry);
+    const openvdb::GridBase::Ptr grid = file.readMetadata(*entry);
+    const auto first = grid->getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MIN);
+    const auto last = grid->getMetadata<openvdb::Vec3IMetadata>(openvdb::GridBase::META_FILE_BBOX_MAX);
+    const auto voxels = grid->getMetadata<openvdb::Int64Metadata>(openvdb::GridBase::META_FILE_VOXEL_COUNT);
+    if (!first || !last || !voxels || voxels->value() < 0) return std::nullopt;
+    if (voxels->value() == 0) continue;
+    const CoordBBox box{openvdb::Coord(first->value()), openvdb::Coord(last->value())};
+    if (box.empty() || voxelsIn(extentOf(box)) > kMaxVoxels) return std::nullopt;
+    extent.voxels = std::uint64_t(voxels->value());
+    extent.corners = boxOf(boxVolume(grid->transform(), box, "")).points;
+  }
+  return extent;
 }
 
 namespace {
@@ -153,8 +233,6 @@ constexpr int kSampleEdge = 256;
 /// Cubes of this number of voxels along an edge are read at a time, and this number of them is kept in memory.
 constexpr int kCubeEdge = 64;
 constexpr std::size_t kCubes = 16;
-/// Of a box that is gone through cube by cube.
-constexpr double kMaxVoxels = 1e12;
 constexpr std::int64_t kLongestPartsEdge = 1 << 20;
 
 /// A copy with the values, which the tree's leaf leaves in the file.
@@ -177,27 +255,55 @@ struct VdbParts::Source {
   const VdbFile::Entry* entry = nullptr;
   std::string name;
   FloatGrid::ConstPtr grid;
+  WildValues wild;              ///< once the whole volume was read
+  std::optional<float> noData;  ///< the value of voxels without data
+
+  FogToDensity toDensity() const { return {.hasEmptyTiles = isFog(*grid)}; }
+  /// As readVdb has them, without reading values.
+  CoordBBox bounds() const {
+    CoordBBox bounds;
+    for (auto leaf = grid->tree().cbeginLeaf(); leaf; ++leaf) leaf->evalActiveBoundingBox(bounds);
+    visitTiles(grid->tree(), toDensity(), [&](const CoordBBox& box, float) { bounds.expand(box); });
+    return bounds;
+  }
 };
 
-std::unique_ptr<VdbParts> VdbParts::open(const std::filesystem::path& path, const std::string& gridName, std::uint64_t mostBytes) {
+std::unique_ptr<VdbParts> VdbParts::open(const std::filesystem::path& path, const ReadRequest& request, std::uint64_t mostBytes,
+                                         const std::optional<NoData>& noData) {
   auto source = std::make_unique<Source>(path);
   if (!source->file.delaysValues()) return nullptr;
-  source->entry = &source->file.choose(gridName);
+  source->entry = source->file.chooseDensity(request.grid, request.more.mayBeMissing);
+  const VdbChannels channels(source->file, source->entry, request.more);
+  if (!source->entry || channels.temperature() || channels.albedo()) return nullptr;
   checkUsable(source->file, *source->entry);
   source->name = fmt::format("{} {}", path.filename().string(), source->entry->name);
   const openvdb::GridBase::ConstPtr grid = source->file.read(*source->entry);
-  if (!grid->isType<FloatGrid>() || grid->getGridClass() == openvdb::GRID_LEVEL_SET) return nullptr;
+  if (!grid->isType<FloatGrid>() || isLevelSet(*grid)) return nullptr;
   source->grid = openvdb::gridConstPtrCast<FloatGrid>(grid);
   if (source->grid->tree().leafCount() * sizeof(ScalarBricks::Brick) <= mostBytes) return nullptr;
-  const CoordBBox bounds = source->grid->evalActiveVoxelBoundingBox();
+  const CoordBBox bounds = source->bounds();
   if (bounds.empty()) return nullptr;
   const glm::i64vec3 n = extentOf(bounds);
   if (voxelsIn(n) > kMaxVoxels || std::max({n.x, n.y, n.z}) > kLongestPartsEdge) return nullptr;
-  return std::unique_ptr<VdbParts>(new VdbParts(std::move(source)));
+  return std::unique_ptr<VdbParts>(new VdbParts(std::move(source), noData));
 }
 
-VdbParts::VdbParts(std::unique_ptr<Source> source)
-    : source_(std::move(source)), outline_(boxVolume(*source_->grid, source_->grid->evalActiveVoxelBoundingBox(), source_->name)) {
+VdbParts::VdbParts(std::unique_ptr<Source> source, const std::optional<NoData>& noData)
+    : source_(std::move(source)), outline_(boxVolume(source_->grid->transform(), source_->bounds(), source_->name)) {
+  if (noData && noData->value) source_->noData = float(*noData->value);
+  if (!isFog(*source_->grid)) outline_.padding = source_->noData;
+  const std::vector<std::string> warnings = outline_.warnings;
+  sumUp();
+  if (!noData) source_->noData = paddingOf(sample_);
+  if (noData || !source_->noData) return;
+  outline_.padding = source_->noData;
+  outline_.remarks = {paddingRemark(*source_->noData)};
+  outline_.warnings = warnings;
+  sumUp();
+}
+
+/// Reads all voxels once, and fills outline_ and sample_.
+void VdbParts::sumUp() {
   const glm::ivec3 n = outline_.dimensions;
   const int step = (std::max({n.x, n.y, n.z}) + kSampleEdge - 1) / kSampleEdge;
   sample_ = outline_;
@@ -217,43 +323,53 @@ VdbParts::VdbParts(std::unique_ptr<Source> source)
   for (glm::ivec3 first(0); first.z < n.z; first.z += kCubeEdge)
     for (first.y = 0; first.y < n.y; first.y += kCubeEdge)
       for (first.x = 0; first.x < n.x; first.x += kCubeEdge) cubes.push_back(first);
+  ValueSummary whole;
+  outline_.overflownVoxels = 0;
   for (std::size_t first = 0; first < cubes.size(); first += kCubes) {
     std::vector<Volume> parts(std::min(kCubes, cubes.size() - first));
-    tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) { parts[i] = read(cubes[first + i], kCubeEdge); });
+    std::vector<ValueSummary> summaries(parts.size());
+    tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
+      parts[i] = readValues(cubes[first + i], kCubeEdge);
+      summaries[i] = summarise(parts[i].scalars.bricks());
+    });
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      const Volume& part = parts[i];
-      if (part.activeVoxels == 0) continue;
-      addToSample(part, cubes[first + i]);
-      outline_.minimum = outline_.activeVoxels == 0 ? part.minimum : std::min(outline_.minimum, part.minimum);
-      outline_.maximum = outline_.activeVoxels == 0 ? part.maximum : std::max(outline_.maximum, part.maximum);
-      outline_.activeVoxels += part.activeVoxels;
-      outline_.nanVoxels += part.nanVoxels;
-      outline_.negativeVoxels += part.negativeVoxels;
+      outline_.overflownVoxels += parts[i].overflownVoxels;
+      if (summaries[i].active > 0) addToSample(parts[i], cubes[first + i]);
+      whole.add(summaries[i]);
     }
   }
 
-  summariseValues(sample_);
-  finishVolume(source_->file, *source_->entry, sample_);
+  source_->wild = wildValues(whole);
+  summariseValues(sample_, source_->wild);
+  takeSummary(outline_, whole, source_->wild);
+  finishVolume(source_->file, *source_->entry, *source_->grid, sample_);
   outline_.warnings = sample_.warnings;
   outline_.up = sample_.up;
   outline_.upReason = sample_.upReason;
-  sample_.minimum = outline_.minimum;
-  sample_.maximum = outline_.maximum;
-  sample_.nanVoxels = outline_.nanVoxels;
-  sample_.negativeVoxels = outline_.negativeVoxels;
+  outline_.isFog = sample_.isFog;
+  sample_.overflownVoxels = outline_.overflownVoxels;
+  takeCounts(sample_, outline_);
 }
 
 VdbParts::~VdbParts() = default;
 
 Volume VdbParts::read(glm::ivec3 first, int edge) const {
+  Volume part = readValues(first, edge);
+  summariseValues(part, source_->wild);
+  return part;
+}
+
+/// Without the summary of the values.
+Volume VdbParts::readValues(glm::ivec3 first, int edge) const {
   constexpr int n = ScalarBricks::kEdge;
   const CrashNote note(fmt::format("cannot read {}: the file was cut or overwritten while it was read; copy it again", printable(source_->name)));
   const openvdb::FloatTree& tree = source_->grid->tree();
+  const FogToDensity toDensity = source_->toDensity();
   Volume part{.dimensions = glm::ivec3(edge), .scalars = ScalarBricks(glm::ivec3(edge))};
   const glm::ivec3 begin = first + outline_.indexOrigin, last = glm::min(first + (edge - 1), outline_.dimensions - 1) + outline_.indexOrigin;
   forEachLeafIn({{begin.x, begin.y, begin.z}, {last.x, last.y, last.z}}, [&](const openvdb::Coord& at) {
     const VdbLeaf* const kept = tree.probeConstLeaf(at);
-    if (kept == nullptr && !tree.isValueOn(at)) return;
+    if (kept == nullptr && toDensity.tile(tree.getValue(at), tree.isValueOn(at)) == kInactiveVoxel) return;
     const VdbLeaf leaf = kept == nullptr ? VdbLeaf(at, tree.getValue(at), true) : load(*kept, source_->name);
     const glm::ivec3 corner(at.x(), at.y(), at.z());
     const glm::ivec3 low = glm::max(corner, begin) - corner, high = glm::min(corner + (n - 1), last) - corner;
@@ -261,9 +377,9 @@ Volume VdbParts::read(glm::ivec3 first, int edge) const {
       for (v.y = low.y; v.y <= high.y; ++v.y)
         for (v.x = low.x; v.x <= high.x; ++v.x)
           if (const openvdb::Index place = VdbLeaf::coordToOffset({v.x, v.y, v.z}); leaf.isValueOn(place))
-            part.scalars.set(corner - begin + v, leaf.getValue(place));
+            if (const float value = leaf.getValue(place); value != source_->noData) part.scalars.set(corner - begin + v, value);
   });
-  summariseValues(part);
+  if (source_->entry->valueType == "half") limitOverflow(part.scalars, part.overflownVoxels);
   return part;
 }
 

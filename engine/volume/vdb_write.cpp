@@ -89,7 +89,7 @@ void checkComplete(const std::filesystem::path& file) {
 FloatGrid::Ptr makeGrid(const Volume& volume, const std::string& name) {
   const FloatGrid::Ptr grid = FloatGrid::create(0.0f);
   grid->setName(name);
-  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  if (volume.isFog) grid->setGridClass(openvdb::GRID_FOG_VOLUME);
   grid->setCreator("FreeVoxels");
   grid->setTransform(transformOf(volume));
   return grid;
@@ -233,7 +233,7 @@ void writeVdb(const std::filesystem::path& file, const Volume& volume, const std
 
 void writeVdb(const std::filesystem::path& file, const ProceduralField& field, const std::string& gridName, const Progress& progress) {
   initialiseOpenVdb();
-  const Volume outline{.dimensions = field.dimensions(), .indexToWorld = field.indexToWorld()};
+  const Volume outline{.dimensions = field.dimensions(), .indexToWorld = field.indexToWorld(), .isFog = field.isFog()};
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   const SpooledArchive archive;
   writeAtomically(file, [&](const std::filesystem::path& temporary) {

@@ -1,52 +1,27 @@
 #include "engine/volume/volume.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_reduce.h>
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "engine/volume/value_range.h"
 
 namespace freevoxels {
 
 namespace {
 
-struct Summary {
-  std::uint64_t active = 0, nan = 0, negative = 0;
-  float minimum = std::numeric_limits<float>::infinity();
-  float maximum = -std::numeric_limits<float>::infinity();
-};
-
-Summary join(const Summary& a, const Summary& b) {
-  return {a.active + b.active, a.nan + b.nan, a.negative + b.negative, std::min(a.minimum, b.minimum),
-          std::max(a.maximum, b.maximum)};
-}
-
-/// Adds a value to the summary, and replaces it by 0 if it is NaN or infinite.
-void add(Summary& summary, float& value) {
-  if (value == kInactiveVoxel) return;
-  ++summary.active;
-  if (!std::isfinite(value)) {
-    ++summary.nan;
-    value = 0.0f;
-  }
-  if (value < 0.0f) ++summary.negative;
-  summary.minimum = std::min(summary.minimum, value);
-  summary.maximum = std::max(summary.maximum, value);
-}
-
-Summary summarise(std::span<ScalarBricks::Brick> bricks) {
-  using Range = tbb::blocked_range<std::size_t>;
-  constexpr std::size_t kGrain = 64;
-  Summary summary = tbb::parallel_reduce(
-      Range(0, bricks.size(), kGrain), Summary{},
-      [&](const Range& range, Summary partial) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i)
-          for (float& scalar : bricks[i]) add(partial, scalar);
-        return partial;
-      },
-      join);
-  if (summary.active == 0) summary.minimum = summary.maximum = 0.0f;
-  return summary;
+/// Fills what a volume and its temperatures have in common.
+template <typename Grid>
+void take(Grid& grid, const ValueSummary& summary, const WildValues& wild) {
+  grid.activeVoxels = summary.active;
+  grid.nanVoxels = summary.nan;
+  grid.minimum = summary.active == 0 ? 0.0f : std::max(summary.minimum, -wild.limit);
+  grid.maximum = summary.active == 0 ? 0.0f : std::min(summary.maximum, wild.limit);
+  if (wild.voxels == 0) return;
+  grid.wildVoxels = wild.voxels;
+  grid.wildest = std::abs(summary.minimum) > std::abs(summary.maximum) ? summary.minimum : summary.maximum;
 }
 
 void expandByActive(const ScalarBricks& scalars, glm::ivec3& low, glm::ivec3& high) {
@@ -96,21 +71,70 @@ void cropToActive(Volume& volume) {
   volume.indexToWorld[3] = volume.indexToWorld * glm::dvec4(glm::dvec3(low), 1.0);
 }
 
+void normaliseWorld(Volume& volume) {
+  constexpr double kFarthest = 1e10;                    // voxels from the origin
+  constexpr double kSmallest = 1e-18, kLargest = 1e15;  // world units of a voxel; squares of distances are single-precision floats
+  const double voxel = volume.voxelSize();
+  const glm::dvec3 centre(volume.indexToWorld * glm::dvec4((glm::dvec3(volume.dimensions) - 1.0) / 2.0, 1.0));
+  if (glm::length(centre) > kFarthest * voxel) {
+    volume.indexToWorld[3] -= glm::dvec4(centre, 0.0);
+    volume.warnings.push_back(
+        fmt::format("{} is so far from the origin that its voxels can hardly be told apart: its middle, {:g},{:g},{:g}, becomes the "
+                    "origin, from which positions of cameras and lights count",
+                    volume.source, centre.x, centre.y, centre.z));
+  }
+  if (voxel > kLargest || voxel < kSmallest) {
+    const double scale = std::pow(10.0, -std::floor(std::log10(voxel)));
+    for (int column = 0; column < 4; ++column)
+      volume.indexToWorld[column] = glm::dvec4(glm::dvec3(volume.indexToWorld[column]) * scale, column == 3);
+    volume.warnings.push_back(
+        fmt::format("voxels of {} are {:g} world units large: it is scaled by {:g}, so that the camera, the lights and the scale of "
+                    "densities count in units of {:g}",
+                    volume.source, voxel, scale, 1.0 / scale));
+  }
+}
+
 void summariseValues(Volume& volume) {
-  const Summary summary = summarise(volume.scalars.bricks());
-  volume.activeVoxels = summary.active;
-  volume.nanVoxels = summary.nan;
+  const ValueSummary summary = summarise(volume.scalars.bricks());
+  const WildValues wild = wildValues(summary);
+  takeSummary(volume, summary, wild);
+  if (wild.voxels > 0) limitValues(volume.scalars.bricks(), wild.limit);
+}
+
+void summariseValues(Volume& volume, const WildValues& wild) {
+  if (wild.voxels > 0) limitValues(volume.scalars.bricks(), wild.limit);
+  takeSummary(volume, summarise(volume.scalars.bricks()), {});
+}
+
+void takeSummary(Volume& volume, const ValueSummary& summary, const WildValues& wild) {
+  take(volume, summary, wild);
   volume.negativeVoxels = summary.negative;
-  volume.minimum = summary.minimum;
-  volume.maximum = summary.maximum;
+}
+
+void takeCounts(Volume& volume, const Volume& other) {
+  volume.nanVoxels = other.nanVoxels;
+  volume.negativeVoxels = other.negativeVoxels;
+  volume.overflownVoxels = other.overflownVoxels;
+  volume.wildVoxels = other.wildVoxels;
+  volume.wildest = other.wildest;
+  volume.minimum = other.minimum;
+  volume.maximum = other.maximum;
 }
 
 void summariseValues(TemperatureGrid& grid) {
-  const Summary summary = summarise(grid.values.bricks());
-  grid.activeVoxels = summary.active;
-  grid.nanVoxels = summary.nan;
-  grid.minimum = summary.minimum;
-  grid.maximum = summary.maximum;
+  const std::span<ScalarBricks::Brick> bricks = grid.values.bricks();
+  const ValueSummary summary = summarise(bricks);
+  const WildValues wild = wildValues(summary);
+  take(grid, summary, wild);
+  if (wild.voxels > 0) limitValues(bricks, wild.limit);
+}
+
+void removeValue(Volume& volume, float value) {
+  const std::span<ScalarBricks::Brick> bricks = volume.scalars.bricks();
+  tbb::parallel_for(std::size_t(0), bricks.size(), [&](std::size_t i) { std::ranges::replace(bricks[i], value, kInactiveVoxel); });
+  const std::uint64_t nan = volume.nanVoxels;
+  summariseValues(volume);
+  volume.nanVoxels = nan;
 }
 
 }  // namespace freevoxels

@@ -15,6 +15,8 @@ namespace freevoxels {
 
 struct Classification;
 struct Subject;
+struct ValueSummary;
+struct WildValues;
 
 /// Temperatures in addition to a volume's scalars.
 struct TemperatureGrid {
@@ -22,6 +24,8 @@ struct TemperatureGrid {
   ScalarBricks values;  ///< like Volume::scalars, for the same box, in any unit
   std::uint64_t activeVoxels = 0, nanVoxels = 0;
   float minimum = 0.0f, maximum = 0.0f;  ///< of the active voxels
+  std::uint64_t wildVoxels = 0;          ///< as of a Volume
+  float wildest = 0.0f;
 };
 
 /// Albedos in addition to a volume's scalars, linear Rec.709 in 0..1.
@@ -43,16 +47,26 @@ struct Volume {
   ScalarBricks scalars;  ///< finite values, or kInactiveVoxel
 
   std::uint64_t activeVoxels = 0;
-  std::uint64_t nanVoxels = 0;  ///< active voxels that were NaN or infinite; their value is 0 here
-  std::uint64_t negativeVoxels =
-      0;  ///< active voxels below 0; a density there counts as 0 (classification.h)
+  std::uint64_t nanVoxels = 0;           ///< voxels that were NaN or infinite, and hold no data here
+  std::uint64_t overflownVoxels = 0;     ///< voxels of half floats that were infinite, and have the largest half here
+  std::uint64_t negativeVoxels = 0;      ///< active voxels below 0; a density there counts as 0 (classification.h)
   float minimum = 0.0f, maximum = 0.0f;  ///< of the active voxels
+  /// Few voxels whose values were more than a thousand times as large as all others (value_range.h). They have the largest of the other
+  /// values here, so that they do not rule what is chosen by the range. `wildest` is the largest of them in the file.
+  std::uint64_t wildVoxels = 0;
+  float wildest = 0.0f;
+  std::optional<float> padding;  ///< of a scan: the value that was taken for no data (scan.h)
+  bool isPart = false;           ///< whether readVdb has left out what is beyond the clip box, as the whole would be too large
+  /// Whether the file says that the scalars are densities: it calls the grid a fog volume, and density or a usual name of it.
+  bool isFog = false;
 
   std::optional<TemperatureGrid> temperature;
   std::optional<AlbedoGrid> albedo;
 
   /// What the user should know of how the file was read: sentences, in which parameters may be marked (core/parameter.h).
   std::vector<std::string> warnings;
+  /// What was assumed of the file where it leaves that open: clauses, in which parameters are marked.
+  std::vector<std::string> remarks;
 
   /// How the volume's file says that it is classified; null where the file leaves that to the user, as OpenVDB's do.
   std::shared_ptr<const Classification> classification;
@@ -78,10 +92,22 @@ struct Volume {
 /// The scalars of all voxels, x fastest: for references and tests that look at every voxel.
 std::vector<float> denseScalars(const Volume& volume);
 
-/// Fills activeVoxels, nanVoxels, negativeVoxels, minimum and maximum, and replaces NaN and infinities by 0.
+/// Moves a volume near to the origin, and scales it, where its coordinates would leave double precision too few digits to tell its voxels
+/// apart, or single precision's range when they are squared; warns of it, as cameras and densities then count in other units.
+void normaliseWorld(Volume& volume);
+
+/// Fills activeVoxels, nanVoxels, negativeVoxels, minimum and maximum, takes NaN and infinities for no data, and tames wild voxels.
 void summariseValues(Volume& volume);
+/// The same of a part of a volume, the values of which are wild beyond those limits.
+void summariseValues(Volume& volume, const WildValues& wild);
+/// Fills the same fields for a volume whose values are not in memory.
+void takeSummary(Volume& volume, const ValueSummary& summary, const WildValues& wild);
+/// Fills the same fields as another volume has them.
+void takeCounts(Volume& volume, const Volume& other);
 /// Does the same for temperatures.
 void summariseValues(TemperatureGrid& grid);
+/// Makes voxels with this value voxels without data, and summarises again.
+void removeValue(Volume& volume, float value);
 
 /// Makes empty bricks of scalars wherever `grid` has bricks, so that voxels with emission alone are drawn
 /// too.

@@ -24,14 +24,18 @@ glm::dmat4 latticeTransform(const glm::dvec3& spacing, const glm::dvec3& origin)
   return glm::scale(glm::translate(glm::dmat4(1.0), origin), spacing);
 }
 
-Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld) {
+Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld, bool knowsNoData) {
   checkTransform(indexToWorld);
   Volume volume{.source = "the array", .dimensions = scalars.dimensions(), .indexToWorld = indexToWorld, .scalars = std::move(scalars)};
+  normaliseWorld(volume);
   summariseValues(volume);
   const glm::ivec3 size = volume.dimensions;
   if (volume.activeVoxels == 0)
     fail(ErrorKind::Input, "the array of {} x {} x {} voxels holds no data: all its values are NaN, or mark that there is none",
          size.x, size.y, size.z);
+  volume.isFog = looksLikeFog(volume);
+  if (volume.isFog) removeValue(volume, 0.0f);
+  if (!volume.isFog && !knowsNoData) removePadding(volume);
   orientScan(volume);
   return volume;
 }

@@ -11,9 +11,10 @@ namespace freevoxels {
 /// of the first voxel is at `origin`.
 glm::dmat4 latticeTransform(const glm::dvec3& spacing, const glm::dvec3& origin);
 
-/// Makes a volume named "the array" from scalars (Volume::scalars) and a transform (Volume::indexToWorld).
-/// Fails with ErrorKind::Input if no scalar is active, or if `indexToWorld` is not finite or gives voxels no
-/// extent.
-Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld);
+/// Makes a volume named "the array" from scalars (Volume::scalars) and a transform (Volume::indexToWorld). An array that looks like fog
+/// (scan.h) has no data where it is 0, as a file of the same densities. Where the caller does not know which values mean no data, the
+/// padding of a scan (scan.h) does. Fails with ErrorKind::Input if no scalar is active, or if `indexToWorld` is not finite or gives
+/// voxels no extent.
+Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld, bool knowsNoData);
 
 }  // namespace freevoxels

@@ -102,15 +102,15 @@ TEST_F(BadInput, FrustumTransform) {
 
 TEST_F(BadInput, SeveralGridsAndNoChoice) {
   openvdb::GridCPtrVec grids;
-  for (const char* name : {"fuel", "flame"}) {
+  for (const char* name : {"ash", "dust"}) {
     const auto grid = openvdb::FloatGrid::create();
     grid->setName(name);
     grid->fill(openvdb::CoordBBox(openvdb::Coord(0), openvdb::Coord(3)), 1.0f);
     grids.push_back(grid);
   }
   writeGrids(folder / "two.vdb", grids);
-  expectCleanRefusal(std::string("render @two.vdb @a.png") + kSmallAndQuiet, ExitCode::Input, "flame");
-  expectSuccess(run(std::string("render @two.vdb @a.png --grid flame") + kSmallAndQuiet));
+  expectCleanRefusal(std::string("render @two.vdb @a.png") + kSmallAndQuiet, ExitCode::Input, "dust");
+  expectSuccess(run(std::string("render @two.vdb @a.png --grid dust") + kSmallAndQuiet));
 }
 
 TEST_F(BadInput, BadTransferFunction) {

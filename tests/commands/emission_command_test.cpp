@@ -49,7 +49,7 @@ TEST_F(EmissionCommand, TheHeaderRepeatsTheImage) {
 }
 
 TEST_F(EmissionCommand, ColoursAreAlbedosAndClippedWithOneWarning) {
-  const ProgramResult result = run(std::string("render @fire.vdb @a.exr --albedo-grid Cd --unlit --size 40x40"));
+  const ProgramResult result = run(std::string("render @fire.vdb @a.exr --albedo-grid Cd --no-emission --unlit --size 40x40"));
   EXPECT_EQ(result.exitCode, 0) << result.err;
   EXPECT_NE(result.err.find("512 voxels of grid 'Cd'"), std::string::npos) << result.err;
   const glm::vec4 middle = readImage(folder / "a.exr").pixels[20 * 40 + 20];
@@ -65,14 +65,14 @@ TEST_F(EmissionCommand, WhatCannotBeIsRefused) {
   };
   refuse("--temperature-grid none", ExitCode::Input, "none");
   refuse("--temperature-grid Cd", ExitCode::Input, "--temperature-grid");
-  refuse("--temperature-grid far", ExitCode::Input, "transform");
   refuse("--albedo-grid heat", ExitCode::Input, "--albedo-grid");
-  refuse("--albedo-grid none", ExitCode::Input, "none");
+  refuse("--albedo-grid missing", ExitCode::Input, "missing");
   refuse("--emission=-1", ExitCode::Usage, "--emission");
   refuse("--emission nan", ExitCode::Usage, "--emission");
   refuse("--emission --temperature-scale -3", ExitCode::Usage, "--temperature-scale");
   refuse("--emission --temperature-offset inf", ExitCode::Usage, "--temperature-offset");
-  refuse("--temperature-scale 3", ExitCode::Usage, "--emission");
+  refuse("--no-emission --temperature-scale 3", ExitCode::Usage, "--no-emission");
+  refuse("--no-emission --emission 3", ExitCode::Usage, "--emission");
   refuse("--albedo-grid Cd --transfer-function @fire.vdb", ExitCode::Usage, "--transfer-function");
   expectCleanRefusal(std::string("render procedural:cube @a.png --resolution 8 --emission 1") + kSmallFire, ExitCode::Usage,
                      "procedural:fire");

@@ -117,7 +117,7 @@ TEST_F(SequenceCommand, AnEmptyFrameIsBackgroundAndADamagedOneIsLeftOut) {
   writeEmpty("s4.vdb");
   const ProgramResult result = run(std::string("render @s#.vdb @i#.exr --aov depth") + kSmallUnlit);
   EXPECT_EQ(result.exitCode, int(ExitCode::Input));
-  EXPECT_EQ(result.out, lines({"i2.exr", "i1.exr", "i4.exr"}));
+  EXPECT_EQ(result.out, lines({"i1.exr", "i2.exr", "i4.exr"}));
   EXPECT_NE(result.err.find("s3.vdb"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("1 of 4 volumes could not be drawn"), std::string::npos) << result.err;
   const Image empty = readExr(folder / "i1.exr");

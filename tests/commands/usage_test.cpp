@@ -94,7 +94,6 @@ constexpr WrongUse kWrongUses[] = {
     {"HalfAFrame", "turntable procedural:cube @a_#.png --frames 1.5", "--frames"},
     {"FramesOfRender", "render procedural:cube @a.png --frames 3", "--frames"},
     {"NoRun", "turntable procedural:cube @a.png", "run of #"},
-    {"RunInTheFolder", "turntable procedural:cube @##/a.png", "run of #"},
     {"TwoRuns", "turntable procedural:cube @a_#_##.png", "several runs"},
     {"OneOfTwoWithoutRun", "turntable procedural:cube @a_##.png @b.exr", "b.exr"},
     {"TurntableExtension", "turntable procedural:cube @a_##.bmp", ".bmp"},

@@ -20,7 +20,8 @@ SceneDescription everything(const TemporaryFolder& folder) {
                  .grid = "density[1]",
                  .resolution = glm::ivec3(20, 30, 40),
                  .clipBox = VoxelBox{{1, 2, 3}, {4, 5, 6}},
-                 .clipPlane = ClipPlane{{0.5, -1.0, 2.0}, {0.0, 1e-3, 1.0}}};
+                 .clipPlane = ClipPlane{{0.5, -1.0, 2.0}, {0.0, 1e-3, 1.0}},
+                 .noData = NoData{.value = -1024.5}};
   scene.classification = {.densityScale = 1.0 / 3.0,
                           .albedo = glm::dvec3(0.1, 0.2, 0.3),
                           .albedoGrid = "26",
@@ -72,6 +73,7 @@ SceneDescription everything(const TemporaryFolder& folder) {
 SceneDescription others(const TemporaryFolder& folder) {
   SceneDescription scene;
   scene.input.volume = (folder / "a.vdb").string();
+  scene.input.noData = NoData{};
   scene.classification.transferFunction = R"({"opacity":[[0,0],[1,0.5]]})";
   scene.emission.emission = true;
   scene.camera.orbit = glm::dvec2(10.0, -20.0);
@@ -122,7 +124,7 @@ TEST(SceneJson, ValuesMayBeTextsAsOnTheCommandLine) {
   ASSERT_EQ(scene.lighting.lights.size(), 1u);
   EXPECT_EQ(scene.lighting.lights[0].light.intensity, 2.0);
   EXPECT_EQ(scene.lighting.ambient, glm::dvec3(0.5));
-  EXPECT_FALSE(scene.emission.emission);
+  EXPECT_EQ(scene.emission.emission, false);
 }
 
 TEST(SceneJson, WrongFilesAreRefusedByFileAndKey) {
@@ -213,7 +215,7 @@ TEST(SceneDescription, FieldsThatSayNothingAreRefusedByTheirParameters) {
   expect({"grid"}, [](SceneDescription& scene) { scene.input.grid = "a"; });
   expect({"albedo-grid"}, [](SceneDescription& scene) { scene.classification.albedoGrid = "a"; });
   expect({"clip-box"}, [](SceneDescription& scene) { scene.input.clipBox = VoxelBox{{2, 0, 0}, {1, 1, 1}}; });
-  expect({"temperature-scale", "emission", "temperature-grid"}, [](SceneDescription& scene) { scene.emission.temperatureScale = 2.0; });
+  expect({"temperature-scale", "emission"}, [](SceneDescription& scene) { scene.emission = {.emission = false, .temperatureScale = 2.0}; });
   expect({"environment-rotation", "environment"}, [](SceneDescription& scene) { scene.lighting.environmentRotation = 2.0; });
   expect({"surface-share", "shading"}, [](SceneDescription& scene) {
     scene.lighting.surface = 0.5;

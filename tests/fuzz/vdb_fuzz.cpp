@@ -12,7 +12,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   const fuzz::FuzzFile file(bytes, size);
   fuzz::tryTo([&] { describeVdb(file.path()); });
   fuzz::tryTo([&] { listVdb(file.path()); });
-  fuzz::tryTo([&] { readVdb(file.path(), "", kMaxVoxels, {.temperature = ""}); });
+  fuzz::tryTo([&] { readVdb(file.path(), "", kMaxVoxels, {.temperature = GridRequest{.name = "", .isRequired = true}}); });
   fuzz::tryTo([&] { readVdb(file.path(), "", kMaxVoxels); });
   return 0;
 }

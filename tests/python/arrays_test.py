@@ -103,7 +103,24 @@ class ReadingTest(unittest.TestCase):
         self.refused(box.astype(object), "holds no numbers")
         if hasattr(np, "dtypes") and hasattr(np.dtypes, "StringDType"):
             self.refused(np.zeros((3, 4, 5), np.dtypes.StringDType()), "StringDType.* cannot be used")
-        self.refused(np.ma.masked_equal(box, 3), "has a mask, which would be lost")
+
+    def test_masked_voxels_hold_no_data(self):
+        for kind, shape in (("f4", (3, 5, 7)), (">i2", (9, 8, 17)), ("u1", (1, 1, 5)), ("f8", (33, 20, 9))):
+            box = values(shape, kind)
+            for masked in (np.ma.masked_equal(box, 3), np.ma.masked_greater(box, 40)[:, ::-1, :], np.ma.array(box, mask=box % 5 == 2, fill_value=9),
+                           np.ma.masked_greater(box, 40).transpose(2, 1, 0)):
+                want = masked.astype("f4").filled(np.nan)
+                self.assertEqual(freevoxels.Volume(masked).active_voxels, masked.count(), kind)
+                np.testing.assert_array_equal(freevoxels.render(masked, size=(24, 24)), freevoxels.render(want, size=(24, 24)))
+            self.assertEqual(freevoxels.Volume(np.ma.array(box)).active_voxels, box.size, "nothing is masked")
+        heat = np.ma.masked_less(values((3, 5, 7)), 50)
+        np.testing.assert_array_equal(freevoxels.render(values((3, 5, 7)), temperature=heat, emission=1.0, size=(24, 24)),
+                                      freevoxels.render(values((3, 5, 7)), temperature=heat.filled(np.nan), emission=1.0, size=(24, 24)))
+        with self.assertRaisesRegex(freevoxels.InputError, "holds no data"):
+            freevoxels.Volume(np.ma.array(values((3, 4, 5)), mask=True))
+        image = freevoxels.render(values((3, 5, 7)), size=(24, 24))
+        with self.assertRaisesRegex(freevoxels.InputError, "has a mask, which images have not"):
+            freevoxels.save("masked.png", np.ma.masked_less(image, 0.5))
 
     def test_shapes_that_are_no_volume_are_refused(self):
         for shape, sentence in (((), "0 dimensions"), ((4,), "1 dimension:"), ((4, 4), "2 dimensions"), ((2, 3, 4, 1), "4 dimensions"),

@@ -50,7 +50,7 @@ class ChannelsTest(unittest.TestCase):
     def written(self, array, spacing, origin):
         grid = pyopenvdb.FloatGrid()
         grid.copyFromArray(np.ascontiguousarray(array.transpose(2, 1, 0).astype("f4")))
-        grid.name, grid.gridClass = "density", pyopenvdb.GridClass.FOG_VOLUME
+        grid.name = "density"  # and of no class, as an array
         matrix = np.diag([*spacing, 1.0])
         matrix[3, :3] = origin
         grid.transform = pyopenvdb.createLinearTransform(matrix.tolist())

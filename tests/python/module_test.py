@@ -75,8 +75,14 @@ class RenderTest(unittest.TestCase):
         np.testing.assert_array_equal(image, freevoxels.render(volume, size=(40, 40)))
 
     def test_temperatures_shine(self):
-        image = freevoxels.render(blob(), temperature=2000 * blob(), emission=5, density_scale=0.1, unlit=True, size=(40, 40))
-        self.assertGreater(image[20, 20, 0], 2 * image[20, 20, 2])
+        options = dict(temperature=2000 * blob(), density_scale=0.1, unlit=True, size=(40, 40))
+        for more in ({"emission": 5}, {}, {"emission": True}):
+            image = freevoxels.render(blob(), **options, **more)
+            brightest = image.reshape(-1, 4)[image[..., 0].argmax()]
+            self.assertGreater(brightest[0], 2 * brightest[2], more)
+        cold = freevoxels.render(blob(), **options, emission=False)
+        np.testing.assert_array_equal(cold[..., 0], cold[..., 2])
+        np.testing.assert_array_equal(cold, freevoxels.render(blob(), **options, emission="none"))
 
     def test_options_take_the_forms_of_scene_files(self):
         one = freevoxels.render(blob(), density_scale=1, orbit=(10, 20), fov=30, light={"direction": (1, 1, 0), "intensity": 3},
@@ -266,7 +272,7 @@ class ErrorsTest(unittest.TestCase):
         infinite[0, 0, 0] = np.inf
         with self.assertLogs("freevoxels", logging.WARNING) as logs:
             freevoxels.Volume(infinite)
-        self.assertIn("1 voxel of the array with a value that is NaN or infinite counts as 0", logs.output[0])
+        self.assertIn("1 voxel of the array whose value is NaN or infinite holds no data", logs.output[0])
 
 
 if __name__ == "__main__":

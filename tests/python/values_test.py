@@ -156,6 +156,8 @@ class KeywordTest(unittest.TestCase):
                            (lambda **o: freevoxels.Renderer(volume, **o), "a volume"), (lambda **o: freevoxels.render(volume, **o), "a volume"),
                            (lambda **o: freevoxels.Renderer(volume).render(**o), "a volume")):
             for name, value in (("spacing", 2), ("origin", (1, 2, 3)), ("transform", np.eye(4)), ("no_data", 0), ("temperature", BOX)):
+                if (name, what) == ("no_data", "a file"):
+                    continue  # files have it, too
                 with self.assertRaisesRegex(freevoxels.UsageError, f"'{name}' is an option of arrays, and {what} has its own") as caught:
                     call(**{name: value})
                 self.assertEqual(caught.exception.parameters, (name,))
@@ -242,17 +244,12 @@ class KeywordTest(unittest.TestCase):
 
 
 class NoDataTest(unittest.TestCase):
-    def voxels(self, values, no_data, dtype, **more):
-        """How many of `values`, at the places of a box that fills no brick, are voxels with data."""
-        box = np.resize(np.array(values, dtype), (3, 9, 5))
-        count = {value: int(np.count_nonzero(box == value)) for value in np.unique(box)}
-        volume = freevoxels.Volume(box, no_data=no_data, **more)
-        return volume.active_voxels, count, box.size
-
     def expect_removed(self, values, no_data, dtype, removed):
-        active, count, size = self.voxels(values, no_data, dtype)
-        gone = sum(count[np.array(value, dtype)[()]] for value in removed)
-        self.assertEqual(active, size - gone, f"{no_data!r} of {dtype}")
+        """Of `values`, at the places of a box that fills no brick, these hold no data, and what a float cannot hold."""
+        box = np.resize(np.array(values, dtype), (3, 9, 5))
+        with np.errstate(over="ignore"):
+            kept = np.isfinite(box.astype("f4")) & ~np.isin(box, np.array(removed, dtype))
+        self.assertEqual(freevoxels.Volume(box, no_data=no_data).active_voxels, np.count_nonzero(kept), f"{no_data!r} of {dtype}")
 
     def test_whole_numbers_are_compared_exactly(self):
         for kind in ("i4", "i8", "u4", "u8"):
@@ -284,7 +281,7 @@ class NoDataTest(unittest.TestCase):
                 stored = np.array(float(no_data)).astype(kind)[()]
             self.assertTrue(np.isinf(stored))
             self.expect_removed([stored, 1, 2], no_data, kind, [stored])
-        self.expect_removed([1e300, 2e300, 1], 1e300, "f8", [1e300])
+        self.expect_removed([1e300, 2e300, 1, 2], 1, "f8", [1])
 
     def test_nan_is_no_data_in_any_case(self):
         for no_data in (np.nan, np.float32("nan"), None):

@@ -217,8 +217,8 @@ TEST(BakedVolume, PartsOfAnOpenVdbFileMakeTheSameFileAsTheWhole) {
   const std::filesystem::path file = folder / "a.vdb";
   writeVdb(file, volume, "density");
   const Volume whole = readVdb(file, "", std::uint64_t(1) << 28);
-  EXPECT_EQ(VdbParts::open(file, "", std::uint64_t(1) << 28), nullptr) << "it fits";
-  const std::unique_ptr<const VdbParts> parts = VdbParts::open(file, "", 0);
+  EXPECT_EQ(VdbParts::open(file, {}, std::uint64_t(1) << 28), nullptr) << "it fits";
+  const std::unique_ptr<const VdbParts> parts = VdbParts::open(file, {}, 0);
   ASSERT_NE(parts, nullptr);
   EXPECT_EQ(parts->outline().nanVoxels, 1u);
   EXPECT_EQ(parts->sample().nanVoxels, 1u);

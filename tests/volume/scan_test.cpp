@@ -56,6 +56,55 @@ TEST(Scan, FullBoxesAndNegativeValuesLookLikeOne) {
   })));
 }
 
+TEST(Scan, WhatTheFileCallsFogIsNoneHoweverFullItIs) {
+  Volume fog = nested(0.0f, 0.4f, 0.9f, 2.55f);
+  fog.isFog = true;
+  fog.negativeVoxels = 0;
+  EXPECT_FALSE(looksLikeScan(fog));
+  fog.negativeVoxels = fog.activeVoxels / 10;
+  EXPECT_TRUE(looksLikeScan(fog)) << "densities are not negative";
+}
+
+/// A cylinder of air, with a body in it, in a box that is filled up with one value.
+Volume padded(glm::ivec3 size, float padding, float air, float body) {
+  return makeVolume(size, glm::dmat4(1.0), [=](int x, int y, int z) {
+    const glm::dvec2 place = 2.0 * glm::dvec2(x + 0.5, y + 0.5) / glm::dvec2(size) - 1.0;
+    float noise = 0.0f;  // with most values near 0, as measurements have it
+    for (const float wave : {7.3f, 11.9f, 3.7f, 17.1f}) noise += 0.005f * std::abs(body - air) * std::sin(wave * float(x + 3 * y + 7 * z));
+    const double distance = glm::length(place);
+    return distance > 1.0 ? padding : noise + (distance > 0.6 ? air : body);
+  });
+}
+
+TEST(Scan, PaddingIsRecognisedByItsShareOfTheSidesAndItsDistance) {
+  for (const glm::ivec3 size : {glm::ivec3(32, 32, 20), glm::ivec3(61, 47, 33)}) {
+    for (const float padding : {-2000.0f, -3024.0f, -32768.0f, 32767.0f, -9999.0f, 9.97e36f})
+      EXPECT_EQ(paddingOf(padded(size, padding, -1000.0f, 60.0f)), padding) << padding;
+    EXPECT_EQ(paddingOf(padded(size, -1000.0f, -1000.0f, 60.0f)), std::nullopt) << "it is air";
+    EXPECT_EQ(paddingOf(padded(size, -1024.0f, -1000.0f, 60.0f)), std::nullopt) << "it is drawn as air";
+    EXPECT_EQ(paddingOf(padded(size, 0.0f, 300.0f, 1000.0f)), std::nullopt) << "0 may be air";
+  }
+  const Volume labels =
+      makeVolume({20, 20, 20}, glm::dmat4(1.0), [](int x, int y, int z) { return float(1 + (x > 6) + 4 * (y > 9) * (z > 3)); });
+  EXPECT_TRUE(looksLikeScan(labels));
+  EXPECT_EQ(paddingOf(labels), std::nullopt) << "few different values are labels";
+  Volume fog = padded({32, 32, 20}, 9.0f, 1.0f, 2.0f);
+  fog.isFog = true;
+  EXPECT_EQ(paddingOf(fog), std::nullopt);
+}
+
+TEST(Scan, WithoutItsPaddingAScanHasTransparentAir) {
+  Volume scan = padded({48, 48, 30}, -3024.0f, -1000.0f, 600.0f);
+  ASSERT_EQ(paddingOf(scan), -3024.0f);
+  scan.padding = -3024.0f;
+  removeValue(scan, -3024.0f);
+  EXPECT_TRUE(looksLikeScan(scan));
+  EXPECT_GT(scan.minimum, -1100.0f);
+  const TransferFunction function = scanTransferFunction(scan);
+  EXPECT_EQ(opacityAt(function, -1000.0f), 0.0f);
+  EXPECT_GT(opacityAt(function, 600.0f), 0.1f);
+}
+
 TEST(Scan, FogUniformVolumesAndLevelSetsAreNone) {
   EXPECT_FALSE(looksLikeScan(makeVolume({20, 20, 20}, glm::dmat4(1.0), [](int x, int y, int) {
     return x > 15 ? kInactiveVoxel : float(y);

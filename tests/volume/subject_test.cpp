@@ -63,6 +63,20 @@ TEST(Content, OfNothingVisibleIsTheBox) {
   EXPECT_EQ(contentOf(volume, {.densityScale = 1.0}).points, boxOf(volume).points);
 }
 
+/// Interpolation draws up to a voxel beyond the faces, which is much of a small volume.
+TEST(Content, OfFewVoxelsIsAllThatIsDrawnOfThem) {
+  for (const glm::ivec3 size :
+       {glm::ivec3(1), glm::ivec3(2, 1, 1), glm::ivec3(4, 4, 4), glm::ivec3(9, 12, 15), glm::ivec3(40, 40, 1), glm::ivec3(3, 90, 200)}) {
+    const Volume volume = makeVolume(size, obliqueTransform(), [](int, int, int) { return 1.0f; });
+    const IndexBox box = boundsOf(contentOf(volume, {.densityScale = 1.0}), volume);
+    for (int axis = 0; axis < 3; ++axis) {
+      const double reach = size[axis] < 16 ? 1.0 : 0.0;
+      EXPECT_NEAR(box.low[axis], -0.5 - reach, 1e-9);
+      EXPECT_NEAR(box.high[axis], size[axis] - 0.5 + reach, 1e-9);
+    }
+  }
+}
+
 TEST(Content, FillsMostOfTheImage) {
   const Volume volume = withBlock(0.0f, 1.0f);
   const Camera camera = framingCamera(contentOf(volume, {.densityScale = 1.0}), 35.0, 25.0, 1.0, {});

@@ -14,6 +14,7 @@ using openvdb::Coord;
 using openvdb::FloatGrid;
 using test::expectRefusal;
 using test::kPlenty;
+using test::required;
 
 constexpr int kLeast = std::numeric_limits<int>::min(), kMost = std::numeric_limits<int>::max();
 
@@ -50,7 +51,7 @@ TEST_F(VdbCoordinates, BoxesAtTheEndsAreReadAndDescribedAsElsewhere) {
       const auto colour = [](int x, int y, int z) { return openvdb::Vec3s(0.5f, valueAt(x, y, z), 2.0f); };
       write({makeBox<FloatGrid>("density", first, size, valueAt), makeBox<FloatGrid>("temperature", first, size, valueAt),
              makeBox<openvdb::Vec3SGrid>("Cd", first, size, colour)});
-      const Volume volume = readVdb(file, "density", kPlenty, {.temperature = "temperature", .albedo = "Cd"});
+      const Volume volume = readVdb(file, "density", kPlenty, {.temperature = required("temperature"), .albedo = required("Cd")});
       EXPECT_EQ(volume.dimensions, glm::ivec3(size.x(), size.y(), size.z()));
       EXPECT_EQ(volume.indexOrigin, glm::ivec3(first.x(), first.y(), first.z()));
       EXPECT_EQ(volume.activeVoxels, volume.voxelCount());
@@ -66,7 +67,7 @@ TEST_F(VdbCoordinates, BoxesAtTheEndsAreReadAndDescribedAsElsewhere) {
             ASSERT_EQ(volume.temperature->values.at({x, y, z}), valueAt(x, y, z));
             ASSERT_EQ(volume.albedo->values[1].at({x, y, z}), std::min(valueAt(x, y, z), 1.0f));
           }
-      const std::unique_ptr<const VdbParts> parts = VdbParts::open(file, "density", 0);
+      const std::unique_ptr<const VdbParts> parts = VdbParts::open(file, {.grid = "density"}, 0);
       if (parts == nullptr) continue;  // this OpenVDB cannot leave values in the file
       EXPECT_EQ(denseScalars(parts->sample()), denseScalars(volume));
       EXPECT_EQ(parts->outline().activeVoxels, volume.activeVoxels);
@@ -86,7 +87,7 @@ TEST_F(VdbCoordinates, TilesAndLevelSetsAtTheEnds) {
     write({tiles});
     EXPECT_EQ(read().activeVoxels, 128u * 128u * 128u);
     EXPECT_EQ(describeVdb(file).front().storedBlocks.at(0), 128u * 128u * 128u);
-    const std::unique_ptr<const VdbParts> parts = VdbParts::open(file, "", 0);
+    const std::unique_ptr<const VdbParts> parts = VdbParts::open(file, {}, 0);
     EXPECT_TRUE(parts == nullptr || parts->outline().activeVoxels == 128u * 128u * 128u);
 
     const FloatGrid::Ptr surface = makeBox<FloatGrid>("surface", atEnd ? Coord(kMost - 8) : Coord(kLeast), Coord(9), [](int x, int y, int z) {
@@ -115,8 +116,8 @@ TEST_F(VdbCoordinates, AnExtentOfMoreThanAnIntIsDescribedAndRefused) {
     EXPECT_EQ(info.dimensions, glm::i64vec3(along(0), along(1), along(2)));
     for (const std::uint64_t most : {kPlenty, std::numeric_limits<std::uint64_t>::max()})
       expectRefusal([&] { readVdb(file, "", most); }, ErrorKind::OutOfMemory, {"is too large", fmt::format("{}", along(0))});
-    EXPECT_EQ(VdbParts::open(file, "", 0), nullptr);
-    expectRefusal([&] { readVdb(file, "", kPlenty, {.temperature = "density"}); }, ErrorKind::OutOfMemory, {"is too large"});
+    EXPECT_EQ(VdbParts::open(file, {}, 0), nullptr);
+    expectRefusal([&] { readVdb(file, "", kPlenty, {.temperature = required("density")}); }, ErrorKind::OutOfMemory, {"is too large"});
   };
   expectTooLarge(Coord(kLeast), Coord(kMost));
   expectTooLarge(Coord(kLeast, 0, 0), Coord(kMost, 0, 0));
@@ -133,7 +134,7 @@ TEST_F(VdbCoordinates, TilesFarFromTheBoxCostNoTime) {
     for (int y = -8; y < 8; ++y)
       for (int z = -8; z < 8; ++z) colours->tree().addTile(3, Coord(kTile * x, kTile * y, kTile * z), openvdb::Vec3s(0.25f), true);
   write({density, colours});
-  const Volume volume = readVdb(file, "density", kPlenty, {.albedo = "Cd"});
+  const Volume volume = readVdb(file, "density", kPlenty, {.albedo = required("Cd")});
   EXPECT_EQ(volume.albedo->values[2].at({19, 0, 7}), 0.25f);
 }
 

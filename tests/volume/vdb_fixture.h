@@ -29,6 +29,10 @@ class Vdb : public testing::Test {
   const std::filesystem::path file = folder / "test.vdb";
 };
 
+inline GridRequest required(const std::string& name) {
+  return {.name = name, .isRequired = true};
+}
+
 inline openvdb::FloatGrid::Ptr makeGrid(const std::string& name, const openvdb::CoordBBox& box, float value) {
   const openvdb::FloatGrid::Ptr grid = openvdb::FloatGrid::create(0.0f);
   grid->setName(name);

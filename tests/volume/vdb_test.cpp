@@ -27,6 +27,7 @@ using test::kPlenty;
 using test::makeGrid;
 using test::named;
 using test::patchyVolume;
+using test::required;
 using test::Vdb;
 
 void expectNear(const glm::dmat4& a, const glm::dmat4& b, double tolerance) {
@@ -67,7 +68,7 @@ TEST_F(Vdb, AUniformCubeIsWrittenAsTiles) {
 
 TEST_F(Vdb, AFieldIsWrittenLeafByLeafAsItsVolumeIs) {
   const glm::ivec3 size(37, 24, 20);
-  const auto readBack = [&] { return readVdb(file, "density", kPlenty, {.temperature = "temperature"}); };
+  const auto readBack = [&] { return readVdb(file, "density", kPlenty, {.temperature = required("temperature")}); };
   writeVdb(file, makeProcedural("fire", size), "density");
   const Volume expected = readBack();
   writeVdb(file, ProceduralField("fire", size), "density");
@@ -199,7 +200,7 @@ TEST_F(Vdb, UpIsPlusZWhereTheMetadataAreThoseOfBlender) {
   EXPECT_EQ(read().up, z);
 }
 
-TEST_F(Vdb, BadValuesAreCountedAndNaNBecomesZero) {
+TEST_F(Vdb, BadValuesAreCountedAndNaNIsNoData) {
   const FloatGrid::Ptr grid = makeGrid("density", CoordBBox(Coord(0), Coord(9, 0, 0)), 1.0f);
   grid->tree().setValueOn(Coord(1, 0, 0), std::numeric_limits<float>::quiet_NaN());
   grid->tree().setValueOn(Coord(2, 0, 0), -std::numeric_limits<float>::infinity());
@@ -208,15 +209,144 @@ TEST_F(Vdb, BadValuesAreCountedAndNaNBecomesZero) {
   grid->tree().setValueOff(Coord(5, 0, 0), std::numeric_limits<float>::quiet_NaN());
   write({grid});
   const Volume volume = read();
-  EXPECT_EQ(volume.activeVoxels, 9u);
+  EXPECT_EQ(volume.activeVoxels, 6u);
   EXPECT_EQ(volume.nanVoxels, 3u);
   EXPECT_EQ(volume.negativeVoxels, 1u);
   EXPECT_EQ(volume.minimum, -2.0f);
   EXPECT_EQ(volume.maximum, 1.0f);
-  EXPECT_EQ(denseScalars(volume), (std::vector<float>{1, 0, 0, 0, -2, kInactiveVoxel, 1, 1, 1, 1}));
+  EXPECT_EQ(denseScalars(volume), (std::vector<float>{1, kInactiveVoxel, kInactiveVoxel, kInactiveVoxel, -2, kInactiveVoxel, 1, 1, 1, 1}));
   const GridInfo info = describeVdb(file)[0];
   EXPECT_EQ(info.minimum, -2.0);
   EXPECT_EQ(info.maximum, 1.0);
+}
+
+TEST_F(Vdb, HalvesBeyondTheirRangeAreTheLargest) {
+  const FloatGrid::Ptr grid = makeGrid("density", CoordBBox(Coord(0), Coord(9, 9, 9)), 60000.0f);
+  grid->tree().setValueOn(Coord(4), 2e5f);
+  grid->tree().setValueOn(Coord(5), -2e5f);
+  grid->setSaveFloatAsHalf(true);
+  write({grid});
+  const Volume volume = read();
+  EXPECT_EQ(volume.overflownVoxels, 2u);
+  EXPECT_EQ(volume.nanVoxels, 0u);
+  EXPECT_EQ(volume.scalar(4, 4, 4), 65504.0f);
+  EXPECT_EQ(volume.scalar(5, 5, 5), -65504.0f);
+}
+
+TEST_F(Vdb, AFileWithoutNumbersIsEmpty) {
+  write({makeGrid("density", CoordBBox(Coord(0), Coord(3)), std::numeric_limits<float>::quiet_NaN())});
+  EXPECT_THROW(read(), EmptyVolumeError);
+}
+
+TEST_F(Vdb, ActiveTilesOfNoDensityHoldNothing) {
+  const FloatGrid::Ptr grid = makeGrid("density", CoordBBox(Coord(0), Coord(6)), 1.0f);
+  grid->tree().addTile(1, Coord(512), 0.0f, true);
+  write({grid});
+  EXPECT_EQ(read().dimensions, glm::ivec3(7));
+  grid->setGridClass(openvdb::GRID_UNKNOWN);  // which may be a scan, whose 0 is a value
+  write({grid});
+  EXPECT_EQ(read().dimensions, glm::ivec3(520));
+}
+
+TEST_F(Vdb, APartOfATooLargeBoxIsRead) {
+  write({makeGrid("density", CoordBBox(Coord(0), Coord(6)), 1.0f), makeGrid("heat", CoordBBox(Coord(0), Coord(6)), 0.5f)});
+  const FloatGrid::Ptr far = makeGrid("density", CoordBBox(Coord(0), Coord(6)), 1.0f);
+  far->tree().setValueOn(Coord(1 << 22), 0.25f);
+  write({far, makeGrid("heat", CoordBBox(Coord(0), Coord(6)), 0.5f)});
+  EXPECT_THROW(read(), Error);
+  const ReadRequest part{
+      .maximumVoxels = kPlenty, .more = {.temperature = GridRequest{}}, .clipBox = VoxelBox{.first = {2, 1, 0}, .last = {11, 12, 13}}};
+  const Volume volume = readVdb(file, part);
+  EXPECT_TRUE(volume.isPart);
+  EXPECT_EQ(volume.dimensions, glm::ivec3(10, 12, 14));
+  EXPECT_EQ(volume.indexOrigin, glm::ivec3(2, 1, 0));
+  EXPECT_EQ(volume.activeVoxels, 5u * 6u * 7u);
+  EXPECT_EQ(volume.temperature->activeVoxels, 5u * 6u * 7u);
+}
+
+TEST_F(Vdb, ALevelSetThatIsNegativeOutsideIsTurned) {
+  for (const float sign : {1.0f, -1.0f}) {
+    const FloatGrid::Ptr grid = FloatGrid::create(3.0f * sign);
+    grid->setName("surface");
+    grid->setGridClass(openvdb::GRID_LEVEL_SET);
+    for (int x = -3; x <= 3; ++x)
+      for (int y = -3; y <= 3; ++y) grid->tree().setValueOn(Coord(x, y, 0), sign * (float(std::max(std::abs(x), std::abs(y))) - 1.5f));
+    write({grid});
+    const Volume volume = read();
+    EXPECT_EQ(volume.activeVoxels, 25u) << sign;
+    EXPECT_EQ(volume.remarks.empty(), sign > 0.0f);
+  }
+}
+
+/// A sphere of distances as OpenVDB makes it, with all of the inside active where `isFilled`.
+FloatGrid::Ptr sphereOfDistances(float voxel, float halfWidth, bool isFilled) {
+  const float band = halfWidth * voxel;
+  const FloatGrid::Ptr grid = FloatGrid::create(band);
+  grid->setName("surface");
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(double(voxel)));
+  for (int z = -12; z <= 12; ++z)
+    for (int y = -12; y <= 12; ++y)
+      for (int x = -12; x <= 12; ++x) {
+        const float distance = voxel * (std::sqrt(float(x * x + y * y + z * z)) - 7.5f);
+        const float stored = std::clamp(distance, -band, band);
+        if (std::abs(distance) < band || isFilled)
+          grid->tree().setValueOn(Coord(x, y, z), stored);
+        else if (distance < 0.0f)
+          grid->tree().setValueOff(Coord(x, y, z), stored);
+      }
+  return grid;
+}
+
+TEST_F(Vdb, DistancesAreALevelSetWhateverTheClass) {
+  for (const float voxel : {0.1f, 1.0f, 25.0f})
+    for (const float halfWidth : {2.0f, 3.0f, 10.0f})
+      for (const bool isFilled : {false, true}) {
+        SCOPED_TRACE(fmt::format("voxel {}, half width {}, filled {}", voxel, halfWidth, isFilled));
+        const FloatGrid::Ptr grid = sphereOfDistances(voxel, halfWidth, isFilled);
+        grid->setGridClass(openvdb::GRID_LEVEL_SET);
+        write({grid});
+        const Volume wanted = read();
+        for (const openvdb::GridClass other : {openvdb::GRID_UNKNOWN, openvdb::GRID_FOG_VOLUME}) {
+          grid->setGridClass(other);
+          write({grid});
+          const Volume volume = read();
+          EXPECT_TRUE(volume.isLevelSet);
+          EXPECT_EQ(denseScalars(volume), denseScalars(wanted));
+          ASSERT_EQ(volume.remarks.size(), 1u);
+          EXPECT_NE(volume.remarks[0].find("level set"), std::string::npos);
+        }
+      }
+}
+
+TEST_F(Vdb, ValuesOfBothSignsAloneAreNoLevelSet) {
+  for (const float background : {0.0f, -1000.0f, 50.0f, 9.97e36f}) {
+    const FloatGrid::Ptr grid = FloatGrid::create(background);
+    grid->setName("values");
+    for (int i = 0; i < 100; ++i) grid->tree().setValueOn(Coord(i % 5, i / 5 % 5, i / 25), float(i) * 11.0f - 500.0f);
+    write({grid});
+    const Volume volume = read();
+    EXPECT_FALSE(volume.isLevelSet) << background;
+    EXPECT_EQ(volume.activeVoxels, 100u);
+  }
+}
+
+TEST_F(Vdb, TheHeaderTellsWhereTheVoxelsAre) {
+  const FloatGrid::Ptr grid = makeGrid("density", CoordBBox(Coord(-2, 0, 5), Coord(7, 3, 9)), 1.0f);
+  grid->setTransform(openvdb::math::Transform::createLinearTransform(0.5));
+  write({grid});
+  const auto extent = extentOfVdb(file, "", {});
+  ASSERT_TRUE(extent);
+  EXPECT_EQ(extent->voxels, 10u * 4u * 5u);
+  ASSERT_EQ(extent->corners.size(), 8u);
+  glm::dvec3 low(1e9), high(-1e9);
+  for (const glm::dvec3& corner : extent->corners) {
+    low = glm::min(low, corner);
+    high = glm::max(high, corner);
+  }
+  EXPECT_EQ(low, glm::dvec3(-1.25, -0.25, 2.25));
+  EXPECT_EQ(high, glm::dvec3(3.75, 1.75, 4.75));
+  write({makeGrid("density", CoordBBox(), 1.0f)});
+  EXPECT_EQ(extentOfVdb(file, "", {})->voxels, 0u);
 }
 
 TEST_F(Vdb, GridsOfOtherTypesAreRefusedByName) {
@@ -274,8 +404,7 @@ TEST_F(Vdb, TooLargeABoxIsRefusedBeforeItIsAllocated) {
   grid->tree().setValueOn(Coord(999'999, 1'999'999, 2'999'999), 1.0f);
   write({grid});
   expectRefusal([&] { read(); }, ErrorKind::OutOfMemory,
-                {"test.vdb density", "1000000 x 2000000 x 3000000", "6000000000000000000",
-                 std::to_string(kPlenty), "resample or crop"});
+                {"test.vdb density", "1000000 x 2000000 x 3000000", "6000000000000000000", std::to_string(kPlenty), "clip-box"});
   write({makeGrid("density", CoordBBox(Coord(0), Coord(9)), 1.0f)});
   EXPECT_NO_THROW(readVdb(file, "", 1000));
   expectRefusal([&] { readVdb(file, "", 999); }, ErrorKind::OutOfMemory, {"10 x 10 x 10", "1000", "999"});

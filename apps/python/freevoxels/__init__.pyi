@@ -35,6 +35,7 @@ class _Part(TypedDict, total=False):  # which part of a file is read
 
 class _Input(_Part, total=False):
     volume: _Path
+    no_data: float | Literal["none"] | None
 
 class _Camera(TypedDict, total=False):
     orbit: _Pair
@@ -55,7 +56,7 @@ class _Classification(TypedDict, total=False):
     classification: Literal["post", "pre"] | _Section
 
 class _Emission(TypedDict, total=False):
-    emission: bool | float | _Section
+    emission: bool | float | Literal["none"] | _Section
     temperature_grid: str
     temperature_scale: float
     temperature_offset: float
@@ -120,7 +121,7 @@ class _OnceOptions(_Part, _FrameOptions, total=False):
     spacing: float | Sequence[float] | NDArray[Any]
     origin: Sequence[float] | NDArray[Any]
     transform: ArrayLike | None
-    no_data: float | None
+    no_data: float | Literal["none"] | None
     temperature: ArrayLike | None
 
 class _SceneOptions(_Input, _Camera, _Classification, _Emission, _Light, _Method, _Output, _SceneFile, total=False): ...
@@ -142,7 +143,7 @@ class Volume:
         spacing: float | Sequence[float] | NDArray[Any] = ...,
         origin: Sequence[float] | NDArray[Any] = ...,
         transform: ArrayLike | None = ...,
-        no_data: float | None = ...,
+        no_data: float | Literal["none"] | None = ...,
         temperature: ArrayLike | None = ...,
         clip_box: _Numbers | None = ...,
         clip_plane: _Numbers | None = ...,

@@ -124,6 +124,9 @@ class FREEVOXELS_API Volume {
   std::string source() const;              ///< file and grid, for messages
   /// What the user should know of how the file was read, in sentences: NaN values, a grid chosen among several.
   std::vector<std::string> warnings() const;
+  /// What was assumed of the file where it leaves that open, and the keys of a scene that say otherwise, in one line: which grids have the
+  /// densities, temperatures and colours, and a scan's value of no data. Empty if nothing was.
+  std::string remarks() const;
 
  private:
   struct State;

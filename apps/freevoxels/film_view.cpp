@@ -1,0 +1,216 @@
+#include "apps/freevoxels/film_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "engine/core/error.h"
+#include "engine/storage/baked_volume.h"
+#include "engine/volume/subject.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// What the header of a frame's file tells of it.
+struct Outline {
+  std::string input;
+  std::vector<glm::dvec3> corners;      ///< of its box, in the world
+  std::optional<std::uint64_t> voxels;  ///< unknown where the file has to be read
+};
+
+SceneDescription sceneOf(const SceneDescription& description, const std::string& input) {
+  SceneDescription scene = description;
+  scene.input.volume = input;
+  return scene;
+}
+
+Outline outlineOf(const SceneDescription& description, const std::string& input) {
+  const SceneDescription scene = sceneOf(description, input);
+  Outline outline{.input = input, .corners = {}, .voxels = std::nullopt};
+  if (const auto file = scene.input.baked()) {
+    const Volume volume = bakedOutline(*file);
+    outline.corners = boxOf(volume).points;
+    outline.voxels = volume.activeVoxels;
+  } else if (!proceduralName(input)) {
+    const auto extent = extentOfVdb(input, scene.input.grid.value_or(""),
+                                    {.temperature = scene.emission.grid(), .albedo = std::nullopt, .mayBeMissing = true});
+    if (!extent) return outline;
+    outline.voxels = extent->voxels;
+    if (!scene.input.clipBox && !scene.input.clipPlane) outline.corners = extent->corners;
+  }
+  return outline;
+}
+
+/// Runs `work`; false if the frame is empty or cannot be read, which is said when it is drawn.
+template <typename Work>
+bool attempt(const Work& work) {
+  try {
+    work();
+    return true;
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::Input && error.kind() != ErrorKind::OutOfMemory && error.kind() != ErrorKind::Usage) throw;
+    return false;
+  }
+}
+
+/// The frames to read.
+std::vector<std::size_t> choose(const std::vector<Outline>& frames) {
+  std::vector<std::size_t> full;
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    if (frames[i].voxels != 0u) full.push_back(i);
+  if (full.empty()) return full;
+  std::set<std::size_t> chosen{*std::ranges::max_element(full, {}, [&](std::size_t i) { return frames[i].voxels.value_or(0); })};
+  const std::size_t most = std::min(full.size(), kMostFramesRead);
+  for (std::size_t i = 0; i < most && chosen.size() < most; ++i) chosen.insert(full[most == 1 ? 0 : i * (full.size() - 1) / (most - 1)]);
+  return {chosen.begin(), chosen.end()};
+}
+
+/// The sum of the densities of all voxels, times their volume.
+double matterOf(const Volume& volume) {
+  if (!(volume.maximum > 0.0f)) return 0.0;
+  const double edge = std::cbrt(double(volume.activeVoxels)) * volume.voxelSize();
+  return edge * edge / automaticDensityScale(volume, 1.0);
+}
+
+/// A measure of the light of all voxels that holds whatever the unit of the temperatures.
+double heatOf(const Volume& volume) {
+  double heat = 0.0;
+  if (!volume.temperature) return heat;
+  for (const ScalarBricks::Brick& brick : volume.temperature->values.bricks())
+    for (const float value : brick) heat += std::pow(std::max(double(value), 0.0), 4.0);
+  return heat * std::pow(volume.voxelSize(), 3.0);
+}
+
+class Survey {
+ public:
+  explicit Survey(const SceneDescription& description) : description_(description) {}
+
+  void add(const std::string& input, std::shared_ptr<Volume> volume) {
+    const double matter = matterOf(*volume), heat = heatOf(*volume);
+    if (volume->temperature) {
+      hottest_.activeVoxels += volume->temperature->activeVoxels;
+      hottest_.minimum = std::min(hottest_.minimum, volume->temperature->minimum);
+      hottest_.maximum = std::max(hottest_.maximum, volume->temperature->maximum);
+    }
+    hasAlbedo_ = hasAlbedo_ || volume->albedo;
+    if (heat > most_.heat) most_ = {heat, input, volume};
+    if (!largest_.volume || matter > largest_.heat) largest_ = {matter, input, volume};
+  }
+  bool isEmpty() const { return !largest_.volume; }
+
+  FilmView resolve(std::vector<glm::dvec3> corners) {
+    const Volume& volume = *largest_.volume;
+    refuseMissingGrids(volume);
+    FilmView view{.scene = {.volume = largest_.volume}, .largest = largest_.input, .brightest = ""};
+    Classification& classification = view.scene.classification;
+    const std::optional<Emission> emission = volume.classification ? std::nullopt : emissionScales();
+    classification = volume.classification ? description_.resolveClassification(volume)
+                                           : description_.classification.resolve(volume, emission.has_value());
+    if (emission) {
+      view.brightest = most_.input;
+      classification.emission = emission;
+      if (!description_.emission.strength)
+        classification.emission->strength = automaticEmissionStrength(*most_.volume, classification, *emission);
+      if (!description_.classification.albedo) classification.albedo = glm::vec3(kSmokeAlbedo);
+    }
+    view.scene.camera = description_.camera
+                            .resolve(
+                                volume.up, [&] { return subjectOf(std::move(corners), classification); }, 1)
+                            .front();
+    view.scene.lighting = description_.lighting.resolve(volume, classification, view.scene.camera);
+    forgetVoxels();
+    return view;
+  }
+
+ private:
+  struct Most {
+    double heat = 0.0;  ///< or matter
+    std::string input;
+    std::shared_ptr<Volume> volume;
+  };
+
+  /// Fails where no frame has a grid that is asked for, as the single frames may lack it.
+  void refuseMissingGrids(const Volume& volume) const {
+    if (volume.classification) return;
+    if (description_.emission.isAsked() && hottest_.activeVoxels == 0)
+      fail(ErrorKind::Input, "no frame that was looked at has temperatures: leave {} out",
+           Parameter(description_.emission.temperatureGrid ? "temperature-grid" : "emission"));
+    const std::optional<GridRequest> albedo = description_.classification.grid();
+    if (albedo && albedo->isRequired && !hasAlbedo_)
+      fail(ErrorKind::Input, "no frame that was looked at has a grid '{}': choose another with {}", albedo->name, Parameter("albedo-grid"));
+  }
+
+  /// Nothing where the film does not shine.
+  std::optional<Emission> emissionScales() const {
+    const EmissionDescription& given = description_.emission;
+    if (!most_.volume || given.emission == false) return std::nullopt;
+    Emission scales;
+    scales.temperatureOffset = given.temperatureOffset.value_or(given.temperatureScale ? 0.0 : automaticTemperatureOffset(hottest_));
+    scales.temperatureScale = given.temperatureScale.value_or(automaticTemperatureScale(hottest_, scales.temperatureOffset));
+    const glm::dvec3 light = emittedLight(scales, hottest_.maximum);
+    if (!given.isAsked() && !(light.r + light.g + light.b > 0.0)) return std::nullopt;
+    scales.strength = given.strength.value_or(1.0);
+    return scales;
+  }
+
+  Subject subjectOf(std::vector<glm::dvec3> points, const Classification& classification) const {
+    for (const Most* one : {&largest_, &most_})
+      if (one->volume) {
+        const Subject content = contentOf(*one->volume, classification);
+        points.insert(points.end(), content.points.begin(), content.points.end());
+      }
+    glm::dvec3 low = points.front(), high = low;
+    for (const glm::dvec3& point : points) {
+      low = glm::min(low, point);
+      high = glm::max(high, point);
+    }
+    return {.centre = (low + high) / 2.0, .points = std::move(points)};
+  }
+
+  /// What is said of a frame is said when it is drawn.
+  void forgetVoxels() {
+    Volume& volume = *largest_.volume;
+    if (most_.volume) {
+      hottest_.name = most_.volume->temperature->name;
+      volume.temperature = hottest_;
+    }
+    volume.scalars = ScalarBricks(volume.dimensions);
+    if (volume.temperature) volume.temperature->values = ScalarBricks(volume.dimensions);
+    if (volume.albedo) volume.albedo->values.fill(ScalarBricks(volume.dimensions));
+    volume.warnings.clear();
+    volume.nanVoxels = volume.negativeVoxels = volume.overflownVoxels = volume.wildVoxels = 0;
+  }
+
+  const SceneDescription description_;
+  Most largest_, most_;
+  TemperatureGrid hottest_;  ///< the range of all frames
+  bool hasAlbedo_ = false;
+};
+
+}  // namespace
+
+std::optional<FilmView> viewOfFilm(const SceneDescription& description, std::span<const std::string> inputs, std::uint64_t maximumVoxels) {
+  std::vector<Outline> frames;
+  std::vector<glm::dvec3> corners;
+  for (const std::string& input : inputs)
+    attempt([&] {
+      const Outline frame = outlineOf(description, input);
+      corners.insert(corners.end(), frame.corners.begin(), frame.corners.end());
+      frames.push_back(frame);
+    });
+  Survey survey(sceneOf(description, inputs.front()));
+  for (const std::size_t i : choose(frames))
+    attempt([&] {
+      const SceneDescription scene = sceneOf(description, frames[i].input);
+      const auto baked = scene.input.baked();
+      survey.add(frames[i].input, std::make_shared<Volume>(baked ? bakedOutline(*baked) : scene.readVolume(maximumVoxels, 0, {}, true)));
+    });
+  if (survey.isEmpty()) return std::nullopt;
+  return survey.resolve(std::move(corners));
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,25 @@
+#pragma once
+// How all frames of a film are seen where the options leave that open: as the film has it, not one of its frames.
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "engine/description/scene_description.h"
+
+namespace freevoxels {
+
+struct FilmView {
+  Scene scene;            ///< its volume has no voxels
+  std::string largest;    ///< the frame whose matter is drawn as that of a single volume is
+  std::string brightest;  ///< the frame with most heat; empty if nothing shines
+};
+
+/// The camera shows the boxes of all frames, which the headers of the files tell. Fog or scan, scale of densities and up direction are
+/// those of the frame with most matter, the scales of temperature and emission those of the frames that are hottest and have most heat,
+/// among at most kMostFramesRead, which are read: the largest, and others at equal distances. Nothing where no frame can be drawn.
+std::optional<FilmView> viewOfFilm(const SceneDescription& description, std::span<const std::string> inputs, std::uint64_t maximumVoxels);
+inline constexpr std::size_t kMostFramesRead = 12;
+
+}  // namespace freevoxels

@@ -1,0 +1,40 @@
+#pragma once
+// What the values of a volume's voxels are, summed up in one pass over its bricks.
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <span>
+
+#include "engine/volume/scalar_bricks.h"
+
+namespace freevoxels {
+
+struct ValueSummary {
+  static constexpr std::size_t kMagnitudes = 256;  ///< exponents of floats; the first has 0 and the denormals
+
+  std::uint64_t active = 0, nan = 0, negative = 0;
+  float minimum = std::numeric_limits<float>::infinity();
+  float maximum = -std::numeric_limits<float>::infinity();
+  std::array<std::uint64_t, kMagnitudes> counts{};  ///< of active voxels by the exponent of their value
+  std::array<float, kMagnitudes> largest{};         ///< absolute value of each exponent
+
+  void add(const ValueSummary& other);
+};
+
+/// Sums up the active voxels. Those that are NaN or infinite become voxels without data.
+ValueSummary summarise(std::span<ScalarBricks::Brick> bricks);
+
+/// Values that stray from all others: at most a thousandth of the voxels and kMostWildVoxels, with absolute values more than 1024 times
+/// as large as the largest of the rest.
+struct WildValues {
+  std::uint64_t voxels = 0;
+  float limit = std::numeric_limits<float>::infinity();  ///< the largest absolute value of the rest
+};
+inline constexpr std::uint64_t kMostWildVoxels = 100;
+WildValues wildValues(const ValueSummary& summary);
+
+/// Limits the absolute values of active voxels.
+void limitValues(std::span<ScalarBricks::Brick> bricks, float limit);
+
+}  // namespace freevoxels
