@@ -95,6 +95,10 @@ bool ImageDirector::take(ViewState& state, std::exception_ptr& failure) {
     if (image.request.number != lastRequest_ || isPending(state)) continue;
     if (!state.camera) {
       state.begin(image.scene);
+      if (image.film) {  // what is automatic would be that of the frame
+        state.keepScales(image.film->scene.classification);
+        state.scene.camera.look(*state.camera);
+      }
       ++revision_;  // what was automatic is given now
     } else if (image.request.purpose == Purpose::Whole) {
       state.camera = image.scene.camera;  // an automatic camera is another one after a resize

@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "apps/freevoxels/scene_options.h"
+#include "engine/core/error.h"
 #include "engine/description/scene_fields.h"
 #include "engine/image/display_pass.h"
 #include "engine/volume/coarse_volume.h"
+#include "engine/volume/vdb.h"
 
 namespace freevoxels {
 
@@ -28,6 +30,14 @@ std::string nameOf(const SceneDescription& scene, bool clipped) {
   };
   return fmt::format("{}temperature={} albedo={}", textOf(read, {"input"}), nameOf(scene.emission.grid()),
                      nameOf(scene.classification.grid()));
+}
+
+Volume readFrame(const SceneDescription& scene, std::uint64_t maximumVoxels) {
+  try {
+    return scene.readVolume(maximumVoxels, 0, {}, true);
+  } catch (const EmptyVolumeError&) {
+    return {.source = scene.input.volume, .dimensions = glm::ivec3(1), .scalars = ScalarBricks(glm::ivec3(1))};
+  }
 }
 
 int blockEdge(const Volume& volume, int voxelsAlongEdge) {
@@ -51,7 +61,7 @@ std::shared_ptr<const Volume> VolumeCache::read(const SceneDescription& scene, b
     SceneDescription unclipped = scene;
     unclipped.input.clipBox.reset();
     unclipped.input.clipPlane.reset();
-    whole_ = std::make_shared<const Volume>(unclipped.readVolume(maximumVoxels_, 0, {}, isFrame));
+    whole_ = std::make_shared<const Volume>(isFrame ? readFrame(unclipped, maximumVoxels_) : unclipped.readVolume(maximumVoxels_));
     logWarnings(*whole_, false);
     logAssumptions(*whole_);
     name_ = name;
@@ -109,14 +119,13 @@ void ImageMaker::makeRenderer(const Scene& scene, const ImageRequest& request, c
 }
 
 /// Sums over the volume, the environment and the histogram are made once for all cameras.
-Scene ImageMaker::resolve(const ImageRequest& request) {
+Scene ImageMaker::resolve(const ImageRequest& request, const FilmView* film) {
   std::shared_ptr<const Volume> volume = volumes_.read(request.scene, request.isFrame);
   if (scene_ && request.revision != 0 && request.revision == revision_ && scene_->volume == volume) {
     scene_->camera = request.scene.cameras(*volume, scene_->classification).front();
     return *scene_;
   }
   scene_.reset();
-  const std::shared_ptr<const FilmView> film = request.film.empty() ? nullptr : volumes_.viewOf(request.scene, request.film);
   SceneDescription scene = request.scene;
   if (request.isFrame && !volume->temperature && !volume->classification) scene.emission = {.emission = false};
   scene_ = film ? scene.resolveLike(film->scene, std::move(volume)) : scene.resolve(std::move(volume));
@@ -134,10 +143,13 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
   request.scene.check();
   const std::string before = std::exchange(input_, request.scene.input.volume);
   if (progress) progress(before == input_ ? "preparing" : "reading " + input_, 0.0);
+  const std::shared_ptr<const FilmView> film = request.film.empty() ? nullptr : volumes_.viewOf(request.scene, request.film);
+  if (!request.film.empty() && !film) fail(ErrorKind::Input, "no frame of the sequence holds anything to draw");
   DrawnImage drawn{.request = request,
-                   .scene = resolve(request),
+                   .scene = resolve(request, film.get()),
+                   .film = film,
                    .wholeDimensions = volumes_.wholeDimensions(),
-                  .device = device_.description()};
+                   .device = device_.description()};
   const auto start = std::chrono::steady_clock::now();
   makeRenderer(drawn.scene, request, progress);
 

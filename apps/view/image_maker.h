@@ -23,7 +23,7 @@ class VolumeCache {
   VolumeCache(const SceneDescription& scene, std::shared_ptr<const Volume> volume);
 
   /// The volume that the options name, read and clipped unless it is the last one; whoever comes meanwhile waits for it. A frame of a
-  /// sequence may lack grids.
+  /// sequence may lack grids, and is a voxel without data if it holds nothing.
   std::shared_ptr<const Volume> read(const SceneDescription& scene, bool isFrame = false);
   /// How the files of a sequence are seen as a whole (film_view.h); null if none can be drawn. Chosen once.
   std::shared_ptr<const FilmView> viewOf(const SceneDescription& scene, const std::vector<std::string>& files);
@@ -63,6 +63,7 @@ struct ImageRequest {
 struct DrawnImage {
   ImageRequest request;    ///< the request that it answers
   Scene scene;               ///< the resolved scene, with all voxels of the volume
+  std::shared_ptr<const FilmView> film;  ///< of which that scene was chosen; null if it was for the volume alone
   glm::ivec3 wholeDimensions{0};  ///< of the volume's box before it was clipped
   DeviceDescription device;  ///< device that made it
   std::shared_ptr<const FrameTargets> image;     ///< on the device, which must outlive the image
@@ -87,7 +88,7 @@ class ImageMaker {
   DrawnImage make(const ImageRequest& request, const Progress& progress);
 
  private:
-  Scene resolve(const ImageRequest& request);
+  Scene resolve(const ImageRequest& request, const FilmView* film);
   void makeRenderer(const Scene& scene, const ImageRequest& request, const Progress& progress);
   std::shared_ptr<const Volume> coarse(const Scene& scene, int voxelsAlongEdge);
 

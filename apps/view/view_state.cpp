@@ -39,7 +39,6 @@ void ViewState::look(const Camera& from) {
 
 void ViewState::begin(const Scene& first) {
   camera = first.camera;
-  if (sequence) keepScales(first.classification);
   if (const auto& function = first.classification.transferFunction; function && !scene.classification.transferFunction)
     scene.classification.transferFunction = transferFunctionJson(*function);
   LightingDescription& lighting = scene.lighting;

@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "apps/view/navigation.h"
+#include "engine/volume/openvdb_trees.h"
 #include "tests/device/device_fixture.h"
+#include "tests/temporary_folder.h"
 
 namespace freevoxels {
 namespace {
@@ -66,6 +68,37 @@ TEST_F(ImageDirectorTest, AnAutomaticCameraFollowsTheWindow) {
   ASSERT_TRUE(director.isComplete(state));
   EXPECT_NE(state.camera->position, before.position) << "it fits the volume into a narrow image";
   EXPECT_EQ(state.camera->position, state.whole->scene.camera.position);
+}
+
+TEST_F(ImageDirectorTest, AllFramesOfASequenceHaveTheViewOfTheWhole) {
+  const test::TemporaryFolder folder;
+  openvdb::initialize();
+  state.scene.input = {};
+  state.sequence.emplace();
+  for (const int edge : {3, 9, 20}) {
+    openvdb::GridCPtrVec grids;
+    for (const char* name : {"density", "temperature"}) {
+      const auto grid = openvdb::FloatGrid::create(0.0f);
+      grid->setName(name);
+      const bool isHot = *name == 't';
+      grid->denseFill({openvdb::Coord(0), openvdb::Coord(edge - 1)}, isHot ? 100.0f * float(edge) : 0.3f, true);
+      if (!isHot || edge > 3) grids.push_back(grid);
+    }
+    state.sequence->files.push_back((folder / fmt::format("f{}.vdb", state.sequence->files.size())).string());
+    openvdb::io::File(state.sequence->files.back()).write(grids);
+  }
+  state.scene.input.volume = state.sequence->files.front();
+  follow();
+  const Camera camera = *state.camera;
+  const EmissionDescription emission = state.scene.emission;
+  EXPECT_TRUE(emission.strength) << "the first frame has no temperatures";
+  for (const std::string& file : state.sequence->files) {
+    state.showFrame(file);
+    follow();
+    EXPECT_EQ(state.whole->scene.camera.position, camera.position) << file;
+    EXPECT_EQ(state.scene.emission, emission) << file;
+    EXPECT_EQ(state.whole->scene.classification.emission.has_value(), file != state.sequence->files.front()) << file;
+  }
 }
 
 }  // namespace

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 
+#include "engine/volume/openvdb_trees.h"
 #include "tests/device/device_fixture.h"
 #include "tests/failing_allocation.h"
+#include "tests/refusal.h"
+#include "tests/temporary_folder.h"
 
 namespace freevoxels {
 namespace {
@@ -58,6 +61,39 @@ TEST_F(ImageMakerTest, LightingAShiningVolumeMakesItsLightFallOnIt) {
   request.scene.lighting.unlit = false;
   const DrawnImage kept = maker_.make(request, {}), made = ImageMaker(device(), volumes_).make(request, {});
   EXPECT_EQ(downloadImage(device(), *kept.image).pixels, downloadImage(device(), *made.image).pixels);
+}
+
+/// Frames of 2, 0 and more voxels along an edge.
+TEST_F(ImageMakerTest, AFilmIsSeenAsAWholeFromItsFirstFrameOnEvenIfThatIsEmpty) {
+  const test::TemporaryFolder folder;
+  openvdb::initialize();
+  std::vector<std::string> files;
+  for (const int edge : {0, 2, 8, 24}) {
+    const auto grid = openvdb::FloatGrid::create(0.0f);
+    grid->setName("density");
+    if (edge > 0) grid->denseFill({openvdb::Coord(0), openvdb::Coord(edge - 1)}, 0.02f * float(edge), true);
+    files.push_back((folder / fmt::format("f{}.vdb", files.size())).string());
+    openvdb::io::File(files.back()).write(openvdb::GridCPtrVec{grid});
+  }
+  ImageRequest request;
+  request.scene.camera.size = {40, 40};
+  request.isFrame = true;
+  request.film = files;
+  std::vector<Scene> scenes;
+  for (const std::string& file : files) {
+    request.scene.input.volume = file;
+    const DrawnImage drawn = maker_.make(request, {});
+    scenes.push_back(drawn.scene);
+    const Image image = downloadImage(device(), *drawn.image);
+    const auto shows = [](const glm::vec4& pixel) { return pixel.a > 0.0f; };
+    EXPECT_EQ(std::ranges::any_of(image.pixels, shows), file != files.front()) << file;
+    EXPECT_EQ(image.pixels.front().a, 0.0f) << file << " is cut";
+    EXPECT_EQ(scenes.back().camera.position, scenes.front().camera.position) << file;
+    EXPECT_EQ(scenes.back().classification.densityScale, scenes.front().classification.densityScale) << file;
+  }
+  request.film = {files.front()};
+  request.scene.input.volume = files.front();
+  test::expectRefusal([&] { maker_.make(request, {}); }, ErrorKind::Input, {"no frame of the sequence"});
 }
 
 /// The bytes of the places of a coarse volume's bricks, which nothing else takes.
