@@ -44,10 +44,12 @@ void main() {
   vec3 mapped;
   for (int c = 0; c < 3; ++c) mapped[c] = toneMapped(push.gain * light[c]);
   const bool over = push.hasBackground != 0;
-  float needed = light.a;
+  float most = light.a;
   for (int c = 0; c < 3; ++c)
-    if (!over && light[c] > needed) needed = light[c];  // not by max(), which may return NaN
-  const float alpha = clampUnit(needed);
+    if (!over && light[c] > most) most = light[c];  // not by max(), which may return NaN
+  precise const float excess = push.gain * (most - light.a);
+  precise const float needed = light.a + excess;
+  const float alpha = clampUnit(push.gain == 1.0 ? most : needed);
   vec4 result = vec4(0.0, 0.0, 0.0, over ? 1.0 : alpha);
   for (int c = 0; c < 3; ++c) {
     precise const float behind = push.top[c] * (1.0 - down) + push.bottom[c] * down;

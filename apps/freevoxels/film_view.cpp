@@ -85,13 +85,39 @@ double heatOf(const Volume& volume) {
   return heat * std::pow(volume.voxelSize(), 3.0);
 }
 
+/// Whether temperatures shine that nobody asks for.
+bool mayBurn(const TemperatureGrid& grid) {
+  return grid.isBurning && !areBelowZero(grid);
+}
+
+/// Fails if a grid is named that no file has, as single frames may lack it.
+void refuseMissingGrid(const std::string& name, std::span<const std::string> inputs) {
+  const auto hasGrid = [&](const std::string& input) {
+    bool has = false;
+    const bool isRead = attempt([&] {
+      has = proceduralName(input) || fvx::isFvx(input) || std::ranges::any_of(listVdb(input), [&](const GridChoice& grid) {
+              return grid.name == name || grid.name.starts_with(name + "[");
+            });
+    });
+    return has || !isRead;
+  };
+  if (std::ranges::none_of(inputs, hasGrid))
+    fail(ErrorKind::Input, "no frame has a grid '{}': choose another with {}", name, Parameter("grid"));
+}
+
 class Survey {
  public:
   explicit Survey(const SceneDescription& description) : description_(description) {}
 
   void add(const std::string& input, std::shared_ptr<Volume> volume) {
-    const double matter = matterOf(*volume), heat = heatOf(*volume);
-    if (volume->temperature) {
+    const bool burns = volume->temperature && (description_.emission.isAsked() || mayBurn(*volume->temperature));
+    const double matter = matterOf(*volume), heat = burns ? heatOf(*volume) : 0.0;
+    SceneDescription own = description_;
+    if (!volume->temperature && !volume->classification) own.emission = {.emission = false};
+    const Subject content = contentOf(*volume, own.resolveClassification(*volume));
+    contents_.points.insert(contents_.points.end(), content.points.begin(), content.points.end());
+    contents_.margin = content.margin;
+    if (burns) {
       hottest_.activeVoxels += volume->temperature->activeVoxels;
       hottest_.minimum = std::min(hottest_.minimum, volume->temperature->minimum);
       hottest_.maximum = std::max(hottest_.maximum, volume->temperature->maximum);
@@ -102,7 +128,8 @@ class Survey {
   }
   bool isEmpty() const { return !largest_.volume; }
 
-  FilmView resolve(std::vector<glm::dvec3> corners) {
+  /// `corners` are those of the boxes of frames that were not added.
+  FilmView resolve(const std::vector<glm::dvec3>& corners) {
     const Volume& volume = *largest_.volume;
     refuseMissingGrids(volume);
     FilmView view{.scene = {.volume = largest_.volume}, .largest = largest_.input, .brightest = ""};
@@ -119,7 +146,7 @@ class Survey {
     }
     view.scene.camera = description_.camera
                             .resolve(
-                                volume.up, [&] { return subjectOf(std::move(corners), classification); }, 1)
+                                volume.up, [&] { return subjectOf(corners); }, 1)
                             .front();
     view.scene.lighting = description_.lighting.resolve(volume, classification, view.scene.camera);
     forgetVoxels();
@@ -157,18 +184,21 @@ class Survey {
     return scales;
   }
 
-  Subject subjectOf(std::vector<glm::dvec3> points, const Classification& classification) const {
-    for (const Most* one : {&largest_, &most_})
-      if (one->volume) {
-        const Subject content = contentOf(*one->volume, classification);
-        points.insert(points.end(), content.points.begin(), content.points.end());
-      }
+  /// What is seen of the frames that were read, and the boxes of the others as far as these may go on from there: a box may be much
+  /// larger than what is in it, with a single voxel at its end, or air all around.
+  Subject subjectOf(const std::vector<glm::dvec3>& corners) const {
+    constexpr double kGrowth = 0.2;  // of the extent, on each side
+    std::vector<glm::dvec3> points = contents_.points;
     glm::dvec3 low = points.front(), high = low;
-    for (const glm::dvec3& point : points) {
+    const auto include = [&](const glm::dvec3& point) {
       low = glm::min(low, point);
       high = glm::max(high, point);
-    }
-    return {.centre = (low + high) / 2.0, .points = std::move(points)};
+    };
+    std::ranges::for_each(points, include);
+    const glm::dvec3 reach = kGrowth * (high - low), lowest = low - reach, highest = high + reach;
+    for (const glm::dvec3& corner : corners) points.push_back(glm::clamp(corner, lowest, highest));
+    std::ranges::for_each(points, include);
+    return {.centre = (low + high) / 2.0, .points = std::move(points), .margin = contents_.margin};
   }
 
   /// What is said of a frame is said when it is drawn.
@@ -186,6 +216,7 @@ class Survey {
   }
 
   const SceneDescription description_;
+  Subject contents_;  ///< what is seen of the frames
   Most largest_, most_;
   TemperatureGrid hottest_;  ///< the range of all frames
   bool hasAlbedo_ = false;
@@ -194,23 +225,22 @@ class Survey {
 }  // namespace
 
 std::optional<FilmView> viewOfFilm(const SceneDescription& description, std::span<const std::string> inputs, std::uint64_t maximumVoxels) {
+  if (description.input.grid) refuseMissingGrid(*description.input.grid, inputs);
   std::vector<Outline> frames;
-  std::vector<glm::dvec3> corners;
-  for (const std::string& input : inputs)
-    attempt([&] {
-      const Outline frame = outlineOf(description, input);
-      corners.insert(corners.end(), frame.corners.begin(), frame.corners.end());
-      frames.push_back(frame);
-    });
+  for (const std::string& input : inputs) attempt([&] { frames.push_back(outlineOf(description, input)); });
   Survey survey(sceneOf(description, inputs.front()));
-  for (const std::size_t i : choose(frames))
-    attempt([&] {
+  for (const std::size_t i : choose(frames)) {
+    const bool isRead = attempt([&] {
       const SceneDescription scene = sceneOf(description, frames[i].input);
       const auto baked = scene.input.baked();
       survey.add(frames[i].input, std::make_shared<Volume>(baked ? bakedOutline(*baked) : scene.readVolume(maximumVoxels, 0, {}, true)));
     });
+    if (isRead) frames[i].corners.clear();
+  }
   if (survey.isEmpty()) return std::nullopt;
-  return survey.resolve(std::move(corners));
+  std::vector<glm::dvec3> corners;
+  for (const Outline& frame : frames) corners.insert(corners.end(), frame.corners.begin(), frame.corners.end());
+  return survey.resolve(corners);
 }
 
 }  // namespace freevoxels

@@ -153,8 +153,12 @@ std::vector<std::string> patternsOf(const std::string& name, std::size_t end) {
 /// The pattern with most frames.
 void takeMost(Sequence& most, const std::string& before, const std::string& name, const std::string& after) {
   if (name.find('#') != std::string::npos) return;
+  const auto isWhole = [](const FrameNumber& number) { return number.fraction.empty(); };
   for (const std::string& pattern : patternsOf(name, name.size()))
-    if (Sequence found = filesOf(before + pattern + after); found.files.size() >= most.files.size()) most = std::move(found);
+    if (Sequence found = filesOf(before + pattern + after);
+        found.files.size() >= most.files.size() &&
+        std::ranges::any_of(found.numbers, isWhole))  // else what looks like a fraction is a number
+      most = std::move(found);
 }
 
 }  // namespace

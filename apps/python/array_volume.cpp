@@ -91,7 +91,7 @@ Marker markerOf(const py::object& number) {
   py::object whole = py::reinterpret_steal<py::object>(PyIndex_Check(number.ptr()) != 0 ? PyNumber_Index(number.ptr()) : nullptr);
   if (hasFailed()) whole = py::object();
   if (!isReal && whole) fail(ErrorKind::Input, "{} is a whole number that is too large: leave it out", name);
-  if (!isReal) fail(ErrorKind::Input, "{} takes a number, not {}", name, typeName(number));
+  if (!isReal) fail(ErrorKind::Input, "{} takes a number, not {}; 'none' keeps all values", name, typeName(number));
   if (!whole && std::isfinite(marker.real) && marker.real == std::floor(marker.real))
     whole = py::reinterpret_steal<py::object>(PyLong_FromDouble(marker.real));
   if (!whole) return marker;

@@ -23,6 +23,8 @@ std::optional<GridRequest> EmissionDescription::grid() const {
 
 bool EmissionDescription::shines(const Volume& volume) const {
   if (isAsked() || !volume.temperature || emission == false) return isAsked();
+  const TemperatureGrid& grid = *volume.temperature;
+  if (!grid.isBurning || areBelowZero(grid)) return false;
   Emission unit;
   unit.temperatureOffset = temperatureOffset.value_or(temperatureScale ? 0.0 : automaticTemperatureOffset(*volume.temperature));
   unit.temperatureScale = temperatureScale.value_or(automaticTemperatureScale(*volume.temperature, unit.temperatureOffset));

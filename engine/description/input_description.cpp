@@ -103,8 +103,12 @@ Volume InputDescription::open(std::uint64_t maximumVoxels, const MoreGrids& more
   const std::optional<std::string> name = proceduralName(volume);
   if (const auto file = baked()) return openBaked(file, maximumVoxels, level, progress);
   if (!name) {
-    Volume read = readVdb(
-        volume, {.grid = grid.value_or(""), .maximumVoxels = maximumVoxels, .more = more, .clipBox = clipBox, .progress = progress});
+    Volume read = readVdb(volume, {.grid = grid.value_or(""),
+                                   .maximumVoxels = maximumVoxels,
+                                   .more = more,
+                                   .clipBox = clipBox,
+                                   .noData = noData && noData->value ? std::optional(float(*noData->value)) : std::nullopt,
+                                   .progress = progress});
     applyNoData(read);
     return clip(std::move(read));
   }

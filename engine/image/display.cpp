@@ -72,10 +72,11 @@ class RowWriter {
   }
 
   /// Alpha above 1, which the additive composite makes, counts as 1. Straight alpha cannot be less than a colour that it is
-  /// to show: light of more than the opacity takes as much alpha as it needs, whatever the exposure.
+  /// to show: light of more than the opacity takes alpha for what is more, as bright as it is exposed. The opacity itself stays.
   void writePixel(const glm::vec4& light, const glm::vec3& behind, Sample* samples) const {
-    const float needed = look_.background ? light.a : std::max({light.a, light.r, light.g, light.b});
-    const float alpha = clampUnit(needed);
+    const float most = look_.background ? light.a : std::max({light.a, light.r, light.g, light.b});
+    const float excess = gain_ * (most - light.a);
+    const float alpha = clampUnit(gain_ == 1.0f ? most : light.a + excess);
     const glm::vec4 pixel = shown(light);
     for (int c = 0; c < 3; ++c) {
       const float straight = alpha > 0.0f ? pixel[c] / alpha : 0.0f;

@@ -92,7 +92,8 @@ ExrColors findColors(const std::filesystem::path& file, const Imf::MultiPartInpu
     return {.part = *grey, .names = {"Y", "Y", "Y", ifThere("A")}, .depth = ifThere("Z")};
   }
   if (layers.empty())
-    fail(ErrorKind::Input, "cannot read '{}': it has no channels R, G and B, and no Y; choose a colour image", file.string());
+    fail(ErrorKind::Input, "cannot read '{}': it has no channels R, G and B, and no Y without chroma; write it with R, G and B",
+         file.string());
   constexpr std::size_t kMostNamed = 10;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < std::min(layers.size(), kMostNamed); ++i)

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
@@ -49,6 +50,7 @@ class HdrReader {
       if (byte == std::istream::traits_type::eof() || text.size() == kLongest) refuse("its header does not end; write it again");
       text.push_back(char(byte));
     }
+    while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.pop_back();
     return text;
   }
 
@@ -56,7 +58,7 @@ class HdrReader {
     if (!line().starts_with("#?")) refuse("it does not begin as a Radiance picture does; choose one, or an .exr");
     constexpr std::string_view kFormat = "FORMAT=", kExposure = "EXPOSURE=";
     for (std::string text = line(); !text.empty(); text = line()) {
-      if (text.starts_with(kFormat) && text.substr(kFormat.size()) != "32-bit_rle_rgbe")
+      if (text.starts_with(kFormat) && !text.ends_with("32-bit_rle_rgbe"))
         refuse(fmt::format("its pixels are of the format '{}'; write it as 32-bit_rle_rgbe", printable(text.substr(kFormat.size()))));
       if (!text.starts_with(kExposure)) continue;
       const double exposure = std::strtod(text.c_str() + kExposure.size(), nullptr);

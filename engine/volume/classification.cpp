@@ -125,6 +125,11 @@ bool areKelvin(const TemperatureGrid& grid) {
   return !(grid.maximum > 0.0f) || double(grid.maximum) > kMinKelvinMaximum;
 }
 
+bool areBelowZero(const TemperatureGrid& grid) {
+  constexpr float kLeastPart = 0.05f;  // of the largest, below which noise may be
+  return !areKelvin(grid) && grid.minimum < -kLeastPart * grid.maximum;
+}
+
 double automaticTemperatureOffset(const TemperatureGrid& grid) {
   return areKelvin(grid) ? 0.0 : kEmberTemperature;
 }

@@ -104,6 +104,8 @@ inline constexpr float kSmokeAlbedo = 0.5f;
 /// in kelvin: its 0 becomes kEmberTemperature and its largest value kReferenceTemperature.
 inline constexpr double kMinKelvinMaximum = 200.0, kEmberTemperature = 1000.0;
 bool areKelvin(const TemperatureGrid& grid);
+/// Whether temperatures that are not in kelvin are below 0 as well, as those of weather are, and not of a fire.
+bool areBelowZero(const TemperatureGrid& grid);
 double automaticTemperatureOffset(const TemperatureGrid& grid);
 double automaticTemperatureScale(const TemperatureGrid& grid, double offset);
 

@@ -123,6 +123,23 @@ std::pair<float, float> rangeWithout(const Volume& volume, float without) {
       [](const Range& a, const Range& b) { return Range(std::min(a.first, b.first), std::max(a.second, b.second)); });
 }
 
+/// The median of the values of active voxels that are not `without`, of a sample.
+double medianWithout(const Volume& volume, float without) {
+  constexpr std::size_t kSamples = 100'000;
+  const std::span<const ScalarBricks::Brick> bricks = volume.scalars.bricks();
+  const std::size_t all = bricks.size() * std::tuple_size_v<ScalarBricks::Brick>,
+                    step = (all / kSamples) | 1u;  // odd: in all places of bricks
+  std::vector<float> values;
+  for (std::size_t i = 0; i < all; i += step) {
+    const float value = bricks[i / std::tuple_size_v<ScalarBricks::Brick>][i % std::tuple_size_v<ScalarBricks::Brick>];
+    if (value != kInactiveVoxel && value != without) values.push_back(value);
+  }
+  if (values.empty()) return without;
+  const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
 /// Whether the active voxels have few different values beside `without`, as labels have.
 bool areLabels(const Volume& volume, float without) {
   constexpr std::size_t kMostLabels = 32;
@@ -168,7 +185,8 @@ bool looksLikeScan(const Volume& volume) {
 }
 
 std::optional<float> paddingOf(const Volume& volume) {
-  constexpr double kLeastOnSides = 0.1, kLeastOthers = 0.05, kLeastGap = 0.3;
+  constexpr double kLeastOnSides = 0.1, kLeastOthers = 0.05, kLeastGap = 0.3, kLeastGapToHalf = 0.5;
+  constexpr double kLeastPart = 0.2;  // of the range, which the half of the values may be narrower than
   if (!looksLikeScan(volume)) return std::nullopt;
   const std::vector<float> sides = valuesOnSides(volume);
   for (const float value : {volume.minimum, volume.maximum}) {
@@ -177,7 +195,11 @@ std::optional<float> paddingOf(const Volume& volume) {
     const auto [least, most] = rangeWithout(volume, value);
     const double width = double(most) - double(least);
     const double gap = value < least ? double(least) - double(value) : double(value) - double(most);
-    if (width > 0.0 && (gap > width || (share <= 1.0 - kLeastOthers && gap > kLeastGap * width)) && !areLabels(volume, value)) return value;
+    if (!(width > 0.0) || !(gap > 0.0)) continue;
+    // Few values far away, such as those of metal, do not bring the padding nearer.
+    const double median = medianWithout(volume, value), half = value < least ? median - least : most - median;
+    const bool isFar = gap > kLeastGap * width || gap > kLeastGapToHalf * std::max(half, kLeastPart * width);
+    if ((gap > width || (share <= 1.0 - kLeastOthers && isFar)) && !areLabels(volume, value)) return value;
   }
   return std::nullopt;
 }

@@ -19,8 +19,8 @@ struct NoData {
 
 /// The value with which a scan is filled up to a box around what was measured: the smallest or largest value, which a tenth of the
 /// voxels on the box's sides have exactly, and which is far from all others. Farther than these are from each other, it cannot be data;
-/// three tenths of that are enough where other values reach the sides, too. 0 is not taken for padding, since it may be air,
-/// nor anything in a volume of labels, which has few different values.
+/// three tenths of that, or half the distance from the other end to their median, are enough where other values reach the sides, too. 0 is
+/// not taken for padding, since it may be air, nor anything in a volume of labels, which has few different values.
 std::optional<float> paddingOf(const Volume& volume);
 /// Makes voxels with the padding voxels without data.
 void removePadding(Volume& volume);

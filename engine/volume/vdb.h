@@ -80,6 +80,7 @@ struct ReadRequest {
   std::uint64_t maximumVoxels = 0;  ///< of the box
   MoreGrids more = {};
   std::optional<VoxelBox> clipBox = std::nullopt;  ///< read only this part where the whole box has more than `maximumVoxels`
+  std::optional<float> noData = std::nullopt;      ///< value of voxels that hold no data
   Progress progress = {};                          ///< may abandon it
 };
 

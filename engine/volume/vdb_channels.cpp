@@ -121,7 +121,21 @@ TemperatureGrid toTemperature(const openvdb::FloatGrid& grid, const std::string&
 
 }  // namespace
 
-VdbChannels::VdbChannels(VdbFile& file, const VdbFile::Entry* density, const MoreGrids& more) : file_(file) {
+namespace {
+
+/// Without the grids that nobody asks for, where what is drawn as density is something else: a pressure does not burn.
+MoreGrids suitable(MoreGrids more, const VdbFile::Entry* density) {
+  const GridRole role = density ? roleOfName(density->baseName).role : GridRole::Density;
+  if (role == GridRole::Density || role == GridRole::Unknown) return more;
+  if (more.temperature && !more.temperature->isRequired) more.temperature.reset();
+  if (more.albedo && !more.albedo->isRequired) more.albedo.reset();
+  return more;
+}
+
+}  // namespace
+
+VdbChannels::VdbChannels(VdbFile& file, const VdbFile::Entry* density, const MoreGrids& wanted) : file_(file) {
+  const MoreGrids more = suitable(wanted, density);
   if (more.temperature) {
     temperature_ = find(file, GridRole::Temperature, *more.temperature, more.mayBeMissing, isScalar);
     isTemperatureChosen_ = !more.temperature->isRequired;
@@ -208,7 +222,7 @@ void VdbChannels::addTo(Volume& volume) {
     const VdbFile::Entry* noFlames = isTemperatureChosen_ && !areKelvin(*volume.temperature) ? emptyFlames() : nullptr;
     if (noFlames) {
       remarks_.push_back(fmt::format("nothing burns, as grid '{}' is empty", noFlames->name));
-      volume.temperature.reset();
+      volume.temperature->isBurning = false;
     } else if (isTemperatureFound_) {
       remarks_.push_back(fmt::format("temperatures are those of grid '{}' ({} chooses another, {} leaves them out)", temperature_->name,
                                      Parameter("temperature-grid"), Parameter("emission", "none")));

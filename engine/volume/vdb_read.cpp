@@ -132,6 +132,8 @@ Volume toVolume(FloatGrid::ConstPtr grid, const ToDensity& toDensity, const std:
   Volume volume = boxVolume(grid->transform(), bounds, source);
   volume.isPart = request.clipBox && voxelsIn(extentOf(whole)) > double(request.maximumVoxels);
   volume.scalars = bricksOf(grid->tree(), std::move(leaves), volume.dimensions, volume.indexOrigin, toDensity, request.progress);
+  if (request.noData)
+    for (ScalarBricks::Brick& brick : volume.scalars.bricks()) std::ranges::replace(brick, *request.noData, kInactiveVoxel);
   if (savedAsHalf) limitOverflow(volume.scalars, volume.overflownVoxels);
   summariseValues(volume);
   channels.addTo(volume);
@@ -153,11 +155,16 @@ openvdb::GridBase::ConstPtr emptyLike(const openvdb::GridBase& grid) {
   return empty;
 }
 
+/// Whether a volume has temperatures that are of no fire.
+bool isCold(const Volume& volume) {
+  const std::optional<TemperatureGrid>& grid = volume.temperature;
+  return grid && (areBelowZero(*grid) || (areKelvin(*grid) && double(grid->maximum) <= kColdestLight));
+}
+
 /// Says what was chosen by the names of the grids, and fails where that gives nothing to see.
 void remarkOn(Volume& volume, const VdbFile& file, const VdbFile::Entry* density, const ReadRequest& request) {
   if (!density) {
-    const bool isCold = volume.temperature && areKelvin(*volume.temperature) && double(volume.temperature->maximum) <= kColdestLight;
-    if (isCold && !request.more.temperature->isRequired)
+    if (isCold(volume) && !request.more.temperature->isRequired)
       throw EmptyVolumeError(
           ErrorKind::Input,
           fmt::format("{} has temperatures alone, none of which is above {:g} K, where light begins: {} draws them as a density",
@@ -172,6 +179,19 @@ void remarkOn(Volume& volume, const VdbFile& file, const VdbFile::Entry* density
 void checkUsable(VdbFile& file, const VdbFile::Entry& entry) {
   for (const std::string& why : {whyTypeUnusable(entry.treeType, entry.valueType), whyTransformUnusable(file.readMetadata(entry)->transform())})
     if (!why.empty()) throw Error(ErrorKind::Input, whyUnusable(file, entry, why));
+}
+
+}  // namespace
+
+namespace {
+
+/// The temperatures of a file that has nothing else, such as those of weather.
+Volume readField(const std::filesystem::path& path, const std::string& grid, ReadRequest request) {
+  request.grid = grid;
+  Volume volume = readVdb(path, request);
+  volume.remarks.insert(volume.remarks.begin(),
+                        fmt::format("temperatures of grid '{}' are too cold to shine, and are drawn like a density", grid));
+  return volume;
 }
 
 }  // namespace
@@ -195,6 +215,8 @@ Volume readVdb(const std::filesystem::path& path, const ReadRequest& request) {
     Volume volume = withDensity(*grid, [&](const auto& toDensity) {
       return toVolume(asFloatGrid(grid), toDensity, source, entry.valueType == "half", channels, request);
     });
+    const bool isField = !density && isCold(volume) && !request.more.mayBeMissing && !request.more.temperature->isRequired;
+    if (isField) return readField(path, entry.name, request);
     finishVolume(file, entry, *grid, volume);
     remarkOn(volume, file, density, request);
     return volume;
@@ -274,7 +296,8 @@ std::unique_ptr<VdbParts> VdbParts::open(const std::filesystem::path& path, cons
   if (!source->file.delaysValues()) return nullptr;
   source->entry = source->file.chooseDensity(request.grid, request.more.mayBeMissing);
   const VdbChannels channels(source->file, source->entry, request.more);
-  if (!source->entry || channels.temperature() || channels.albedo()) return nullptr;
+  const auto isAsked = [](const std::optional<GridRequest>& grid) { return grid && grid->isRequired; };
+  if (!source->entry || isAsked(request.more.temperature) || isAsked(request.more.albedo)) return nullptr;
   checkUsable(source->file, *source->entry);
   source->name = fmt::format("{} {}", path.filename().string(), source->entry->name);
   const openvdb::GridBase::ConstPtr grid = source->file.read(*source->entry);
@@ -285,7 +308,13 @@ std::unique_ptr<VdbParts> VdbParts::open(const std::filesystem::path& path, cons
   if (bounds.empty()) return nullptr;
   const glm::i64vec3 n = extentOf(bounds);
   if (voxelsIn(n) > kMaxVoxels || std::max({n.x, n.y, n.z}) > kLongestPartsEdge) return nullptr;
-  return std::unique_ptr<VdbParts>(new VdbParts(std::move(source), noData));
+  std::unique_ptr<VdbParts> parts(new VdbParts(std::move(source), noData));
+  for (const VdbFile::Entry* entry : {channels.temperature(), channels.albedo()})
+    if (entry)
+      parts->sample_.remarks.push_back(
+          fmt::format("grid '{}' is left out, as the file is read in parts ({} or {} read it, and all at once)", entry->name,
+                      Parameter("emission"), Parameter("albedo-grid")));
+  return parts;
 }
 
 VdbParts::VdbParts(std::unique_ptr<Source> source, const std::optional<NoData>& noData)

@@ -73,7 +73,7 @@ void cropToActive(Volume& volume) {
 
 void normaliseWorld(Volume& volume) {
   constexpr double kFarthest = 1e10;                    // voxels from the origin
-  constexpr double kSmallest = 1e-18, kLargest = 1e15;  // world units of a voxel; squares of distances are single-precision floats
+  constexpr double kSmallest = 1e-18, kLargest = 1e9;   // world units of a voxel; squares of distances are single-precision floats
   const double voxel = volume.voxelSize();
   const glm::dvec3 centre(volume.indexToWorld * glm::dvec4((glm::dvec3(volume.dimensions) - 1.0) / 2.0, 1.0));
   if (glm::length(centre) > kFarthest * voxel) {

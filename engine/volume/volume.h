@@ -25,6 +25,7 @@ struct TemperatureGrid {
   std::uint64_t activeVoxels = 0, nanVoxels = 0;
   float minimum = 0.0f, maximum = 0.0f;  ///< of the active voxels
   std::uint64_t wildVoxels = 0;          ///< as of a Volume
+  bool isBurning = true;                 ///< false where the file has a grid of flames that is empty
   float wildest = 0.0f;
 };
 

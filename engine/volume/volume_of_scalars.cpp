@@ -34,7 +34,11 @@ Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld, boo
     fail(ErrorKind::Input, "the array of {} x {} x {} voxels holds no data: all its values are NaN, or mark that there is none",
          size.x, size.y, size.z);
   volume.isFog = looksLikeFog(volume);
-  if (volume.isFog) removeValue(volume, 0.0f);
+  if (volume.isFog) {
+    removeValue(volume, 0.0f);
+    volume.remarks.push_back(
+        fmt::format("its values are taken for densities, and 0 for no data ({} draws it as a scan)", Parameter("transfer-function")));
+  }
   if (!volume.isFog && !knowsNoData) removePadding(volume);
   orientScan(volume);
   return volume;

@@ -97,6 +97,41 @@ TEST_F(FilmCommand, SmokeThatGrowsIsFramedAsAWhole) {
   EXPECT_NE(image(3).pixels, whole.pixels);
 }
 
+/// More frames than are read beforehand, in one of which a voxel is far away.
+TEST_F(FilmCommand, AStrayVoxelDoesNotMakeAllFramesSmall) {
+  for (int frame = 1; frame <= 15; ++frame) {
+    const openvdb::FloatGrid::Ptr grid = ball("density", 4 + frame, 0.5f);
+    if (frame == 4 || frame == 15) grid->tree().setValueOn(openvdb::Coord(400, 0, 0), 1e-6f);
+    write(frame, {grid});
+  }
+  const ProgramResult result = draw();
+  EXPECT_EQ(result.exitCode, 0) << result.err;
+  for (int frame = 1; frame <= 15; ++frame) EXPECT_EQ(alphas(image(frame)).first, 0.0f) << "frame " << frame << " is cut";
+  const Image last = image(15);
+  const auto isSeen = [](const glm::vec4& pixel) { return pixel.a > 0.01f; };
+  EXPECT_GT(double(std::ranges::count_if(last.pixels, isSeen)), 0.12 * double(last.pixels.size()));
+}
+
+TEST_F(FilmCommand, AGridThatNoFrameHasIsRefused) {
+  write(1, {box("density", 8, 0.3f), box("temperature", 4, 1500.0f)});
+  write(2, {box("temperature", 9, 1500.0f)});
+  const ProgramResult result = draw(" --grid densty");
+  EXPECT_EQ(result.exitCode, int(ExitCode::Input)) << result.err;
+  EXPECT_NE(result.err.find("no frame has a grid 'densty'"), std::string::npos) << result.err;
+  EXPECT_EQ(draw(" --grid density").exitCode, 0);
+}
+
+/// In kelvin or not, temperatures of smoke alone are warm, too; but a film in which something burns burns on.
+TEST_F(FilmCommand, AFilmDoesNotGoOutInAFrameWithoutFlames) {
+  for (const int frame : {1, 2, 3}) {
+    openvdb::FloatGrid::Ptr flames = box("flame", 4, 1.0f);
+    if (frame == 2) flames->clear();
+    write(frame, {box("density", 12, 0.05f), box("temperature", 6, 1.0f, openvdb::Coord(3)), flames});
+  }
+  EXPECT_EQ(draw(" --unlit --albedo 0,0,0").exitCode, 0);
+  for (const int frame : {1, 2, 3}) EXPECT_GT(brightest(image(frame)), 0.05f) << frame;
+}
+
 TEST_F(FilmCommand, AFireThatBeginsColdShinesLater) {
   const auto hot = [&](int edge, float kelvin) { return box("temperature", edge, kelvin, openvdb::Coord(3)); };
   write(1, {box("density", 12, 0.3f), hot(2, 300.0f)});

@@ -105,6 +105,12 @@ TEST_F(HdrTest, ExposuresAreTakenBack) {
   EXPECT_EQ(read(header({1, 1}, "EXPOSURE=nan\nEXPOSURE=0\n") + pixel).pixels[0], glm::vec4(glm::vec3(64.5f, 80.5f, 96.5f) / 128.0f, 1.0f));
 }
 
+TEST_F(HdrTest, WhiteSpaceOfHeadersMeansNothing) {
+  const std::string pixel("\x40\x50\x60\x81", 4);
+  for (const char* text : {"#?RADIANCE\r\nFORMAT=32-bit_rle_rgbe\r\n\r\n-Y 1 +X 1\r\n", "#?RGBE\nFORMAT= 32-bit_rle_rgbe \n \n-Y 1 +X 1\n"})
+    EXPECT_EQ(read(text + pixel).size, glm::ivec2(1)) << text;
+}
+
 TEST_F(HdrTest, ADarkPixelIsBlack) {
   EXPECT_EQ(read(header({1, 1}) + std::string("\x40\x50\x60\0", 4)).pixels[0], glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));
 }

@@ -124,7 +124,7 @@ TEST_F(SequenceTest, StepsBetweenFramesHaveFractions) {
   EXPECT_EQ(selectFrames(sequence, readFrameRange("", "1-20:1")).files, paths({"s.0001.vdb", "s.0002.vdb"}));
   EXPECT_EQ(gapsOf(sequence), "");
   EXPECT_EQ(sequenceAround(path("s.0001.5.vdb")).value().pattern, path("s.####.vdb"));
-  touch({"v.2.0001.vdb", "v.2.0002.vdb"});
+  touch({"v.2.0001.vdb", "v.2.0002.vdb", "v.1.0001.vdb", "v.1.0002.vdb", "v.1.0003.vdb"});
   EXPECT_EQ(sequenceAround(path("v.2.0001.vdb")).value().pattern, path("v.2.####.vdb")) << "a version, not a frame";
 }
 

@@ -80,6 +80,10 @@ TEST(Scan, PaddingIsRecognisedByItsShareOfTheSidesAndItsDistance) {
   for (const glm::ivec3 size : {glm::ivec3(32, 32, 20), glm::ivec3(61, 47, 33)}) {
     for (const float padding : {-2000.0f, -3024.0f, -32768.0f, 32767.0f, -9999.0f, 9.97e36f})
       EXPECT_EQ(paddingOf(padded(size, padding, -1000.0f, 60.0f)), padding) << padding;
+    Volume metal = padded(size, -2000.0f, -1000.0f, 60.0f);
+    for (int i = 0; i < 40; ++i) metal.scalars.set(size / 2 + glm::ivec3(i % 4, i / 4 % 4, i / 16) - 2, 1000.0f + 50.0f * float(i));
+    summariseValues(metal);
+    EXPECT_EQ(paddingOf(metal), -2000.0f) << "metal is far away, too";
     EXPECT_EQ(paddingOf(padded(size, -1000.0f, -1000.0f, 60.0f)), std::nullopt) << "it is air";
     EXPECT_EQ(paddingOf(padded(size, -1024.0f, -1000.0f, 60.0f)), std::nullopt) << "it is drawn as air";
     EXPECT_EQ(paddingOf(padded(size, 0.0f, 300.0f, 1000.0f)), std::nullopt) << "0 may be air";

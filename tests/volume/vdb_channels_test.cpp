@@ -109,6 +109,32 @@ TEST_F(VdbChannelsTest, ColoursInAGridForEachComponentAreNamed) {
   EXPECT_TRUE(readWith({}).remarks.empty()) << "colours are not asked for";
 }
 
+TEST_F(VdbChannelsTest, WhatIsNoDensityNeitherBurnsNorHasColours) {
+  write({makeGrid("density", 0.5f), makeGrid("temperature", 1500.0f), makeGrid("pressure", 3.0f),
+         colours({Coord(0), Coord(3)}, openvdb::Vec3s(0.5f))});
+  const MoreGrids usual{.temperature = GridRequest{}, .albedo = GridRequest{}};
+  for (const auto& [name, burns] : {std::pair("density", true), {"pressure", false}, {"temperature", false}}) {
+    const Volume volume = readVdb(file, {.grid = name, .maximumVoxels = kPlenty, .more = usual});
+    EXPECT_EQ(volume.temperature.has_value(), burns) << name;
+    EXPECT_EQ(volume.albedo.has_value(), burns) << name;
+  }
+  EXPECT_TRUE(
+      readVdb(file, {.grid = "pressure", .maximumVoxels = kPlenty, .more = {.temperature = test::required("temperature")}}).temperature);
+}
+
+TEST_F(VdbChannelsTest, TemperaturesOfWeatherAloneAreDrawnLikeADensity) {
+  for (const float value : {290.0f, -20.0f}) {
+    const auto field = makeGrid("temperature", value);
+    field->tree().setValueOn(Coord(0), 30.0f);
+    write({field});
+    const Volume volume = readVdb(file, "", kPlenty, {.temperature = GridRequest{}, .albedo = GridRequest{}});
+    EXPECT_FALSE(volume.temperature) << value;
+    EXPECT_EQ(volume.activeVoxels, 24u);
+    ASSERT_FALSE(volume.remarks.empty());
+    EXPECT_NE(volume.remarks[0].find("too cold to shine"), std::string::npos) << volume.remarks[0];
+  }
+}
+
 TEST_F(VdbChannelsTest, AFileOfTemperaturesAloneIsAFlameWithoutDensity) {
   write({makeGrid("flames", {Coord(3), Coord(6)}, 0.7f), makeGrid("fuel", {Coord(0), Coord(9)}, 1.0f)});
   const Volume flame = readVdb(file, "", kPlenty, {.temperature = GridRequest{}});
@@ -119,16 +145,17 @@ TEST_F(VdbChannelsTest, AFileOfTemperaturesAloneIsAFlameWithoutDensity) {
   EXPECT_EQ(readVdb(file, "flames", kPlenty).activeVoxels, 64u) << "as a density, since it is named";
   EXPECT_THROW(readVdb(file, "", kPlenty), EmptyVolumeError);
   write({makeGrid("temperature", {Coord(3), Coord(6)}, 293.0f)});
-  EXPECT_THROW(readVdb(file, "", kPlenty, {.temperature = GridRequest{}}), EmptyVolumeError) << "nothing is hot enough";
+  EXPECT_THROW(readVdb(file, "", kPlenty, {.temperature = GridRequest{}, .mayBeMissing = true}), EmptyVolumeError)
+      << "a frame in which nothing is hot enough";
 }
 
-TEST_F(VdbChannelsTest, ASimulationThatDoesNotBurnHasNoTemperatures) {
+TEST_F(VdbChannelsTest, ASimulationWithoutFlamesDoesNotBurn) {
   const auto nothing = makeGrid("flame", openvdb::CoordBBox(), 0.0f);
   write({makeGrid("density"), makeGrid("temperature", 1.0f), nothing});
-  EXPECT_FALSE(readWith({.temperature = GridRequest{}}).temperature);
-  EXPECT_TRUE(readWith({.temperature = asked("")}).temperature) << "it is asked for";
+  EXPECT_FALSE(readWith({.temperature = GridRequest{}}).temperature->isBurning);
+  EXPECT_TRUE(readWith({.temperature = asked("")}).temperature->isBurning) << "it is asked for";
   write({makeGrid("density"), makeGrid("temperature", 1500.0f), nothing});
-  EXPECT_TRUE(readWith({.temperature = GridRequest{}}).temperature) << "they are kelvin";
+  EXPECT_TRUE(readWith({.temperature = GridRequest{}}).temperature->isBurning) << "they are kelvin";
 }
 
 TEST_F(VdbChannelsTest, AFrameMayLackAnyGrid) {

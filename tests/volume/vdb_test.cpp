@@ -220,6 +220,17 @@ TEST_F(Vdb, BadValuesAreCountedAndNaNIsNoData) {
   EXPECT_EQ(info.maximum, 1.0);
 }
 
+TEST_F(Vdb, VoxelsThatMeanNoDataAreNeverTakenForWildOnes) {
+  const FloatGrid::Ptr grid = makeGrid("density", CoordBBox(Coord(0), Coord(19)), 0.5f);
+  grid->fill(CoordBBox(Coord(4), Coord(5, 5, 4)), 1e30f);
+  write({grid});
+  EXPECT_EQ(read().wildVoxels, 4u);
+  const Volume volume = readVdb(file, {.maximumVoxels = kPlenty, .noData = 1e30f});
+  EXPECT_EQ(volume.wildVoxels, 0u);
+  EXPECT_EQ(volume.activeVoxels, 8000u - 4u);
+  EXPECT_EQ(volume.scalar(4, 4, 4), kInactiveVoxel);
+}
+
 TEST_F(Vdb, HalvesBeyondTheirRangeAreTheLargest) {
   const FloatGrid::Ptr grid = makeGrid("density", CoordBBox(Coord(0), Coord(9, 9, 9)), 60000.0f);
   grid->tree().setValueOn(Coord(4), 2e5f);

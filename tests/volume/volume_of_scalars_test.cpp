@@ -30,7 +30,8 @@ TEST(VolumeOfScalars, SmokeInABoxOfNothingIsFogAsInAFile) {
     EXPECT_TRUE(volume.isFog);
     EXPECT_FALSE(looksLikeScan(volume));
     EXPECT_LT(volume.activeVoxels, volume.voxelCount());
-    EXPECT_TRUE(volume.remarks.empty());
+    ASSERT_EQ(volume.remarks.size(), 1u);
+    EXPECT_NE(volume.remarks[0].find("densities"), std::string::npos);
   }
 }
 
@@ -62,12 +63,12 @@ TEST(VolumeOfScalars, PaddingIsNoDataUnlessTheCallerKnowsWhatIs) {
 TEST(VolumeOfScalars, UnitsBeyondSinglePrecisionAreScaled) {
   const glm::ivec3 size(9, 10, 11);
   const auto value = [&](glm::ivec3 voxel) { return lump(size, voxel); };
-  for (const double spacing : {1e-20, 1e-15, 1e-9, 1.0, 1e12, 1e18, 3e21}) {
+  for (const double spacing : {1e-20, 1e-15, 1e-9, 1.0, 1e8, 1e18, 3e21}) {
     const Volume volume = volumeOf(size, value, latticeTransform(glm::dvec3(spacing, 2.0 * spacing, spacing), glm::dvec3(spacing)));
     EXPECT_GE(volume.voxelSize(), 1e-18) << spacing;
-    EXPECT_LE(volume.voxelSize(), 1e15) << spacing;
+    EXPECT_LE(volume.voxelSize(), 1e9) << spacing;
     EXPECT_NEAR(volume.indexToWorld[1].y / volume.indexToWorld[0].x, 2.0, 1e-9);
-    EXPECT_EQ(volume.warnings.empty(), spacing >= 1e-15 && spacing <= 1e12) << spacing;
+    EXPECT_EQ(volume.warnings.empty(), spacing >= 1e-15 && spacing <= 1e8) << spacing;
   }
   const Volume far = volumeOf(size, value, latticeTransform(glm::dvec3(1.0), glm::dvec3(1e15)));
   EXPECT_LT(glm::length(glm::dvec3(far.indexToWorld[3])), 100.0);
