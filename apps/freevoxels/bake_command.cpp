@@ -146,8 +146,9 @@ bool BakeCommand::bakeParts(ProgressLine& line) const {
   const std::unique_ptr<const VdbParts> parts =
       VdbParts::open(description.input.volume,
                      {.grid = description.input.grid.value_or(""),
-                      .more = {.temperature = description.emission.grid(), .albedo = description.classification.grid()}},
-                     kMaxBytesInMemory, description.input.noData);
+                      .more = {.temperature = description.emission.grid(), .albedo = description.classification.grid()},
+                      .noData = description.input.noData},
+                     kMaxBytesInMemory);
   if (!parts) return false;
   const Classification classification = description.resolveClassification(parts->sample());
   line.erase();

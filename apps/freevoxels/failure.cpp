@@ -27,7 +27,7 @@ std::string withOptions(std::string_view text) {
   return spelled(text, [](std::string_view name, std::string_view value) {
     if (value.empty()) return fmt::format("--{}", name);
     const auto field = std::ranges::find(sceneFields(), name, &SceneField::name);
-    const bool isSwitchedOff = value == kNoGrid && field != sceneFields().end() && field->standsAlone;
+    const bool isSwitchedOff = value == kNone && field != sceneFields().end() && field->standsAlone;
     return isSwitchedOff ? fmt::format("--no-{}", name) : fmt::format("--{} {}", name, value);
   });
 }

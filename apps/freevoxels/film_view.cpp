@@ -22,14 +22,8 @@ struct Outline {
   std::optional<std::uint64_t> voxels;  ///< unknown where the file has to be read
 };
 
-SceneDescription sceneOf(const SceneDescription& description, const std::string& input) {
-  SceneDescription scene = description;
-  scene.input.volume = input;
-  return scene;
-}
-
 Outline outlineOf(const SceneDescription& description, const std::string& input) {
-  const SceneDescription scene = sceneOf(description, input);
+  const SceneDescription scene = description.of(input);
   Outline outline{.input = input, .corners = {}, .voxels = std::nullopt};
   if (const auto file = scene.input.baked()) {
     const Volume volume = bakedOutline(*file);
@@ -69,39 +63,29 @@ std::vector<std::size_t> choose(const std::vector<Outline>& frames) {
   return {chosen.begin(), chosen.end()};
 }
 
-/// The sum of the densities of all voxels, times their volume.
-double matterOf(const Volume& volume) {
+/// The integral of the density over the volume.
+double massOf(const Volume& volume) {
   if (!(volume.maximum > 0.0f)) return 0.0;
   const double edge = std::cbrt(double(volume.activeVoxels)) * volume.voxelSize();
   return edge * edge / automaticDensityScale(volume, 1.0);
 }
 
-/// A measure of the light of all voxels that holds whatever the unit of the temperatures.
-double heatOf(const Volume& volume) {
-  double heat = 0.0;
-  if (!volume.temperature) return heat;
+/// The integral of the fourth power of the temperatures, as black bodies radiate, whatever their unit.
+double powerOf(const Volume& volume) {
+  double power = 0.0;
   for (const ScalarBricks::Brick& brick : volume.temperature->values.bricks())
-    for (const float value : brick) heat += std::pow(std::max(double(value), 0.0), 4.0);
-  return heat * std::pow(volume.voxelSize(), 3.0);
+    for (const float value : brick) power += std::pow(std::max(double(value), 0.0), 4.0);
+  return power * std::pow(volume.voxelSize(), 3.0);
 }
 
-/// Whether temperatures shine that nobody asks for.
-bool mayBurn(const TemperatureGrid& grid) {
-  return grid.isBurning && !areBelowZero(grid);
-}
-
-/// Fails if a grid is named that no file has, as single frames may lack it.
-void refuseMissingGrid(const std::string& name, std::span<const std::string> inputs) {
-  const auto hasGrid = [&](const std::string& input) {
+/// Fails if no file has the grid of the densities that is named, as single frames may lack it.
+void refuseMissingDensity(const std::string& name, std::span<const std::string> inputs) {
+  const auto mayHave = [&](const std::string& input) {
     bool has = false;
-    const bool isRead = attempt([&] {
-      has = proceduralName(input) || fvx::isFvx(input) || std::ranges::any_of(listVdb(input), [&](const GridChoice& grid) {
-              return grid.name == name || grid.name.starts_with(name + "[");
-            });
-    });
+    const bool isRead = attempt([&] { has = proceduralName(input) || fvx::isFvx(input) || hasGrid(input, name); });
     return has || !isRead;
   };
-  if (std::ranges::none_of(inputs, hasGrid))
+  if (std::ranges::none_of(inputs, mayHave))
     fail(ErrorKind::Input, "no frame has a grid '{}': choose another with {}", name, Parameter("grid"));
 }
 
@@ -110,8 +94,8 @@ class Survey {
   explicit Survey(const SceneDescription& description) : description_(description) {}
 
   void add(const std::string& input, std::shared_ptr<Volume> volume) {
-    const bool burns = volume->temperature && (description_.emission.isAsked() || mayBurn(*volume->temperature));
-    const double matter = matterOf(*volume), heat = burns ? heatOf(*volume) : 0.0;
+    const bool burns = volume->temperature && description_.emission.mayShine(*volume->temperature);
+    const double mass = massOf(*volume), power = burns ? powerOf(*volume) : 0.0;
     SceneDescription own = description_;
     if (!volume->temperature && !volume->classification) own.emission = {.emission = false};
     const Subject content = contentOf(*volume, own.resolveClassification(*volume));
@@ -123,25 +107,25 @@ class Survey {
       hottest_.maximum = std::max(hottest_.maximum, volume->temperature->maximum);
     }
     hasAlbedo_ = hasAlbedo_ || volume->albedo;
-    if (heat > most_.heat) most_ = {heat, input, volume};
-    if (!largest_.volume || matter > largest_.heat) largest_ = {matter, input, volume};
+    if (power > brightest_.amount) brightest_ = {power, input, volume};
+    if (!largest_.volume || mass > largest_.amount) largest_ = {mass, input, volume};
   }
   bool isEmpty() const { return !largest_.volume; }
 
   /// `corners` are those of the boxes of frames that were not added.
   FilmView resolve(const std::vector<glm::dvec3>& corners) {
     const Volume& volume = *largest_.volume;
-    refuseMissingGrids(volume);
+    refuseMissingChannels(volume);
     FilmView view{.scene = {.volume = largest_.volume}, .largest = largest_.input, .brightest = ""};
     Classification& classification = view.scene.classification;
     const std::optional<Emission> emission = volume.classification ? std::nullopt : emissionScales();
     classification = volume.classification ? description_.resolveClassification(volume)
                                            : description_.classification.resolve(volume, emission.has_value());
     if (emission) {
-      view.brightest = most_.input;
+      view.brightest = brightest_.input;
       classification.emission = emission;
       if (!description_.emission.strength)
-        classification.emission->strength = automaticEmissionStrength(*most_.volume, classification, *emission);
+        classification.emission->strength = automaticEmissionStrength(*brightest_.volume, classification, *emission);
       if (!description_.classification.albedo) classification.albedo = glm::vec3(kSmokeAlbedo);
     }
     view.scene.camera = description_.camera
@@ -155,13 +139,13 @@ class Survey {
 
  private:
   struct Most {
-    double heat = 0.0;  ///< or matter
+    double amount = 0.0;
     std::string input;
     std::shared_ptr<Volume> volume;
   };
 
   /// Fails where no frame has a grid that is asked for, as the single frames may lack it.
-  void refuseMissingGrids(const Volume& volume) const {
+  void refuseMissingChannels(const Volume& volume) const {
     if (volume.classification) return;
     if (description_.emission.isAsked() && hottest_.activeVoxels == 0)
       fail(ErrorKind::Input, "no frame that was looked at has temperatures: leave {} out",
@@ -174,13 +158,10 @@ class Survey {
   /// Nothing where the film does not shine.
   std::optional<Emission> emissionScales() const {
     const EmissionDescription& given = description_.emission;
-    if (!most_.volume || given.emission == false) return std::nullopt;
-    Emission scales;
-    scales.temperatureOffset = given.temperatureOffset.value_or(given.temperatureScale ? 0.0 : automaticTemperatureOffset(hottest_));
-    scales.temperatureScale = given.temperatureScale.value_or(automaticTemperatureScale(hottest_, scales.temperatureOffset));
+    if (!brightest_.volume || given.emission == false) return std::nullopt;
+    const Emission scales = given.scales(hottest_);
     const glm::dvec3 light = emittedLight(scales, hottest_.maximum);
     if (!given.isAsked() && !(light.r + light.g + light.b > 0.0)) return std::nullopt;
-    scales.strength = given.strength.value_or(1.0);
     return scales;
   }
 
@@ -204,20 +185,20 @@ class Survey {
   /// What is said of a frame is said when it is drawn.
   void forgetVoxels() {
     Volume& volume = *largest_.volume;
-    if (most_.volume) {
-      hottest_.name = most_.volume->temperature->name;
+    if (brightest_.volume) {
+      hottest_.name = brightest_.volume->temperature->name;
       volume.temperature = hottest_;
     }
     volume.scalars = ScalarBricks(volume.dimensions);
     if (volume.temperature) volume.temperature->values = ScalarBricks(volume.dimensions);
     if (volume.albedo) volume.albedo->values.fill(ScalarBricks(volume.dimensions));
     volume.warnings.clear();
-    volume.nanVoxels = volume.negativeVoxels = volume.overflownVoxels = volume.wildVoxels = 0;
+    volume.nanVoxels = volume.negativeVoxels = volume.overflownVoxels = volume.outlierVoxels = 0;
   }
 
   const SceneDescription description_;
   Subject contents_;  ///< what is seen of the frames
-  Most largest_, most_;
+  Most largest_, brightest_;  ///< with most mass, and with most power
   TemperatureGrid hottest_;  ///< the range of all frames
   bool hasAlbedo_ = false;
 };
@@ -225,13 +206,13 @@ class Survey {
 }  // namespace
 
 std::optional<FilmView> viewOfFilm(const SceneDescription& description, std::span<const std::string> inputs, std::uint64_t maximumVoxels) {
-  if (description.input.grid) refuseMissingGrid(*description.input.grid, inputs);
+  if (description.input.grid) refuseMissingDensity(*description.input.grid, inputs);
   std::vector<Outline> frames;
   for (const std::string& input : inputs) attempt([&] { frames.push_back(outlineOf(description, input)); });
-  Survey survey(sceneOf(description, inputs.front()));
+  Survey survey(description.of(inputs.front()));
   for (const std::size_t i : choose(frames)) {
     const bool isRead = attempt([&] {
-      const SceneDescription scene = sceneOf(description, frames[i].input);
+      const SceneDescription scene = description.of(frames[i].input);
       const auto baked = scene.input.baked();
       survey.add(frames[i].input, std::make_shared<Volume>(baked ? bakedOutline(*baked) : scene.readVolume(maximumVoxels, 0, {}, true)));
     });

@@ -12,13 +12,13 @@ namespace freevoxels {
 
 struct FilmView {
   Scene scene;            ///< its volume has no voxels
-  std::string largest;    ///< the frame whose matter is drawn as that of a single volume is
-  std::string brightest;  ///< the frame with most heat; empty if nothing shines
+  std::string largest;    ///< the frame with most mass, whose optical depth is that of a single volume
+  std::string brightest;  ///< the frame with most power; empty if nothing shines
 };
 
 /// The camera shows what is seen of all frames: of those that are read, and of the others the boxes that the headers of the files tell. Fog
-/// or scan, scale of densities and up direction are those of the frame with most matter, the scales of temperature and emission those of
-/// the frames that are hottest and have most heat, among at most kMostFramesRead, which are read: the largest, and others at equal
+/// or scan, scale of densities and up direction are those of the frame with most mass, the scales of temperature and emission those of
+/// the frames that are hottest and radiate most, among at most kMostFramesRead, which are read: the largest, and others at equal
 /// distances. Nothing where no frame can be drawn.
 std::optional<FilmView> viewOfFilm(const SceneDescription& description, std::span<const std::string> inputs, std::uint64_t maximumVoxels);
 inline constexpr std::size_t kMostFramesRead = 12;

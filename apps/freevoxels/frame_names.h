@@ -22,12 +22,12 @@ struct FrameNumber {
   auto operator<=>(const FrameNumber&) const = default;
 };
 
-/// Where the number of the frame is in a pattern with a run of #: in its file name, or in a folder's if that has none.
+/// A pattern with a run of #, divided at the path component that has it: the file name, or the last such folder if the file name has none.
 struct NumberPlace {
-  std::string folder;         ///< which has the file or the folder with the number: "film/" of "film/####/smoke.vdb"; may be empty
-  std::string before, after;  ///< in the name of that: both empty here
-  std::string rest;           ///< behind that: "/smoke.vdb"; may be empty
-  std::size_t digits = 0;
+  std::string folder;         ///< in front of the component: "film/" of "film/s##/smoke.vdb"; may be empty
+  std::string before, after;  ///< of the component, around the run: "s" and ""
+  std::string rest;           ///< behind the component: "/smoke.vdb"; may be empty
+  std::size_t digits = 0;     ///< length of the run
 };
 
 /// Fails with ErrorKind::Usage if the pattern has no such place, or several in one name.

@@ -97,7 +97,7 @@ void FrameSeries::drawVolumes(std::span<const FrameJob> jobs) {
     const std::span<const FrameJob> own = jobs.subspan(std::size_t(first - jobs.begin()));
     if (needsNoVolume(own.first(framesOfFirstVolume(own)))) return std::shared_ptr<const Volume>();
     // A baked volume is read no finer than the frames need, and not at all if they are drawn piece by piece.
-    const SceneDescription scene = options_.sceneOf(input);
+    const SceneDescription scene = options_.scene.description.of(input);
     const int level = scene.finestLevelNeeded(scene.input.baked().get(), turn);
     if (!isFilm_ && needsPieces(options_, limits, pieceDrawing(options_, scene, turn), level)) return std::shared_ptr<const Volume>();
     return std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level, {}, isSurveyed));
@@ -162,7 +162,7 @@ bool FrameSeries::drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs
 /// A baked volume that the device cannot hold is drawn piece by piece where that is possible, else from a coarser level. `volume` is
 /// null where it is known beforehand that pieces are drawn.
 void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<const FrameJob> jobs) {
-  const SceneDescription scene = options_.sceneOf(jobs.front().input);
+  const SceneDescription scene = options_.scene.description.of(jobs.front().input);
   // A film keeps two volumes in memory anyway.
   PieceDrawing pieces{.file = scene.input.baked()};
   if (pieces.file && !isFilm_) pieces = pieceDrawing(options_, scene, int(jobs.size()));
@@ -235,7 +235,7 @@ void FrameSeries::drawPieces(const PieceDrawing& pieces, int level, std::span<co
 /// Resolves what a volume's frames have in common. The regions or cubes of `file` are drawn where it is not null.
 FrameSeries::VolumeView FrameSeries::beginVolume(std::shared_ptr<const Volume> volume, std::span<const FrameJob> jobs,
                                                  const fvx::FvxFile* file) {
-  const SceneDescription description = options_.sceneOf(jobs.front().input);
+  const SceneDescription description = options_.scene.description.of(jobs.front().input);
   const bool isFirst = !reference_, isFixed = options_.fixedView.value_or(isFilm_);
   VolumeView view{
       .scene = isFixed && !isFirst ? description.resolveLike(*reference_, std::move(volume)) : description.resolve(std::move(volume)),

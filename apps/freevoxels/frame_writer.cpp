@@ -33,7 +33,7 @@ void FrameWriter::printNames(const FrameJob& job) {
 
 /// The options with which `render` makes this frame alone.
 OptionList FrameWriter::describe(const Scene& view, const FrameJob& job) const {
-  return options_.scene.ownOptions(options_.sceneOf(job.input).resolved(view));
+  return options_.scene.ownOptions(options_.scene.description.of(job.input).resolved(view));
 }
 
 /// What an .exr says of its making besides the options.

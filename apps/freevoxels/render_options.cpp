@@ -60,12 +60,6 @@ FrameSettings RenderOptions::frameSettings() const {
   return drawsShares() ? sharedSettings(settings) : settings;
 }
 
-SceneDescription RenderOptions::sceneOf(const std::string& volume) const {
-  SceneDescription result = scene.description;
-  result.input.volume = volume;
-  return result;
-}
-
 void RenderOptions::checkShares(std::span<const FrameJob> frames) const {
   frameSettings();
   shares.check();

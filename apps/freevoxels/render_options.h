@@ -41,8 +41,6 @@ struct RenderOptions {
   void run(std::vector<FrameJob> frames) const;
   /// Without lighting.
   FrameSettings frameSettings() const;
-  /// The scene of this volume.
-  SceneDescription sceneOf(const std::string& volume) const;
   /// Whether this process prints and writes: alone, or the first of its group.
   bool leads() const { return group == nullptr || group->leads(); }
   /// Whether frames are drawn as sums of shares.

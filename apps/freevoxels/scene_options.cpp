@@ -32,7 +32,7 @@ OptionList optionsOf(const SceneDescription& description, const std::function<bo
   for (const SceneField& field : sceneFields()) {
     if (wanted && !wanted(field)) continue;
     for (const std::string& text : field.texts(description)) {
-      const bool isFlag = field.kind == Kind::Flag || field.kind == Kind::Switch || (field.standsAlone && text == kNoGrid);
+      const bool isFlag = field.kind == Kind::Flag || field.kind == Kind::Switch || (field.standsAlone && text == kNone);
       if (field.kind == Kind::Volume)
         options.emplace_back("", text);
       else
@@ -95,7 +95,7 @@ CLI::Option* SceneOptions::addField(CLI::App& app, std::string_view name, const 
     if (field.standsAlone) {
       option->expected(0, 1);
       app.add_flag_function(
-             "--no-" + field.name, [give](std::int64_t) { give({kNoGrid}); }, "Not that")
+             "--no-" + field.name, [give](std::int64_t) { give({kNone}); }, "Not that")
           ->excludes(option)
           ->group(groupOf(field.section));
     }

@@ -199,7 +199,7 @@ ScalarBricks readArray(const ArrayView& array, const std::optional<Marker>& mark
 
 /// Whether the word says that every value is data.
 bool isNone(const py::object& noData) {
-  return py::isinstance<py::str>(noData) && noData.cast<std::string>() == kNoGrid;
+  return py::isinstance<py::str>(noData) && noData.cast<std::string>() == kNone;
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ std::string nameOf(const SceneDescription& scene, bool clipped) {
     read.input.clipPlane.reset();
   }
   const auto nameOf = [](const std::optional<GridRequest>& request) {
-    return request ? fmt::format("{} {}", request->isRequired, request->name) : std::string(kNoGrid);
+    return request ? fmt::format("{} {}", request->isRequired, request->name) : std::string(kNone);
   };
   return fmt::format("{}temperature={} albedo={}", textOf(read, {"input"}), nameOf(scene.emission.grid()),
                      nameOf(scene.classification.grid()));

@@ -66,7 +66,7 @@ void VolumePanel::drawGrids(ViewState& state, GridList& grids) {
   }
   if (someColors && !classification.transferFunction) {
     std::vector<GridChoice> choice = *all;
-    choice.insert(choice.begin(), {.name = kNoGrid, .isAlbedo = true});
+    choice.insert(choice.begin(), {.name = kNone, .isAlbedo = true});
     state.changed |= chooseGrid("Albedo grid", choice, &GridChoice::isAlbedo, "automatic", classification.albedoGrid);
     hint("Albedos voxel by voxel", "--albedo-grid");
   }

@@ -9,7 +9,7 @@ namespace {
 
 /// What a baked volume was baked with, changed by what is given.
 Classification bakedClassification(const ClassificationDescription& given, const Volume& volume) {
-  if (given.albedoGrid && given.albedoGrid != kNoGrid)
+  if (given.albedoGrid && given.albedoGrid != kNone)
     fail(ErrorKind::Usage, "{} chooses among the grids of an OpenVDB file, and {} is a baked volume: give it to 'freevoxels bake'",
          Parameter("albedo-grid"), volume.source);
   Classification classification = *volume.classification;
@@ -55,7 +55,7 @@ Classification ClassificationDescription::resolve(const Volume& volume, bool shi
 }
 
 std::optional<GridRequest> ClassificationDescription::grid() const {
-  if (albedoGrid) return *albedoGrid == kNoGrid ? std::nullopt : std::optional(GridRequest{.name = *albedoGrid, .isRequired = true});
+  if (albedoGrid) return *albedoGrid == kNone ? std::nullopt : std::optional(GridRequest{.name = *albedoGrid, .isRequired = true});
   return albedo || transferFunction ? std::nullopt : std::optional(GridRequest());
 }
 

@@ -12,8 +12,7 @@ void EmissionDescription::check(const InputDescription& input) const {
                                     {"temperature-scale", temperatureScale.has_value()},
                                     {"temperature-offset", temperatureOffset.has_value()}})
     if (given)
-      fail(ErrorKind::Usage, "{} is of emission, which {} turns off: leave one of them out", Parameter(name),
-           Parameter("emission", kNoGrid));
+      fail(ErrorKind::Usage, "{} is of emission, which {} turns off: leave one of them out", Parameter(name), Parameter("emission", kNone));
 }
 
 std::optional<GridRequest> EmissionDescription::grid() const {
@@ -21,14 +20,21 @@ std::optional<GridRequest> EmissionDescription::grid() const {
   return emission == false ? std::nullopt : std::optional(GridRequest{.name = "", .isRequired = isAsked()});
 }
 
+bool EmissionDescription::mayShine(const TemperatureGrid& grid) const {
+  return isAsked() || (emission != false && grid.isBurning && !areBelowZero(grid));
+}
+
+Emission EmissionDescription::scales(const TemperatureGrid& grid) const {
+  Emission result;
+  result.temperatureOffset = temperatureOffset.value_or(temperatureScale ? 0.0 : automaticTemperatureOffset(grid));
+  result.temperatureScale = temperatureScale.value_or(automaticTemperatureScale(grid, result.temperatureOffset));
+  result.strength = strength.value_or(1.0);
+  return result;
+}
+
 bool EmissionDescription::shines(const Volume& volume) const {
-  if (isAsked() || !volume.temperature || emission == false) return isAsked();
-  const TemperatureGrid& grid = *volume.temperature;
-  if (!grid.isBurning || areBelowZero(grid)) return false;
-  Emission unit;
-  unit.temperatureOffset = temperatureOffset.value_or(temperatureScale ? 0.0 : automaticTemperatureOffset(*volume.temperature));
-  unit.temperatureScale = temperatureScale.value_or(automaticTemperatureScale(*volume.temperature, unit.temperatureOffset));
-  return brightestLight({.emission = unit}, volume) > 0.0;
+  if (isAsked() || !volume.temperature || !mayShine(*volume.temperature)) return isAsked();
+  return brightestLight({.emission = scales(*volume.temperature)}, volume) > 0.0;
 }
 
 std::optional<Emission> EmissionDescription::resolve(const Volume& volume,
@@ -43,13 +49,8 @@ std::optional<Emission> EmissionDescription::resolve(const Volume& volume,
   if (!volume.temperature)
     fail(ErrorKind::Usage, "{} has no temperatures: leave {} out, {}", volume.source, Parameter("emission"),
          volume.classification ? "or give it to 'freevoxels bake'" : "or take procedural:fire");
-  const TemperatureGrid& grid = *volume.temperature;
-  Emission result;
-  result.temperatureOffset =
-      temperatureOffset.value_or(temperatureScale ? 0.0 : automaticTemperatureOffset(grid));
-  result.temperatureScale =
-      temperatureScale.value_or(automaticTemperatureScale(grid, result.temperatureOffset));
-  result.strength = strength ? *strength : automaticEmissionStrength(volume, classification, result);
+  Emission result = scales(*volume.temperature);
+  if (!strength) result.strength = automaticEmissionStrength(volume, classification, result);
   return result;
 }
 

@@ -102,30 +102,20 @@ std::shared_ptr<const fvx::FvxFile> InputDescription::baked() const {
 Volume InputDescription::open(std::uint64_t maximumVoxels, const MoreGrids& more, int level, const Progress& progress) const {
   const std::optional<std::string> name = proceduralName(volume);
   if (const auto file = baked()) return openBaked(file, maximumVoxels, level, progress);
-  if (!name) {
-    Volume read = readVdb(volume, {.grid = grid.value_or(""),
-                                   .maximumVoxels = maximumVoxels,
-                                   .more = more,
-                                   .clipBox = clipBox,
-                                   .noData = noData && noData->value ? std::optional(float(*noData->value)) : std::nullopt,
-                                   .progress = progress});
-    applyNoData(read);
-    return clip(std::move(read));
-  }
+  if (!name)
+    return clip(readVdb(volume, {.grid = grid.value_or(""),
+                                 .maximumVoxels = maximumVoxels,
+                                 .more = more,
+                                 .clipBox = clipBox,
+                                 .noData = noData,
+                                 .progress = progress}));
   Volume made = openProcedural(*name, resolution, maximumVoxels, progress);
   if (!more.temperature) made.temperature.reset();
-  applyNoData(made);
+  if (noData) summariseValues(made, noData->scalar());
+  settleNoData(made, noData);
+  if (made.activeVoxels == 0 && !made.temperature)
+    fail(ErrorKind::Usage, "all voxels of {} have the value of {}: leave it out", volume, Parameter("no-data"));
   return clip(std::move(made));
-}
-
-void InputDescription::applyNoData(Volume& read) const {
-  if (!noData) return removePadding(read);
-  if (!noData->value) return;
-  const float value = float(*noData->value);
-  if (looksLikeScan(read)) read.padding = value;
-  removeValue(read, value);
-  if (read.activeVoxels == 0)
-    fail(ErrorKind::Usage, "all voxels of {} have the value of {}: leave it out", read.source, Parameter("no-data"));
 }
 
 Volume InputDescription::clip(Volume whole) const {
@@ -157,16 +147,16 @@ std::vector<std::string> warningsOf(const Volume& volume, bool scalarsAreDensiti
     warnings.push_back(
         fmt::format("{} of {} had too large a value for the 16-bit floats of the file: they have the largest of those, 65504",
                     count(volume.overflownVoxels), volume.source));
-  const auto warnOfWild = [&](const auto& values, const char* what) {
-    if (values.wildVoxels > 0)
+  const auto warnOfOutliers = [&](const auto& values, const char* what) {
+    if (values.outlierVoxels > 0)
       warnings.push_back(
           fmt::format("{}{} of {} {} beyond all others by a factor of a thousand and more, up to {:g}: {} drawn like the "
                       "largest of the others, {:g}",
-                      what, count(values.wildVoxels), volume.source, values.wildVoxels == 1 ? "is" : "are", values.wildest,
-                      values.wildVoxels == 1 ? "it is" : "they are", std::max(values.maximum, -values.minimum)));
+                      what, count(values.outlierVoxels), volume.source, values.outlierVoxels == 1 ? "is" : "are", values.farthestOutlier,
+                      values.outlierVoxels == 1 ? "it is" : "they are", std::max(values.maximum, -values.minimum)));
   };
-  warnOfWild(volume, "");
-  if (volume.temperature) warnOfWild(*volume.temperature, "the temperatures of ");
+  warnOfOutliers(volume, "");
+  if (volume.temperature) warnOfOutliers(*volume.temperature, "the temperatures of ");
   if (volume.albedo && volume.albedo->clippedVoxels > 0)
     warnings.push_back(fmt::format("{} voxels of grid '{}' have components outside of 0..1, which are clipped to it",
                                    volume.albedo->clippedVoxels, volume.albedo->name));

@@ -90,9 +90,15 @@ MethodDescription resolvedMethod(const MethodDescription& given) {
 
 }  // namespace
 
+SceneDescription SceneDescription::of(const std::string& volume) const {
+  SceneDescription result = *this;
+  result.input.volume = volume;
+  return result;
+}
+
 void SceneDescription::check() const {
   input.check();
-  if (classification.albedoGrid && classification.albedoGrid != kNoGrid && proceduralName(input.volume))
+  if (classification.albedoGrid && classification.albedoGrid != kNone && proceduralName(input.volume))
     fail(ErrorKind::Usage, "{} chooses among the grids of a file, and {} has one", Parameter("albedo-grid"), input.volume);
   emission.check(input);
   camera.check();

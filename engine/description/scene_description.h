@@ -38,8 +38,9 @@ inline constexpr int kMaxResolution = 2048;
 inline constexpr int kDefaultResolution = 128;
 /// Default number of orders of scattering.
 inline constexpr int kDefaultScattering = 3;
+/// The text of options that leave out what is there by default.
+inline constexpr const char* kNone = "none";
 /// Frames of a turn around the volume.
-inline constexpr const char* kNoGrid = "none";
 inline constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
 
 /// The volume, before it is read.
@@ -55,8 +56,6 @@ struct InputDescription {
   void checkGiven() const;
   /// Fails for fields that do not apply to this volume.
   void check() const;
-  /// Takes away the data of voxels with the value that means none.
-  void applyNoData(Volume& read) const;
   /// The part of a volume in the clip box and behind the clip plane. Fails if there is none.
   Volume clip(Volume whole) const;
   /// Reads or makes the volume. A procedural volume has its temperatures if any are requested; a baked one always has its
@@ -96,7 +95,7 @@ struct ClassificationDescription {
   std::optional<double> densityScale;           ///< extinction per world unit at density 1, at least 0
   std::optional<glm::dvec3> albedo;             ///< linear Rec.709, 0 to 1
   std::optional<std::string> transferFunction;  ///< a file, or JSON that begins with {
-  /// A grid of vectors of an OpenVDB file: linear colours, 0 to 1; kNoGrid for none; else that of a usual name (grid_names.h), if there is
+  /// A grid of vectors of an OpenVDB file: linear colours, 0 to 1; kNone for none; else that of a usual name (grid_names.h), if there is
   /// one and neither albedo nor transfer function are given.
   std::optional<std::string> albedoGrid;
   std::optional<ClassificationOrder> order;     ///< of a transfer function; else Post
@@ -127,6 +126,10 @@ struct EmissionDescription {
   bool isAsked() const { return emission.value_or(temperatureGrid || temperatureScale || temperatureOffset); }
   /// The grid to read; nothing without emission.
   std::optional<GridRequest> grid() const;
+  /// Whether temperatures may be those of a fire, or emission is asked for.
+  bool mayShine(const TemperatureGrid& grid) const;
+  /// How temperatures of this range become light; the strength is 1 if it is not given.
+  Emission scales(const TemperatureGrid& grid) const;
   /// Whether the volume sends out light: where that is not asked for, if it has temperatures that do.
   bool shines(const Volume& volume) const;
   /// What is not given is automatic. `classification` is that without emission.
@@ -234,6 +237,8 @@ struct SceneDescription {
   MethodDescription method;
   OutputDescription output;
 
+  /// The same scene of another volume.
+  SceneDescription of(const std::string& volume) const;
   /// Fails for fields that are wrong for every volume and file of their kinds.
   void check() const;
   /// Reads the volume, with the grids that other fields need; of a baked one an octree level, which other volumes do not have. A frame of

@@ -151,7 +151,7 @@ class Section {
 constexpr NumberRange kPositive{.minimum = 0.0}, kUnit{.minimum = 0.0, .maximum = 1.0};
 
 NoData readNoData(const std::string& name, const std::string& given) {
-  if (given == kNoGrid) return {};
+  if (given == kNone) return {};
   return {.value = readNumbers({.name = name, .form = "VALUE or none", .count = 1}, given)[0]};
 }
 
@@ -167,7 +167,7 @@ void addInput(std::vector<SceneField>& fields) {
   section.add("clip-box", &Input::clipBox,
               numbers<VoxelBox>({.form = "X0,Y0,Z0,X1,Y1,Z1", .range = {0.0, double(kBeyondAnything)}}));
   section.add("no-data", &Input::noData, Codec<NoData>{.form = "VALUE|none", .read = readNoData, .text = [](const NoData& marks) {
-                                                         return marks.value ? numberText(*marks.value) : std::string(kNoGrid);
+                                                         return marks.value ? numberText(*marks.value) : std::string(kNone);
                                                        }});
   section.add("clip-plane", &Input::clipPlane, numbers<ClipPlane>({.form = "X,Y,Z,NX,NY,NZ", .range = {-1e30, 1e30}}));
 }
@@ -191,14 +191,14 @@ void addEmission(std::vector<SceneField>& fields) {
       "emission", Kind::Value, "STRENGTH|none",
       [](Emitted& emitted, const Texts& given) {
         emitted.strength.reset();
-        emitted.emission = given.back() != kNoGrid;
+        emitted.emission = given.back() != kNone;
         if (!*emitted.emission) return;
         const auto values = readNumbers({.name = marked("emission"), .form = "STRENGTH", .count = 0, .range = kPositive}, given.back());
         emitted.strength = values.empty() ? std::nullopt : std::optional(values[0]);
       },
       [](const Emitted& emitted) {
         if (emitted.strength) return Texts{numberText(*emitted.strength)};
-        return !emitted.emission ? Texts{} : Texts{*emitted.emission ? "" : kNoGrid};
+        return !emitted.emission ? Texts{} : Texts{*emitted.emission ? "" : kNone};
       });
   emission.standsAlone = true;
   section.add("temperature-scale", &Emitted::temperatureScale, numbers<double>({.form = "K", .range = kPositive}));

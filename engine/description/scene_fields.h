@@ -48,7 +48,7 @@ struct SceneField {
   Kind kind = Kind::Value;
   std::string form;  ///< of the text: "X,Y,Z"
   bool repeated = false;     ///< whether there may be several texts
-  bool standsAlone = false;  ///< whether the text may be empty, or kNoGrid, which the command line has as --no-NAME
+  bool standsAlone = false;  ///< whether the text may be empty, or kNone, which the command line has as --no-NAME
   /// Names of fields with which this one cannot be given, and of those of weaker sources that it replaces.
   std::vector<std::string> excludes, replaces;
   /// Gives the field. There is one text, unless it is repeated. Fails with ErrorKind::Usage.

@@ -210,7 +210,7 @@ void writeScene(const fs::path& file, const SceneDescription& description) {
 }
 
 std::vector<std::string> fieldTexts(const SceneField& field, const Json& value, const fs::path& folder, const std::string& name) {
-  if (field.standsAlone && value.is_boolean()) return {value.get<bool>() ? "" : kNoGrid};
+  if (field.standsAlone && value.is_boolean()) return {value.get<bool>() ? "" : kNone};
   if (!field.repeated) return {fieldText(field, value, folder, name)};
   if (!value.is_array()) fail(ErrorKind::Input, "{} takes a list, not {}", name, inShort(value));
   std::vector<std::string> texts;

@@ -72,7 +72,7 @@ class RowWriter {
   }
 
   /// Alpha above 1, which the additive composite makes, counts as 1. Straight alpha cannot be less than a colour that it is
-  /// to show: light of more than the opacity takes alpha for what is more, as bright as it is exposed. The opacity itself stays.
+  /// to show: where light exceeds the opacity, alpha grows by the exposed excess. The opacity itself does not depend on the exposure.
   void writePixel(const glm::vec4& light, const glm::vec3& behind, Sample* samples) const {
     const float most = look_.background ? light.a : std::max({light.a, light.r, light.g, light.b});
     const float excess = gain_ * (most - light.a);

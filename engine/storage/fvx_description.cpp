@@ -198,7 +198,7 @@ void readBox(const Json& json, Volume& volume) {
 
 void readCounts(const Json& json, Volume& volume) {
   volume.activeVoxels = count(json.at("active_voxels"), volume.voxelCount(), "active_voxels");
-  volume.nanVoxels = count(json.at("nan_voxels"), volume.activeVoxels, "nan_voxels");
+  volume.nanVoxels = count(json.at("nan_voxels"), volume.voxelCount(), "nan_voxels");
   volume.negativeVoxels = count(json.at("negative_voxels"), volume.activeVoxels, "negative_voxels");
   volume.minimum = real(json.at("minimum"), "minimum");
   volume.maximum = real(json.at("maximum"), "maximum");
@@ -208,7 +208,7 @@ void readCounts(const Json& json, Volume& volume) {
 TemperatureGrid readTemperature(const Json& json, std::uint64_t voxels) {
   TemperatureGrid grid{.name = text(json.at("name")), .values = {}};
   grid.activeVoxels = count(json.at("active_voxels"), voxels, "active_voxels of temperatures");
-  grid.nanVoxels = count(json.at("nan_voxels"), grid.activeVoxels, "nan_voxels of temperatures");
+  grid.nanVoxels = count(json.at("nan_voxels"), voxels, "nan_voxels of temperatures");
   grid.minimum = real(json.at("minimum"), "minimum of temperatures");
   grid.maximum = real(json.at("maximum"), "maximum of temperatures");
   if (grid.minimum > grid.maximum) refuse("the range of its temperatures");

@@ -181,7 +181,7 @@ double highestUsual(const Histogram& histogram) {
 bool looksLikeScan(const Volume& volume) {
   if (volume.isLevelSet || !(volume.minimum < volume.maximum)) return false;
   if (double(volume.negativeVoxels) > 0.01 * double(volume.activeVoxels)) return true;
-  return !volume.isFog && (volume.padding || double(volume.activeVoxels) >= 0.95 * double(volume.voxelCount()));
+  return !volume.isFog && double(volume.activeVoxels + volume.missingVoxels) >= 0.95 * double(volume.voxelCount());
 }
 
 std::optional<float> paddingOf(const Volume& volume) {
@@ -208,10 +208,14 @@ std::string paddingRemark(float padding) {
   return fmt::format("the value {:g} around the scan counts as no data ({} keeps it)", padding, Parameter("no-data", "none"));
 }
 
-void removePadding(Volume& volume) {
+void settleNoData(Volume& volume, const std::optional<NoData>& noData) {
+  if (noData) {
+    if (looksLikeScan(volume)) volume.padding = noData->scalar();
+    return;
+  }
   volume.padding = paddingOf(volume);
   if (!volume.padding) return;
-  removeValue(volume, *volume.padding);
+  summariseValues(volume, *volume.padding);
   volume.remarks.push_back(paddingRemark(*volume.padding));
 }
 

@@ -14,6 +14,8 @@ bool looksLikeScan(const Volume& volume);
 struct NoData {
   std::optional<double> value;  ///< nothing: every number is data
 
+  /// The value as voxels have it.
+  std::optional<float> scalar() const { return value ? std::optional(float(*value)) : std::nullopt; }
   bool operator==(const NoData&) const = default;
 };
 
@@ -22,10 +24,11 @@ struct NoData {
 /// three tenths of that, or half the distance from the other end to their median, are enough where other values reach the sides, too. 0 is
 /// not taken for padding, since it may be air, nor anything in a volume of labels, which has few different values.
 std::optional<float> paddingOf(const Volume& volume);
-/// Makes voxels with the padding voxels without data.
-void removePadding(Volume& volume);
-/// The remark (Volume::remarks) that this was done.
+/// The remark (Volume::remarks) that the padding holds no data.
 std::string paddingRemark(float padding);
+/// To be called after summariseValues() has removed the voxels that have the value of `noData`, which becomes the padding of a scan. Without
+/// `noData` it looks for padding, removes it and adds a remark.
+void settleNoData(Volume& volume, const std::optional<NoData>& noData);
 
 /// Whether an array is of densities that were cut out of nothing, as no file says of it: values from 0 to 10, not all of them whole, of
 /// which nine tenths on the sides of the box are exactly 0.

@@ -20,11 +20,13 @@ std::size_t magnitudeOf(float value) {
   return std::bit_cast<std::uint32_t>(std::abs(value)) >> kFractionBits;
 }
 
-/// Adds a value to the summary, or removes it from the volume if it is no number.
-void add(ValueSummary& summary, float& value) {
+/// Adds a value to the summary, or removes it from the volume if it is no number or equal to `noData`.
+void add(ValueSummary& summary, float& value, float noData) {
   if (value == kInactiveVoxel) return;
-  if (!std::isfinite(value)) {
-    ++summary.nan;
+  const bool isNumber = std::isfinite(value);
+  if (!isNumber || value == noData) {
+    ++summary.missing;
+    if (!isNumber) ++summary.nan;
     value = kInactiveVoxel;
     return;
   }
@@ -42,6 +44,7 @@ void add(ValueSummary& summary, float& value) {
 void ValueSummary::add(const ValueSummary& other) {
   active += other.active;
   nan += other.nan;
+  missing += other.missing;
   negative += other.negative;
   minimum = std::min(minimum, other.minimum);
   maximum = std::max(maximum, other.maximum);
@@ -51,12 +54,13 @@ void ValueSummary::add(const ValueSummary& other) {
   }
 }
 
-ValueSummary summarise(std::span<ScalarBricks::Brick> bricks) {
+ValueSummary summarise(std::span<ScalarBricks::Brick> bricks, std::optional<float> noData) {
+  const float marker = noData.value_or(kInactiveVoxel);
   return tbb::parallel_reduce(
       Range(0, bricks.size(), kGrain), ValueSummary{},
       [&](const Range& range, ValueSummary partial) {
         for (std::size_t i = range.begin(); i < range.end(); ++i)
-          for (float& scalar : bricks[i]) add(partial, scalar);
+          for (float& scalar : bricks[i]) add(partial, scalar, marker);
         return partial;
       },
       [](ValueSummary a, const ValueSummary& b) {
@@ -65,13 +69,13 @@ ValueSummary summarise(std::span<ScalarBricks::Brick> bricks) {
       });
 }
 
-WildValues wildValues(const ValueSummary& summary) {
-  constexpr std::size_t kGap = 10;             // powers of two without any value, below the wild ones
+Outliers outliersOf(const ValueSummary& summary) {
+  constexpr std::size_t kGap = 10;             // powers of two without any value, below outliers
   constexpr std::uint64_t kFewestVoxels = 30;  // which have something that is usual
-  constexpr std::uint64_t kVoxelsPerWild = 1000;
+  constexpr std::uint64_t kVoxelsPerOutlier = 1000;
   std::uint64_t above = summary.active - summary.counts[0];
   if (above < kFewestVoxels) return {};
-  const std::uint64_t most = std::min(kMostWildVoxels, std::max<std::uint64_t>(above / kVoxelsPerWild, 1));
+  const std::uint64_t most = std::min(kMostOutliers, std::max<std::uint64_t>(above / kVoxelsPerOutlier, 1));
   std::size_t last = 0;  // the last magnitude that has values; 0 before the first
   for (std::size_t i = 1; i < ValueSummary::kMagnitudes; ++i) {
     if (summary.counts[i] == 0) continue;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 
 #include "engine/volume/scalar_bricks.h"
@@ -14,6 +15,7 @@ struct ValueSummary {
   static constexpr std::size_t kMagnitudes = 256;  ///< exponents of floats; the first has 0 and the denormals
 
   std::uint64_t active = 0, nan = 0, negative = 0;
+  std::uint64_t missing = 0;  ///< voxels that hold no data by their value: NaN, infinite or that of no data
   float minimum = std::numeric_limits<float>::infinity();
   float maximum = -std::numeric_limits<float>::infinity();
   std::array<std::uint64_t, kMagnitudes> counts{};  ///< of active voxels by the exponent of their value
@@ -22,17 +24,17 @@ struct ValueSummary {
   void add(const ValueSummary& other);
 };
 
-/// Sums up the active voxels. Those that are NaN or infinite become voxels without data.
-ValueSummary summarise(std::span<ScalarBricks::Brick> bricks);
+/// Sums up the active voxels. Those that are NaN or infinite, or have the value of no data, become voxels without data.
+ValueSummary summarise(std::span<ScalarBricks::Brick> bricks, std::optional<float> noData = {});
 
-/// Values that stray from all others: at most a thousandth of the voxels and kMostWildVoxels, with absolute values more than 1024 times
+/// Values that stray from all others: at most a thousandth of the voxels and kMostOutliers, with absolute values more than 1024 times
 /// as large as the largest of the rest.
-struct WildValues {
+struct Outliers {
   std::uint64_t voxels = 0;
   float limit = std::numeric_limits<float>::infinity();  ///< the largest absolute value of the rest
 };
-inline constexpr std::uint64_t kMostWildVoxels = 100;
-WildValues wildValues(const ValueSummary& summary);
+inline constexpr std::uint64_t kMostOutliers = 100;
+Outliers outliersOf(const ValueSummary& summary);
 
 /// Limits the absolute values of active voxels.
 void limitValues(std::span<ScalarBricks::Brick> bricks, float limit);

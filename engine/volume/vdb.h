@@ -12,6 +12,7 @@
 #include "engine/core/stages.h"
 #include "engine/volume/coarse_volume.h"
 #include "engine/volume/procedural.h"
+#include "engine/volume/scan.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -40,6 +41,9 @@ struct GridInfo {
 /// Describes every grid of the file, in file order. Fails with ErrorKind::Input if the file is missing,
 /// truncated or not an OpenVDB file.
 std::vector<GridInfo> describeVdb(const std::filesystem::path& file);
+
+/// Whether a grid of the file has the name, as `NAME` or `NAME[k]`. Fails as describeVdb does.
+bool hasGrid(const std::filesystem::path& file, const std::string& name);
 
 /// What is known of a grid without reading its voxels.
 struct GridChoice {
@@ -80,7 +84,7 @@ struct ReadRequest {
   std::uint64_t maximumVoxels = 0;  ///< of the box
   MoreGrids more = {};
   std::optional<VoxelBox> clipBox = std::nullopt;  ///< read only this part where the whole box has more than `maximumVoxels`
-  std::optional<float> noData = std::nullopt;      ///< value of voxels that hold no data
+  std::optional<NoData> noData = std::nullopt;     ///< of which voxels hold no data; else the padding of a scan (scan.h) does
   Progress progress = {};                          ///< may abandon it
 };
 

@@ -186,6 +186,10 @@ std::vector<GridInfo> describeVdb(const std::filesystem::path& path) {
   return infos;
 }
 
+bool hasGrid(const std::filesystem::path& file, const std::string& name) {
+  return VdbFile(file).has(name);
+}
+
 std::vector<GridChoice> listVdb(const std::filesystem::path& path) {
   VdbFile file(path);
   std::vector<GridChoice> choices;

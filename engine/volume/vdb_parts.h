@@ -14,10 +14,9 @@ namespace freevoxels {
 class VdbParts {
  public:
   /// Null where the values of the grid take at most `mostBytes`, and where they have to be read at once: those of level sets, of grids
-  /// that are not float or half, of volumes with temperatures or albedos, of files that were streamed out, and all with an OpenVDB without
-  /// delayed loading. Chooses the grids and fails as readVdb does. Without `noData` the padding of a scan (scan.h) holds no data.
-  static std::unique_ptr<VdbParts> open(const std::filesystem::path& file, const ReadRequest& request, std::uint64_t mostBytes,
-                                        const std::optional<NoData>& noData = std::nullopt);
+  /// that are not float or half, of volumes whose temperatures or albedos are required, of files that were streamed out, and all with an
+  /// OpenVDB without delayed loading. Chooses the grids and fails as readVdb does.
+  static std::unique_ptr<VdbParts> open(const std::filesystem::path& file, const ReadRequest& request, std::uint64_t mostBytes);
   ~VdbParts();
 
   /// What readVdb returns, without bricks.

@@ -1,7 +1,6 @@
 #include "engine/volume/volume.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,14 +13,14 @@ namespace {
 
 /// Fills what a volume and its temperatures have in common.
 template <typename Grid>
-void take(Grid& grid, const ValueSummary& summary, const WildValues& wild) {
+void take(Grid& grid, const ValueSummary& summary, const Outliers& outliers) {
   grid.activeVoxels = summary.active;
-  grid.nanVoxels = summary.nan;
-  grid.minimum = summary.active == 0 ? 0.0f : std::max(summary.minimum, -wild.limit);
-  grid.maximum = summary.active == 0 ? 0.0f : std::min(summary.maximum, wild.limit);
-  if (wild.voxels == 0) return;
-  grid.wildVoxels = wild.voxels;
-  grid.wildest = std::abs(summary.minimum) > std::abs(summary.maximum) ? summary.minimum : summary.maximum;
+  grid.nanVoxels += summary.nan;
+  grid.minimum = summary.active == 0 ? 0.0f : std::max(summary.minimum, -outliers.limit);
+  grid.maximum = summary.active == 0 ? 0.0f : std::min(summary.maximum, outliers.limit);
+  if (outliers.voxels == 0) return;
+  grid.outlierVoxels = outliers.voxels;
+  grid.farthestOutlier = std::abs(summary.minimum) > std::abs(summary.maximum) ? summary.minimum : summary.maximum;
 }
 
 void expandByActive(const ScalarBricks& scalars, glm::ivec3& low, glm::ivec3& high) {
@@ -94,29 +93,30 @@ void normaliseWorld(Volume& volume) {
   }
 }
 
-void summariseValues(Volume& volume) {
-  const ValueSummary summary = summarise(volume.scalars.bricks());
-  const WildValues wild = wildValues(summary);
-  takeSummary(volume, summary, wild);
-  if (wild.voxels > 0) limitValues(volume.scalars.bricks(), wild.limit);
+void summariseValues(Volume& volume, std::optional<float> noData) {
+  const ValueSummary summary = summarise(volume.scalars.bricks(), noData);
+  const Outliers outliers = outliersOf(summary);
+  takeSummary(volume, summary, outliers);
+  if (outliers.voxels > 0) limitValues(volume.scalars.bricks(), outliers.limit);
 }
 
-void summariseValues(Volume& volume, const WildValues& wild) {
-  if (wild.voxels > 0) limitValues(volume.scalars.bricks(), wild.limit);
+void summariseValues(Volume& volume, const Outliers& outliers) {
+  if (outliers.voxels > 0) limitValues(volume.scalars.bricks(), outliers.limit);
   takeSummary(volume, summarise(volume.scalars.bricks()), {});
 }
 
-void takeSummary(Volume& volume, const ValueSummary& summary, const WildValues& wild) {
-  take(volume, summary, wild);
+void takeSummary(Volume& volume, const ValueSummary& summary, const Outliers& outliers) {
+  take(volume, summary, outliers);
   volume.negativeVoxels = summary.negative;
+  volume.missingVoxels += summary.missing;
 }
 
 void takeCounts(Volume& volume, const Volume& other) {
   volume.nanVoxels = other.nanVoxels;
   volume.negativeVoxels = other.negativeVoxels;
   volume.overflownVoxels = other.overflownVoxels;
-  volume.wildVoxels = other.wildVoxels;
-  volume.wildest = other.wildest;
+  volume.outlierVoxels = other.outlierVoxels;
+  volume.farthestOutlier = other.farthestOutlier;
   volume.minimum = other.minimum;
   volume.maximum = other.maximum;
 }
@@ -124,17 +124,9 @@ void takeCounts(Volume& volume, const Volume& other) {
 void summariseValues(TemperatureGrid& grid) {
   const std::span<ScalarBricks::Brick> bricks = grid.values.bricks();
   const ValueSummary summary = summarise(bricks);
-  const WildValues wild = wildValues(summary);
-  take(grid, summary, wild);
-  if (wild.voxels > 0) limitValues(bricks, wild.limit);
-}
-
-void removeValue(Volume& volume, float value) {
-  const std::span<ScalarBricks::Brick> bricks = volume.scalars.bricks();
-  tbb::parallel_for(std::size_t(0), bricks.size(), [&](std::size_t i) { std::ranges::replace(bricks[i], value, kInactiveVoxel); });
-  const std::uint64_t nan = volume.nanVoxels;
-  summariseValues(volume);
-  volume.nanVoxels = nan;
+  const Outliers outliers = outliersOf(summary);
+  take(grid, summary, outliers);
+  if (outliers.voxels > 0) limitValues(bricks, outliers.limit);
 }
 
 }  // namespace freevoxels

@@ -16,7 +16,7 @@ namespace freevoxels {
 struct Classification;
 struct Subject;
 struct ValueSummary;
-struct WildValues;
+struct Outliers;
 
 /// Temperatures in addition to a volume's scalars.
 struct TemperatureGrid {
@@ -24,9 +24,9 @@ struct TemperatureGrid {
   ScalarBricks values;  ///< like Volume::scalars, for the same box, in any unit
   std::uint64_t activeVoxels = 0, nanVoxels = 0;
   float minimum = 0.0f, maximum = 0.0f;  ///< of the active voxels
-  std::uint64_t wildVoxels = 0;          ///< as of a Volume
+  std::uint64_t outlierVoxels = 0;       ///< as of a Volume
   bool isBurning = true;                 ///< false where the file has a grid of flames that is empty
-  float wildest = 0.0f;
+  float farthestOutlier = 0.0f;
 };
 
 /// Albedos in addition to a volume's scalars, linear Rec.709 in 0..1.
@@ -49,13 +49,14 @@ struct Volume {
 
   std::uint64_t activeVoxels = 0;
   std::uint64_t nanVoxels = 0;           ///< voxels that were NaN or infinite, and hold no data here
+  std::uint64_t missingVoxels = 0;       ///< voxels of the file that hold no data by their value: NaN, or that of no data (scan.h)
   std::uint64_t overflownVoxels = 0;     ///< voxels of half floats that were infinite, and have the largest half here
   std::uint64_t negativeVoxels = 0;      ///< active voxels below 0; a density there counts as 0 (classification.h)
   float minimum = 0.0f, maximum = 0.0f;  ///< of the active voxels
   /// Few voxels whose values were more than a thousand times as large as all others (value_range.h). They have the largest of the other
-  /// values here, so that they do not rule what is chosen by the range. `wildest` is the largest of them in the file.
-  std::uint64_t wildVoxels = 0;
-  float wildest = 0.0f;
+  /// values here, so that they do not rule what is chosen by the range. `farthestOutlier` is the largest of them in the file.
+  std::uint64_t outlierVoxels = 0;
+  float farthestOutlier = 0.0f;
   std::optional<float> padding;  ///< of a scan: the value that was taken for no data (scan.h)
   bool isPart = false;           ///< whether readVdb has left out what is beyond the clip box, as the whole would be too large
   /// Whether the file says that the scalars are densities: it calls the grid a fog volume, and density or a usual name of it.
@@ -97,18 +98,17 @@ std::vector<float> denseScalars(const Volume& volume);
 /// apart, or single precision's range when they are squared; warns of it, as cameras and densities then count in other units.
 void normaliseWorld(Volume& volume);
 
-/// Fills activeVoxels, nanVoxels, negativeVoxels, minimum and maximum, takes NaN and infinities for no data, and tames wild voxels.
-void summariseValues(Volume& volume);
-/// The same of a part of a volume, the values of which are wild beyond those limits.
-void summariseValues(Volume& volume, const WildValues& wild);
+/// Takes NaN, infinities and the value of no data for no data, limits outliers, and fills the counts of voxels, minimum and maximum. Voxels
+/// that were taken for no data before are still counted.
+void summariseValues(Volume& volume, std::optional<float> noData = {});
+/// The same of a part of a volume, whose outliers are known.
+void summariseValues(Volume& volume, const Outliers& outliers);
 /// Fills the same fields for a volume whose values are not in memory.
-void takeSummary(Volume& volume, const ValueSummary& summary, const WildValues& wild);
+void takeSummary(Volume& volume, const ValueSummary& summary, const Outliers& outliers);
 /// Fills the same fields as another volume has them.
 void takeCounts(Volume& volume, const Volume& other);
 /// Does the same for temperatures.
 void summariseValues(TemperatureGrid& grid);
-/// Makes voxels with this value voxels without data, and summarises again.
-void removeValue(Volume& volume, float value);
 
 /// Makes empty bricks of scalars wherever `grid` has bricks, so that voxels with emission alone are drawn
 /// too.

@@ -35,11 +35,11 @@ Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld, boo
          size.x, size.y, size.z);
   volume.isFog = looksLikeFog(volume);
   if (volume.isFog) {
-    removeValue(volume, 0.0f);
+    summariseValues(volume, 0.0f);
     volume.remarks.push_back(
         fmt::format("its values are taken for densities, and 0 for no data ({} draws it as a scan)", Parameter("transfer-function")));
   }
-  if (!volume.isFog && !knowsNoData) removePadding(volume);
+  if (!volume.isFog && !knowsNoData) settleNoData(volume, {});
   orientScan(volume);
   return volume;
 }

@@ -294,6 +294,22 @@ TEST(Library, AContextTakesTheChoiceOfTheDeviceFromScenes) {
   expectError(v1::ErrorKind::Device, R"("device": "none such")", [] { v1::Context(v1::ContextOptions{.device = "none such"}); }, {"device"});
 }
 
+TEST(Library, RemarksSayWhatIsAssumed) {
+  constexpr std::array<int, 3> kSize{22, 19, 9};
+  std::vector<float> values;
+  for (int z = 0; z < kSize[2]; ++z)
+    for (int y = 0; y < kSize[1]; ++y)
+      for (int x = 0; x < kSize[0]; ++x) {
+        const double distance = std::hypot(2.0 * x / kSize[0] - 1.0, 2.0 * y / kSize[1] - 1.0);
+        values.push_back(distance > 0.9 ? -9999.0f : float(distance < 0.5 ? 900 : 10) + float((7 * x + 13 * y + 29 * z) % 9));
+      }
+  const v1::Volume volume = v1::Volume::copy(values, kSize);
+  EXPECT_NE(volume.remarks().find("-9999"), std::string::npos) << volume.remarks();
+  EXPECT_NE(volume.remarks().find("no-data"), std::string::npos) << volume.remarks();
+  EXPECT_EQ(volume.range().first, 10.0f);
+  EXPECT_EQ(cloud().remarks(), "");
+}
+
 TEST(Library, VolumesSayWhatIsRemarkableAboutThem) {
   std::vector<float> values(8, 1.0f);
   values[3] = std::numeric_limits<float>::infinity();

@@ -228,6 +228,14 @@ TEST(BakedVolume, PartsOfAnOpenVdbFileMakeTheSameFileAsTheWhole) {
   EXPECT_TRUE(test::readBytes(folder / "whole.fvx") == test::readBytes(folder / "parts.fvx"));
 }
 
+TEST(BakedVolume, MoreVoxelsMayBeWithoutNumbersThanWith) {
+  const test::TemporaryFolder folder;
+  const Volume volume = makeVolume({19, 8, 33}, glm::dmat4(1.0), [](int x, int y, int) { return x + y < 6 ? 0.5f : std::nanf(""); });
+  EXPECT_GT(volume.nanVoxels, volume.activeVoxels);
+  bakeVolume(folder / "a.fvx", volume, kDense, {});
+  EXPECT_EQ(readBaked(std::make_shared<const fvx::FvxFile>(folder / "a.fvx"), 0).nanVoxels, volume.nanVoxels);
+}
+
 TEST(BakedVolume, WhatIsSeenTravelsWithEveryLevel) {
   const test::TemporaryFolder folder;
   // Boxes that end with a group of 4 voxels, a brick, a chunk, and elsewhere.

@@ -56,31 +56,31 @@ TEST(Volume, SummaryCountsActiveVoxelsOnly) {
 }
 
 /// The value of the voxel that strays, for several sizes of the volume and of what is usual.
-TEST(Volume, FewWildVoxelsAreDrawnLikeTheLargestOfTheOthers) {
+TEST(Volume, FewOutliersAreDrawnLikeTheLargestOfTheOthers) {
   for (const glm::ivec3 size : {glm::ivec3(5, 6, 7), glm::ivec3(16), glm::ivec3(40, 33, 51)})
     for (const double usual : {1e-20, 1.0, 3000.0})
-      for (const double wild : {1e30, usual * 2e4, -usual * 1e6}) {
+      for (const double outlier : {1e30, usual * 2e4, -usual * 1e6}) {
         const Volume volume = makeVolume(size, glm::dmat4(1.0), [&](int x, int y, int z) {
-          if (glm::ivec3(x, y, z) == size / 2) return float(wild);
+          if (glm::ivec3(x, y, z) == size / 2) return float(outlier);
           return float(usual * double(x + y + z + 1) / double(size.x + size.y + size.z));
         });
-        SCOPED_TRACE(testing::Message() << size.x << ' ' << usual << ' ' << wild);
+        SCOPED_TRACE(testing::Message() << size.x << ' ' << usual << ' ' << outlier);
         const float most = float(usual * double(size.x + size.y + size.z - 2) / double(size.x + size.y + size.z));
-        EXPECT_EQ(volume.wildVoxels, 1u);
-        EXPECT_EQ(volume.wildest, float(wild));
+        EXPECT_EQ(volume.outlierVoxels, 1u);
+        EXPECT_EQ(volume.farthestOutlier, float(outlier));
         EXPECT_EQ(volume.maximum, most);
-        EXPECT_EQ(volume.scalar(size.x / 2, size.y / 2, size.z / 2), wild < 0.0 ? -most : most);
+        EXPECT_EQ(volume.scalar(size.x / 2, size.y / 2, size.z / 2), outlier < 0.0 ? -most : most);
         EXPECT_EQ(volume.activeVoxels, std::uint64_t(size.x) * std::uint64_t(size.y) * std::uint64_t(size.z));
       }
 }
 
 TEST(Volume, ValuesOfManyMagnitudesAreNotWild) {
   const Volume spread = makeVolume({30, 30, 30}, glm::dmat4(1.0), [](int x, int y, int z) { return std::exp2f(float(x + y + z) - 40.0f); });
-  EXPECT_EQ(spread.wildVoxels, 0u) << "each magnitude has values";
+  EXPECT_EQ(spread.outlierVoxels, 0u) << "each magnitude has values";
   const Volume core = makeVolume({30, 30, 30}, glm::dmat4(1.0), [](int x, int y, int z) {
     return std::max({std::abs(x - 15), std::abs(y - 15), std::abs(z - 15)}) < 4 ? 1.0f : 1e-7f;
   });
-  EXPECT_EQ(core.wildVoxels, 0u) << "a small cloud in haze has many voxels";
+  EXPECT_EQ(core.outlierVoxels, 0u) << "a small cloud in haze has many voxels";
 }
 
 TEST(Volume, SummaryOfNothingIsZero) {
