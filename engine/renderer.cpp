@@ -1,63 +1,166 @@
 #include "engine/renderer.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/machine.h"
+#include "engine/cube_drawing.h"
 #include "engine/renderer_state.h"
+#include "engine/volume/emission_light.h"
 
 namespace freevoxels {
 
-Renderer::Renderer(const Device& device, const Volume& volume, const Classification& classification,
-                   const TableSettings& table, const Progress& progress) {
-  state_ = std::make_unique<State>(State{
-      .device = device, .hostVolume = volume, .classification = classification, .tableSettings = table});
-  state_->built = buildVolume(device, volume, classification, state_->buildTimes, progress);
+namespace {
+
+/// Whether the volume is certainly too large for the device, or what is read of it for this machine, so that reading it is no use.
+bool exceeds(const Device& device, const VolumeSource& source, bool emits) {
+  const Volume& outline = source.outline();
+  const std::uint64_t active = outline.activeVoxels;
+  if (!source.isInMemory() && active > machineMemoryBytes() / 2 / sizeof(float)) return true;
+  return exceedsDevice(device.memoryBytes(), maximumVoxels(device), outline.dimensions, active) ||
+         leastGatherBytes(brickVoxels(source), outline.dimensions, outline.indexToWorld, nullptr, emits) > device.memoryBytes();
 }
+
+}  // namespace
+
+Renderer::Renderer(const Device& device, std::shared_ptr<const VolumeSource> source, const Classification& classification,
+                   const TableSettings& table, const Progress& progress)
+    : device_(device), source_(std::move(source)), classification_(classification), table_(table) {
+  if (exceeds(device, *source_, classification.emission.has_value())) {
+    inCubes_ = true;
+    return;
+  }
+  if (makesEmissionLight()) return;  // which depends on the frame
+  try {
+    whole(false, progress);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::OutOfMemory) throw;
+    inCubes_ = true;
+  }
+}
+
+Renderer::Renderer(const Device& device, const Volume& volume, const Classification& classification, const TableSettings& table,
+                   const Progress& progress)
+    : Renderer(device, std::make_shared<const VolumeInMemory>(std::shared_ptr<const Volume>(std::shared_ptr<const Volume>(), &volume)),
+               classification, table, progress) {}
 
 Renderer::~Renderer() = default;
 
+/// Whether the light of the volume's emission is made here, of values that whoever has made the classification has not read.
+bool Renderer::makesEmissionLight() const {
+  return classification_.emission && !classification_.emissionLight && !source_->isInMemory();
+}
+
+/// The volume as a whole, for a frame with or without light.
+Renderer::State& Renderer::whole(bool lit, const Progress& progress) {
+  const bool wantsLight = lit && makesEmissionLight();
+  if (state_ && (!makesEmissionLight() || wantsLight == (state_->classification.emissionLight != nullptr))) return *state_;
+  state_.reset();
+  cubes_.reset();
+  std::vector<StageTime> times;
+  if (!volume_) {
+    if (source_->isInMemory()) {
+      volume_ = source_->whole();
+    } else {
+      const StageTimer timer(times, "read volume");
+      volume_ = source_->whole(progress);
+    }
+  }
+  Classification classification = classification_;
+  if (wantsLight) classification.emissionLight = std::make_shared<const EmissionLight>(*volume_, classification_);
+  auto state = std::make_unique<State>(State{.device = device_,
+                                             .hostVolume = *volume_,
+                                             .classification = std::move(classification),
+                                             .tableSettings = table_,
+                                             .buildTimes = std::move(times)});
+  state->built = buildVolume(device_, *volume_, state->classification, state->buildTimes, progress);
+  state_ = std::move(state);
+  return *state_;
+}
+
+CubeDrawing& Renderer::cubes() {
+  state_.reset();
+  volume_.reset();
+  if (!cubes_) cubes_ = std::make_unique<CubeDrawing>(device_, source_, classification_, table_);
+  return *cubes_;
+}
+
+bool Renderer::surelyFits(const FrameSettings& settings) const {
+  const Volume& outline = source_->outline();
+  if (CubeDrawing::whyNot(outline.dimensions, settings)) return true;
+  constexpr std::uint64_t kMargin = 2;  // for what the least does not count: blocks, rays of the eye, images
+  return !inCubes_ && kMargin * leastGatherBytes(brickVoxels(*source_), outline.dimensions, outline.indexToWorld,
+                                                 settings.lighting ? &*settings.lighting : nullptr,
+                                                 classification_.emission.has_value()) <= device_.memoryBytes();
+}
+
+void Renderer::drawInCubes() {
+  inCubes_ = true;
+}
+
+/// `error`, which a frame of the whole volume failed with, or where the device's memory is limited a sentence with what that needs; and why
+/// it is not drawn cube by cube.
+Error Renderer::withNeed(const Error& error, const FrameSettings& settings, const std::string& whyNotCubes) const {
+  if (error.kind() != ErrorKind::OutOfMemory) return error;
+  const Error whole = volume_ ? withWholeNeed(error, device_, *volume_, classification_, table_.directions, settings) : error;
+  if (whyNotCubes.empty()) return whole;
+  return Error(ErrorKind::OutOfMemory, fmt::format("{}; it cannot be drawn piece by piece, as {}", whole.text(), whyNotCubes));
+}
+
+/// Draws a frame of the whole volume, or cube by cube if that is too large for the device. Where it can be drawn cube by cube, nothing is
+/// drawn otherwise for lack of memory, so that the image does not depend on it. `mayChange` says whether lack of memory may change the way.
+template <typename DrawWhole, typename DrawCubes>
+auto Renderer::draw(FrameSettings settings, bool mayChange, const Progress& progress, const DrawWhole& drawWhole, const DrawCubes& drawCubes) {
+  checkFrameFits(device_, settings);
+  settings.draw = drawsByGathering(settings) ? Draw::Gather : Draw::Splats;
+  const std::optional<std::string> whyNotCubes = CubeDrawing::whyNot(source_->outline().dimensions, settings);
+  if (!whyNotCubes && settings.lighting) settings.lighting->attenuation = lightAttenuationFor(settings);
+  drewInCubes_ = inCubes_ && !whyNotCubes;
+  if (!drewInCubes_) {
+    try {
+      return drawWhole(whole(settings.lighting.has_value(), progress), settings);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::OutOfMemory || whyNotCubes || !mayChange) throw withNeed(error, settings, whyNotCubes.value_or(""));
+    }
+    inCubes_ = drewInCubes_ = true;
+  }
+  return drawCubes(cubes(), settings);
+}
+
 Image Renderer::render(const Camera& camera, const FrameSettings& settings, const Progress& progress) {
   checkCamera(camera);
-  checkFrameFits(state_->device, settings);
-  State& state = *state_;
-  state.drawFitting(settings, [&](const FrameSettings& fitting) {
-    Commands commands(state.device);
+  const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
+    Commands commands(device_);
     const std::shared_ptr<const FrameTargets> targets = state.recordImage(commands, camera, fitting, progress);
     commands.beginPass("read back");
-    state.colorReadback.record(state.device, commands, targets->colorEnergy);
-    if (settings.depth) state.distanceReadback.record(state.device, commands, targets->distance);
+    state.colorReadback.record(device_, commands, targets->colorEnergy);
+    if (settings.depth) state.distanceReadback.record(device_, commands, targets->distance);
     commands.submitAndWait(progress);
     addTimes(state.frameTimes, commands.times());
-  });
-
-  const StageTimer timer(state.frameTimes, "copy to host");
-  return {.size = settings.size,
-          .pixels = state.colorReadback.read<glm::vec4>(),
-          .depth = settings.depth ? state.distanceReadback.read<float>() : std::vector<float>()};
+    const StageTimer timer(state.frameTimes, "copy to host");
+    return Image{.size = settings.size,
+                 .pixels = state.colorReadback.read<glm::vec4>(),
+                 .depth = settings.depth ? state.distanceReadback.read<float>() : std::vector<float>()};
+  };
+  const auto drawCubes = [&](CubeDrawing& drawing, const FrameSettings& fitting) {
+    return downloadImage(device_, *drawing.draw(camera, fitting, progress));
+  };
+  return draw(settings, true, progress, drawWhole, drawCubes);
 }
 
 std::shared_ptr<const FrameTargets> Renderer::renderOnDevice(const Camera& camera, const FrameSettings& settings,
                                                              const Progress& progress) {
   checkCamera(camera);
-  checkFrameFits(state_->device, settings);
-  return state_->drawFitting(settings, [&](const FrameSettings& fitting) {
-    Commands commands(state_->device);
-    std::shared_ptr<const FrameTargets> targets = state_->recordImage(commands, camera, fitting, progress);
+  const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
+    Commands commands(device_);
+    std::shared_ptr<const FrameTargets> targets = state.recordImage(commands, camera, fitting, progress);
     commands.submitAndWait(progress);
-    addTimes(state_->frameTimes, commands.times());
+    addTimes(state.frameTimes, commands.times());
     return targets;
-  });
-}
-
-Image downloadImage(const Device& device, const FrameTargets& targets) {
-  Commands commands(device);
-  TargetReadback color, distance;
-  color.record(device, commands, targets.colorEnergy);
-  if (targets.distance.exists()) distance.record(device, commands, targets.distance);
-  commands.submitAndWait();
-  return {.size = targets.colorEnergy.size(),
-          .pixels = color.read<glm::vec4>(),
-          .depth = targets.distance.exists() ? distance.read<float>() : std::vector<float>()};
+  };
+  const auto drawCubes = [&](CubeDrawing& drawing, const FrameSettings& fitting) { return drawing.draw(camera, fitting, progress); };
+  return draw(settings, true, progress, drawWhole, drawCubes);
 }
 
 FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& wanted, const SharePart& part, const Progress& progress) {
@@ -65,40 +168,43 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
   FV_CHECK_LT(part.index, part.count);
   FV_CHECK_LE(part.count, kShares);
   checkCamera(camera);
-  checkFrameFits(state_->device, wanted);
-  State& state = *state_;
   FrameSettings settings = wanted;
   settings.cullThreshold = 0.0f;
-  return state.drawFitting(settings, [&](const FrameSettings& fitting) {
+  const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
     return drawsByGathering(fitting) ? state.gatherShares(camera, fitting, part, progress) : state.splatShares(camera, fitting, part, progress);
-  });
+  };
+  const auto drawCubes = [&](CubeDrawing& drawing, const FrameSettings& fitting) {
+    return drawing.drawShares(camera, fitting, part, progress);
+  };
+  return draw(settings, false, progress, drawWhole, drawCubes);
 }
 
 VolumeMemory Renderer::memory() const {
-  return state_->memoryOfVolume();
+  return state_ ? state_->memoryOfVolume() : cubes_ ? cubes_->memory() : VolumeMemory();
 }
 
 std::vector<StageTime> Renderer::timings() const {
+  if (!state_) return cubes_ ? cubes_->timings() : std::vector<StageTime>();
   std::vector<StageTime> times = state_->buildTimes;
   std::ranges::copy(state_->frameTimes, std::back_inserter(times));
   return times;
 }
 
+std::vector<std::size_t> Renderer::cubesRead() const {
+  return drewInCubes_ && cubes_ ? cubes_->cubesRead() : std::vector<std::size_t>();
+}
+
 std::optional<std::uint64_t> Renderer::occupiedVoxelCount() const {
-  if (!state_->built.hasBlocks()) return {};
+  if (!state_ || !state_->built.hasBlocks()) return {};
   return state_->built.volume.stored.front();
 }
 
 bool Renderer::lackedRoomForRays() const {
-  return state_->lastLackedRays;
-}
-
-bool Renderer::lackedRoomForGather() const {
-  return state_->lastLackedGather;
+  return state_ && state_->lastLackedRays;
 }
 
 CutCounts Renderer::cutCounts() const {
-  if (state_->lastDrawn == nullptr) return {};
+  if (!state_ || state_->lastDrawn == nullptr) return {};
   if (state_->lastWasCut) return state_->cutter->counts();
   CutCounts counts{.drawn = std::vector<std::uint64_t>(std::size_t(state_->lastLevel), 0)};
   counts.drawn.push_back(downloadBlockCount(state_->device, *state_->lastDrawn));

@@ -4,59 +4,98 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "engine/frame_renderer.h"
-#include "engine/octree/hierarchy_layout.h"
+#include "engine/core/error.h"
+#include "engine/core/stages.h"
+#include "engine/image/fixed_sums.h"
+#include "engine/image/image.h"
+#include "engine/memory_planner.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/render_settings.h"
 #include "engine/splatting/frame_targets.h"
+#include "engine/splatting/shares.h"
+#include "engine/visibility/cut_pass.h"
 #include "engine/volume/classification.h"
-#include "engine/volume/volume.h"
+#include "engine/volume/volume_source.h"
 #include "engine/vulkan/device.h"
 
 namespace freevoxels {
 
-/// The image of a frame that was left on the device. Waits.
-Image downloadImage(const Device& device, const FrameTargets& targets);
+class CubeDrawing;
 
 /// A stage of renderShares, once for a part: the list of the blocks that it has to look at.
 inline constexpr const char* kChoosingShares = "choose blocks of shares";
 
-class Renderer : public ShareRenderer {
+/// Draws the frames of one volume on one device, which must outlive it. The volume is on the device as a whole where that fits; otherwise
+/// gathered frames are drawn cube by cube (cube_drawing.h), and others fail with ErrorKind::OutOfMemory and a sentence with what they need.
+class Renderer {
  public:
-  /// Uploads the volume, which must outlive the renderer, and makes what every frame needs: classified blocks
-  /// and their lists, or for a volume that is classified after interpolation its scalars; the blocks are then
-  /// made for the first frame that needs them for lights, levels of detail or splats. The attenuation table
-  /// is made for the first frame that reads it, its levels for the first that may draw or leave out blocks.
-  /// Fails with ErrorKind::OutOfMemory, before allocating, if the device's limits are too small.
-  Renderer(const Device& device, const Volume& volume, const Classification& classification,
+  /// Uploads the volume if it fits, and makes what every frame needs: classified blocks and their lists, or for a volume that is
+  /// classified after interpolation its scalars; the blocks are then made for the first frame that needs them for lights, levels of detail
+  /// or splats. The attenuation table is made for the first frame that reads it, its levels for the first that may draw or leave out blocks.
+  Renderer(const Device& device, std::shared_ptr<const VolumeSource> source, const Classification& classification,
            const TableSettings& table, const Progress& progress = {});
+  /// Of a volume in memory, which must outlive the renderer.
+  Renderer(const Device& device, const Volume& volume, const Classification& classification, const TableSettings& table,
+           const Progress& progress = {});
   Renderer(const Device&, Volume&&, const Classification&, const TableSettings&, const Progress& = {}) = delete;
-  ~Renderer() override;
+  ~Renderer();
 
   /// Draws a frame and waits for it. `progress` is called about every 50 ms, and may abandon the frame by an exception, which
   /// is passed on; the next frame makes again what was not complete.
-  Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {}) override;
+  Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
   /// The same frame, which stays on the device, complete, in layout GENERAL. The renderer draws into these targets again
   /// when nobody else holds them.
   std::shared_ptr<const FrameTargets> renderOnDevice(const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
 
-  /// Drawn as render() would, by gathering or by splats, with nothing left out as hidden. `settings.composite` must not be Sorted.
-  FixedSums renderShares(const Camera& camera, const FrameSettings& settings, const SharePart& part,
-                         const Progress& progress = {}) override;
+  /// The sums of the shares of a part in fixed point: those of all parts add up to the same bits, however many parts there are, on
+  /// devices of one kind that all draw the whole volume, or all cube by cube. resolveSums makes the image. Drawn as render() would, by
+  /// gathering or by splats, with nothing left out as hidden. `settings.composite` must not be Sorted. Lack of memory is an error here where
+  /// it would make render() draw cubes, as other processes could not know.
+  FixedSums renderShares(const Camera& camera, const FrameSettings& settings, const SharePart& part, const Progress& progress = {});
 
-  /// Including the table even if no frame has read it.
-  VolumeMemory memory() const override;
-  std::vector<StageTime> timings() const override;
-  /// Unknown until a frame needs the blocks of occupied voxels.
-  std::optional<std::uint64_t> occupiedVoxelCount() const override;
-  CutCounts cutCounts() const override;
-  bool lackedRoomForRays() const override;
-  bool lackedRoomForGather() const override;
+  /// Whether the gather takes so much less than the device's memory that frames will be drawn of the whole volume, and not cube by cube.
+  /// True where only the whole volume can be drawn.
+  bool surelyFits(const FrameSettings& settings) const;
+  /// Has all gathered frames drawn cube by cube from now on.
+  void drawInCubes();
+  /// Whether the last frame was drawn so.
+  bool drewInCubes() const { return drewInCubes_; }
+  /// How many cubes that frame read, by level of detail.
+  std::vector<std::size_t> cubesRead() const;
+
+  /// Memory of the volume, including the table even if no frame has read it; or of a cube.
+  VolumeMemory memory() const;
+  /// Stage times of the constructor and of the last frame, in order.
+  std::vector<StageTime> timings() const;
+  /// The number of occupied voxels. Unknown until a frame needs the blocks of these.
+  std::optional<std::uint64_t> occupiedVoxelCount() const;
+  /// The counts of the last frame's cut; none without one.
+  CutCounts cutCounts() const;
+  /// Whether the last frame used Bilinear for Auto only because the device lacks memory for rays from the eye.
+  bool lackedRoomForRays() const;
 
  private:
   friend class RendererStages;  // renderer_stages.h
   struct State;
-  std::unique_ptr<State> state_;
+  bool makesEmissionLight() const;
+  State& whole(bool lit, const Progress& progress);
+  CubeDrawing& cubes();
+  template <typename DrawWhole, typename DrawCubes>
+  auto draw(FrameSettings settings, bool mayChange, const Progress& progress, const DrawWhole& drawWhole, const DrawCubes& drawCubes);
+  Error withNeed(const Error& error, const FrameSettings& settings, const std::string& whyNotCubes) const;
+
+  const Device& device_;
+  const std::shared_ptr<const VolumeSource> source_;
+  const Classification classification_;
+  const TableSettings table_;
+  std::shared_ptr<const Volume> volume_;  ///< the whole volume on the host, as long as frames are drawn of it; longer than `state_`
+  std::unique_ptr<State> state_;          ///< and on the device; null where it does not fit
+  std::unique_ptr<CubeDrawing> cubes_;
+  bool inCubes_ = false;                 ///< whether gathered frames are drawn cube by cube
+  bool drewInCubes_ = false;
 };
 
 }  // namespace freevoxels

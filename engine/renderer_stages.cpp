@@ -1,9 +1,16 @@
 #include "engine/renderer_stages.h"
 
 #include "engine/core/error.h"
+#include "engine/core/parameter.h"
 #include "engine/renderer_state.h"
 
 namespace freevoxels {
+
+RendererStages::RendererStages(const Renderer& renderer)
+    : state_(renderer.state_ ? *renderer.state_
+                             : throw Error(ErrorKind::OutOfMemory, fmt::format("the volume does not fit into the device's memory, in which its table and "
+                                                                               "its blocks are looked at: raise {}",
+                                                                               Parameter("memory-limit")))) {}
 
 std::vector<SplatSums> RendererStages::renderSums(const Camera& camera, const FrameSettings& settings) const {
   FV_CHECK_EQ(settings.composite == Composite::Sorted, false);

@@ -9,17 +9,16 @@
 
 #include "engine/gathering/gather_stages.h"
 #include "engine/octree/level_data.h"
-#include "engine/region_renderer.h"
 #include "engine/renderer.h"
 #include "engine/scene/source_rays.h"
 #include "engine/splatting/splat_sums.h"
 
 namespace freevoxels {
 
-/// Refers to a renderer, which must outlive it. Makes what no frame has needed yet. All functions wait for the device.
+/// Refers to a renderer, which must outlive it, and which draws the volume as a whole: else fails with ErrorKind::OutOfMemory. Makes what no frame has needed yet. All functions wait for the device.
 class RendererStages {
  public:
-  explicit RendererStages(const Renderer& renderer) : state_(*renderer.state_) {}
+  explicit RendererStages(const Renderer& renderer);
 
   /// Extinction per world unit, voxels x fastest without padding.
   std::vector<float> downloadExtinction() const;
@@ -50,8 +49,5 @@ class RendererStages {
 
   Renderer::State& state_;
 };
-
-/// The table of a region, bytes [direction][voxel of the region with its halo].
-std::vector<std::vector<std::uint8_t>> downloadTable(RegionRenderer& renderer, const fvx::RegionEntry& region);
 
 }  // namespace freevoxels

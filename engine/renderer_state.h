@@ -1,5 +1,5 @@
 #pragma once
-// What a Renderer keeps between frames, and the stages of a frame. Only renderer*.cpp include it.
+// What a Renderer keeps between frames of a volume that is on the device as a whole, and the stages of a frame. Only renderer*.cpp include it.
 
 #include <memory>
 #include <optional>
@@ -35,7 +35,7 @@ struct Renderer::State {
   const BlockList* lastDrawn = nullptr;
   bool lastWasCut = false;  ///< whether lastDrawn is the list of `cutter`
   int lastLevel = 0;        ///< otherwise the level of all drawn blocks
-  bool lastLackedRays = false, lastLackedGather = false;
+  bool lastLackedRays = false;
   std::unique_ptr<SplatPass> splats;
   std::unique_ptr<ResolvePass> resolve;
   std::unique_ptr<DepthSort> sort;
@@ -78,34 +78,6 @@ struct Renderer::State {
                                                    const Progress& progress);
   std::shared_ptr<const FrameTargets> recordImage(Commands& commands, const Camera& camera, const FrameSettings& settings,
                                                   const Progress& progress);
-  /// Calls `draw`, which draws and reads back a frame, with settings in which Draw::Auto is resolved: to Splats where the gather finds
-  /// too little memory.
-  template <typename DrawFrame>
-  auto drawFitting(FrameSettings settings, const DrawFrame& draw) {
-    lastLackedGather = false;
-    const bool mayUseSplats = settings.draw == Draw::Auto;
-    settings.draw = drawsByGathering(settings) ? Draw::Gather : Draw::Splats;
-    if (settings.draw == Draw::Gather) {
-      try {
-        return draw(settings);
-      } catch (const Error& error) {
-        if (!mayUseSplats || error.kind() != ErrorKind::OutOfMemory) throw;
-      }
-      releaseGather();
-      lastLackedGather = true;
-      settings.draw = Draw::Splats;
-    }
-    return draw(settings);
-  }
-  /// Frees what the gather and the last frame took, which would leave too little for splats.
-  void releaseGather() {
-    gatherPart.reset();
-    gather.reset();
-    gatherVolume.reset();
-    targetPool = {};
-    colorReadback = {};
-    distanceReadback = {};
-  }
   FixedSums gatherShares(const Camera& camera, const FrameSettings& settings, const SharePart& part, const Progress& progress);
   FixedSums splatShares(const Camera& camera, const FrameSettings& settings, const SharePart& part, const Progress& progress);
 };

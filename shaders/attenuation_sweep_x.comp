@@ -7,17 +7,14 @@
 
 layout(constant_id = 1) const int kStepX = 1;  // step of the march: 1 or -1
 
-layout(constant_id = 2) const bool kOfPart = false;  // as in attenuation_sweep.comp
-
 // Whether the threads of a workgroup load and store a tile of their rows together, so that neighbouring threads access neighbouring quads.
-layout(constant_id = 3) const bool kTiled = false;
+layout(constant_id = 2) const bool kTiled = false;
 
 const int kTileQuads = 8;
 const int kTilePitch = kTileQuads + 1;  // odd, so that the quads of a column are in different banks of shared memory
 
 layout(local_size_x = kSweepThreads) in;
 layout(scalar, push_constant) uniform Push { SweepPush push; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer EntryDepths { float values[]; };
 layout(binding = 0) uniform textureBuffer extinction;
 
 shared vec4 tile[kTiled ? kSweepThreads * kTilePitch : 1];  // by row: extinctions, then depths
@@ -35,7 +32,8 @@ vec4 depthsBefore(vec4 sigma, inout float depth) {
 
 vec4 loadQuad(int quad) { return texelFetch(extinction, quad - push.slab.firstQuad); }
 
-void marchRow(int row, int quads, float depth) {
+void marchRow(int row, int quads) {
+  float depth = 0.0;
   const int first = push.marchStart / 4 + row * quads;
   for (int i = 0; i < quads; ++i) {
     const int quad = first + (kStepX > 0 ? i : quads - 1 - i);
@@ -52,7 +50,8 @@ int quadAt(ivec2 begin, int quads, int place) {
   return row < push.lineCount && column >= 0 && column < quads ? push.marchStart / 4 + row * quads + column : -1;
 }
 
-void marchTiles(int firstRow, int thread, int quads, float depth) {
+void marchTiles(int firstRow, int thread, int quads) {
+  float depth = 0.0;
   for (int passed = 0; passed < quads; passed += kTileQuads) {
     const ivec2 begin = ivec2(firstRow, kStepX > 0 ? passed : quads - passed - kTileQuads);
     for (int place = thread; place < kSweepThreads * kTileQuads; place += kSweepThreads) {
@@ -75,11 +74,9 @@ void marchTiles(int firstRow, int thread, int quads, float depth) {
 
 void main() {
   const int row = int(gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * kSweepThreads);
-  const bool isRow = row < push.lineCount;
   // Padding before the first voxel adds nothing.
-  const float depth = kOfPart && isRow ? EntryDepths(push.entry.depths).values[push.entry.rowFace + row] : 0.0;
   if (kTiled)
-    marchTiles(row - int(gl_LocalInvocationIndex), int(gl_LocalInvocationIndex), push.rowPitch / 4, depth);
-  else if (isRow)
-    marchRow(row, push.rowPitch / 4, depth);
+    marchTiles(row - int(gl_LocalInvocationIndex), int(gl_LocalInvocationIndex), push.rowPitch / 4);
+  else if (row < push.lineCount)
+    marchRow(row, push.rowPitch / 4);
 }

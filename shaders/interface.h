@@ -148,17 +148,6 @@ struct SweepSlab {
   uint firstDepth;   // index of this direction's first depth between slabs
 };
 
-// Depths of the voxels at which the lines of a direction enter a part of a volume (engine/storage/regions.h), each without the
-// voxel itself. Offsets and strides are in floats. The rows' x is without padding.
-struct SweepEntry {
-  uvec2 depths;        // device address
-  int marchFace;       // row of side 0 on the face across the march axis; rows follow each other by rowLength
-  int sideFace;        // first quad, in the slab's buffer, of the rows of the face across the side axis, from the lowest plane
-  int rowFace;         // depth of the lowest plane and side 0 on the face across x
-  int rowFaceMarch, rowFaceSide;  // strides along the march and the side axis
-  int rowLength;
-};
-
 // attenuation_sweep.comp and attenuation_sweep_x.comp. Offsets and strides are in voxels of the padded grid.
 struct SweepPush {
   SweepSlab slab;
@@ -170,7 +159,6 @@ struct SweepPush {
   int marchStart;    // offset of the first plane, the one at which the lines enter the volume
   int marchStride;   // offset to the next plane; negative when marching down
   float stepLength;  // world length of a lattice step
-  SweepEntry entry;  // of a part of a volume
 };
 
 // attenuation_sweep_half.comp. Offsets and strides are in voxels of the padded grid.

@@ -16,12 +16,12 @@ ORDER = [
     "engine/scene",        # camera, lights, environment, settings: plain data
     "engine/volume",       # volume files, procedural volumes, classification
     "engine/octree",       # the volume on the device: occupied blocks and their medium
-    "engine/storage",      # baked volumes on disk, and the order of their chunks
     "engine/attenuation",  # the table: sweeps, levels, pruning; rays from a source
     "engine/visibility",   # level of detail, culling
     "engine/lighting",     # light at voxels and in cells
     "engine/splatting",    # billboard splats, sums, resolve
     "engine/gathering",    # the compute gather
+    "engine/storage",      # baked volumes on disk, one source of what is drawn
     "engine/description",  # what an image shows, as data: JSON in and out, and what it comes to for a volume
     "engine",              # the renderer and its memory planner
     "engine/reference",    # CPU references and oracle

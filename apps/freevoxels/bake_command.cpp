@@ -9,6 +9,7 @@
 
 #include "apps/freevoxels/progress_line.h"
 #include "engine/core/error.h"
+#include "engine/core/machine.h"
 #include "engine/storage/procedural_stream.h"
 #include "engine/volume/content_hash.h"
 

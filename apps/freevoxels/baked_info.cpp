@@ -30,8 +30,6 @@ std::string kindName(SectionKind kind) {
     case SectionKind::ChunkIndex: return "chunk index";
     case SectionKind::Chunks: return "chunks";
     case SectionKind::ContentCells: return "content cells";
-    case SectionKind::RegionIndex: return "region index";
-    case SectionKind::Regions: return "regions";
   }
   return fmt::format("unknown {}", std::uint32_t(kind));
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "engine/image/srgb.h"
-#include "engine/frame_renderer.h"
+#include "engine/renderer.h"
 
 namespace freevoxels {
 
@@ -41,7 +41,7 @@ glm::dvec3 partColor(int part) {
   return result;
 }
 
-FixedSums drawColoredParts(ShareRenderer& renderer, const Camera& camera, const FrameSettings& settings, int parts,
+FixedSums drawColoredParts(Renderer& renderer, const Camera& camera, const FrameSettings& settings, int parts,
                            const Progress& progress) {
   FixedSums all;
   for (int part = 0; part < parts; ++part) {

@@ -8,14 +8,14 @@
 
 namespace freevoxels {
 
-class ShareRenderer;
+class Renderer;
 
 /// The colour of a part, linear Rec.709: hues that are apart for consecutive parts, the same for any number of parts.
 glm::dvec3 partColor(int part);
 
 /// The sums of all shares, drawn as `parts` parts one after the other. The light of each part has the part's colour and keeps its
 /// luminance, so that lighting and shadows remain visible. 1 <= parts <= kShares.
-FixedSums drawColoredParts(ShareRenderer& renderer, const Camera& camera, const FrameSettings& settings, int parts,
+FixedSums drawColoredParts(Renderer& renderer, const Camera& camera, const FrameSettings& settings, int parts,
                            const Progress& progress);
 
 }  // namespace freevoxels

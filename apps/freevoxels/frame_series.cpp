@@ -12,11 +12,9 @@
 #include "apps/freevoxels/failure.h"
 #include "apps/freevoxels/film_view.h"
 #include "apps/freevoxels/share_group.h"
-#include "engine/memory_planner.h"
-#include "engine/region_renderer.h"
-#include "engine/renderer.h"
-#include "engine/storage/baked_volume.h"
-#include "engine/streamed_renderer.h"
+#include "engine/cube_level.h"
+#include "engine/octree/volume_limits.h"
+#include "engine/storage/baked_source.h"
 #include "engine/volume/content_hash.h"
 #include "engine/vulkan/pipeline.h"
 
@@ -25,7 +23,7 @@ namespace freevoxels {
 namespace {
 
 /// Whether nothing of the volume has extinction or emission, as far as is known.
-bool isTransparent(const FrameRenderer& renderer) {
+bool isTransparent(const Renderer& renderer) {
   return renderer.occupiedVoxelCount() == 0u;
 }
 
@@ -51,11 +49,13 @@ std::size_t clearPixelsThatAreNoNumbers(Image& image) {
   return cleared;
 }
 
-/// Says which pieces of a baked volume the last frame drew: `counts` by level, beginning with `finest`.
-void logPieces(std::string_view pieces, const std::vector<std::size_t>& counts, int edge, int finest) {
-  for (std::size_t i = 0; i < counts.size(); ++i)
-    if (counts[i] > 0)
-      spdlog::debug("{} {} of {}³ blocks of {}³ voxels drawn for the last frame", counts[i], pieces, edge, 1 << (std::size_t(finest) + i));
+/// Says which cubes of a volume the last frame drew, if it did.
+void logCubes(const Renderer& renderer) {
+  if (!renderer.drewInCubes()) return;
+  spdlog::debug("drawn by gathering, cube by cube: the volume does not fit into memory at once");
+  const std::vector<std::size_t> counts = renderer.cubesRead();
+  for (std::size_t level = 0; level < counts.size(); ++level)
+    if (counts[level] > 0) spdlog::debug("{} cubes of {}³ voxels of level {} drawn for the last frame", counts[level], kCubeEdge, level);
 }
 
 }  // namespace
@@ -88,19 +88,14 @@ bool FrameSeries::needsNoVolume(std::span<const FrameJob> jobs) const {
 void FrameSeries::drawVolumes(std::span<const FrameJob> jobs) {
   const std::vector<std::string> inputs = volumesOf(jobs);
   isFilm_ = inputs.size() > 1;
-  const MemoryLimits limits = memoryLimits(options_, device_);
   if (isFilm_ && !options_.fixedView) surveyFilm(inputs);
   const bool isSurveyed = reference_.has_value();
   const int turn = int(framesOfFirstVolume(jobs));
-  VolumesAhead volumes(inputs, [this, limits, isSurveyed, turn, jobs](const std::string& input) {
+  VolumesAhead volumes(inputs, [this, isSurveyed, turn, jobs](const std::string& input) {
     const auto first = std::ranges::find(jobs, input, &FrameJob::input);
     const std::span<const FrameJob> own = jobs.subspan(std::size_t(first - jobs.begin()));
-    if (needsNoVolume(own.first(framesOfFirstVolume(own)))) return std::shared_ptr<const Volume>();
-    // A baked volume is read no finer than the frames need, and not at all if they are drawn piece by piece.
-    const SceneDescription scene = options_.scene.description.of(input);
-    const int level = scene.finestLevelNeeded(scene.input.baked().get(), turn);
-    if (!isFilm_ && needsPieces(options_, limits, pieceDrawing(options_, scene, turn), level)) return std::shared_ptr<const Volume>();
-    return std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level, {}, isSurveyed));
+    if (needsNoVolume(own.first(framesOfFirstVolume(own)))) return std::shared_ptr<const VolumeSource>();
+    return options_.scene.description.of(input).openSource(turn, !isFilm_, isSurveyed);
   });
   std::size_t failed = 0;
   while (!jobs.empty()) {
@@ -117,7 +112,7 @@ void FrameSeries::drawVolumes(std::span<const FrameJob> jobs) {
 void FrameSeries::surveyFilm(std::span<const std::string> inputs) {
   progress_.begin("looking through the film");
   const StageTimer timer(report_.stages, "survey film");
-  std::optional<FilmView> view = viewOfFilm(options_.scene.description, inputs, maximumVoxels(device_));
+  std::optional<FilmView> view = viewOfFilm(options_.scene.description, inputs, kMaxNumberedVoxels);
   progress_.erase();
   if (!view) return;
   reference_ = std::move(view->scene);
@@ -134,16 +129,18 @@ void FrameSeries::surveyFilm(std::span<const std::string> inputs) {
 bool FrameSeries::drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs) {
   try {
     progress_.begin("reading " + jobs.front().input);
-    std::shared_ptr<const Volume> volume;
+    std::shared_ptr<const VolumeSource> source;
     {
       const StageTimer timer(report_.stages, "read volume");
-      volume = volumes.next();
+      source = volumes.next();
     }
     if (needsNoVolume(jobs)) {
       progress_.drawn += jobs.size();
       return true;
     }
-    drawFitting(std::move(volume), jobs);
+    const VolumeView view = beginVolume(source, jobs);
+    Renderer renderer(device_, source, view.scene.classification, options_.scene.description.method.table(), progress_.progress());
+    drawFrames(renderer, view, jobs);
     return true;
   } catch (const EmptyVolumeError& error) {
     if (!isFilm_) throw;
@@ -159,82 +156,9 @@ bool FrameSeries::drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs
   }
 }
 
-/// A baked volume that the device cannot hold is drawn piece by piece where that is possible, else from a coarser level. `volume` is
-/// null where it is known beforehand that pieces are drawn.
-void FrameSeries::drawFitting(std::shared_ptr<const Volume> volume, std::span<const FrameJob> jobs) {
-  const SceneDescription scene = options_.scene.description.of(jobs.front().input);
-  // A film keeps two volumes in memory anyway.
-  PieceDrawing pieces{.file = scene.input.baked()};
-  if (pieces.file && !isFilm_) pieces = pieceDrawing(options_, scene, int(jobs.size()));
-  const RunReport reportBefore = report_;
-  const std::size_t drawnBefore = progress_.drawn;
-  const std::optional<Scene> referenceBefore = reference_;
-  bool inPieces = !volume;
-  for (int level = scene.finestLevelNeeded(pieces.file.get(), int(jobs.size()));;) {
-    try {
-      return inPieces ? drawPieces(pieces, level, jobs) : drawWhole(std::move(volume), pieces, jobs);
-    } catch (const Error& error) {
-      // Processes that draw shares cannot change the level each by itself.
-      if (error.kind() != ErrorKind::OutOfMemory || options_.drawsShares()) throw;
-      inPieces = !inPieces && pieces.way != PieceDrawing::Way::None;
-      if (inPieces) {
-        spdlog::debug("{}; drawing it piece by piece", withOptions(error));
-      } else {
-        if (pieces.file) level = std::max(level, finestLevel(*pieces.file, maximumVoxels(device_)));  // which is the one that was opened
-        if (++level >= (pieces.file ? pieces.file->levels() : 1)) throw;
-        const std::string why = pieces.whyNone.empty() ? "" : fmt::format(", and it cannot be drawn piece by piece: {}", pieces.whyNone);
-        spdlog::warn("{}{}; drawing it at 1/{} of its resolution", withOptions(error), why, 1 << level);
-        pieces.way = PieceDrawing::Way::None;  // the coarser level need not be exact
-      }
-    }
-    report_ = reportBefore;
-    progress_.drawn = drawnBefore;
-    reference_ = referenceBefore;
-    volume = inPieces ? nullptr : std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device_), level));
-  }
-}
-
-/// Where the frames could be drawn cube by cube, nothing is drawn otherwise for lack of memory: the image does not depend on it.
-void FrameSeries::drawWhole(std::shared_ptr<const Volume> volume, const PieceDrawing& pieces, std::span<const FrameJob> jobs) {
-  VolumeView view = beginVolume(std::move(volume), jobs);
-  FrameSettings& settings = view.settings;
-  if (pieces.way == PieceDrawing::Way::Cubes) {
-    settings.draw = Draw::Gather;
-    if (settings.lighting) settings.lighting->attenuation = lightAttenuationFor(settings);
-  }
-  const TableSettings table = options_.scene.description.method.table();
-  try {
-    Renderer renderer(device_, *view.scene.volume, view.scene.classification, table, progress_.progress());
-    drawFrames(renderer, view, jobs);
-  } catch (const Error& error) {
-    throw withWholeNeed(error, device_, *view.scene.volume, view.scene.classification, table.directions, settings);
-  }
-}
-
-void FrameSeries::drawPieces(const PieceDrawing& pieces, int level, std::span<const FrameJob> jobs) {
-  const bool cubes = pieces.way == PieceDrawing::Way::Cubes;
-  const auto outline = std::make_shared<const Volume>(bakedOutline(*pieces.file, cubes ? level : 0));
-  const VolumeView view = beginVolume(outline, jobs, pieces.file.get());
-  const TableSettings table = options_.scene.description.method.table();
-  if (cubes) {
-    spdlog::debug("drawn by gathering, cube by cube: the volume does not fit into memory at once");
-    StreamedRenderer renderer(device_, pieces.file, level, view.scene.classification, table);
-    drawFrames(renderer, view, jobs);
-    return logPieces("cubes", renderer.cubesRead(), StreamedRenderer::kCubeEdge, level);
-  }
-  if (options_.drawsShares())
-    spdlog::debug("drawn by splats, region by region: only the regions of the own shares are read");
-  else
-    spdlog::debug("drawn by splats, region by region: the volume does not fit into memory at once, and gathering is not possible so: {}",
-                  pieces.whyNotCubes);
-  RegionRenderer renderer(device_, pieces.file, view.scene.classification, table, jobs.size() > 1);
-  drawFrames(renderer, view, jobs);
-  logPieces("regions", renderer.counts().drawn, fvx::kRegionEdge, 0);
-}
-
-/// Resolves what a volume's frames have in common. The regions or cubes of `file` are drawn where it is not null.
-FrameSeries::VolumeView FrameSeries::beginVolume(std::shared_ptr<const Volume> volume, std::span<const FrameJob> jobs,
-                                                 const fvx::FvxFile* file) {
+/// Resolves what a volume's frames have in common.
+FrameSeries::VolumeView FrameSeries::beginVolume(const std::shared_ptr<const VolumeSource>& source, std::span<const FrameJob> jobs) {
+  std::shared_ptr<const Volume> volume = known(source);
   const SceneDescription description = options_.scene.description.of(jobs.front().input);
   const bool isFirst = !reference_, isFixed = options_.fixedView.value_or(isFilm_);
   VolumeView view{
@@ -250,7 +174,7 @@ FrameSeries::VolumeView FrameSeries::beginVolume(std::shared_ptr<const Volume> v
     announce(scene, jobs.size());
   else
     logWarnings(*scene.volume, !scene.classification.transferFunction);
-  agree(scene, file);
+  agree(scene, *source);
   if (isFirst || !isFixed) reference_ = scene;
   hasReference_ = true;
   return view;
@@ -267,13 +191,14 @@ void FrameSeries::announce(const Scene& view, std::size_t frames) {
 }
 
 /// Fails where the processes of the group would not draw parts of one image.
-void FrameSeries::agree(const Scene& view, const fvx::FvxFile* file) {
+void FrameSeries::agree(const Scene& view, const VolumeSource& source) {
   if (options_.drawsShares()) {
     const bool hasEnvironment = view.lighting && view.lighting->environment;
     report_.contentHash =
         contentHash(*view.volume, view.classification, hasEnvironment ? view.lighting->environment.get() : nullptr);
-    // The values of regions are not read: the header's checksum stands for those of all sections.
-    if (file != nullptr) report_.contentHash += fmt::format("-{:016x}", file->header().hash);
+    // The values of a file are not read yet: the header's checksum stands for those of all sections.
+    if (const auto* const baked = dynamic_cast<const BakedSource*>(&source))
+      report_.contentHash += fmt::format("-{:016x}", baked->file().header().hash);
   }
   if (options_.group == nullptr) return;
   options_.group->agree("another version of the program", programVersion());
@@ -284,9 +209,17 @@ void FrameSeries::agree(const Scene& view, const fvx::FvxFile* file) {
   options_.group->agree("other options", commandText(options));
 }
 
-void FrameSeries::drawFrames(FrameRenderer& renderer, const VolumeView& view, std::span<const FrameJob> jobs) {
+/// Has the processes of a group draw cube by cube where the volume may not fit on one of them.
+void FrameSeries::agreeOnCubes(Renderer& renderer, const FrameSettings& settings) {
+  if (!options_.drawsShares()) return;
+  const std::uint64_t fits = renderer.surelyFits(settings) ? 1 : 0;
+  if ((options_.group != nullptr ? options_.group->least(fits) : fits) == 0) renderer.drawInCubes();
+}
+
+void FrameSeries::drawFrames(Renderer& renderer, const VolumeView& view, std::span<const FrameJob> jobs) {
   const std::vector<StageTime> built = renderer.timings();
   addTimes(report_.stages, built);
+  agreeOnCubes(renderer, view.settings);
   Scene scene = view.scene;
   for (std::size_t i = 0; i < jobs.size(); ++i, ++progress_.drawn) {
     if (jobs[i].isSkipped) continue;
@@ -295,8 +228,8 @@ void FrameSeries::drawFrames(FrameRenderer& renderer, const VolumeView& view, st
       continue;
     }
     scene.camera = view.cameras[i];
-    if (options_.drawsShares())  // which only a ShareRenderer is chosen for
-      drawShares(dynamic_cast<ShareRenderer&>(renderer), scene, view.settings, jobs[i]);
+    if (options_.drawsShares())
+      drawShares(renderer, scene, view.settings, jobs[i]);
     else
       complete(renderer.render(scene.camera, view.settings, progress_.progress()), isTransparent(renderer), scene, jobs[i]);
     const std::vector<StageTime> times = renderer.timings();
@@ -308,7 +241,7 @@ void FrameSeries::drawFrames(FrameRenderer& renderer, const VolumeView& view, st
 }
 
 /// Draws this process's shares, and hands on or writes their sums or the image of them.
-void FrameSeries::drawShares(ShareRenderer& renderer, const Scene& view, const FrameSettings& settings, const FrameJob& job) {
+void FrameSeries::drawShares(Renderer& renderer, const Scene& view, const FrameSettings& settings, const FrameJob& job) {
   const SharePart part = options_.group != nullptr ? options_.group->part() : options_.shares.whole();
   const std::optional<int> coloredParts = options_.shares.coloredParts;
   FixedSums sums = coloredParts ? drawColoredParts(renderer, view.camera, settings, *coloredParts, progress_.progress())
@@ -369,9 +302,9 @@ void FrameSeries::writeEmpty(const FrameJob& job) {
 }
 
 /// The report describes the last volume.
-void FrameSeries::report(const FrameRenderer& renderer, const Volume& volume) {
+void FrameSeries::report(const Renderer& renderer, const Volume& volume) {
   report_.lackedRoomForRays |= renderer.lackedRoomForRays();
-  report_.lackedRoomForGather |= renderer.lackedRoomForGather();
+  logCubes(renderer);
   report_.visibleVoxels = renderer.occupiedVoxelCount();
   report_.voxels = volume.voxelCount();
   report_.memory = renderer.memory();

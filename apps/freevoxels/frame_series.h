@@ -10,12 +10,11 @@
 #include <vector>
 
 #include "apps/freevoxels/frame_writer.h"
-#include "apps/freevoxels/region_choice.h"
 #include "apps/freevoxels/render_options.h"
 #include "apps/freevoxels/series_progress.h"
 #include "apps/freevoxels/volumes_ahead.h"
-#include "engine/frame_renderer.h"
 #include "engine/image/fixed_sums.h"
+#include "engine/renderer.h"
 
 namespace freevoxels {
 
@@ -54,20 +53,18 @@ class FrameSeries {
   void drawVolumes(std::span<const FrameJob> jobs);
   void surveyFilm(std::span<const std::string> inputs);
   bool drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs);
-  void drawFitting(std::shared_ptr<const Volume> volume, std::span<const FrameJob> jobs);
-  void drawWhole(std::shared_ptr<const Volume> volume, const PieceDrawing& pieces, std::span<const FrameJob> jobs);
-  void drawPieces(const PieceDrawing& pieces, int level, std::span<const FrameJob> jobs);
-  void drawFrames(FrameRenderer& renderer, const VolumeView& view, std::span<const FrameJob> jobs);
-  void drawShares(ShareRenderer& renderer, const Scene& view, const FrameSettings& settings, const FrameJob& job);
+  void drawFrames(Renderer& renderer, const VolumeView& view, std::span<const FrameJob> jobs);
+  void drawShares(Renderer& renderer, const Scene& view, const FrameSettings& settings, const FrameJob& job);
 
-  VolumeView beginVolume(std::shared_ptr<const Volume> volume, std::span<const FrameJob> jobs, const fvx::FvxFile* file = nullptr);
+  VolumeView beginVolume(const std::shared_ptr<const VolumeSource>& source, std::span<const FrameJob> jobs);
   void announce(const Scene& view, std::size_t frames);
-  void agree(const Scene& view, const fvx::FvxFile* file);
+  void agree(const Scene& view, const VolumeSource& source);
+  void agreeOnCubes(Renderer& renderer, const FrameSettings& settings);
 
   void finishAddingUp();
   void complete(Image image, bool isTransparent, const Scene& view, const FrameJob& job);
   void writeEmpty(const FrameJob& job);
-  void report(const FrameRenderer& renderer, const Volume& volume);
+  void report(const Renderer& renderer, const Volume& volume);
 
   const RenderOptions& options_;
   const Device& device_;

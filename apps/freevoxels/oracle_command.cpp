@@ -8,6 +8,7 @@
 #include "apps/freevoxels/progress_line.h"
 #include "apps/freevoxels/timings_file.h"
 #include "engine/core/error.h"
+#include "engine/core/machine.h"
 #include "engine/reference/oracle.h"
 
 namespace freevoxels {

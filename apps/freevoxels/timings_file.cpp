@@ -23,8 +23,6 @@ void logCounts(const RunReport& report) {
   if (report.lackedRoomForRays)
     spdlog::debug(
         "exact transmittance needs more memory than the device has: looked up in the table instead");
-  if (report.lackedRoomForGather)
-    spdlog::debug("gathering needs more memory than the device has: drawn by splats instead");
   spdlog::debug("{} voxels; at most {:.1f} MiB on the device", report.voxels, double(report.devicePeak) / 0x1p20);
   if (report.visibleVoxels) {
     const auto stored = double(report.memory.stored());

@@ -28,7 +28,6 @@ struct RunReport {
   std::uint64_t devicePeak = 0;    ///< largest number of bytes allocated on the device at any time
   CutCounts cut;                   ///< cut of the last frame
   bool lackedRoomForRays = false;  ///< for any frame
-  bool lackedRoomForGather = false;
 };
 
 /// Prints the messages of --verbose.

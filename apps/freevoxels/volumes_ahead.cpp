@@ -25,9 +25,9 @@ void VolumesAhead::readNext() {
   ++begun_;
 }
 
-std::shared_ptr<const Volume> VolumesAhead::next() {
+std::shared_ptr<const VolumeSource> VolumesAhead::next() {
   pending_.wait();
-  std::future<std::shared_ptr<const Volume>> read = std::move(pending_);
+  std::future<std::shared_ptr<const VolumeSource>> read = std::move(pending_);
   readNext();
   return read.get();
 }

@@ -20,12 +20,12 @@ std::vector<std::string> volumesOf(std::span<const FrameJob> frames);
 /// Reads the volumes of frames in their order, each one while the one before it is drawn: two of them are in memory.
 class VolumesAhead {
  public:
-  using Read = std::function<std::shared_ptr<const Volume>(const std::string& input)>;
+  using Read = std::function<std::shared_ptr<const VolumeSource>(const std::string& input)>;
   /// `read` reads a volume, in a thread of its own.
   VolumesAhead(std::vector<std::string> inputs, Read read);
 
   /// The next volume. Throws what reading it threw, and can be called again for the one after it.
-  std::shared_ptr<const Volume> next();
+  std::shared_ptr<const VolumeSource> next();
 
  private:
   void readNext();
@@ -33,7 +33,7 @@ class VolumesAhead {
   const std::vector<std::string> inputs_;
   const Read read_;
   std::size_t begun_ = 0;  ///< how many volumes are read or being read
-  std::future<std::shared_ptr<const Volume>> pending_;
+  std::future<std::shared_ptr<const VolumeSource>> pending_;
 };
 
 }  // namespace freevoxels

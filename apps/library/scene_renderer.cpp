@@ -10,7 +10,7 @@
 #include "engine/core/error.h"
 #include "engine/description/scene_fields.h"
 #include "engine/description/scene_json.h"
-#include "engine/memory_planner.h"
+#include "engine/octree/volume_limits.h"
 #include "engine/scene/orbit.h"
 
 namespace freevoxels {
@@ -65,10 +65,8 @@ std::shared_ptr<const SharedVolume> openVolume(const std::string& file, const Js
   options.scene.check();
   if (const std::string& volume = options.scene.input.volume; isPattern(volume))
     fail(ErrorKind::Usage, "'{}' is a sequence, which the command line alone draws: open one of its files", volume);
-  const std::shared_ptr<DeviceContext> used = context ? context : sharedContext(options.device);
-  const std::uint64_t most = maximumVoxels(*used->device);
-  if (auto baked = options.scene.input.baked()) return std::make_shared<const SharedVolume>(std::move(baked), most);
-  return std::make_shared<const SharedVolume>(options.scene.readVolume(most, 0, progress));
+  if (auto baked = options.scene.input.baked()) return std::make_shared<const SharedVolume>(std::move(baked));
+  return std::make_shared<const SharedVolume>(options.scene.readVolume(kMaxNumberedVoxels, 0, progress));
 }
 
 void saveImage(const std::string& file, const Image& image, const Json& keywords) {
@@ -164,12 +162,10 @@ FrameSettings SceneRenderer::prepare(const KeywordOptions& options, std::optiona
   FrameSettings settings{.size = options.scene.camera.size, .depth = depth};
   options.scene.method.apply(settings);
   checkFrameFits(*context_->device, settings);
-  const int level = volume_->levelFor(options.scene, step ? step->frames : 1);
-  if (!scene_.volume || level != level_) {
-    renderer_ = nullptr;  // which refers to the volume
-    scene_.volume = nullptr;
-    scene_.volume = volume_->read(level, progress);
-    level_ = level;
+  if (std::shared_ptr<const VolumeSource> source = volume_->sourceFor(options.scene, step ? step->frames : 1, progress); source != source_) {
+    renderer_ = nullptr;  // which has the volume of the source before
+    scene_.volume = known(source);
+    source_ = std::move(source);
   }
   const std::string classification = textOf(options.scene, {"classification", "emission"});
   if (!renderer_ || classification != classification_) {
@@ -186,7 +182,7 @@ void SceneRenderer::makeRenderer(const KeywordOptions& options, const Progress& 
   const std::string text = rendererText(options.scene, scene_);
   if (renderer_ && text == rendererText_) return;
   renderer_ = nullptr;  // so that the device never holds two
-  renderer_ = std::make_unique<Renderer>(*context_->device, *scene_.volume, scene_.classification, options.scene.method.table(), progress);
+  renderer_ = std::make_unique<Renderer>(*context_->device, source_, scene_.classification, options.scene.method.table(), progress);
   rendererText_ = text;
   buildStages_ = renderer_->timings().size();
   isRendererNew_ = true;

@@ -16,8 +16,8 @@
 
 namespace freevoxels {
 
-/// Reads a file or makes "procedural:NAME", at most as large as the device of `context` can hold; if it is null, that of the
-/// keywords. `keywords` are the grid, the resolution and the scene of later frames, which decides what other grids are needed.
+/// Reads a file or makes "procedural:NAME"; of a baked file what describes it. `context` is null where the keywords choose the device.
+/// `keywords` are the grid, the resolution and the scene of later frames, which decides what other grids are needed.
 /// Without a file it is the volume of the scene. `progress` may abandon it.
 /// Fails as readVdb does, and for a baked file as FvxFile does.
 std::shared_ptr<const SharedVolume> openVolume(const std::string& file, const nlohmann::json& keywords,
@@ -84,8 +84,8 @@ class SceneRenderer {
 
   // While context_->turns is held:
   bool isDrawing_ = false;
-  int level_ = 0;               ///< of scene_.volume, if that is not null
-  Scene scene_;                 ///< scene of the last frame
+  std::shared_ptr<const VolumeSource> source_;  ///< of the last frame
+  Scene scene_;                 ///< of the last frame, with what is known of the volume
   std::string classification_;  ///< the fields of which scene_.classification was made
   std::string rendererText_;    ///< rendererText for which renderer_ was made
   std::unique_ptr<Renderer> renderer_;

@@ -1,7 +1,6 @@
 #pragma once
 // The volumes that renderers share.
 
-#include <cstdint>
 #include <memory>
 #include <mutex>
 
@@ -9,28 +8,26 @@
 
 namespace freevoxels {
 
-/// A volume in memory; or a baked file, of which a level of detail is read when a renderer needs it, and kept until one needs another.
-/// Any thread may call the member functions.
+/// A volume in memory; or a baked file, whose levels are read by the renderers that draw them, or, where a scene classifies them
+/// otherwise, here, and kept until a renderer needs another level. Any thread may call the member functions.
 class SharedVolume {
  public:
   explicit SharedVolume(Volume volume);
-  /// Uses no level of the file whose box has more than `maximumVoxels` voxels; the warnings of describe() say so.
-  SharedVolume(std::shared_ptr<const fvx::FvxFile> file, std::uint64_t maximumVoxels);
+  explicit SharedVolume(std::shared_ptr<const fvx::FvxFile> file);
 
-  /// The volume; of a file its finest level that is used, without the values.
+  /// The volume; of a file its finest level, without the values.
   const Volume& describe() const { return *description_; }
-  /// The level that a frame of the scene, or the frames of a turn, are drawn of, as on the command line; 0 without a file.
-  int levelFor(const SceneDescription& scene, int frames) const;
-  /// Fails as readBaked does. `progress` may abandon it.
-  std::shared_ptr<const Volume> read(int level, const Progress& progress = {}) const;
+  /// What a frame of the scene, or the frames of a turn, are drawn of, as on the command line: the same object as long as that is the same.
+  /// `progress` may abandon it. Fails as readBaked does.
+  std::shared_ptr<const VolumeSource> sourceFor(const SceneDescription& scene, int frames, const Progress& progress) const;
 
  private:
   const std::shared_ptr<const fvx::FvxFile> file_;  ///< null where the volume is of no baked file
-  std::shared_ptr<const Volume> description_;
-  int finestLevel_ = 0;
+  const std::shared_ptr<const Volume> description_;
   mutable std::mutex mutex_;  ///< guards the members below
-  mutable std::shared_ptr<const Volume> read_;
-  mutable int readLevel_ = 0;  ///< of `read_`
+  mutable std::shared_ptr<const VolumeSource> source_;
+  mutable int level_ = 0;      ///< of `source_`
+  mutable bool isRead_ = false;  ///< whether `source_` is in memory
 };
 
 }  // namespace freevoxels

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "apps/view/window.h"
-#include "engine/memory_planner.h"
+#include "engine/octree/volume_limits.h"
 
 namespace freevoxels {
 
@@ -31,7 +31,7 @@ const char* nameOf(Purpose purpose) {
 }  // namespace
 
 ImageDirector::ImageDirector(const Device& device, bool wholeOnly)
-    : volumes_(maximumVoxels(device)),
+    : volumes_(kMaxNumberedVoxels),
       quick_(device, volumes_, Window::wake),
       whole_(device, volumes_, Window::wake),
       wholeOnly_(wholeOnly) {}

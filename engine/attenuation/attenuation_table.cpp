@@ -51,46 +51,6 @@ shader::SweepPush sweepPush(const SlabSweep& sweep, glm::ivec3 direction) {
   return push;
 }
 
-bool hasSideRows(const fvx::EntryFace& face) {
-  return face.axis == 1 && face.direction.z != 0;
-}
-
-/// How many directions have their side rows before those of this one.
-int sidesBefore(glm::ivec3 direction) {
-  const auto own = std::ranges::find_if(fvx::entryFaces(), [&](const fvx::EntryFace& face) {
-    return hasSideRows(face) && face.direction == direction;
-  });
-  return int(std::count_if(fvx::entryFaces().begin(), own, hasSideRows));
-}
-
-/// Where the lines of a direction find their depths as they enter a part of a volume.
-/// `firstSideQuad` is where the side rows begin among the quads of the slab's buffer.
-shader::SweepEntry sweepEntry(const SlabSweep& sweep, glm::ivec3 direction, const DeviceEntryDepths& depths, std::uint64_t firstSideQuad) {
-  const glm::ivec3 extent = sweep.volume.layout.dimensions;
-  const auto faceOf = [&](int axis) {
-    const auto face = std::ranges::find_if(fvx::entryFaces(), [&](const fvx::EntryFace& each) {
-      return each.direction == direction && each.axis == axis;
-    });
-    return face == fvx::entryFaces().end() ? 0 : int(depths.first[std::size_t(face - fvx::entryFaces().begin())]);
-  };
-  shader::SweepEntry entry{.depths = addressWords(depths.values.address()), .rowFace = faceOf(0), .rowLength = extent.x};
-  if (direction.z != 0) {
-    entry.marchFace = faceOf(2);
-    const int quads = sweep.volume.layout.rowPitch / 4;
-    if (direction.y != 0) entry.sideFace = int(firstSideQuad) + sidesBefore(direction) * extent.z * quads;
-    entry.rowFaceMarch = extent.y;
-    entry.rowFaceSide = 1;
-    return entry;
-  }
-  // The sides, or for lines along x the rows, are those of a slab.
-  const int lowest = sweep.slab.lowest(extent.z);
-  entry.marchFace = faceOf(1) + lowest * extent.x;
-  entry.rowFace += lowest * extent.y;
-  entry.rowFaceMarch = 1;
-  entry.rowFaceSide = extent.y;
-  return entry;
-}
-
 /// The plane of a direction of {-1,0,1}³.
 const Buffer& planeOf(const AttenuationTable& table, glm::ivec3 direction) {
   const DirectionSet set = table.settings.directions;
@@ -145,55 +105,26 @@ SweepStyle sweepStyle(const Device& device) {
 AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings)
     : AttenuationSweep(device, settings, sweepStyle(device)) {}
 
-namespace {
-
-std::vector<float> sideRowsOf(glm::ivec3 extent, const fvx::EntryDepths& depths) {
-  const auto pitch = std::size_t(GridLayout(extent).rowPitch);
-  std::vector<float> rows;
-  for (std::size_t face = 0; face < fvx::kEntryFaces; ++face) {
-    if (!hasSideRows(fvx::entryFaces()[face])) continue;
-    const int stepX = -fvx::entryFaces()[face].direction.x;  // of the march
-    for (int z = 0; z < extent.z; ++z) {
-      const std::size_t row = rows.size();
-      rows.resize(row + pitch, 0.0f);
-      for (int x = 0; x < extent.x; ++x)
-        if (x + stepX >= 0 && x + stepX < extent.x)
-          rows[row + std::size_t(x)] = depths.values[depths.first[face] + std::size_t(z * extent.x + x + stepX)];
-    }
-  }
-  return rows;
-}
-
-}  // namespace
-
-DeviceEntryDepths::DeviceEntryDepths(const Device& device, glm::ivec3 extent, const fvx::EntryDepths& depths)
-    : first(depths.first), values(device, depths.values.size() * sizeof(float), MemoryUse::Device, "entry depths") {
-  upload(device, values, std::as_bytes(std::span(depths.values)));
-  const std::vector<float> rows = sideRowsOf(extent, depths);
-  sideRows = Buffer(device, rows.size() * sizeof(float), MemoryUse::Device, "entry depths of sides");
-  upload(device, sideRows, std::as_bytes(std::span(rows)));
-}
-
-AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings, const SweepStyle& style, bool ofParts)
-    : device_(device), settings_(settings), style_(style), ofParts_(ofParts), expand_(device) {
+AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& settings, const SweepStyle& style)
+    : device_(device), settings_(settings), style_(style), expand_(device) {
   const auto code = std::uint32_t(settings.code);
   for (int step = -1; step <= 1; ++step)
     bundles_[std::size_t(step + 1)] =
         makeComputePipeline(device, shaders::attenuation_sweep,
-                          {code, std::uint32_t(style.voxelsPerThread), std::uint32_t(step), std::uint32_t(ofParts)});
+                          {code, std::uint32_t(style.voxelsPerThread), std::uint32_t(step)});
   for (int step : {-1, 1})
     rows_[step > 0 ? 1 : 0] = makeComputePipeline(device, shaders::attenuation_sweep_x,
-                                                  {code, std::uint32_t(step), std::uint32_t(ofParts), std::uint32_t(style.tiledRows)});
+                                                  {code, std::uint32_t(step), std::uint32_t(style.tiledRows)});
   if (settings.directions == DirectionSet::Directions98)
     halves_.emplace(device, settings.code, style.voxelsPerThread);
 }
 
-void AttenuationSweep::makeRoom(const SweepPlan& plan, std::uint64_t sideBytes) {
+void AttenuationSweep::makeRoom(const SweepPlan& plan) {
   plan_ = plan;
-  if (extinction_.bytes() != plan.slabBytes + sideBytes) {
+  if (extinction_.bytes() != plan.slabBytes) {
     extinctionQuads_ = {};
     extinction_ = {};  // free the old buffer before allocating the new one
-    extinction_ = Buffer(device_, plan.slabBytes + sideBytes, MemoryUse::Device, "extinction of a slab",
+    extinction_ = Buffer(device_, plan.slabBytes, MemoryUse::Device, "extinction of a slab",
                          VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     extinctionQuads_ = TexelView(device_, extinction_);
   }
@@ -204,28 +135,8 @@ void AttenuationSweep::makeRoom(const SweepPlan& plan, std::uint64_t sideBytes) 
 }
 
 void AttenuationSweep::record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) {
-  FV_CHECK_EQ(ofParts_, false);
-  recordSlabs(commands, volume, table);
-}
-
-void AttenuationSweep::record(Commands& commands, const DeviceVolume& part, const AttenuationTable& table,
-                              const DeviceEntryDepths& entry) {
-  FV_CHECK_EQ(ofParts_, true);
-  FV_CHECK_EQ(int(settings_.directions), int(DirectionSet::Directions26));
-  FV_CHECK_EQ(settings_.pathLengthCorrection, true);
-  entry_ = &entry;
-  recordSlabs(commands, part, table);
-  entry_ = nullptr;
-}
-
-void AttenuationSweep::recordSlabs(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table) {
   const std::uint64_t own = extinction_.bytes() + keptDepths_.bytes();
-  makeRoom(planSweep(volume.layout, settings_.directions, style_, device_.availableBytes() + own),
-           entry_ != nullptr ? entry_->sideRows.bytes() : 0);
-  if (entry_ != nullptr) {
-    commands.copy(entry_->sideRows, extinction_, {.srcOffset = 0, .dstOffset = plan_.slabBytes, .size = entry_->sideRows.bytes()});
-    commands.barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, kComputeStage);
-  }
+  makeRoom(planSweep(volume.layout, settings_.directions, style_, device_.availableBytes() + own));
   const int planes = volume.layout.dimensions.z;
   SlabSweep sweep{.commands = commands,
                   .volume = volume,
@@ -257,7 +168,6 @@ void AttenuationSweep::recordRows(SlabSweep& sweep) const {
   for (int x : {-1, 1}) {
     shader::SweepPush push = sweepPush(sweep, {x, 0, 0});
     push.slab = sweep.marchWithinPlanes(0);
-    if (entry_ != nullptr) push.entry = sweepEntry(sweep, {x, 0, 0}, *entry_, plan_.slabBytes / sizeof(glm::vec4));
     const std::array<Binding, 4> bindings = sweep.bindings(planeOf(sweep.table, {x, 0, 0}));
     sweep.commands.dispatchLinear(rows_[x > 0 ? 0 : 1], std::span(bindings).first(3), push,  // no depths are carried over
                                   std::uint64_t(push.lineCount));
@@ -272,7 +182,6 @@ void AttenuationSweep::recordBundles(SlabSweep& sweep, glm::ivec2 yz) const {
     push.slab = yz.y != 0
                     ? sweep.marchAlongZ(threads * std::uint64_t(linesPerThread(style_.voxelsPerThread, x)))
                     : sweep.marchWithinPlanes(push.marchCount);
-    if (entry_ != nullptr) push.entry = sweepEntry(sweep, {x, yz}, *entry_, plan_.slabBytes / sizeof(glm::vec4));
     sweep.commands.dispatchLinear(bundles_[std::size_t(1 - x)], sweep.bindings(planeOf(sweep.table, {x, yz})),
                                   push, threads);
   }

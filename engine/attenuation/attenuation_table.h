@@ -12,7 +12,6 @@
 #include "engine/octree/occupancy.h"
 #include "engine/scene/directions.h"
 #include "engine/scene/table_settings.h"
-#include "engine/storage/regions.h"
 
 namespace freevoxels {
 
@@ -45,43 +44,26 @@ AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, con
 /// The sweep style that is fastest on this kind of device, within the limits of what it can bind.
 SweepStyle sweepStyle(const Device& device);
 
-/// The depths where lines enter a part of a volume (storage/regions.h) on the device. Blocks until the copy is complete.
-struct DeviceEntryDepths {
-  /// `extent` is the part's.
-  DeviceEntryDepths(const Device& device, glm::ivec3 extent, const fvx::EntryDepths& depths);
-  std::array<std::size_t, fvx::kEntryFaces> first;  ///< of each face in `values`
-  Buffer values;                                    ///< float
-  /// float: the faces across y of lines that march along z, one after the other, in rows as a slab has them: each depth where its line
-  /// was, or would have been, a plane before.
-  Buffer sideRows;
-};
-
 /// COMPUTE attenuation_sweep.comp, attenuation_sweep_x.comp and, for 98 directions,
 /// attenuation_sweep_half.comp: a dispatch for each direction and slab (slabs.h). The dispatches of a slab
 /// run concurrently.
 class AttenuationSweep {
  public:
   AttenuationSweep(const Device& device, const TableSettings& settings);
-  AttenuationSweep(const Device& device, const TableSettings& settings, const SweepStyle& style, bool ofParts = false);
+  AttenuationSweep(const Device& device, const TableSettings& settings, const SweepStyle& style);
   /// Records the sweeps of a volume. Volumes are swept one after the other, since there is memory for one
   /// slab.
   void record(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table);
-  /// Records the sweeps of a part of a volume, which lines enter with these depths. Only for a sweep of parts, with 26 directions and
-  /// path-length correction.
-  void record(Commands& commands, const DeviceVolume& part, const AttenuationTable& table, const DeviceEntryDepths& entry);
 
  private:
-  void recordSlabs(Commands& commands, const DeviceVolume& volume, const AttenuationTable& table);
   void recordRows(SlabSweep& sweep) const;
   void recordBundles(SlabSweep& sweep, glm::ivec2 yz) const;
 
-  void makeRoom(const SweepPlan& plan, std::uint64_t sideBytes);
+  void makeRoom(const SweepPlan& plan);
 
   const Device& device_;
   TableSettings settings_;
   SweepStyle style_;
-  bool ofParts_;
-  const DeviceEntryDepths* entry_ = nullptr;  ///< of the part that is being recorded; its side rows are behind the slab's extinction
   SweepPlan plan_;
   std::array<Pipeline, 3> bundles_;  ///< by the step of the march along x: -1, 0, 1
   std::array<Pipeline, 2> rows_;     ///< directions +x and -x

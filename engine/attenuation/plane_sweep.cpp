@@ -12,8 +12,6 @@
 #include "engine/core/error.h"
 #include "engine/core/parameter.h"
 #include "engine/octree/device_volume.h"
-#include "engine/storage/baked_box.h"
-#include "engine/storage/chunk_pyramid.h"
 #include "engine/volume/coarse_cells.h"
 #include "engine/volume/transfer_table.h"
 #include "engine/vulkan/commands.h"
@@ -27,11 +25,34 @@ constexpr int kEdge = ScalarBricks::kEdge;
 constexpr VkPipelineStageFlags2 kTransfer = VK_PIPELINE_STAGE_2_TRANSFER_BIT;
 constexpr int kMaxPlanes = 8, kMinPlanes = 2;  ///< that are swept at a time
 
+std::uint64_t slabVoxels(glm::ivec2 sides, int planes) {
+  return std::uint64_t(planes + 1) * std::uint64_t(sides.x + 2) * std::uint64_t(sides.y + 2);
+}
+
+/// The pairs of planes of a slab, and the pair before them.
+std::uint64_t depthBytes(const FaceRays& fan, int planes) {
+  return fan.rays() * std::uint64_t(planes / 2 + 1) * sizeof(std::uint32_t);
+}
+
+std::uint64_t codeWords(glm::ivec2 sides) {
+  return std::uint64_t((sides.x + 1) / 2) * std::uint64_t(sides.y);
+}
+
+/// What a face of a sweep takes on the device.
+std::uint64_t sweepBytes(const FaceRays& fan, glm::ivec2 sides, int planes) {
+  return slabVoxels(sides, planes) * sizeof(float) + fan.rays() * sizeof(float) + depthBytes(fan, planes) +
+         codeWords(sides) * std::uint64_t(planes) * sizeof(std::uint32_t);
+}
+
+glm::ivec2 sidesOf(const FaceRays& fan, glm::ivec3 dimensions) {
+  return {dimensions[(fan.axis + 1) % 3], dimensions[(fan.axis + 2) % 3]};
+}
+
 /// What a sweep looks up of a voxel: its extinction per world unit, or its scalar in intervals of the transfer function's table.
 class VoxelValues {
  public:
-  explicit VoxelValues(const BakedLevel& level) : classification_(level.classification) {
-    const Volume& volume = level.file->description().volume;
+  explicit VoxelValues(const SourceLevel& level) : classification_(level.classification) {
+    const Volume& volume = level.outline();
     if (classification_.isPost(volume)) table_.emplace(*classification_.transferFunction, volume.minimum, volume.maximum);
   }
   bool areScalars() const { return table_.has_value(); }
@@ -50,43 +71,38 @@ class VoxelValues {
 
 }  // namespace
 
-std::vector<std::uint8_t> bricksAround(const fvx::FvxFile& file, int level) {
-  Cells cells((file.dimensions(level) + kEdge - 1) / kEdge);
-  for (const fvx::ChunkEntry& chunk : file.chunks(fvx::Channel::Scalars, level))
-    for (int brick = 0; brick < fvx::kChunkBricks; ++brick)
-      if (chunk.hasBrick(brick)) cells.values[cells.index(chunk.brickCell(brick))] = 1;
-  return spread(cells, -1, 1).values;
+Cells bricksAround(const SourceLevel& level) {
+  return spread(level.source->bricks(level.level), -1, 1);
 }
 
 /// The sweep of one face.
 class SweptLight::Sweep {
  public:
-  Sweep(SweptLight& light, const Device& device, const BakedLevel& level, const VoxelValues& values, const FaceRays& fan, int fanNumber)
+  Sweep(SweptLight& light, const Device& device, const SourceLevel& level, const VoxelValues& values, const FaceRays& fan, int fanNumber)
       : light_(light),
         device_(device),
         level_(level),
         values_(values),
         fan_(fan),
         fanNumber_(fanNumber),
-        dimensions_(level.file->dimensions(level.level)),
-        sides_(dimensions_[(fan.axis + 1) % 3], dimensions_[(fan.axis + 2) % 3]),
+        dimensions_(level.outline().dimensions),
+        sides_(sidesOf(fan, dimensions_)),
         strideB_(sides_.x + 2),
         planeStride_(strideB_ * (sides_.y + 2)) {
-    planes_ = kMaxPlanes;
-    while (planes_ > kMinPlanes && bytes() > device.availableBytes()) planes_ /= 2;
-    if (bytes() > device.availableBytes())
-      fail(ErrorKind::OutOfMemory, "exact shadows of this light need {} MiB, and {} has {} MiB left: use {}", bytes() >> 20,
+    while (planes_ > kMinPlanes && sweepBytes(fan_, sides_, planes_) > device.availableBytes()) planes_ /= 2;
+    if (const std::uint64_t bytes = sweepBytes(fan_, sides_, planes_); bytes > device.availableBytes())
+      fail(ErrorKind::OutOfMemory, "exact shadows of this light need {} MiB, and {} has {} MiB left: use {}", bytes >> 20,
            device.description().name, device.availableBytes() >> 20, Parameter("light-attenuation", "table"));
     slab_ = Buffer(device, slabVoxels() * sizeof(float), MemoryUse::Device, "extinction around rays", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     slabTexels_ = TexelView(device, slab_, VK_FORMAT_R32_SFLOAT);
     carried_ = Buffer(device, fan.rays() * sizeof(float), MemoryUse::Device, "ray depths between slabs");
-    depths_ = Buffer(device, depthBytes(), MemoryUse::Device, "ray depths");
+    depths_ = Buffer(device, depthBytes(fan, planes_), MemoryUse::Device, "ray depths");
     frame_ = Buffer(device, sizeof(shader::LightPlanes), MemoryUse::Device, "planes of a light", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-    codes_ = Buffer(device, codeBytes(), MemoryUse::Device, "codes of light");
+    codes_ = Buffer(device, codeWords() * std::uint64_t(planes_) * sizeof(std::uint32_t), MemoryUse::Device, "codes of light");
     sweep_ = makeComputePipeline(device, shaders::ray_sweep, {values.areScalars()});
     lookUp_ = makeComputePipeline(device, shaders::light_planes, {values.areScalars()});
     if (!values.areScalars()) return;
-    const std::vector<glm::vec4> texels = values.table().texels(kStoredDepth * level.file->description().volume.voxelSize());
+    const std::vector<glm::vec4> texels = values.table().texels(kStoredDepth * level.outline().voxelSize());
     table_ = Buffer(device, texels.size() * sizeof(glm::vec4), MemoryUse::Device, "transfer function table",
                     VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     upload(device, table_, std::as_bytes(std::span(texels)));
@@ -95,7 +111,7 @@ class SweptLight::Sweep {
 
   void run(const glm::dmat4& indexToWorld, std::vector<StageTime>& times, const Progress& progress) {
     indexToWorld_ = glm::dmat3(indexToWorld);
-    around_ = bricksAround(*level_.file, level_.level);
+    around_ = bricksAround(level_).values;
     for (int begin = 0; begin < fan_.planeCount; begin += planes_) {
       if (progress) progress("sweeping light", double(begin) / double(fan_.planeCount));
       sweepPlanes(begin, std::min(begin + planes_, fan_.planeCount), times);
@@ -105,14 +121,8 @@ class SweptLight::Sweep {
   }
 
  private:
-  std::uint64_t slabVoxels() const { return std::uint64_t(planes_ + 1) * std::uint64_t(planeStride_); }
-  /// The pairs of planes of a slab, and the pair before them.
-  std::uint64_t depthBytes() const { return fan_.rays() * std::uint64_t(planes_ / 2 + 1) * sizeof(std::uint32_t); }
-  std::uint64_t codeWords() const { return std::uint64_t((sides_.x + 1) / 2) * std::uint64_t(sides_.y); }
-  std::uint64_t codeBytes() const { return codeWords() * std::uint64_t(planes_) * sizeof(std::uint32_t); }
-  std::uint64_t bytes() const {
-    return slabVoxels() * sizeof(float) + fan_.rays() * sizeof(float) + depthBytes() + codeBytes();
-  }
+  std::uint64_t slabVoxels() const { return freevoxels::slabVoxels(sides_, planes_); }
+  std::uint64_t codeWords() const { return freevoxels::codeWords(sides_); }
   int coordinateOf(int plane) const { return fan_.firstPlane + fan_.direction * plane; }
 
   /// The bricks of the layer that has a plane; those of the last two layers are kept.
@@ -120,10 +130,10 @@ class SweptLight::Sweep {
     const auto found = layers_.find(number);
     if (found != layers_.end()) return found->second;
     if (layers_.size() > 1) layers_.erase(fan_.direction > 0 ? layers_.begin() : std::prev(layers_.end()));
-    fvx::VoxelBox box{.first = glm::ivec3(0), .end = dimensions_};
+    VoxelRange box{.first = glm::ivec3(0), .end = dimensions_};
     box.first[fan_.axis] = number * kEdge;
     box.end[fan_.axis] = std::min((number + 1) * kEdge, dimensions_[fan_.axis]);
-    return layers_.emplace(number, readBakedBox(*level_.file, level_.level, box)).first->second;
+    return layers_.emplace(number, level_.source->read(level_.level, box)).first->second;
   }
 
   /// Writes a plane of the volume into a plane of the slab, whose border stays empty.
@@ -164,7 +174,7 @@ class SweptLight::Sweep {
                                 .strideA = 1,
                                 .strideB = strideB_};
     // Extinctions of the transfer function's table are in another unit.
-    const double unit = values_.areScalars() ? 1.0 / (kStoredDepth * level_.file->description().volume.voxelSize()) : 1.0;
+    const double unit = values_.areScalars() ? 1.0 / (kStoredDepth * level_.outline().voxelSize()) : 1.0;
     Commands commands(device_);
     commands.beginPass("light sweep");
     if (begin > 0) {
@@ -188,7 +198,7 @@ class SweptLight::Sweep {
     commands.submitAndWait();
     addTimes(times, commands.times());
     const StageTimer timer(times, "keep light");
-    std::vector<std::uint16_t> codes(codeBytes() / sizeof(std::uint16_t));
+    std::vector<std::uint16_t> codes(2 * codeWords() * std::size_t(planes_));
     download(device_, codes_, std::as_writable_bytes(std::span(codes)));
     for (int plane = begin; plane < end; ++plane)
       keep(coordinateOf(plane), std::span(codes).subspan(std::size_t(plane - begin) * 2 * codeWords(), 2 * codeWords()));
@@ -240,7 +250,7 @@ class SweptLight::Sweep {
 
   SweptLight& light_;
   const Device& device_;
-  const BakedLevel& level_;
+  const SourceLevel& level_;
   const VoxelValues& values_;
   const FaceRays fan_;
   const int fanNumber_;
@@ -267,19 +277,25 @@ namespace {
 
 }  // namespace
 
-SweptLight::SweptLight(const Device& device, const BakedLevel& level, const RaySource& source, std::vector<StageTime>& times,
+SweptLight::SweptLight(const Device& device, const SourceLevel& level, const RaySource& source, std::vector<StageTime>& times,
                        const Progress& progress) try
     : source_(source),
-      bricks_((level.file->dimensions(level.level) + kEdge - 1) / kEdge),
+      bricks_((level.outline().dimensions + kEdge - 1) / kEdge),
       records_(std::size_t(bricks_.x) * std::size_t(bricks_.y) * std::size_t(bricks_.z), 0),
       codes_(std::filesystem::temp_directory_path()) {
   const VoxelValues values(level);
-  const glm::dmat4 indexToWorld = fvx::levelToWorld(level.file->description().volume.indexToWorld, level.level);
-  const std::array<FaceRays, 6> fans = faceRays(level.file->dimensions(level.level), source);
+  const std::array<FaceRays, 6> fans = faceRays(level.outline().dimensions, source);
   for (int i = 0; i < 6; ++i)
-    if (fans[std::size_t(i)].planeCount > 0) Sweep(*this, device, level, values, fans[std::size_t(i)], i).run(indexToWorld, times, progress);
+    if (fans[std::size_t(i)].planeCount > 0) Sweep(*this, device, level, values, fans[std::size_t(i)], i).run(level.outline().indexToWorld, times, progress);
 } catch (const std::system_error& error) {
   failTemporary(error);
+}
+
+std::uint64_t SweptLight::leastBytes(glm::ivec3 dimensions, const RaySource& source) {
+  std::uint64_t bytes = 0;
+  for (const FaceRays& fan : faceRays(dimensions, source))
+    if (fan.planeCount > 0) bytes = std::max(bytes, sweepBytes(fan, sidesOf(fan, dimensions), kMinPlanes));
+  return bytes;
 }
 
 std::size_t SweptLight::indexOf(glm::ivec3 brick) const {

@@ -1,6 +1,6 @@
 #pragma once
-// Optical depths towards a light at all voxels of a baked level that need not fit into memory: the sweep of ray_sweep.h, plane by plane
-// from the file. Only some planes are in memory at a time; the depths of voxels go to a temporary file, from which those of any brick
+// Optical depths towards a light at all voxels of a level that need not fit into the device's memory: the sweep of ray_sweep.h, plane by
+// plane from the volume's source. Only some planes are in memory at a time; the depths of voxels go to a temporary file, from which those of any brick
 // can be read.
 
 #include <array>
@@ -14,17 +14,18 @@
 #include "engine/core/spool.h"
 #include "engine/core/stages.h"
 #include "engine/scene/source_rays.h"
-#include "engine/storage/fvx_file.h"
 #include "engine/volume/classification.h"
+#include "engine/volume/volume_source.h"
 #include "engine/vulkan/device.h"
 
 namespace freevoxels {
 
-/// A level of a baked file and how it is classified.
-struct BakedLevel {
-  std::shared_ptr<const fvx::FvxFile> file;
+/// A level of a volume and how it is classified.
+struct SourceLevel {
+  std::shared_ptr<const VolumeSource> source;
   int level = 0;
   Classification classification;
+  const Volume& outline() const { return source->outline(level); }
 };
 
 class SweptLight {
@@ -36,10 +37,12 @@ class SweptLight {
   /// COMPUTE ray_sweep.comp and light_planes.comp, a few planes of a face at a time. `source` is in the level's index space. The codes
   /// take 1 KiB on the disk for each brick with data and each of its neighbours, in the system's folder for temporary files. Blocks;
   /// adds the times to `times`. Fails with ErrorKind::OutOfMemory.
-  SweptLight(const Device& device, const BakedLevel& level, const RaySource& source, std::vector<StageTime>& times,
+  SweptLight(const Device& device, const SourceLevel& level, const RaySource& source, std::vector<StageTime>& times,
              const Progress& progress = {});
 
   const RaySource& source() const { return source_; }
+  /// Bytes of device memory that the sweep of a light through a box takes at least.
+  static std::uint64_t leastBytes(glm::ivec3 dimensions, const RaySource& source);
   /// Reads the codes of a brick of the level; 0 where no brick nearby has data.
   void read(glm::ivec3 brick, std::span<std::uint16_t> codes) const;
 
@@ -54,6 +57,6 @@ class SweptLight {
 };
 
 /// Marks the bricks of a level that have data, and their neighbours.
-std::vector<std::uint8_t> bricksAround(const fvx::FvxFile& file, int level);
+Cells bricksAround(const SourceLevel& level);
 
 }  // namespace freevoxels

@@ -1,11 +1,11 @@
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
 
 #include "engine/core/error.h"
+#include "engine/core/machine.h"
 #include "engine/description/scene_description.h"
 #include "engine/description/text_values.h"
 #include "engine/storage/baked_volume.h"
@@ -34,10 +34,6 @@ std::string clipText(const ClipPlane& plane) {
 }
 
 }  // namespace
-
-std::uint64_t machineMemoryBytes() {
-  return std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE));
-}
 
 std::string resolutionText(glm::ivec3 dimensions) {
   const bool isCube = dimensions == glm::ivec3(dimensions.x);

@@ -5,6 +5,8 @@
 #include "engine/core/error.h"
 #include "engine/description/scene_fields.h"
 #include "engine/octree/hierarchy_layout.h"
+#include "engine/octree/volume_limits.h"
+#include "engine/storage/baked_source.h"
 #include "engine/storage/baked_volume.h"
 #include "engine/visibility/detail_rule.h"
 #include "engine/volume/emission_light.h"
@@ -108,6 +110,17 @@ void SceneDescription::check() const {
 Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level, const Progress& progress, bool isFrame) const {
   return input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.grid(), .mayBeMissing = isFrame}, level,
                     progress);
+}
+
+std::shared_ptr<const VolumeSource> SceneDescription::openSource(int frameCount, bool mayStayFile, bool isFrame, const Progress& progress) const {
+  const std::shared_ptr<const fvx::FvxFile> file = input.baked();
+  if (!file) return std::make_shared<const VolumeInMemory>(std::make_shared<const Volume>(readVolume(kMaxNumberedVoxels, 0, progress, isFrame)));
+  return bakedSource(file, finestLevelNeeded(file.get(), frameCount), !mayStayFile || !isSeenAsBaked(*file), progress);
+}
+
+bool SceneDescription::isSeenAsBaked(const fvx::FvxFile& file) const {
+  const Volume outline = bakedOutline(file);
+  return isAsBaked(outline, resolveClassification(outline));
 }
 
 int SceneDescription::finestLevelNeeded(const fvx::FvxFile* file, int frameCount) const {

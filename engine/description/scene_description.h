@@ -26,6 +26,7 @@
 #include "engine/volume/scan.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/volume.h"
+#include "engine/volume/volume_source.h"
 
 namespace freevoxels {
 
@@ -244,6 +245,11 @@ struct SceneDescription {
   /// Reads the volume, with the grids that other fields need; of a baked one an octree level, which other volumes do not have. A frame of
   /// a film may lack grids.
   Volume readVolume(std::uint64_t maximumVoxels, int level = 0, const Progress& progress = {}, bool isFrame = false) const;
+  /// What frames are drawn of. A baked file is read by whoever draws it, where `mayStayFile` allows that and isSeenAsBaked(); other volumes
+  /// are read, with boxes of at most kMaxNumberedVoxels. A frame of a film may lack grids. Fails as readVolume().
+  std::shared_ptr<const VolumeSource> openSource(int frameCount, bool mayStayFile = true, bool isFrame = false, const Progress& progress = {}) const;
+  /// Whether what is seen of a baked volume is known without its values, as it is classified as it was when it was baked.
+  bool isSeenAsBaked(const fvx::FvxFile& file) const;
   /// The level of a baked volume that frames need: one finer than the finest of which anything is drawn. 0 where the levels are of
   /// scalars that are classified by a transfer function, and without a file.
   int finestLevelNeeded(const fvx::FvxFile* file, int frameCount) const;
@@ -268,8 +274,6 @@ struct SceneDescription {
 
 /// A text of everything that a Renderer of the scene depends on, except for its volume: scenes with equal text can share one.
 std::string rendererText(const SceneDescription& description, const Scene& scene);
-
-std::uint64_t machineMemoryBytes();
 
 /// "128", or "2048x2048x512" of one that is no cube.
 std::string resolutionText(glm::ivec3 dimensions);

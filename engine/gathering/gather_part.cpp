@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
-#include "engine/storage/hilbert.h"
+#include "engine/octree/hilbert.h"
 #include "engine/volume/coarse_cells.h"
 #include "engine/vulkan/buffer.h"
 #include "engine/vulkan/commands.h"
@@ -63,6 +63,16 @@ SampleLattice latticeOf(const shader::GatherFrame& frame, bool scalars, bool dep
 
 }  // namespace
 
+FixedSums partSums(const shader::GatherFrame& frame, bool scalars, FixedSums layout) {
+  layout.lattice = latticeOf(frame, scalars, layout.channels == kSumChannels);
+  layout.channels = kSumChannels;
+  layout.method = "gather, " + layout.method;
+  layout.digits[std::size_t(SumChannel::OpticalDepth)] = kDepthDigits;
+  layout.first = frame.firstSeen;
+  layout.extent = frame.seenExtent;
+  return layout;
+}
+
 PartCells partCells(const GatherVolume::BrickCells& cells, const std::vector<shader::GatherLevel>& levels, const SharePart& part) {
   PartCells result{.numbers = cells.numbers, .skips = {}};
   for (std::size_t level = 0; level < levels.size(); ++level) {
@@ -113,13 +123,7 @@ void GatherPartPass::makeRoom() {
 void GatherPartPass::record(Commands& commands, GatherPass& gather, const GatherVolume& volume, const DeviceVolume& onDevice,
                             const shader::GatherFrame& frame, const RaySource& eye, const SharePart& part, FixedSums layout) {
   choose(volume, part);
-  layout_ = std::move(layout);
-  layout_.lattice = latticeOf(frame, volume.hasScalars(), layout_.channels == kSumChannels);
-  layout_.channels = kSumChannels;
-  layout_.method = "gather, " + layout_.method;
-  layout_.digits[std::size_t(SumChannel::OpticalDepth)] = kDepthDigits;
-  layout_.first = frame.firstSeen;
-  layout_.extent = frame.seenExtent;
+  layout_ = partSums(frame, volume.hasScalars(), std::move(layout));
   makeRoom();
 
   rays_.record(commands, onDevice, eye, volume.hasScalars());

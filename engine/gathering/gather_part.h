@@ -22,6 +22,9 @@ struct PartCells {
 /// Chunks of bricks are dealt to the shares level by level along the Hilbert curve. The chunks depend on the volume only, not on the part.
 PartCells partCells(const GatherVolume::BrickCells& cells, const std::vector<shader::GatherLevel>& levels, const SharePart& part);
 
+/// The sums of the samples of a frame's lattice that are seen, without values. `layout` describes those of pixels of the frame.
+FixedSums partSums(const shader::GatherFrame& frame, bool scalars, FixedSums layout);
+
 /// COMPUTE ray_sweep.comp for the eye, then gather.comp. Belongs to one volume.
 class GatherPartPass {
  public:

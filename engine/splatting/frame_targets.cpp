@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
+#include "engine/vulkan/target_readback.h"
 
 namespace freevoxels {
 
@@ -48,6 +49,17 @@ void checkFrameFits(const Device& device, const FrameSettings& settings) {
          "an image of {}x{} pixels needs {} MiB of device memory and {} may use {} MiB of it: use a smaller {}",
          settings.size.x, settings.size.y, bytes >> 20, device.description().name,
          device.memoryBytes() >> 20, Parameter("size"));
+}
+
+Image downloadImage(const Device& device, const FrameTargets& targets) {
+  Commands commands(device);
+  TargetReadback color, distance;
+  color.record(device, commands, targets.colorEnergy);
+  if (targets.distance.exists()) distance.record(device, commands, targets.distance);
+  commands.submitAndWait();
+  return {.size = targets.colorEnergy.size(),
+          .pixels = color.read<glm::vec4>(),
+          .depth = targets.distance.exists() ? distance.read<float>() : std::vector<float>()};
 }
 
 }  // namespace freevoxels

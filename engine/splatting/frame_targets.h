@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "engine/image/image.h"
 #include "engine/scene/render_settings.h"
 #include "engine/vulkan/image.h"
 
@@ -32,6 +33,9 @@ FrameTargets makeTargets(const Device& device, const FrameSettings& settings, Ta
 std::uint64_t targetBytes(const FrameSettings& settings);
 /// Fails with ErrorKind::OutOfMemory where this device cannot hold such a frame: to be called before any other work.
 void checkFrameFits(const Device& device, const FrameSettings& settings);
+
+/// The image of a frame that was left on the device. Waits.
+Image downloadImage(const Device& device, const FrameTargets& targets);
 
 /// Keeps the targets of a renderer's frames, so that a frame allocates none while size and kind stay the same. For one
 /// thread; what it has handed out may be released by another one, after the device has read it.

@@ -1,7 +1,7 @@
 #pragma once
 // The static distribution of an octree's blocks among the processes of a distributed render: Subr et al.
 // 2007, Section 4.4. Blocks are distributed in chunks, level by level along the Hilbert curve, to a fixed
-// number of shares (kShares, engine/storage/hilbert.h), whatever the number of processes. Process I of N
+// number of shares (kShares, engine/octree/hilbert.h), whatever the number of processes. Process I of N
 // draws the shares I, I + N, I + 2N and so on.
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "engine/octree/hierarchy_layout.h"
-#include "engine/storage/hilbert.h"
+#include "engine/octree/hilbert.h"
 
 namespace freevoxels {
 

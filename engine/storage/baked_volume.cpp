@@ -11,7 +11,7 @@
 #include "engine/octree/device_volume.h"
 #include "engine/storage/chunk_reader.h"
 #include "engine/storage/fvx_writer.h"
-#include "engine/storage/hilbert.h"
+#include "engine/octree/hilbert.h"
 #include "engine/volume/transfer_table.h"
 #include "shaders/gather_interface.h"
 
@@ -97,32 +97,6 @@ ChunkValues chunkOf(const Volume& volume, glm::ivec3 cell) {
   return chunk;
 }
 
-/// A copy without bricks.
-Volume outlineOf(const Volume& volume) {
-  Volume outline{.source = volume.source,
-                 .dimensions = volume.dimensions,
-                 .indexOrigin = volume.indexOrigin,
-                 .indexToWorld = volume.indexToWorld,
-                 .up = volume.up,
-                 .upReason = volume.upReason,
-                 .isLevelSet = volume.isLevelSet,
-                 .activeVoxels = volume.activeVoxels,
-                 .nanVoxels = volume.nanVoxels,
-                 .negativeVoxels = volume.negativeVoxels,
-                 .minimum = volume.minimum,
-                 .maximum = volume.maximum};
-  if (volume.temperature) {
-    const TemperatureGrid& grid = *volume.temperature;
-    outline.temperature = TemperatureGrid{.name = grid.name,
-                                          .activeVoxels = grid.activeVoxels,
-                                          .nanVoxels = grid.nanVoxels,
-                                          .minimum = grid.minimum,
-                                          .maximum = grid.maximum};
-  }
-  if (volume.albedo) outline.albedo = AlbedoGrid{.name = volume.albedo->name, .clippedVoxels = volume.albedo->clippedVoxels};
-  return outline;
-}
-
 /// Adds the classification, and the counts and ranges of the chunks where they are missing.
 Volume summarised(Volume outline, const Classification& classification, bool fixed, const fvx::FvxWriter& writer) {
   const auto complete = [&](Channel channel, auto& grid) {
@@ -191,23 +165,6 @@ void makeCoarse(Volume& volume, const FvxFile& file, int level) {
   if (volume.temperature) volume.temperature->activeVoxels = activeVoxels(file.chunks(Channel::Temperature, level));
 }
 
-/// Copies the chunks of a region into a box with its halo, one set of bricks for each value of a voxel.
-std::vector<ScalarBricks> readRegionChunks(const FvxFile& file, Channel channel, const fvx::RegionEntry& region, const fvx::VoxelBox& box) {
-  constexpr int n = ScalarBricks::kEdge;
-  const int level = int(region.level), components = fvx::valuesPerVoxel(channel);
-  const glm::ivec3 corner = box.first % n, firstCell = box.first / n;
-  std::vector<ScalarBricks> result(std::size_t(components), ScalarBricks(box.extent(), corner));
-  const fvx::ChunkReader reader(file, channel, level);
-  for (int child = 0; child < 8; ++child) {
-    const glm::ivec3 cell = 2 * region.cell + glm::ivec3(child & 1, child >> 1 & 1, child >> 2);
-    const ChunkEntry* const chunk = file.find(channel, level, cell);
-    if (chunk == nullptr) continue;
-    const BrickPlaces places(std::span(chunk, 1));
-    reader.read(*chunk, [&](std::size_t number, std::size_t component) { return &result[component].makeBrick(places.cells[number] - firstCell); });
-  }
-  return result;
-}
-
 Volume readLevel(const FvxFile& file, int level, const Progress& progress) {
   Volume volume = bakedOutline(file, level);
   const auto read = [&](Channel channel) { return readChannel(file, channel, level, progress); };
@@ -272,9 +229,6 @@ void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volum
     spread(&writer);
     const fvx::Description description{.volume = summarised(volume.outline, classification, !settings.keepScalars, writer),
                                        .encodings = write.encodings};
-    // Elsewhere extinction depends on more than the voxel, or light on more than extinction.
-    if (densities && !classification.emission)
-      writer.sweepRegions({.densityScale = classification.densityScale, .indexToWorld = volume.outline.indexToWorld}, progress);
     if (progress) progress(kWritingStage, 0.0);
     writer.finish(temporary, description, volume.content, settings.provenance);
   });
@@ -304,28 +258,6 @@ Volume readBaked(const std::shared_ptr<const FvxFile>& file, int level, const Pr
   } catch (const std::bad_alloc&) {
     fail(ErrorKind::OutOfMemory, "not enough memory for level {} of '{}'; free some", level, file->path().string());
   }
-}
-
-BakedRegion readBakedRegion(const FvxFile& file, const fvx::RegionEntry& region) {
-  const int level = int(region.level);
-  const glm::ivec3 size = file.dimensions(level);
-  const fvx::VoxelBox box = fvx::regionWithHalo(region.cell, size), own = fvx::regionVoxels(region.cell, size);
-  fvx::RegionSurroundings beside = file.readRegion(region);
-  BakedRegion result{.volume = bakedOutline(file, level),
-                     .own = {own.first - box.first, own.end - box.first},
-                     .depths = std::move(beside.depths)};
-  Volume& volume = result.volume;
-  volume.dimensions = box.extent();
-  volume.indexToWorld = glm::translate(volume.indexToWorld, glm::dvec3(box.first));
-  volume.temperature.reset();
-  volume.scalars = std::move(readRegionChunks(file, Channel::Scalars, region, box).front());
-  if (!beside.halo.empty())
-    fvx::forHaloRows(region.cell, size, [&](glm::ivec3 first, int end, std::size_t index) {
-      for (glm::ivec3 voxel = first; voxel.x < end; ++voxel.x, ++index)
-        if (beside.halo[index] > 0.0f) volume.scalars.set(voxel - box.first, beside.halo[index]);
-    });
-  if (volume.albedo) std::ranges::move(readRegionChunks(file, Channel::Albedo, region, box), volume.albedo->values.begin());
-  return result;
 }
 
 int finestLevel(const fvx::FvxFile& file, std::uint64_t maximumVoxels) {

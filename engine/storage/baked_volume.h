@@ -64,16 +64,6 @@ void bakeVolume(const std::filesystem::path& file, const Volume& volume, const C
 /// afterwards. `progress` may abandon it. Fails with ErrorKind::Input if a chunk is damaged.
 Volume readBaked(const std::shared_ptr<const fvx::FvxFile>& file, int level = 0, const Progress& progress = {});
 
-/// A region of a level with its halo, as a volume of its own, and what its table is swept from.
-struct BakedRegion {
-  Volume volume;
-  fvx::VoxelBox own;  ///< the region without the halo, in voxels of `volume`
-  fvx::EntryDepths depths;
-};
-/// Reads a region and nothing else: its chunks of scalars and albedos, and what it has beside them. Fails with ErrorKind::Input if they
-/// are damaged.
-BakedRegion readBakedRegion(const fvx::FvxFile& file, const fvx::RegionEntry& region);
-
 /// Returns what readBaked does without the values, before any chunk is read.
 Volume bakedOutline(const fvx::FvxFile& file, int level = 0);
 

@@ -16,7 +16,7 @@
 #include "engine/storage/chunk_pyramid.h"
 #include "engine/storage/chunk_reader.h"
 #include "engine/storage/fvx_index.h"
-#include "engine/storage/hilbert.h"
+#include "engine/octree/hilbert.h"
 #include "engine/storage/plane_codec.h"
 
 namespace freevoxels::fvx {
@@ -98,7 +98,6 @@ FvxFile::FvxFile(const fs::path& file) : path_(file), file_(openFile(file)) {
   description_.volume.content = std::make_shared<const Subject>(subjectOf(readContent(), description_.volume));
   dimensions_ = levelDimensions(description_.volume.dimensions);
   for (std::size_t channel = 0; channel < kChannels; ++channel) readChannel(Channel(channel));
-  readRegions();
 }
 
 void FvxFile::failDamaged(const std::string& what) const {
@@ -151,7 +150,7 @@ void FvxFile::checkSections() const {
   for (const Section& section : sections()) {
     if (section.offset % kPageBytes != 0 || section.offset > file_.bytes() || section.bytes > file_.bytes() - section.offset)
       failDamaged("a section is not where it should be");
-    if (section.kind >= SectionKind::Description && section.kind <= SectionKind::Regions) known.push_back(section);
+    if (section.kind >= SectionKind::Description && section.kind <= SectionKind::ContentCells) known.push_back(section);
   }
   std::ranges::sort(known, {}, [](const Section& section) { return std::tuple(section.offset, section.bytes); });
   std::uint64_t free = sizeof(Header);
@@ -247,49 +246,20 @@ void FvxFile::readChannel(Channel channel) {
   if (active > description_.activeVoxels(channel)) refuse(0, "the chunks count more voxels than the volume has");
 }
 
-void FvxFile::readRegions() {
-  regions_.resize(dimensions_.size());
-  const Section* const index = find(SectionKind::RegionIndex);
-  if (index == nullptr) return;
-  const Section* const regions = find(SectionKind::Regions);
-  const Classification& classification = *description_.volume.classification;
-  if (regions == nullptr || classification.transferFunction || classification.emission) failDamaged("the index of its regions belongs to none");
-  allRegions_ = valuesOf<RegionEntry>(*index);
-  const std::string why = whyNotRegions(allRegions_, *regions, dimensions_, chunks_[std::size_t(Channel::Scalars)],
-                                        *description_.encodings[std::size_t(Channel::Scalars)]);
-  if (!why.empty()) failDamaged(why);
-  std::span<const RegionEntry> rest(allRegions_);
-  for (std::size_t level = regions_.size(); level-- > 0;) {
-    const auto count = std::ranges::count(rest, std::uint32_t(level), &RegionEntry::level);
-    regions_[level] = rest.first(std::size_t(count));
-    rest = rest.subspan(std::size_t(count));
-  }
-}
-
-template <typename Entry>
-void FvxFile::readStored(const Entry& entry, std::span<std::byte> bytes, const std::string& what) const {
-  FV_CHECK_EQ(bytes.size(), entry.storedBytes);
-  readBytes(entry.offset, bytes);
-  if (hashOf(bytes) != entry.hash) failDamaged(fmt::format("the checksum of {} at byte {} is wrong", what, entry.offset));
-}
-
-template <typename Entry>
-std::span<const std::byte> FvxFile::unpack(const Entry& entry, std::size_t bytesPerValue, ReadBuffers& buffers, const std::string& what) const {
-  buffers.stored.resize(entry.storedBytes);
-  readStored(entry, std::span(buffers.stored), what);
-  if (entry.codec == Codec::None) return buffers.stored;
-  buffers.unpacked.resize(entry.bytes);
-  if (!decompressPlanes(buffers.stored, bytesPerValue, buffers.planes, buffers.unpacked))
-    failDamaged(fmt::format("the compressed bytes of {} at byte {} are wrong", what, entry.offset));
+std::span<const std::byte> FvxFile::read(Channel channel, const ChunkEntry& chunk, ReadBuffers& buffers) const {
+  buffers.stored.resize(chunk.storedBytes);
+  read(chunk, std::span(buffers.stored));
+  if (chunk.codec == Codec::None) return buffers.stored;
+  buffers.unpacked.resize(chunk.bytes);
+  if (!decompressPlanes(buffers.stored, description_.encodings[std::size_t(channel)]->bytesPerValue(), buffers.planes, buffers.unpacked))
+    failDamaged(fmt::format("the compressed bytes of {} at byte {} are wrong", nameOf(chunk), chunk.offset));
   return buffers.unpacked;
 }
 
-std::span<const std::byte> FvxFile::read(Channel channel, const ChunkEntry& chunk, ReadBuffers& buffers) const {
-  return unpack(chunk, description_.encodings[std::size_t(channel)]->bytesPerValue(), buffers, nameOf(chunk));
-}
-
 void FvxFile::read(const ChunkEntry& chunk, std::span<std::byte> bytes) const {
-  readStored(chunk, bytes, nameOf(chunk));
+  FV_CHECK_EQ(bytes.size(), chunk.storedBytes);
+  readBytes(chunk.offset, bytes);
+  if (hashOf(bytes) != chunk.hash) failDamaged(fmt::format("the checksum of {} at byte {} is wrong", nameOf(chunk), chunk.offset));
 }
 
 const ChunkEntry* FvxFile::find(Channel channel, int level, glm::ivec3 cell) const {
@@ -300,26 +270,6 @@ const ChunkEntry* FvxFile::find(Channel channel, int level, glm::ivec3 cell) con
   return found == all.end() || found->cell != cell ? nullptr : &*found;
 }
 
-std::uint64_t FvxFile::bytesToRead(const RegionEntry& region) const {
-  std::uint64_t bytes = region.storedBytes;
-  for (std::size_t channel = 0; channel < kChannels; ++channel)
-    for (int child = 0; child < 8; ++child) {
-      const glm::ivec3 cell = 2 * region.cell + glm::ivec3(child & 1, child >> 1 & 1, child >> 2);
-      if (const ChunkEntry* const chunk = find(Channel(channel), int(region.level), cell)) bytes += chunk->storedBytes;
-    }
-  return bytes;
-}
-
-RegionSurroundings FvxFile::readRegion(const RegionEntry& region) const {
-  ReadBuffers buffers;
-  const std::string name = fmt::format("region {},{},{} of level {}", region.cell.x, region.cell.y, region.cell.z, region.level);
-  const std::span<const std::byte> bytes = unpack(region, sizeof(std::uint16_t), buffers, name);
-  std::optional<RegionSurroundings> decoded =
-      decodeRegion(region.cell, dimensions(int(region.level)), region.parts, *description_.encodings[std::size_t(Channel::Scalars)], bytes);
-  if (!decoded) failDamaged(fmt::format("{} has a value that is NaN or infinite", name));
-  return std::move(*decoded);
-}
-
 void FvxFile::checkAll() const {
   for (const Section& section : sections()) checkHash(section);
   for (std::size_t channel = 0; channel < kChannels; ++channel)
@@ -328,7 +278,6 @@ void FvxFile::checkAll() const {
       const std::span<const ChunkEntry> all = chunks(Channel(channel), level);
       tbb::parallel_for(std::size_t(0), all.size(), [&](std::size_t i) { reader.check(all[i]); });
     }
-  tbb::parallel_for(std::size_t(0), allRegions_.size(), [&](std::size_t i) { readRegion(allRegions_[i]); });
 }
 
 }  // namespace freevoxels::fvx

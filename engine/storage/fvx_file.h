@@ -1,5 +1,5 @@
 #pragma once
-// A baked volume that is open for reading. What describes it is in memory; chunks and regions are read from the disk when they are used, and
+// A baked volume that is open for reading. What describes it is in memory; chunks are read from the disk when they are used, and
 // no map of the file exists that another process could cut.
 
 #include <filesystem>
@@ -10,7 +10,6 @@
 
 #include "engine/core/random_access_file.h"
 #include "engine/storage/fvx_description.h"
-#include "engine/storage/regions.h"
 #include "engine/volume/subject.h"
 
 namespace freevoxels::fvx {
@@ -58,14 +57,6 @@ class FvxFile {
   void read(const ChunkEntry& chunk, std::span<std::byte> bytes) const;
   /// A chunk of a level; null if it has no data.
   const ChunkEntry* find(Channel channel, int level, glm::ivec3 cell) const;
-  /// Whether the file has what regions need to be drawn on their own (regions.h).
-  bool hasRegions() const { return find(SectionKind::RegionIndex) != nullptr; }
-  /// The regions of a level that have chunks of scalars, in Hilbert order; none if the file has no regions.
-  std::span<const RegionEntry> regions(int level) const { return regions_[std::size_t(level)]; }
-  /// What drawing a region reads of the file: its chunks of every channel, and what it has beside them.
-  std::uint64_t bytesToRead(const RegionEntry& region) const;
-  /// Fails with ErrorKind::Input if what is stored of the region is damaged.
-  RegionSurroundings readRegion(const RegionEntry& region) const;
   /// Reads the whole file and fails with ErrorKind::Input if any part is damaged, or if any value is not as the index says.
   void checkAll() const;
 
@@ -87,12 +78,6 @@ class FvxFile {
   std::vector<char> required(SectionKind kind, const char* name) const;
   ContentCells readContent() const;
   void readChannel(Channel channel);
-  void readRegions();
-  /// What an entry of an index refers to, as it is stored and unpacked. `what` begins the sentence.
-  template <typename Entry>
-  void readStored(const Entry& entry, std::span<std::byte> bytes, const std::string& what) const;
-  template <typename Entry>
-  std::span<const std::byte> unpack(const Entry& entry, std::size_t bytesPerValue, ReadBuffers& buffers, const std::string& what) const;
 
   std::filesystem::path path_;
   RandomAccessFile file_;
@@ -101,8 +86,6 @@ class FvxFile {
   std::string provenance_;
   std::vector<glm::ivec3> dimensions_;
   std::array<std::vector<std::vector<ChunkEntry>>, kChannels> chunks_;  ///< by level
-  std::vector<RegionEntry> allRegions_;
-  std::vector<std::span<const RegionEntry>> regions_;  ///< by level
 };
 
 }  // namespace freevoxels::fvx

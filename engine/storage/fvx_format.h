@@ -17,16 +17,12 @@ inline constexpr std::array<std::uint8_t, 12> kIdentifier{0xab, 'F', 'V', 'X', '
 inline constexpr std::uint32_t kByteOrderMark = 0x04030201, kOtherByteOrderMark = 0x01020304;
 
 /// A reader accepts files of its own major version and any minor version.
-inline constexpr std::uint16_t kMajorVersion = 1, kMinorVersion = 1;
+inline constexpr std::uint16_t kMajorVersion = 1, kMinorVersion = 2;
 
 inline constexpr std::uint64_t kPageBytes = 4096;      ///< sections begin at multiples of this
 inline constexpr std::uint64_t kChunkAlignment = 64;   ///< chunks begin at multiples of this
 inline constexpr int kChunkEdge = 32;                  ///< voxels
 inline constexpr int kChunkBricks = 64;                ///< bricks of ScalarBricks in a chunk
-inline constexpr int kRegionEdge = 2 * kChunkEdge;     ///< voxels; the eight chunks of a region follow each other in the file
-inline constexpr int kRegionHalo = 1;                  ///< voxels
-inline constexpr int kEntryFaces = 54;                 ///< of a region: regions.h
-inline constexpr float kLargestEntryDepth = 16.0f;     ///< larger depths are stored as this
 inline constexpr int kMaxLevels = 9;                  ///< of the octree, level 0 included
 inline constexpr int kLongestEdge = kChunkEdge << (kMaxLevels - 1);  ///< of a volume, voxels
 inline constexpr int kChunkVoxels = kChunkEdge * kChunkEdge * kChunkEdge;
@@ -45,8 +41,7 @@ enum class SectionKind : std::uint32_t {
   ChunkIndex = 3,   ///< ChunkEntry, in Hilbert order
   Chunks = 4,       ///< the data that the index refers to
   ContentCells = 5,  ///< ContentHeader and a bit for each cell
-  RegionIndex = 6,   ///< RegionEntry, level by level from the coarsest, each in Hilbert order
-  Regions = 7,       ///< the data that the index of regions refers to
+  // 6 and 7 were written by version 1.1; like all other kinds they are not read.
 };
 
 enum class Channel : std::uint32_t { Scalars = 0, Temperature = 1, Albedo = 2 };
@@ -83,7 +78,7 @@ struct Header {
   std::array<Section, kMaxSections> sections{};
 };
 static_assert(sizeof(Header) == kPageBytes);
-static_assert(5 + 2 * kChannels * kMaxLevels <= kMaxSections);
+static_assert(3 + 2 * kChannels * kMaxLevels <= kMaxSections);
 
 /// The visible cells of the volume (ContentCells of subject.h), followed by a bit for each, x fastest.
 struct ContentHeader {
@@ -114,19 +109,5 @@ struct ChunkEntry {
   glm::ivec3 brickCell(int brick) const { return cell * (kChunkEdge / ScalarBricks::kEdge) + cellInChunk(brick); }
 };
 static_assert(sizeof(ChunkEntry) == 96);
-
-/// The index entry of a region that has a chunk of scalars: what it has beside its own voxels (regions.h).
-struct RegionEntry {
-  glm::ivec3 cell{0};  ///< it starts at voxel kRegionEdge * cell of its level
-  std::uint32_t level = 0;
-  std::uint64_t parts = 0;   ///< a bit for each part that is stored, in this order; others are 0
-  std::uint64_t offset = 0;  ///< from the beginning of the file
-  std::uint64_t storedBytes = 0;
-  std::uint64_t bytes = 0;  ///< after decompression
-  std::uint64_t hash = 0;   ///< XXH3-64 of the stored bytes
-  Codec codec = Codec::None;  ///< of values of two bytes
-  std::uint32_t reserved = 0;
-};
-static_assert(sizeof(RegionEntry) == 64);
 
 }  // namespace freevoxels::fvx

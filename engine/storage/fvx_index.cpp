@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "engine/storage/hilbert.h"
-#include "engine/storage/regions.h"
+#include "engine/octree/hilbert.h"
 
 namespace freevoxels::fvx {
 
@@ -17,8 +16,7 @@ bool isIn(glm::ivec3 cell, glm::ivec3 cells) {
 }
 
 /// Whether what an entry refers to lies in its section.
-template <typename Entry>
-bool isStored(const Entry& entry, const Section& section) {
+bool isStored(const ChunkEntry& entry, const Section& section) {
   const bool inside = entry.offset >= section.offset && entry.offset - section.offset <= section.bytes &&
                       entry.storedBytes <= section.bytes - (entry.offset - section.offset) && entry.offset % kChunkAlignment == 0;
   const bool codec = entry.codec == Codec::None ? entry.storedBytes == entry.bytes : entry.codec == Codec::PlanesZstd;
@@ -43,15 +41,6 @@ const char* whyNot(const ChunkEntry& entry, const IndexedLevel& level) {
     return "a range of it is none";
   const bool hasRange = entry.activeVoxels > 0 && level.range[0] <= level.range[1];
   if (hasRange && (entry.minimum < level.range[0] || entry.maximum > level.range[1])) return "its values exceed the range of the volume's";
-  return nullptr;
-}
-
-/// Nothing if the entry can be.
-const char* whyNot(const RegionEntry& entry, const Section& regions, glm::ivec3 dimensions, const Encoding& encoding) {
-  if (!isIn(entry.cell, regionCells(dimensions))) return "it is beyond the volume's box";
-  if (entry.parts >= 2 * kHaloPart) return "it has unknown parts";
-  if (!isStored(entry, regions)) return "it is not stored where it should be";
-  if (entry.bytes != regionBytes(entry.cell, dimensions, entry.parts, encoding)) return "its size is not that of its parts";
   return nullptr;
 }
 
@@ -82,28 +71,6 @@ std::string whyNotLevels(std::span<const ChunkEntry> fine, std::span<const Chunk
     if (found < coarse.size() && coarse[found].cell == chunk.cell / 2) ++found;
   if (found == coarse.size()) return {};
   return fmt::format("{} is the mean of nothing", nameOf(coarse[found]));
-}
-
-std::vector<glm::ivec3> regionsOf(std::span<const ChunkEntry> chunks) {
-  std::vector<glm::ivec3> regions;
-  for (const ChunkEntry& chunk : chunks)
-    if (const glm::ivec3 region = chunk.cell * kChunkEdge / kRegionEdge; regions.empty() || regions.back() != region)
-      regions.push_back(region);
-  return regions;
-}
-
-std::string whyNotRegions(std::span<const RegionEntry> entries, const Section& regions, std::span<const glm::ivec3> dimensions,
-                          std::span<const std::vector<ChunkEntry>> scalars, const Encoding& encoding) {
-  std::size_t next = 0;
-  for (std::size_t level = dimensions.size(); level-- > 0;)
-    for (const glm::ivec3 wanted : regionsOf(scalars[level])) {
-      if (next == entries.size() || entries[next].level != level || entries[next].cell != wanted)
-        return fmt::format("region {},{},{} of level {} is not in its place in the index", wanted.x, wanted.y, wanted.z, level);
-      if (const char* const what = whyNot(entries[next], regions, dimensions[level], encoding))
-        return fmt::format("the entry of region {},{},{} of level {} is impossible: {}", wanted.x, wanted.y, wanted.z, level, what);
-      ++next;
-    }
-  return next == entries.size() ? "" : "the index of its regions has one without chunks";
 }
 
 }  // namespace freevoxels::fvx

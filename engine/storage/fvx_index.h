@@ -34,11 +34,4 @@ inline glm::ivec3 chunkCells(glm::ivec3 dimensions) {
 std::string whyNotChunks(std::span<const ChunkEntry> entries, const IndexedLevel& level);
 /// Chunks of a level and those of the next coarser one, of which each stands for some of the former.
 std::string whyNotLevels(std::span<const ChunkEntry> fine, std::span<const ChunkEntry> coarse);
-/// `dimensions` are those of all levels, `scalars` the chunks of scalars by level.
-std::string whyNotRegions(std::span<const RegionEntry> entries, const Section& regions, std::span<const glm::ivec3> dimensions,
-                          std::span<const std::vector<ChunkEntry>> scalars, const Encoding& encoding);
-
-/// The regions that have chunks, in the order of these.
-std::vector<glm::ivec3> regionsOf(std::span<const ChunkEntry> chunks);
-
 }  // namespace freevoxels::fvx

@@ -11,9 +11,6 @@
 #include "engine/core/spool.h"
 #include "engine/storage/fvx_index.h"
 #include "engine/storage/packed_bytes.h"
-#include "engine/storage/plane_codec.h"
-#include "engine/storage/region_sweep.h"
-#include "engine/storage/spooled_planes.h"
 
 namespace freevoxels::fvx {
 
@@ -46,14 +43,6 @@ std::vector<std::byte> contentBytes(const ContentCells& content) {
     if (content.cells.values[i] != 0) bytes[sizeof(header) + i / 8] |= std::byte(1 << i % 8);
   return bytes;
 }
-
-struct EncodedRegion {
-  RegionEntry entry;
-  std::vector<std::byte> bytes;
-};
-
-/// Regions that are encoded at the same time.
-constexpr std::size_t kRegionBatch = 32;
 
 /// The chunks of a channel of a level.
 struct ChunkStore {
@@ -109,20 +98,16 @@ class SectionWriter {
 
 struct FvxWriter::State {
   WriteSettings settings;
-  std::vector<glm::ivec3> dimensions;  ///< by level
   std::vector<std::array<ChunkStore, kChannels>> stores;  ///< by level
-  std::unique_ptr<Spool> regionSpool;  ///< null without regions
-  std::vector<RegionEntry> regions;    ///< with offsets in the spool
-  std::filesystem::path folder;
   ChunkPyramid pyramid{settings.dimensions, settings.withoutData, [this](int level, const ChunkValues& chunk) {
                          for (std::size_t channel = 0; channel < kChannels; ++channel)
                            if (settings.encodings[channel])
                              store(std::size_t(level), channel, encodeChunk(settings, chunk, Channel(channel)));
                        }};
 
-  State(const std::filesystem::path& spoolFolder, const WriteSettings& given)
-      : settings(given), dimensions(levelDimensions(given.dimensions)), stores(dimensions.size()), folder(spoolFolder) {
-    FV_CHECK_LE(dimensions.size(), std::size_t(kMaxLevels));
+  State(const std::filesystem::path& folder, const WriteSettings& given)
+      : settings(given), stores(levelDimensions(given.dimensions).size()) {
+    FV_CHECK_LE(stores.size(), std::size_t(kMaxLevels));
     for (auto& level : stores)
       for (std::size_t channel = 0; channel < kChannels; ++channel)
         if (settings.encodings[channel]) level[channel].spool = std::make_unique<Spool>(folder);
@@ -135,35 +120,6 @@ struct FvxWriter::State {
     to.entries.push_back(chunk.entry);
     chunk.bytes.resize(roundUp(chunk.bytes.size(), kChunkAlignment));
     to.spool->append(chunk.bytes);
-  }
-
-  /// Regions are always compressed: they are not used in place.
-  void storeRegions(std::size_t level, std::span<const glm::ivec3> cells, const SweptRegions& swept) {
-    std::vector<EncodedRegion> batch;
-    for (std::size_t first = 0; first < cells.size(); first += batch.size()) {
-      batch.assign(std::min(kRegionBatch, cells.size() - first), {});
-      tbb::parallel_for(std::size_t(0), batch.size(), [&](std::size_t i) {
-        auto& [entry, bytes] = batch[i];
-        bytes = swept.bytes(first + i);
-        entry = {.cell = cells[first + i], .level = std::uint32_t(level), .parts = swept.parts(first + i), .bytes = bytes.size()};
-        entry.codec = compressPlanes(sizeof(std::uint16_t), bytes);
-        entry.storedBytes = bytes.size();
-        entry.hash = XXH3_64bits(bytes.data(), bytes.size());
-      });
-      for (auto& [entry, bytes] : batch) {
-        entry.offset = regionSpool->bytes();
-        regions.push_back(entry);
-        bytes.resize(roundUp(bytes.size(), kChunkAlignment));
-        regionSpool->append(bytes);
-      }
-    }
-  }
-
-  void writeRegions(SectionWriter& file) {
-    const std::uint64_t first = file.next() + roundUp(regions.size() * sizeof(RegionEntry), kPageBytes);
-    for (RegionEntry& entry : regions) entry.offset += first;
-    file.section(SectionKind::RegionIndex, Channel(), 0, [&](const auto& take) { take(std::as_bytes(std::span(regions))); });
-    file.section(SectionKind::Regions, Channel(), 0, [&](const auto& take) { regionSpool->readAll(take); });
   }
 
   void writeChunks(SectionWriter& file, std::size_t level, std::size_t channel, const Classification& classification) {
@@ -213,29 +169,6 @@ FvxWriter::Summary FvxWriter::summary(Channel channel) const {
   return sum;
 }
 
-void FvxWriter::sweepRegions(const RegionSettings& swept, const Progress& progress) {
-  State& state = *state_;
-  state.pyramid.finish();
-  state.regionSpool = std::make_unique<Spool>(state.folder);
-  const Encoding& encoding = *state.settings.encodings[std::size_t(Channel::Scalars)];
-  for (std::size_t level = state.stores.size(); level-- > 0;) {
-    ChunkStore& store = state.stores[level][std::size_t(Channel::Scalars)];
-    store.spool->flush();
-    const SpooledPlanes planes(state.dimensions[level], store.entries, *store.spool, encoding);
-    const SweptLevel sweptLevel{.dimensions = state.dimensions[level],
-                                .indexToWorld = levelToWorld(swept.indexToWorld, int(level)),
-                                .regions = regionsOf(store.entries),
-                                .planes = [&](int first, std::span<float> densities) { planes.read(first, densities); },
-                                .densityScale = swept.densityScale,
-                                .encoding = encoding};
-    SweptRegions regions(state.folder);
-    regions.sweep(sweptLevel, [&](double fraction) {
-      if (progress && level == 0) progress("sweeping", fraction);  // the coarser ones take a seventh of the time
-    });
-    state.storeRegions(level, sweptLevel.regions, regions);
-  }
-}
-
 void FvxWriter::finish(const std::filesystem::path& file, const Description& description, const ContentCells& content,
                        const std::string& provenance) {
   State& state = *state_;
@@ -250,7 +183,6 @@ void FvxWriter::finish(const std::filesystem::path& file, const Description& des
   for (std::size_t level = state.stores.size(); level-- > 0;)
     for (std::size_t channel = 0; channel < kChannels; ++channel)
       if (state.settings.encodings[channel]) state.writeChunks(writer, level, channel, *description.volume.classification);
-  if (state.regionSpool) state.writeRegions(writer);
   writer.finish();
 }
 

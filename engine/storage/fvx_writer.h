@@ -12,14 +12,8 @@
 
 namespace freevoxels::fvx {
 
-/// What densities are swept with (region_sweep.h).
-struct RegionSettings {
-  double densityScale = 1.0;  ///< extinction per world unit at density 1
-  glm::dmat4 indexToWorld{1.0};
-};
-
 /// Throws std::system_error if it cannot write: to be used within writeAtomically (core/atomic_file.h). Calls: add() any number of times, then
-/// summary(), then sweepRegions() if the file has regions, then finish() once.
+/// summary(), then finish() once.
 class FvxWriter {
  public:
   /// Chunks are spooled to unnamed temporary files in `folder`, one for each level and channel, because their
@@ -36,8 +30,6 @@ class FvxWriter {
     float minimum = 0.0f, maximum = 0.0f;
   };
   Summary summary(Channel channel) const;
-  /// Sweeps densities for the regions of all levels (regions.h). To be called after the last chunk.
-  void sweepRegions(const RegionSettings& settings, const Progress& progress);
   /// Writes the file. `provenance` is JSON for readers of the file; `description.volume.classification` must not be null.
   void finish(const std::filesystem::path& file, const Description& description, const ContentCells& content,
               const std::string& provenance);

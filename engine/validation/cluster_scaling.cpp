@@ -1,19 +1,15 @@
 #include "engine/validation/cluster_scaling.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <ctime>
-#include <filesystem>
 #include <limits>
 
 #include "engine/core/error.h"
 #include "engine/renderer.h"
-#include "engine/storage/baked_volume.h"
-#include "engine/storage/hilbert.h"
 #include "engine/validation/quality_scenes.h"
 #include "engine/volume/procedural.h"
 #include "engine/volume/subject.h"
@@ -21,8 +17,6 @@
 namespace freevoxels {
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::array kRankCounts{1, 8, 16, 32, 64, 128};
 constexpr int kComparedRanks = 8;
@@ -39,40 +33,6 @@ double millisecondsOf(const Device& device, const Work& work) {
   const double start = now();
   work();
   return now() - start;
-}
-
-/// The volume as a baked file of densities, as long as this object exists.
-class TemporaryBake {
- public:
-  explicit TemporaryBake(const QualityScene& scene) {
-    std::string name = (fs::temp_directory_path() / "freevoxels-cluster.XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr)
-      fail(ErrorKind::Output, "cannot make a folder in '{}'; check TMPDIR", fs::temp_directory_path().string());
-    folder_ = name;
-    bakeVolume(path(), scene.volume, {}, {});
-  }
-  ~TemporaryBake() {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-  TemporaryBake(const TemporaryBake&) = delete;
-  TemporaryBake& operator=(const TemporaryBake&) = delete;
-
-  fs::path path() const { return folder_ / "volume.fvx"; }
-
- private:
-  fs::path folder_;
-};
-
-/// The most bytes that one of `count` ranks reads of a file: what describes the volume, and its own regions of voxels.
-std::uint64_t mostBytesRead(const fvx::FvxFile& file, int count) {
-  std::uint64_t shared = sizeof(fvx::Header);
-  for (const fvx::Section& section : file.sections())
-    if (section.kind != fvx::SectionKind::Chunks && section.kind != fvx::SectionKind::Regions) shared += section.bytes;
-  std::vector<std::uint64_t> bytes(std::size_t(count), shared);
-  const std::span<const fvx::RegionEntry> regions = file.regions(0);
-  for (std::size_t i = 0; i < regions.size(); ++i) bytes[std::size_t(shareOf(i) % count)] += file.bytesToRead(regions[i]);
-  return *std::ranges::max_element(bytes);
 }
 
 std::uint64_t differences(const FixedSums& a, const FixedSums& b) {
@@ -128,14 +88,10 @@ class Measurement {
 Scaling measure(const Device& device, const std::string& name, const QualitySubject& subject, int resolution) {
   const QualityScene scene = makeQualityScene(subject, resolution, makeProcedural(subject.procedural, resolution));
   Scaling result{.volume = fmt::format("{} {}^3", name, resolution)};
-  const TemporaryBake baked(scene);
-  const fvx::FvxFile file(baked.path());
   Measurement measurement(device, scene);
   measurement.undivided(result);
   for (const int count : kRankCounts) {
     Scaling::Ranks ranks = measurement.ranks(count, result);
-    ranks.mostRead = mostBytesRead(file, count);
-    ranks.fileBytes = file.header().fileBytes;
     const double alone = result.ranks.empty() ? ranks.slowest : result.ranks.front().slowest;
     for (const Network& network : networks())
       ranks.speedUps.push_back(alone / (ranks.slowest + 1e3 * reductionSeconds(network, count, result.bytes)));
@@ -149,16 +105,15 @@ std::string mebibytes(std::uint64_t bytes) {
 }
 
 ReportTable speedUpTable(const Scaling& scaling) {
-  ReportTable table{.caption = fmt::format("{}: {} splats, {} MiB of sums a rank, a baked file of {} MiB, {:.1f} ms drawn at once",
-                                           scaling.volume, scaling.blocks, mebibytes(scaling.bytes),
-                                           mebibytes(scaling.ranks.front().fileBytes), scaling.atOnce),
-                    .columns = {"ranks", "slowest ms", "mean ms", "ideal ms", "read MiB"},
+  ReportTable table{.caption = fmt::format("{}: {} splats, {} MiB of sums a rank, {:.1f} ms drawn at once", scaling.volume, scaling.blocks,
+                                           mebibytes(scaling.bytes), scaling.atOnce),
+                    .columns = {"ranks", "slowest ms", "mean ms", "ideal ms"},
                     .rows = {}};
   for (const Network& network : networks()) table.columns.insert(table.columns.end(), {"speed-up, " + network.name, "efficiency"});
   for (const Scaling::Ranks& ranks : scaling.ranks) {
     std::vector<std::string>& row = table.rows.emplace_back();
     row = {fmt::format("{}", ranks.count), fmt::format("{:.1f}", ranks.slowest), fmt::format("{:.1f}", ranks.mean),
-           fmt::format("{:.1f}", scaling.ranks.front().slowest / ranks.count), mebibytes(ranks.mostRead)};
+           fmt::format("{:.1f}", scaling.ranks.front().slowest / ranks.count)};
     for (const double speedUp : ranks.speedUps) {
       row.push_back(fmt::format("{:.1f}", speedUp));
       row.push_back(fmt::format("{:.2f}", speedUp / ranks.count));

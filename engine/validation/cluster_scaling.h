@@ -26,7 +26,6 @@ struct Scaling {
   struct Ranks {
     int count = 1;
     double slowest = 0.0, mean = 0.0;      ///< milliseconds to draw a rank's shares
-    std::uint64_t mostRead = 0, fileBytes = 0;  ///< bytes that a rank reads of the baked volume, and those of the whole file
     std::vector<double> speedUps;          ///< by network; 1 for one rank
   };
   std::string volume;         ///< "opaque head 512^3"
@@ -38,8 +37,7 @@ struct Scaling {
 };
 
 /// Draws what each of n = 1, 8, 16, 32, 64 and 128 ranks would draw by splats, one after the other on this device, at 1024 x 1024 pixels.
-/// Volumes are made with `resolution`³ voxels: an opaque head, a fog (a cloud), and a box with a plume of smoke. Each is also baked into
-/// a temporary file, as densities, of whose regions the ranks' bytes are counted.
+/// Volumes are made with `resolution`³ voxels: an opaque head, a fog (a cloud), and a box with a plume of smoke.
 ///
 /// Times are the least of two runs. On a CPU device they are the processor time of this process, which other programs on the machine do
 /// not lengthen: that of a rank with one thread, whatever the number of processors here. On a GPU they are wall times.

@@ -129,4 +129,29 @@ void summariseValues(TemperatureGrid& grid) {
   if (outliers.voxels > 0) limitValues(bricks, outliers.limit);
 }
 
+Volume outlineOf(const Volume& volume) {
+  Volume outline{.source = volume.source,
+                 .dimensions = volume.dimensions,
+                 .indexOrigin = volume.indexOrigin,
+                 .indexToWorld = volume.indexToWorld,
+                 .up = volume.up,
+                 .upReason = volume.upReason,
+                 .isLevelSet = volume.isLevelSet,
+                 .activeVoxels = volume.activeVoxels,
+                 .nanVoxels = volume.nanVoxels,
+                 .negativeVoxels = volume.negativeVoxels,
+                 .minimum = volume.minimum,
+                 .maximum = volume.maximum};
+  if (volume.temperature) {
+    const TemperatureGrid& grid = *volume.temperature;
+    outline.temperature = TemperatureGrid{.name = grid.name,
+                                          .activeVoxels = grid.activeVoxels,
+                                          .nanVoxels = grid.nanVoxels,
+                                          .minimum = grid.minimum,
+                                          .maximum = grid.maximum};
+  }
+  if (volume.albedo) outline.albedo = AlbedoGrid{.name = volume.albedo->name, .clippedVoxels = volume.albedo->clippedVoxels};
+  return outline;
+}
+
 }  // namespace freevoxels

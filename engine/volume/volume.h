@@ -114,6 +114,9 @@ void summariseValues(TemperatureGrid& grid);
 /// too.
 void coverBricks(Volume& volume, const ScalarBricks& grid);
 
+/// The box, place, counts and ranges of a volume, without its values and without what its file says of how it is drawn.
+Volume outlineOf(const Volume& volume);
+
 /// Removes the planes at the box's six sides that have no active voxel of scalars or temperatures. Every
 /// voxel keeps its place in the world. A volume without active voxels stays as it is.
 void cropToActive(Volume& volume);

@@ -32,14 +32,17 @@ TEST_F(MemoryLimit, IsKeptOrTheRunSaysWhatItNeeds) {
     if (result.exitCode == 0) {
       ++drawn;
       EXPECT_LE(devicePeak(), limit * kMiB);
-      EXPECT_EQ(readBytes(folder / "limited.exr"), readBytes(folder / "free.exr"));
+      if (limit * kMiB >= free)
+        EXPECT_EQ(readBytes(folder / "limited.exr"), readBytes(folder / "free.exr"));
+      else
+        EXPECT_GE(psnr(readImage(folder / "limited.exr"), readImage(folder / "free.exr")), 60.0);
     } else {
       ++refused;
       expectRefusal(result, ExitCode::OutOfMemory, "--memory-limit");
       EXPECT_NE(result.err.find("MiB of device memory"), std::string::npos) << result.err;
     }
   }
-  EXPECT_GE(refused, 2);
+  EXPECT_GE(refused, 1);
   EXPECT_GE(drawn, 2);
 }
 

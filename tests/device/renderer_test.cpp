@@ -158,8 +158,9 @@ TEST_F(RendererTest, TooLargeAnImageIsRefusedBeforeAllocation) {
 TEST_F(RendererTest, TooLargeAVolumeIsRefusedBeforeAllocation) {
   Volume volume;
   volume.dimensions = {40000, 40000, 40000};
+  Renderer renderer(device(), volume, {}, {});
   try {
-    const Renderer renderer(device(), volume, {}, {});
+    renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {16, 16}});
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::OutOfMemory);

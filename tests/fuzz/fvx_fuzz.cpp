@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "engine/storage/baked_box.h"
+#include "engine/storage/baked_source.h"
 #include "engine/storage/baked_volume.h"
 #include "engine/volume/cell_extinctions.h"
 #include "engine/volume/coarse_cells.h"
@@ -65,28 +65,24 @@ void repairMasks(std::span<fvx::ChunkEntry> entries) {
   if (brickBytes == 0) return;
   for (fvx::ChunkEntry& entry : entries) repairMask(entry, brickBytes);
 }
-void repairMasks(std::span<fvx::RegionEntry>) {}
 
-/// Gives every entry of an index of chunks or regions the hash of what it refers to.
-template <typename Entry>
+/// Gives every entry of an index the hash of what it refers to.
 void repairEntries(Bytes& bytes, const fvx::Section& index) {
-  std::vector<Entry> entries(index.bytes / sizeof(Entry));
+  std::vector<fvx::ChunkEntry> entries(index.bytes / sizeof(fvx::ChunkEntry));
   if (entries.empty()) return;
-  std::memcpy(entries.data(), &bytes[index.offset], entries.size() * sizeof(Entry));
+  std::memcpy(entries.data(), &bytes[index.offset], entries.size() * sizeof(fvx::ChunkEntry));
   repairMasks(entries);
-  for (Entry& entry : entries)
+  for (fvx::ChunkEntry& entry : entries)
     if (holds(bytes.size(), entry.offset, entry.storedBytes)) entry.hash = XXH3_64bits(bytes.data() + entry.offset, entry.storedBytes);
-  std::memcpy(&bytes[index.offset], entries.data(), entries.size() * sizeof(Entry));
+  std::memcpy(&bytes[index.offset], entries.data(), entries.size() * sizeof(fvx::ChunkEntry));
 }
 
 /// Without correct hashes, nothing that was mutated would be read any further than its hash.
 void repairHashes(Bytes& bytes) {
   fvx::Header header;
   if (bytes.size() < sizeof(header)) return;
-  for (const fvx::Section& section : sectionsOf(bytes.data(), bytes.size())) {
-    if (section.kind == fvx::SectionKind::ChunkIndex) repairEntries<fvx::ChunkEntry>(bytes, section);
-    if (section.kind == fvx::SectionKind::RegionIndex) repairEntries<fvx::RegionEntry>(bytes, section);
-  }
+  for (const fvx::Section& section : sectionsOf(bytes.data(), bytes.size()))
+    if (section.kind == fvx::SectionKind::ChunkIndex) repairEntries(bytes, section);
   std::memcpy(&header, bytes.data(), sizeof(header));
   header.identifier = fvx::kIdentifier;
   header.fileBytes = bytes.size();
@@ -108,20 +104,15 @@ void moveBrick(std::uint8_t* entry, std::mt19937& random) {
 }
 
 /// Changes a number of an entry of an index, exchanges two entries, or moves a brick.
-template <typename Entry>
 void mutateIndex(std::uint8_t* index, std::uint64_t bytes, std::mt19937& random) {
-  const std::size_t count = bytes / sizeof(Entry);
+  constexpr std::size_t kEntry = sizeof(fvx::ChunkEntry);
+  const std::size_t count = bytes / kEntry;
   if (count == 0) return;
-  std::uint8_t* const entry = index + random() % count * sizeof(Entry);
+  std::uint8_t* const entry = index + random() % count * kEntry;
   switch (random() % 4) {
-    case 0: std::swap_ranges(entry, entry + sizeof(Entry), index + random() % count * sizeof(Entry)); break;
-    case 1:
-      if constexpr (std::is_same_v<Entry, fvx::ChunkEntry>) {
-        moveBrick(entry, random);
-        break;
-      }
-      [[fallthrough]];
-    default: LLVMFuzzerMutate(entry + random() % (sizeof(Entry) / 4) * 4, 4, 4);
+    case 0: std::swap_ranges(entry, entry + kEntry, index + random() % count * kEntry); break;
+    case 1: moveBrick(entry, random); break;
+    default: LLVMFuzzerMutate(entry + random() % (kEntry / 4) * 4, 4, 4);
   }
 }
 
@@ -146,8 +137,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* bytes, std::size_t 
   const fvx::Section& section = sections[random() % sections.size()];
   std::uint8_t* const first = bytes + section.offset;
   switch (section.kind) {
-    case fvx::SectionKind::ChunkIndex: mutateIndex<fvx::ChunkEntry>(first, section.bytes, random); break;
-    case fvx::SectionKind::RegionIndex: mutateIndex<fvx::RegionEntry>(first, section.bytes, random); break;
+    case fvx::SectionKind::ChunkIndex: mutateIndex(first, section.bytes, random); break;
     default:
       if (section.bytes == 0) return LLVMFuzzerMutate(bytes, size, maximum);
       LLVMFuzzerMutate(first, section.bytes, section.bytes);
@@ -162,13 +152,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const fuzz::FuzzFile bytesAsFile(bytes.data(), bytes.size());
   fuzz::tryTo([&] {
     const auto file = std::make_shared<const fvx::FvxFile>(bytesAsFile.path());
-    for (int level = 0; level < file->levels(); ++level)
-      for (const fvx::RegionEntry& region : file->regions(level)) fuzz::tryTo([&] { readBakedRegion(*file, region); });
     fuzz::tryTo([&] { file->checkAll(); });
     const int level = finestLevel(*file, kMaxVoxels);
     fuzz::tryTo([&] { prepareToDraw(readBaked(file, level)); });
     const glm::ivec3 end = file->dimensions(level), middle = end / 2 & ~(ScalarBricks::kEdge - 1);
-    fuzz::tryTo([&] { prepareToDraw(readBakedBox(*file, level, {middle, end})); });
+    fuzz::tryTo([&] { prepareToDraw(BakedSource(file).read(level, {middle, end})); });
   });
   return 0;
 }

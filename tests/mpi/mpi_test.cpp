@@ -99,7 +99,7 @@ TEST_F(MpiTest, RanksWithLittleAndWithMuchMemoryDrawABakedVolumeInTheSameWay) {
   const std::string render = "render @a.fvx --size 32 --float --quiet ";
   for (const std::string way : {"gather", "splats"}) {
     SCOPED_TRACE(way);
-    expectSuccess(run(render + "@one.exr --share 0/1 --draw " + way));
+    expectSuccess(run(render + "@one.exr --share 0/1 --memory-limit 64 --draw " + way));
     std::string line = "exec " FREEVOXELS_MPI_PROGRAM;
     for (const std::string& word : words(render + "@all.exr --draw " + way)) line += " " + word;
     const ProgramResult result = runScript(2, line + " --memory-limit $((OMPI_COMM_WORLD_RANK == 0 ? 64 : 1024))");

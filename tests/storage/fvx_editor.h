@@ -33,10 +33,8 @@ class FvxEditor {
   std::span<fvx::ChunkEntry> chunks(int level = 0, fvx::Channel channel = fvx::Channel::Scalars) {
     return valuesOf<fvx::ChunkEntry>(*section(fvx::SectionKind::ChunkIndex, channel, level));
   }
-  std::span<fvx::RegionEntry> regions() { return valuesOf<fvx::RegionEntry>(*section(fvx::SectionKind::RegionIndex)); }
-  /// Of a chunk or region.
-  template <typename Value, typename Entry>
-  std::span<Value> storedValues(const Entry& entry) {
+  template <typename Value>
+  std::span<Value> storedValues(const fvx::ChunkEntry& entry) {
     return {reinterpret_cast<Value*>(bytes_.data() + entry.offset), entry.storedBytes / sizeof(Value)};
   }
   std::string text(fvx::SectionKind kind) {
@@ -55,8 +53,6 @@ class FvxEditor {
       other.offset += more;
       if (other.kind == fvx::SectionKind::ChunkIndex)
         for (fvx::ChunkEntry& entry : valuesOf<fvx::ChunkEntry>(other)) entry.offset += more;
-      if (other.kind == fvx::SectionKind::RegionIndex)
-        for (fvx::RegionEntry& entry : valuesOf<fvx::RegionEntry>(other)) entry.offset += more;
     }
     std::ranges::copy(text, bytes_.begin() + std::ptrdiff_t(moved.offset));
     moved.bytes = text.size();
@@ -66,7 +62,6 @@ class FvxEditor {
     for (fvx::Section& section : std::span(header().sections).first(header().sectionCount)) {
       if (section.offset > bytes_.size() || section.bytes > bytes_.size() - section.offset) continue;
       if (section.kind == fvx::SectionKind::ChunkIndex) repair(valuesOf<fvx::ChunkEntry>(section));
-      if (section.kind == fvx::SectionKind::RegionIndex) repair(valuesOf<fvx::RegionEntry>(section));
       section.hash = XXH3_64bits(bytes_.data() + section.offset, section.bytes);
     }
     header().fileBytes = bytes_.size();
@@ -76,9 +71,8 @@ class FvxEditor {
   }
 
  private:
-  template <typename Entry>
-  void repair(std::span<Entry> entries) {
-    for (Entry& entry : entries)
+  void repair(std::span<fvx::ChunkEntry> entries) {
+    for (fvx::ChunkEntry& entry : entries)
       if (entry.offset <= bytes_.size() && entry.storedBytes <= bytes_.size() - entry.offset)
         entry.hash = XXH3_64bits(bytes_.data() + entry.offset, entry.storedBytes);
   }

@@ -10,7 +10,6 @@ namespace {
 using fvx::Channel;
 using fvx::ChunkEntry;
 using fvx::FvxFile;
-using fvx::RegionEntry;
 using fvx::Section;
 using fvx::SectionKind;
 using test::FvxEditor;
@@ -101,8 +100,6 @@ TEST_F(FvxNumbers, AChunkThatIsTheMeanOfNothingIsRefused) {
     FvxEditor edited(bytes_);
     Section& index = *edited.section(SectionKind::ChunkIndex, Channel::Scalars, level);
     index.bytes = sizeof(ChunkEntry);  // of the first chunk alone
-    if (Section* const regions = edited.section(SectionKind::RegionIndex)) regions->kind = SectionKind(99);
-    if (Section* const regions = edited.section(SectionKind::Regions)) regions->kind = SectionKind(98);
     if (level == 1) {
       // The only chunk of level 2 is the mean of the first one of level 1: chunks of level 0 may lack theirs, as where it underflows.
       edited.save(file_);
@@ -111,34 +108,6 @@ TEST_F(FvxNumbers, AChunkThatIsTheMeanOfNothingIsRefused) {
     }
     expectRefused(edited, "is the mean of nothing");
   }
-}
-
-TEST_F(FvxNumbers, RegionsThatAreNotThoseOfTheChunksAreRefused) {
-  bake(test::denseVolume({130, 70, 37}));
-  const std::size_t count = FvxEditor(bytes_).regions().size();
-  ASSERT_GT(count, 4u);
-  const auto expectRegionRefused = [&](const auto& change) {
-    for (std::size_t i = 0; i < count; ++i) {
-      FvxEditor edited(bytes_);
-      change(edited, i);
-      SCOPED_TRACE(i);
-      expectRefused(edited, "region");
-    }
-  };
-  expectRegionRefused([](FvxEditor& edited, std::size_t i) { edited.regions()[i].level = 9; });
-  expectRegionRefused([](FvxEditor& edited, std::size_t i) { edited.regions()[i].cell.x += 1; });
-  expectRegionRefused([](FvxEditor& edited, std::size_t i) { edited.regions()[i].cell.z = -1; });
-  expectRegionRefused([](FvxEditor& edited, std::size_t i) { edited.regions()[i].parts = ~std::uint64_t(0); });
-  expectRegionRefused([](FvxEditor& edited, std::size_t i) { edited.regions()[i].parts ^= 1; });
-  expectRegionRefused([](FvxEditor& edited, std::size_t i) { edited.regions()[i].offset = std::uint64_t(1) << 50; });
-  expectRegionRefused([](FvxEditor& edited, std::size_t i) { edited.regions()[i].bytes += 2; });
-  FvxEditor fewer(bytes_), twice(bytes_);
-  fewer.section(SectionKind::RegionIndex)->bytes -= sizeof(RegionEntry);
-  expectRefused(fewer, "region");
-  // One more than there are, in the unused rest of the section's page.
-  twice.section(SectionKind::RegionIndex)->bytes += sizeof(RegionEntry);
-  twice.regions().back() = twice.regions()[count - 1];
-  expectRefused(twice, "region");
 }
 
 TEST_F(FvxNumbers, ContentCellsThatAreNotThoseOfTheBoxAreRefused) {

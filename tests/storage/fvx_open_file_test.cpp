@@ -6,7 +6,6 @@ namespace freevoxels {
 namespace {
 
 using fvx::FvxFile;
-using fvx::RegionEntry;
 
 class FvxOpenFile : public test::EditedFvx {};
 
@@ -33,8 +32,7 @@ TEST_F(FvxOpenFile, AFileThatIsCutOrOverwrittenWhileItIsOpenIsAnErrorAndNoSignal
       for (const char byte : {'x', '\0'}) {
         test::writeBytes(file_, std::string(bytes_.size(), byte));
         test::expectRefusal([&] { readBaked(file); }, ErrorKind::Input, {"a.fvx", sentence});
-        for (const RegionEntry& region : file->regions(0))
-          test::expectRefusal([&] { readBakedRegion(*file, region); }, ErrorKind::Input, {"a.fvx", sentence});
+        test::expectRefusal([&] { readInBoxes(file, 0); }, ErrorKind::Input, {"a.fvx", sentence});
       }
     }
 }

@@ -10,7 +10,6 @@ namespace {
 using fvx::Channel;
 using fvx::ChunkEntry;
 using fvx::FvxFile;
-using fvx::RegionEntry;
 using fvx::SectionKind;
 using test::FvxEditor;
 
@@ -196,34 +195,6 @@ TEST_F(FvxValues, AlbedosThatReachBeyondTheBoxAreNotStored) {
       const float last = edited.storedValues<float>(chunk)[std::size_t(number++) * 3 * 512 + 511];
       EXPECT_EQ(last, inside == glm::ivec3(ScalarBricks::kEdge) ? 0.25f : kInactiveVoxel);
     }
-}
-
-TEST_F(FvxValues, AHaloWithValuesThatAreNaNIsRefused) {
-  bake(test::denseVolume({130, 70, 37}), {.keepScalars = true});
-  FvxEditor edited(bytes_);
-  for (RegionEntry& region : edited.regions()) {
-    if ((region.parts & fvx::kHaloPart) == 0) continue;
-    region.parts = fvx::kHaloPart;
-    const glm::ivec3 size(130, 70, 37);
-    if (region.level != 0) continue;
-    region.codec = fvx::Codec::None;
-    region.bytes = region.storedBytes = fvx::haloVoxels(region.cell, size) * sizeof(float);
-    const std::span<float> halo = edited.storedValues<float>(region);
-    std::ranges::fill(halo, 0.5f);
-    halo[7] = test::kFloatNan;
-    break;
-  }
-  for (RegionEntry& region : edited.regions())
-    if (region.codec != fvx::Codec::None) region.parts = 0, region.bytes = region.storedBytes = 0, region.codec = fvx::Codec::None;
-  edited.save(file_);
-  const FvxFile file(file_);
-  int refused = 0;
-  for (const RegionEntry& region : file.regions(0)) {
-    if (region.bytes == 0) continue;
-    test::expectRefusal([&] { readBakedRegion(file, region); }, ErrorKind::Input, {"a.fvx", "NaN or infinite"});
-    ++refused;
-  }
-  EXPECT_EQ(refused, 1);
 }
 
 }  // namespace

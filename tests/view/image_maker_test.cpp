@@ -5,6 +5,7 @@
 #include "engine/volume/openvdb_trees.h"
 #include "tests/device/device_fixture.h"
 #include "tests/failing_allocation.h"
+#include "tests/image_measures.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
@@ -50,6 +51,19 @@ TEST_F(ImageMakerTest, AnotherClassificationMakesAnotherOccupancy) {
   maker_.make(request, {});
   request.scene.classification.transferFunction = R"({"opacity": [[0, 0], [1, 0.5]]})";
   EXPECT_EQ(timesOf(maker_.make(request, {}), "bricks").size(), 1u);
+}
+
+TEST_F(ImageMakerTest, AVolumeThatDoesNotFitIsDrawnCubeByCube) {
+  ImageRequest request = litCloud();
+  request.scene.input.resolution = glm::ivec3(120, 96, 97);
+  request.scene.camera.size = {60, 48};
+  const Image whole = downloadImage(device(), *maker_.make(request, {}).image);
+  const Device limited(instance(), "", std::uint64_t(20) << 20);
+  ImageMaker maker(limited, volumes_);
+  const DrawnImage drawn = maker.make(request, {});
+  EXPECT_GT(psnr(downloadImage(limited, *drawn.image), whole), 60.0);
+  request.diagnosis.shown = Shown::TableSlice;
+  test::expectRefusal([&] { maker.make(request, {}); }, ErrorKind::OutOfMemory, {"memory-limit"});
 }
 
 TEST_F(ImageMakerTest, LightingAShiningVolumeMakesItsLightFallOnIt) {

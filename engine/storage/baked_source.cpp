@@ -1,4 +1,4 @@
-#include "engine/storage/baked_box.h"
+#include "engine/storage/baked_source.h"
 
 #include <tbb/parallel_for.h>
 
@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/error.h"
 #include "engine/storage/baked_volume.h"
 #include "engine/storage/chunk_reader.h"
 
@@ -23,7 +24,7 @@ struct ChunkPart {
   std::vector<std::pair<std::size_t, glm::ivec3>> bricks;  ///< number among the chunk's, and cell in the box
 };
 
-std::vector<ChunkPart> chunksOf(const FvxFile& file, Channel channel, int level, const fvx::VoxelBox& box) {
+std::vector<ChunkPart> chunksOf(const FvxFile& file, Channel channel, int level, const VoxelRange& box) {
   constexpr int n = ScalarBricks::kEdge;
   std::vector<ChunkPart> chunks;
   const glm::ivec3 firstChunk = box.first / fvx::kChunkEdge, endChunk = (box.end + fvx::kChunkEdge - 1) / fvx::kChunkEdge;
@@ -46,7 +47,7 @@ std::vector<ChunkPart> chunksOf(const FvxFile& file, Channel channel, int level,
 }
 
 /// One set of bricks for each value of a voxel.
-std::vector<ScalarBricks> readChannel(const FvxFile& file, Channel channel, int level, const fvx::VoxelBox& box) {
+std::vector<ScalarBricks> readChannel(const FvxFile& file, Channel channel, int level, const VoxelRange& box) {
   const std::vector<ChunkPart> chunks = chunksOf(file, channel, level, box);
   std::size_t count = 0;
   for (const ChunkPart& part : chunks) count += part.bricks.size();
@@ -70,14 +71,37 @@ std::vector<ScalarBricks> readChannel(const FvxFile& file, Channel channel, int 
 
 }  // namespace
 
-Volume readBakedBox(const FvxFile& file, int level, const fvx::VoxelBox& box) {
-  Volume volume = bakedOutline(file, level);
+BakedSource::BakedSource(std::shared_ptr<const FvxFile> file, int finest) : file_(std::move(file)), finest_(finest) {
+  FV_CHECK_LT(finest, file_->levels());
+  for (int level = finest; level < file_->levels(); ++level) outlines_.push_back(bakedOutline(*file_, level));
+}
+
+Cells BakedSource::bricks(int level) const {
+  Cells cells((outline(level).dimensions + ScalarBricks::kEdge - 1) / ScalarBricks::kEdge);
+  for (const ChunkEntry& chunk : file_->chunks(Channel::Scalars, finest_ + level))
+    for (int brick = 0; brick < fvx::kChunkBricks; ++brick)
+      if (chunk.hasBrick(brick)) cells.values[cells.index(chunk.brickCell(brick))] = 1;
+  return cells;
+}
+
+Volume BakedSource::read(int level, const VoxelRange& box) const {
+  Volume volume = outline(level);
   volume.dimensions = box.extent();
   volume.indexToWorld = glm::translate(volume.indexToWorld, glm::dvec3(box.first));
-  volume.scalars = std::move(readChannel(file, Channel::Scalars, level, box).front());
-  if (volume.temperature) volume.temperature->values = std::move(readChannel(file, Channel::Temperature, level, box).front());
-  if (volume.albedo) std::ranges::move(readChannel(file, Channel::Albedo, level, box), volume.albedo->values.begin());
+  const int stored = finest_ + level;
+  volume.scalars = std::move(readChannel(*file_, Channel::Scalars, stored, box).front());
+  if (volume.temperature) volume.temperature->values = std::move(readChannel(*file_, Channel::Temperature, stored, box).front());
+  if (volume.albedo) std::ranges::move(readChannel(*file_, Channel::Albedo, stored, box), volume.albedo->values.begin());
   return volume;
+}
+
+std::shared_ptr<const Volume> BakedSource::whole(const Progress& progress) const {
+  return std::make_shared<const Volume>(readBaked(file_, finest_, progress));
+}
+
+std::shared_ptr<const VolumeSource> bakedSource(const std::shared_ptr<const FvxFile>& file, int finest, bool reads, const Progress& progress) {
+  if (!reads) return std::make_shared<const BakedSource>(file, finest);
+  return std::make_shared<const VolumeInMemory>(std::make_shared<const Volume>(readBaked(file, finest, progress)));
 }
 
 }  // namespace freevoxels

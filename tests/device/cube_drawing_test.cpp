@@ -1,9 +1,13 @@
-// Baked volumes that are drawn cube by cube: the image is the one that is gathered with the whole volume in memory, and has the same bits
-// with every memory limit.
+// Volumes that are drawn cube by cube, from memory and from baked files: the image is the one that is gathered with the whole volume on the
+// device, and has the same bits with every memory limit.
 
-#include "engine/streamed_renderer.h"
+#include "engine/cube_drawing.h"
 
+#include "engine/cube_level.h"
 #include "engine/renderer.h"
+#include "engine/storage/baked_source.h"
+#include "engine/storage/baked_volume.h"
+#include "engine/volume/coarse_volume.h"
 #include "engine/volume/emission_light.h"
 #include "engine/volume/subject.h"
 #include "tests/device/device_fixture.h"
@@ -14,13 +18,17 @@
 namespace freevoxels {
 namespace {
 
-using fvx::FvxFile;
-
-class StreamedRendererTest : public DeviceTest {
+class CubeDrawingTest : public DeviceTest {
  protected:
-  std::shared_ptr<const FvxFile> bake(const Volume& volume, const Classification& classification, bool keepScalars = true) const {
+  std::shared_ptr<const VolumeSource> bake(const Volume& volume, const Classification& classification, bool keepScalars = true) const {
     bakeVolume(folder_ / "a.fvx", volume, classification, {.keepScalars = keepScalars});
-    return std::make_shared<const FvxFile>(folder_ / "a.fvx");
+    return std::make_shared<const BakedSource>(std::make_shared<const fvx::FvxFile>(folder_ / "a.fvx"));
+  }
+
+  std::unique_ptr<Renderer> inCubes(std::shared_ptr<const VolumeSource> source, const Classification& classification) const {
+    auto renderer = std::make_unique<Renderer>(device(), std::move(source), classification, TableSettings{});
+    renderer->drawInCubes();
+    return renderer;
   }
 
   static FrameSettings litSettings(std::vector<Light> lights) {
@@ -30,10 +38,12 @@ class StreamedRendererTest : public DeviceTest {
     return settings;
   }
 
-  /// PSNR against the whole volume.
+  /// PSNR against the whole volume. Cubes of memory and of a file have the same bits.
   double compare(const Volume& volume, const Classification& classification, const Camera& camera, const FrameSettings& settings) const {
     const Image expected = Renderer(device(), volume, classification, {}).render(camera, settings);
-    const Image image = StreamedRenderer(device(), bake(volume, classification), 0, classification, {}).render(camera, settings);
+    const Image image = inCubes(bake(volume, classification), classification)->render(camera, settings);
+    const auto memory = std::make_shared<const VolumeInMemory>(std::make_shared<const Volume>(volume));
+    EXPECT_EQ(inCubes(memory, classification)->render(camera, settings).pixels, image.pixels);
     EXPECT_EQ(image.depth.size(), expected.depth.size());
     return psnr(image, expected);
   }
@@ -41,7 +51,7 @@ class StreamedRendererTest : public DeviceTest {
   const test::TemporaryFolder folder_;
 };
 
-TEST_F(StreamedRendererTest, DensitiesWithLightsAreTheImageOfTheWholeVolume) {
+TEST_F(CubeDrawingTest, DensitiesWithLightsAreTheImageOfTheWholeVolume) {
   // The last cubes are narrower than their surroundings; one light is inside the box.
   const Volume volume = randomVolume({73, 66, 43}, shearedTransform({73, 66, 43}), 0.5, 3.0);
   const Classification classification{.densityScale = 0.1};
@@ -51,7 +61,7 @@ TEST_F(StreamedRendererTest, DensitiesWithLightsAreTheImageOfTheWholeVolume) {
   EXPECT_GT(compare(volume, classification, framingCamera(volume, 200.0, -60.0, 1.2, {.orthographic = true}), settings), 90.0);
 }
 
-TEST_F(StreamedRendererTest, SurfacesOfATransferFunctionAreTheImageOfTheWholeVolume) {
+TEST_F(CubeDrawingTest, SurfacesOfATransferFunctionAreTheImageOfTheWholeVolume) {
   const Volume volume = makeProcedural("head", 80);
   FrameSettings settings = litSettings({{.place = {1.0, 0.7, 0.2}}});
   settings.lighting->surface = 0.8;
@@ -60,7 +70,7 @@ TEST_F(StreamedRendererTest, SurfacesOfATransferFunctionAreTheImageOfTheWholeVol
   EXPECT_GT(compare(volume, coloured(volume), framingCamera(volume, 35.0, 25.0, 1.2, {}), settings), 60.0);
 }
 
-TEST_F(StreamedRendererTest, VoxelsThatAreClassifiedBeforehandAreTheImageOfTheWholeVolume) {
+TEST_F(CubeDrawingTest, VoxelsThatAreClassifiedBeforehandAreTheImageOfTheWholeVolume) {
   const Volume volume = makeProcedural("head", 80);
   Classification classification = coloured(volume);
   classification.order = ClassificationOrder::Pre;
@@ -70,18 +80,18 @@ TEST_F(StreamedRendererTest, VoxelsThatAreClassifiedBeforehandAreTheImageOfTheWh
   EXPECT_GT(compare(volume, classification, framingCamera(volume, 35.0, 25.0, 1.2, {}), settings), 60.0);
 }
 
-TEST_F(StreamedRendererTest, FiresAreTheImageOfTheWholeVolumeAndOfTheirOwnLight) {
+TEST_F(CubeDrawingTest, FiresAreTheImageOfTheWholeVolumeAndOfTheirOwnLight) {
   const Volume volume = makeProcedural("fire", 128);
-  ASSERT_GT(std::max({volume.dimensions.x, volume.dimensions.y, volume.dimensions.z}), StreamedRenderer::kCubeEdge);
+  ASSERT_GT(std::max({volume.dimensions.x, volume.dimensions.y, volume.dimensions.z}), kCubeEdge);
   Classification classification{.densityScale = automaticDensityScale(volume, 2.0), .albedo = glm::vec3(0.8f)};
   classification.emission = Emission{.strength = automaticEmissionStrength(volume, classification, {})};
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.2, {});
-  StreamedRenderer streamed(device(), bake(volume, classification), 0, classification, {});
+  const auto cubes = inCubes(bake(volume, classification), classification);
   for (const bool lit : {false, true, false}) {
     FrameSettings settings = litSettings({{.place = {1.0, 0.7, 0.2}, .intensity = 0.5}});
     settings.lod = 0.0f;
     if (!lit) settings.lighting.reset();
-    const Image image = streamed.render(camera, settings);
+    const Image image = cubes->render(camera, settings);
     Classification whole = classification;
     if (lit) whole.emissionLight = std::make_shared<const EmissionLight>(volume, classification);
     EXPECT_GT(psnr(image, Renderer(device(), volume, whole, {}).render(camera, settings)), 90.0);
@@ -91,7 +101,7 @@ TEST_F(StreamedRendererTest, FiresAreTheImageOfTheWholeVolumeAndOfTheirOwnLight)
   }
 }
 
-TEST_F(StreamedRendererTest, LightsBeyondFourAddTheirLight) {
+TEST_F(CubeDrawingTest, LightsBeyondFourAddTheirLight) {
   const Volume volume = makeProcedural("fire", 72);
   Classification classification{.densityScale = automaticDensityScale(volume, 4.0), .albedo = glm::vec3(0.8f)};
   classification.emission = Emission{.strength = 0.2 * automaticEmissionStrength(volume, classification, {})};
@@ -100,13 +110,13 @@ TEST_F(StreamedRendererTest, LightsBeyondFourAddTheirLight) {
   // The same light as one light and as a sum of six.
   FrameSettings one = litSettings({{.place = {1.0, 0.7, 0.2}, .intensity = 6.0}}), six = one;
   six.lighting->lights.assign(6, {.place = {1.0, 0.7, 0.2}, .intensity = 1.0});
-  StreamedRenderer renderer(device(), file, 0, classification, {});
-  const Image expected = renderer.render(camera, one), image = renderer.render(camera, six);
+  const auto renderer = inCubes(file, classification);
+  const Image expected = renderer->render(camera, one), image = renderer->render(camera, six);
   EXPECT_GT(psnr(image, expected), 100.0);
   EXPECT_EQ(image.depth, expected.depth);
 }
 
-TEST_F(StreamedRendererTest, AnEyeInsideTheBoxSeesTheImageOfTheWholeVolume) {
+TEST_F(CubeDrawingTest, AnEyeInsideTheBoxSeesTheImageOfTheWholeVolume) {
   const Volume volume = makeProcedural("cloud", 100);
   Camera camera = framingCamera(volume, 35.0, 25.0, 1.2, {});
   camera.position = glm::mix(camera.position, camera.lookAt, 0.9);
@@ -115,7 +125,7 @@ TEST_F(StreamedRendererTest, AnEyeInsideTheBoxSeesTheImageOfTheWholeVolume) {
   EXPECT_GT(compare(volume, {.densityScale = 8.0}, camera, settings), 90.0);
 }
 
-TEST_F(StreamedRendererTest, CoarseLevelsAreReadWhereTheWholeVolumeHasThemDrawn) {
+TEST_F(CubeDrawingTest, CoarseLevelsAreReadWhereTheWholeVolumeHasThemDrawn) {
   const Volume volume = makeProcedural("cloud", 128);
   const Classification classification{.densityScale = 8.0};
   Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
@@ -124,33 +134,81 @@ TEST_F(StreamedRendererTest, CoarseLevelsAreReadWhereTheWholeVolumeHasThemDrawn)
   settings.size = {64, 64};
   settings.lod = 1.5f;
   const Image expected = Renderer(device(), volume, classification, {}).render(camera, settings);
-  StreamedRenderer renderer(device(), bake(volume, classification), 0, classification, {});
-  const Image image = renderer.render(camera, settings);
+  const auto renderer = inCubes(bake(volume, classification), classification);
+  const Image image = renderer->render(camera, settings);
   std::size_t levels = 0;
-  for (const std::size_t cubes : renderer.cubesRead()) levels += cubes > 0 ? 1 : 0;
+  for (const std::size_t cubes : renderer->cubesRead()) levels += cubes > 0 ? 1 : 0;
   EXPECT_GT(levels, 1u);
   EXPECT_GT(psnr(image, expected), 60.0);
 }
 
-TEST_F(StreamedRendererTest, TheImageHasTheSameBitsWithEveryMemoryLimit) {
+TEST_F(CubeDrawingTest, TheImageHasTheSameBitsWithEveryMemoryLimit) {
   const Volume volume = makeProcedural("cloud", 120);
   const Classification classification{.densityScale = 8.0};
   const auto file = bake(volume, classification, false);
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.2, {});
   const FrameSettings settings = litSettings({{.place = {1.0, 0.7, 0.2}}});
-  const Image all = StreamedRenderer(device(), file, 0, classification, {}).render(camera, settings);
-  for (const std::uint64_t mebibytes : {48, 256}) {
+  const Image all = inCubes(file, classification)->render(camera, settings);
+  for (const std::uint64_t mebibytes : {40, 48, 256}) {
     const Device limited(instance(), "", mebibytes << 20);
-    StreamedRenderer renderer(limited, file, 0, classification, {});
+    Renderer renderer(limited, file, classification, {});
+    if (mebibytes == 256) renderer.drawInCubes();
     EXPECT_EQ(renderer.render(camera, settings).pixels, all.pixels) << mebibytes;
+    EXPECT_TRUE(renderer.drewInCubes());
     EXPECT_LE(limited.peakBytes(), mebibytes << 20);
   }
 }
 
-TEST_F(StreamedRendererTest, WhatNeedsTheWholeVolumeIsSaid) {
-  const Volume volume = makeProcedural("cloud", 40);
-  const auto file = bake(volume, {});
-  const auto why = [&](const FrameSettings& settings) { return StreamedRenderer::whyNot(*file, settings).value_or(""); };
+TEST_F(CubeDrawingTest, AClippedVolumeWhoseBricksBeginBeforeItsBoxIsTheImageOfTheWholeVolume) {
+  const Volume volume = clippedVolume(randomVolume({90, 70, 50}, shearedTransform({90, 70, 50}), 0.5, 3.0), VoxelBox{{3, 5, 1}, {82, 66, 45}});
+  ASSERT_NE(volume.scalars.corner(), glm::ivec3(0));
+  FrameSettings settings = litSettings({{.place = {1.0, 0.7, 0.2}}});
+  settings.lod = 0.0f;
+  EXPECT_GT(compare(volume, {.densityScale = 0.1}, framingCamera(volume, 35.0, 25.0, 1.2, {}), settings), 90.0);
+}
+
+TEST_F(CubeDrawingTest, PartsAddUpToTheSameBitsAndTheirImageIsThatOfTheFrame) {
+  const Volume volume = makeProcedural("cloud", 100);
+  const Classification classification{.densityScale = 8.0};
+  const Camera camera = framingCamera(volume, 35.0, 25.0, 1.2, {});
+  const FrameSettings settings = litSettings(std::vector<Light>(5, {.place = {1.0, 0.7, 0.2}, .intensity = 0.3}));
+  const auto renderer = inCubes(bake(volume, classification), classification);
+  const FixedSums whole = renderer->renderShares(camera, settings, {0, 1});
+  for (const int parts : {2, 3, 7}) {
+    FixedSums all = renderer->renderShares(camera, settings, {0, parts});
+    for (int part = 1; part < parts; ++part) all += renderer->renderShares(camera, settings, {part, parts});
+    EXPECT_EQ(all.values, whole.values) << parts;
+  }
+  const Image image = resolveSums(whole, true), expected = renderer->render(camera, settings);
+  EXPECT_GT(psnr(image, expected), 80.0);
+  EXPECT_EQ(image.depth.size(), expected.depth.size());
+}
+
+TEST_F(CubeDrawingTest, ALimitBelowTheLeastIsAnErrorThatNamesALimitWhichIsEnough) {
+  const Volume volume = makeProcedural("cloud", 100);
+  const Classification classification{.densityScale = 8.0};
+  const auto source = std::make_shared<const VolumeInMemory>(std::make_shared<const Volume>(volume));
+  const Camera camera = framingCamera(volume, 35.0, 25.0, 1.2, {});
+  for (const glm::ivec2 size : {glm::ivec2(64, 48), glm::ivec2(900, 700)}) {
+    FrameSettings settings = litSettings({{.place = {1.0, 0.7, 0.2}}});
+    settings.size = size;
+    std::string sentence;
+    const Device little(instance(), "", std::uint64_t(6) << 20);
+    try {
+      Renderer(little, source, classification, {}).render(camera, settings);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::OutOfMemory);
+      sentence = error.what();
+    }
+    const std::size_t place = sentence.find("at least ");
+    ASSERT_NE(place, std::string::npos) << sentence;
+    const Device enough(instance(), "", std::stoull(sentence.substr(place + 9)) << 20);
+    EXPECT_NO_THROW(Renderer(enough, source, classification, {}).render(camera, settings)) << sentence;
+  }
+}
+
+TEST_F(CubeDrawingTest, WhatNeedsTheWholeVolumeIsSaid) {
+  const auto why = [&](const FrameSettings& settings) { return CubeDrawing::whyNot(glm::ivec3(40), settings).value_or(""); };
   const FrameSettings settings = litSettings(std::vector<Light>(4));
   EXPECT_EQ(why(settings), "");
   FrameSettings other = settings;

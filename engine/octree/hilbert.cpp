@@ -1,4 +1,4 @@
-#include "engine/storage/hilbert.h"
+#include "engine/octree/hilbert.h"
 
 #include <algorithm>
 #include <array>

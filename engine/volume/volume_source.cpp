@@ -1,0 +1,76 @@
+#include "engine/volume/volume_source.h"
+
+#include <algorithm>
+#include <glm/gtc/matrix_transform.hpp>
+#include <utility>
+
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr int kEdge = ScalarBricks::kEdge;
+
+/// The part of some values in a box, in bricks that begin with it.
+ScalarBricks part(const ScalarBricks& values, const VoxelRange& box) {
+  if (values.corner() != glm::ivec3(0)) {
+    const ScalarBricks cropped = values.cropped(box.first, box.end - 1);
+    return ScalarBricks::make(box.extent(), [&](glm::ivec3 voxel) { return cropped.at(voxel); });
+  }
+  ScalarBricks result(box.extent());
+  const glm::ivec3 first = box.first / kEdge, cells = result.cells();
+  for (glm::ivec3 cell(0); cell.z < cells.z; ++cell.z)
+    for (cell.y = 0; cell.y < cells.y; ++cell.y)
+      for (cell.x = 0; cell.x < cells.x; ++cell.x)
+        if (const ScalarBricks::Brick* const brick = values.brickAt(first + cell)) result.makeBrick(cell) = *brick;
+  return result;
+}
+
+Volume outlineInMemory(const Volume& volume) {
+  Volume outline = outlineOf(volume);
+  outline.classification = volume.classification;
+  outline.classificationIsFixed = volume.classificationIsFixed;
+  outline.content = volume.content;
+  return outline;
+}
+
+}  // namespace
+
+VolumeInMemory::VolumeInMemory(std::shared_ptr<const Volume> volume) : volume_(std::move(volume)), outline_(outlineInMemory(*volume_)) {}
+
+Cells VolumeInMemory::bricks(int) const {
+  const ScalarBricks& scalars = volume_->scalars;
+  Cells cells((volume_->dimensions + kEdge - 1) / kEdge);
+  for (std::size_t brick = 0; brick < scalars.bricks().size(); ++brick) {
+    // The bricks in memory may begin before the box, and then lie in several of those that begin with it.
+    const glm::ivec3 begin = glm::max(scalars.firstVoxel(brick), 0), end = glm::min(scalars.firstVoxel(brick) + kEdge, volume_->dimensions);
+    const glm::ivec3 low = begin / kEdge, high = (end - 1) / kEdge;
+    for (glm::ivec3 cell = low; cell.z <= high.z; ++cell.z)
+      for (cell.y = low.y; cell.y <= high.y; ++cell.y)
+        for (cell.x = low.x; cell.x <= high.x; ++cell.x) cells.values[cells.index(cell)] = 1;
+  }
+  return cells;
+}
+
+Volume VolumeInMemory::read(int level, const VoxelRange& box) const {
+  FV_CHECK_EQ(level, 0);
+  Volume volume = outline_;
+  volume.dimensions = box.extent();
+  volume.indexToWorld = glm::translate(volume.indexToWorld, glm::dvec3(box.first));
+  volume.scalars = part(volume_->scalars, box);
+  if (volume.temperature) volume.temperature->values = part(volume_->temperature->values, box);
+  if (volume.albedo) std::ranges::transform(volume_->albedo->values, volume.albedo->values.begin(), [&](const auto& values) { return part(values, box); });
+  return volume;
+}
+
+std::shared_ptr<const Volume> known(const std::shared_ptr<const VolumeSource>& source) {
+  return source->isInMemory() ? source->whole() : std::shared_ptr<const Volume>(source, &source->outline());
+}
+
+std::uint64_t brickVoxels(const VolumeSource& source) {
+  const Cells cells = source.bricks();
+  return std::uint64_t(std::ranges::count(cells.values, std::uint8_t(1))) * std::uint64_t(kEdge * kEdge * kEdge);
+}
+
+}  // namespace freevoxels
