@@ -25,7 +25,6 @@ struct VolumeMemory {
   std::uint64_t occupancy = 0;   ///< two bits for every voxel and block of the box
   std::uint64_t extinction = 0;  ///< of occupied blocks, as are all that follow
   std::uint64_t table = 0;       ///< attenuation table, once a frame has read it
-  std::uint64_t unseen = 0;      ///< part of the table that pruning removes (table_pruning.h)
   std::uint64_t colors = 0;      ///< only with a transfer function or a grid of albedos
   std::uint64_t emission = 0;    ///< only with temperatures
   std::uint64_t lists = 0;       ///< lists of occupied blocks and of the blocks that a frame draws
@@ -34,7 +33,7 @@ struct VolumeMemory {
   std::uint64_t splats = 0;      ///< a chunk of splat records, while a frame is drawn
 
   /// Bytes kept for the volume whatever is drawn.
-  std::uint64_t stored() const { return occupancy + extinction + table - unseen + colors + emission; }
+  std::uint64_t stored() const { return occupancy + extinction + table + colors + emission; }
   /// The largest sum at any time, without the images and the sort of a frame.
   std::uint64_t peak() const {
     return occupancy + extinction + colors + emission + lists + std::max(bricks, table + std::max(sweep, splats));

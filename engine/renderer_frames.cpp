@@ -18,10 +18,8 @@ namespace freevoxels {
 VolumeMemory Renderer::State::memoryOfVolume() const {
   const DeviceVolume& volume = built.volume;
   const std::vector<std::uint64_t> nothing(volume.hierarchy.levels.size(), 0);
-  VolumeMemory memory = volumeMemory(volume.hierarchy, built.hasBlocks() ? volume.stored : nothing,
-                                     tableSettings.directions, storedKinds(volume), sweepStyle(device));
-  if (table) memory.unseen = memory.table - std::min(memory.table, table->bytes());
-  return memory;
+  return volumeMemory(volume.hierarchy, built.hasBlocks() ? volume.stored : nothing, tableSettings.directions, storedKinds(volume),
+                      sweepStyle(device));
 }
 
 /// Makes the blocks when a frame first needs them; their time is part of that frame's.
@@ -53,12 +51,6 @@ const AttenuationTable& Renderer::State::tableWithLevels(const Progress& progres
   pass.record(commands, built.volume, built.lists.steps, *table);
   commands.submitAndWait(progress);
   addTimes(frameTimes, commands.times());
-  try {
-    pruneOpaqueRuns(device, *table, frameTimes);
-  } catch (...) {  // a table of which only some planes are pruned cannot be used
-    table.reset();
-    throw;
-  }
   largestDepths = downloadLargestDepths(device, *table);
   return *table;
 }

@@ -7,7 +7,6 @@
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/attenuation/table_levels.h"
-#include "engine/attenuation/table_pruning.h"
 #include "engine/gathering/gather_part.h"
 #include "engine/lighting/light_pass.h"
 #include "engine/octree/block_list.h"

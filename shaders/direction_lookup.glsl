@@ -1,14 +1,12 @@
 // Optical depth from a block towards a general direction, from the directions of the table: Subr et al. 2007,
 // Section 3.3 (which takes the nearest one). Binding PLANE_ADDRESSES_BINDING has the device address of each
-// direction's codes by cell number, and behind the last cell that of the mask of runs that pruning kept, or 0
-// if it kept all.
+// direction's codes by cell number.
 #ifndef DIRECTION_LOOKUP_GLSL
 #define DIRECTION_LOOKUP_GLSL
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 #include "attenuation_code.glsl"
 #include "major_axis.glsl"
-#include "rank.glsl"
 #ifndef PLANE_ADDRESSES_BINDING
 #error "Define PLANE_ADDRESSES_BINDING, the binding of the addresses of the planes, before including direction_lookup.glsl."
 #endif
@@ -16,7 +14,6 @@
 layout(scalar, binding = PLANE_ADDRESSES_BINDING) readonly buffer PlaneAddresses { uvec2 planeAddresses[]; };
 
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer CodePlane { uint words[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SeenRuns { OccupancyWord words[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer DepthsBeyond { float layers[]; };
 
 struct TableLookup {
@@ -37,28 +34,18 @@ int cellNumber(int cells, ivec3 cell) {
   return cell.x + cells + edge * (cell.y + cells + edge * (cell.z + cells));
 }
 
-// The offset of a block's code in a plane. Pruned runs share the codes of the first run.
-uint codePlace(int cells, uint rank) {
-  const uvec2 runs = planeAddresses[cellNumber(cells, ivec3(cells)) + 1];
-  if (runs == uvec2(0)) return rank;
-  const OccupancyWord word = SeenRuns(runs).words[rank / (kRunBlocks * kBlocksPerWord)];
-  const int bit = int(rank / kRunBlocks % kBlocksPerWord);
-  const uint run = (word.mask >> bit & 1u) != 0 ? rankIn(uvec2(word.mask, word.before), bit) : 0;
-  return kRunBlocks * run + rank % kRunBlocks;
+uint codeAt(uvec2 plane, uint rank) {
+  return bitfieldExtract(CodePlane(plane).words[rank / 4], int(rank & 3) * 8, 8);
 }
 
-uint codeAt(uvec2 plane, uint place) {
-  return bitfieldExtract(CodePlane(plane).words[place / 4], int(place & 3) * 8, 8);
-}
-
-uint storedCode(TableLookup towards, ivec3 cell, uint place) {
-  return codeAt(planeAddresses[cellNumber(towards.cells, cell)], place);
+uint storedCode(TableLookup towards, ivec3 cell, uint rank) {
+  return codeAt(planeAddresses[cellNumber(towards.cells, cell)], rank);
 }
 
 // Scales a stored depth by the length of the requested line over that of the stored one, so that a
 // homogeneous medium is exact in every direction.
-float storedDepth(TableLookup towards, ivec3 cell, uint place) {
-  const float depth = decodeDepth(towards.code, storedCode(towards, cell, place));
+float storedDepth(TableLookup towards, ivec3 cell, uint rank) {
+  const float depth = decodeDepth(towards.code, storedCode(towards, cell, rank));
   if (!towards.pathLengthCorrection) return depth;
   return depth * towards.layer * float(towards.cells) / length(towards.indexToWorld * vec3(cell));
 }
@@ -69,14 +56,14 @@ float depthBeyond(TableLookup towards, ivec3 cell) {
   return DepthsBeyond(towards.beyond).layers[cellNumber(towards.cells, cell)] * towards.countedLength;
 }
 
-float depthUpTo(TableLookup towards, ivec3 cell, uint place) {
-  return max(storedDepth(towards, cell, place) - depthBeyond(towards, cell), 0.0);
+float depthUpTo(TableLookup towards, ivec3 cell, uint rank) {
+  return max(storedDepth(towards, cell, rank) - depthBeyond(towards, cell), 0.0);
 }
 
 // Whether a stored depth is the end of the code. The true depth may be larger, and is stored with the same
 // value a layer before.
-bool isAtEnd(TableLookup towards, ivec3 cell, uint place) {
-  return storedCode(towards, cell, place) == (towards.code == kCodeLinear8 ? 0 : 255);
+bool isAtEnd(TableLookup towards, ivec3 cell, uint rank) {
+  return storedCode(towards, cell, rank) == (towards.code == kCodeLinear8 ? 0 : 255);
 }
 
 // Halves go towards 0, as in nearestDirection() of engine/scene/directions.h; GLSL's round() may take them either way.
@@ -86,12 +73,11 @@ ivec3 nearestCell(vec3 point) { return ivec3(sign(point) * ceil(abs(point) - 0.5
 // would otherwise darken all. `unsaturated` is the fraction of the transmittance that comes from directions
 // whose code is not at its end: only this part increases towards the eye from layer to layer.
 float depthTowards(TableLookup towards, uint rank, out float unsaturated) {
-  const uint place = codePlace(towards.cells, rank);
   // The division may round to slightly more than 1.
   const vec3 point = clamp(towards.direction, -1.0, 1.0) * towards.cells;
   if (towards.lookup == kLookupNearest) {
-    unsaturated = isAtEnd(towards, nearestCell(point), place) ? 0.0 : 1.0;
-    return depthUpTo(towards, nearestCell(point), place);
+    unsaturated = isAtEnd(towards, nearestCell(point), rank) ? 0.0 : 1.0;
+    return depthUpTo(towards, nearestCell(point), rank);
   }
   const vec3 low = floor(min(point, 0.999999 * towards.cells));
   const vec3 weight = point - low;
@@ -107,9 +93,9 @@ float depthTowards(TableLookup towards, uint rank, out float unsaturated) {
       cell[a] = int(low[a]) + i;
       cell[b] = int(low[b]) + j;
       const float share = (i == 0 ? 1.0 - weight[a] : weight[a]) * (j == 0 ? 1.0 - weight[b] : weight[b]);
-      const float transmittance = share * exp(-depthUpTo(towards, cell, place));
+      const float transmittance = share * exp(-depthUpTo(towards, cell, rank));
       sum += transmittance;
-      if (!isAtEnd(towards, cell, place)) unsaturatedSum += transmittance;
+      if (!isAtEnd(towards, cell, rank)) unsaturatedSum += transmittance;
     }
   }
   unsaturated = unsaturatedSum / sum;

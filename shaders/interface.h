@@ -42,10 +42,6 @@ FV_CONSTANT int kLevelThreads = 64;
 FV_CONSTANT int kBoundBlocks = 2;
 FV_CONSTANT int kDirectionsPerLevelPass = 13;  // directions of a dispatch of the octree's table
 
-// Blocks of consecutive rank whose table codes are kept or removed together.
-FV_CONSTANT int kRunBlocks = 8;
-FV_CONSTANT int kRunThreads = 64;
-
 // Upper bound of the number of levels of an octree whose voxels have 32-bit indices.
 FV_CONSTANT int kMaximumLevels = 32;
 
@@ -223,13 +219,6 @@ struct TableLevelPush {
   LevelRange levels;
   ivec3 voxels;
   uint firstDirection, directionCount;  // in the order of directions.h
-};
-
-// prune_mark.comp and prune_compact.comp
-struct RunsPush {
-  uint runCount;
-  uint cellCount;  // number of cells, of which the outer ones are directions
-  uint maxCodePerDirection;    // four codes of the largest depth, in a word
 };
 
 // cut_select.comp: constants of all levels of a frame. Positions are relative to the volume's middle.

@@ -146,13 +146,12 @@ void addFromEverywhere(inout ScatteredLight total, SeenBlock seen) {
   float weights = 0.0, parts = 0.0;
   const TableLookup towards = towardsSource(vec3(0.0, 0.0, 1.0), kLookupBilinear, uvec2(0));
   const int edge = 2 * frame.cells + 1;
-  const uint place = codePlace(frame.cells, seen.rank);
   for (int i = 0; i < edge * edge * edge; ++i) {
     const vec4 fromThere = frame.lighting.ambientByDirection[i];
     if (fromThere.w == 0.0) continue;  // a cell inside the cube, which is not a direction
     const ivec3 cell = ivec3(i % edge, i / edge % edge, i / edge / edge) - frame.cells;
-    const float depth = decodeDepth(frame.code, storedCode(towards, cell, place));
-    const float unsaturated = isAtEnd(towards, cell, place) ? 0.0 : 1.0;
+    const float depth = decodeDepth(frame.code, storedCode(towards, cell, seen.rank));
+    const float unsaturated = isAtEnd(towards, cell, seen.rank) ? 0.0 : 1.0;
     const vec3 direction = vec3(cell) / float(frame.cells);
     const vec3 way = normalize(frame.indexToWorld * direction);
     float scale = 1.0;

@@ -56,7 +56,7 @@ bool findAround(vec3 toEye, int major, int level, out BilinearCell around) {
 
 // Whether no voxel of an occupied block sends more than the threshold towards these directions.
 bool isOpaqueTowardsEye(int level, uint rank, BilinearCell around) {
-  const uint place = codePlace(frame.cells, boundOf(frame.levels[level], rank));
+  const uint place = boundOf(frame.levels[level], rank);
   const int inByte = boundInByte(frame.levels[level], rank);
   bool dark = true;
   [[unroll]] for (int i = 0; i < 4; ++i) {

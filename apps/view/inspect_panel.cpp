@@ -225,7 +225,7 @@ void drawFigures(const DrawnImage& drawn) {
   ImGui::Separator();
   const VolumeMemory& memory = drawn.memory;
   line("extinction", megabytes(memory.extinction + memory.occupancy));
-  line("table", megabytes(memory.table - memory.unseen));
+  line("table", megabytes(memory.table));
   line("colours, light", megabytes(memory.colors + memory.emission));
   line("lists, splats", megabytes(memory.lists + memory.splats));
   ImGui::Separator();

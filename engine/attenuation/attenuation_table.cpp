@@ -5,7 +5,6 @@
 
 #include "embedded/attenuation_sweep.h"
 #include "embedded/attenuation_sweep_x.h"
-#include "engine/attenuation/table_pruning.h"
 #include "engine/core/error.h"
 #include "engine/vulkan/commands.h"
 #include "shaders/interface.h"
@@ -60,10 +59,9 @@ const Buffer& planeOf(const AttenuationTable& table, glm::ivec3 direction) {
 }  // namespace
 
 AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, const TableSettings& settings) {
-  // Rounded up to whole runs.
-  const std::uint64_t bytes = std::max<std::uint64_t>(
-      (volume.planeBytes() + shader::kRunBlocks - 1) / shader::kRunBlocks * shader::kRunBlocks,
-      shader::kRunBlocks);
+  // Codes are read four at a time.
+  constexpr std::uint64_t kWord = sizeof(std::uint32_t);
+  const std::uint64_t bytes = std::max((volume.planeBytes() + kWord - 1) / kWord * kWord, kWord);
   AttenuationTable table{.settings = settings};
   const DirectionSet set = settings.directions;
   for (int i = 0; i < directionCount(set); ++i) {
@@ -73,27 +71,15 @@ AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, con
                               VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     table.planeTexels.emplace_back(device, table.planes.back(), VK_FORMAT_R8_UINT);
   }
-  table.planeAddresses = Buffer(device, (std::size_t(cellCount(set)) + 1) * sizeof(VkDeviceAddress),
+  table.planeAddresses = Buffer(device, std::size_t(cellCount(set)) * sizeof(VkDeviceAddress),
                                 MemoryUse::Device, "attenuation addresses");
-  table.uploadAddresses(device);
+  std::vector<VkDeviceAddress> addresses(std::size_t(cellCount(set)), 0);
+  for (int i = 0; i < directionCount(set); ++i)
+    addresses[std::size_t(cellNumber(set, directionCell(set, i)))] = table.planes[std::size_t(i)].address();
+  upload(device, table.planeAddresses, std::as_bytes(std::span(addresses)));
   table.maxCodePerDirection =
       Buffer(device, table.planes.size() * sizeof(std::uint32_t), MemoryUse::Device, "darkest codes");
   return table;
-}
-
-void AttenuationTable::uploadAddresses(const Device& device) const {
-  const DirectionSet set = settings.directions;
-  std::vector<VkDeviceAddress> addresses(std::size_t(cellCount(set)) + 1, 0);
-  for (int i = 0; i < directionCount(set); ++i)
-    addresses[std::size_t(cellNumber(set, directionCell(set, i)))] = planes[std::size_t(i)].address();
-  addresses.back() = keptRuns.address();
-  upload(device, planeAddresses, std::as_bytes(std::span(addresses)));
-}
-
-std::uint64_t AttenuationTable::bytes() const {
-  std::uint64_t sum = keptRuns.bytes();
-  for (const Buffer& plane : planes) sum += plane.bytes();
-  return sum;
 }
 
 SweepStyle sweepStyle(const Device& device) {
@@ -198,10 +184,10 @@ std::vector<std::vector<std::uint8_t>> downloadPlanes(const Device& device, cons
                                                       const ValueOf& valueOf) {
   const std::vector<std::uint32_t> blocks = downloadStored(device, volume, level);
   const std::uint64_t count = volume.hierarchy.levels[std::size_t(level)].voxels();
-  const SeenRuns runs = downloadSeenRuns(device, table);
   std::vector<std::vector<std::uint8_t>> result;
   for (const Buffer& plane : table.planes) {
-    const auto stored = downloadCodes(device, plane, runs, first, (blocks.size() + share - 1) / share);
+    std::vector<std::uint8_t> stored((blocks.size() + share - 1) / share);
+    download(device, plane, std::as_writable_bytes(std::span(stored)), first);
     std::vector<std::uint8_t> codes(blocks.size());
     for (std::size_t i = 0; i < codes.size(); ++i) codes[i] = valueOf(stored[i / share], i);
     result.push_back(scatterToDense(codes, blocks, count));

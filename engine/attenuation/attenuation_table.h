@@ -20,22 +20,13 @@ struct AttenuationTable {
   /// levels, by rank (device_volume.h), followed by the blocks' bounds. AttenuationSweep fills those of the
   /// voxels.
   std::vector<Buffer> planes;
-  std::vector<TexelView> planeTexels;  ///< one byte a texel; empty after pruning
-  /// shader::OccupancyWord with a bit for each run of blocks: whether its codes are kept. Empty if all are
-  /// (table_pruning.h).
-  Buffer keptRuns;
-  /// The device addresses of the planes by cellNumber, 0 for cells that are not directions; then that of
-  /// `keptRuns`.
+  std::vector<TexelView> planeTexels;  ///< one byte a texel
+  /// The device addresses of the planes by cellNumber, 0 for cells that are not directions.
   Buffer planeAddresses;
   /// uint by direction, filled with the levels: the code of the voxel with the largest optical depth; for
   /// Linear8 255 minus the code.
   Buffer maxCodePerDirection;
   TableSettings settings;
-
-  /// Writes `planeAddresses`. Blocks until the copy is complete.
-  void uploadAddresses(const Device& device) const;
-  /// Bytes of device memory of the planes.
-  std::uint64_t bytes() const;
 };
 
 /// Allocates the table of all levels; checkTableFits() (memory_planner.h) tells beforehand whether it fits.
