@@ -15,7 +15,6 @@
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
 #include "engine/validation/cluster_scaling.h"
-#include "engine/validation/svg_plot.h"
 
 namespace {
 
@@ -198,7 +197,7 @@ std::vector<std::string> tableLines(const ReportTable& table) {
 }
 
 /// Frames that are divided among ranks, instead of the stages.
-void measureCluster(const Device& device, bool quick, const std::string& svg) {
+void measureCluster(const Device& device, bool quick, const std::string& json) {
   const ReportSection section = clusterSection(clusterScalings(device, quick ? 128 : 512));
   for (const ReportTable& table : section.tables) {
     fmt::print("{}\n", table.caption);
@@ -206,10 +205,7 @@ void measureCluster(const Device& device, bool quick, const std::string& svg) {
   }
   fmt::print("{}\n", section.text);
   printRealRanks(quick ? 128 : 256);
-  if (svg.empty()) return;
-  std::string plot = svgPlot(section.plots.front());
-  plot.insert(std::string_view("<svg").size(), R"( xmlns="http://www.w3.org/2000/svg")");  // a file of its own needs its namespace
-  writeTextAtomically(svg, plot);
+  if (!json.empty()) writeJson(json, {.facts = {{"device", device.description().name}, {"version", programVersion()}}, .sections = {section}});
 }
 
 }  // namespace
@@ -222,26 +218,24 @@ int main(int argc, char** argv) {
   DeviceOptions device;
   Extent extent;
   std::vector<std::string> wanted = stageNames();
-  std::string json, svg;
+  std::string json;
   bool cluster = false;
   app.add_option("IN", extent.inputs, "Volumes for whole renders: files, or procedural:NAME")
       ->capture_default_str();
-  app.add_option("--json", json, "Write the figures as JSON to this file as well");
+  app.add_option("--json", json, "Write the figures as JSON to this file as well; draw_report.py plots those of --cluster");
   app.add_option("--stages", wanted, "Only these stages, separated by commas [all]")
       ->delimiter(',')
       ->check(CLI::IsMember(stageNames()));
-  CLI::Option* const divided = app.add_flag(
+  app.add_flag(
       "--cluster", cluster, "Instead of the stages, how a frame scales that is divided among 8 to 128 ranks, each drawn on this device");
-  app.add_option("--svg", svg, "Also plot the speed-ups of --cluster into this file")->needs(divided);
   app.add_flag("--quick", extent.quick, "Smaller volumes and fewer runs");
   device.add(app);
   app.callback([&] {
     if (!json.empty()) checkWritable(json);
-    if (!svg.empty()) checkWritable(svg);
     for (const std::string& input : extent.inputs)
       if (!proceduralName(input)) listVdb(input);  // refuses a file that is missing or no volume before minutes of work
     device.withDevice([&](const Device& opened) {
-      if (cluster) return measureCluster(opened, extent.quick, svg);
+      if (cluster) return measureCluster(opened, extent.quick, json);
       const Results results = measure(opened, extent, wanted);
       fmt::print("{}\n", opened.description().name);
       for (const std::string& line : tableLines(results)) fmt::print("{}\n", line);

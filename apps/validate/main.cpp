@@ -52,39 +52,17 @@ void conclude(const Report& report, double seconds) {
          validate::figureAgainstBound(*first));
 }
 
-/// The files of the report, if any.
-struct ReportFiles {
-  std::optional<std::string> html, json;
-
-  void add(CLI::App& app) {
-    addText(app, "--report", "FILE.html", html, "Write the report with images as one HTML page");
-    addText(app, "--json", "FILE", json, "Write the figures as JSON");
-  }
-  /// To be called before any work.
-  void check(const std::vector<std::string>& inputs) const {
-    std::vector<std::string> files = inputs;
-    for (const auto& file : {html, json})
-      if (file) {
-        checkOutput(*file);
-        files.push_back(*file);
-      }
-    checkDistinct(files);
-  }
-  void write(const Report& report) const {
-    const DeferredInterrupts wholeFiles;
-    if (html) writeHtml(*html, report);
-    if (json) writeJson(*json, report);
-  }
-};
-
-void validateOn(const Device& device, const validate::Extent& extent, const ReportFiles& files) {
+void validateOn(const Device& device, const validate::Extent& extent, const std::optional<std::string>& json) {
   const auto start = std::chrono::steady_clock::now();
   Report report = runAll(validate::planSections(device, extent));
   report.facts = {{"device", device.description().name},
                   {"driver", device.description().driver},
                   {"version", programVersion()},
                   {"extent", extent.quick ? "quick" : "whole"}};
-  files.write(report);
+  if (json) {
+    const DeferredInterrupts wholeFile;
+    writeJson(*json, report);
+  }
   conclude(report, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }
 
@@ -97,18 +75,23 @@ int main(int argc, char** argv) {
       "freevoxels-validate");
   DeviceOptions device;
   validate::Extent extent;
-  ReportFiles files;
+  std::optional<std::string> json;
   app.add_option("FILE", extent.files, "OpenVDB files or baked volumes to check as well, the middle of those that are large");
   app.add_flag("--quick", extent.quick, "Small volumes and images");
   addWholeNumber(app, "--resolution", "N", extent.resolution, "Voxels along an edge of the procedural volumes",
                  {1.0, double(kMaxResolution)});
   addText(app, "--only", "TEXT", extent.only, "Only the sections whose name contains TEXT, such as 'light' or 'stages of cloud'");
-  files.add(app);
+  addText(app, "--json", "FILE.json", json, "Write figures and images as JSON, which draw_report.py draws as a page");
   device.add(app);
   app.footer("Exit codes: 0 all checks passed, 7 some failed, others like those of 'freevoxels'.");
   app.callback([&] {
-    files.check(extent.files);
-    device.withDevice([&](const Device& opened) { validateOn(opened, extent, files); });
+    std::vector<std::string> files = extent.files;
+    if (json) {
+      checkOutput(*json);
+      files.push_back(*json);
+    }
+    checkDistinct(files);
+    device.withDevice([&](const Device& opened) { validateOn(opened, extent, json); });
   });
   return runProgram(app, argc, argv);
 }

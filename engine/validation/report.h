@@ -40,7 +40,7 @@ struct ReportPlot {
   std::vector<Series> series;
 };
 
-/// Images side by side, embedded as PNG over `background` (linear).
+/// Images side by side, over `background` (linear).
 struct ImageRow {
   struct Captioned {
     std::string caption;
@@ -72,12 +72,8 @@ struct Report {
   bool passed() const { return failures() == 0; }
 };
 
-/// Writes a single HTML file that contains its style, plots (SVG) and images (PNG). Atomic. Fails with
-/// ErrorKind::Output.
-void writeHtml(const std::filesystem::path& file, const Report& report);
-
-/// Writes everything but the images. Numbers are read back as the same doubles; those without a JSON form are
-/// the strings "NaN", "Infinity" and "-Infinity". Atomic. Fails with ErrorKind::Output.
+/// Writes everything; images as PNG in base64. Numbers are read back as the same doubles; those without a JSON form are the strings "NaN",
+/// "Infinity" and "-Infinity". Atomic. Fails with ErrorKind::Output. apps/validate/draw_report.py draws the file as a page or a plot.
 void writeJson(const std::filesystem::path& file, const Report& report);
 
 }  // namespace freevoxels

@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/atomic_file.h"
+#include "engine/validation/base64.h"
 #include "engine/validation/report.h"
 
 namespace freevoxels {
@@ -47,12 +48,15 @@ Json jsonOf(const ReportPlot& plot) {
           {"series", listOf(plot.series)}};
 }
 
-Json jsonOf(const ImageRow::Captioned& shown) {
-  return {{"caption", shown.caption}, {"width", shown.image.size.x}, {"height", shown.image.size.y}};
-}
-
 Json jsonOf(const ImageRow& row) {
-  return {{"caption", row.caption}, {"images", listOf(row.images)}};
+  const DisplayLook look{.background = Background{row.background, row.background}};
+  Json images = Json::array();
+  for (const ImageRow::Captioned& shown : row.images)
+    images.push_back({{"caption", shown.caption},
+                      {"width", shown.image.size.x},
+                      {"height", shown.image.size.y},
+                      {"png", base64(encodePng(shown.image, look))}});
+  return {{"caption", row.caption}, {"images", std::move(images)}};
 }
 
 Json jsonOf(const ReportSection& section) {

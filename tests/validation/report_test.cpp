@@ -4,11 +4,8 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <regex>
 
 #include "engine/validation/base64.h"
-#include "engine/validation/report_text.h"
-#include "engine/validation/svg_plot.h"
 #include "tests/not_finite.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
@@ -22,7 +19,6 @@ using test::readBytes;
 using test::TemporaryFolder;
 
 constexpr const char* kHostile = "a<b & \"c\" 'd' </script>";
-constexpr const char* kHostileEscaped = "a&lt;b &amp; &quot;c&quot; &#39;d&#39; &lt;/script&gt;";
 
 Image pattern(glm::ivec2 size, int seed) {
   Image image;
@@ -60,23 +56,10 @@ Report fullReport() {
   return report;
 }
 
-std::string htmlOf(const Report& report) {
-  const TemporaryFolder folder;
-  writeHtml(folder / "report.html", report);
-  EXPECT_EQ(folder.fileCount(), 1u);
-  return readBytes(folder / "report.html");
-}
-
 nlohmann::json jsonOf(const Report& report) {
   const TemporaryFolder folder;
   writeJson(folder / "report.json", report);
   return nlohmann::json::parse(readBytes(folder / "report.json"));
-}
-
-std::size_t countOf(const std::string& text, const std::string& part) {
-  std::size_t count = 0;
-  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++count;
-  return count;
 }
 
 Report reportOf(const Check& check) {
@@ -114,28 +97,6 @@ TEST(ReportVerdict, OneFailureFailsTheReport) {
   EXPECT_TRUE(report.sections[1].passed());
   report.sections[0].checks.resize(3);
   EXPECT_TRUE(report.passed());
-}
-
-TEST(ReportText, EscapesWhatHtmlWouldRead) {
-  EXPECT_EQ(escapeHtml(kHostile), kHostileEscaped);
-  EXPECT_EQ(escapeHtml("µ\n\t"), "µ\n\t");
-  EXPECT_EQ(escapeHtml(std::string("a\0b\x1b", 4)), "a\uFFFDb\uFFFD");
-}
-
-TEST(ReportText, FiguresHaveFourDigitsOrAsManyAsTellThemApart) {
-  EXPECT_EQ(figureText(0.123456), "0.1235");
-  EXPECT_EQ(figureText(-12.3456), "−12.35");
-  EXPECT_EQ(figureText(123456.7), "123457");
-  EXPECT_EQ(figureText(0.0000123456), "1.235·10⁻⁵");
-  EXPECT_EQ(figureText(1.5e300), "1.500·10³⁰⁰");
-  EXPECT_EQ(figureText(0.0), "0");
-  EXPECT_EQ(figureText(131072.0), "131072");
-  EXPECT_EQ(figureText(kNan), "NaN");
-  EXPECT_EQ(figureText(kInfinity), "∞");
-  EXPECT_EQ(figureText(-kInfinity), "−∞");
-  EXPECT_EQ(figureTextBeside(1.0000001, 1.0), "1.0000001");
-  EXPECT_EQ(figureTextBeside(0.10000004, 0.1), "0.10000004");
-  EXPECT_EQ(figureTextBeside(0.1, 0.1), "0.1000");
 }
 
 TEST(Base64, IsThatOfTheRfc) {
@@ -198,50 +159,6 @@ TEST(ReportJson, HasPlotsAndTheSizesOfImages) {
   EXPECT_EQ(row["images"][1].at("height"), 2);
 }
 
-TEST(ReportHtml, HasEveryCheckAndTheFailuresOnceMore) {
-  const Report report = fullReport();
-  const std::string html = htmlOf(report);
-  for (const Check& check : report.sections[0].checks) {
-    SCOPED_TRACE(check.name);
-    const std::string name = escapeHtml(check.name);
-    EXPECT_EQ(countOf(html, "<th scope=\"row\">" + name + "</th><td class=\"" +
-                                (check.passed() ? "pass\">pass" : "fail\">FAIL")),
-              1u);
-    EXPECT_EQ(countOf(html, "Table: " + name + "</a>"), check.passed() ? 0u : 1u);
-    EXPECT_NE(html.find(escapeHtml(check.where)), std::string::npos);
-  }
-  EXPECT_NE(html.find("2 of 5 checks failed"), std::string::npos);
-  EXPECT_NE(html.find("<td class=\"number\">65.43</td><td class=\"number\">≥ 65</td><td>dB</td>"),
-            std::string::npos);
-  EXPECT_NE(html.find("<td class=\"number\">1.0000001</td>"), std::string::npos);
-}
-
-TEST(ReportHtml, EveryLinkHasItsTarget) {
-  const std::string html = htmlOf(fullReport());
-  const std::regex link("href=\"#([^\"]*)\"");
-  int count = 0;
-  for (std::sregex_iterator it(html.begin(), html.end(), link), end; it != end; ++it, ++count)
-    EXPECT_EQ(countOf(html, "id=\"" + (*it)[1].str() + "\""), 1u) << (*it)[1];
-  EXPECT_EQ(count, 4);  // two sections, two failures
-}
-
-TEST(ReportHtml, EscapesEverything) {
-  const std::string html = htmlOf(fullReport());
-  EXPECT_EQ(html.find(kHostile), std::string::npos);
-  EXPECT_EQ(html.find("</script>"), std::string::npos);
-  // Fact; check, its failure; cell; label and series of the plot; title, its link; alternative and caption of
-  // the image.
-  EXPECT_EQ(countOf(html, kHostileEscaped), 10u);
-}
-
-TEST(ReportHtml, NeedsNothingElse) {
-  const std::string html = htmlOf(fullReport());
-  for (const char* reference : {"http:", "https:", "url(", "@import", "<link", "<script"})
-    EXPECT_EQ(html.find(reference), std::string::npos) << reference;
-  EXPECT_EQ(countOf(html, "src="), 2u);
-  EXPECT_EQ(countOf(html, "src=\"data:image/png;base64,"), 2u);
-}
-
 std::string decoded(const std::string& text) {
   const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string bytes;
@@ -258,99 +175,36 @@ std::string decoded(const std::string& text) {
   return bytes;
 }
 
-TEST(ReportHtml, ImagesAreEmbeddedOverTheirBackground) {
+TEST(ReportJson, HasImagesOverTheirBackground) {
   const Report report = fullReport();
   const ImageRow& row = report.sections[1].imageRows[0];
-  const std::string html = htmlOf(report);
-  const std::regex source("src=\"data:image/png;base64,([^\"]*)\"");
+  const nlohmann::json images = jsonOf(report).at("sections").at(1).at("image_rows").at(0).at("images");
   const TemporaryFolder folder;
-  std::sregex_iterator it(html.begin(), html.end(), source);
-  for (const ImageRow::Captioned& shown : row.images) {
-    ASSERT_NE(it, std::sregex_iterator());
-    test::writeBytes(folder / "embedded.png", decoded((*it++)[1]));
+  for (std::size_t n = 0; n < row.images.size(); ++n) {
+    const Image& shown = row.images[n].image;
+    test::writeBytes(folder / "embedded.png", decoded(images[n].at("png")));
     const Image embedded = readPng(folder / "embedded.png");
-    ASSERT_EQ(embedded.size, shown.image.size);
+    ASSERT_EQ(embedded.size, shown.size);
     for (std::size_t i = 0; i < embedded.pixels.size(); ++i) {
-      const glm::vec4& pixel = shown.image.pixels[i];
+      const glm::vec4& pixel = shown.pixels[i];
       EXPECT_EQ(embedded.pixels[i].a, 1.0f);
       for (int c = 0; c < 3; ++c)  // a byte of sRGB is at most 0.009 of linear light
         ASSERT_NEAR(embedded.pixels[i][c], pixel[c] + (1.0f - pixel.a) * row.background[c], 0.005f) << i;
     }
   }
-  EXPECT_NE(html.find("width=\"255\" height=\"204\""), std::string::npos) << "small images are enlarged";
-  EXPECT_NE(html.find("width=\"300\" height=\"2\""), std::string::npos);
 }
 
-TEST(ReportFiles, TheSameReportMakesTheSameBytes) {
-  EXPECT_EQ(htmlOf(fullReport()), htmlOf(fullReport()));
-  EXPECT_EQ(jsonOf(fullReport()), jsonOf(fullReport()));
-}
-
-TEST(ReportFiles, AnEmptyReportIsAPageToo) {
-  EXPECT_NE(htmlOf({}).find("no checks"), std::string::npos);
+TEST(ReportJson, OfAnEmptyReportIsWhole) {
   const nlohmann::json json = jsonOf({});
   EXPECT_TRUE(json.at("facts").is_object());
   EXPECT_TRUE(json.at("sections").is_array());
 }
 
-TEST(ReportFiles, AFolderThatIsNotThereIsAnErrorOfOutput) {
+TEST(ReportJson, InAFolderThatIsNotThereIsAnErrorOfOutput) {
   const TemporaryFolder folder;
-  for (const auto& write : {&writeHtml, &writeJson}) {
-    const Error error = test::errorOf([&] { write(folder / "none" / "report", Report{}); });
-    EXPECT_EQ(error.kind(), ErrorKind::Output);
-    EXPECT_NE(std::string(error.what()).find("none"), std::string::npos);
-  }
-}
-
-TEST(SvgPlot, TicksAreRoundAndSpanTheData) {
-  for (const glm::dvec2 range :
-       {glm::dvec2(0.0, 1.0), {-3.2e-7, 4.9e-7}, {99.0, 101.0}, {-1e12, 7e12}, {0.3, 0.9}}) {
-    const Ticks ticks = ticksBetween(range.x, range.y, 6);
-    const double tolerance = 1e-6 * ticks.step;
-    EXPECT_LE(ticks.value(ticks.first), range.x + tolerance);
-    EXPECT_GE(ticks.value(ticks.last), range.y - tolerance);
-    EXPECT_GT(ticks.value(ticks.first + 1), range.x - tolerance) << "a step too many";
-    EXPECT_LT(ticks.value(ticks.last - 1), range.y + tolerance) << "a step too many";
-    EXPECT_GE(ticks.last - ticks.first, 3);
-    EXPECT_LE(ticks.last - ticks.first, 8);
-    const double leading = ticks.step / std::pow(10.0, std::floor(std::log10(ticks.step) + 1e-9));
-    EXPECT_TRUE(std::abs(leading - 1) < 1e-9 || std::abs(leading - 2) < 1e-9 || std::abs(leading - 5) < 1e-9)
-        << ticks.step;
-  }
-}
-
-TEST(SvgPlot, DrawsEveryPointAndBreaksLinesWhereThereIsNone) {
-  ReportPlot plot{.caption = "c", .xLabel = "x", .yLabel = "y", .series = {}};
-  plot.series.push_back({"one", {{0, 0}, {1, 1}, {2, kNan}, {3, 2}, {10, 4}}});
-  std::string svg = svgPlot(plot);
-  EXPECT_EQ(countOf(svg, "class=\"line\""), 1u);
-  EXPECT_EQ(countOf(svg, "<path fill="), 4u);
-  // x from 84 to 704 for 0 to 10, y from 314 to 14 for 0 to 4.
-  EXPECT_NE(svg.find("d=\"M84.00,314.00L146.00,239.00M270.00,164.00L704.00,14.00\""), std::string::npos)
-      << svg;
-  EXPECT_EQ(countOf(svg, "class=\"legend\""), 0u);
-  plot.series.push_back({"two", {{0, 4}}});
-  svg = svgPlot(plot);
-  EXPECT_EQ(countOf(svg, "class=\"legend\""), 2u);
-  EXPECT_NE(svg.find("#0072B2"), std::string::npos);
-  EXPECT_NE(svg.find("#D55E00"), std::string::npos);
-}
-
-TEST(SvgPlot, HasNoNumberThatIsNone) {
-  const std::vector<std::vector<glm::dvec2>> cases = {{},
-                                                      {{kNan, kNan}},
-                                                      {{0, 0}},
-                                                      {{5, 7}},
-                                                      {{1, 1e308}, {2, -1e308}},
-                                                      {{0, 1e-310}, {0, 2e-310}},
-                                                      {{1e300, -1e300}, {-1e300, 1e300}}};
-  for (const std::vector<glm::dvec2>& points : cases) {
-    ReportPlot plot{.caption = "c", .xLabel = "x", .yLabel = "y", .series = {{"s", points}}};
-    const std::string svg = svgPlot(plot);
-    EXPECT_EQ(svg.find("nan"), std::string::npos) << svg;
-    EXPECT_EQ(svg.find("inf"), std::string::npos) << svg;
-    EXPECT_LT(svg.size(), 20000u);
-  }
+  const Error error = test::errorOf([&] { writeJson(folder / "none" / "report", Report{}); });
+  EXPECT_EQ(error.kind(), ErrorKind::Output);
+  EXPECT_NE(std::string(error.what()).find("none"), std::string::npos);
 }
 
 }  // namespace
