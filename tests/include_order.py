@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks that data flows one way through the folders: no file includes a header of a folder that comes later.
+"""Checks that data flows one way through the folders: no file includes a header of a folder that comes later, and no program one of another
+program.
 
     include_order.py PROJECT_FOLDER
 
@@ -26,7 +27,8 @@ ORDER = [
     "engine",              # the renderer and its memory planner
     "engine/reference",    # CPU references and oracle
     "engine/validation",   # checks and their report
-    "apps",
+    "apps/common",         # what programs share: scenes as options, frames and their files, messages
+    "apps",                # the programs, each for itself
     "tests",
 ]
 INCLUDE = re.compile(r'^\s*#include "((?:engine|apps|tests)/[^"]+)"', re.MULTILINE)
@@ -36,6 +38,12 @@ def place(path):
     """The position in ORDER of the folder that a file belongs to: the longest that matches."""
     folders = [folder for folder in ORDER if path.startswith(folder + "/")]
     return ORDER.index(max(folders, key=len)) if folders else None
+
+
+def program(path):
+    """The program that a file belongs to, if it is one's alone."""
+    parts = path.split("/")
+    return parts[1] if parts[0] == "apps" and len(parts) > 2 and parts[1] != "common" else None
 
 
 def main(root):
@@ -51,6 +59,8 @@ def main(root):
         for included in INCLUDE.findall(file.read_text()):
             if place(included) > place(name):
                 wrong.append(f"{name} includes {included}, which comes later")
+            if program(name) and program(included) and program(name) != program(included):
+                wrong.append(f"{name} includes {included}, which is of another program")
     print("\n".join(wrong) if wrong else "every include follows the order of the folders")
     return 1 if wrong else 0
 

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "apps/freevoxels/text_table.h"
+#include "apps/common/text_table.h"
 #include "engine/core/printable.h"
 
 namespace freevoxels {

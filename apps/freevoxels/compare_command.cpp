@@ -1,4 +1,4 @@
-#include "apps/freevoxels/compare_command.h"
+#include "apps/freevoxels/commands.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "apps/freevoxels/output_options.h"
-#include "apps/freevoxels/program.h"
-#include "apps/freevoxels/text_table.h"
+#include "apps/common/output_options.h"
+#include "apps/common/program.h"
+#include "apps/common/text_table.h"
 #include "engine/core/error.h"
 #include "engine/image/flip.h"
 #include "engine/image/metrics.h"

@@ -1,12 +1,12 @@
-#include "apps/freevoxels/devices_command.h"
+#include "apps/freevoxels/commands.h"
 
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "apps/freevoxels/device_options.h"
-#include "apps/freevoxels/text_table.h"
+#include "apps/common/device_options.h"
+#include "apps/common/text_table.h"
 #include "engine/core/error.h"
 
 namespace freevoxels {

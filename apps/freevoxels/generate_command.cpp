@@ -1,11 +1,11 @@
-#include "apps/freevoxels/generate_command.h"
+#include "apps/freevoxels/commands.h"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 
-#include "apps/freevoxels/progress_line.h"
-#include "apps/freevoxels/text_table.h"
+#include "apps/common/progress_line.h"
+#include "apps/common/text_table.h"
 #include "engine/core/error.h"
 #include "engine/volume/procedural.h"
 #include "engine/volume/vdb.h"

@@ -1,4 +1,4 @@
-#include "apps/freevoxels/info_command.h"
+#include "apps/freevoxels/commands.h"
 
 #include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/freevoxels/baked_info.h"
-#include "apps/freevoxels/text_table.h"
+#include "apps/common/text_table.h"
 #include "engine/core/error.h"
 #include "engine/renderer.h"
 #include "engine/volume/occupied_count.h"

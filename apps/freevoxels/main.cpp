@@ -2,16 +2,11 @@
 
 #include <CLI/CLI.hpp>
 
-#include "apps/freevoxels/bake_command.h"
-#include "apps/freevoxels/compare_command.h"
-#include "apps/freevoxels/devices_command.h"
-#include "apps/freevoxels/generate_command.h"
-#include "apps/freevoxels/info_command.h"
-#include "apps/freevoxels/merge_command.h"
-#include "apps/freevoxels/oracle_command.h"
-#include "apps/freevoxels/program.h"
-#include "apps/freevoxels/render_command.h"
-#include "apps/freevoxels/turntable_command.h"
+#include "apps/common/bake_command.h"
+#include "apps/common/program.h"
+#include "apps/common/render_command.h"
+#include "apps/common/turntable_command.h"
+#include "apps/freevoxels/commands.h"
 
 int main(int argc, char** argv) {
   CLI::App app("Draws volumes: clouds, smoke, fire and scans, with shadows.", "freevoxels");

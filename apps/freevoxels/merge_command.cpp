@@ -1,4 +1,4 @@
-#include "apps/freevoxels/merge_command.h"
+#include "apps/freevoxels/commands.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <set>
 #include <span>
 
-#include "apps/freevoxels/share_options.h"
+#include "apps/common/share_options.h"
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
 #include "engine/image/fixed_sums.h"

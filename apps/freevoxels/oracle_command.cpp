@@ -1,12 +1,12 @@
-#include "apps/freevoxels/oracle_command.h"
+#include "apps/freevoxels/commands.h"
 
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <chrono>
 
-#include "apps/freevoxels/progress_line.h"
-#include "apps/freevoxels/timings_file.h"
+#include "apps/common/progress_line.h"
+#include "apps/common/timings_file.h"
 #include "engine/core/error.h"
 #include "engine/core/machine.h"
 #include "engine/reference/oracle.h"

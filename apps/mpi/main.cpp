@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <thread>
 
-#include "apps/freevoxels/bake_command.h"
-#include "apps/freevoxels/program.h"
-#include "apps/freevoxels/render_command.h"
-#include "apps/freevoxels/turntable_command.h"
+#include "apps/common/bake_command.h"
+#include "apps/common/program.h"
+#include "apps/common/render_command.h"
+#include "apps/common/turntable_command.h"
 #include "apps/mpi/mpi_job.h"
 
 namespace {

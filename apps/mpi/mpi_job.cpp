@@ -14,8 +14,8 @@
 #include <sstream>
 #include <thread>
 
-#include "apps/freevoxels/share_options.h"
-#include "apps/freevoxels/text_table.h"
+#include "apps/common/share_options.h"
+#include "apps/common/text_table.h"
 #include "apps/mpi/local_share.h"
 #include "engine/core/error.h"
 #include "engine/vulkan/device.h"

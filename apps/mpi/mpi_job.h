@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "apps/freevoxels/share_group.h"
+#include "apps/common/share_group.h"
 
 namespace freevoxels {
 

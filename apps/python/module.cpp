@@ -6,8 +6,8 @@
 #include <optional>
 #include <nlohmann/json.hpp>
 
-#include "apps/freevoxels/program.h"
-#include "apps/library/scene_renderer.h"
+#include "apps/common/program.h"
+#include "apps/common/scene_renderer.h"
 #include "apps/python/call_arguments.h"
 #include "apps/python/numpy_array.h"
 #include "apps/python/python_renderer.h"

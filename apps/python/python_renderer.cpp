@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/library/scene_renderer.h"
+#include "apps/common/scene_renderer.h"
 #include "apps/python/call_arguments.h"
 #include "apps/python/python_values.h"
 #include "apps/python/python_volume.h"

@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "apps/library/scene_renderer.h"
+#include "apps/common/scene_renderer.h"
 #include "apps/python/array_volume.h"
 #include "apps/python/call_arguments.h"
 #include "apps/python/python_values.h"

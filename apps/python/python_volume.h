@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "apps/library/shared_volume.h"
+#include "apps/common/shared_volume.h"
 
 namespace freevoxels {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "apps/freevoxels/text_table.h"
+#include "apps/common/text_table.h"
 
 namespace freevoxels::validate {
 

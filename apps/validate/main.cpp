@@ -5,10 +5,10 @@
 #include <chrono>
 #include <optional>
 
-#include "apps/freevoxels/device_options.h"
+#include "apps/common/device_options.h"
 #include "engine/description/scene_description.h"
-#include "apps/freevoxels/program.h"
-#include "apps/freevoxels/progress_line.h"
+#include "apps/common/program.h"
+#include "apps/common/progress_line.h"
 #include "apps/validate/check_lines.h"
 #include "apps/validate/section_jobs.h"
 #include "engine/core/error.h"

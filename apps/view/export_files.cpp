@@ -13,10 +13,10 @@
 #include <sstream>
 #include <vector>
 
-#include "apps/freevoxels/background_writer.h"
-#include "apps/freevoxels/frame_names.h"
-#include "apps/freevoxels/program.h"
-#include "apps/freevoxels/scene_options.h"
+#include "apps/common/background_writer.h"
+#include "apps/common/frame_names.h"
+#include "apps/common/program.h"
+#include "apps/common/scene_options.h"
 #include "engine/core/error.h"
 #include "engine/description/scene_json.h"
 

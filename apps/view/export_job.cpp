@@ -1,6 +1,6 @@
 #include "apps/view/export_job.h"
 
-#include "apps/freevoxels/failure.h"
+#include "apps/common/failure.h"
 
 namespace freevoxels {
 

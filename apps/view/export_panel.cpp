@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "apps/freevoxels/frame_names.h"
+#include "apps/common/frame_names.h"
 #include "apps/view/export_files.h"
 #include "apps/view/theme.h"
 #include "apps/view/widgets.h"

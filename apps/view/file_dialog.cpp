@@ -12,7 +12,7 @@
 #include <set>
 
 #include "engine/description/scene_description.h"
-#include "apps/freevoxels/sequence.h"
+#include "apps/common/sequence.h"
 #include "apps/view/keys.h"
 #include "apps/view/ui_painter.h"
 #include "apps/view/widgets.h"

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <utility>
 
-#include "apps/freevoxels/scene_options.h"
+#include "apps/common/scene_options.h"
 #include "engine/core/error.h"
 #include "engine/description/scene_fields.h"
 #include "engine/image/display_pass.h"

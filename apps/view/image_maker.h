@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/freevoxels/film_view.h"
+#include "apps/common/film_view.h"
 #include "apps/view/diagnosis.h"
 #include "apps/view/image_pace.h"
 #include "engine/description/scene_description.h"

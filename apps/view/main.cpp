@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "apps/freevoxels/program.h"
+#include "apps/common/program.h"
 #include "apps/view/view_options.h"
 #include "apps/view/viewer.h"
 #include "apps/view/window.h"

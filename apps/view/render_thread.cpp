@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "apps/freevoxels/failure.h"
+#include "apps/common/failure.h"
 
 namespace freevoxels {
 

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "apps/freevoxels/failure.h"
+#include "apps/common/failure.h"
 #include "engine/description/scene_description.h"
 #include "engine/core/atomic_file.h"
 #include "engine/core/json_file.h"

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "apps/freevoxels/frame_names.h"
+#include "apps/common/frame_names.h"
 #include "engine/core/error.h"
 
 namespace freevoxels {

@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "apps/freevoxels/device_options.h"
-#include "apps/freevoxels/program.h"
-#include "apps/freevoxels/scene_options.h"
-#include "apps/freevoxels/sequence.h"
+#include "apps/common/device_options.h"
+#include "apps/common/program.h"
+#include "apps/common/scene_options.h"
+#include "apps/common/sequence.h"
 
 namespace freevoxels {
 

@@ -1,6 +1,6 @@
 #include "apps/view/view_state.h"
 
-#include "apps/freevoxels/failure.h"
+#include "apps/common/failure.h"
 
 namespace freevoxels {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/freevoxels/sequence.h"
+#include "apps/common/sequence.h"
 #include "apps/view/image_maker.h"
 #include "engine/description/scene_description.h"
 

@@ -10,8 +10,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "apps/freevoxels/failure.h"
-#include "apps/freevoxels/frame_names.h"
+#include "apps/common/failure.h"
+#include "apps/common/frame_names.h"
 #include "apps/view/export_files.h"
 #include "apps/view/inspect_panel.h"
 #include "apps/view/navigation.h"

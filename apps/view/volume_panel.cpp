@@ -8,7 +8,7 @@
 #include <array>
 #include <filesystem>
 
-#include "apps/freevoxels/failure.h"
+#include "apps/common/failure.h"
 #include "apps/view/actions.h"
 #include "apps/view/clip_panel.h"
 #include "apps/view/keys.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/freevoxels/failure.h"
+#include "apps/common/failure.h"
 #include "apps/view/transfer_model.h"
 #include "apps/view/view_state.h"
 #include "engine/description/scene_fields.h"

@@ -1,5 +1,5 @@
 #pragma once
-// What a crash of a thread would mean, for the program that reports crashes (apps/freevoxels/crash_report.h).
+// What a crash of a thread would mean, for the program that reports crashes (apps/common/crash_report.h).
 
 #include <string>
 #include <utility>

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/freevoxels/failure.h"
+#include "apps/common/failure.h"
 #include "tests/temporary_folder.h"
 
 namespace freevoxels::test {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/freevoxels/failure.h"
+#include "apps/common/failure.h"
 
 namespace freevoxels {
 namespace {

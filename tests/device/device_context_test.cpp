@@ -1,10 +1,10 @@
 // The library's devices: what a function that logs validation may not do.
 
-#include "apps/library/device_context.h"
+#include "apps/common/device_context.h"
 
 #include <gtest/gtest.h>
 
-#include "apps/library/scene_renderer.h"
+#include "apps/common/scene_renderer.h"
 #include "tests/refusal.h"
 
 namespace freevoxels {

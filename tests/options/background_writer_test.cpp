@@ -1,4 +1,4 @@
-#include "apps/freevoxels/background_writer.h"
+#include "apps/common/background_writer.h"
 
 #include <gtest/gtest.h>
 

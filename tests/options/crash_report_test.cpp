@@ -1,4 +1,4 @@
-#include "apps/freevoxels/crash_report.h"
+#include "apps/common/crash_report.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -10,7 +10,7 @@
 
 #include "engine/core/atomic_file.h"
 #include "engine/core/crash_note.h"
-#include "apps/freevoxels/failure.h"
+#include "apps/common/failure.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 

@@ -3,7 +3,7 @@
 #include <csignal>
 #include <optional>
 
-#include "apps/freevoxels/program.h"
+#include "apps/common/program.h"
 
 namespace freevoxels {
 namespace {

@@ -1,6 +1,6 @@
-#include "apps/freevoxels/sequence.h"
+#include "apps/common/sequence.h"
 
-#include "apps/freevoxels/frame_names.h"
+#include "apps/common/frame_names.h"
 
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"

@@ -1,6 +1,6 @@
 // Parts, and how many processes can divide a volume.
 
-#include "apps/freevoxels/share_options.h"
+#include "apps/common/share_options.h"
 
 #include "tests/refusal.h"
 

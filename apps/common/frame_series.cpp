@@ -1,0 +1,314 @@
+#include "apps/common/frame_series.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <utility>
+
+#include "apps/common/colored_parts.h"
+#include "apps/common/failure.h"
+#include "apps/common/film_view.h"
+#include "apps/common/share_group.h"
+#include "engine/cube_level.h"
+#include "engine/octree/volume_limits.h"
+#include "engine/storage/baked_source.h"
+#include "engine/volume/content_hash.h"
+#include "engine/vulkan/pipeline.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// Whether nothing of the volume has extinction or emission, as far as is known.
+bool isTransparent(const Renderer& renderer) {
+  return renderer.occupiedVoxelCount() == 0u;
+}
+
+std::string whyNothingIsSeen(bool isTransparent) {
+  if (isTransparent) return "all voxels are transparent; raise --density-scale, or change --transfer-function";
+  return "the camera looks past the volume, or what it sees is transparent; leave out --camera-position and --look-at to frame it";
+}
+
+bool showsNothing(const Image& image) {
+  return std::ranges::none_of(image.pixels, [](glm::vec4 pixel) { return pixel.a > 0.0f || pixel.r + pixel.g + pixel.b > 0.0f; });
+}
+
+/// Makes pixels black of which some number is NaN or infinite, which light beyond the range of single precision makes of them;
+/// returns how many there were.
+std::size_t clearPixelsThatAreNoNumbers(Image& image) {
+  std::size_t cleared = 0;
+  for (glm::vec4& pixel : image.pixels) {
+    const float sum = pixel.r + pixel.g + pixel.b + pixel.a;
+    if (std::isfinite(sum)) continue;
+    pixel = glm::vec4(0.0f);
+    ++cleared;
+  }
+  return cleared;
+}
+
+/// Says which cubes of a volume the last frame drew, if it did.
+void logCubes(const Renderer& renderer) {
+  if (!renderer.drewInCubes()) return;
+  spdlog::debug("drawn by gathering, cube by cube: the volume does not fit into memory at once");
+  const std::vector<std::size_t> counts = renderer.cubesRead();
+  for (std::size_t level = 0; level < counts.size(); ++level)
+    if (counts[level] > 0) spdlog::debug("{} cubes of {}³ voxels of level {} drawn for the last frame", counts[level], kCubeEdge, level);
+}
+
+}  // namespace
+
+FrameSeries::FrameSeries(const RenderOptions& options, const Device& device, RunReport& report)
+    : options_(options),
+      device_(device),
+      report_(report),
+      progress_(!options.messages.quiet && options.leads()),
+      writer_(options, report, progress_) {}
+
+void FrameSeries::draw(std::span<const FrameJob> jobs) {
+  progress_.start(jobs.size());
+  report_.device = device_.description();
+  drawVolumes(jobs);
+  addTimes(report_.stages, writer_.times());
+  addTimes(report_.stages, device_.pipelines().times());
+  report_.devicePeak = device_.peakBytes();
+}
+
+void FrameSeries::printDrawnElsewhere() {
+  for (const FrameJob* job : drawnElsewhere_) writer_.printNames(*job);
+}
+
+/// Whether all frames of the volume are skipped, and it does not decide how others are seen.
+bool FrameSeries::needsNoVolume(std::span<const FrameJob> jobs) const {
+  return std::ranges::all_of(jobs, &FrameJob::isSkipped) && (hasReference_ || !options_.fixedView);
+}
+
+void FrameSeries::drawVolumes(std::span<const FrameJob> jobs) {
+  const std::vector<std::string> inputs = volumesOf(jobs);
+  isFilm_ = inputs.size() > 1;
+  if (isFilm_ && !options_.fixedView) surveyFilm(inputs);
+  const bool isSurveyed = reference_.has_value();
+  const int turn = int(framesOfFirstVolume(jobs));
+  VolumesAhead volumes(inputs, [this, isSurveyed, turn, jobs](const std::string& input) {
+    const auto first = std::ranges::find(jobs, input, &FrameJob::input);
+    const std::span<const FrameJob> own = jobs.subspan(std::size_t(first - jobs.begin()));
+    if (needsNoVolume(own.first(framesOfFirstVolume(own)))) return std::shared_ptr<const VolumeSource>();
+    return options_.scene.description.of(input).openSource(turn, !isFilm_, isSurveyed);
+  });
+  std::size_t failed = 0;
+  while (!jobs.empty()) {
+    const std::span<const FrameJob> own = jobs.first(framesOfFirstVolume(jobs));
+    jobs = jobs.subspan(own.size());
+    if (!drawNext(volumes, own)) ++failed;
+  }
+  writer_.finish();
+  if (failed > 0) fail(ErrorKind::Input, "{} of {} volumes could not be drawn, for the reasons above", failed, inputs.size());
+  if (!waiting_.empty()) fail(ErrorKind::Input, "no frame of {} holds anything to draw", progress_.frames());
+}
+
+/// Chooses the view of all frames.
+void FrameSeries::surveyFilm(std::span<const std::string> inputs) {
+  progress_.begin("looking through the film");
+  const StageTimer timer(report_.stages, "survey film");
+  std::optional<FilmView> view = viewOfFilm(options_.scene.description, inputs, kMaxNumberedVoxels);
+  progress_.erase();
+  if (!view) return;
+  reference_ = std::move(view->scene);
+  hasReference_ = true;
+  announce(*reference_, 1);
+  const auto nameOf = [](const std::string& input) { return std::filesystem::path(input).filename().string(); };
+  spdlog::info(
+      "camera and scales are those of the whole film, in which {} holds most{}; change it with --fixed-view, for those of the "
+      "first frame, or --no-fixed-view, for each frame's own",
+      nameOf(view->largest), view->brightest.empty() ? "" : fmt::format(" and {} shines most", nameOf(view->brightest)));
+}
+
+/// Draws the frames of the next volume. False, after a message, for a volume of a film that is no volume.
+bool FrameSeries::drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs) {
+  try {
+    progress_.begin("reading " + jobs.front().input);
+    std::shared_ptr<const VolumeSource> source;
+    {
+      const StageTimer timer(report_.stages, "read volume");
+      source = volumes.next();
+    }
+    if (needsNoVolume(jobs)) {
+      progress_.drawn += jobs.size();
+      return true;
+    }
+    const VolumeView view = beginVolume(source, jobs);
+    Renderer renderer(device_, source, view.scene.classification, options_.scene.description.method.table(), progress_.progress());
+    drawFrames(renderer, view, jobs);
+    return true;
+  } catch (const EmptyVolumeError& error) {
+    if (!isFilm_) throw;
+    progress_.erase();
+    spdlog::warn("{}; it becomes an image of the background", withOptions(error));
+    for (const FrameJob& job : jobs) writeEmpty(job);
+    return true;
+  } catch (const Error& error) {
+    if (!isFilm_ || error.kind() != ErrorKind::Input) throw;
+    progress_.erase();
+    spdlog::error("{}", withOptions(error));
+    return false;
+  }
+}
+
+/// Resolves what a volume's frames have in common.
+FrameSeries::VolumeView FrameSeries::beginVolume(const std::shared_ptr<const VolumeSource>& source, std::span<const FrameJob> jobs) {
+  std::shared_ptr<const Volume> volume = known(source);
+  const SceneDescription description = options_.scene.description.of(jobs.front().input);
+  const bool isFirst = !reference_, isFixed = options_.fixedView.value_or(isFilm_);
+  VolumeView view{
+      .scene = isFixed && !isFirst ? description.resolveLike(*reference_, std::move(volume)) : description.resolve(std::move(volume)),
+      .settings = options_.frameSettings()};
+  Scene& scene = view.scene;
+  view.cameras = {scene.camera};
+  if (jobs.size() > 1) view.cameras = description.cameras(*scene.volume, scene.classification, int(jobs.size()));
+  scene.camera = view.cameras.front();
+  view.settings.lighting = scene.lighting;
+  progress_.erase();
+  if (isFirst)
+    announce(scene, jobs.size());
+  else
+    logWarnings(*scene.volume, !scene.classification.transferFunction);
+  agree(scene, *source);
+  if (isFirst || !isFixed) reference_ = scene;
+  hasReference_ = true;
+  return view;
+}
+
+/// Reports and says how the first volume is drawn.
+void FrameSeries::announce(const Scene& view, std::size_t frames) {
+  const SceneDescription& scene = options_.scene.description;
+  report_.scene = frames > 1 ? scene.resolvedTurn(view, int(frames)) : scene.resolved(view);
+  report_.options = options_.scene.ownOptions(report_.scene);
+  logRemarks(scene, view);
+  logOptions(report_.options);
+  mentionCpu(device_);
+}
+
+/// Fails where the processes of the group would not draw parts of one image.
+void FrameSeries::agree(const Scene& view, const VolumeSource& source) {
+  if (options_.drawsShares()) {
+    const bool hasEnvironment = view.lighting && view.lighting->environment;
+    report_.contentHash =
+        contentHash(*view.volume, view.classification, hasEnvironment ? view.lighting->environment.get() : nullptr);
+    // The values of a file are not read yet: the header's checksum stands for those of all sections.
+    if (const auto* const baked = dynamic_cast<const BakedSource*>(&source))
+      report_.contentHash += fmt::format("-{:016x}", baked->file().header().hash);
+  }
+  if (options_.group == nullptr) return;
+  options_.group->agree("another version of the program", programVersion());
+  options_.group->agree("another volume, transfer function or environment", report_.contentHash);
+  OptionList options;
+  for (const auto& [name, value] : report_.options)
+    if (!name.empty()) options.emplace_back(name, value);  // the volume's own name may differ from machine to machine
+  options_.group->agree("other options", commandText(options));
+}
+
+/// Has the processes of a group draw cube by cube where the volume may not fit on one of them.
+void FrameSeries::agreeOnCubes(Renderer& renderer, const FrameSettings& settings) {
+  if (!options_.drawsShares()) return;
+  const std::uint64_t fits = renderer.surelyFits(settings) ? 1 : 0;
+  if ((options_.group != nullptr ? options_.group->least(fits) : fits) == 0) renderer.drawInCubes();
+}
+
+void FrameSeries::drawFrames(Renderer& renderer, const VolumeView& view, std::span<const FrameJob> jobs) {
+  const std::vector<StageTime> built = renderer.timings();
+  addTimes(report_.stages, built);
+  agreeOnCubes(renderer, view.settings);
+  Scene scene = view.scene;
+  for (std::size_t i = 0; i < jobs.size(); ++i, ++progress_.drawn) {
+    if (jobs[i].isSkipped) continue;
+    if (options_.group != nullptr && !options_.group->draws(progress_.drawn)) {
+      drawnElsewhere_.push_back(&jobs[i]);
+      continue;
+    }
+    scene.camera = view.cameras[i];
+    if (options_.drawsShares())
+      drawShares(renderer, scene, view.settings, jobs[i]);
+    else
+      complete(renderer.render(scene.camera, view.settings, progress_.progress()), isTransparent(renderer), scene, jobs[i]);
+    const std::vector<StageTime> times = renderer.timings();
+    addTimes(report_.stages, std::span(times).subspan(built.size()));
+  }
+  finishAddingUp();
+  report(renderer, *scene.volume);
+  for (const FrameJob* empty : std::exchange(waiting_, {})) writeEmpty(*empty);
+}
+
+/// Draws this process's shares, and hands on or writes their sums or the image of them.
+void FrameSeries::drawShares(Renderer& renderer, const Scene& view, const FrameSettings& settings, const FrameJob& job) {
+  const SharePart part = options_.group != nullptr ? options_.group->part() : options_.shares.whole();
+  const std::optional<int> coloredParts = options_.shares.coloredParts;
+  FixedSums sums = coloredParts ? drawColoredParts(renderer, view.camera, settings, *coloredParts, progress_.progress())
+                                : renderer.renderShares(view.camera, settings, part, progress_.progress());
+  if (options_.group != nullptr) {
+    finishAddingUp();
+    addingUp_ = {&job, view, isTransparent(renderer), std::async([group = options_.group, sums = std::move(sums)]() mutable {
+                   AddedUp result;
+                   const StageTimer timer(result.times, "add up sums");
+                   if (group->addUp(sums)) result.sums = std::move(sums);
+                   return result;
+                 })};
+  } else if (options_.shares.sums) {
+    const StageTimer timer(report_.stages, "write images");
+    writer_.writeSums(sums, view, job);
+  } else {
+    complete(resolveSums(sums, settings.composite == Composite::Normalised), isTransparent(renderer), view, job);
+  }
+}
+
+/// Waits for the sums of the group's last frame, and writes its image where they are.
+void FrameSeries::finishAddingUp() {
+  if (!addingUp_.result.valid()) return;
+  const AddedUp added = addingUp_.result.get();
+  addTimes(report_.stages, added.times);
+  if (!added.sums) return;
+  const bool normalised = options_.frameSettings().composite == Composite::Normalised;
+  complete(resolveSums(*added.sums, normalised), addingUp_.isTransparent, addingUp_.view, *addingUp_.job);
+}
+
+void FrameSeries::complete(Image image, bool isTransparent, const Scene& view, const FrameJob& job) {
+  const std::string name = progress_.frames() == 1 ? "" : job.files.front() + ": ";
+  progress_.erase();
+  if (const std::size_t pixels = clearPixelsThatAreNoNumbers(image); pixels > 0)
+    spdlog::warn("{}{} pixels are beyond the range of numbers and become black: use less extreme lights, emission and distances", name,
+                 pixels);
+  if (showsNothing(image)) spdlog::warn("{}nothing is seen: {}", name, whyNothingIsSeen(isTransparent));
+  writer_.write(std::move(image), view, job);
+}
+
+void FrameSeries::writeEmpty(const FrameJob& job) {
+  if (!reference_) {
+    waiting_.push_back(&job);
+    return;
+  }
+  ++progress_.drawn;
+  if (!options_.leads() || job.isSkipped) return;
+  const FrameSettings settings = options_.frameSettings();
+  const std::size_t pixels = std::size_t(settings.size.x) * std::size_t(settings.size.y);
+  Image image{.size = settings.size, .pixels = std::vector<glm::vec4>(pixels, glm::vec4(0.0f))};
+  if (settings.depth) image.depth.assign(pixels, std::numeric_limits<float>::infinity());
+  Scene view = *reference_;
+  Volume nothing;
+  nothing.source = std::filesystem::path(job.input).filename().string();
+  view.volume = std::make_shared<const Volume>(std::move(nothing));
+  view.classification.emission.reset();
+  writer_.write(std::move(image), view, job);
+}
+
+/// The report describes the last volume.
+void FrameSeries::report(const Renderer& renderer, const Volume& volume) {
+  report_.lackedRoomForRays |= renderer.lackedRoomForRays();
+  logCubes(renderer);
+  report_.visibleVoxels = renderer.occupiedVoxelCount();
+  report_.voxels = volume.voxelCount();
+  report_.memory = renderer.memory();
+  report_.cut = renderer.cutCounts();
+}
+
+}  // namespace freevoxels

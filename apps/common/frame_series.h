@@ -1,0 +1,82 @@
+#pragma once
+// Draws the frames of a command on one device: one volume seen by one camera or by those of a turn, or the volumes of a film.
+
+#include <atomic>
+#include <future>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "apps/common/frame_writer.h"
+#include "apps/common/render_options.h"
+#include "apps/common/series_progress.h"
+#include "apps/common/volumes_ahead.h"
+#include "engine/image/fixed_sums.h"
+#include "engine/renderer.h"
+
+namespace freevoxels {
+
+class FrameSeries {
+ public:
+  /// All must outlive this object; `report` is filled by `draw`.
+  FrameSeries(const RenderOptions& options, const Device& device, RunReport& report);
+
+  /// Draws and writes every frame and prints the names of its files. Neighbouring frames of one volume share its table, and
+  /// are the steps of a full turn. Of several volumes, one that holds nothing becomes an image of the background, and one that
+  /// cannot be read is left out: its error is printed, and at the end ErrorKind::Input is thrown.
+  void draw(std::span<const FrameJob> jobs);
+  /// Prints the names of frames that other processes of the group drew, when these are done.
+  void printDrawnElsewhere();
+
+ private:
+  /// What the frames of one volume have in common, and their cameras.
+  struct VolumeView {
+    Scene scene;
+    std::vector<Camera> cameras;
+    FrameSettings settings;
+  };
+  struct AddedUp {
+    std::optional<FixedSums> sums;  ///< on the process that writes the frame
+    std::vector<StageTime> times;
+  };
+  /// The sums of the group's last frame, which are added up while the next one is drawn.
+  struct AddingUp {
+    const FrameJob* job = nullptr;
+    Scene view;
+    bool isTransparent = false;  ///< whether nothing of the volume has extinction or emission
+    std::future<AddedUp> result;
+  };
+
+  bool needsNoVolume(std::span<const FrameJob> jobs) const;
+  void drawVolumes(std::span<const FrameJob> jobs);
+  void surveyFilm(std::span<const std::string> inputs);
+  bool drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs);
+  void drawFrames(Renderer& renderer, const VolumeView& view, std::span<const FrameJob> jobs);
+  void drawShares(Renderer& renderer, const Scene& view, const FrameSettings& settings, const FrameJob& job);
+
+  VolumeView beginVolume(const std::shared_ptr<const VolumeSource>& source, std::span<const FrameJob> jobs);
+  void announce(const Scene& view, std::size_t frames);
+  void agree(const Scene& view, const VolumeSource& source);
+  void agreeOnCubes(Renderer& renderer, const FrameSettings& settings);
+
+  void finishAddingUp();
+  void complete(Image image, bool isTransparent, const Scene& view, const FrameJob& job);
+  void writeEmpty(const FrameJob& job);
+  void report(const Renderer& renderer, const Volume& volume);
+
+  const RenderOptions& options_;
+  const Device& device_;
+  RunReport& report_;
+  SeriesProgress progress_;
+  bool isFilm_ = false;              ///< whether there are several volumes
+  std::atomic<bool> hasReference_ = false;  ///< whether there is a reference_, also for the thread that reads volumes ahead
+  std::optional<Scene> reference_;          ///< the film's, or the first frame's with a fixed view, else the last one's
+  FrameWriter writer_;
+  AddingUp addingUp_;
+  std::vector<const FrameJob*> drawnElsewhere_;  ///< frames of other processes of the group
+  std::vector<const FrameJob*> waiting_;         ///< empty frames before any frame that says how they are seen
+};
+
+}  // namespace freevoxels

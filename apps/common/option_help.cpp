@@ -1,0 +1,142 @@
+#include "apps/common/option_help.h"
+
+#include <fmt/format.h>
+
+#include "engine/description/scene_description.h"
+#include "engine/volume/blackbody.h"
+
+namespace freevoxels {
+
+namespace {
+
+const std::vector<OptionHelp> kVolumeHelp{
+    {"volume",
+     "OpenVDB file, baked volume (.fvx), or procedural:NAME ('freevoxels generate --list' has the names); may be left "
+     "out where a --scene has it"},
+    {"resolution", fmt::format("Voxels of a procedural volume, one number for a cube [{}]", kDefaultResolution)},
+    {"grid", "Grid of the file, NAME[k] if several have the name [density, smoke or a like name, or the only float grid]"},
+    {"no-data", "Value of voxels that hold no data [of scans the value that they are filled up with around what was measured]"},
+    {"clip-box",
+     "Draw only these voxels: the first and the last ones along x, y and z, inclusive, in the volume's box, whose voxels "
+     "'freevoxels info' counts"},
+    {"clip-plane", "Draw only the voxels behind the plane through the world position X,Y,Z: the side away from its normal NX,NY,NZ"},
+
+    {"background", "Colour behind the volume in a .png or .jpg, linear, or transparent [a dark gradient]"},
+    {"exposure", "Stops that a .png or .jpg is brightened by [0]"},
+    {"tone-map", "How bright light is brought into the range of a .png or .jpg [none: it is clipped]"},
+    {"float", "Write 32-bit floats to an .exr [16-bit]"},
+    {"png-bits", "Bits a channel in a .png [8]"},
+    {"aov",
+     "Adds channels to an .exr, of depth, position, normal and transmittance, with commas between them: Z, the mean distance "
+     "along the viewing axis; P, the point there in the world; N, its normal; transmittance.Y, 1 - alpha"},
+    {"crop", "Writes only these pixels of the image: column and row of the top left one, width and height; the whole image is drawn"},
+
+    {"density-scale",
+     "Extinction per world unit at density 1 [chosen so that the volume's mean optical depth suits an image; level sets are opaque]"},
+    {"albedo", "Colour of the volume, linear [0.9,0.9,0.9; of volumes with emission 0.5,0.5,0.5]"},
+    {"albedo-grid",
+     "Grid of vectors of the file with the colours, linear, 0..1; none for none [Cd, color or a like name, if there is one]"},
+    {"transfer-function",
+     "Colour and opacity by scalar, instead of the above: a file, or JSON that begins with { [for scans one made from the histogram]"},
+    {"classification",
+     "What a transfer function is applied to: interpolated scalars (post), or voxels (pre), as always for splats and volumes "
+     "with emission [post]"},
+
+    {"emission",
+     fmt::format("Emission by temperature: luminance per world unit at {:g} K; without a number it must not be followed by a file "
+                 "name [chosen to suit an image, where a volume has temperatures of which some shine]",
+                 kReferenceTemperature)},
+    {"temperature-grid", "Grid of the temperatures [temperature, heat, flame, fire, burn or a like name]"},
+    {"temperature-scale", fmt::format("Kelvin per unit of the grid [1; if no value is above {:g}, the scale that makes the largest {:g} K]",
+                                      kMinKelvinMaximum, kReferenceTemperature)},
+    {"temperature-offset", fmt::format("Kelvin at value 0 of the grid [0; with such an automatic scale {:g}]", kEmberTemperature)},
+
+    {"camera-position", "Position of the eye in world units [around the volume, see --orbit]"},
+    {"orbit", fmt::format("Direction of the eye around the volume in degrees: azimuth about the up direction (if +y is up, from +z "
+                          "towards +x), elevation; the volume fills the image [{},{}]",
+                          kDefaultAzimuth, kDefaultElevation)},
+    {"look-at", "Point in the middle of the image [the middle of the visible volume]"},
+    {"up", "Up direction of the image [0,1,0; for scans and files of Blender 0,0,1]"},
+    {"fov", fmt::format("Vertical field of view [{}]", Camera{}.verticalFov)},
+    {"orthographic", "Orthographic projection; the image is HEIGHT world units high [perspective]"},
+    {"size",
+     fmt::format("Image size in pixels, or one number for a square [{}x{}]", CameraDescription{}.size.x, CameraDescription{}.size.y)}};
+
+const std::vector<OptionHelp> kLightHelp{
+    {"unlit", "No lighting: every voxel sends out its colour"},
+    {"light",
+     "A light; may be repeated. direction: from the volume towards a light at infinity; position: of a point light in the "
+     "world; color: linear [1,1,1]; intensity: irradiance, for a position at distance 1 [4 pi in the middle of the volume]. "
+     "Without any light, ambient light or environment there are a key light from the upper left of the first view and "
+     "ambient light, dimmer for volumes with emission"},
+    {"ambient", "Radiance from all directions, linear; one number is a grey [0 if there is another light]"},
+    {"environment",
+     "Radiance by direction, added to the ambient light: a linear latitude-longitude image, +y up, its middle column "
+     "towards +z, the column a quarter from the left towards +x [none]"},
+    {"environment-rotation", "Rotation of the environment about +y in degrees, added to its azimuths [0]"},
+    {"environment-intensity", "Factor of the environment's radiance [1]"},
+    {"phase-g", "Asymmetry of the Henyey-Greenstein phase function, -0.99 to 0.99; positive scatters forwards [0]"},
+    {"scattering", fmt::format("Orders of scattering, 1 to 8: 1 is single scattering; each further order has --scattering-scale of the "
+                               "light of the one before, which reaches deeper [{}]",
+                               kDefaultScattering)},
+    {"scattering-scale",
+     fmt::format("Factor of optical depth towards the light, --phase-g and light from one order of scattering to the next [{}]",
+                 Lighting{}.scatteringScale)},
+    {"extinction-tint",
+     "Factor of the extinction between light and voxel for each colour, so that white light becomes coloured inside the "
+     "volume [1,1,1]"},
+    {"light-attenuation",
+     "Shadows of lights: looked up in the attenuation table, or exact, along rays that are swept once for each light; auto: "
+     "exact if it takes at most a quarter of the device's memory and --attenuation is not nearest [auto]",
+     true},
+    {"shading",
+     "What a voxel does with light: scatter it as fog, or reflect it like a surface across the gradient; auto: gradient with a "
+     "transfer function and for level sets, else scatter [auto]",
+     true},
+    {"surface-share",
+     "Part of the light that surfaces reflect like surfaces, 0 to 1; the rest is scattered like fog [1]", true}};
+
+const std::vector<OptionHelp> kMethodHelp{
+    {"composite",
+     "How splats become pixels: colours mixed by the table with exact opacity, the paper's plain sum, or back-to-front alpha "
+     "blending for comparison [normalised]",
+     true},
+    {"draw",
+     "How the volume becomes the image: gather marches rays through it, splats draws a billboard for every voxel; auto: gather "
+     "if --attenuation is auto or exact and --composite is not sorted, else splats [auto]",
+     true},
+    {"attenuation",
+     "Transmittance of splats to the eye: interpolated between four directions of the table, its nearest direction, or exact, "
+     "along rays from the eye that are swept for every frame; auto: exact for volumes with emission and if the eye is inside "
+     "the volume, bilinear if it is far away, a mix in between [auto]",
+     true},
+    {"directions", "Directions of the table; 98 are more exact and take more memory and time [26]", true},
+    {"code", "What a byte of the table holds: optical depth or transmittance [depth8]", true},
+    {"path-length-correction", "Whether diagonal steps of the table count with their full length [yes]", true},
+    {"gradient", "Whether the transmittance varies across a splat [yes]", true},
+    {"lod",
+     "Size on the image up to which blocks of voxels are drawn as one element; 0 always draws voxels, as does --composite "
+     "sorted [1]",
+     true},
+    {"culling", "Whether blocks outside of the image or hidden by others are left out; --composite sorted draws all [yes]", true},
+    {"cull-threshold",
+     "Transmittance to the eye below which a block is hidden, and a ray of the gather ends; 0 hides nothing [1/512]", true},
+    {"hierarchy-filter", "Mean of its voxels' transmittances that a block has [geometric]", true},
+    {"paper",
+     "The paper's method, for comparison: --composite additive --attenuation nearest --directions 26 --code linear8 "
+     "--no-path-length-correction --no-gradient --lod 0 --no-culling. Any of these that is given wins. 1 to 25 dB worse than "
+     "the default",
+     true}};
+
+}  // namespace
+
+const std::vector<OptionHelp>& optionHelp() {
+  static const std::vector<OptionHelp> all = [] {
+    std::vector<OptionHelp> joined = kVolumeHelp;
+    for (const std::vector<OptionHelp>& more : {kLightHelp, kMethodHelp}) joined.insert(joined.end(), more.begin(), more.end());
+    return joined;
+  }();
+  return all;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,100 @@
+#pragma once
+// Renders one volume by scenes in JSON: the common base of the C++ library and the Python module.
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/common/device_context.h"
+#include "apps/common/keyword_options.h"
+#include "apps/common/shared_volume.h"
+#include "engine/renderer.h"
+
+namespace freevoxels {
+
+/// Reads a file or makes "procedural:NAME"; of a baked file what describes it. `context` is null where the keywords choose the device.
+/// `keywords` are the grid, the resolution and the scene of later frames, which decides what other grids are needed.
+/// Without a file it is the volume of the scene. `progress` may abandon it.
+/// Fails as readVdb does, and for a baked file as FvxFile does.
+std::shared_ptr<const SharedVolume> openVolume(const std::string& file, const nlohmann::json& keywords,
+                                               const std::shared_ptr<DeviceContext>& context = nullptr, const Progress& progress = {});
+
+/// Writes an image as `freevoxels render` does, with the channels that it has. `keywords` are options of the section "output".
+void saveImage(const std::string& file, const Image& image, const nlohmann::json& keywords);
+
+/// A scene file as keywords, with absolute names of files. Fails with ErrorKind::Input.
+nlohmann::json loadScene(const std::filesystem::path& file);
+/// Writes keywords as a scene file, with names of files relative to its folder.
+void saveScene(const std::filesystem::path& file, const nlohmann::json& keywords);
+
+/// A frame of a full turn around the volume.
+struct TurnStep {
+  int frame = 0, frames = 1;  ///< 0 <= frame < frames
+};
+
+/// The view belongs to the renderer: its own keywords choose the distance of the eye, the look-at point and the default lights, and the
+/// `orbit` of a frame moves the eye about that point, so that neither size nor light change from frame to frame.
+///
+/// Any thread may call the member functions; the frames of one device are drawn one after another. A progress function may call them
+/// too, except that it cannot draw with the renderer that calls it: ErrorKind::Usage.
+class SceneRenderer {
+ public:
+  /// `keywords` (KeywordOptions) hold for every frame. The table is made for the first frame that needs it. If `context` is
+  /// null, the keywords choose the device, which is opened here.
+  SceneRenderer(std::shared_ptr<const SharedVolume> volume, nlohmann::json keywords, std::shared_ptr<DeviceContext> context = nullptr);
+  /// In a process forked from the renderer's own, what the renderer has on the device is given up, as it cannot be freed there.
+  ~SceneRenderer();
+
+  /// Reads the options of a frame: the renderer's keywords, overridden by `more`.
+  std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more) const;
+
+  /// Draws a frame, with channels. What frames share is made again only if the options change it.
+  Image render(const KeywordOptions& options, const Aovs& channels, const Progress& progress);
+  /// Draws a frame of a turn, with the cameras and the light of `freevoxels turntable`. `options` have the camera of the turn.
+  Image renderTurn(const KeywordOptions& options, TurnStep step, const Aovs& channels, const Progress& progress);
+  /// The same frame, which stays on the device, complete.
+  std::shared_ptr<const FrameTargets> renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress);
+
+  /// Times of the stages that the last complete frame ran, those of data that it made included. Does not wait for a frame that is being drawn.
+  std::vector<StageTime> timings() const;
+  /// The camera of the last complete frame, as keywords that give it; an empty object before.
+  nlohmann::json camera() const;
+  const std::shared_ptr<DeviceContext>& context() const { return context_; }
+
+ private:
+  class Turn;
+  Image drawImage(const KeywordOptions& options, std::optional<TurnStep> step, const Aovs& channels, const Progress& progress);
+  /// Prepares a frame and returns what `work`, a drawing function of Renderer, makes of it.
+  template <typename Work>
+  auto draw(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress, const Work& work);
+  FrameSettings prepare(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress);
+  void resolveView(const SceneDescription& description, std::optional<TurnStep> step);
+  void makeRenderer(const KeywordOptions& options, const Progress& progress);
+  void complete(glm::ivec2 size);
+
+  const std::shared_ptr<const SharedVolume> volume_;
+  const nlohmann::json keywords_;
+  const bool choosesDevice_;  ///< whether the keywords choose the device
+  const std::shared_ptr<DeviceContext> context_;
+  CameraDescription ownCamera_;  ///< of the renderer's own keywords
+
+  // While context_->turns is held:
+  bool isDrawing_ = false;
+  std::shared_ptr<const VolumeSource> source_;  ///< of the last frame
+  Scene scene_;                 ///< of the last frame, with what is known of the volume
+  std::string classification_;  ///< the fields of which scene_.classification was made
+  std::string rendererText_;    ///< rendererText for which renderer_ was made
+  std::unique_ptr<Renderer> renderer_;
+  std::size_t buildStages_ = 0;    ///< how many of renderer_'s timings are of its making
+  bool isRendererNew_ = false;     ///< whether it was made for the frame that is being drawn
+
+  mutable std::mutex lastFrameMutex_;  ///< guards the members below, of the last complete frame
+  std::vector<StageTime> timings_;
+  std::optional<CameraDescription> camera_;
+};
+
+}  // namespace freevoxels
